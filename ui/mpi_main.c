@@ -73,7 +73,7 @@ int main(int argc, char **argv)
     MPI_Comm_rank(MPI_COMM_WORLD, &group.rank);
     MPI_Comm_size(MPI_COMM_WORLD, &group.count);
 
-    // what goes wrong for everybody is told once
+    // errors common to all processes are reported once
     if (group.rank > 0 &&
         (freopen("/dev/null", "w", stdout) == NULL || freopen("/dev/null", "w", stderr) == NULL)) {
         MPI_Abort(MPI_COMM_WORLD, 1);

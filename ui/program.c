@@ -1,4 +1,4 @@
-// impactlab on the command line: finds the command and hands over to it.
+// impactlab on the command line: finds the command and executes it.
 #include "ui/program.h"
 
 #include <assert.h>

@@ -1,8 +1,8 @@
-// The program, whichever way it was started.
+// The program, common to all executables.
 #pragma once
 
 #include "src/study/ranks.h"
 
-// Carries out what argv asks for, alone (ranks NULL) or as one of several processes that do so
-// together. Returns the exit status. Sets up signals and the locale of the whole process.
+// Executes the command in argv, alone (ranks NULL) or as one of several cooperating processes.
+// Returns the exit status. Sets up signals and the locale of the whole process.
 int program_run(int argc, char **argv, const rank_group *ranks);

@@ -60,7 +60,7 @@ static void finish_filmed(filmed *m)
     }
 }
 
-// Opens the scenarios, then the first once more with each --beside. Returns the exit status.
+// Opens the scenarios, then the first one again with each --beside. Returns the exit status.
 static int open_all(filmed *m, const arguments *a)
 {
     if (a->operand_count + a->besides.count > FILM_RUNS) {
@@ -152,7 +152,7 @@ static int animate(const arguments *a)
                         "FILE.webp, or a folder for PNG frames");
     }
 
-    // what is wrong with the request is told before anything is simulated
+    // errors of the request are reported before anything is simulated
     int code = check_view(a);
     if (code != EXIT_DONE) {
         return code;

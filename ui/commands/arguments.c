@@ -294,7 +294,7 @@ static void option_lists(const command *self, struct option *longs, char *shorts
     *shorts = '\0';
 }
 
-// The row that getopt's value stands for.
+// The row of getopt's value.
 static int row_of(const command *self, int found)
 {
     int i = 0;
@@ -326,7 +326,8 @@ static void remember(arguments *a, const char *before, const char *word)
     }
 }
 
-// An option as the command line has it. Where results go makes no difference to them.
+// An option as given on the command line. Paths of results are left out, because they do not change
+// the results.
 static void remember_option(arguments *a, const option_row *o, const char *value)
 {
     char name[64];

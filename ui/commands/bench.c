@@ -19,7 +19,7 @@ static void remove_folder(const char *folder)
 {
     DIR *open = opendir(folder);
 
-    // what lies within are files alone
+    // the folder contains only files
     for (struct dirent *entry = NULL; open != NULL && (entry = readdir(open)) != NULL;) {
         char path[4096 + 256];
         if (entry->d_name[0] != '.') {

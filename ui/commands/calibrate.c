@@ -118,7 +118,7 @@ static int report(const arguments *a, const scenario *s, const calibration *c, b
                         c->count, PARAMETER_TEXT_SIZE - 1);
     }
 
-    // every result is tried, one that fails stops no other; the scenario wants the whole table
+    // every result is tried even if another one fails; the scenario needs the whole table
     if (a->json != NULL && write_json(a->json, calibration_json(c, s, table)) != EXIT_DONE) {
         result = EXIT_FAILED;
     }

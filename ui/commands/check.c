@@ -7,7 +7,7 @@
 // What came of the files so far.
 typedef struct checking {
     json_t *files;  // an object each
-    json_t *faults; // the sentences of the file in hand
+    json_t *faults; // the sentences of the present file
     told_faults told;
 } checking;
 

@@ -14,11 +14,11 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_BAD_ARGUMENTS = 2 };
 struct rank_group;
 typedef struct command command;
 
-// What stood on the command line after the command's name, checked by the rows of its options.
-// Texts are borrowed from argv; those that were not given are NULL.
+// The command line after the command's name, checked against the command's options. Texts point
+// into argv; a text that was not given is NULL.
 typedef struct arguments {
     const command *command;
-    char **operands; // what is no option
+    char **operands; // arguments that are not options
     int operand_count;
     bool quiet;
     bool fitted; // --fitted
@@ -31,7 +31,7 @@ typedef struct arguments {
     const char *sampling;           // --sample, NULL: grid
     uint64_t runs, seed;            // --runs (0 if not given), --seed
     uint64_t jobs;                  // runs at a time, 0 if not given
-    const struct rank_group *ranks; // that share the runs, NULL if this is the only process
+    const struct rank_group *ranks; // processes that share the runs; NULL if this is the only one
     const char *part;               // --part, "K/N"
     const char *quantity;           // --quantity, a key
     const char *only, *baseline;    // of bench
@@ -40,16 +40,16 @@ typedef struct arguments {
     const char *laws, *over;        // of robust
     const char *then;               // of predict, "TIME:VOLTS,..."
 
-    // where results go
+    // files for results
     const char *json, *csv, *plot, *scene, *output, *db, *markdown, *format;
 
-    // what pictures look like
+    // appearance of pictures
     bool mono, dark, bare, transparent;
     double width, height; // of a page [mm]; 0 if not given
     double font_size;     // of labels [pt]; 0 if not given
     double from, to;      // ends of the horizontal axis; NaN if not given
     const char *font, *signals, *latex;
-    char *command_line;   // without places that are written to; owned
+    char *command_line;   // without paths that are written to; owned
     double dpi;           // of a PNG; 0 if not given
     const char *overlay;  // CSV
     number_list instants; // --at [s]
@@ -95,28 +95,28 @@ struct command {
     const char *operands; // as usage shows them, "SCENARIO"
     int least, most;      // number of operands
     bool takes_scenarios; // operands are scenarios or files
-    // other words an operand may be: the i-th, NULL behind the last; NULL if there are none
+    // other values that an operand may have: the i-th, NULL after the last; NULL if there are none
     const char *(*operand_word)(int i);
     const option_table *options[COMMAND_TABLES]; // ends with NULL; --help is every command's
-    bool on_ranks;                               // every rank runs it (a.ranks), not only rank 0
-    bool draws;                                  // always, not only where --plot or --scene asks
-    int (*run)(const arguments *a);              // returns the exit status
+    bool on_ranks;                  // every MPI rank runs it (a.ranks), not only rank 0
+    bool draws;                     // always, not only where --plot or --scene asks
+    int (*run)(const arguments *a); // returns the exit status
 };
 
 // All commands, by group.
 extern const command *const command_table[];
 extern const int command_count;
-extern const command lab_command; // what impactlab is without a command
+extern const command lab_command; // the command of impactlab if none is named
 
 const command *command_find(const char *name); // NULL if there is none
 
-// Complains that there is no such command and names the nearest. Returns EXIT_BAD_ARGUMENTS.
+// Reports that there is no such command and names the most similar one. Returns EXIT_BAD_ARGUMENTS.
 int complain_command(const char *name);
 
-// The i-th table of a command's options, --help among those of its title; NULL behind the last.
+// The i-th table of a command's options, --help is among those with its title; NULL after the last.
 const option_table *command_options(const command *c, int i);
 
-// The i-th option of a command over all its tables; NULL behind the last.
+// The i-th option of a command over all its tables; NULL after the last.
 const option_row *command_option(const command *c, int i);
 
 // Prints "impactlab: " and the sentence to stderr. Returns EXIT_BAD_ARGUMENTS.
@@ -125,8 +125,8 @@ int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // The same for a fault. Returns the exit status that belongs to its code.
 int complain_fault(const fault *f);
 
-// Prints words that come from outside (titles, names of files and scenarios) among others to the
-// standard output, printable ones only (src/base/words.h).
+// Prints a text that contains words from outside (titles, names of files and scenarios) to the
+// standard output, without unprintable characters (src/base/words.h).
 void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 // A fault_handler that prints the sentence to stderr.
@@ -135,27 +135,30 @@ void report_to_stderr(void *context, const char *sentence);
 // The same as the program's complaint.
 void complain_sentence(void *context, const char *sentence);
 
-// Faults of a scenario that is opened, told as they come, so that none goes unsaid. The first one
-// waits until it is known whether it is about a place in a file, which begins the sentence then.
+// The faults found while a scenario is opened. Each is printed as it comes, but the first is held
+// back until it is known whether it belongs to a place in a file: if so, its sentence begins with
+// that place.
 typedef struct told_faults {
     int count;
-    char *first; // not told yet, or NULL
+    char *first; // not printed yet, or NULL
 } told_faults;
 
 // Takes one of them: a fault_handler whose context is the told_faults.
 void tell_fault(void *context, const char *sentence);
 
-// Tells the first one if it waits still, as where the scenario was opened all the same.
+// Prints the first one if it is still held back, for instance because the scenario could be opened
+// in spite of it.
 void tell_first_fault(told_faults *t);
 
-// Tells why a scenario could not be opened, for which scenario_open returned `code`; what is not
-// there at all has no place and is told as the program's own complaint. Returns the exit status.
+// Prints why a scenario could not be opened, after scenario_open returned `code`. A scenario that
+// does not exist has no place in a file and is reported as an error of the program. Returns the
+// exit status.
 int tell_unopened(told_faults *t, status code, const char *name_or_file);
 
 // Reads argv (argv[0] is the command's name) by the command's rows of options, which may stand
 // before or after the operands, and checks each value by its row. True with `a` filled, to be freed
-// by arguments_finish; false if the command is over (help was asked for, or an argument is wrong
-// and was complained about), with the exit status in *exit_status.
+// by arguments_finish; false if the command ends here (help was asked for, or an argument is wrong,
+// which has been reported), with the exit status in *exit_status.
 bool arguments_read(arguments *a, const command *self, int argc, char **argv, int *exit_status);
 void arguments_finish(arguments *a);
 
@@ -165,8 +168,8 @@ const char *option_text(const arguments *a, const option_row *o);
 // Whether the option names a place that results are written to.
 bool option_is_written(const option_row *o);
 
-// Complains about each place that results could not be written to, before anything is computed.
-// Returns the exit status.
+// Reports each path that results could not be written to, before anything is computed. Returns the
+// exit status.
 int check_results(const arguments *a);
 
 // Prints the commands by group, and how to call one of them.
@@ -182,7 +185,7 @@ void write_zsh_completion(FILE *stream);
 void write_fish_completion(FILE *stream);
 
 // Opens the scenario (a name or a file) and applies every --set. Every fault goes to stderr.
-// Returns EXIT_DONE, or the exit status to end with and then nothing is to be freed.
+// Returns EXIT_DONE, or the exit status to end with; in that case nothing has to be freed.
 int open_scenario(scenario *s, const char *name_or_file, const arguments *a);
 
 // Opens the scenario, calls `use` with it and closes it. Returns the exit status.
@@ -197,21 +200,22 @@ int write_json(const char *path, json_t *value);
 // `what`; errors stay in the stream. Returns the exit status.
 int write_file(const char *path, void (*write)(FILE *stream, const void *what), const void *what);
 
-// The larger of two exit statuses: what went wrong once stays wrong.
+// The larger of two exit statuses, so that a failure is kept.
 int worse(int a, int b);
 
-// True unless --quiet was given or a result goes to the standard output, where it stays alone.
+// False if --quiet was given or a result goes to the standard output, which then contains nothing
+// else.
 bool summary_wanted(const arguments *a);
 
 // A paragraph of a longer text.
 typedef struct paragraph {
     const char *start;
     int bytes;
-    bool literal; // one line that keeps its blanks: its first character is one
+    bool literal; // a single line that begins with a blank and is printed as it is
 } paragraph;
 
-// Takes the next paragraph off *text; false behind the last. Empty lines end paragraphs, and so do
-// lines that begin with a blank; other line ends count as blanks.
+// Takes the next paragraph off *text; false after the last. A paragraph ends at an empty line or
+// before a line that begins with a blank; other line ends count as blanks.
 bool next_paragraph(const char **text, paragraph *p);
 
 // Prints words in lines of at most `width` characters.

@@ -174,7 +174,7 @@ static void run_on_terminal(explorer *ex)
             dirty = true;
         }
 
-        // all that has come by now, so that keys never wait for pictures that nobody wants
+        // all input that has arrived, so that keys never wait for pictures that are out of date
         last = now;
         for (int taken = 0; in.kind != TERMINAL_NONE && !ex->state.quit && !leave; taken++) {
             dirty = true;

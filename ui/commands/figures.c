@@ -47,7 +47,7 @@ typedef struct figure_list {
     const thesis_figure **figures;
     size_t *order; // in which they are begun: slow ones first
     drawn *drawn;
-    size_t count, told; // told: those that the user was told of, from the first on
+    size_t count, told; // told: number of those already reported
     bool quiet;
     const char *folder, *formats;
     figure_options options;
@@ -78,7 +78,7 @@ static void draw_one(void *context, size_t i, void *scratch, void *result)
     }
 }
 
-// Keeps a figure's text and tells of every figure whose predecessors are there, too.
+// Keeps a figure's text and prints every figure whose predecessors have been printed.
 static status take_one(void *context, size_t i, const void *result, fault *f)
 {
     figure_list *list = context;
@@ -179,7 +179,7 @@ static int figures(const arguments *a)
         return code;
     }
 
-    // lists of what is to be drawn and of what came of it
+    // lists of figures to be drawn and of their results
     list.figures = calloc(count, sizeof(const thesis_figure *));
     list.order = calloc(count, sizeof *list.order);
     list.drawn = calloc(count, sizeof *list.drawn);

@@ -6,7 +6,7 @@
 
 #include "src/base/json.h"
 
-// A scenario with faults is no lesson here; opening it tells them.
+// A scenario with faults is not listed as a lesson; its faults are reported when it is opened.
 static void ignore_fault(void *context, const char *sentence)
 {
     (void)context;
@@ -70,7 +70,7 @@ static int run_lesson(const arguments *a)
         return complain_fault(&f);
     }
 
-    // without a name all of them, else the one that has it
+    // without a name all of them, otherwise the one with that name
     const char *wanted = a->operand_count > 0 ? a->operands[0] : NULL;
     json_t *all = a->json != NULL ? json_array() : NULL;
     for (int i = 0; i < count && !found; i++) {

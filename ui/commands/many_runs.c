@@ -9,14 +9,14 @@
 
 enum {
     BAR_LENGTH = 24,
-    MOST_WAITED = 5, // for runs in hand after a signal [s]
+    MOST_WAITED = 5, // time for runs under way after a signal [s]
 };
 
 static volatile sig_atomic_t signal_caught;
 static volatile double time_caught; // [s]
 static atomic_bool abandoned;
 
-// The first signal lets the runs in hand finish, if they do soon; one that comes a second or more
+// The first signal lets the runs under way finish, if they do soon; one that comes a second or more
 // later ends the program. One that follows at once is the same again: timeout and some shells send
 // it both to the program and to its group.
 static void catch_signal(int number)
@@ -42,7 +42,7 @@ void many_runs_catch_signals(sweep_options *o)
     sigaction(SIGINT, &caught, NULL);
     sigaction(SIGTERM, &caught, NULL);
 
-    // the alarm is ours: what is being written then goes on
+    // the alarm is handled here, so that writing is not interrupted
     caught.sa_flags = SA_RESTART;
     sigaction(SIGALRM, &caught, NULL);
 
@@ -103,7 +103,7 @@ void many_runs_progress(void *context, const sweep_progress *p)
         snprintf(left, sizeof left, ", %s left", time);
     }
 
-    // failures are told at once
+    // failures are reported at once
     if (p->failed > 0) {
         snprintf(failed, sizeof failed, ", %zu failed", p->failed);
     }

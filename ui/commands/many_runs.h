@@ -1,4 +1,4 @@
-// What the commands of many runs share: their options, ^C, and the progress line.
+// Shared by the commands that make many runs: options, ^C and the progress line.
 #pragma once
 
 #include <math.h>
@@ -7,32 +7,32 @@
 #include "src/study/sweep_run.h"
 #include "ui/commands/command.h"
 
-// Threads that --jobs asks for, or as many as there are processors.
+// The number of threads: --jobs, or the number of processors.
 int many_runs_jobs(const arguments *a);
 
-// Whether this process only computes runs for rank 0, which keeps and tells them.
+// Whether this process only computes runs for rank 0, which stores and reports them.
 bool many_runs_only_computes(const arguments *a);
 
-// From now on SIGINT and SIGTERM stop the sweeps of these options: the runs in hand are finished,
+// From now on SIGINT and SIGTERM stop the sweeps of these options: the runs under way are finished,
 // or abandoned after five seconds. A second signal, a second or more later, ends the program.
 void many_runs_catch_signals(sweep_options *o);
 
 // Whether to show progress: on a terminal, without --quiet.
 bool many_runs_shows_progress(const arguments *a);
 
-// A sweep_options.report: the progress bar, a line on the terminal that is written over. `context`
-// is a word that stands before it (const char *), or NULL.
+// A sweep_options.report: the progress bar, a line on the terminal that is overwritten. `context`
+// is a word printed before it (const char *), or NULL.
 void many_runs_progress(void *context, const sweep_progress *p);
 void many_runs_clear_progress(void);
 
-// Says how many of the runs that were computed now failed, and why the first of them did.
+// Prints how many of the newly computed runs failed, and why the first one did.
 void many_runs_tell_failure(const sweep_progress *p);
 
-// Ended by a signal: says what there is of the runs and how to go on, `db` being where they are
-// kept, or NULL. Returns the exit status, 130 after ^C.
+// After a signal: prints how many runs there are and how to continue. `db`: file in which they are
+// stored, or NULL. Returns the exit status, 130 after ^C.
 int many_runs_stopped(const char *db, size_t done, size_t total);
 
-// Options that they take, with the words of the command.
+// Their common options, each with the command's own help text.
 #define RUNS_OPTION(what)                                                                          \
     {                                                                                              \
         .name = "runs", .type = OPTION_WHOLE, .value = "N", .help = (what), PLACE(runs), .low = 1, \

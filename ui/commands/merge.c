@@ -24,7 +24,7 @@ static int merge(const arguments *a)
         return complain_fault(&f);
     }
 
-    // a sweep with runs missing is whole as a file: the same sweep goes on in it
+    // a sweep with missing runs is a valid file: the same sweep continues in it
     if (summary_wanted(a)) {
         say("%s: %zu of %zu runs from %d part%s\n", a->output, merged.runs, merged.total,
             a->operand_count, a->operand_count == 1 ? "" : "s");

@@ -1,6 +1,6 @@
-// The options of the command line: one row each says its name, its value, how that is checked and
-// where it is stored. Reading argv, --help, the man pages and the shells' completions all go by
-// these rows; tables of rows that several commands share stand in option_tables.c.
+// The options of the command line. One row each gives the name, the value, how the value is checked
+// and where it is stored. Reading argv, --help, the man pages and the completions of shells all use
+// these rows. Tables that several commands share are in option_tables.c.
 #pragma once
 
 #include <stdbool.h>
@@ -9,14 +9,15 @@
 
 // What an option takes, how it is checked, and the type of its place in struct arguments.
 typedef enum option_type {
-    OPTION_FLAG,       // nothing; bool
-    OPTION_TEXT,       // any text; const char *
-    OPTION_WORD,       // as OPTION_TEXT, but its `value` names words worth offering; const char *
+    OPTION_FLAG, // nothing; bool
+    OPTION_TEXT, // any text; const char *
+    OPTION_WORD, // as OPTION_TEXT, but its `value` lists words to offer for completion; const char
+                 // *
     OPTION_CHOICE,     // one of the words of `value`, "a|b|c"; const char *
     OPTION_FILE,       // a file that is read; const char *
     OPTION_RESULT,     // a file that is written whole, "-": the standard output; const char *
     OPTION_PICTURE,    // a file .png, .pdf or .svg that is written whole; const char *
-    OPTION_PLACE,      // a file or folder that the command itself looks after; const char *
+    OPTION_PLACE,      // a file or folder that the command itself checks and writes; const char *
     OPTION_SCENARIO,   // a scenario's name or file; const char *
     OPTION_QUANTITY,   // key of a summary's quantity; const char *
     OPTION_NUMBER,     // from `low` to `high`; double
@@ -43,10 +44,10 @@ typedef struct grid_size {
 
 typedef struct option_row {
     const char *name;  // without its dashes
-    const char *alias; // another spelling that is understood, NULL if none
+    const char *alias; // another accepted spelling, NULL if none
     char letter;       // short form, 0 if none
     option_type type;
-    const char *value; // what help calls the value; of OPTION_CHOICE its words, "a|b|c"
+    const char *value; // name of the value in help; for OPTION_CHOICE its words, "a|b|c"
     const char *help;  // one line
     size_t place;      // offset in struct arguments
     double low, high;  // range of numbers [unit]; high of OPTION_SIZE

@@ -9,7 +9,7 @@
 
 #define SERIF "DejaVu Serif"
 
-// The family that --font asks for; NULL for the house's own.
+// The family given by --font; NULL for the default.
 static const char *family_of(const char *font)
 {
     if (font == NULL || strcasecmp(font, "sans") == 0) {

@@ -39,7 +39,7 @@ static int plot(const arguments *a)
         code = complain_fault(&f);
     }
 
-    // faults in the recipe are told as they are found and leave f empty
+    // faults in the recipe are reported as they are found and leave f empty
     if (code == EXIT_DONE) {
         status opened = recipe_open(a->operands[0], &o, report_to_stderr, NULL, &drawn, &f);
         if (opened != STATUS_OK) {

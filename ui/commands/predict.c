@@ -69,7 +69,7 @@ static json_t *predict_object(const scenario *s, const sample *row,
     }
     json_put(object, "predictions", array);
 
-    // the same pulse as the run has it
+    // the same pulse in the run
     json_put(simulation, "peak_N", json_number(m->first_pulse_peak_N));
     json_put(simulation, "time_to_peak_s", json_number(m->first_pulse_time_to_peak_s));
     json_put(simulation, "impulse_Ns", json_number(m->contact_impulse_Ns));
@@ -170,7 +170,7 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
                                      .colour = 5,
                                      .style = LINE_DASHED}};
 
-    // names instead of numbers beside the rows
+    // names instead of numbers next to the rows
     const figure_panel panel = {.y = {.name = "predictor",
                                       .ticks = ticks,
                                       .tick_count = PREDICTOR_COUNT,

@@ -14,7 +14,7 @@
 
 static run_monitor watched; // one work at a time; the signal handler needs it
 
-// Who tells how far the work is.
+// The thread that shows the progress.
 static struct ticker {
     const char *pieces; // of the work; NULL: it is one run
     int total;          // of them

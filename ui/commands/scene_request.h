@@ -1,16 +1,16 @@
-// Pictures of the arm as the command line asks for them.
+// Pictures of the arm requested on the command line.
 #pragma once
 
 #include "render/scene/scene.h"
 #include "ui/commands/command.h"
 
-// The view that --gl, --camera and --size ask for.
+// The view set by --gl, --camera and --size.
 scene_options read_view(const arguments *a);
 
-// Whether --camera says something. Returns the exit status.
+// Checks --camera. Returns the exit status.
 int check_view(const arguments *a);
 
-// Whether run --scene could write its file, and --at does not ask for too many instants. Returns
+// Checks that run --scene can write its file and that --at does not give too many instants. Returns
 // the exit status.
 int check_scene(const arguments *a);
 

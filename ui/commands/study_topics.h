@@ -3,7 +3,7 @@
 
 #include "ui/commands/pictures.h"
 
-// Computes the study of the scenario, and prints and writes what was asked for. Returns the exit
+// Computes the study of the scenario, and prints and writes the requested results. Returns the exit
 // status.
 int study_of_methods(const arguments *a, scenario *s);
 int study_of_sensor(const arguments *a, scenario *s);

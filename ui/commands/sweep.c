@@ -64,7 +64,7 @@ static int read_share(const arguments *a, sweep_share *share)
     return EXIT_DONE;
 }
 
-// Reads the scenario and what is varied, and looks at everything that can be wrong beforehand.
+// Reads the scenario and the varied parameters, and checks everything that can be wrong in advance.
 static int prepare(sweep_order *o, const arguments *a)
 {
     fault f = {0};

@@ -28,7 +28,7 @@ void print_wrapped(FILE *stream, const char *text, int bytes, int width)
         length = length < end - text ? length : (int)(end - text);
         snprintf(word, sizeof word, "%.*s", length, text);
 
-        // a word goes on the next line where this one has no room for it
+        // a word goes to the next line if this one has no room for it
         int wide = text_width(word);
         const char *gap = column == 0 ? "" : column + 1 + wide > width ? "\n" : " ";
         column = gap[0] == ' ' ? column + 1 + wide : wide;

@@ -1,19 +1,19 @@
-// The explorer, the program's front on a terminal, without its terminal: it takes keys, the mouse
-// and lines of commands, and draws on a grid of cells.
+// The explorer, the interactive part of the program, without its terminal: it takes keys, the mouse
+// and command lines, and draws on a grid of cells.
 //
-// Its layers, each knowing only those before it: state/ (what is looked at and how), actions/ (what
-// commands do; they return results), panels/ (parts of the screen; they read the state and write a
-// layout), and here keys, mouse, the table of commands and the settings.
+// Its layers, each depending only on those before it: state/ (what is shown and how), actions/ (the
+// actions of commands, which return results), panels/ (parts of the screen, which read the state
+// and write a layout), and in this folder keys, mouse, the table of commands and the settings.
 #pragma once
 
 #include "ui/explorer/panels/layout.h"
 #include "ui/explorer/panels/panel.h"
 #include "ui/terminal/pointer.h"
 
-// What the mouse holds since its button went down.
+// The part of the screen that the mouse holds since its button was pressed.
 typedef struct pointer_grip {
     bool holding; // the button is down
-    bool dragged; // the mouse was moved meanwhile
+    bool dragged; // the mouse has moved since
     hit_area hit; // what it was pressed on
     int x, y;     // the cell it was at last
 } pointer_grip;
@@ -22,7 +22,7 @@ typedef struct explorer {
     explorer_state state;
     layout layout; // of the picture drawn last
     pointer_grip grip;
-    char first_failure[MESSAGE_TEXT]; // why the first line that failed did, "" if none has
+    char first_failure[MESSAGE_TEXT]; // message of the first line that failed, "" if none has
 } explorer;
 
 // Opens the explorer on a scenario, taken over also on failure. Waits for runs not longer than
@@ -30,17 +30,18 @@ typedef struct explorer {
 status explorer_init(explorer *ex, scenario *s, double patience, fault *f);
 void explorer_finish(explorer *ex);
 
-// Takes note of what has been computed since the last call. True if there is something to draw.
+// Takes in the rows computed since the last call. True if there is something new to draw.
 bool explorer_follow(explorer *ex);
 
-// Adds to the message line that a program had to go through its past once more, if one had.
+// Adds to the message line that an external program had to repeat its earlier samples, if it had
+// to.
 void explorer_tell_replay(explorer *ex);
 
-// Lets wall-clock time pass [s]: moves the cursor if the explorer plays.
+// Advances by wall-clock time [s]: moves the cursor during playback.
 void explorer_advance(explorer *ex, double seconds);
 
-// Whether time moves anything: it plays, or a run is being computed.
+// Whether anything changes with time: playback, or a run being computed.
 bool explorer_is_busy(const explorer *ex);
 
-// Draws everything. The screen's size decides the layout.
+// Draws everything; the layout depends on the screen's size.
 void explorer_draw(explorer *ex, screen *s);

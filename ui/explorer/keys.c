@@ -123,7 +123,7 @@ void explorer_take_picked(explorer *ex)
     }
 }
 
-// Keys go to a panel's filter: Enter keeps it and goes on with what is selected, Esc empties it.
+// Keys in a panel's filter: Enter keeps it and continues with the selection, Esc clears it.
 static void key_in_filter(explorer *ex, int key)
 {
     explorer_state *st = &ex->state;
@@ -160,7 +160,7 @@ static void escape(explorer *ex)
     explorer_state *st = &ex->state;
     char *filter = st->filters.text[st->side.panel];
 
-    // a computation goes first, and alone
+    // a computation is stopped first, and nothing else
     if (st->session.computing != NULL) {
         explorer_carry_out(ex, "stop");
         return;

@@ -5,7 +5,7 @@
 #include "ui/explorer/keys.h"
 #include "ui/terminal/key_codes.h"
 
-// Gives a gesture to the panel of its hit area; false if nobody takes it.
+// Passes a gesture to the panel of its hit area; false if it has no effect.
 static bool give(explorer *ex, const panel_gesture *g)
 {
     action_result result = result_done();
@@ -30,7 +30,7 @@ static void press(explorer *ex, pointer_event e)
     hit_area hit = layout_hit(&ex->layout, e.x, e.y);
     ex->grip = (pointer_grip){.holding = true, .hit = hit, .x = e.x, .y = e.y};
 
-    // beside a page: it closes, and what is dragged now belongs to nothing that is behind it
+    // outside a page: it closes, and the drag does not apply to the panel behind it
     if (is_behind_page(st, hit.panel)) {
         ex->grip.hit = (hit_area){.panel = st->page.panel};
         st->page.panel = PANEL_NONE;

@@ -1,7 +1,7 @@
-// What the mouse does: it finds the panel that is pointed at and gives it the gesture.
+// Finds the panel under the mouse and passes the gesture to it.
 #pragma once
 
 #include "ui/explorer/explorer.h"
 
-// The mouse did something.
+// Handles an event of the mouse.
 void explorer_point(explorer *ex, pointer_event e);

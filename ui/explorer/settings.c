@@ -33,7 +33,7 @@ static bool settings_path(char *path, size_t size, bool make)
     return true;
 }
 
-// Carries a line of the file out; what is wrong is told with its line and column.
+// Executes a line of the file; errors are reported with line and column.
 static action_result execute_line(explorer_state *st, const char *path, int number,
                                   const char *line)
 {
@@ -84,7 +84,7 @@ void explorer_load_settings(explorer *ex)
         fclose(stream);
     }
 
-    // the first fault is told, and how many there are besides
+    // the first fault, and the number of further ones
     st->settings_broken = faults > 0;
     if (faults > 1) {
         message_say(&st->message, true, "%.900s (and %d more)", first.text, faults - 1);
@@ -127,7 +127,7 @@ static void write_settings(const explorer_state *st, FILE *stream)
     fprintf(stream, "mouse %s\nlanes %s\nspeed %g\nslow %g\n", mouse_words[l->mouse],
             lane_choice_words[l->lanes], st->playback.speed, st->playback.slow);
 
-    // panes that nobody chose are the ones that suit the scenario
+    // panes that the user did not choose are those that suit the scenario
     fputs(st->panes.chosen ? "panes " : "", stream);
     for (int i = 0; i < PANES - 1; i++) {
         if (st->panes.chosen && st->panes.pane[i].shown) {

@@ -103,7 +103,7 @@ double rgb_distance(rgb a, rgb b)
 
 rgb colour_16(int index)
 {
-    // of the PC's text mode, whose bright and dark colours are the furthest apart
+    // of the PC's text mode, which has the largest difference between bright and dark colours
     int on = index & 8 ? 255 : 170, off = index & 8 ? 85 : 0;
     rgb c = {(unsigned char)(index & 1 ? on : off), (unsigned char)(index & 2 ? on : off),
              (unsigned char)(index & 4 ? on : off)};

@@ -1,7 +1,7 @@
-// Keys as the terminal lab knows them.
+// Codes of keys.
 #pragma once
 
-// Keys that are no characters; characters are their Unicode number.
+// Keys that are not characters; the code of a character is its Unicode number.
 enum key_code {
     KEY_CODE_FIRST = 0x110000,
     KEY_CODE_LEFT,

@@ -57,11 +57,12 @@ static void put_ink(outlet *o, ink i, colour_theme theme, colour_depth depth)
     // which colour, if any, and whether it is bold
     int index = depth == DEPTH_256 ? ink_256(theme, i) : depth == DEPTH_16 ? ink_16(theme, i) : -1;
     bool coloured = ink_rgb(theme, i, &c) && depth != DEPTH_MONO;
-    // many terminals show bold dark colours as bright ones, which nobody can read on light ground
+    // many terminals show bold dark colours as bright ones, which are not readable on a light
+    // background
     bool faint = theme == COLOURS_LIGHT && depth == DEPTH_16 && coloured;
     bool bold = (i == INK_TITLE || i == INK_EVENT || i == INK_WARNING) && !faint;
 
-    // the colour as this terminal is told
+    // the colour in the terminal's own units
     if (coloured && depth == DEPTH_TRUE) {
         snprintf(text, sizeof text, ";38;2;%d;%d;%d", c.red, c.green, c.blue);
     } else if (coloured && depth == DEPTH_256 && index >= 0) {

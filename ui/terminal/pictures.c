@@ -134,7 +134,7 @@ static int add_regions(const screen *s, int picture, int most_width, int most_he
                 continue;
             }
 
-            // the one above goes on, or another begins
+            // continues the one above, or begins another
             bool goes_on = false;
             for (int k = first; k < count && !goes_on; k++) {
                 picture_region *above = &regions[k];

@@ -1,10 +1,10 @@
-// Whether a terminal draws pictures, and how: what it is asked, and what it answered. Nothing is
-// taken from its name; one that does not answer draws none.
+// Whether a terminal draws pictures, and how: the queries to it and its answers. Its name is not
+// used; a terminal that does not answer draws none.
 //
-// First its version and its device attributes are asked for, which every terminal takes without a
-// mark on its screen. Only one that answers, and that is no multiplexer, is asked for the kitty
-// protocol: multiplexers hand such a question on or take it for a title. Device attributes come
-// last each time, so that their answer says that no other will come.
+// The first query is for its version and device attributes, which every terminal accepts without a
+// trace on its screen. Only a terminal that answers, and that is not a multiplexer, is asked for
+// the kitty protocol: multiplexers pass such a query on or take it for a title. Each query ends
+// with the device attributes, so that their answer marks the end of the answers.
 #pragma once
 
 #include "ui/terminal/escape_sequence.h"
@@ -16,20 +16,20 @@ typedef struct pixel_answers {
     enum { PIXELS_UNASKED, PIXELS_ASKED_NAME, PIXELS_ASKED, PIXELS_ANSWERED } stage;
     bool multiplexer;
     bool sixel, kitty;
-    int cell_width, cell_height; // [pixels]; 0: not said
-    int registers;               // colours of a sixel picture; 0: not said
-    int most_width, most_height; // of a sixel picture [pixels]; 0: not said
+    int cell_width, cell_height; // [pixels]; 0: not known
+    int registers;               // colours of a sixel picture; 0: not known
+    int most_width, most_height; // of a sixel picture [pixels]; 0: not known
     bool has_ground;
-    rgb ground; // of the terminal, if it said
+    rgb ground; // of the terminal, if known
 } pixel_answers;
 
-// Begins: returns what to ask first. `multiplexer`: the environment says that one is between.
+// Begins; returns the first query. `multiplexer`: there is one according to the environment.
 const char *pixel_answers_begin(pixel_answers *a, bool multiplexer);
 
-// Takes an answer and returns what to ask next, "" for nothing.
+// Reads an answer; returns the next query, "" for none.
 const char *pixel_answers_take(pixel_answers *a, const escape_sequence *answer);
 
-// What asks for the size of a cell once more, as after a change of the letters.
+// The query for the size of a cell, which may change with the font.
 extern const char pixel_ask_cell[];
 
 // The protocol to draw with.

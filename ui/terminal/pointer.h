@@ -1,4 +1,4 @@
-// What the mouse does on a screen, as the terminal tells it and the explorer understands it.
+// Events of the mouse on a screen.
 #pragma once
 
 #include <stdbool.h>
@@ -11,7 +11,7 @@ typedef enum pointer_kind {
     POINTER_WHEEL_DOWN
 } pointer_kind;
 
-// What the mouse did, at which cell, counted from 0.
+// An event of the mouse and its cell, counted from 0.
 typedef struct pointer_event {
     pointer_kind kind;
     int x, y;            // column and row [cells]

@@ -1,12 +1,13 @@
-// What is on the terminal's screen, before any terminal: a grid of cells, each a glyph and what it
-// stands for. A thin layer flushes it to the terminal; without one it is printed as text.
+// The contents of the terminal's screen, independent of a terminal: a grid of cells, each with a
+// glyph and an ink. terminal.h shows it on the terminal; without one it is printed as text.
 #pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
-// What a cell shows; the theme gives it a colour. SERIES_0 and the seven after it belong to curves.
+// The meaning of a cell, which the theme gives a colour. INK_SERIES_0 and the seven after it are
+// for curves.
 typedef enum ink {
     INK_TEXT,
     INK_DIM,
@@ -25,15 +26,15 @@ typedef enum ink {
     INK_COUNT = INK_SERIES_0 + 8
 } ink;
 
-// Which characters a terminal can show.
+// The sets of characters that a terminal can show.
 typedef enum glyph_set { GLYPHS_BRAILLE, GLYPHS_BLOCKS, GLYPHS_ASCII, GLYPH_SETS } glyph_set;
 
-// What the inks look like on the terminal.
+// The colours of the inks on the terminal.
 typedef enum colour_theme { COLOURS_DARK, COLOURS_LIGHT, COLOURS_MONO, COLOUR_THEMES } colour_theme;
 
-// How many colours the terminal is taken to have.
+// The assumed number of colours of the terminal.
 typedef enum colour_depth {
-    DEPTH_AUTO, // as many as it says
+    DEPTH_AUTO, // as reported by the terminal
     DEPTH_TRUE, // red, green and blue
     DEPTH_256,
     DEPTH_16,
@@ -48,20 +49,20 @@ typedef struct cell {
 
 typedef struct screen {
     int width, height;
-    cell *cells; // row after row
-    struct picture_layer
-        *pictures; // drawn in the place of cells (pictures.h), borrowed; NULL: none
+    cell *cells;                    // row after row
+    struct picture_layer *pictures; // drawn instead of cells (pictures.h), borrowed; NULL: none
 } screen;
 
 // A cell that shows a part of picture k of the screen: GLYPH_PICTURE + k, beyond all characters.
 #define GLYPH_PICTURE 0x110000u
 
-// A screen of width x height cells, at least 1 x 1; false without memory, then it is as before.
+// Resizes a screen to width x height cells, at least 1 x 1; false without memory, with the screen
+// unchanged.
 bool screen_resize(screen *s, int width, int height);
 void screen_finish(screen *s);
 void screen_clear(screen *s);
 
-// Everything beyond the edges is dropped by all of these.
+// All of these ignore what lies beyond the edges.
 void screen_put(screen *s, int x, int y, uint32_t glyph, ink colour);
 // Writes UTF-8 text of at most `room` cells and returns how many it took. Control characters and
 // bytes that are not UTF-8 become '?'.
@@ -72,7 +73,7 @@ int screen_print(screen *s, int x, int y, int room, ink colour, const char *form
 // Writes as many whole words of a text as there is room for, and ".." if any are left out. A first
 // word that is wider is split.
 void screen_words(screen *s, int x, int y, int room, ink colour, const char *text);
-// A frame round a rectangle with a title in its upper edge, its inside cleared.
+// A frame around a rectangle with a title in its upper edge; its inside is cleared.
 void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title);
 // Gives the cells of a rectangle another ink.
 void screen_tint(screen *s, int x, int y, int width, int height, ink colour);
@@ -100,11 +101,12 @@ typedef struct text_line {
 // whether text is left over.
 int text_wrap(const char *text, int width, text_line *lines, int most, bool *split);
 
-// The glyph as the set can show it.
+// The glyph, or the nearest one of the set.
 uint32_t glyph_in_set(uint32_t glyph, glyph_set set);
-// Takes one character off UTF-8 text; '?' for a byte that is none and for control characters.
+// Reads one character of UTF-8 text and moves *text behind it; '?' for an invalid byte and for
+// control characters.
 uint32_t glyph_decode(const char **text);
-// The cells that a UTF-8 text takes.
+// The number of cells of a UTF-8 text.
 int text_cells(const char *text);
 // Writes a glyph as UTF-8 with a zero at its end; text has 5 bytes.
 void glyph_encode(uint32_t glyph, char *text);

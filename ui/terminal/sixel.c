@@ -160,7 +160,7 @@ bool sixel_write(FILE *stream, const pixel_block *block, int colours)
     const bool done = p.bins != NULL && p.colour_of != NULL && p.bits != NULL;
 
     if (done) {
-        // no pixel is left out, so that it makes no difference what the ground would be
+        // no pixel is omitted, so that the background does not matter
         choose_colours(&p, colours);
         fprintf(stream, "\033P0;1;0q\"1;1;%d;%d", block->width, block->height);
         for (int i = 0; i < p.colours; i++) {

@@ -79,7 +79,7 @@ static void ask_for_pixels(void)
 {
     const char *name = getenv("TERM");
 
-    // a multiplexer hands strings on or shows them, and old consoles print them
+    // a multiplexer passes strings on or shows them, and old consoles print them
     const bool careful = getenv("TMUX") != NULL || getenv("STY") != NULL || name == NULL ||
                          strncmp(name, "screen", 6) == 0 || strncmp(name, "tmux", 4) == 0 ||
                          strcmp(name, "linux") == 0;

@@ -74,7 +74,7 @@ static bool take_sequence(wint_t key, int kind, terminal_input *in)
     return true;
 }
 
-// What has come already; TERMINAL_NONE if that is nothing, or not yet all of a sequence.
+// The input that has arrived; TERMINAL_NONE if there is none, or only a part of a sequence.
 static terminal_input pending_input(void)
 {
     terminal_input in = {.kind = TERMINAL_NONE};
@@ -153,7 +153,7 @@ static terminal_input after_signal(void)
     while (read(tty.wake[0], bytes, sizeof bytes) > 0) {
     }
 
-    // after a stop it goes on below, perhaps in another size
+    // after a stop it continues below, perhaps in another size
     if (terminal_suspending != 0) {
         terminal_suspending = 0;
         suspend();

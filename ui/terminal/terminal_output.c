@@ -56,7 +56,7 @@ static void set_colours(colour_theme theme, colour_depth depth)
 
 static attr_t attributes_of(ink colour, bool coloured)
 {
-    // weight tells apart what colours do, where there are any
+    // bold and dim distinguish what colours do elsewhere
     switch (colour) {
     case INK_SELECTED:
         return A_REVERSE;
@@ -64,7 +64,7 @@ static attr_t attributes_of(ink colour, bool coloured)
     case INK_EVENT:
         return A_BOLD;
 
-    // what a colour tells needs another sign where there is none
+    // the meaning of a colour needs another sign without colours
     case INK_DIM:
     case INK_OTHER:
         return coloured ? A_NORMAL : A_DIM;
@@ -86,7 +86,7 @@ static void show_cell(int x, int y, cell c, glyph_set glyphs, bool coloured)
         text[0] = '?';
     }
 
-    // bold stands for bright where there are eight colours
+    // bold means bright with eight colours
     attr_t attributes = attributes_of(c.ink, coloured);
     rgb ignored;
     if (coloured && tty.bright[c.ink]) {

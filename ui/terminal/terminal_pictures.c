@@ -14,7 +14,7 @@
 
 enum { USUAL_REGISTERS = SIXEL_COLOURS, LARGEST = 1 << 16 };
 
-// A region as the terminal has it.
+// A region on the terminal.
 typedef struct shown_region {
     picture_region place;
     uint64_t hash; // of its pixels
@@ -125,7 +125,7 @@ static void write_regions(FILE *stream, const screen *s, const picture_region *r
             continue;
         }
 
-        // the cursor is kept for who else writes to the terminal
+        // the cursor is kept for other programs that write to the terminal
         fprintf(stream, "\0337\033[%d;%dH", r->y + 1, r->x + 1);
         if (kitty) {
             kitty_write(stream, &block, i + 1, r->width, r->height);

@@ -22,7 +22,7 @@ static bool lock_prevents(const session *s, const char *name)
     return scenario_check_locks(&wanted, law, NULL) != STATUS_OK;
 }
 
-// Puts another law on; what helps is said where a lock on a mode stands in its way.
+// Changes the control law; if the lock on a mode prevents it, the message says what to do.
 static action_result change_law(explorer_state *st, const char *name)
 {
     action_result changed = act_change(st, PARAMETER_INDEX(control.law), name);

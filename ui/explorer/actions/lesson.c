@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The step that is to be done; NULL without a lesson.
+// The present step; NULL without a lesson.
 static const lesson_step *present_step(const explorer_state *st)
 {
     const lesson *l = &st->session.base.lesson;
     return st->lesson.on && st->lesson.step < l->step_count ? &l->steps[st->lesson.step] : NULL;
 }
 
-// The scenario of a lesson's name: itself, or the only lesson whose name ends with it.
+// The scenario of a lesson's name: the full name, or an ending that only one lesson has.
 static const char *lesson_named(explorer_state *st, const char *name)
 {
     const scenario_menu *menu = &st->scenarios;

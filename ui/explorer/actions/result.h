@@ -1,4 +1,4 @@
-// What came of an action: the one way in which actions tell news and faults.
+// The result of an action, which also carries its message or fault.
 #pragma once
 
 #include <stdbool.h>
@@ -8,27 +8,28 @@
 
 typedef struct action_result {
     status code;             // STATUS_OK, or why the action failed
-    bool speaks;             // the text takes the place of what the message line says
-    bool warning;            // the text is one, also where the action succeeded
-    int at;                  // failed: characters of the argument before what is wrong
+    bool speaks;             // the text replaces the message line
+    bool warning;            // the text is a warning, even if the action succeeded
+    int at;                  // failed: number of characters of the argument before the error
     char text[MESSAGE_TEXT]; // "" to clear the message line
 } action_result;
 
-// It is done, and there is nothing to say.
+// Done, without a message.
 action_result result_done(void);
-// It is done, and the message line is to be cleared.
+// Done; the message line is cleared.
 action_result result_quiet(void);
-// It is done, with news.
+// Done, with a message.
 action_result result_news(const char *format, ...) __attribute__((format(printf, 1, 2)));
-// It is done, but the user must know something.
+// Done, with a warning.
 action_result result_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // The argument is not what the action expects.
 action_result result_refused(const char *format, ...) __attribute__((format(printf, 1, 2)));
-// What a call returned: done where that is STATUS_OK, else failed with the fault's sentence.
+// The result of a call that returned `code`: done if STATUS_OK, otherwise failed with the fault's
+// sentence.
 action_result result_of(status code, const fault *f);
 
 // Whether the action succeeded.
 bool result_ok(const action_result *r);
 
-// Says on a message line what a result has to say.
+// Shows the result's message on a message line.
 void result_show(const action_result *r, message_line *m);

@@ -10,7 +10,7 @@
 
 // --- pinned runs ------------------------------------------------------------------------------
 
-// Makes the run beside the present one that of the baseline.
+// Makes the baseline the run for comparison with the present one.
 static action_result settle_baseline(explorer_state *st)
 {
     fault f = {0};

@@ -1,4 +1,4 @@
-// Actions on runs as a whole: opening one, and those that are computed while the explorer goes on.
+// Actions on whole runs: opening one, and runs that are computed in the background.
 #include "ui/explorer/actions/actions.h"
 
 #include <assert.h>

@@ -45,7 +45,7 @@ action_result act_advance(explorer_state *st, double seconds)
         return result_done();
     }
 
-    // slower round impacts; a tip that is held is pulled on the way
+    // slower near impacts; a held tip is pulled meanwhile
     const double before = s->now, duration = s->effective.parameters.run.duration;
     play->slowed = playback_slowness(play, &s->run.trace, duration, before);
     const double next = before + seconds * play->speed / play->slowed;
@@ -104,7 +104,7 @@ static action_result tell_event(explorer_state *st)
     const run_log *log = state_run_log(st);
     const event *e = session_event(&st->session);
 
-    // an event tells its numbers
+    // an event with its numbers
     if (e != NULL && e->kind == EVENT_IMPACT) {
         return result_news("impact at %.6f s: %.4g N s at %.4g m/s, %.4g J lost", e->time,
                            e->impulse, e->speed, e->loss);

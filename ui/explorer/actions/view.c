@@ -62,7 +62,7 @@ action_result act_fold(explorer_state *st, const char *argument)
     return result_refused("there is no group '%s' of parameters", argument);
 }
 
-// The panel whose filter `/` means: the page that is open, or what stands on the side.
+// The panel to whose filter `/` applies: the open page, or the side panel.
 static panel_id filtered_panel(const explorer_state *st)
 {
     return st->page.panel != PANEL_NONE ? st->page.panel : st->side.panel;
@@ -392,7 +392,7 @@ action_result act_quit(explorer_state *st, const char *argument)
     const session *s = &st->session;
     const bool unsaved = s->input_count > 0 && st->saved_version != state_run_id(st);
 
-    // changes are lost only by who asks twice
+    // changes are lost only if quitting is requested twice
     if (!unsaved || st->asked_to_quit) {
         st->quit = true;
         return result_done();

@@ -295,7 +295,7 @@ static void draw_close_up(const explorer_state *st, screen *s, area a)
     draw_stage(st, &g);
 }
 
-// What words there are about the arm: its force beside the tip, and what the hub does.
+// Texts about the arm: the force next to the tip, and the state of the hub.
 static void draw_words(const explorer_state *st, const stage *g, area a)
 {
     const sample *row = session_sample(&st->session);

@@ -1,4 +1,4 @@
-// The lines above and below the panels, and what a screen shows that is too small for panels.
+// The lines above and below the panels, and the message on a screen that is too small for panels.
 #pragma once
 
 #include "ui/explorer/state/state.h"
@@ -10,5 +10,5 @@ void draw_status(const explorer_state *st, screen *s, int y);
 // Draws the prompt, the message or hints in the last rows and returns how many it took.
 int draw_bottom(const explorer_state *st, screen *s);
 
-// Says that the screen is too small, in as many words as fit.
+// Shows that the screen is too small, in the longest text that fits.
 void draw_too_small(screen *s);

@@ -6,7 +6,7 @@
 #include "ui/explorer/panels/panel.h"
 #include "ui/terminal/pictures.h"
 
-// The width of the stack on the right; from 120 on there is room for sliders beside the values.
+// The width of the stack on the right; from 120 on there is room for sliders next to the values.
 static int side_width(int screen_width)
 {
     static const struct {
@@ -28,7 +28,7 @@ static bool gives_way(const explorer_state *st, panel_id id)
     return wants_room && (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS);
 }
 
-// What stands on the right: the chosen panel, and below it all that have room.
+// The right side: the selected panel, and below it all that have room.
 static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
 {
     const screen_size body = {s->width, a.height};
@@ -55,7 +55,7 @@ static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
     }
 }
 
-// The panels of a place of which there is one.
+// The places with a single panel.
 static void draw_place(const explorer_state *st, layout *lay, screen *s, panel_place place, area a)
 {
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {

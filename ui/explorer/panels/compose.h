@@ -4,8 +4,8 @@
 #include "ui/explorer/panels/layout.h"
 #include "ui/terminal/screen.h"
 
-// Whether a screen has room for the explorer; what is drawn on a smaller one says so.
+// Whether a screen has room for the explorer; on a smaller one only a message is drawn.
 bool compose_fits(screen_size size);
 
-// Draws everything, from a state that is up to date. The screen's size decides the layout.
+// Draws everything from an up-to-date state; the layout depends on the screen's size.
 void compose_screen(const explorer_state *st, layout *lay, screen *s);

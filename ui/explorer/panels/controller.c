@@ -97,7 +97,7 @@ static void draw_brief(screen *s, area a, const sample *row, const parameters *p
     brief(read, sizeof read, 2, row->force_reading);
     brief(calculated, sizeof calculated, 2, row->calculated_force);
 
-    // not every law wants an angle
+    // not every law needs an angle
     if (isfinite(row->desired_angle)) {
         screen_print(s, a.x, a.y, a.width, INK_TEXT, "wants %s rad, %s rad/s", angle, velocity);
     } else {
@@ -143,7 +143,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         return;
     }
 
-    // what the law wants and reads
+    // setpoint and readings of the law
     const struct {
         const char *name, *unit;
         double value;

@@ -64,7 +64,7 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
         {"hub_velocity", "control.speed_limit", true},
     };
 
-    // those whose signal the pane is about, and that the run knows
+    // those that belong to a signal of the pane and have a value in the run
     const parameters now = state_parameters(st);
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
         const int signal = signal_find(levels[i].signal);
@@ -119,7 +119,7 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
 
     plot_frame_open(st, &f);
 
-    // the present run over those kept beside it, limits and cursors where nothing is drawn
+    // the present run over those for comparison, limits and cursors behind all curves
     for (int run = state_run_count(st); run-- > 0;) {
         draw_run(st, f, &st->panes.pane[index], run);
     }

@@ -3,8 +3,8 @@
 
 #include "ui/explorer/panels/panel.h"
 
-// Takes a gesture in the plot, on the time axis, on an axis of values; false if it has no use for
-// it.
+// Takes a gesture in the plot, on the time axis, on an axis of values; false if the gesture does
+// nothing there.
 bool curves_point_at_plot(explorer_state *st, const panel_gesture *g);
 bool curves_point_at_time_axis(explorer_state *st, const panel_gesture *g);
 bool curves_point_at_labels(explorer_state *st, const panel_gesture *g);

@@ -2,7 +2,7 @@
 #include "ui/explorer/panels/help_text.h"
 #include "ui/explorer/panels/page.h"
 
-// Leaves the lines that a filter lets through; returns how many.
+// Keeps the lines that pass a filter; returns how many.
 static int keep_matching(help_line *lines, int count, const char *filter)
 {
     int kept = 0;

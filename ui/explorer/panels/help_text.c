@@ -80,7 +80,7 @@ static void add_commands(page *p, const key_bindings *b)
     // wide enough: keys, call and meaning are three columns; else the call goes before the meaning
     bool wide = p->width >= 96;
 
-    // a group's heading stands before its first command
+    // a group's heading before its first command
     for (int i = 0; i < explorer_command_count; i++) {
         const explorer_command *c = &explorer_command_table[i];
         char keys[64], call[64], text[LINE_TEXT];

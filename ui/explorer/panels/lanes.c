@@ -90,7 +90,7 @@ static int find_lanes(const explorer_state *st, const lane_survey *known, lane l
         }
     }
 
-    // sticking tells least
+    // sticking is the least informative
     if (known->sticks) {
         lanes[count++] = (lane){LANE_STICKING, 0};
     }
@@ -345,7 +345,7 @@ bool lanes_point(explorer_state *st, const panel_gesture *g)
     double from, to;
     state_window(st, &from, &to);
 
-    // on the map the visible part comes to where the mouse is
+    // on the map the visible part moves to the mouse
     if (g->hit.part == PART_MAP) {
         const double at = share * st->session.effective.parameters.run.duration;
         act_pan_by(st, at - (from + to) / 2);

@@ -1,4 +1,4 @@
-// The strip of a lesson below the title: what is to be done, or what came of it.
+// The strip of a lesson below the title: the task, or its result.
 #include "ui/explorer/panels/panel.h"
 
 #include <string.h>
@@ -20,7 +20,7 @@ static void write_step(const explorer_state *st, char *text, size_t size)
     }
 }
 
-// What key is to be pressed.
+// The key to press.
 static const char *wanted_key(const explorer_state *st)
 {
     const lesson_step *step = &st->session.base.lesson.steps[st->lesson.step];
@@ -49,7 +49,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     char text[1024], title[LINE_TEXT];
     text_line lines[MOST_LINES];
 
-    // the title tells how far the lesson is and how to go on
+    // the title shows the progress of the lesson and how to continue
     write_step(st, text, sizeof text);
     snprintf(title, sizeof title, "lesson, step %d of %d (%s)", st->lesson.step + 1, l->step_count,
              wanted_key(st));

@@ -33,7 +33,7 @@ static void draw_entry(const explorer_state *st, screen *s, area a, const log_en
         return;
     }
 
-    // an event with the number that tells most of it
+    // an event with its most informative number
     const event *v = &t->events[entry->event];
     screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  %s", v->time, event_name(v->kind));
     if (v->kind == EVENT_IMPACT || v->kind == EVENT_PUSH) {
@@ -71,7 +71,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const run_log *log = &st->log;
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "events (n, N)");
 
-    // what has been seen, the last of it that is not after the cursor, and what is to be done
+    // past entries up to the cursor, and the task
     size_t seen = 0;
     int current = 0, height = a.height - 2, later[MOST_LATER];
     while (seen < log->count && log->entries[seen].time <= e->seen) {

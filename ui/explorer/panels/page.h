@@ -1,4 +1,4 @@
-// Pages that are scrolled line by line: what their keys and the mouse do.
+// Keys and mouse in pages that are scrolled line by line.
 #pragma once
 
 #include "ui/explorer/panels/panel.h"

@@ -1,10 +1,10 @@
-// The first line of a pane: its number and unit, and what its curves are.
+// The first line of a pane: its number, unit and curves.
 #pragma once
 
 #include "ui/explorer/panels/layout.h"
 #include "ui/terminal/screen.h"
 
-// How a pane's signals are drawn: as their table says, but no two alike.
+// The lines and colours of a pane's signals: those of the signal table, but no two the same.
 typedef struct pane_look {
     ink colour[PANE_SIGNALS];
     line_style style[PANE_SIGNALS];
@@ -14,5 +14,5 @@ typedef struct pane_look {
 pane_look pane_look_of(const explorer_state *st, const pane *p);
 
 // The pane's number, its unit, its signals with their values at the cursor as far as there is room,
-// and what its axis does, in the first row of the pane's area.
+// and the mode of its axis, in the first row of the pane's area.
 void draw_pane_title(const explorer_state *st, screen *s, int index, area a);

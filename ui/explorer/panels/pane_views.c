@@ -5,7 +5,7 @@
 
 #include "src/base/fourier.h"
 
-enum { SERIES = 1024 }; // values of which a spectrum is computed
+enum { SERIES = 1024 }; // number of values of a spectrum
 
 // A plane of two ranges on a canvas.
 typedef struct plane {

@@ -1,9 +1,9 @@
-// Panes that have another axis than time: one signal over another, and the spectrum of one.
+// Panes whose axis is not time: one signal over another, and the spectrum of a signal.
 #pragma once
 
 #include "ui/explorer/panels/layout.h"
 #include "ui/terminal/screen.h"
 
-// Draws a pane's inside; its signals are those of a view that is not over time. *axis is what its
-// axis of values spans. False, with nothing drawn, if there are no values.
+// Draws a pane's inside; its signals are those of a view that is not over time. *axis is the range
+// of its axis of values. False, with nothing drawn, if there are no values.
 bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a, value_range *axis);

@@ -134,7 +134,7 @@ static void draw_heading(const explorer_state *st, layout *lay, screen *s, area 
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, parameter, a});
 }
 
-// What stands below the selected parameter: its wide slider, or why it has no effect.
+// The line below the selected parameter: its wide slider, or the reason why it has no effect.
 static void draw_below(const explorer_state *st, layout *lay, screen *s, area a, const track *wide)
 {
     const char *inert = state_inert_reason(st, wide->parameter);

@@ -133,7 +133,7 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
         bool input = v->kind == EVENT_CHANGE || v->kind == EVENT_PUSH;
         bool seen = v->time <= e->seen;
 
-        // what is to come of the motion is not known yet, what is to be done is
+        // the coming motion is not known yet, but coming changes are
         if (at >= 0 && at < line.width && ((impact && seen) || input)) {
             screen_put(s, line.x + (int)at, a.y,
                        impact ? 0x25b2
@@ -143,7 +143,7 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
         }
     }
 
-    // what the marks mean, beside them
+    // the meaning of the marks, next to them
     screen_text(s, a.x, a.y, LABEL_WIDTH, INK_FORCE, "\u2592 contact");
     screen_text(s, a.x, a.y + 1, LABEL_WIDTH, INK_EVENT, "\u25b2 impact");
     return (area){line.x, a.y, line.width, 2};

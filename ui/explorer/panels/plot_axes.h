@@ -8,5 +8,5 @@
 void draw_value_axis(screen *s, area a, value_range axis);
 
 // The time axis below the curves: contact as a bar, impacts and changes as marks, seconds. Returns
-// where its line and its numbers are.
+// the area of its line and numbers.
 area draw_time_axis(const explorer_state *st, screen *s, area a);

@@ -166,7 +166,7 @@ void plot_frame_level(const plot_frame *f, screen *s, double value, const char *
         return;
     }
 
-    // the name stands at the end
+    // the name is at the end
     const int length = (int)strlen(name), end = f->canvas.x + f->canvas.width;
     if (f->picture != NULL) {
         pane_level_paint(f->picture, &f->pixels, value, pixel_colour(f, INK_FRAME));

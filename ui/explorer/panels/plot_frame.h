@@ -1,4 +1,4 @@
-// What a pane over time is drawn on: its place, window and range, in cells or in pixels.
+// The area of a pane over time, with its window and range, in cells or in pixels.
 #pragma once
 
 #include "render/plot/pane_curve.h"
@@ -12,24 +12,24 @@ typedef struct plot_frame {
     value_range axis;
     unsigned pattern; // of the curve that is drawn, as in run_lines.h
     ink colour;
-    cairo_t *picture; // drawn on in the place of dots; NULL: none
+    cairo_t *picture; // used instead of dots; NULL: none
     pane_frame pixels;
     colour_theme theme;
 } plot_frame;
 
-// Has the pane drawn in pixels where the screen has any; plot_frame_close ends that.
+// Draws the pane in pixels if the screen has them, until plot_frame_close.
 void plot_frame_open(const explorer_state *st, plot_frame *f);
 
 void plot_frame_close(plot_frame *f);
 
 // Draws one signal of a run up to the instant `until` [s] with the frame's pattern and colour:
-// every row if they are few, else the smallest and the largest value of each column. `pairs`: these
-// of blocks of EXTREMES_BLOCK rows, NULL: none are known.
+// every row if there are few, otherwise the smallest and largest value of each column. `pairs`: the
+// smallest and largest values of blocks of EXTREMES_BLOCK rows; NULL: not known.
 void plot_frame_signal(const plot_frame *f, const trace *t, int signal, double until,
                        const double *pairs);
 
-// A line at an instant [s], where nothing is drawn yet.
+// A vertical line at an instant [s], behind everything already drawn.
 void plot_frame_cursor(const plot_frame *f, screen *s, double time);
 
-// A setpoint or a limit across the pane, and what it is called, where nothing is drawn yet.
+// A setpoint or limit across the pane, with its name, behind everything already drawn.
 void plot_frame_level(const plot_frame *f, screen *s, double value, const char *name);

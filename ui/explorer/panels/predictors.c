@@ -48,7 +48,7 @@ static prediction_answer ask(const explorer_state *st, layout *lay, predictor wh
     return known->answer;
 }
 
-// The row whose touch is asked about: the present one in free flight, else the last free one.
+// The row of the predicted touch: the present one in free flight, otherwise the last free one.
 static size_t free_row(const session *s)
 {
     const trace *t = &s->run.trace;
@@ -82,8 +82,8 @@ static prediction what_came(const session *s, size_t r)
     return came;
 }
 
-// Why a predictor says nothing, in so many words as there is room for. Links whose state is not
-// known are those of a run that plays: it will say something when that pauses.
+// The reason why a predictor has no answer, in as many words as fit. Links whose state is not known
+// are those of a run that plays: it will say something when that pauses.
 static const char *reason_of(const prediction_answer *answer, area a)
 {
     const char *reason = prediction_reason(answer);
@@ -98,7 +98,7 @@ static const char *reason_of(const prediction_answer *answer, area a)
                                                   : "does not apply";
 }
 
-// A line of the panel; `unknown` stands in the place of a force that is not known, else NULL.
+// A line of the panel; `unknown` is shown instead of a force that is not known, otherwise NULL.
 static void predictor_line(screen *s, area a, int line, const char *label, const prediction *p,
                            const char *unknown)
 {

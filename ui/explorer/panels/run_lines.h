@@ -1,5 +1,4 @@
-// The lines of curves: which dots of them are drawn, so that signals and runs are told apart where
-// colours do not.
+// Dash patterns of curves, so that signals and runs can be distinguished without colours.
 #pragma once
 
 #include "src/quantities/signals.h"
@@ -13,5 +12,5 @@ unsigned run_pattern(int index);
 // Whether a line has a dot at a column of dots.
 bool line_has_dot(unsigned pattern, long across);
 
-// A short piece of a line for a legend, as many cells wide.
+// A short piece of a line for a legend, `cells` wide.
 void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink colour);

@@ -75,7 +75,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_BODY, 0, a});
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_LINES, first, lines});
 
-    // what the filter lets through, as far as there is room
+    // entries that pass the filter, as far as there is room
     for (int i = 0, line = 0; i < menu->count; i++) {
         if (!scenario_menu_shows(menu, i)) {
             continue;

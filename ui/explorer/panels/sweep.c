@@ -5,7 +5,7 @@
 #include <string.h>
 
 enum { VALUE = 14, LEAST_CHART = 4 };
-enum { FRAME_OF_TITLE = 6 }; // corners, lines and blanks beside it [cells]
+enum { FRAME_OF_TITLE = 6 }; // corners, lines and blanks next to it [cells]
 
 // The least and the largest number among the runs; false without any.
 static bool range_of_metric(const lab_sweep *sweep, value_range *range)
@@ -140,7 +140,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s (M: next)",
                  summary_table[sweep->metric].label);
 
-    // the chart where there is room beside a few runs
+    // the chart, if there is room for it and a few runs
     const int inner = a.height - 3, chart = inner / 2 >= LEAST_CHART ? inner / 2 : 0;
     if (chart > 0 && sweep->count > 0) {
         draw_chart(st, s, (area){a.x + 2, a.y + 2, a.width - 4, chart});

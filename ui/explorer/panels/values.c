@@ -48,7 +48,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     snprintf(title, sizeof title, "values%s%s%s%s", against, filter[0] ? " /" : "", filter, part);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
 
-    // names in full where there is room for them beside two numbers
+    // full names if there is room for them and two numbers
     const int room = a.width - 4, numbers = beside != NULL ? 2 * NUMBER : NUMBER;
     const bool wide = room >= NAME + numbers + UNIT;
     const int names = room - numbers - (wide || beside == NULL ? UNIT : 0);

@@ -1,8 +1,8 @@
 // The commands of the explorer: one list for `:`, scripts, keys, the help and completion.
 #pragma once
 
-// group that begins with this command, or ""; name; argument as the help shows it; what it does;
-// the function that carries it out
+// group that begins with this command, or ""; name; argument as shown in the help; description;
+// function that executes it
 #define COMMAND_LIST(X)                                                                            \
     X("Time", "play", "", "run or pause", act_play)                                                \
     X("", "step", "[N]", "one row of the run on, or N (back if negative)", act_step)               \
@@ -94,11 +94,11 @@
     X("", "quit", "", "leave the lab; asks if changes would be lost", act_quit)                    \
     X("", "quit!", "", "leave the lab, whatever is lost", act_quit_now)
 
-// What is said of a command.
+// Description of a command.
 typedef struct explorer_command {
-    const char *group; // that begins with it, "" if it goes on with the one before
+    const char *group; // that begins with it, "" if it belongs to the previous group
     const char *name;
-    const char *argument; // as the help shows it, "" for none
+    const char *argument; // as shown in the help, "" for none
     const char *help;
 } explorer_command;
 
@@ -108,5 +108,5 @@ extern const int explorer_command_count;
 // The index of a name or of an unambiguous beginning of one, -1 if there is none.
 int explorer_command_find(const char *name);
 
-// The name that a misspelt one is nearest to, NULL if none is near.
+// The name most similar to a misspelt one, NULL if none is similar.
 const char *explorer_command_suggest(const char *name);

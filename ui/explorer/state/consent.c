@@ -98,7 +98,7 @@ static bool digest_of(const scenario *s, char digest[SHA256_TEXT])
         add_text(&h, "process");
         told = told && add_command(&h, c->command);
     } else if (c->law != LAW_PLUGIN) {
-        told = false; // the scenario itself names neither
+        told = false; // the scenario names neither
     } else {
         add_text(&h, "plugin");
         told = told && strchr(c->plugin, '/') != NULL && add_file(&h, c->plugin);
@@ -145,7 +145,7 @@ bool consent_remembered(const scenario *s)
     assert(s != NULL);
     char path[1024], digest[SHA256_TEXT];
 
-    // the program is read only by somebody who has allowed anything at all
+    // the program is read only if the user has allowed any
     return allowed_path(path, sizeof path, false) && access(path, R_OK) == 0 &&
            digest_of(s, digest) && look_through(path, digest, NULL);
 }

@@ -1,4 +1,4 @@
-// Parameters that mean nothing for a run, and why.
+// Parameters that have no effect on a run, and why.
 #pragma once
 
 #include "src/quantities/parameters.h"

@@ -1,4 +1,4 @@
-// Which key carries out what: the explorer's own table, the user's keys over it, and the names of
+// Key bindings: the explorer's own table, the user's keys, which take precedence, and the names of
 // keys.
 #pragma once
 
@@ -9,10 +9,10 @@
 
 enum { USER_KEYS = 64, KEY_NAME = 16 };
 
-// A key of the user's own.
+// A key bound by the user.
 typedef struct user_key {
     int key;
-    char line[LINE_TEXT]; // what it carries out, "" for nothing
+    char line[LINE_TEXT]; // the line it executes, "" for none
 } user_key;
 
 typedef struct key_bindings {
@@ -25,17 +25,17 @@ int key_of_name(const char *name, size_t length);
 // The name of a key.
 void key_name(int key, char *text, size_t size);
 
-// What a key carries out, NULL for nothing.
+// The line that a key executes, NULL for none.
 const char *key_line(const key_bindings *b, int key);
-// What it carries out where it is no key of the user's own, NULL for nothing.
+// The line that the explorer's own table gives it, NULL for none.
 const char *key_built_in_line(int key);
 
-// The user's key, NULL if it is none.
+// The user's binding of a key, NULL if there is none.
 user_key *key_find_own(key_bindings *b, int key);
-// Makes a key the user's own, or finds the one it is; NULL if no more fit.
+// Finds or adds the user's binding of a key; NULL if there is no room for another.
 user_key *key_add_own(key_bindings *b, int key);
-// Takes a key of the user's own out; the explorer's meaning of it holds again.
+// Removes the user's binding of a key, so that the explorer's own applies again.
 void key_remove_own(key_bindings *b, user_key *own);
 
-// The names of the keys that carry a command out, blanks between them.
+// The names of the keys that execute a command, separated by blanks.
 void key_names_of(const key_bindings *b, const char *command, char *text, size_t size);

@@ -1,4 +1,4 @@
-// How far a lesson has come.
+// Progress in a lesson.
 #pragma once
 
 #include <stdbool.h>
@@ -9,11 +9,11 @@
 typedef struct lesson_progress {
     bool on;
     int step;
-    bool passed;   // the step is done, and what is said then is shown
+    bool passed;   // the step is done, and its concluding text is shown
     bool answered; // an answer was given to this step
-    double answer; // a number, or of a choice its number from 1
+    double answer; // a number, or the number of a choice, from 1
 } lesson_progress;
 
-// What has been answered and done is as the step wants it.
+// Whether answers and actions meet the step's conditions.
 bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, const session *s,
                          const run_list *pinned);

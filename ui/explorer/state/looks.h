@@ -1,4 +1,4 @@
-// How the explorer looks on its terminal, and the words that commands and settings have for that.
+// The appearance of the explorer, and the words for it in commands and settings.
 #pragma once
 
 #include "ui/terminal/screen.h"
@@ -11,9 +11,9 @@ typedef enum lane_choice {
     LANE_CHOICES
 } lane_choice;
 
-// Whether the contact is shown from near by, too.
+// Whether a close-up of the contact is shown.
 typedef enum close_up_choice {
-    CLOSE_UP_AUTO, // where there are pixels
+    CLOSE_UP_AUTO, // if the terminal has pixels
     CLOSE_UP_ON,
     CLOSE_UP_OFF,
     CLOSE_UP_CHOICES
@@ -23,13 +23,13 @@ typedef struct looks {
     glyph_set glyphs;
     colour_theme theme;
     colour_depth depth;
-    colour_depth shown_depth; // what that comes to on the terminal; DEPTH_AUTO off it
+    colour_depth shown_depth; // the depth in use; DEPTH_AUTO without a terminal
     lane_choice lanes;
-    bool pixels; // pictures are drawn where the terminal has them
+    bool pixels; // pictures are drawn if the terminal has them
     close_up_choice close_up;
-    double bending; // is drawn that many times as large
-    bool mouse;     // it reports to the explorer
-    bool redraw;    // the whole screen is to be drawn anew
+    double bending; // factor by which bending is enlarged
+    bool mouse;     // mouse reports are on
+    bool redraw;    // the whole screen must be redrawn
 } looks;
 
 // The words for each value of the enumerations, in their order.

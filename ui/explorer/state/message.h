@@ -1,4 +1,4 @@
-// The message line: the last thing that was said to the user.
+// The message line: the last message to the user.
 #pragma once
 
 #include <stdbool.h>
@@ -10,9 +10,9 @@ typedef struct message_line {
     bool warning;
 } message_line;
 
-// Says something in the place of what was said before.
+// Replaces the message.
 void message_say(message_line *m, bool warning, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// Takes the text away.
+// Removes the message.
 void message_clear(message_line *m);

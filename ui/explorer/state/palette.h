@@ -1,5 +1,5 @@
-// The palette: everything that can be asked for by words, in one list: commands with their keys,
-// parameters, signals, scenarios and lessons.
+// The palette: one searchable list of commands with their keys, parameters, signals, scenarios and
+// lessons.
 #pragma once
 
 #include "ui/explorer/state/key_bindings.h"
@@ -19,36 +19,35 @@ typedef enum palette_kind {
 
 typedef struct palette_entry {
     palette_kind kind;
-    int index; // in the table or the list of its kind
-    int rank;  // how well it fits, the best is 0
+    int index; // index in the table or list of its kind
+    int rank;  // how well it matches; 0 is best
 } palette_entry;
 
 // Which entry of those shown is selected.
 typedef struct palette_view {
-    int selected; // -1: none, Enter carries out the line as it stands
-    bool picked;  // the mouse has chosen the selected one
+    int selected; // -1: none, and Enter executes the line as typed
+    bool picked;  // the selected entry was chosen with the mouse
 } palette_view;
 
-// What an entry is called, and what it is or does.
+// Name and description of an entry.
 typedef struct palette_text {
     char name[PALETTE_NAME];
-    char keys[32]; // that carry out a command, "" for none
+    char keys[32]; // keys of a command, "" for none
     char about[LINE_TEXT];
 } palette_text;
 
 // "command", "parameter", ...
 const char *palette_kind_name(palette_kind kind);
 
-// The entries that have all words, or parts of words, in their names or in what is said of them,
-// those that fit best first; returns how many. No words let everything through.
+// The entries whose names or descriptions contain all the words, best matches first; returns how
+// many. Without words all entries.
 int palette_find(const scenario_menu *menu, const key_bindings *keys, const char *words,
                  palette_entry entries[PALETTE_ENTRIES]);
 
 palette_text palette_describe(const scenario_menu *menu, const key_bindings *keys,
                               palette_entry entry);
 
-// The line of a command that does what an entry is for; *goes_on: it wants an argument, which is
-// typed behind it.
+// The command line of an entry; *goes_on: it still needs an argument.
 void palette_line(const scenario_menu *menu, palette_entry entry, char *line, size_t size,
                   bool *goes_on);
 

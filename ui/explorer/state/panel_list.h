@@ -1,22 +1,23 @@
 // The panels of the explorer: one list that gives each an identity, a place on the screen and the
-// description in the panel's own file. A new panel is one file and one line here (and one where
-// files are built).
+// description in the panel's own file. A new panel needs one file, one line here and one in
+// meson.build.
 #pragma once
 
 #include <stdbool.h>
 
-// Where a panel stands.
+// The places of panels.
 typedef enum panel_place {
     PLACE_STRIP, // below the title, while there is a lesson
     PLACE_TOP,   // above the curves
     PLACE_MAIN,  // below that
-    PLACE_SIDE,  // on the right; Tab chooses one of these
-    PLACE_STACK, // below the chosen one, as many as there is room for
+    PLACE_SIDE,  // on the right; Tab selects one of these
+    PLACE_STACK, // below the selected one, as many as have room
     PLACE_PAGE,  // opens over the others
     PLACE_PROMPT // above the prompt while that is open
 } panel_place;
 
-// identity, place, description; side panels in the order of Tab, stacked ones from top to bottom
+// identity, place, description; side panels in the order in which Tab selects them, stacked ones
+// from top to bottom
 #define PANEL_LIST(X)                                                                              \
     X(PANEL_LESSON, PLACE_STRIP, lesson_panel)                                                     \
     X(PANEL_ARM, PLACE_TOP, arm_panel)                                                             \
@@ -45,10 +46,9 @@ typedef enum panel_id {
         PANEL_IDS // one more than the last
 } panel_id;
 
-// Where a panel stands; not for PANEL_NONE.
+// The place of a panel; not for PANEL_NONE.
 panel_place panel_place_of(panel_id id);
 
-// The first panel on the side, and the next one after a panel of the side; PANEL_NONE after the
-// last.
+// The first panel of the side, and the one after a panel of the side; PANEL_NONE after the last.
 panel_id panel_first_on_side(void);
 panel_id panel_next_on_side(panel_id id);

@@ -47,7 +47,7 @@ static void show_signal(pane_set *set, int signal)
 {
     pane *own = &set->pane[PANES - 1];
 
-    // the first pane that has it
+    // the first pane with it
     for (int i = 0; i < PANES; i++) {
         for (int k = 0; k < set->pane[i].count; k++) {
             if (set->pane[i].signals[k] == signal) {
@@ -65,13 +65,13 @@ static void show_signal(pane_set *set, int signal)
     }
 }
 
-// Shows what is wished for, and the usual panes beside it as far as there is room.
+// Shows the requested panes, and the usual ones as far as there is room.
 static void show_panes(pane_set *set, const pane_wishes *wishes)
 {
     const char *usual = wishes->controlled ? "1352486" : "1342567";
     int shown = 0;
 
-    // none, then what is wished for
+    // none, then the requested ones
     for (int i = 0; i < PANES; i++) {
         set->pane[i].shown = false;
     }

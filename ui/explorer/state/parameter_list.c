@@ -59,7 +59,7 @@ void parameter_list_arrange(parameter_list *list, const parameters *p, int selec
 {
     assert(list != NULL && p != NULL && selected >= 0 && selected < parameter_count);
 
-    // groups that are not used fold, and long ones of which nothing was given
+    // groups without effect are folded, and long ones in which nothing was set
     for (int first = 0, next; first < parameter_count; first = next) {
         bool used = false, given = false;
         for (next = first; next == first || (next < parameter_count && !begins_group(next));
@@ -70,7 +70,7 @@ void parameter_list_arrange(parameter_list *list, const parameters *p, int selec
         list->folded[parameter_group(first)] = !used || (is_long_group(first) && !given);
     }
 
-    // the selected one is to be seen all the same
+    // the selected one must still be visible
     list->parameter = selected;
     list->on_heading = false;
     list->folded[parameter_group(selected)] = false;
@@ -94,7 +94,7 @@ int parameter_list_lines(const parameter_list *list, const char *filter,
             continue;
         }
 
-        // a group's heading stands before the first of it that is let through
+        // a group's heading before its first line that passes the filter
         if (!headed) {
             lines[count++] = (parameter_line){group_begin(i), true};
             headed = true;

@@ -1,4 +1,4 @@
-// The list of parameters as it is shown: in groups that can be folded, and filtered.
+// The displayed list of parameters, in groups that can be folded, and filtered.
 #pragma once
 
 #include "src/quantities/parameters.h"
@@ -8,10 +8,10 @@ enum { PARAMETER_GROUPS = 16, PARAMETER_LINES = 256, PARAMETER_NAME = 80 };
 typedef struct parameter_list {
     bool folded[PARAMETER_GROUPS]; // by group, in the order of the table
     int parameter;                 // selected, index in parameter_table
-    bool on_heading;               // its group's heading is selected instead
+    bool on_heading;               // the heading of its group is selected instead
 } parameter_list;
 
-// A line: a parameter, or the heading of the group that begins with it.
+// A line: a parameter, or the heading of the group whose first parameter it is.
 typedef struct parameter_line {
     int parameter;
     bool heading;
@@ -21,21 +21,21 @@ typedef struct parameter_line {
 int parameter_group(int parameter);
 void parameter_group_name(int parameter, char *name, size_t size);
 
-// Folds what a run of these parameters has no use for, and the sensors' and beliefs' many numbers
-// where none was given; selects a parameter.
+// Folds the groups that have no effect on a run of these parameters, and those of sensors and
+// beliefs if none of their values was set; selects a parameter.
 void parameter_list_arrange(parameter_list *list, const parameters *p, int selected);
 
-// Fills the lines that are shown; returns how many. A filter shows what it lets through, folded or
-// not.
+// Fills the lines that are shown and returns how many. With a filter, matching parameters are shown
+// even in folded groups.
 int parameter_list_lines(const parameter_list *list, const char *filter,
                          parameter_line lines[PARAMETER_LINES]);
 
-// The number of the selected line among those shown; 0 if it is not among them.
+// The index of the selected line among those shown; 0 if it is not shown.
 int parameter_list_selected(const parameter_list *list, const parameter_line *lines, int count);
 
 // Selects a line.
 void parameter_list_select(parameter_list *list, parameter_line line);
-// Folds the group of a parameter, or shows it again; its heading is selected.
+// Folds or unfolds the group of a parameter and selects its heading.
 void parameter_list_fold(parameter_list *list, int parameter);
 
 // The parameter of a path, of its last part or of a beginning of either, if only one has it; -1 if

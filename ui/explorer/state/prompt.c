@@ -37,7 +37,7 @@ bool prompt_type(prompt *p, int key)
     const bool replaces = p->replaces;
     p->replaces = false;
 
-    // the end of the line keeps the value and goes on behind it
+    // the end of the line keeps the value and continues after it
     if (key == KEY_CODE_RIGHT || key == KEY_CODE_END || key == KEY_CODE_LEFT ||
         key == KEY_CODE_HOME) {
         return replaces;

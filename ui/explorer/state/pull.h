@@ -1,6 +1,6 @@
-// The tip pulled by the mouse: a spring from the tip to the pointer. While it is held the run
-// plays, and every few milliseconds of it the spring's force goes into the run as a push, so that
-// what was pulled is a list of dated inputs and comes again by itself.
+// The tip pulled by the mouse through a spring from the tip to the pointer. While it is held the
+// run plays, and every few milliseconds the spring's force is added to the run as a push. The pull
+// is thus recorded as a list of timed inputs and is repeated when the run is computed again.
 #pragma once
 
 #include <stdbool.h>
@@ -11,9 +11,9 @@
 #define PULL_STIFFNESS 10.0  // of the spring [N/m]
 #define PULL_STEP      0.005 // of the run between two pushes [s]
 
-// Where the arm was drawn last.
+// The area in which the arm was drawn last.
 typedef struct arm_stage {
-    int x, y, width, height; // [cells]; no width: nowhere
+    int x, y, width, height; // [cells]; width 0: not drawn
     double left, bottom;     // of it [m]
     double across, up;       // [cells/m]
 } arm_stage;
@@ -29,7 +29,7 @@ typedef struct tip_pull {
     double force;     // of the spring across the last link, towards growing angle [N]
     double next;      // when the next push is due [s]
     bool was_playing; // before it was held
-    unsigned gesture; // number of this pull among the session's inputs
+    unsigned gesture; // number of this pull in the session's inputs
 } tip_pull;
 
 // The place of a cell's middle on the stage [m].

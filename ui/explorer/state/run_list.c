@@ -84,7 +84,7 @@ static void propose_name(const run_list *list, const session *s, char name[RUN_N
 {
     char text[SESSION_INPUT_TEXT + 80] = "as opened";
 
-    // the last change tells best what is new
+    // the last change describes best what is new
     if (s->input_count > 0) {
         run_list_input_text(&s->inputs[s->input_count - 1], text, sizeof text);
     }

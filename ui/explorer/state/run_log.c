@@ -40,7 +40,7 @@ void run_log_update(run_log *log, unsigned long run, const trace *t, bool comple
     for (; log->rows < t->row_count; log->rows++) {
         const sample *row = &t->rows[log->rows];
 
-        // what happened at an instant stands before the mode that came of it
+        // an event at an instant comes before the resulting mode
         add_events(log, t, row->time);
         if (isfinite(log->mode) && isfinite(row->controller_mode) &&
             row->controller_mode != log->mode) {

@@ -10,18 +10,18 @@
 typedef struct log_entry {
     double time; // [s]
     int event;   // index in the trace, -1 for a change of mode
-    double mode; // that it went into
+    double mode; // the mode entered
 } log_entry;
 
 typedef struct run_log {
-    unsigned long run; // whose log it is; 0: nothing is known
+    unsigned long run; // the run of the log; 0: none
     log_entry *entries;
     size_t count, capacity;
-    size_t rows, events; // of the run that were gone through
-    double mode;         // at the last of them, NaN if there was none yet
+    size_t rows, events; // already included
+    double mode;         // at the last row, NaN before the first
 } run_log;
 
-// Takes in what came to a run since the last call. `complete`: nothing more will come.
+// Adds the entries of new rows and events since the last call. `complete`: the run has ended.
 void run_log_update(run_log *log, unsigned long run, const trace *t, bool complete);
 
 // The instant of the next entry after a time (direction 1) or the last one before it (-1) [s];

@@ -36,7 +36,7 @@ void scenario_menu_read_titles(scenario_menu *menu)
     menu->lessons = calloc((size_t)menu->count, sizeof *menu->lessons);
     const bool room = menu->titles != NULL && menu->descriptions != NULL && menu->lessons != NULL;
 
-    // what cannot be read keeps its name alone
+    // a file that cannot be read has only its name
     for (int i = 0; room && i < menu->count; i++) {
         scenario s;
         if (scenario_open(&s, menu->names[i], ignore_fault, NULL) == STATUS_OK) {

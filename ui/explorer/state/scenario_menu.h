@@ -1,5 +1,4 @@
-// The list of scenarios: their names and titles, which of them the filter lets through, and which
-// one is selected.
+// The list of scenarios: names, titles, filter and selection.
 #pragma once
 
 #include <stdbool.h>
@@ -8,14 +7,14 @@
 
 typedef struct scenario_menu {
     char **names;  // of all scenarios
-    char **titles; // theirs, where there is one; NULL before they are wanted
+    char **titles; // NULL before they are read
     char **descriptions;
-    bool *lessons; // whether each is a lesson; NULL before that is wanted
+    bool *lessons; // whether each is a lesson; NULL before they are read
     int count;
     char filter[LINE_TEXT];
-    bool filtering; // keys go to the filter
+    bool filtering; // the filter receives the keys
     int selected;   // index
-    int first;      // line shown first; negative: round the selected one
+    int first;      // first line shown; negative: so that the selected one is in the middle
 } scenario_menu;
 
 // Reads the names; the list stays empty if that fails.
@@ -26,18 +25,18 @@ void scenario_menu_finish(scenario_menu *menu);
 
 // The index of a name, -1 if there is none.
 int scenario_menu_find(const scenario_menu *menu, const char *name);
-// The title of a scenario, "" if there is none or none was read.
+// The title of a scenario, "" if it has none or none was read.
 const char *scenario_menu_title(const scenario_menu *menu, int index);
-// What a scenario is about, "" if it does not say or none was read.
+// The description of a scenario, "" if it has none or none was read.
 const char *scenario_menu_description(const scenario_menu *menu, int index);
-// Whether a scenario is a lesson, as far as it was read.
+// Whether a scenario is a lesson; false before it is read.
 bool scenario_menu_is_lesson(const scenario_menu *menu, int index);
-// Whether the filter lets a scenario through, by words of its name or title.
+// Whether a scenario passes the filter by its name or title.
 bool scenario_menu_shows(const scenario_menu *menu, int index);
-// The index of the scenario in a line of those shown, -1 beyond them.
+// The index of the scenario in a displayed line, -1 after the last.
 int scenario_menu_in_line(const scenario_menu *menu, int line);
 
-// Moves the selection on to the next scenario shown (direction 1) or the one before it (-1).
+// Moves the selection to the next scenario shown (direction 1) or the previous one (-1).
 void scenario_menu_move(scenario_menu *menu, int direction);
 // Moves the selection to the first scenario shown if the filter hides the selected one.
 void scenario_menu_keep_selection_shown(scenario_menu *menu);

@@ -6,7 +6,7 @@
 #include "src/quantities/parameters.h"
 
 #define FEWEST_DECADES 3    // from this many on a range is logarithmic
-#define MOST_DECADES   6    // a range of more shows those round the default
+#define MOST_DECADES   6    // a wider range shows those near the default
 #define WIDE           40.0 // times its default a range is shown in part
 
 static double default_of(int parameter)
@@ -39,7 +39,7 @@ bool slider_scale_of(int parameter, double value, slider_scale *scale)
     }
     double usual = fabs(default_of(parameter)), low = info->minimum, high = info->maximum;
 
-    // decades: all of them, or some round the default and as far as the value
+    // decades: all of them, or some near the default up to the value
     if (low > 0 && log10(high / low) >= FEWEST_DECADES) {
         if (log10(high / low) > MOST_DECADES && usual > 0) {
             low = fmax(low, fmin(value, pow(10, floor(log10(usual)) - 2)));

@@ -24,7 +24,7 @@ static void define_panes(explorer_state *st)
     const scenario *base = &st->session.base;
     const int room = (st->size.height - HEAD) * 3 / 5 / ROWS;
 
-    // a lesson leaves little room beside the panes that it asks for
+    // a lesson leaves little room next to its own panes
     const int least = st->lesson.on ? 2 : FEWEST;
     const pane_wishes wishes = {state_has_law(st), base->panes, base->pane_count,
                                 room < least ? least : room};
@@ -318,7 +318,7 @@ static value_range range_between(const explorer_state *st, const pane *p, double
     for (int run = 0; run < runs; run++) {
         const shown_run shown = state_run(st, run);
         const trace *t = shown.trace;
-        // one row more at the end: the line goes on to it
+        // one more row at the end, to which the line continues
         const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
         for (int k = 0; k < p->count; k++) {
             const double *pairs = extremes_pairs(&st->extremes[run], shown.id, t, p->signals[k]);

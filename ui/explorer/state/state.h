@@ -1,5 +1,5 @@
-// The state of the explorer: the session it looks at, and how it is looked at. Actions change it;
-// panels draw it and do not change it. It knows no terminal and no place on the screen.
+// The state of the explorer: the session shown, and how it is shown. Actions change it; panels draw
+// it without changing it. It does not depend on a terminal or on positions on the screen.
 #pragma once
 
 #include "src/session/session.h"
@@ -25,14 +25,14 @@
 #include "ui/explorer/state/slider.h"
 #include "ui/explorer/state/time_window.h"
 
-enum { SIDE_WIDTH = 72 }; // of a screen that has room for the side beside the curves [cells]
-// The present run, those pinned, those of a sweep, and the one before a value that is adjusted.
+enum { SIDE_WIDTH = 72 }; // least width of a screen with the side panels next to the curves [cells]
+// The present run, pinned runs, runs of a sweep, and the run before the adjustment of a value.
 enum { SHOWN_RUNS = 1 + PINNED_RUNS + SWEPT_RUNS + 1 };
 
-// A run whose curves are shown.
+// A run with visible curves.
 typedef struct shown_run {
     enum { SHOWN_PRESENT, SHOWN_DIFFERENCE, SHOWN_PINNED, SHOWN_SWEPT, SHOWN_BEFORE } kind;
-    int index; // among those of its kind
+    int index; // among the runs of its kind
     const trace *trace;
     unsigned long id; // of its rows, never 0
 } shown_run;
@@ -43,16 +43,16 @@ typedef struct time_mark {
     double time; // [s]
 } time_mark;
 
-// What stands on the right.
+// The side panel.
 typedef struct side_view {
     panel_id panel;
-    bool in_front; // a narrow screen shows it in the place of the curves
+    bool in_front; // a narrow screen shows it instead of the curves
 } side_view;
 
-// What has opened over the panels.
+// The page over the panels.
 typedef struct page_view {
     panel_id panel; // PANEL_NONE if nothing has
-    int lines;      // of it that are shown at once, as it was drawn last
+    int lines;      // number of its lines shown at once when it was drawn last
 } page_view;
 
 typedef struct screen_size {
@@ -65,81 +65,81 @@ typedef struct explorer_state {
     run_list pinned;
     lab_sweep sweep;
     run_difference difference;
-    unsigned opened; // counts the scenarios that were opened
+    unsigned opened; // number of scenarios opened
 
-    // the instants that are looked at
+    // the instants of interest
     playback playback;
     time_window window;
     time_mark mark;
 
-    // what is shown of them
+    // what is displayed of them
     pane_set panes;
-    int panes_height; // of the screen they were filled for [cells]
+    int panes_height; // height of the screen for which they were filled [cells]
     side_view side;
     parameter_list parameters;
     filters filters;
     page_view page;
     scenario_menu scenarios;
     lesson_progress lesson;
-    int change;            // selected among the changes, index in session.inputs
-    int scroll[PANEL_IDS]; // by panel: lines it is away from where it stands by itself
+    int change;            // the selected change, index in session.inputs
+    int scroll[PANEL_IDS]; // by panel: number of lines scrolled from its automatic position
     slider_grip slider;
     tip_pull pull;
     arm_stage stage; // of the arm
     looks looks;
     screen_size size; // of the screen drawn last
 
-    // what is said and typed
+    // messages and input
     message_line message;
     prompt prompt;
     palette_view palette;
     key_bindings keys;
-    char last_law[LINE_TEXT];    // the one that was on when it was switched off, "" for none
-    bool settings_broken;        // the settings file has faults
-    unsigned long saved_version; // the run that was saved as a scenario last, 0 for none
-    bool asked_to_quit;          // the last key did, and changes would be lost
+    char last_law[LINE_TEXT];    // the law that was switched off last, "" for none
+    bool settings_broken;        // the settings file contains errors
+    unsigned long saved_version; // the run last saved as a scenario, 0 for none
+    bool asked_to_quit;          // the last key asked to quit, and changes would be lost
     bool quit;
 
-    // what is known of the runs, kept until they change
+    // results derived from the runs, kept until they change
     law_modes modes;
     run_log log;
     extremes extremes[SHOWN_RUNS];
 } explorer_state;
 
-// Opens the state on a scenario, taken over also on failure. Waits for runs not longer than
-// `patience` [s].
+// Opens the state with a scenario, which it owns from then on, also on failure. Waits for runs at
+// most `patience` [s].
 status state_init(explorer_state *st, scenario *s, double patience, fault *f);
 void state_finish(explorer_state *st);
 
-// Looks at another session, taken over, as at a fresh one.
+// Shows another session, which it owns from then on, as if newly opened.
 void state_take_session(explorer_state *st, session *fresh);
 
-// Brings all that drawing reads up to date: panes, window, axes that grow, and what is known of the
+// Updates everything that drawing reads: panes, window, growing axes and results derived from the
 // runs.
 void state_update(explorer_state *st);
 
-// Identifies the present run among all of all sessions opened here; never 0.
+// A number that identifies the present run among the runs of all sessions opened; never 0.
 unsigned long state_run_id(const explorer_state *st);
-// The runs whose curves are shown: 0 is the present one (or its difference from the baseline,
-// alone), the others are kept for comparison.
+// The runs with visible curves: 0 is the present one (or, alone, its difference from the baseline),
+// the others are for comparison.
 int state_run_count(const explorer_state *st);
 shown_run state_run(const explorer_state *st, int index);
-// What a run is called, "" for the present one and for those that have no name.
+// The name of a run, "" for the present one and for runs without a name.
 const char *state_run_name(const explorer_state *st, int index);
-// Pinned runs that are not hidden.
+// The number of pinned runs that are not hidden.
 int state_visible_pins(const explorer_state *st);
 // The parameters at the cursor.
 parameters state_parameters(const explorer_state *st);
 
 // The visible part of the run [s].
 void state_window(const explorer_state *st, double *from, double *to);
-// Makes a part visible, kept within the run [s].
+// Makes a part visible, limited to the run [s].
 void state_show_part(explorer_state *st, double from, double to);
 
 // The axis of a pane in the visible part of the run; false if no signal of it has a value there.
 bool state_pane_axis(const explorer_state *st, int index, value_range *axis);
 
-// Whether a control law is on, and its modes.
+// Whether there is a control law, and its modes.
 bool state_has_law(const explorer_state *st);
 const law_modes *state_law_modes(explorer_state *st);
 // The log of the present run.
@@ -147,7 +147,7 @@ const run_log *state_run_log(explorer_state *st);
 
 // The lines of the list of parameters that are shown; returns how many.
 int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES]);
-// A change as a line of text: what it gives what, without its instant.
+// A change as a line of text: parameter and value, without its instant.
 void state_change_text(const explorer_state *st, int index, char *text, size_t size);
 // Changes that take effect after the cursor.
 int state_later_changes(const explorer_state *st);

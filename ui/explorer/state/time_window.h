@@ -5,13 +5,13 @@
 
 typedef struct time_window {
     double from, to; // [s]; to <= from: the whole run
-    bool adrift;     // it was panned and does not follow the cursor
+    bool adrift;     // it was shifted by the user and does not follow the cursor
 } time_window;
 
-// The visible part of a run of some duration [s].
+// The visible part of a run of the given duration [s].
 void time_window_range(const time_window *w, double duration, double *from, double *to);
 
-// Makes a part visible, kept within the run and not too short [s].
+// Makes a part visible, limited to the run and not too short [s].
 void time_window_show(time_window *w, double duration, double from, double to);
 
 // Makes the whole run visible.
