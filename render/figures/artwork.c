@@ -179,7 +179,7 @@ artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *
     plotted *p = g_new0(plotted, 1);
     *p = (plotted){fig, owner, release};
 
-    // all but its size and the words for those who cannot see it
+    // everything but its size and alternative text
     artwork a = {.title = fig->title,
                  .caption = fig->caption,
                  .parameters = fig->parameters,

@@ -1,4 +1,4 @@
-// Anything the lab can put on a page: a picture, the numbers it shows, and what it was made from.
+// A picture for a page, with the numbers it shows and its origin.
 #pragma once
 
 #include <glib.h>
@@ -7,24 +7,24 @@
 #include "render/plot/plot.h"
 #include "render/page/table_page.h"
 
-// What is asked of pictures, whatever they show.
+// Options that apply to all pictures.
 typedef struct figure_options {
     page_look look;
     const char *overlay; // data over recorded signals (render/plot/overlay.h), NULL for none
     const char *signals; // recorded signals to show instead of the usual ones, NULL for those
-    double from, to;     // ends of the horizontal axis; from >= to: as it comes
+    double from, to;     // ends of the horizontal axis; from >= to: automatic
     const char *latex;   // file for the figure environment, NULL for none
-    const char *command; // that makes the picture, for its metadata; NULL if not known
+    const char *command; // command that makes the picture, for its metadata; NULL if not known
 } figure_options;
 
 typedef struct artwork {
     double width, height;           // of the page [pt]
     const char *title, *parameters; // plain, for the file's metadata
     const char *caption;            // markup, NULL for none
-    char *alternative;              // plain: what it shows, for those who cannot see it; owned
+    char *alternative;              // plain: alternative text; owned
     const table_page *table;        // of a table, else NULL
     const figure *plotted;          // of a plotted figure, else NULL
-    bool cells;                     // a picture of very many cells
+    bool cells;                     // a picture with very many cells
     void *what;                     // owned; for the functions below
     // draws it with the page's top left corner at the origin of cr, in points; *report (may be
     // NULL) is filled
@@ -34,16 +34,16 @@ typedef struct artwork {
     void (*release)(void *what);
 } artwork;
 
-// The picture of an artwork, good as long as it lives.
+// The picture of an artwork, valid as long as the artwork.
 picture artwork_picture(const artwork *a, const figure_options *options);
 
 void artwork_finish(artwork *a);
 
-// Ends and complains about a format that is none of png, pdf and svg.
+// Fails at a format other than png, pdf and svg.
 status artwork_check_formats(char *const *formats, fault *f);
 
-// Writes FOLDER/FILE.png ... for every format and FOLDER/FILE.csv. The folder is created if it is
-// not there. STATUS_CANNOT_WRITE with path and reason.
+// Writes FOLDER/FILE.png ... for every format and FOLDER/FILE.csv. The folder is created if it does
+// not exist. STATUS_CANNOT_WRITE with path and reason.
 status artwork_write(const artwork *a, const figure_options *options, const char *folder,
                      const char *file, char *const *formats, fault *f);
 
@@ -51,5 +51,5 @@ status artwork_write(const artwork *a, const figure_options *options, const char
 // release frees it.
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner));
 
-// Creates a folder unless it is there. STATUS_CANNOT_WRITE with the reason.
+// Creates a folder unless it exists. STATUS_CANNOT_WRITE with the reason.
 status make_folder(const char *folder, fault *f);

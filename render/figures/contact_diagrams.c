@@ -31,7 +31,8 @@ static arm_shape shape_of(const sample *row)
 
 // ---- what both draw
 
-// Places of hub, joint and last end on the page, in a view whose line to the right is at `base`.
+// Positions of hub, joint and tip on the page, in a view in which `base` is the direction to the
+// right.
 typedef struct arm_places {
     point hub, joint, end;
 } arm_places;

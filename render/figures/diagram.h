@@ -1,4 +1,4 @@
-// What the thesis's diagrams share: a drawing with the numbers it shows.
+// Shared by the thesis's diagrams: a drawing with the numbers it shows.
 #pragma once
 
 #include "render/figures/artwork.h"
@@ -7,7 +7,7 @@
 
 enum { DIAGRAM_VALUES = 24, CURVE_POINTS = 400 };
 
-// A number that a diagram shows or is drawn from.
+// A number that a diagram shows or depends on.
 typedef struct diagram_value {
     const char *name, *unit;
     double value;
@@ -24,11 +24,11 @@ typedef struct diagram {
     double after[3];           // angular velocities just after it [rad/s]
     double impulse;            // [N s]
     double *curve_x, *curve_y; // 2.1: force and output
-    void *shapes;              // 3.1, 4.6: owned, what their own file draws
+    void *shapes;              // 3.1, 4.6: owned, shapes of their own
 } diagram;
 
-// Where the model's metres are on the page; y upwards in the model. `across` enlarges what lies
-// across the line to the right.
+// The transformation from metres of the model, y upwards, to the page. `across` enlarges distances
+// from the line to the right.
 typedef struct view {
     double x, y, metre, across;
 } view;
@@ -39,8 +39,8 @@ point view_place(const view *v, point at);
 // End of a piece of length `length` at `angle` [rad] from a point of the model.
 point view_end(point from, double length, double angle);
 
-// An angle at a place, from one direction on the page to another, counterclockwise [rad], with its
-// symbol at the arc's middle.
+// An angle at a point, from one direction on the page to another, counterclockwise [rad], with its
+// symbol at the middle of the arc.
 typedef struct angle_arc {
     double radius, from, to;
     const char *markup;
@@ -48,8 +48,8 @@ typedef struct angle_arc {
 void diagram_angle(sketch *s, point at, angle_arc a);
 
 // The first impact of a scenario: d takes its parameters, its impulse and the arm the instant
-// before, *speed that of the contact point [m/s]. Returns what the run does, STATUS_BAD_SCENARIO if
-// there is none.
+// before, *speed that of the contact point [m/s]. Returns the status of the run,
+// STATUS_BAD_SCENARIO if there is no impact.
 status diagram_take_impact(diagram *d, const char *name, double *speed, fault *f);
 
 // A diagram with the corrected arm's default parameters; title and caption are copied, `body` is

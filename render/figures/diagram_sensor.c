@@ -26,7 +26,7 @@ static void wire(const sketch *s, double x0, double y0, double x1, double y1)
     sketch_line(s, (point){x0, y0}, (point){x1, y1}, 0.8, SKETCH_INK);
 }
 
-// An amplifier whose inputs are at (x, y - 10) and (x, y + 10) and whose output is at (x + 40, y).
+// An amplifier with inputs at (x, y - 10) and (x, y + 10) and its output at (x + 40, y).
 static void draw_amplifier(sketch *s, double x, double y)
 {
     wire(s, x, y - 22, x, y + 22);

@@ -24,7 +24,7 @@ static void draw_angle(sketch *s, point at, double radius, double angle, const c
                 (anchor){0, 0.5}, markup, SKETCH_LABEL);
 }
 
-// A measure beside a link, `away` points from it.
+// A dimension line parallel to a link, `away` points from it.
 static void draw_length(sketch *s, point from, point to, double away, anchor part,
                         const char *markup)
 {

@@ -58,7 +58,7 @@
 #define RIG(number, name)                                                                          \
     .id = number, .file = name, .scenario = "thesis/" name, .model = "corrected, on the rig"
 
-// Chapter 2 has the time axis of the simulations beside it, of figures 3.2 to 3.11.
+// The time axis of chapter 2 is that of the simulations in figures 3.2 to 3.11.
 #define BENCH(number, name) RIG(number, name), .from = 0, .to = 1
 // Chapter 5 shades one thing.
 #define CONTROL(number, name) RIG(number, name), .modes = true
@@ -118,7 +118,7 @@ static void release_signals(void *owner)
     g_free(s);
 }
 
-// Runs the scenario, and once more with the change of the run beside it.
+// Runs the scenario, and again with the change of the second run.
 static status run_scenarios(signal_figure *s, const thesis_figure *which, fault *f)
 {
     const char *const changes[] = {NULL, which->beside};

@@ -1,5 +1,5 @@
-// The catalogue of figures and tables: the thesis's own, and the lab's maps beside them. Each is
-// drawn from the lab's own runs.
+// The catalogue of figures and tables: those of the thesis and additional maps. Each is drawn from
+// runs of the program.
 #pragma once
 
 #include "render/figures/artwork.h"
@@ -13,13 +13,13 @@ typedef struct thesis_figure {
     const char *caption;  // plain, one line
     const char *scenario; // "thesis/fig-3-4"; NULL: it needs no run
     const char *model;    // plain, the model used: "printed; corrected dashed"
-    const char *note;     // markup, appended to what the caption says of the run; NULL for none
+    const char *note;     // markup, appended to the caption's description of the run; NULL for none
     const char *beside;   // recorded signals: a second run with this change, "arm.links=8", or NULL
     const char *names[2]; // of both runs
-    double from, to;      // recorded signals: ends of the time axis [s]; from >= to: as it comes
+    double from, to;      // recorded signals: ends of the time axis [s]; from >= to: automatic
     bool steps;           // a point at every step of the first run
     bool modes;           // the controller's second mode is shaded instead of contact
-    bool slow;            // takes as long as all others: begin with it
+    bool slow;            // takes as long as all others, so it is started first
     int printed_voltage;  // the peak of Table 4.3 in this column as a point, 1 to 4; 0: none
     // opens it; NULL for recorded signals in `panels`
     status (*open)(const char *title, const figure_options *o, artwork *out, fault *f);
@@ -27,8 +27,8 @@ typedef struct thesis_figure {
     int panel_count;
 } thesis_figure;
 
-// The functions that open drawn figures: each runs what it needs and fails as that does; the title
-// is copied.
+// The functions that open drawn figures: each makes the runs it needs and fails as they do; the
+// title is copied.
 #define TRACED(...)
 #define DRAWN(function, ...)                                                                       \
     status function(const char *title, const figure_options *o, artwork *out, fault *f);
@@ -36,22 +36,22 @@ typedef struct thesis_figure {
 #undef TRACED
 #undef DRAWN
 
-// How many figures there are, and the i-th: NULL behind the last.
+// The number of figures, and the i-th: NULL after the last.
 int thesis_figure_count(void);
 const thesis_figure *thesis_figure_at(int i);
 
 // A figure by its id or the name of its files, or NULL.
 const thesis_figure *thesis_figure_find(const char *id);
 
-// Runs what the figure needs and opens it. Figures of recorded signals run their scenario twice
-// unless they stand alone, with the corrected model as a thin dashed line. artwork_finish
-// afterwards. Returns what the runs return.
+// Makes the runs that the figure needs and opens it. Figures of recorded signals run their scenario
+// twice unless they stand alone, with the corrected model as a thin dashed line. To be ended with
+// artwork_finish. Returns the status of the runs.
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f);
 
 // Draws a figure to FOLDER/fig-3-4.png and so on for every format in the list ("png,pdf,svg") and
 // writes FOLDER/fig-3-4.csv; with `tex` (may be NULL) it prints the figure environment of the first
-// format's file there. The folder is created if it is not there. Options of zeroes: in colour, at
-// its own width, 200 dpi.
-// STATUS_BAD_ARGUMENT for an unknown id or format, otherwise what the run or the writing returns.
+// format's file there. The folder is created if it does not exist. Options that are all zero: in
+// colour, at its own width, 200 dpi. STATUS_BAD_ARGUMENT for an unknown id or format, otherwise the
+// status of the run or of writing.
 status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
                    FILE *tex, fault *f);

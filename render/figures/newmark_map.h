@@ -11,10 +11,10 @@ typedef struct newmark_map {
     int columns, rows;                  // of cells, up to MAP_COLUMNS and MAP_ROWS
     const char *headings[MAP_PANELS];   // markup
     figure_axis scale;                  // of the numbers
-    bool reversed;                      // small numbers are bright
+    bool reversed;                      // low values are bright
     char *title, *caption, *parameters; // owned
-    // the number of a pair in a panel, of a run of its own on whichever thread; not finite where
-    // the run did not go through
+    // the number of a pair in a panel, from a run of its own on any thread; not finite if the run
+    // failed
     double (*value)(const void *context, int panel, double beta, double gamma);
     void *context; // for value
     void (*release)(void *context);
@@ -29,16 +29,16 @@ typedef struct newmark_map {
     double values[MAP_PANELS][MAP_COLUMNS * MAP_ROWS];
     double ring_beta[MAP_RINGS], ring_gamma[MAP_RINGS];
     double ring_value[MAP_PANELS][MAP_RINGS];
-    int next; // cell to be taken by the next thread
+    int next; // next cell to be computed
 } newmark_map;
 
 // Computes all cells, on two threads, and draws the bounds of Table 3.1 and the thesis's pair on
 // them.
 void newmark_map_compute(newmark_map *m);
 
-// Adds markers in the colours of values of their own: `ring_value` at `ring_beta`, `ring_gamma`,
-// which must be filled. label is markup.
+// Adds markers coloured by values of their own: `ring_value` at `ring_beta`, `ring_gamma`, which
+// must be filled. label is markup.
 void newmark_map_add_rings(newmark_map *m, const char *name, const char *label);
 
-// Describes the figure and takes the map over.
+// Describes the figure, which then owns the map.
 artwork newmark_map_open(newmark_map *m, const figure_options *o);

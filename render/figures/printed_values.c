@@ -176,7 +176,7 @@ static status open_values(const printed_kind *kind, const char *title, const fig
     figure_take_look(&v->figure, &o->look);
     memcpy(v->voltage, all->voltage, sizeof v->voltage);
 
-    // side by side the residuals stand in a row of their own, one below the other beside theirs
+    // panels side by side have their residuals in a row below, panels in a column next to them
     bool rows_of_tables = figure_columns(&v->figure) == TABLES;
     for (int t = 0; t < TABLES; t++) {
         const table_row *rows[QUANTITIES];

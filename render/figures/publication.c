@@ -214,7 +214,7 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
         g_free(csv);
     }
 
-    // what stands beside a picture without its own text
+    // text of a picture that has none of its own
     if (code == STATUS_OK && o->look.bare) {
         code = caption_write(a, path, f);
     }

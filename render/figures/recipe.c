@@ -386,7 +386,7 @@ bool recipe_is(const char *path)
         return false;
     }
 
-    // its faults are left to whoever opens it
+    // its faults are reported when it is opened
     fault unused = {0};
     tree_node *root = tree_parse(text, length, &unused);
     bool is = root != NULL && root->kind == TREE_MAP && recipe_child(root, "panels") != NULL;

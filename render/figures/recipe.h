@@ -1,4 +1,4 @@
-// Figures from recipes: files that say which runs, data and tables a figure shows, and how.
+// Figures from recipes: files that define which runs, data and tables a figure shows, and how.
 #pragma once
 
 #include <stdbool.h>
@@ -6,12 +6,12 @@
 #include "render/figures/artwork.h"
 #include "src/scenario/scenario.h"
 
-// Opens the recipe at `path`: reads it, runs what it names and describes its figure with the look
-// of the options. Faults in the recipe are reported with file:line:column. artwork_finish
-// afterwards. STATUS_BAD_SCENARIO if any was reported (*f then is empty), else what the runs and
-// files return.
+// Opens the recipe at `path`: reads it, makes its runs and describes its figure with the look of
+// the options. Faults in the recipe are reported with file:line:column. To be ended with
+// artwork_finish. STATUS_BAD_SCENARIO if any was reported (*f is then empty), otherwise the status
+// of runs and files.
 status recipe_open(const char *path, const figure_options *o, fault_handler report, void *context,
                    artwork *out, fault *f);
 
-// Whether a file is a recipe: YAML with panels in it. False for what cannot be read.
+// Whether a file is a recipe: YAML with panels. False for a file that cannot be read.
 bool recipe_is(const char *path);

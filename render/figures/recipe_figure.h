@@ -1,14 +1,14 @@
-// Inside the drawing of recipes: a figure with everything it borrows.
+// Internal to the drawing of recipes: a figure with everything it borrows.
 #pragma once
 
 #include "render/figures/recipe_model.h"
 #include "render/plot/opened_run.h"
 #include "src/study/sweep_table.h"
 
-// A source with what came of it.
+// A source with its run or data.
 typedef struct opened_source {
     opened_run run;                       // of a run
-    bool ran;                             // it is to be ended
+    bool ran;                             // the run must be finished
     run_result data;                      // of data: its trace alone
     double *columns[SWEEP_TABLE_COLUMNS]; // of a table: x, y and z
     size_t count;                         // of their values
@@ -30,19 +30,21 @@ typedef struct recipe_figure {
     GPtrArray *owned;
 } recipe_figure;
 
-// Hands a block to those that live as long as the figure.
+// Adds a block to those that are freed with the figure.
 void *recipe_own(recipe_figure *fig, void *block);
 
 // --- tables: recipe_table.c
 
-// What the legend says of a source, markup.
+// The legend text of a source, markup.
 const char *recipe_label(recipe_figure *fig, const recipe_source *s);
 
-// The colour of curve number `index` of a panel: side by side the most different ones first.
+// The colour of curve number `index` of a panel; the first ones differ most.
 int recipe_colour(int index);
 
-// The axis of a table's column: a parameter's or a summary's label and unit, else the key itself.
+// The axis of a table's column: label and unit of a parameter or summary quantity, otherwise the
+// key itself.
 figure_axis recipe_column_axis(recipe_figure *fig, const char *key);
 
-// Draws a table in a panel: a curve, or with a third column a map over a grid, dots elsewhere.
+// Draws a table in a panel: a curve, or with a third column a map if the points form a grid,
+// otherwise dots.
 void recipe_add_table(recipe_figure *fig, int panel, int source);

@@ -1,4 +1,4 @@
-// A recipe as it is read: what a figure shows and where that comes from.
+// A recipe after reading: the contents of a figure and their sources.
 #pragma once
 
 #include <glib.h>
@@ -8,7 +8,7 @@
 
 enum { RECIPE_SOURCES = 16, RECIPE_CHANGES = 16, RECIPE_NOTES = 8, RECIPE_MARKS = 16 };
 
-// Where curves come from: a run, measured data, or a table with a column for each axis.
+// A source of curves: a run, measured data, or a table with a column for each axis.
 typedef enum source_kind { SOURCE_RUN, SOURCE_DATA, SOURCE_TABLE } source_kind;
 
 typedef struct recipe_source {
@@ -18,11 +18,11 @@ typedef struct recipe_source {
     const char *change[RECIPE_CHANGES]; // of a run, "arm.k2=3"
     int change_count;
     const char *file;   // of data (CSV), of a table (a sweep's database)
-    const char *column; // of data, NULL: all that are signals
+    const char *column; // of data; NULL: all columns that are signals
     const char *x, *y;  // of a table: columns
-    const char *z;      // of a table: the column that a map's colours show, NULL: a curve
+    const char *z;      // of a table: the column of a map's colours; NULL: a curve
     double shift;       // of data [s]
-    place at;           // in the recipe
+    place at;           // its place in the recipe
 } recipe_source;
 
 // A text at a point of a panel.

@@ -97,7 +97,7 @@ static bool add_run(recipe_context *c, const multiples *m, int index, recipe_sou
 }
 
 // The sources of the first value take the place of the runs themselves; those of later values
-// follow. at[k][i] is where source i stands for value k.
+// follow. at[k][i] is the index of source i for value k.
 static bool repeat_runs(recipe_context *c, const multiples *m, int at[][RECIPE_SOURCES])
 {
     recipe *r = c->recipe;

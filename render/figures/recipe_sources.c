@@ -49,7 +49,7 @@ TAKE(take_set, source)
     }
 }
 
-// Opens room for a source; NULL where there is none left.
+// Adds a source; NULL if there is no room.
 static recipe_source *new_source(recipe_context *c, const tree_node *node, source_kind kind)
 {
     recipe *r = c->recipe;

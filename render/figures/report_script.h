@@ -1,7 +1,7 @@
 // The script of the report's web page: values under the pointer, zoom, curves on and off.
 //
-// It needs nothing but what stands in the page: each plotted figure has its panels' places and
-// ranges beside it as JSON, and the curves are the picture's own paths, found by colour and place.
+// It uses only the page itself: each plotted figure comes with the places and ranges of its panels
+// as JSON, and the curves are the paths of the picture, found by colour and place.
 #pragma once
 
 static const char report_script_curves[] =
@@ -69,9 +69,9 @@ static const char report_script_curves[] =
     "    : range[0] + share * (range[1] - range[0]);\n"
     "  const digits = v => String(+v.toPrecision(4));\n";
 
-// Its second half: what follows the pointer.
+// Its second half: actions of the pointer.
 static const char report_script_pointer[] =
-    // values where the pointer is, straight lines between points
+    // values at the pointer, interpolated linearly
     "  svg.addEventListener('mousemove', e => {\n"
     "    const [px, py] = at(e);\n"
     "    const panel = panels.find(p => px >= p.box[0] && px <= p.box[0] + p.box[2] &&\n"

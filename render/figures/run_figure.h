@@ -1,4 +1,4 @@
-// Figures of runs as people ask for them: which signals, over what stretch, with measured data.
+// Figures of runs with options: signals, range of time, measured data.
 #pragma once
 
 #include "render/figures/artwork.h"
@@ -12,13 +12,13 @@ typedef struct run_figure {
     char *title; // NULL: the scenario's
     trace_panel panels[FIGURE_PANELS];
     int panel_count;
-    char **names; // of the signals that were asked for
+    char **names; // of the requested signals
 } run_figure;
 
 // Describes a figure of the runs: o->signals in place of `panels` (NULL: the usual ones of a run),
-// o->overlay as points with a panel of residuals, o->from to o->to, and the look. Returns what
-// trace_figure_init and overlay_read do, STATUS_BAD_ARGUMENT for an unknown signal; then nothing is
-// to be finished.
+// o->overlay as points with a panel of residuals, o->from to o->to, and the look. Returns the
+// status of trace_figure_init and overlay_read, STATUS_BAD_ARGUMENT for an unknown signal; on
+// failure nothing has to be finished.
 status run_figure_init(run_figure *r, const char *title, const trace_panel *panels, int panel_count,
                        const trace_run *runs, int run_count, const figure_options *o, fault *f);
 void run_figure_finish(run_figure *r);

@@ -104,7 +104,7 @@ static void release_event_reference(void *context)
     g_free(r);
 }
 
-// A run whose first pulse cells are measured by. STATUS_BAD_SCENARIO without one.
+// The run whose first pulse is the reference of the cells. STATUS_BAD_SCENARIO without a pulse.
 static status begin_reference(opened_run *run, const char *of, const char *change, fault *f)
 {
     status code = run_begin(run, of, change, f);

@@ -1,4 +1,4 @@
-// What every page has in common: its theme, rectangles on it, and a report of what was drawn where.
+// Common to all pages: theme, rectangles on the page, and a report of what was drawn where.
 #pragma once
 
 #include <stdbool.h>
@@ -6,7 +6,7 @@
 
 enum {
     FIGURE_PANELS = 16, // most panels of a figure
-    FIGURE_TEXTS = 512, // texts a report remembers
+    FIGURE_TEXTS = 512, // most texts of a report
 };
 
 typedef enum figure_theme {
@@ -15,15 +15,15 @@ typedef enum figure_theme {
     THEME_DARK    // Okabe and Ito's colours on near black
 } figure_theme;
 
-// How a page is to look; what is zero is as the page itself has it.
+// The look of a page; fields that are zero leave it to the page.
 typedef struct page_look {
     figure_theme theme;
     double width, height; // of the page [mm]
     double dpi;           // of a PNG; 0: 200
-    const char *font;     // family; NULL: the house's
-    double letters;       // size of labels [pt]; 0: 8, and all other letters go with them
+    const char *font;     // family; NULL: the default
+    double letters;       // size of labels [pt]; 0: 8; all other letters in proportion
     bool bare;            // without title and caption
-    bool transparent;     // without a ground
+    bool transparent;     // without a background
 } page_look;
 
 // Sizes of letters [pt].
@@ -31,7 +31,7 @@ typedef struct page_look {
 #define LETTERS_LEAST  6.0 // of anything
 
 // Size of letters that are `size` where labels have 8 pt, for labels of `letters` (0: 8); never
-// less than can be read.
+// less than is readable.
 double page_letters(double letters, double size);
 
 // A rectangle on the page [pt], y downwards.
@@ -41,17 +41,17 @@ typedef struct figure_rect {
 
 typedef struct figure_text {
     figure_rect place; // upright, also round a rotated text
-    double size;       // of its letters on the page [pt], of its smallest where it has indices
+    double size;       // of its letters on the page [pt], of the smallest if it has indices
     char text[64];     // its beginning, without markup
 } figure_text;
 
-// What the edges of a panel stand for.
+// The values at the edges of a panel.
 typedef struct figure_range {
     double x_low, x_high, y_low, y_high;
     bool x_logarithmic, y_logarithmic;
 } figure_range;
 
-// What was drawn where.
+// Positions of everything that was drawn.
 typedef struct figure_report {
     figure_rect page;
     figure_range ranges[FIGURE_PANELS];

@@ -10,7 +10,7 @@ typedef struct colour {
     double red, green, blue;
 } colour;
 
-// What everything but the curves is drawn in.
+// The colours of everything but the curves.
 typedef struct palette {
     colour page, text, faint_text, axis, grid, shade, mark;
 } palette;
@@ -25,8 +25,8 @@ colour palette_grey(int index);
 
 // The colour at share 0 ... 1 of the colour scale. Mono: greys from dark to nearly white. Else
 // viridis of van der Walt and Smith (2015, public domain), straight lines between nine of its
-// colours. Perceptually even, from dark blue to yellow, and its lightness grows all the way, so
-// that it survives a grey printer.
+// colours. Perceptually uniform, from dark blue to yellow, with lightness increasing throughout, so
+// that it is readable when printed in grey.
 colour palette_shade(figure_theme theme, double share);
 
 void set_colour(cairo_t *cr, colour c);

@@ -24,7 +24,7 @@ static void warn(png_structp png, png_const_charp message)
     (void)message;
 }
 
-// The stream keeps its errors; whoever closes it sees them.
+// The stream keeps its errors, which are found when it is closed.
 static void write_bytes(png_structp png, png_bytep bytes, png_size_t length)
 {
     fwrite(bytes, 1, length, png_get_io_ptr(png));

@@ -1,4 +1,4 @@
-// PNG files that know their resolution and where they come from.
+// PNG files with resolution and metadata.
 #pragma once
 
 #include <cairo.h>

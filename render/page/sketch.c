@@ -229,7 +229,7 @@ void sketch_dashed(const sketch *s, point from, point to, int slot)
     stroke_line(s, from, to);
 }
 
-// A head whose tip is at a point and that points along `direction` on the page.
+// An arrowhead with its tip at a point, along `direction` on the page.
 static void draw_head(const sketch *s, point tip, double direction, double length)
 {
     cairo_save(s->cr);

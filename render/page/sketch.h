@@ -1,6 +1,6 @@
-// Pages drawn by hand rather than plotted: diagrams and tables, with a title above and a caption
-// below. Lengths are in points of the page as designed; on a page of another width lengths are
-// scaled, while letters and lines keep their size as far as they can be read.
+// Pages that are drawn rather than plotted: diagrams and tables, with a title above and a caption
+// below. Lengths are in points of the page as designed. On a page of another width lengths are
+// scaled, while letters and lines keep their size as far as needed to be readable.
 #pragma once
 
 #include "render/page/palette.h"
@@ -11,7 +11,7 @@
 #define SKETCH_LABEL  8.0 // size of letters
 #define SKETCH_SMALL  7.0
 
-// What stands round a drawing.
+// Title, caption and size of a drawing.
 typedef struct sketch_frame {
     const char *title;   // plain
     const char *caption; // markup, wrapped; NULL for none
@@ -25,9 +25,9 @@ typedef struct sketch {
     PangoContext *context;
     const palette *colours;
     figure_theme theme;
-    const sketch_frame *frame; // NULL: letters as they come
+    const sketch_frame *frame; // NULL: letters unchanged
     figure_report *report;     // may be NULL
-    double scale;              // page points to a designed point
+    double scale;              // points of the page per designed point
     double left, right;        // of the drawing
     double top, bottom;
 } sketch;
@@ -38,13 +38,13 @@ double sketch_letters(const sketch_frame *frame, double size);
 // Size of the page in its own points.
 void sketch_size(const sketch_frame *frame, double *width, double *height);
 
-// Paints page, title and caption and opens the drawing's space; sketch_end closes it.
+// Paints page, title and caption and begins the drawing, to be ended with sketch_end.
 // STATUS_CANNOT_READ if the font is missing.
 status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
                     fault *f);
 void sketch_end(sketch *s);
 
-// Instead of a palette slot: the colours of axes and text, and of what stands back.
+// Instead of a palette slot: the colours of axes and text, and of secondary parts.
 enum { SKETCH_INK = -1, SKETCH_FAINT = -2 };
 
 // A place on the page, or in a model that is drawn [pt, m].
@@ -52,7 +52,7 @@ typedef struct point {
     double x, y;
 } point;
 
-// The place that lies `right` and `down` from another.
+// The point `right` and `down` of another.
 point shifted(point from, double right, double down);
 
 // Lines of a given width in a slot's colour.
@@ -95,6 +95,6 @@ void sketch_wall(const sketch *s, point from, point to);
 // A text with its anchor at a place.
 void sketch_text(sketch *s, point at, anchor part, const char *markup, double size);
 
-// A text from a place on, wrapped at its width; its size is that of a designed page. The frame's
-// family replaces the block's.
+// A text that begins at a point, wrapped at its width; its size is that of a designed page. The
+// frame's family replaces the block's.
 void sketch_wrapped(sketch *s, point at, const text_block *text);

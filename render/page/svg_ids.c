@@ -90,7 +90,7 @@ char *svg_renumber_ids(const char *svg)
     return g_string_free(out, FALSE);
 }
 
-// Ids of this SVG whose outlines are known, with the ids to use instead; the symbols go.
+// Ids of this SVG with known outlines, and the ids to use instead; their symbols are removed.
 static GString *drop_known(const char *svg, GHashTable *known, GHashTable *renamed)
 {
     static const char opening[] = "<symbol ", closing[] = "</symbol>";

@@ -3,9 +3,9 @@
 
 #include <glib.h>
 
-// cairo names things after counters of the whole process ("surface96"), so that the second figure
-// of a program differs from the first. Returns the SVG with the number in every id="name<number>",
-// and in every reference to it, replaced by its place in the order of the ids. Free the result with
+// cairo makes ids from counters of the whole process ("surface96"), so that the second figure of a
+// program differs from the first. Returns the SVG with the number in every id="name<number>", and
+// in every reference to it, replaced by its place in the order of the ids. Free the result with
 // g_free.
 char *svg_renumber_ids(const char *svg);
 
@@ -13,7 +13,7 @@ char *svg_renumber_ids(const char *svg);
 // page. Free the result with g_free.
 char *svg_prefix_ids(const char *svg, const char *prefix);
 
-// Leaves out the letters' outlines (symbols) that an earlier SVG of the same page has already, and
-// refers to those. `known` has outline to id, both owned by it; new ones are added. Free the result
-// with g_free.
+// Omits the outlines of letters (symbols) that an earlier SVG of the same page contains, and refers
+// to those. `known` has outline to id, both owned by it; new ones are added. Free the result with
+// g_free.
 char *svg_share_symbols(const char *svg, GHashTable *known);

@@ -1,4 +1,4 @@
-// Tables as pages: a heading, rows of cells, and rows that head a group.
+// Tables as pages: a heading, rows of cells, and heading rows of groups.
 #pragma once
 
 #include "render/page/sketch.h"
@@ -34,7 +34,7 @@ void table_finish(table_page *t);
 void table_size(const table_page *t, double *width, double *height);
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f);
 
-// Writes the bare texts of the cells; a group's heading is the first column of its rows.
+// Writes the texts of the cells without markup; a group's heading is the first column of its rows.
 status table_write_csv(const table_page *t, const char *path, fault *f);
 
 // Appends the table as HTML.

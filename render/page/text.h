@@ -1,4 +1,4 @@
-// Text of figures: one font, laid out alike on every surface.
+// Text of figures: one font with the same layout on every surface.
 //
 // Lengths are in points. Markup is Pango's; <sub> and <sup> are translated, because Pango 1.50
 // draws them too large under a scaled surface.
@@ -10,12 +10,12 @@
 
 #include "src/base/fault.h"
 
-// The family of every text that names none.
+// The default family.
 #define TEXT_FAMILY "DejaVu Sans"
 
 typedef enum text_align { TEXT_LEFT, TEXT_CENTRE, TEXT_RIGHT } text_align;
 
-// Which point of a text lies at its place, as parts of its width and height: (0, 0) is its upper
+// The point of a text that is at its place, as shares of its width and height: (0, 0) is its upper
 // left corner.
 typedef struct anchor {
     double x, y;
@@ -28,36 +28,36 @@ typedef struct text_block {
     const char *family; // NULL: TEXT_FAMILY
     bool bold;
     text_align align; // of its lines
-    double leading;   // from line to line, of what letters without powers need; 0: 1
-    double width;     // at which it is wrapped into lines; 0: never
-    bool balanced;    // its lines are about equally long: no word stands alone in the last
-    double scale;     // points of the page to one of these, for indices that can be read; 0: 1
+    double leading;   // distance of lines, relative to that of letters without powers; 0: 1
+    double width;     // at which lines are wrapped; 0: never
+    bool balanced;    // lines of about equal length, with no single word in the last
+    double scale; // points of the page per point of the size, so that indices are readable; 0: 1
 } text_block;
 
-// Fails with STATUS_CANNOT_READ if TEXT_FAMILY is not installed; f says what to install.
+// Fails with STATUS_CANNOT_READ if TEXT_FAMILY is not installed, with what to install in f.
 status text_check_font(fault *f);
 
 // Fails with STATUS_BAD_ARGUMENT if no font of the family is installed.
 status text_check_family(const char *family, fault *f);
 
-// A context whose layouts do not depend on the surface: no hinting, no rounding, 72 per inch. Give
-// it to g_object_unref.
+// A context whose layouts do not depend on the surface: no hinting, no rounding, 72 per inch. To be
+// freed with g_object_unref.
 PangoContext *text_context_create(void);
 
-// A layout of t, to be given to g_object_unref. Markup that cannot be parsed is shown as it stands.
+// A layout of t, to be freed with g_object_unref. Markup that cannot be parsed is shown unchanged.
 PangoLayout *text_layout_create(PangoContext *context, const text_block *t);
 
 // Width and height of t.
 void text_measure(PangoContext *context, const text_block *t, double *width, double *height);
 
-// Draws t with its top left corner at the current point (of a possibly rotated cr) and returns its
-// width.
+// Draws t with its upper left corner at the current point (of a possibly rotated cr) and returns
+// its width.
 double text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
 
 // Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size on a page of the
-// given scale (points of the page to a point of the size), the spaces at which a line must not end
-// by ones that do not break: between a number and its unit, round an equals sign, before a version;
-// and the typewriter's apostrophe within a word by the printer's. Free the result with g_free.
+// given scale (points of the page to a point of the size), spaces at which a line must not end by
+// no-break spaces (between a number and its unit, around an equals sign, before a version), and a
+// straight apostrophe within a word by a typographic one. Free the result with g_free.
 char *text_translate(const char *markup, double size, double scale);
 
 // A unit as the SI brochure sets it: "rad/s2" gives "rad/s²", "kg m2" gives "kg·m²".
@@ -67,8 +67,8 @@ void text_unit(const char *unit, char *out, size_t size);
 // the result with g_free.
 char *text_quantity(double value, int digits, const char *unit);
 
-// A number of at most `digits` significant digits as markup: a true minus sign, a power of ten
-// where a reader would count zeros, "2·10<sup>−5</sup>". Free the result with g_free.
+// A number of at most `digits` significant digits as markup: with a true minus sign, and a power of
+// ten instead of many zeros, "2·10<sup>−5</sup>". Free the result with g_free.
 char *text_number(double value, int digits);
 
 // The beginning of a description as a label: up to its first comma, colon or bracket, with a
@@ -78,23 +78,24 @@ char *text_label(const char *description);
 // The markup's bare text, valid UTF-8. Free the result with g_free.
 char *text_plain(const char *markup);
 
-// Any bytes as valid UTF-8 that markup shows as they stand, printable ones only (src/base/words.h).
-// Free the result with g_free.
+// Any bytes as valid UTF-8, escaped for markup, printable characters only (src/base/words.h). Free
+// the result with g_free.
 char *text_escape(const char *bytes);
 
 // As g_strdup_printf and g_string_append_printf, with a decimal point in every locale.
 char *text_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void text_append(GString *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-// What happens where GLib gives up, mostly for want of memory, or Pango warns that it cannot draw a
-// text as it should: `end` is called with its reason and must not return. Otherwise GLib ends the
-// program by a signal, and Pango draws what it can.
+// Sets the function that is called with a reason, and must not return, if GLib fails fatally,
+// mostly for lack of memory, or if Pango warns that it cannot draw a text correctly. Without it
+// GLib ends the program by a signal, and Pango draws what it can.
 void text_when_giving_up(void (*end)(const char *reason));
 
-// Whether this thread is at work in fontconfig or Pango, which crash where they find no memory, or
-// is not the program's first while these are in use. For a handler of signals.
+// Whether this thread is executing in fontconfig or Pango, which crash without memory, or is not
+// the program's first thread while these are in use. For a signal handler.
 bool text_in_fonts(void);
 
-// Gives back what Pango keeps for later figures (for leak checkers). No figure may be in work. What
-// cairo keeps stays: Pango's own threads may still hold fonts, which cairo takes for a mistake.
+// Frees what Pango keeps for later figures (for leak checkers). No figure may be in progress. What
+// cairo keeps is not freed, because Pango's threads may still hold fonts, which cairo treats as an
+// error.
 void text_release(void);

@@ -101,7 +101,7 @@ int axis_wish(double length, double spacing, int least, int most)
 
 // ---- minor ticks
 
-// Parts of the step beside and between major ticks.
+// Positions of minor ticks, as parts of the step, next to and between major ticks.
 static int minor_even(const axis *a, double length, double *at)
 {
     const ticks *t = &a->even;

@@ -213,7 +213,7 @@ void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void 
                .sink = sink,
                .context = context};
 
-    // columns only where there are many more points than they
+    // columns only if there are many more points than columns
     bool columns = (double)s->count > 4 * p->box.width / COLUMN && x_ascends(s);
     column c = {.count = 0};
 

@@ -1,9 +1,9 @@
-// From a series' numbers to what can be drawn: gaps, decimation and clipping.
+// From a series' numbers to lines: gaps, decimation and clipping.
 #pragma once
 
 #include "render/plot/plot.h"
 
-// A rectangle on the page and what its edges stand for.
+// A rectangle on the page and the values at its edges.
 typedef struct plane {
     figure_rect box; // [pt]
     axis_scale x, y; // from left to right, from bottom to top
@@ -14,7 +14,7 @@ double plane_y(const plane *p, double y);
 
 typedef enum stroke_kind {
     STROKE_MOVE, // a new line begins
-    STROKE_LINE, // the line goes on to
+    STROKE_LINE, // the line continues to
     STROKE_DOT   // a point without neighbours
 } stroke_kind;
 
@@ -25,11 +25,11 @@ double series_x(const figure_series *s, size_t index);
 double series_y(const figure_series *s, size_t index);
 double series_shade(const figure_series *s, size_t index);
 
-// Widens a scale until it holds every x of a series, or every y at an x that *within holds.
+// Widens a scale to include every x of a series, or every y at an x inside *within.
 void series_include_x(const figure_series *s, axis_scale *x);
 void series_include_y(const figure_series *s, const axis_scale *within, axis_scale *y);
 
-// Gives the series' line to the sink, in page coordinates, clipped to the plane and a little more.
-// Where many points fall on one column of 1/600 inch, the first, lowest, highest and last of them
-// are kept, so that no spike is lost.
+// Passes the series' line to the sink, in page coordinates, clipped to the plane with a small
+// margin. Where many points fall on one column of 1/600 inch, the first, lowest, highest and last
+// of them are kept, so that no spike is lost.
 void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void *context);

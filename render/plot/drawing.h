@@ -1,4 +1,4 @@
-// Inside the figure library: a figure on its way to the page, and the strokes all layers draw with.
+// Internal to the figure library: the layout of a figure, and the strokes used by all layers.
 #pragma once
 
 #include "render/page/palette.h"
@@ -11,7 +11,7 @@ enum { MARKS_LABELLED = 64, MARK_ROWS = 4, LEVELS_LABELLED = 8 };
 
 // Lengths [pt].
 #define POINTS_PER_MM (72 / 25.4)
-#define NARROW_PAGE   (100 * POINTS_PER_MM) // below it legends have symbols alone
+#define NARROW_PAGE   (100 * POINTS_PER_MM) // below it legends have only symbols
 #define PAGE_MARGIN   6.0
 #define TICK_LENGTH   3.0
 #define MINOR_LENGTH  1.7
@@ -38,7 +38,7 @@ enum { MARKS_LABELLED = 64, MARK_ROWS = 4, LEVELS_LABELLED = 8 };
 #define GRID_WIDTH      0.4
 #define MARK_WIDTH      0.45
 
-// How a figure looks: made once from its description and handed down.
+// The look of a figure, derived once from its description.
 typedef struct plot_style {
     figure_theme theme;
     const palette *colours;
@@ -52,7 +52,7 @@ typedef struct panel_layout {
     plane plane;
     axis y;
     axis colours;                             // of the colour scale, if the panel has one
-    figure_rect level_place[LEVELS_LABELLED]; // of levels' labels; width 0: none
+    figure_rect level_place[LEVELS_LABELLED]; // of the labels of levels; width 0: none
     double strip_top;                         // of the strip for impulses, if there are any
     bool legend_row;                          // the legend stands above the panel
     bool legend_column;                       // it does, with its entries one above the other
@@ -61,7 +61,7 @@ typedef struct panel_layout {
     figure_rect inset;                        // with its labels; width 0: none
     plane inset_plane;
     axis inset_x, inset_y;
-    bool busy[PANEL_SERIES];          // lines that go up and down too often for dashes
+    bool busy[PANEL_SERIES];          // lines that turn too often for dashes
     double end_label_y[PANEL_SERIES]; // top of the labels at the curves' ends; NaN: none
 } panel_layout;
 
@@ -84,22 +84,22 @@ typedef struct drawing {
     double title_y, legend_y, caption_y, x_label_y;
     double marks_bottom;                // of the lowest row of event labels
     int mark_row[MARKS_LABELLED];       // counted upwards; -1: no label
-    bool marks_inside;                  // labels of marks stand in the first panel
+    bool marks_inside;                  // labels of marks are inside the first panel
     double mark_text_x[MARKS_LABELLED]; // in the first column
     double mark_text_y[MARKS_LABELLED]; // inside the panel
     panel_layout panels[FIGURE_PANELS];
 } drawing;
 
-// Width of title and caption, and where they begin: with the panels, on a narrow page at its edge.
+// Width and left end of title and caption: those of the panels, on a narrow page its edges.
 double frame_text_width(const drawing *d, double *left);
 
-// Columns of panels that the page has room for.
+// The number of columns of panels that fit the page.
 int figure_columns(const figure *fig);
 
-// Places everything. STATUS_BAD_ARGUMENT if the page is too small or an axis has nothing to show.
+// Computes the layout. STATUS_BAD_ARGUMENT if the page is too small or an axis has no values.
 status layout_figure(drawing *d, fault *f);
 
-// Whether the panel's vertical axis has labels, or those in the first column stand for it.
+// Whether the panel's vertical axis has labels of its own, not only those of the first column.
 bool has_y_labels(const drawing *d, const panel_layout *l);
 
 // --- text: drawing.c
@@ -111,7 +111,7 @@ double width_of(const drawing *d, const char *markup, double size);
 double height_of(const drawing *d, text_block t);
 
 void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c);
-// Draws t upwards; (x, y) is the middle of its upper edge, which is on the left.
+// Draws t vertically, upwards; (x, y) is the middle of its upper edge, which is on the left.
 void draw_rotated(drawing *d, text_block t, double x, double y, colour c);
 
 // --- strokes: drawing.c
@@ -127,10 +127,10 @@ double widest_tick(const drawing *d, const axis *a, double size);
 // Height of that title, wrapped beside the axis; 0 without a title.
 double axis_title_height(const drawing *d, const axis *a, double length);
 void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y);
-// Spines, ticks and their labels, at the left and below.
+// Axis lines, ticks and their labels, on the left and below.
 typedef struct axes_look {
     bool x_labels, y_labels;
-    bool framed; // a line at the right and above, too
+    bool framed; // with lines on the right and above
     double size; // of the labels
 } axes_look;
 void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_look look);
@@ -140,9 +140,9 @@ void draw_x_titles(drawing *d);
 // --- series: series.c
 
 void draw_series(const drawing *d, const panel_layout *l, const plane *p);
-// A short line and a marker that stand for a series.
+// The sample of a series in a legend: a short line and a marker.
 void draw_swatch(drawing *d, const panel_layout *l, int index, double x, double y);
-// Whether a series' line turns up and down so often that no pattern of dashes would show.
+// Whether a series' line turns so often that a dash pattern would not be visible.
 bool series_is_busy(const plane *p, const figure_series *s);
 // Sets colour and pattern of a series; returns the line's width.
 double set_series(const drawing *d, const panel_layout *l, int index);
@@ -151,7 +151,7 @@ double set_series(const drawing *d, const panel_layout *l, int index);
 
 // Chooses the range of a panel's colour scale.
 void map_choose_scale(panel_layout *l);
-// Widens the axes until they hold the map's cells.
+// Widens the axes to include the map's cells.
 void map_include(const figure_map *map, axis_scale *x, axis_scale *y);
 double colour_bar_width(const drawing *d, const panel_layout *l);
 void set_shade(const drawing *d, const panel_layout *l, double value);
@@ -160,23 +160,23 @@ void draw_colour_bar(drawing *d, const panel_layout *l);
 
 // --- marks: marks.c
 
-// Finds rows for the labels of marks; returns how many.
+// Assigns rows to the labels of marks; returns how many.
 int place_marks(drawing *d);
 void draw_intervals(const drawing *d, const plane *p);
 void draw_marks(drawing *d);
 void draw_levels(drawing *d, const panel_layout *l);
 void draw_notes(drawing *d, const panel_layout *l);
-// Marks where levels and marks will be.
+// Adds the ink of levels and marks to the placement.
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid);
-// Finds places for the labels of all marks where no curve of the first panel runs; false if there
-// is not one for each.
+// Finds places for the labels of all marks free of curves of the first panel; false if there is
+// none for one of them.
 bool place_marks_inside(drawing *d, placement *grid);
 
 // --- impulses: impulses.c
 
 void draw_impulses(drawing *d, const panel_layout *l);
 
-// What the strip shows and its unit, in two lines, to be freed; the panel has an impulse_label.
+// Quantity and unit of the strip, in two lines, to be freed; the panel must have an impulse_label.
 char *impulse_strip_label(const figure_panel *panel);
 
 // --- legends: legend.c

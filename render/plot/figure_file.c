@@ -34,7 +34,7 @@ typedef struct long_form {
     bool alike;  // all panels show one quantity: their headings tell them apart
 } long_form;
 
-// A name, or the label without markup where there is none, with its unit.
+// A name, or without one the label without markup, with its unit.
 static void write_name(long_form *t, const char *name, const char *label, const char *unit)
 {
     char *plain = name ? g_strdup(name) : text_plain(label ? label : "");

@@ -9,7 +9,7 @@
 #define DEFAULT_WIDTH 170.0 // [mm]
 #define PANEL_HEIGHT  34.0  // of a panel of weight 1 on a page without a height [mm]
 #define COLUMN_WIDTH  42.0  // least width of a column of panels [mm]
-#define SIDES         52.0  // about what stands beside the panels [pt]
+#define SIDES         52.0  // approximate width of the labels next to the panels [pt]
 
 int figure_columns(const figure *fig)
 {
@@ -258,7 +258,7 @@ status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault
     g_free(d);
     cairo_restore(cr);
 
-    // a stream that cannot be written is reported by whoever closes it
+    // a stream that cannot be written is reported when it is closed
     cairo_status_t state = cairo_status(cr);
     if (code == STATUS_OK && state != CAIRO_STATUS_SUCCESS && state != CAIRO_STATUS_WRITE_ERROR) {
         code = fault_set(f, STATUS_NO_MEMORY, "a figure could not be drawn: %s",

@@ -6,7 +6,8 @@
 
 #include "render/plot/drawing.h"
 
-// From the name to the unit below it, whose power of ten stands clear of the name's descenders.
+// From the name to the unit below it, so that its power of ten does not touch the name's
+// descenders.
 #define STRIP_LEADING 1.25
 
 // An arrow upwards.
@@ -56,7 +57,7 @@ char *impulse_strip_label(const figure_panel *panel)
 
 enum { IMPULSES_LABELLED = 24 };
 
-// Writes the size of an impulse beside its arrow unless it would cover another label or arrow.
+// Writes the size of an impulse next to its arrow unless it would cover another label or arrow.
 static void label_impulse(drawing *d, const panel_layout *l, int index, double base,
                           figure_rect *taken, int *count)
 {

@@ -10,7 +10,7 @@
 #define LEAST_HEIGHT   16.0
 #define RANGE_SPACE    0.06 // of the data's range, kept free above and below them
 #define END_LABEL_LEAD 12.0 // from the axis' end to the labels at the curves' ends
-#define RIGHT_SPACE    10.0 // of a panel without anything beside it
+#define RIGHT_SPACE    10.0 // of a panel without labels next to it
 #define SHARED_SPACE   6.0  // of a panel whose vertical axis is labelled in the first column
 #define LABEL_GAP      3.0  // between the last label of a column and the first of the next
 #define BAR_TICK       16.0 // of a colour bar to a tick
@@ -141,12 +141,12 @@ static double right_space(const drawing *d, const panel_layout *l)
     return right;
 }
 
-// Left and right ends of the panels, from the labels beside them: all panels are equally wide.
+// Left and right ends of the panels, from the labels next to them: all panels have the same width.
 static void place_columns(drawing *d)
 {
     double left[FIGURE_PANELS] = {0}, right[FIGURE_PANELS], between = 0;
 
-    // what stands beside the panels of each column
+    // labels next to the panels of each column
     double last_label = widest_tick(d, &d->x, d->style.tick) / 2;
     for (int c = 0; c < d->columns; c++) {
         right[c] = fmax(RIGHT_SPACE, last_label);

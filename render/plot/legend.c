@@ -51,7 +51,7 @@ double widest_end_label(const drawing *d, const figure_panel *panel)
     return widest;
 }
 
-// Size of a legend whose entries stand in a row or one above the other.
+// Size of a legend with entries in a row or one above the other.
 static void legend_size(const drawing *d, const figure_panel *panel, bool row, double *width,
                         double *height)
 {

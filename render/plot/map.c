@@ -235,7 +235,7 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
     double right = bar.x + bar.width;
     fill_bar(d, l, &bar);
 
-    // ticks with labels; where there are contour lines the bar shows theirs
+    // ticks with labels; with contour lines those of the lines
     for (int i = 0; i < l->colours.count; i++) {
         double y = bar.y + bar.height * (1 - scale_share(&l->colours.scale, l->colours.at[i]));
         if (l->panel->map != NULL && l->panel->map->contours) {

@@ -10,14 +10,14 @@ typedef struct opened_run {
 } opened_run;
 
 // Opens and runs a scenario, with one parameter changed if `change` ("arm.model=corrected") is not
-// NULL. If it fails nothing is to be finished.
+// NULL. On failure nothing has to be finished.
 status run_begin(opened_run *r, const char *name, const char *change, fault *f);
 void run_end(opened_run *r);
 
 // The scenario's name and every parameter in one line, for a file's metadata. Free with g_free.
 char *parameters_line(const scenario *s);
 
-// The same with several changes, each "PATH=VALUE". STATUS_STOPPED if `monitor` (NULL: nobody looks
-// on) asked for it.
+// The same with several changes, each "PATH=VALUE". STATUS_STOPPED if `monitor` (may be NULL)
+// requested it.
 status run_begin_changed(opened_run *r, const char *name, const char *const *changes, int count,
                          run_monitor *monitor, fault *f);

@@ -74,7 +74,7 @@ static int signal_of_unit(const char *unit, const trace_panel *panels, int count
     return -1;
 }
 
-// Index of the signal that a column stands for, -1 for a column that is not drawn.
+// Index of a column's signal, -1 for a column that is not drawn.
 static int signal_of(const char *heading, const overlay_spec *spec, const trace_panel *panels,
                      int count)
 {
@@ -97,7 +97,7 @@ static void set_signal(sample *row, int signal, double value)
     memcpy((char *)row + signal_table[signal].offset, &value, sizeof value);
 }
 
-// A row whose every signal is missing.
+// A row without any signal.
 static sample missing_row(void)
 {
     sample row = {0};
@@ -141,7 +141,7 @@ static int read_headings(const char *line, int *signals, const overlay_spec *spe
     return count;
 }
 
-// Reads a row; counts the numbers beside its time.
+// Reads a row; counts its numbers without the time.
 static status read_line(trace *t, const char *line, const int *signals, int columns,
                         const char *where, size_t *numbers, fault *f)
 {
@@ -173,7 +173,7 @@ static status read_line(trace *t, const char *line, const int *signals, int colu
     return code;
 }
 
-// The rows of a file whose text is read.
+// The rows of a file that has been read.
 static status read_rows(trace *t, const char *text, const overlay_spec *spec,
                         const trace_panel *panels, int panel_count, fault *f)
 {

@@ -1,4 +1,4 @@
-// A figure of one panel that keeps what it borrows: texts, axes and numbers made for it alone.
+// A figure of one panel that owns what it borrows: texts, axes and numbers made for it.
 #pragma once
 
 #include <glib.h>
@@ -12,10 +12,10 @@ typedef struct owned_figure {
     GPtrArray *kept;                    // blocks
 } owned_figure;
 
-// An empty figure with its panel, which shows none of the series yet, and the program's name and
-// version. Give it to owned_figure_destroy (which takes NULL, too).
+// An empty figure with its panel, which has no series yet, and the program's name and version. To
+// be freed with owned_figure_destroy, which accepts NULL.
 owned_figure *owned_figure_create(void);
 void owned_figure_destroy(owned_figure *o);
 
-// Lets the figure own a block of g_malloc's, and returns it.
+// Gives a block from g_malloc to the figure, and returns it.
 void *owned_figure_keep(owned_figure *o, void *block);

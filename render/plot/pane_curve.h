@@ -1,4 +1,4 @@
-// Curves of a run on a screen that shows pixels: quick, without axes, over and over again.
+// Curves of a run on a screen with pixels: without axes, drawn quickly and repeatedly.
 #pragma once
 
 #include <cairo.h>
@@ -6,7 +6,7 @@
 #include "render/page/palette.h"
 #include "src/run/trace.h"
 
-// What the edges of a pane stand for.
+// The values at the edges of a pane.
 typedef struct pane_frame {
     double from, to;      // [s]
     double low, high;     // in the signal's unit
@@ -30,8 +30,8 @@ typedef struct pane_curve {
 // gaps.
 void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c);
 
-// A dotted line across the pane at a value; nothing for one outside it.
+// A dotted horizontal line at a value; nothing if it is outside the pane.
 void pane_level_paint(cairo_t *cr, const pane_frame *f, double value, colour in);
 
-// A line down the pane at an instant [s]; nothing for one outside it.
+// A vertical line at an instant [s]; nothing if it is outside the pane.
 void pane_instant_paint(cairo_t *cr, const pane_frame *f, double time, colour in);

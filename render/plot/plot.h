@@ -1,10 +1,10 @@
 // Figures: panels of axes with layers of data.
 //
-// A figure is a description in plain data that borrows everything it points to; nothing here
-// changes or frees it. figure_paint draws it, figure_write (render/plot/figure_file.h) makes files.
-// Panels stand in rows of `columns`; all share the horizontal axis. Traces, studies, sweeps and
-// maps are all described this way, so that axes, ticks, legends and colours look alike.
-// Unless said otherwise a text is Pango markup and NULL stands for none.
+// A figure is a description in plain data that borrows everything it points to; it is not changed
+// or freed here. figure_paint draws it, figure_write (render/plot/figure_file.h) writes files.
+// Panels are arranged in rows of `columns`; all share the horizontal axis. Traces, studies, sweeps
+// and maps are all described in this way, so that their axes, ticks, legends and colours have the
+// same style. Unless stated otherwise a text is Pango markup, and NULL means none.
 #pragma once
 
 #include <cairo.h>
@@ -26,12 +26,13 @@ typedef enum marker_kind {
 } marker_kind;
 
 typedef enum legend_kind {
-    LEGEND_AUTO, // of two or more curves, inside the panel where no data are, else in a row above
+    LEGEND_AUTO, // for two or more curves: inside the panel where there are no data, otherwise in a
+                 // row above
     LEGEND_ENDS, // each label at the right end of its curve
     LEGEND_NONE
 } legend_kind;
 
-// A tick set by hand.
+// A tick given explicitly.
 typedef struct figure_tick {
     double value;
     const char *label;
@@ -41,7 +42,7 @@ typedef struct figure_tick {
 typedef struct figure_axis {
     const char *name;   // plain, for the CSV, "force"
     const char *label;  // without its unit
-    const char *symbol; // markup, stands for the label where that does not fit; NULL: none
+    const char *symbol; // markup, replaces the label if that does not fit; NULL: none
     const char *unit;   // plain, as in the signal table: "rad/s2"; "" or NULL for a pure number
     scale_kind scale;
     double low, high;         // its ends; low >= high: from the data
@@ -61,12 +62,12 @@ typedef struct figure_series {
     size_t count;
     size_t stride;      // bytes from one value to the next, in x, y and shade; 0: sizeof(double)
     int colour;         // slot in the palette, 0-7
-    line_style style;   // changed where an earlier series of the panel has the same
+    line_style style;   // changed if an earlier series of the panel has the same
     marker_kind marker; // at every point
     double radius;      // of markers [pt]; 0: the style's
     bool secondary;     // thinner and dashed, for a second run of the same quantity
     bool no_line;       // markers only
-    bool rim;           // on a rim of the page's colour, so that it shows on a map
+    bool rim;           // with a rim of the page's colour, so that it is visible on a map
 } figure_series;
 
 // A layer of coloured cells over a grid of points: z[column * rows + row].
@@ -107,15 +108,15 @@ typedef struct figure_note {
     const char *text;
 } figure_note;
 
-// An impulse: something that has no place on the panel's own axis. It is drawn as an arrow in a
-// strip above the panel.
+// An impulse, which cannot be shown on the panel's own axis. It is drawn as an arrow in a strip
+// above the panel.
 typedef struct figure_impulse {
     double x, size;
 } figure_impulse;
 
 typedef struct figure_panel {
     const char *heading; // above it
-    const char *remark;  // in its middle: why there is nothing to see
+    const char *remark;  // in its middle: reason for an empty panel
     figure_axis y;
     const figure_map *map; // below all other layers
     const figure_colours *colours;
@@ -147,26 +148,25 @@ typedef struct figure {
     bool marks_above; // their labels stand above the panels even where they would fit inside
     const figure_interval *intervals;
     int interval_count;
-    double width, height; // of the page [mm]; 0: 170 wide, as high as the panels want
+    double width, height; // of the page [mm]; 0: 170 wide, as high as the panels need
     double dpi;           // of a PNG; 0: 200
     figure_theme theme;
-    const char *font;       // family; NULL: the house's
+    const char *font;       // family; NULL: the default
     double letters;         // size of labels [pt]; 0: 8
     bool bare;              // without title and caption
-    bool transparent;       // without a ground
+    bool transparent;       // without a background
     bool shared_y;          // all panels have one vertical axis, labelled in the first column
     const char *software;   // plain, for the file's metadata, "impactlab 0.1.0"
     const char *parameters; // plain, for the file's metadata
 } figure;
 
-// Gives a figure the look that is asked for, where it asks for something.
+// Applies the given look to a figure; fields that are zero have no effect.
 void figure_take_look(figure *fig, const page_look *look);
 
 // Page size [pt] of a figure.
 void figure_size(const figure *fig, double *width, double *height);
 
-// Draws the figure with the page's top left corner at the origin of cr, in points. *report (may be
-// NULL) is filled. STATUS_BAD_ARGUMENT for a page that is too small or a description that makes no
-// sense, such as a logarithmic axis without a value above zero, STATUS_CANNOT_READ if the font is
-// missing.
+// Draws the figure with the page's upper left corner at the origin of cr, in points. *report (may
+// be NULL) is filled. STATUS_BAD_ARGUMENT for a page that is too small or an invalid description,
+// such as a logarithmic axis without a value above zero, STATUS_CANNOT_READ if the font is missing.
 status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault *f);

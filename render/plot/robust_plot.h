@@ -1,12 +1,13 @@
-// Picture of what impactlab robust finds: the distribution of the overshoot, a curve for each law.
+// Picture of the result of impactlab robust: the distribution of the overshoot, a curve for each
+// law.
 #pragma once
 
 #include "render/plot/owned_figure.h"
 #include "src/study/robust.h"
 
-// The most laws that a picture shows.
+// The largest number of laws in a picture.
 enum { ROBUST_MOST_CURVES = 8 };
 
 // Describes the picture: the share of runs (upwards) whose overshoot is at most x. The table is
-// borrowed; at most ROBUST_MOST_CURVES laws. Give it to owned_figure_destroy.
+// borrowed; at most ROBUST_MOST_CURVES laws. To be freed with owned_figure_destroy.
 owned_figure *robust_figure_create(const robust_table *t);

@@ -1,4 +1,4 @@
-// Scales: from values to places between the two ends of an axis.
+// Scales: from values to positions between the two ends of an axis.
 #pragma once
 
 #include <stdbool.h>
@@ -16,17 +16,17 @@ double scale_coordinate(scale_kind kind, double value);
 // The value at a coordinate.
 double scale_value(scale_kind kind, double coordinate);
 
-// How far a value lies from the low end to the high one, 0 ... 1 between them.
+// The position of a value, 0 at the low end and 1 at the high end.
 double scale_share(const axis_scale *s, double value);
 
 // Whether a value lies between the ends.
 bool scale_holds(const axis_scale *s, double value);
 
-// An empty scale, and one that grows until it holds a value that it can show.
+// An empty scale; and widening a scale to include a value that it can show.
 axis_scale scale_empty(scale_kind kind);
 void scale_include(axis_scale *s, double value);
 bool scale_is_empty(const axis_scale *s);
 
-// Puts the ends apart where they fall together (0 and 1 where there are none; half a decade at
-// least on a logarithmic scale) and then outwards by a share of the range.
+// Separates equal ends (0 and 1 if there are none; at least half a decade on a logarithmic scale)
+// and then moves them outwards by a share of the range.
 void scale_widen(axis_scale *s, double share);

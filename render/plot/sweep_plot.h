@@ -14,10 +14,11 @@ typedef struct sweep_picture {
     const double *values; // of each run, NaN where there is none
 } sweep_picture;
 
-// Tells before long work whether a picture of the sweep can be drawn into path: STATUS_BAD_ARGUMENT
-// if more than two parameters are varied or for an unknown extension, STATUS_CANNOT_WRITE if the
-// path cannot be written, STATUS_CANNOT_READ if the font is missing.
+// Checks in advance whether a picture of the sweep can be written to path: STATUS_BAD_ARGUMENT if
+// more than two parameters are varied or for an unknown extension, STATUS_CANNOT_WRITE if the path
+// cannot be written, STATUS_CANNOT_READ if the font is missing.
 status sweep_plot_check(const sweep *s, const char *path, fault *f);
 
-// Describes the picture; give it to owned_figure_destroy. The sweep and the values are borrowed.
+// Describes the picture, to be freed with owned_figure_destroy. The sweep and the values are
+// borrowed.
 owned_figure *sweep_figure_create(const sweep_picture *p);

@@ -1,4 +1,4 @@
-// Where an axis has its ticks, and what is written at them.
+// Ticks of an axis and their labels.
 #pragma once
 
 #include <stddef.h>

@@ -15,7 +15,7 @@ typedef struct trace_panel {
     double weight;                      // share of the height, 0 counts as 1
     bool with_zero;                     // the axis includes 0
     bool impulses;                      // impulses of impacts in a strip above the panel
-    bool inset;                         // the first pulse once more, if it is short
+    bool inset;                         // the first pulse enlarged, if it is short
     bool wall;                          // the wall's angle as a line
     bool modes;                         // shade the controller's second mode instead of contact
 } trace_panel;
@@ -25,11 +25,11 @@ typedef struct trace_panel {
 typedef struct trace_run {
     const scenario *scenario;
     const run_result *result; // with its trace
-    const char *name;         // "corrected"; only shown if there are several runs
-    bool brief;               // further runs only: of each panel the first signal, in grey
+    const char *name;         // "corrected"; shown only if there are several runs
+    bool brief;               // further runs only: the first signal of each panel, in grey
     bool steps;               // a small point at every row: the steps of the method
     bool points;              // further runs only: reference data, points where it has a number
-    int rank;                 // 0: as said above; else a full line of its own colour, 1 to 8
+    int rank; // 0: as above; otherwise a solid line with a colour of its own, 1 to 8
 } trace_run;
 
 // A figure with everything it borrows, except for the runs.
@@ -37,7 +37,7 @@ typedef struct trace_figure {
     figure figure;
     figure_panel panels[FIGURE_PANELS];
     figure_series series[FIGURE_PANELS][TRACE_SIGNALS * TRACE_RUNS];
-    figure_series residual; // in the panel behind the last, where there are reference data
+    figure_series residual; // in an additional last panel, if there are reference data
     figure_level wall;
     GPtrArray *owned; // blocks
     figure_mark *marks;
@@ -45,16 +45,16 @@ typedef struct trace_figure {
     figure_impulse *impulses;
 } trace_figure;
 
-// A signal's symbol as markup, with the index of the body it has in the scenario. Free it with
-// g_free.
+// A signal's symbol as markup, with the index of its body in the scenario. To be freed with g_free.
 char *trace_symbol(const scenario *s, int index);
 
-// A signal of a run over time, the force with its peaks among the rows. What is made for it goes to
-// `owned`.
+// A signal of a run over time; for the force the peaks are added to the rows. Storage made for it
+// is added to `owned`.
 figure_series trace_series(const trace_run *run, int index, GPtrArray *owned);
 
-// The value of a signal at an instant of a run, straight lines between rows; NaN beyond its ends.
+// The value of a signal at an instant of a run, interpolated linearly between rows; NaN outside the
+// run.
 double trace_value_at(const trace *t, int index, double time);
 
-// The stretches in contact; the array goes to `owned`.
+// The intervals of contact; the array is added to `owned`.
 figure_interval *trace_contact(const trace *rows, int *count, GPtrArray *owned);

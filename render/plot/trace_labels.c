@@ -151,7 +151,8 @@ static void add_printed_constants(GString *out, const parameters *p)
     }
 }
 
-// What is shaded, and of several runs whose that is; points of data have no contact of their own.
+// The meaning of the shading and, of several runs, the run it belongs to; points of data have no
+// contact.
 static void add_shading(GString *out, const trace_run *runs, int run_count, const char *shaded)
 {
     int full = 0;

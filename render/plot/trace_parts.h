@@ -1,11 +1,11 @@
-// Inside figures of recorded runs: what is written, marked and drawn, apart from the panels.
+// Internal to figures of recorded runs: labels, marks and events.
 #pragma once
 
 #include "render/plot/trace_figure.h"
 
 enum { TRACE_ACTIONS = 16, TRACE_MARKS = 3 + TRACE_ACTIONS };
 
-// Hands a block, mostly a text, to those that live as long as the figure.
+// Adds a block, mostly a text, to those that are freed with the figure.
 void *trace_keep(GPtrArray *owned, void *block);
 
 // --- labels: trace_labels.c. Free the texts with g_free.
@@ -13,19 +13,19 @@ void *trace_keep(GPtrArray *owned, void *block);
 // Whether the run was on the rig, with a controller.
 bool trace_on_the_rig(const scenario *s);
 
-// A hub that is rigidly joined to the first link moves with it.
+// Whether the hub is rigidly joined to the first link.
 bool trace_hub_is_first_link(const scenario *s);
 
 // Name of a mode of the scenario's controller, NULL if it is not known.
 const char *trace_mode_name(const scenario *s, int mode);
 
-// "θ1  hub" for a legend; with `joined` a hub that is the first link is named as both.
+// "θ1  hub" for a legend; with `joined` a hub that is part of the first link is named as both.
 char *trace_series_label(const scenario *s, int index, bool joined);
 
 // The same without words.
 char *trace_series_symbol(const scenario *s, int index);
 
-// "Contact force f"; the body goes, since the symbol names it.
+// "Contact force f", without the body, which the symbol names.
 char *trace_axis_label(const scenario *s, const signal_info *signal);
 
 // Model, links, drive, method and what is shaded in one line; of several runs, which of them the
@@ -34,14 +34,15 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 
 // --- what happened: trace_events.c
 
-// Marks contact, peak, release and what the script did; on the rig changes of mode.
+// Marks contact, peak, release and changes by the script; on the rig changes of mode.
 void trace_mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts);
 
 bool trace_in_contact(const sample *row);
 bool trace_in_second_mode(const sample *row);
 
-// From each first row that is so to the next one that is not. Counts them where `out` is NULL.
+// Intervals from each first row with the property to the next one without it. Only counts them if
+// `out` is NULL.
 int trace_intervals(const trace *rows, bool (*is_so)(const sample *row), figure_interval *out);
 
-// The impulses of all impacts. Counts them where `out` is NULL.
+// The impulses of all impacts. Only counts them if `out` is NULL.
 int trace_impulses(const trace *rows, figure_impulse *out);

@@ -128,7 +128,7 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
         add_series(t, index, from, runs, run, run_count, texts);
     }
 
-    // what is drawn beside them
+    // what is drawn with them
     if (from->impulses) {
         panel->impulses = t->impulses;
         panel->impulse_count = trace_impulses(&runs[0].result->trace, t->impulses);
@@ -151,7 +151,7 @@ static void add_residuals(trace_figure *t, const trace_panel *panels, const trac
 {
     const trace *data = &measured->result->trace;
 
-    // the first panel whose signal was measured
+    // the first panel with a measured signal
     int last = t->figure.panel_count, panel = 0;
     while (panel < last && !trace_has(data, signal_index(panels[panel].signals[0]))) {
         panel++;

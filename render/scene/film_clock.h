@@ -1,32 +1,31 @@
-// When in a run each moment of a film is: slower round every impact.
+// The instant of a run for each instant of a film, with slow motion near every impact.
 #pragma once
 
 #include "src/run/run_result.h"
 
-enum { FILM_IMPACTS = 64 }; // most impacts that are slowed down
+enum { FILM_IMPACTS = 64 }; // most impacts shown in slow motion
 
 typedef struct film_clock {
     double start, end;            // of the run [s]
-    double impacts[FILM_IMPACTS]; // instants round which it is slowed down [s], ascending
+    double impacts[FILM_IMPACTS]; // instants of slow motion [s], ascending
     int impact_count;
-    double before, after; // each time it is slowed down fully from `before` until `after` it [s]
-    double taper;         // the time over which that comes and goes [s]
-    double slow;          // how much slower than the rest
+    double before, after; // full slow motion from `before` until `after` each of them [s]
+    double taper;         // duration of the transitions [s]
+    double slow;          // factor of slow motion
     double seconds;       // of the film
 } film_clock;
 
 // A clock of runs that are shown together: `seconds` of film, and the time from shortly before
 // every impact of any of them until the force has risen `slow` times slower than the rest. Impacts
 // with less than a twentieth of the largest impulse are left out; in a run without impulses every
-// begin of contact counts.
+// beginning of contact is used.
 film_clock film_clock_of(const run_result *const *results, int count, double seconds, double slow);
 
-// The same for a time from `start` to `end` [s] and what happens at an instant of it [s]; the
-// film's length is left open.
+// The same for a time from `start` to `end` [s] and a single event at an instant [s]; the length of
+// the film is not set.
 film_clock film_clock_round(double start, double end, double instant, double slow);
 
-// How many times slower the run goes at an instant [s] than where it is not slowed down: between,
-// half a cosine.
+// The factor of slow motion at an instant [s], 1 outside; the transitions are half a cosine.
 double film_clock_slowness(const film_clock *c, double time);
 
 // The instant of the run [s] shown at a film's time [s], and how many seconds of the run pass in a

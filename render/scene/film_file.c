@@ -221,7 +221,7 @@ static status send_frame(film_file *film, cairo_surface_t *frame, fault *f)
             film_encoder_send(&film->encoder, data + row * stride, 4 * (size_t)film->facts.width);
     }
 
-    // the fault is worded here, by who knows the film
+    // the fault gets its sentence here, where the film is known
     if (code == STATUS_STOPPED) {
         return stopped(film, f);
     }

@@ -10,7 +10,7 @@
 #include "render/scene/labels.h"
 #include "src/base/numbers.h"
 
-#define TRACE_SHARE   0.36 // of the picture's width, for the traces beside one arm
+#define TRACE_SHARE   0.36 // of the picture's width, for the traces next to one arm
 #define STRIP_SHARE   0.30 // of its height, for those below several
 #define TRACE_LETTERS 2.5  // scale of the traces for a picture 720 pixels high
 #define GHOST_TIME    0.02 // of the run between one ghost and the next [s]
@@ -37,7 +37,7 @@ static double film_scale(const film_plan *plan)
     return fmin(plan->options.height / 720.0, plan->options.width / 1280.0);
 }
 
-// One arm beside its traces; several in two columns above theirs.
+// One arm next to its traces; several arms in two columns above theirs.
 static void place_views(film_plan *plan)
 {
     int width = plan->options.width, height = plan->options.height;
@@ -285,7 +285,7 @@ static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
     set_colour(cr, palette_of(plan->options.view.theme)->faint_text);
     text_measure(p->context, &t, &width, &height);
 
-    // several arms leave a corner beside their traces' axis
+    // with several arms there is a free corner next to the axis of the traces
     double bottom = plan->options.height - height - 6 * scale;
     cairo_move_to(cr, 22 * scale, plan->run_count == 1 ? 20 * scale : bottom);
     text_draw(cr, p->context, &t);

@@ -122,7 +122,8 @@ struct gl_offscreen {
 
 enum { SMALL = 16 }; // edge of the surface that a context insists on [pixels]
 
-// A function of a library; ISO C knows no other way from an object pointer to a function's.
+// A function of a library; ISO C has no other conversion from an object pointer to a function
+// pointer.
 static bool load(void *handle, const char *name, void *function)
 {
     void *found = dlsym(handle, name);

@@ -1,4 +1,4 @@
-// OpenGL without a screen: a software renderer loaded when it is first wanted.
+// OpenGL without a screen: a software renderer that is loaded when first used.
 //
 // Neither library is linked. OSMesa alone would add 20 ms and 50 MB to the start of every command.
 #pragma once
@@ -12,18 +12,18 @@ typedef enum gl_library { GL_OSMESA, GL_EGL } gl_library;
 
 typedef struct gl_offscreen gl_offscreen;
 
-// A corner of a triangle as OpenGL takes it.
+// A vertex of a triangle for OpenGL.
 typedef struct gl_vertex {
     float place[4];  // clip coordinates, y down
     float colour[4]; // red, green, blue, opacity
 } gl_vertex;
 
 // A renderer of pictures of up to width by height pixels. STATUS_CANNOT_WRITE if the library is
-// missing or gives no OpenGL 3.3; f says what to install.
+// missing or has no OpenGL 3.3, with what to install in f.
 status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, int height, fault *f);
 void gl_offscreen_destroy(gl_offscreen *g);
 
-// What draws: library, renderer and version, "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), ...".
+// Library, renderer and version, "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), ...".
 const char *gl_offscreen_renderer(const gl_offscreen *g);
 
 // Triangles, three corners each, as numbers of vertices.
@@ -39,7 +39,7 @@ typedef struct gl_region {
     int x, y, width, height;
 } gl_region;
 
-// Draws triangles on a transparent ground with a depth test and stores the
-// region as rows of 0xAARRGGBB, opacity multiplied in.
+// Draws triangles on a transparent background with a depth test and stores the region as rows of
+// 0xAARRGGBB with premultiplied opacity.
 status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region region, uint32_t *pixels,
                          fault *f);

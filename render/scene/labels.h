@@ -1,4 +1,4 @@
-// What is written and drawn on a scene besides the solids.
+// Texts and marks on a scene.
 #pragma once
 
 #include <pango/pangocairo.h>
@@ -12,23 +12,23 @@ typedef struct labels {
     PangoContext *context;
     const camera *camera;
     colour strong, faint; // inks of titles and of facts
-    double scale;         // of letters and lines: 1 for a picture 720 pixels high
+    double scale;         // scale of letters and lines: 1 for a picture 720 pixels high
 } labels;
 
-// A flash at a place, of a radius [m], strength 0 to 1.
+// A flash at a point, with a radius [m] and a strength of 0 to 1.
 void labels_flash(const labels *l, vector place, double radius, double strength);
 
-// "1.34 N" beside the end of an arrow that starts at `from`.
+// "1.34 N" next to the head of an arrow that starts at `from`.
 void labels_force(const labels *l, vector from, vector end, double force, colour ink);
 
 // Title and a line of facts at the lower left corner; `facts` is markup, `title` plain.
 void labels_caption(const labels *l, const char *title, const char *facts);
 
-// Pixels that a length [m] has at a place.
+// The length in pixels of a length [m] at a point.
 double labels_pixels(const camera *c, vector place, double length);
 
 // "contact, 1.8 times" below the left corner of an inset [pixels].
 void labels_inset(const labels *l, double left, double bottom, double larger);
 
-// A key of instants [s] with their colours at the lower right corner.
+// A legend of instants [s] with their colours at the lower right corner.
 void labels_instants(const labels *l, const double *times, const colour *inks, int count);

@@ -188,7 +188,7 @@ typedef struct section {
     double across[8], up[8], normal_across[8], normal_up[8];
 } section;
 
-// A rectangle whose edges are broken, so that they catch the light.
+// A rectangle with chamfered edges, which reflect light.
 static section broken_rectangle(double thickness, double height)
 {
     double a = thickness / 2, b = height / 2, c = thickness / 4, d = M_SQRT1_2;

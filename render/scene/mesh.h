@@ -1,6 +1,7 @@
-// Solids of a scene as triangles: what an arm, a wall and an arrow are made of.
+// Solids of a scene as triangles: parts of arm, wall and arrow.
 //
-// Lengths are in metres. Triangles are opaque; a solid is closed, so that it needs no back faces.
+// Lengths are in metres. Triangles are opaque; solids are closed, so that back faces are not
+// needed.
 #pragma once
 
 #include <stdbool.h>
@@ -34,19 +35,19 @@ typedef struct mesh {
     unsigned *corners; // three of each triangle
     size_t vertex_count, vertex_capacity;
     size_t corner_count, corner_capacity;
-    bool out_of_memory; // once true nothing is added any more
+    bool out_of_memory; // once true, nothing more is added
 } mesh;
 
 void mesh_finish(mesh *m);
-// Empties the mesh and keeps its memory for the next picture.
+// Clears the mesh and keeps its memory for the next picture.
 void mesh_clear(mesh *m);
 
-// A ring of a turned solid.
+// A circle of a solid of revolution.
 typedef struct lathe_ring {
     double along, radius; // [m]
 } lathe_ring;
 
-// A solid turned about the axis (a unit vector) through base, from one ring to the next.
+// A solid of revolution about the axis (a unit vector) through base, from one circle to the next.
 void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count, material of);
 
 // A box: its centre and half edges.
@@ -54,14 +55,15 @@ typedef struct box {
     vector centre, u, v, w; // [m]
 } box;
 
-// A box whose faces are cut into cells of about the given size: light is computed at corners alone.
+// A box whose faces are divided into cells of about the given size, because light is computed only
+// at vertices.
 void mesh_box(mesh *m, const box *b, double cell, material of);
 
-// A strip on edge along the places: thickness across it in the x-y plane, height along z.
+// A strip standing on its edge along the points: thickness in the x-y plane, height along z.
 void mesh_ribbon(mesh *m, const vector *places, int count, double height, double thickness,
                  material of);
 
-// A tube along the places, of a material for each.
+// A tube along the points, with a material for each.
 void mesh_tube(mesh *m, const vector *places, const material *of, int count, double radius);
 
 // An arrow from start along a unit vector.

@@ -1,9 +1,9 @@
-// The arm from above on a screen that shows pixels: quick, over and over again.
+// The arm from above on a screen with pixels, drawn quickly and repeatedly.
 #pragma once
 
 #include "render/scene/scene.h"
 
-// From metres to pixels, the height magnified.
+// The transformation from metres to pixels, with magnified height.
 typedef struct plan_view {
     double left, bottom;  // of the picture [m]
     double scale;         // [pixels/m] across
@@ -15,26 +15,27 @@ typedef struct plan_colours {
     colour ground, arm, hub, wall, force, other, frame;
 } plan_colours;
 
-// An arm at an instant, and what is round it.
+// An arm at an instant with its surroundings.
 typedef struct plan {
     const trace *rows;
     const parameters *parameters;
     double time;           // [s]
-    const trace *other;    // of a run beside it, of as many links; NULL: none
-    double exaggerate;     // bending is drawn that many times as large; 1: as it is
+    const trace *other;    // of a second run with the same number of links; NULL: none
+    double exaggerate;     // factor by which bending is enlarged; 1: none
     double peak;           // the force whose arrow has its full length [N]
-    bool pulled;           // by a spring from the tip to a place
-    double pull_x, pull_y; // that place [m]
+    bool pulled;           // pulled by a spring from the tip to a point
+    double pull_x, pull_y; // that point [m]
     plan_colours colours;
 } plan;
 
-// Paints the plan over the whole picture, from the cairo context's origin on. False without memory.
+// Paints the plan over the whole picture, from the origin of the cairo context. False without
+// memory.
 bool plan_paint(cairo_t *cr, const plan *p, const plan_view *v);
 
-// A view of the contact from near by: the place where the tip meets the wall in the middle of a
-// picture of this size [pixels], undistorted.
+// A close-up of the contact: the point where the tip meets the wall is in the middle of a picture
+// of this size [pixels], undistorted.
 plan_view plan_close_up(const parameters *p, double width, double height);
 
-// The place of a point [m] on the picture [pixels, down from its upper edge].
+// The position of a point [m] on the picture [pixels, down from its upper edge].
 double plan_x(const plan_view *v, double x);
 double plan_y(const plan_view *v, double y);

@@ -209,7 +209,7 @@ static void fill_columns(uint32_t *pixels, float *depths, const triangle_ramps *
     }
 }
 
-// Fills the samples whose centres lie in the triangle and nearer than what is there.
+// Fills the samples with centres inside the triangle that are nearer than their present depth.
 static void fill_triangle(sample_buffer *b, const flat_triangle *t, const gl_vertex *const v[3])
 {
     const int width = b->samples * b->width, height = b->samples * b->height;
@@ -272,7 +272,7 @@ static void add_rows(column_sums *sums, const uint32_t *first, ptrdiff_t across,
     }
 }
 
-// The mean of a pixel's samples x samples, as much of it as the opacity [1/256] lets through.
+// The mean of a pixel's samples x samples, weighted by the opacity [1/256].
 static uint32_t mean_of(const column_sums *sums, int at, int samples, uint32_t opacity)
 {
     uint32_t even = 0, odd = 0, count = (uint32_t)(samples * samples);

@@ -2,8 +2,8 @@
 //
 // The arm swings in the x-y plane; z points up, towards the reader of a plan. The beam is drawn as
 // the curve that starts at the hub along the first link, ends at the tip along the last one and
-// touches every link between them at its middle (a quadratic B-spline over the joints): no bend of
-// it is larger than the links'.
+// touches every other link at its middle (a quadratic B-spline over the joints): it bends nowhere
+// more than the links do.
 #pragma once
 
 #include "render/scene/camera.h"
@@ -18,24 +18,24 @@ typedef struct scene_options {
     int width, height;  // [pixels]; 0: 1280 x 720
     int samples;        // of a pixel along each edge; 0: SAMPLES_FINE
     bool plain;         // no text
-    bool keyless;       // no key of the instants
+    bool keyless;       // no legend of the instants
     double letters;     // scale of letters, 1 for a picture 720 pixels high; 0: by its size
-    double exaggerate;  // bending is drawn that many times as large, and this is said; 0: as it is
-    bool inset;         // the contact from near by in a corner
+    double exaggerate;  // factor by which bending is enlarged, also shown as text; 0: none
+    bool inset;         // close-up of the contact in a corner
     figure_theme theme; // THEME_DARK, else light
-    bool transparent;   // without floor and ground, for a surface ARGB32
+    bool transparent;   // without floor and background, for a surface ARGB32
 } scene_options;
 
 typedef struct scene scene;
 
 // Prepares pictures of a run, which must outlive them and have its trace. STATUS_BAD_ARGUMENT for a
-// size out of range or a run without rows, STATUS_CANNOT_READ if the font is missing, else what
-// scene_painter_create says.
+// size out of range or a run without rows, STATUS_CANNOT_READ if the font is missing, otherwise the
+// status of scene_painter_create.
 status scene_create(scene **out, const scenario *s, const run_result *result,
                     const scene_options *options, fault *f);
 void scene_destroy(scene *sc);
 
-// What paints, for metadata.
+// Name of the renderer, for metadata.
 const char *scene_renderer_name(const scene *sc);
 
 // Paints the arm at the instants [s], ascending, the last in full colour and earlier ones as ghosts
@@ -51,12 +51,12 @@ void scene_instants(const run_result *result, double *times, int count);
 // between rows. Returns the row interpolated likewise.
 sample scene_joints(const trace *t, const parameters *p, double time, vector *joints);
 
-// Draws the bending larger: what of the joints lies across the line from hub to tip grows by the
-// factor (0 or 1: nothing does), so that hub and tip stay where they are.
+// Enlarges the bending: the distances of the joints from the line from hub to tip are multiplied by
+// the factor (0 or 1: unchanged), so that hub and tip do not move.
 void scene_exaggerate(vector *joints, int links, double factor);
 
-// The beam's curve through the joints (see above), room for scene_curve_length(links) places.
-// Returns how many were written.
+// The beam's curve through the joints (see above), for which there must be room for
+// scene_curve_length(links) points. Returns how many were written.
 int scene_curve(const vector *joints, int links, vector *curve);
 int scene_curve_length(int links);
 
@@ -69,10 +69,10 @@ typedef struct scene_picture {
     int count;           // of them, 1 to SCENE_INSTANTS
 } scene_picture;
 
-// Writes it as PNG, whole or not at all, with scenario, parameters, version and renderer in its
-// metadata. STATUS_BAD_ARGUMENT for an instant outside the run, else what scene_create and
-// scene_paint say, or STATUS_CANNOT_WRITE.
+// Writes it as PNG, completely or not at all, with scenario, parameters, version and renderer in
+// its metadata. STATUS_BAD_ARGUMENT for an instant outside the run, otherwise the status of
+// scene_create and scene_paint, or STATUS_CANNOT_WRITE.
 status scene_write(const scene_picture *p, const char *path, fault *f);
 
-// Tells before long work whether scene_write could write to path.
+// Checks in advance whether scene_write can write to path.
 status scene_check_path(const char *path, fault *f);

@@ -1,5 +1,5 @@
-// What the parts of a scene share: scene_solids.c builds the meshes, scene_view.c places camera,
-// lamp and floor, scene_paint.c paints, scene_file.c writes.
+// Shared by the parts of a scene: scene_solids.c builds the meshes, scene_view.c places camera,
+// light and floor, scene_paint.c paints, scene_file.c writes.
 #pragma once
 
 #include <pango/pangocairo.h>
@@ -9,7 +9,7 @@
 
 enum { TRAIL_POINTS = 240 };
 
-// Sizes in beam lengths that both the solids and the view of them need.
+// Sizes in beam lengths, used by the solids and the view.
 #define BEAM_HEIGHT    0.050
 #define BEAM_THICKNESS 0.011
 #define MOTOR_RADIUS   0.082
@@ -20,10 +20,10 @@ enum { TRAIL_POINTS = 240 };
 #define SLAB_THICKNESS 0.030
 #define ARROW_LENGTH   0.26 // of the largest force
 
-// Colours of what surrounds the arm.
+// Colours of the arm's surroundings.
 typedef struct surroundings {
-    colour page, ground, line; // beyond the floor, of it and of its grid
-    colour far;                // what is long past tends to it
+    colour page, ground, line; // of the page, the floor and the grid
+    colour far;                // colour of the distant past
     colour strong, faint;      // of letters
 } surroundings;
 
@@ -49,28 +49,28 @@ struct scene {
     material trail_of[TRAIL_POINTS];
 };
 
-// A point of the plane at a distance x along a direction [rad] and y across it, z above.
+// The point at distance x along a direction [rad] in the plane, y across it, and z above.
 vector at_angle(double angle, double x, double y, double z);
 
-// A material that tends to what is long past, by a share of 0 to 1.
+// A material blended with the colour of the distant past, by a share of 0 to 1.
 material scene_paler(const scene *sc, material m, double share);
 
 // The steel of the beam.
 extern const material beam_steel;
 
-// The joints at an instant [s] into sc->joints, with the bending as it is to be drawn. Returns the
-// row of that instant.
+// Sets sc->joints to the joints at an instant [s], with the bending as drawn. Returns the row of
+// that instant.
 sample scene_shape(scene *sc, double time);
 
-// Where the force acts: the contact point, on the beam's near side.
+// The point of action of the force: the contact point, on the near side of the beam.
 vector scene_contact(const scene *sc, const vector *joints);
 
 // The wall's force on the beam, as an arrow from the contact point away from the wall, for
-// sc->joints of that row. False where there is none to be seen.
+// sc->joints of that row. False if it is not visible.
 bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector *end);
 
 // Adds to sc->mesh the motor with the hub at an angle [rad], the wall, and the tip's path from one
-// instant [s] to another, paler the longer ago.
+// instant [s] to another, paler for earlier times.
 void scene_build_hub(scene *sc, double angle);
 void scene_build_wall(scene *sc);
 void scene_build_trail(scene *sc, double from, double time);
@@ -78,9 +78,9 @@ void scene_build_trail(scene *sc, double from, double time);
 // Adds the arm at an instant [s] and the wall's force on it to a mesh of the scene.
 void scene_build_arm(scene *sc, mesh *into, double time);
 
-// 1, 2 or 5 times a power of ten, next below a tenth of the length [m].
+// The largest of 1, 2 or 5 times a power of ten that is at most a tenth of the length [m].
 double scene_grid_of(double length);
 
-// Places camera, lamp and floor so that everything that ever happens in the run is seen.
-// STATUS_NO_MEMORY if there is no room for the floor.
+// Places camera, light and floor so that the whole run is visible. STATUS_NO_MEMORY if there is no
+// room for the floor.
 status scene_set_view(scene *sc, fault *f);

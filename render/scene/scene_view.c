@@ -94,7 +94,7 @@ status scene_set_view(scene *sc, fault *f)
         sc->camera.farthest += 2.5 * sc->length;
     }
 
-    // a lamp to the left of who looks
+    // a light to the left of the viewer
     for (int i = 0; i < count; i++) {
         low = (vector){fmin(low.x, points[i].x), fmin(low.y, points[i].y), 0};
         high = (vector){fmax(high.x, points[i].x), fmax(high.y, points[i].y), 0};
