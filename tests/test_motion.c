@@ -290,6 +290,25 @@ static void an_arm_that_starts_on_the_wall_is_in_contact(void **state)
     }
 }
 
+// One that starts on a wall that gives and moves into it is in contact from the start: as one that
+// comes from 1 nm in front of it.
+static void an_arm_that_moves_into_the_wall_is_in_contact(void **state)
+{
+    (void)state;
+    static const char *const walls[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
+    for (int i = 0; i < 2; i++) {
+        run_result at = run(SETTINGS(walls[i], "wall.angle=0", "initial.velocity=1"));
+        run_result before =
+            run(SETTINGS(walls[i], "wall.angle=0", "initial.velocity=1", "initial.angle=-1e-9"));
+        check_close(at.summary.first_contact_s, 0, 0);
+        check_relative(at.summary.first_pulse_peak_N, before.summary.first_pulse_peak_N, 1e-5);
+        check_relative(at.summary.peak_force_N, before.summary.peak_force_N, 1e-5);
+        check_close(find_event(&at, EVENT_CONTACT, 0)->time, 0, 0);
+        run_finish(&at);
+        run_finish(&before);
+    }
+}
+
 // The gap of an arm that starts on the wall is zero, whatever rounding makes of it.
 static void an_arm_on_the_wall_does_not_strike_it(void **state)
 {
@@ -478,6 +497,7 @@ int main(void)
         cmocka_unit_test(without_a_trace_the_summary_is_the_same),
         cmocka_unit_test(script_acts_at_its_time_and_is_booked),
         cmocka_unit_test(an_arm_that_starts_on_the_wall_is_in_contact),
+        cmocka_unit_test(an_arm_that_moves_into_the_wall_is_in_contact),
         cmocka_unit_test(an_arm_on_the_wall_does_not_strike_it),
         cmocka_unit_test(a_push_of_nothing_changes_nothing),
         cmocka_unit_test(a_run_that_makes_energy_from_nothing_is_stopped),

@@ -9,6 +9,11 @@
 #include "src/base/instant.h"
 #include "src/base/sincos.h"
 
+// What swings off the wall sooner than this after the start [s], with no larger force before [N],
+// does so at once; a derivative higher than the second decides.
+#define AT_ONCE  1e-6
+#define NO_FORCE 1e-9
+
 void corrected_bind_arm(corrected_run *c)
 {
     const recording *r = c->recording;
@@ -68,7 +73,15 @@ void corrected_close_first_pulse(corrected_run *c)
     }
 }
 
-// An arm that starts on the wall and swings off in the same instant has not touched it.
+// Whether an arm that started on the wall has swung off at once, without ever pressing on it.
+static bool has_not_touched(const corrected_run *c)
+{
+    const summary *s = &c->recording->result->summary;
+    return s->first_contact_s == 0 && s->contact_impulse_Ns == 0 &&
+           c->motion->state[SLOT_TIME] < AT_ONCE && !(c->motion->pulse_peak > NO_FORCE);
+}
+
+// Its first contact is still to come.
 static void forget_first_contact(corrected_run *c)
 {
     recording *r = c->recording;
@@ -112,8 +125,11 @@ static status record_applied_event(corrected_run *c, const motion_report *report
     summary *s = &r->result->summary;
     const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
 
-    // the event itself
-    status failed = record_event(r, m, kind_of(m, report), report);
+    // the event itself; one that never came leaves nothing
+    status failed = STATUS_OK;
+    if (report->event != MOTION_RELEASE || !isnan(s->first_contact_s)) {
+        failed = record_event(r, m, kind_of(m, report), report);
+    }
     s->impacts += report->event == MOTION_IMPACT;
 
     // the gap closes: a flight ends, at the first time the pulse begins
@@ -136,7 +152,7 @@ static status record_applied_event(corrected_run *c, const motion_report *report
 
     // it opens again, for the first time the pulse ends
     bool apart = m->state[SLOT_CONTACT] == 0 && (closes || report->event == MOTION_RELEASE);
-    if (apart && r->state.pulse_open && !closes && m->state[SLOT_TIME] == 0) {
+    if (apart && r->state.pulse_open && !closes && has_not_touched(c)) {
         forget_first_contact(c);
     } else if (apart && r->state.pulse_open) {
         corrected_close_first_pulse(c);

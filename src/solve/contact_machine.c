@@ -369,7 +369,9 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
 bool motion_starts_in_contact(const motion *m)
 {
     assert(m != NULL);
-    const bool leaves = m->wall_gives && m->state[SLOT_GAP_ACCELERATION] > 0;
+    // what goes into a wall that gives is in contact, however hard the wall throws it back
+    const bool leaves =
+        m->wall_gives && m->state[SLOT_GAP_VELOCITY] >= 0 && m->state[SLOT_GAP_ACCELERATION] > 0;
     return m->state[SLOT_CONTACT] != 0 && !leaves;
 }
 
