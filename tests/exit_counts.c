@@ -42,7 +42,7 @@ int __wrap_execv(const char *path, char *const words[]);
 int __real_execv(const char *path, char *const words[]);
 int __wrap_execl(const char *path, const char *first, ...);
 
-// Where there is no such program this one goes on, and counts anew.
+// Without that program this one continues, and counts anew.
 int __wrap_execv(const char *path, char *const words[])
 {
     struct rlimit short_files;

@@ -14,7 +14,7 @@ static inline bool rect_is_within(const figure_rect *r, const figure_rect *outer
            r->y + r->height <= outer->y + outer->height + slack;
 }
 
-// Whether the letters of two texts overlap, whose line boxes are taller than they are.
+// Whether the letters of two texts overlap; their line boxes are taller than the letters.
 static inline bool rects_overlap(const figure_rect *a, const figure_rect *b)
 {
     double down = fmin(a->y + a->height, b->y + b->height) - fmax(a->y, b->y);

@@ -58,7 +58,7 @@ REFUSABLE(refuses(), int, fstat64, -1, EIO, (int fd, struct stat *about), (fd, a
 REFUSABLE(refuses(), ssize_t, write, -1, ENOSPC, (int fd, const void *bytes, size_t size),
           (fd, bytes, size))
 
-// What was not written shows when the file is closed; it is closed all the same.
+// Data that could not be written are reported when the file is closed; it is closed in any case.
 int __real_close(int fd);
 int __wrap_close(int fd);
 int __wrap_close(int fd)

@@ -159,7 +159,7 @@ static bool is_tried(long k, long all)
     return !known || (k - 1) % step == 0;
 }
 
-// Refusals are told by a sentence; without any there is nothing to say.
+// A refusal comes with a sentence; without one there is none.
 static void keep_nothing(void *context, const char *sentence)
 {
     (void)context;

@@ -28,7 +28,7 @@
 #define ESCAPE_PAUSE  0.08  // after an escape that stands alone [s]
 #define LAST_DURATION "0.7"
 
-#define SLOW_ANSWER   1.0 // from which on an answer is told with what led to it [s]
+#define SLOW_ANSWER   1.0 // from which on an answer is reported with its input [s]
 
 enum { PRIVATE_MODES = 3000, TAIL = 4000, MOST_PROBES = 100000 };
 
@@ -261,7 +261,7 @@ static double processor_time(const soak *s)
     return 1e-9 * (double)nanoseconds;
 }
 
-// A new size lets the lab clear the screen whatever it is doing: how long does that take?
+// After a change of size the lab clears the screen in any state: measures how long that takes.
 static void probe(soak *s)
 {
     int status;
@@ -355,7 +355,7 @@ static void use_mouse(soak *s)
     send_text(s, report);
 }
 
-// Sequences in pieces, halves of characters, keys nobody knows.
+// Sequences in pieces, halves of characters, unknown keys.
 static void send_oddities(soak *s)
 {
     static const char *const oddities[] = {"\033[1;5C",

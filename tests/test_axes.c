@@ -155,7 +155,7 @@ static void test_ticks_are_round(void **state)
     assert_shows(&ex, "0.05\u2524");
     assert_shows(&ex, "0.5      ");
     assert_shows(&ex, "1.0 s");
-    // the unit stands beside the pane's number
+    // the unit is next to the pane's number
     assert_shows(&ex, "\u25b81      N");
     assert_shows(&ex, " 3  rad/s");
     carry_out(&ex, "zoom 0.293 0.294");

@@ -63,7 +63,7 @@ static figure figure_of(const figure_panel *panel)
                     .height = 80};
 }
 
-// Three markers at 1, 10, 100: evenly spaced, whatever the values between.
+// Three markers at 1, 10, 100: evenly spaced for any values between.
 static void decades_are_evenly_spaced(void **state)
 {
     (void)state;

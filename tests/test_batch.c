@@ -66,7 +66,7 @@ static void a_failing_run_does_not_touch_the_others(void **state)
     free(batch);
 }
 
-// Motor, arm, wall and restitution at random: number i of them, whoever asks.
+// Motor, arm, wall and restitution at random: number i is the same for every caller.
 static void make_random(void *context, size_t i, scenario *made)
 {
     random_generator g;

@@ -1,4 +1,4 @@
-// What a controller is told of the arm: the truth, changed by belief.* of the scenario.
+// The parameters that a controller is told: the true ones, changed by belief.* of the scenario.
 #include "src/arm/motor.h"
 #include "src/rig/laws/hybrid_modes.h"
 #include "src/rig/rig.h"

@@ -32,7 +32,7 @@ static void the_model_has_the_numbers_of_the_arm(void **state)
         assert_false(pressed_arm_model_of(&p, &m));
     }
 
-    // links whose inertia is that of their mass at half their length: the force needs no motion
+    // links with the inertia of their mass at half their length: the force needs no motion
     parameters p = fixture_parameters(SETTINGS("arm.mass=0.4", "arm.link_inertia=0.0125"));
     assert_false(pressed_arm_model_of(&p, &m));
 }

@@ -225,9 +225,9 @@ static void results_reach_every_form(void **state)
     free(csv);
 }
 
-// With an argument the case that takes most of the time, without one the others.
-// The arm is pressed with a voltage: what the scenario tells its own law, and the mode that it
-// holds it in, are none of that.
+// With an argument the case that takes most of the time, without one the others. The arm is pressed
+// with a voltage: the settings of the scenario for its own law, and the mode that it holds it in,
+// are none of that.
 static void what_another_law_is_told_changes_nothing(void **state)
 {
     (void)state;

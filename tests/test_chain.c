@@ -475,7 +475,7 @@ static void an_arm_is_folded_where_a_flat_wall_moves_no_link(void **state)
         assert_false(chain_is_folded(&flat, q));
     }
 
-    // without a wall nothing is penetrated, whoever asks
+    // without a wall there is no penetration
     arm alone = make_arm(2, "rigid", "none");
     double gap = 1, rate = 1;
     const double q[2] = {3, 3}, w[2] = {1, 1};

@@ -20,7 +20,7 @@ static void test_typing_replaces_the_value(void **state)
     press(&ex, ":seek 0.2<Enter><Enter>0.5<Enter>");
     check_close(value_of(&ex, voltage), 0.5, 0);
 
-    // Right keeps it and goes on behind it
+    // Right keeps it and continues after it
     press(&ex, "<Enter><Right>5<Enter>");
     check_close(value_of(&ex, voltage), 0.55, 1e-15);
 
@@ -184,7 +184,7 @@ static void test_values_that_have_no_room_are_cut_visibly(void **state)
 
     explorer_finish(&ex);
 
-    // between characters, and right-aligned, whatever number of bytes they have
+    // between characters, and right-aligned, for any number of bytes
     open_explorer(&ex, "compare/inverse-dynamics");
     press(&ex, ":set control.command ./xééééééééééééééééééé<Enter>/command<Enter>");
     text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
@@ -242,7 +242,7 @@ static void test_nudges_are_one_change_and_reversible(void **state)
     check_close(value_of(&ex, voltage), 1, 0);
     assert_int_equal(ex.state.session.input_count, 0);
 
-    // whatever the number, as many steps back lead to where it was
+    // for any number, the same number of steps back leads to the former value
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         const double before = value_of(&ex, i);
@@ -299,7 +299,7 @@ static void test_everything_that_is_listed_can_be_filtered(void **state)
     assert_shows(&ex, "stiction");
     assert_hides(&ex, "amplifier_gain");
 
-    // Enter goes on with what is selected
+    // Enter continues with the selection
     press(&ex, "<Enter>");
     assert_string_equal(ex.state.prompt.text, "set motor.stiction 0.045");
     press(&ex, "<Esc><Esc>");

@@ -69,7 +69,7 @@ static void rows_reach_every_form(void **state)
     free(csv);
 }
 
-// Two scenarios at two forces, each pair held against the reference of its own force.
+// Two scenarios at two forces, each pair compared with the reference of its own force.
 static void varied_values_have_columns(void **state)
 {
     (void)state;
@@ -276,8 +276,8 @@ static void a_row_has_the_numbers_of_its_run(void **state)
         };
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             if (k == 1 || k == 4 || k == 6) {
-                // bounds of a plastic impact of two links without a script; the least time is
-                // for an arm that starts at rest and wants a force
+                // bounds of a plastic impact of two links without a script; the least time is for
+                // an arm that starts at rest with a commanded force
                 const bool impact = i < 3 || i == 5;
                 const bool known = k == 1 ? impact : k == 4 ? i == 0 || i == 2 : i == 0;
                 if (isnan(row.values[k]) == known) {

@@ -97,7 +97,7 @@ static void test_the_status_keeps_what_matters(void **state)
     assert_has(&ex, 60, 24, "in contact, hub sticks");
     assert_has(&ex, 90, 24, "corrected, hybrid");
     assert_has(&ex, 120, 24, "row 728/1726");
-    // the way to the keys and the way out are always told
+    // the keys for help and quitting are always shown
     press(&ex, "<Esc>");
     for (int width = 40; width < 200; width += 3) {
         assert_has(&ex, width, 24, "? help  q quit");

@@ -361,7 +361,7 @@ static void assert_starts_anew(const moving_rod *r)
     assert_true(m->state[SLOT_JUMPED] == 1);
 }
 
-// After whatever jumps, events and torques alike, an implicit method starts anew.
+// After every jump, of events and of torques, an implicit method starts anew.
 static void implicit_methods_start_anew_after_a_jump(void **state)
 {
     (void)state;
@@ -430,7 +430,7 @@ static void what_is_held_does_not_move(void **state)
     }
 }
 
-// An arm that bounces long and far goes on bouncing: the chatter rule counts short flights only.
+// An arm with long flights keeps bouncing: the chatter rule counts only short flights.
 static void bounces_in_long_flights_are_no_chatter(void **state)
 {
     (void)state;

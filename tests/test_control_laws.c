@@ -98,7 +98,7 @@ static void initial_values_of_ones_own_parameters_take_effect(void **state)
     assert_int_equal(controller_values(&own, &p, values, &f), STATUS_OK);
     check_close(values[0], 2, 0);
 
-    // with a unit or a sentence it is the controller's own, whatever its name
+    // with a unit or a sentence it is the controller's own, for any name
     const controller_parameter parts[] = {
         {.name = "kp", .unit = "1/s", .initial = 5, .maximum = 6},
         {.name = "kv", .description = "own", .initial = 3, .minimum = 1, .maximum = 4},
@@ -159,7 +159,7 @@ static void wrong_settings_are_told(void **state)
         }
     }
 
-    // without a controller that knows any name there is none to suggest
+    // without a controller with parameters there is no name to suggest
     const controller none = {.name = "none"};
     double values[1];
     fault f = {.text = ""};

@@ -1,4 +1,5 @@
-// CSV files: headings with units, quotes where RFC 4180 wants them, nothing where nothing is known.
+// CSV files: headings with units, quotes where RFC 4180 requires them, empty cells for unknown
+// values.
 #include "src/base/csv.h"
 
 #include <stdlib.h>

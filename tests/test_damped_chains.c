@@ -1,5 +1,5 @@
-// Chains of many links whose fast modes decay: long strides however far the arm bends, bounces that
-// do not depend on what is asked besides, and motions as small as one likes.
+// Chains of many links with decaying fast modes: long strides for any bend of the arm, bounces that
+// do not depend on the recorded rows, and arbitrarily small motions.
 #include <math.h>
 #include <stdlib.h>
 

@@ -34,7 +34,7 @@ static void states_beyond_the_model_are_left_alone(void **state)
     }
     sampled_model_init(&m, STATES, rate, input, 0.01);
 
-    // two filters, of which one has numbers where there are no states
+    // two filters, one of which has numbers in the place of missing states
     estimator one = {.z = {1, -1}, .p = {{2, 0.1}, {0.1, 3}}}, other = one;
     for (int i = STATES; i < ALL; i++) {
         other.z[i] = other.p[i][i] = other.p[i][0] = other.p[0][i] = 7;

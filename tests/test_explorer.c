@@ -397,7 +397,7 @@ static void test_a_long_run_is_drawn_while_it_is_computed(void **state)
     assert_null(ex.state.session.computing);
     assert_shows(&ex, "stopped at");
     assert_hides(&ex, "computing");
-    // Space at the end of what there is goes on with it
+    // Space at the end of the rows continues when there are more
     press(&ex, "<End><Space>");
     assert_true(ex.state.playback.playing);
     assert_shows(&ex, "computing");

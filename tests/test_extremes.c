@@ -89,8 +89,8 @@ static void strides_that_pass_no_time_end_a_run(void **state)
 }
 
 // The force just after an impact of a chain that is damped beyond all vibration: the last joint's
-// damper, which grows with N, turns at the speed over a link's length, whose lever it has. So the
-// peak grows with N^3, and it is at the first contact.
+// damper, which grows with N, turns at the speed over a link's length, its lever arm. So the peak
+// grows with N^3, and it is at the first contact.
 static void the_peak_of_a_damped_chain_is_at_its_impact(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-// What once was wrong in figures and can be told by a program.
+// Former defects of figures that a program can detect.
 #include "tests/plot_fixture.h"
 
 #include "render/page/palette.h"
@@ -246,7 +246,7 @@ static void a_map_without_colours_is_grey(void **state)
     cairo_surface_destroy(surface);
 }
 
-// The numbers beside a figure are headed by the axes' names and units.
+// The CSV of a figure is headed by the axes' names and units.
 static void numbers_have_names_and_units(void **state)
 {
     (void)state;

@@ -48,7 +48,7 @@ static void expect_in_caption(const char *id, const char *part)
     g_free(caption);
 }
 
-// The numbers beside a figure.
+// The CSV of a figure.
 static char *csv_of(const char *id)
 {
     fault f = {0};

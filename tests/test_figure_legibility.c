@@ -1,6 +1,6 @@
 // Every figure and table at the widths of one column and of a page, judged by its pixels: texts
 // against what is drawn round them, curves against their frames, colours against each other as
-// people see them who see no green, and lines without colours.
+// people with colour blindness see them, and lines without colours.
 //
 // The program's own functions that draw a text or a legend's line are intercepted, so that texts
 // can be left out, drawn alone, and asked for their looks.
@@ -557,7 +557,7 @@ static void every_figure_can_be_read(void **state)
     assert_int_equal(complaints, 0);
 }
 
-// Every slot of the palette is told from every other by everybody, and stands out from the page.
+// Every colour of the palette differs from every other for everyone, and contrasts with the page.
 static void colours_are_far_from_each_other(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // The catalogue of figures and tables, judged by what is drawn: texts and where they are, numbers
-// beside them, bytes of files.
+// next to them, bytes of files.
 #include "tests/check.h"
 
 #include <cairo.h>
@@ -207,7 +207,7 @@ static double number_in_csv(const char *csv, const char *start, int column)
     return *line == ',' || *line == '\n' ? (double)NAN : atof(line);
 }
 
-// The figure as it comes, without options.
+// The figure without options.
 static status draw_plain(const char *id, const char *into, const char *formats, fault *f)
 {
     return figure_draw(id, &(figure_options){0}, into, formats, NULL, f);
@@ -309,7 +309,7 @@ static void the_map_tells_good_pairs_from_bad(void **state)
     check_below(map_error(csv, "0.2", 0.4, 0.5), at_1_ms);
     // first order beside gamma = 1/2
     check_below(2 * at_1_ms, map_error(csv, "1", 0.4, 0.9));
-    // below a quarter contact is unstable whatever gamma: stopped, or nothing like the force
+    // below a quarter contact is unstable for any gamma: stopped, or far from the force
     double low = map_error(csv, "0.2", 0.1, 0.5), high = map_error(csv, "0.2", 0.1, 0.9);
     assert_true(isnan(low) || low > 10);
     assert_true(isnan(high) || high > 10);

@@ -37,7 +37,7 @@ static void test_clock(void **state)
     check_close(last, 1, 1e-9);
     check_close(film_clock_time(&c, 0, &speed), 0, 1e-9);
     check_relative(outside / inside, 8.0, 1e-6);
-    // the speeds told add up to the run
+    // the displayed speeds add up to the run
     check_relative(run, 1.0, 0.01);
     forget(&r);
     r = record("corrected/free-vibration");
@@ -297,7 +297,7 @@ static void test_interrupted(void **state)
     forget(&r);
 }
 
-// A complaint is a failure whatever the encoder's status is, as with a full disk; and what it
+// An error message is a failure for any status of the encoder, as with a full disk; and what it
 // leaves without a complaint must be a film.
 static void test_encoder_complains(void **state)
 {

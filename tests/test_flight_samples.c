@@ -54,7 +54,7 @@ static drawn_settings draw(random_generator *g)
     add(&s, "sensor.film=%s", random_below(g, 2) == 0 ? "true" : "false");
     add(&s, "sensor.accelerometer=%s", random_below(g, 2) == 0 ? "true" : "false");
     add(&s, "run.duration=0.6");
-    add(&s, "sensor.ideal=true"); // no code at whose edge a last bit would show
+    add(&s, "sensor.ideal=true"); // no code step at which a last bit would show
     return s;
 }
 
@@ -135,14 +135,14 @@ static void check_rows(const trace *a, const trace *b, bool inputs)
     assert_true(together >= 600 && missing <= 2);
 }
 
-// How a loop is gone on with.
+// Ways of continuing a loop.
 typedef enum looping {
     LOOPING_AT_SAMPLES, // from sample to sample, with questions, there and back
     LOOPING_ANYWHERE,   // by random times
-    LOOPING_ENDED       // from sample to sample, each of which ends the step
+    LOOPING_ENDED       // from sample to sample, each ending the step
 } looping;
 
-// Asks all that a loop can be asked, goes on and comes back. It is where it was then.
+// Queries everything of a loop, continues it and restores it. It is then in its former state.
 static void ask_and_return(run_loop *l, random_generator *g, void *bytes)
 {
     fault f;
@@ -265,7 +265,7 @@ static void samples_on_the_way_are_those_at_ends_of_steps(void **state)
     check_loops(13, LOOPING_ENDED);
 }
 
-// Number i of the random arms under random laws, whoever asks.
+// Number i of the random arms under random laws, the same for every caller.
 static void make(void *context, size_t i, scenario *made)
 {
     random_generator g;
@@ -275,7 +275,7 @@ static void make(void *context, size_t i, scenario *made)
     made->parameters = drawn_parameters(&drawn);
 }
 
-// Runs side by side, whose series are computed in lanes, are those that go alone.
+// Runs side by side, computed in lanes, are the same as single runs.
 static void runs_side_by_side_are_single_runs(void **state)
 {
     (void)state;

@@ -107,7 +107,7 @@ static void a_line_that_meets_the_band_at_a_steps_end_settles_there(void **state
 }
 
 // Steps as long as their lines are steep, with what rounding leaves of their curves: the instant of
-// the crossing is that of the line, in whatever unit the force is.
+// the crossing is that of the line, for any unit of the force.
 static void lines_are_crossed_where_they_are(void **state)
 {
     (void)state;

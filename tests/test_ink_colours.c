@@ -1,5 +1,5 @@
-// The colours of the explorer: readable on their grounds, told apart by everybody, and the same
-// choice with fewer of them.
+// The colours of the explorer: readable on their backgrounds, distinguishable by everyone, and the
+// same choice with fewer of them.
 #include "tests/explorer_on_screen.h"
 
 #include "ui/terminal/ink_colours.h"
@@ -138,7 +138,7 @@ static void test_the_number_of_colours_is_a_setting(void **state)
     explorer_finish(&ex);
 }
 
-// Two signals whose own colours a terminal of 16 colours shows as one.
+// Two signals with colours that a terminal of 16 colours shows as one.
 static void find_alike(colour_theme theme, int pair[2])
 {
     for (int a = 0; a < signal_count; a++) {

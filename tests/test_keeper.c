@@ -1,4 +1,4 @@
-// Programs under a keeper: how they ended is told, and nothing of them is left.
+// Programs under a keeper: their exit is reported, and nothing of them is left.
 #include "src/rig/keeper.h"
 
 #include <dirent.h>
@@ -123,7 +123,7 @@ static void an_end_is_told_once(void **state)
     assert_int_equal(kept_program_end(&p), -1);
 }
 
-// A program that goes on, and what it left to itself, are gone when the keeper has ended.
+// A program that continues, and the processes it has left, are gone when the keeper has ended.
 static void nothing_is_left_of_what_goes_on(void **state)
 {
     (void)state;

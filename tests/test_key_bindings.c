@@ -169,7 +169,7 @@ static void test_settings_keep_looks_axes_and_keys(void **state)
     assert_string_equal(key_line(&ex.state.keys, '#'), "mark");
     assert_string_equal(key_line(&ex.state.keys, 't' & 0x1f), "trace 5");
     assert_null(key_line(&ex.state.keys, 'x'));
-    // nobody chose panes, so a controlled run shows its own
+    // without a choice of panes a controlled run shows its own
     assert_false(ex.state.panes.chosen);
     explorer_finish(&ex);
     remove_settings(folder);

@@ -62,7 +62,7 @@ static void test_modes_are_named_and_changes_told(void **state)
     assert_non_null(strstr(text, "●force 2"));
     free(text);
 
-    // nothing of the future is told
+    // nothing of the future is shown
     press(&ex, ":seek 0.1<Enter>:restart<Enter><Space>:wait 0.5<Enter>");
     text = picture(&ex, 120, 50, GLYPHS_BRAILLE);
     assert_null(strstr(text, "│impact"));

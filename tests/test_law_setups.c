@@ -1,5 +1,5 @@
-// What the laws on the rig are told: delays, motors, arms and changes at the ends of their ranges.
-// A law works with them, or says why it cannot.
+// The parameters given to laws on the rig: delays, motors, arms and changes at the ends of their
+// ranges. A law works with them, or says why it cannot.
 #include <string.h>
 
 #include "tests/rig_fixture.h"
@@ -40,7 +40,7 @@ static void links_without_a_force_of_their_own_are_pressed(void **state)
     assert_true(isfinite(s.peak_force_N));
 }
 
-// A mass that takes no time to take up its speed moves as fast as it is told to.
+// A mass without inertia moves at its commanded speed.
 static void an_admittance_may_have_no_mass(void **state)
 {
     (void)state;
@@ -49,7 +49,7 @@ static void an_admittance_may_have_no_mass(void **state)
     check_relative(s.steady_force_N, 1.0, 0.2);
 }
 
-// A forecast of the touch knows the spring that carries the beam.
+// A forecast of the touch includes the spring between hub and beam.
 static void a_forecast_knows_the_hubs_spring(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void a_rate_set_at_the_start_is_that_of_the_rig(void **state)
     run_finish(&from_the_start);
 }
 
-// A limit that comes and goes is told to the forecast, too.
+// A limit that changes during the run is passed to the forecast, too.
 static void a_limit_may_change(void **state)
 {
     (void)state;

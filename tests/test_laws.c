@@ -105,7 +105,7 @@ static int failures_of(const char *const *settings)
 static void the_thesis_needs_its_200_hertz(void **state)
 {
     (void)state;
-    // a hub of its own before the beam, a computer a period late: 100 Hz fails, 200 Hz does not
+    // a separate hub before the beam, a delay of one period: 100 Hz fails, 200 Hz does not
     assert_int_equal(failures_of(SETTINGS("control.rate=100")), 5);
     assert_int_equal(failures_of(SETTINGS("control.rate=150")), 5);
     assert_int_equal(failures_of(SETTINGS("control.rate=200")), 0);

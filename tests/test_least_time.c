@@ -45,7 +45,7 @@ static void full_voltage_either_way_has_it(void **state)
         int n = torque_of(&p, &t, torque);
         least_time_follow(&p, torque, n, &tip, &press);
 
-        // but for one step, whose torque lies between both
+        // except for one step with a torque between both
         check_below(t.slack, 1e-6);
         check_close(tip, 0, 1e-3);
         check_close(press, t.press, 0.2);
@@ -60,7 +60,7 @@ static void full_voltage_either_way_has_it(void **state)
     }
 }
 
-// Weak duality: whatever the torque, K xi less the weighted tip is on this side of the solution's.
+// Weak duality: for any torque, K xi less the weighted tip is on this side of the solution's.
 static void no_torque_does_better(void **state)
 {
     (void)state;
@@ -134,7 +134,7 @@ static void a_stiff_arm_goes_as_a_rod(void **state)
 
 enum { LONGEST = 400 }; // steps that are looked at
 
-// What one step of torque comes to k steps after its beginning.
+// The effect of one step of torque k steps after its beginning.
 typedef struct response {
     double tip, press;
 } response;

@@ -1,5 +1,5 @@
 // Lessons: every one that ships can be gone through to its end by its own commands, no step is done
-// before it is, and files that are wrong are told.
+// before it is, and wrong files are reported.
 #include "tests/explorer_on_screen.h"
 
 // Goes through a lesson by its own commands.
@@ -33,7 +33,7 @@ static void go_through(explorer *ex, const char *name)
     assert_false(ex->state.lesson.on);
 }
 
-// A scenario as it comes out of its own copy.
+// A scenario read from its own copy.
 static void read_copy(const scenario *s, scenario *copy)
 {
     char *text = NULL;

@@ -92,7 +92,7 @@ static void it_is_right_on_the_twelve_cases(const char *wall, told_errors told)
                   wall, held, 100 * peak_error[held / 2], 100 * peak_error[held - 1],
                   100 * delay_error[held / 2], 100 * delay_error[held - 1]);
 
-    // to the last digit told
+    // to the last digit shown
     check_close(100 * peak_error[held / 2], told.peak, 5.001e-4);
     check_close(100 * peak_error[held - 1], told.worst_peak, 5.001e-4);
     check_close(100 * delay_error[held / 2], told.delay, 5.001e-4);
@@ -446,7 +446,7 @@ static void a_force_that_nearly_vanishes_is_not_answered(void **state)
     }
     assert_true(held > 100 && lost > 50);
 
-    // a volt takes so much of the force, and nobody knows of a share of 0.02 either way
+    // a volt removes that much of the force, and a share of 0.02 either way is not known
     const double l = 0.5, ml2 = 0.20054 * l * l, own = p.arm.link_inertia + ml2 / 4;
     const double inertia = p.arm.hub_inertia + 2 * own, lever = (ml2 / 2 - own) / l;
     const double a_volt = lever * motor_torque_per_volt(&p.motor) / inertia;

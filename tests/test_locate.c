@@ -87,7 +87,7 @@ static void steps_find_what_series_find(void **state)
                 check_close(stepped[e].deep, exact[e].deep, 1e-9 * exact[e].deep + 1e-14);
                 of[stepped[e].event]++;
 
-                // superlinear, where the function does not begin just beside its edge
+                // superlinear, if the function does not begin very close to zero
                 const double since = e > 0 ? exact[e].time - exact[e - 1].time : exact[e].time;
                 check_below(stepped[e].looks, since > 3 * step ? 30 : 80);
                 far += since > 3 * step;

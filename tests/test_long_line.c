@@ -1,4 +1,4 @@
-// A long line of which cairo leaves out a piece for want of memory: the drawing knows. The
+// A long line from which cairo omits a piece for lack of memory: the drawing reports it. The
 // functions below take the allocator's place in cairo, too, so that each request of a stroke can be
 // refused.
 #include <errno.h>
@@ -63,8 +63,8 @@ static status draw(cairo_surface_t *onto, long requests)
 
 typedef enum outcome { WHOLE, SAID, LACKING, CRASHED, OUTCOMES } outcome;
 
-// What becomes of a drawing with a request refused, in a process of its own because cairo crashes
-// where it does not get some of them.
+// The result of a drawing with a refused request, in a separate process because cairo crashes where
+// it does not get some of them.
 static outcome try_drawing(const unsigned char *wanted, size_t size, long requests)
 {
     const pid_t child = fork();

@@ -1,4 +1,4 @@
-// Runs that take long: computed beside the session, stopped, gone on with, resumed from another
+// Long runs: computed in the background of the session, stopped, continued, resumed from another
 // run's rows, which are then kept once.
 #include "tests/trace_check.h"
 

@@ -21,7 +21,7 @@ static run_loop *begun(const char *const *settings, const given_law *law)
 
 #define BRIEF "initial.angle=-0.01", "wall.angle=0", "run.duration=0.1"
 
-// The end stays the end, however it is gone on from, with a law and without one.
+// The end of a loop is final for every way of continuing, with a law and without one.
 static void the_end_stays(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void a_state_belongs_to_its_loop(void **state)
         assert_int_equal(loop_restore(other, kept, size, &f), STATUS_BAD_ARGUMENT);
         assert_non_null(strstr(f.text, "another scenario"));
 
-        // gone on with and put back
+        // continued and restored
         assert_int_equal(loop_until(l, 0.025, &f), STATUS_OK);
         assert_int_equal(loop_restore(l, kept, size, &f), STATUS_OK);
         const sample now = loop_row(l);

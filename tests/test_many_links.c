@@ -1,6 +1,6 @@
 // Arms of many links at the default step. The implicit methods resolve few of their modes there:
 // the run stays stable and ends pressing on the wall with the force a static beam would give, and
-// its ledger tells what it lost. The event method is exact whatever the number of links.
+// its ledger shows what it lost. The event method is exact for any number of links.
 #include <math.h>
 
 #include "src/run/run.h"
@@ -20,7 +20,7 @@ static void check_case(int links, const char *hub, const char *wall, double volt
     // motor torque within the friction's band, over the length of 1 m
     double torque = motor_torque_per_volt(&s.parameters.motor) * volts;
     check_close(r.summary.steady_force_N, torque, 0.045 + 0.05 * torque);
-    // the touch comes when the beam as a whole gets there, whatever the number of links
+    // the touch comes when the beam as a whole gets there, for any number of links
     check_close(r.summary.first_contact_s, volts > 2 ? 0.1509 : 0.3004, 3e-3);
     // events are located to a millionth of a step, in which the tip goes some nanometres
     check_below(r.summary.max_penetration_m, 1e-7);

@@ -10,7 +10,7 @@
 
 enum { MOST = 9 }; // bodies
 
-// The modes of an arm whose hub is held.
+// The modes of an arm with its hub held.
 typedef struct held_modes {
     arm arm;
     int count;

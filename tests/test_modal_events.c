@@ -117,8 +117,8 @@ static void events_within_a_stride_are_the_formulas(void **state)
     }
 }
 
-// An arm of 1e-7 rad whose bounces are to go on down to 1e-9 m/s: the modes see them as far as the
-// series do, and what comes afterwards is the same.
+// An arm of 1e-7 rad with bounces down to 1e-9 m/s: the modes resolve them as far as the series do,
+// and what comes afterwards is the same.
 static void bounces_end_where_no_engine_tells_them(void **state)
 {
     (void)state;
@@ -224,8 +224,8 @@ static void bounces_lower_than_rounding_do_not_gain(void **state)
     }
 }
 
-// An arm of 5e-6 rad whose flights become lower than 1e-11 m: a step that ends while it rises
-// changes nothing of the bounce that follows.
+// An arm of 5e-6 rad with flights lower than 1e-11 m: a step that ends while it rises changes
+// nothing of the bounce that follows.
 static void a_step_that_ends_in_a_flight_is_no_bounce(void **state)
 {
     (void)state;

@@ -52,7 +52,7 @@ static void all_widths_give_the_same_bits(void **test)
          "wall.restitution=0.5", 0.095, 0.7},
         {"arm.links=45", "arm.hub_joint=spring", "wall.kind=none", "arm.damping_ratio=0",
          "wall.restitution=0", 0, 0.2},
-        // angles of which sine and cosine want a reduction, and those that it is not exact for
+        // angles for which sine and cosine need a reduction, and those for which it is not exact
         {"arm.links=24", "arm.hub_joint=rigid", "wall.kind=none", "arm.damping_ratio=0.01",
          "wall.restitution=0", 2.5, 0.7},
         {"arm.links=24", "arm.hub_joint=rigid", "wall.kind=none", "arm.damping_ratio=0.01",

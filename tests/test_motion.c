@@ -245,8 +245,8 @@ static void script_acts_at_its_time_and_is_booked(void **state)
     run_finish(&r);
 }
 
-// An arm that starts at rest on the wall is in its first contact at once, held still or not,
-// whatever the wall; one that swings off at once is not.
+// An arm that starts at rest on the wall is in its first contact at once, held still or not, for
+// any wall; one that swings off at once is not.
 static void an_arm_that_starts_on_the_wall_is_in_contact(void **state)
 {
     (void)state;

@@ -72,7 +72,8 @@ static void energy_in_is_heat_and_work(void **state)
     check_close(motor_electrical_energy(&p, 99, 1, 0), motor_electrical_energy(&p, 10, 1, 0), 0);
 }
 
-// An amplifier that holds a current: torque whatever the speed, and a limit in amperes.
+// An amplifier that controls the current: a torque independent of the speed, and a limit in
+// amperes.
 static void a_current_drive_knows_no_back_emf(void **state)
 {
     (void)state;

@@ -25,7 +25,7 @@ static void test_clicks_and_drags_in_curves_move_the_cursor(void **state)
     check_close(ex.state.session.now, 0.5, 0.02);
     point(&ex, POINTER_PRESS, c.area.x + c.area.width / 4, c.area.y + 3);
     check_close(ex.state.session.now, 0.25, 0.02);
-    // a drag goes on beyond the edges
+    // a drag continues beyond the edges
     point(&ex, POINTER_DRAG, c.area.x + 3 * c.area.width / 4, c.area.y - 5);
     check_close(ex.state.session.now, 0.75, 0.02);
     point(&ex, POINTER_DRAG, 119, 39);
@@ -127,7 +127,7 @@ static void test_events_and_scenarios_are_clicked(void **state)
     click(&ex, list.area.x + 3, list.area.y + 1);
     assert_int_equal(ex.state.page.panel, PANEL_NONE);
     assert_string_equal(ex.state.session.base.name, name);
-    // a click beside the list closes it
+    // a click outside the list closes it
     press(&ex, "o");
     (void)part_on_screen(&ex, PANEL_SCENARIOS, PART_LINES);
     click(&ex, 1, 5);

@@ -89,7 +89,8 @@ static void what_is_no_decimal_is_refused(void **state)
     }
 }
 
-// Numbers of all sizes, also powers of two, whose neighbour below is nearer than that above.
+// Numbers of all sizes, also powers of two, for which the next number below is nearer than that
+// above.
 static double some_number(random_generator *g, int i)
 {
     double value;

@@ -452,7 +452,7 @@ static void the_same_readings_give_the_same_commands(void **state)
         run_result r;
         assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
 
-        // the law alone, with what it was told
+        // the law alone, with its beliefs
         const controller *c = controller_of(law);
         double values[32];
         fault f;

@@ -383,7 +383,7 @@ static void run_feeds_the_sensors(void **state)
             felt += gained / tau;
         }
         bending_before = bending;
-        // a sample has a row of its own where it changes the command
+        // a sample that changes the command has its own row
         if (b->film != a->film && h < 1e-9) {
             check_close(b->film, bending - leaked, 1e-7);
             check_close(b->accelerometer, felt, 2e-3);

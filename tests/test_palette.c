@@ -81,7 +81,7 @@ static void test_the_prompt_has_it_too(void **state)
     press(&ex, "<Down><Enter>");
     assert_true(ex.state.session.has_other);
 
-    // what was typed goes on as words
+    // the input continues as words
     press(&ex, ":voltage_limit<C-p><Enter>");
     assert_string_equal(ex.state.prompt.text, "set motor.voltage_limit 10");
     press(&ex, "<Esc>");

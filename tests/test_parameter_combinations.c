@@ -218,7 +218,7 @@ static void conditions_hold_up_to_their_limits(void **state)
     }
 }
 
-// What nobody gave follows from the rest.
+// Parameters that are not given follow from the others.
 static void walls_motors_and_sensors_follow_what_was_given(void **state)
 {
     (void)state;

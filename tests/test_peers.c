@@ -1,4 +1,4 @@
-// A general Taylor integrator of its own (tests/bench/peers/taylor_peer.c), compared with the
+// A separate general Taylor integrator (tests/bench/peers/taylor_peer.c), compared with the
 // laboratory: the same impacts, pulses and forces. Keeps the peers that need no library compiling.
 #include "tests/bench/peers/peer.h"
 #include "tests/check.h"

@@ -440,7 +440,7 @@ static void test_pictures_are_drawn_only_where_a_terminal_says_so(void **state)
         PIXELS_KITTY);
     assert_true(a.has_ground && a.ground.red == 0x10 && a.ground.blue == 0x30);
 
-    // nobody within tmux is asked by a string that it takes for a title
+    // within tmux no query is sent that it takes for a title
     assert_int_equal(ANSWERED(a, true, "[?62;4c", "[?62;4c"), PIXELS_SIXEL);
     ANSWERED(a, false, "P>|tmux 3.3a\033\\", "[?1;2c");
     assert_true(a.multiplexer);

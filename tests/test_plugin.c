@@ -102,7 +102,7 @@ static void modes_are_the_plugins_own(void **state)
     assert_int_equal(rig_mode_names(&p, names, 4, &lockable), 0);
     assert_false(lockable);
 
-    // named beside another law it is not opened
+    // named together with another law it is not opened
     p.code_allowed = true;
     p.control.law = LAW_HYBRID;
     assert_int_equal(rig_mode_names(&p, names, 4, &lockable), 3);

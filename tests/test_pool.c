@@ -1,4 +1,4 @@
-// Pieces of work on several threads: each once, whatever finishes first.
+// Pieces of work on several threads: each once, in any order of finishing.
 #include "tests/check.h"
 
 #include <errno.h>
@@ -140,7 +140,7 @@ static void a_stop_ends_it_early_without_a_fault(void **state)
     tally t = {.stop = 1};
     pool_work w = work_on(&t);
     assert_int_equal(pool_run(&w, 2, NULL), STATUS_OK);
-    // what was in hand is collected, all the rest is left
+    // what was under way is collected, all the rest is left
     assert_int_equal(t.total, t.computed);
 }
 

@@ -20,7 +20,7 @@ typedef struct letter {
     void *bytes;
 } letter;
 
-// What has come for a rank, in order.
+// The messages for a rank, in order.
 typedef struct mailbox {
     pthread_mutex_t lock;
     pthread_cond_t news;
@@ -72,7 +72,7 @@ static void send_letter(void *context, int to, const void *bytes, size_t size)
     pthread_mutex_unlock(&b->lock);
 }
 
-// How many times the thread is still told that nothing has come, whatever has.
+// How many times the thread is still told that nothing has come, even if something has.
 static _Thread_local int deaf;
 
 static bool wait_for_letter(void *context, double seconds, int *from, size_t *size)
@@ -225,7 +225,7 @@ static void run_threads(rank *ranks)
     }
 }
 
-// All ranks to their ends, of which nothing is left behind.
+// Runs all ranks to their ends, with nothing left behind.
 static void run_all(rank *ranks)
 {
     run_threads(ranks);

@@ -239,7 +239,7 @@ static void corrected_dynamics_solves_its_equations(void **state)
             assert_true(!out.holds || (impulse >= 0 && out.force > 0));
         }
 
-        // the quadratic form is that of a rigid hub, whatever the hub
+        // the quadratic form is that of a rigid hub, for any hub
         assert_int_equal(predict_impact_quadratic(&p, &s, &quadratic, NULL), STATUS_OK);
         p.arm.hub_joint = HUB_RIGID;
         assert_int_equal(predict_impact_dynamics(&p, &s, &out, NULL), STATUS_OK);

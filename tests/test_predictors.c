@@ -41,7 +41,7 @@ static void an_arm_that_moves_away_does_not_hold(void **state)
         assert_true(prediction_known(&answers[i]) && !answers[i].prediction.holds);
     }
 
-    // whatever the command would be later
+    // for any later command
     const prediction_question told = {&p, away, links, back, {1, at, volts}, false};
     assert_int_equal(predict_with(PREDICTOR_IMPACT_QUADRATIC, &told).outcome, PREDICTION_LOST);
 }
@@ -149,13 +149,13 @@ static void who_cannot_answer_says_why(void **state)
         assert_true(isnan(answer.prediction.force));
     }
 
-    // an amplifier that holds its current by itself needs no limit told
+    // an amplifier that controls its current needs no limit
     parameters drive = fixture_parameters(
         SETTINGS("motor.drive=current", "motor.current_limit=5", "motor.voltage=1"));
     prediction_question limited = {.parameters = &drive, .bodies = closing};
     assert_int_equal(predict_with(PREDICTOR_ENERGY, &limited).outcome, PREDICTION_HOLDS);
 
-    // energy knows no time over which a command could act
+    // energy has no time over which a command could act
     const double at[] = {0}, volts[] = {1};
     parameters p = fixture_parameters(NULL);
     prediction_question question = {&p, closing, links, rates, {1, at, volts}, false};

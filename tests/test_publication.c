@@ -1,4 +1,4 @@
-// Pictures for other people's pages: sizes of letters, what stands beside a bare picture, LaTeX.
+// Pictures for publications: sizes of letters, the files of a bare picture, LaTeX.
 #include "tests/plot_fixture.h"
 
 #include "render/figures/figures.h"
@@ -278,7 +278,7 @@ static void multiples_are_runs_at_their_values(void **state)
     assert_int_equal(drawn.write_csv(drawn.what, path_of("one.csv"), &f), STATUS_OK);
     artwork_finish(&drawn);
 
-    // the same rows, whatever else is in the file
+    // the same rows, for any other contents of the file
     char *many = read_file(path_of("many.csv"), &length);
     char *one = read_file(path_of("one.csv"), &length);
     const char *row = ",arm 2 V force,0.3,";

@@ -238,7 +238,7 @@ static void beyond_its_limit_it_brakes(void **state)
     check_close(s.steady_error_N, 0, 0.05);
 }
 
-// A wall that is not where it is believed to be is found all the same.
+// A wall that is not where it is believed to be is still found.
 static void a_wall_further_away_is_found(void **state)
 {
     (void)state;

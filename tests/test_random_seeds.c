@@ -5,7 +5,7 @@
 #include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
-// A fast bounce whose place is a truncation behind the wall.
+// A fast bounce at a position one truncation error behind the wall.
 static const char *const *const bounced = SETTINGS(
     "wall.kind=point", "arm.hub_joint=rigid", "motor.voltage=7.3624601908433931",
     "motor.amplifier_gain=8.9902797532526701", "motor.torque_constant=0.48270590708722927",
@@ -15,7 +15,7 @@ static const char *const *const bounced = SETTINGS(
     "arm.k2=0.42683428006921265", "arm.damping_ratio=0", "initial.angle=-0.31252081318290958",
     "initial.velocity=4.7072186055817422");
 
-// A stuck hub, whose link swings so far that its sine needs higher orders than its velocity.
+// A stuck hub with a link that swings so far that its sine needs higher orders than its velocity.
 static const char *const *const swung =
     SETTINGS("wall.kind=plane", "arm.hub_joint=rigid", "motor.voltage=1.5723574791556594",
              "motor.amplifier_gain=3.5633144777693193", "motor.torque_constant=0.52914640170410843",
@@ -69,7 +69,7 @@ static const char *const *const came_back =
              "arm.k2=28.063939184279072", "initial.angle=-2.3500528114513877",
              "initial.velocity=-1.0167315338419591");
 
-// A point behind the hub that the arm sweeps over: a touch whose acceleration is nearly rounding.
+// A point behind the hub that the arm sweeps over: a touch with an acceleration close to rounding.
 static const char *const *const swept_over = SETTINGS(
     "wall.kind=point", "arm.hub_joint=spring", "motor.voltage=-2.4528515077463986",
     "motor.torque_constant=12.425609375789591", "motor.resistance=8.200308490053235",
@@ -79,7 +79,7 @@ static const char *const *const swept_over = SETTINGS(
     "arm.k1=66279.214005312242", "arm.k2=38.251713922716498", "initial.angle=-1.6337701878814963",
     "initial.velocity=3.1122561770814841");
 
-// A hub that comes to rest where its torque is friction's limit to rounding.
+// A hub that comes to rest with a torque equal to friction's limit to rounding.
 static const char *const *const came_to_rest =
     SETTINGS("wall.kind=plane", "arm.hub_joint=spring", "motor.voltage=-1.0448212998938189",
              "motor.amplifier_gain=13.269647147420386", "motor.torque_constant=11.987453114429988",

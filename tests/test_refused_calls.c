@@ -34,7 +34,7 @@ static status write_whole_file(const char *path, FILE *out)
         code = whole_file_commit(&w, &f);
     }
 
-    // the file of before, or the whole new one; whatever is refused is said
+    // the former file, or the complete new one; every refusal is reported
     assert_holds(path, code == STATUS_OK ? "new" : "old");
     assert_true(code == STATUS_OK || strstr(f.text, "cannot be written: ") != NULL);
     fputs(code == STATUS_OK ? "new" : "old", out);
@@ -99,7 +99,7 @@ static status share_rows(const char *ignored, FILE *out)
 
 // --- programs -----------------------------------------------------------------------------------
 
-// A program that hears a line, answers it and ends with a status of its own.
+// A program that reads a line, answers it and ends with a given status.
 static status ask_once(const char *command, FILE *out)
 {
     kept_program p;

@@ -69,7 +69,7 @@ static void approach_means_the_approach_command(void **state)
         run_result r = locked_run(SETTINGS(setting, "control.approach_voltage=0.8"), "approach");
         check_close(answer_at(&r, 0.6)->command, 0.8, 0);
         check_close(answer_at(&r, 0.89)->command, 0.8, 0);
-        // it is in contact, and knows so once it is free
+        // it is in contact, and detects it once it is free
         check_close(answer_at(&r, 0.89)->contact, 1, 0);
         assert_true(answer_at(&r, 0.92)->controller_mode > 0);
         run_finish(&r);
@@ -106,7 +106,7 @@ static void impact_mode_is_planned_anew_and_waits_at_its_end(void **state)
     check_close(entry->command, before->voltage, 0.05);
     check_close(answer_at(&r, LOCK_TIME + 0.3)->desired_angle, final, 1e-9);
     check_close(answer_at(&r, LOCK_TIME + 0.3)->desired_velocity, 0, 1e-9);
-    // released after t_f it is the force mode's turn, and its command goes on from there
+    // released after t_f it enters the force mode, and its command continues from there
     const sample *last = answer_at(&r, RELEASE_TIME - 0.005), *next = answer_at(&r, RELEASE_TIME);
     check_close(next->controller_mode, 2, 0);
     check_close(next->command, last->command, 0.15); // friction's part is the difference

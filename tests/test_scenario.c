@@ -187,7 +187,7 @@ static void impossible_combinations_point_at_the_key(void **state)
         (const char *const[]){"f.yaml:1:30: ", "f.yaml:1:44: ", "f.yaml:2:14: ", "f.yaml:3:16: "});
 }
 
-// What one parameter asks of others, each told at the place of one of them.
+// Conditions of one parameter on others, each reported at the place of one of them.
 static void what_does_not_go_together_is_refused(void **state)
 {
     (void)state;
@@ -402,7 +402,7 @@ static void lists_are_read_in_both_forms(void **state)
     assert_non_null(strstr(all.text, "arm.link_lengths is too long"));
 }
 
-// A value that the parameter does not take changes nothing, whoever made the action.
+// A value that the parameter does not accept changes nothing, for any origin of the action.
 static void an_action_that_cannot_be_changes_nothing(void **state)
 {
     (void)state;

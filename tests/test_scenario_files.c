@@ -184,7 +184,7 @@ static void the_list_is_complete_and_sorted(void **state)
     assert_int_equal(count, 0);
     assert_null(names);
 
-    // whoever asks for a scenario hears it, too
+    // every caller that opens the scenario gets it, too
     scenario s;
     sentences all = {0};
     assert_int_equal(scenario_open(&s, "corrected/first-impact", keep_sentence, &all),

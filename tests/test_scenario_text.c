@@ -26,7 +26,7 @@ static void broken_text_is_placed_exactly(void **state)
     check_fault("title: x\ndescription: \xc3\xa4\xff\n", 2, 15, "UTF-8");
     check_fault("title: \x01\n", 1, 8, "control characters");
 
-    // whatever ends the lines
+    // for any line ends
     check_fault("title: x\r\ndescription: \x01\r\n", 2, 14, "control characters");
     check_fault("title: x\rdescription: \x01\r", 2, 14, "control characters");
     check_fault("title: \xc3\n", 1, 9, "UTF-8"); // where the character should go on

@@ -153,7 +153,7 @@ static void test_content(void **state)
     forget(&r);
 }
 
-// Presets, and two angles of one's own.
+// Presets, and two given angles.
 static void test_camera_words(void **state)
 {
     (void)state;
@@ -347,7 +347,7 @@ static void test_refused(void **state)
 
 int main(void)
 {
-    // one software renderer, whatever the machine has
+    // one software renderer, the same on every machine
     setenv("GALLIUM_DRIVER", "llvmpipe", 1);
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
     const struct CMUnitTest tests[] = {

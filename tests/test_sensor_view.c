@@ -180,7 +180,7 @@ static void what_cannot_be_viewed_is_said(void **state)
     assert_int_equal(sensor_view_compute(&s, 2, NULL, &view, &f), STATUS_BAD_SCENARIO);
     assert_non_null(strstr(f.text, "script"));
 
-    // nor is it gone on with when it is to stop
+    // nor is it continued when it is to stop
     s.action_count = 0;
     run_monitor monitor = {0};
     atomic_store(&monitor.stop, true);
@@ -191,7 +191,7 @@ static void what_cannot_be_viewed_is_said(void **state)
     assert_int_equal(atomic_load(&monitor.pieces), 0);
 }
 
-// Modes that are too fast to follow are told beforehand, with what would make them slower.
+// Modes that are too fast to follow are reported in advance, with what would make them slower.
 static void modes_too_fast_to_follow_are_refused(void **state)
 {
     (void)state;
@@ -217,7 +217,7 @@ static void a_force_without_time_is_not_felt(void **state)
     check_close(lag.peak, 0, 0);
 }
 
-// The study's rows are the views of their numbers of links, beside the beam that stops alike.
+// The study's rows are the views of their numbers of links, with the beam that stops alike.
 static void the_study_is_its_views(void **state)
 {
     (void)state;

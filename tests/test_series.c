@@ -1,4 +1,4 @@
-// Chains of links by power series: the explicit formula, which knows nothing of them, gives the
+// Chains of links by power series: the explicit formula, which is independent of them, gives the
 // same motion; energy is accounted for to rounding; strides cut short and vectors of any width make
 // no difference.
 #include <math.h>
@@ -122,7 +122,7 @@ static void swing(const char *const *settings, double longest, double *q, int do
     motion_destroy(m);
 }
 
-// Of whatever order the length of a stride asks for.
+// For any order that the length of a stride requires.
 static void strides_cut_short_make_no_difference(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 // What a session refuses leaves it as it was, and a run that is being computed can be left,
-// stopped, and gone on with.
+// stopped, and continued.
 #include "tests/trace_check.h"
 
 #include <stdlib.h>
@@ -105,7 +105,7 @@ static void what_is_too_long_or_no_value_is_refused(void **state)
     assert_int_equal(session_change_input(&s, 1, "2", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "push"));
 
-    // what cannot be undone, redone or gone on with
+    // what cannot be undone, redone or continued
     assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
     assert_int_equal(session_go_on(&s, &f), STATUS_BAD_ARGUMENT);
     assert_int_equal(s.input_count, 2);
@@ -344,7 +344,7 @@ static void what_is_done_at_any_event_belongs_to_its_row(void **state)
     session_finish(&s);
 }
 
-// A run that takes long is there as far as it is; stopped, it goes on to the same rows.
+// A long run is available as far as it is computed; when stopped it continues to the same rows.
 static void a_stopped_run_goes_on(void **state)
 {
     (void)state;
@@ -356,7 +356,7 @@ static void a_stopped_run_goes_on(void **state)
     assert_non_null(s.computing);
     assert_true(s.run.trace.row_count > 0);
 
-    // meanwhile it cannot be gone on with, and one too large leaves it running
+    // meanwhile it cannot be continued, and one too large leaves it running
     assert_int_equal(session_go_on(&s, &f), STATUS_BAD_ARGUMENT);
     assert_false(session_take_replay(&s).restarted);
     assert_int_equal(session_change(&s, PARAMETER_INDEX(method.step), "1e-7", &f),

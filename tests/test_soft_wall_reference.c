@@ -1,4 +1,4 @@
-// Arms against walls that give: the library beside an integrator written apart for them.
+// Arms against walls that give: the library and an independent integrator for them.
 #include <math.h>
 #include <string.h>
 

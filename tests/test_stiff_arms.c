@@ -126,7 +126,7 @@ static void a_run_that_could_not_end_says_so(void **state)
     }
 }
 
-// What is told of strides that are too short names what makes them so.
+// The sentence about too short strides names their cause.
 static void a_run_that_could_not_end_says_why(void **state)
 {
     (void)state;

@@ -59,7 +59,7 @@ static void indices_lead_to_their_numbers(void **state)
     assert_int_equal(SUMMARY_INDEX(wall_time_s), summary_count - 1);
 }
 
-// Every number has a place of its own, from the first to the last.
+// Every number has its own place, from the first to the last.
 static void every_index_leads_to_another_number(void **state)
 {
     (void)state;

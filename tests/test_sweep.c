@@ -128,7 +128,7 @@ static void another_sweep_is_refused_with_the_difference(void **state)
     unlink("one.sqlite");
 }
 
-// A script belongs to what is swept, and an empty text is told as such.
+// A script belongs to what is swept, and an empty text is reported as such.
 static void a_changed_script_is_another_sweep(void **state)
 {
     (void)state;

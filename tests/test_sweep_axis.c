@@ -97,7 +97,7 @@ static void what_is_no_axis_is_refused(void **state)
     }
 }
 
-// What is refused is told: the values of a parameter, and a sentence's words.
+// Refusals are reported: the values of a parameter, and the words of a sentence.
 static void check_refused(const char *name, const char *values, bool drawn, const char *what)
 {
     sweep_axis axis = {0};

@@ -275,7 +275,7 @@ static void what_was_committed_stands_and_the_rest_is_said(void **state)
 // Reads the sweep in every way there is; the first failure, else STATUS_OK.
 static status read_all(const char *whole, fault *f)
 {
-    // as its columns, of which none is shorter than the sweep
+    // as its columns, none of which is shorter than the sweep
     double *columns[2];
     size_t count;
     status code = sweep_table_read(file, (const char *[]){"motor.voltage", "peak_force_N"}, 2,

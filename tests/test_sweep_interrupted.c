@@ -35,7 +35,7 @@ static void commit_then_wait_for_death(void *context, const sweep_progress *p)
     }
 }
 
-// So many that progress is told, every tenth of a second, long before the last of them.
+// Enough for progress to be reported, every tenth of a second, long before the last of them.
 enum { MANY = 24000 };
 #define MANY_RUNS "motor.voltage=0.5:5:24000"
 

@@ -133,7 +133,7 @@ static void parts_in_any_order_give_the_rows_of_one_sweep(void **state)
     assert_string_equal(rows, whole);
     free(rows);
 
-    // a sweep with a part missing goes on where it ends
+    // a sweep with a missing part continues where it ends
     assert_int_equal(sweep_merge(parts, 2, "some", &merged, &f), STATUS_OK);
     assert_int_equal(merged.runs, 7);
     rows = compute(&s, "some", (sweep_share){0, 0});
@@ -274,7 +274,7 @@ static void what_others_changed_is_refused(void **state)
     sweep_finish(&s);
 }
 
-// A part that is not there, and one whose pages were overwritten.
+// A missing part, and one with overwritten pages.
 static void what_cannot_be_read_is_said(void **state)
 {
     (void)state;

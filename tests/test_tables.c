@@ -118,7 +118,7 @@ static void corrected_prediction_meets_the_corrected_simulation_for_a_stiff_beam
     const table_row *early = row_of("4.1", "corrected", "delay_dynamics");
     for (int v = 0; v < TABLE_VOLTAGES; v++) {
         check_relative(dynamics->computed[v], seen->computed[v], 0.12);
-        // the energy principle knows nothing of the energy an impact takes
+        // the energy principle does not include the energy lost in an impact
         check_below(seen->computed[v], energy->computed[v]);
         // 4/pi of the real delay, see the derivation
         check_relative(early->computed[v], 4 / M_PI * delay->computed[v], 0.03);

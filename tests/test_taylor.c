@@ -439,7 +439,7 @@ static void a_slow_start_into_the_wall_is_an_impact(void **state)
     }
 }
 
-// Counts the releases of an arm until an instant [s], each of which ends a contact.
+// Counts the releases of an arm until an instant [s]; each ends a contact.
 static int count_releases(moving_arm moving, double until)
 {
     int releases = 0;

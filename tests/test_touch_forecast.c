@@ -18,7 +18,7 @@ static double predicted_of(const parameters *p, const sample *row)
     return touch.impulse > 0 && touch.force > 0 ? touch.force : 0;
 }
 
-// At a constant command the beam swings on the way; the rig knows it from the hub's readings.
+// At a constant command the beam swings in flight; the rig derives it from the hub's readings.
 static void readings_of_the_hub_say_what_the_state_says(void **state)
 {
     (void)state;
@@ -66,7 +66,7 @@ static void there_is_none_in_contact_or_without_a_limit(void **state)
         assert_true(isnan(without.trace.rows[k].predicted_force));
     }
 
-    // a sample after the touch the reading tells of it
+    // a sample after the touch the reading shows it
     for (size_t k = 0; k < with.trace.row_count; k++) {
         const sample *row = &with.trace.rows[k];
         if (row->time > 0.006 && row->time < with.summary.first_contact_s) {

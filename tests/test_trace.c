@@ -101,7 +101,7 @@ static void a_shared_beginning_goes_on_by_itself(void **state)
     trace_finish(&other);
 }
 
-// An arm without angles of its own has rows all the same, as many as come.
+// An arm without angles of its own still has all its rows.
 static void rows_need_no_angles(void **state)
 {
     (void)state;

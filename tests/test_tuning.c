@@ -354,7 +354,7 @@ static void what_nobody_took_at_the_start_can_change(void **state)
         assert_true(rig_can_change(&p, force));
         assert_false(rig_can_change(&p, PARAMETER_INDEX(control.law)));
     }
-    p.control.law = LAW_PLUGIN; // of which nothing is known
+    p.control.law = LAW_PLUGIN; // whose parameters are not known
     assert_false(rig_can_change(&p, force));
 }
 

@@ -236,7 +236,7 @@ static void a_reader_that_left_is_told_from_a_full_disk(void **state)
     fclose(stream);
 }
 
-// What failed at once leaves nothing to be flushed, and is a failure all the same.
+// A write that failed at once leaves nothing to be flushed, and is still a failure.
 static void a_failure_before_the_last_flush_is_one(void **state)
 {
     (void)state;
@@ -249,7 +249,8 @@ static void a_failure_before_the_last_flush_is_one(void **state)
     fclose(stream);
 }
 
-// The stream forgets why a write failed that lies far back; whoever closes the file does not.
+// The stream loses the reason of an earlier failed write; it is still reported when the file is
+// closed.
 static void why_a_write_failed_is_known_at_the_end(void **state)
 {
     (void)state;
@@ -348,7 +349,7 @@ static void a_strangers_link_is_not_followed(void **state)
         assert_int_equal(whole_file_open(&file, "shared/link", &f), STATUS_OK);
         whole_file_abandon(&file);
 
-        // one that belongs to whoever the folder belongs to is
+        // one that belongs to the owner of the folder is
         assert_int_equal(chown("shared", 12345, 12345), 0);
         assert_int_equal(chmod("shared", 01777), 0);
         assert_int_equal(whole_file_check("shared/link", &f), STATUS_OK);
@@ -357,7 +358,7 @@ static void a_strangers_link_is_not_followed(void **state)
     assert_int_equal(rmdir("shared"), 0);
 }
 
-// More at once than are remembered for a signal: each is whole all the same.
+// More at once than are recorded for a signal: each is still complete.
 static void several_files_are_written_at_once(void **state)
 {
     (void)state;
@@ -378,7 +379,7 @@ static void several_files_are_written_at_once(void **state)
     assert_int_equal(files(), before);
 }
 
-// What a handler of a signal calls: nothing unfinished stays, and what stood there does.
+// Called by a signal handler: no unfinished file stays, and former files do.
 static void a_signal_leaves_no_temporaries(void **state)
 {
     (void)state;
@@ -505,7 +506,7 @@ static void a_folder_without_a_free_name_is_said(void **state)
     assert_non_null(strstr(f.text, strerror(EEXIST)));
     assert_holds(name, "somebody's");
 
-    // what was open is written all the same, and leftovers of nobody go
+    // open files are still written, and leftovers without an owner are removed
     fputs("whole", first.stream);
     assert_int_equal(whole_file_commit(&first, &f), STATUS_OK);
     assert_holds("kept", "whole");

@@ -33,7 +33,7 @@ static inline parameters corrected_with(hub_joint_kind joint)
     return p;
 }
 
-// A state as it comes to the wall at 0.1 rad: little bend, hub and links about equally fast.
+// A state close to the wall at 0.1 rad: little bend, hub and links about equally fast.
 static inline three_body_state state_at_wall(const parameters *p, unsigned *seed)
 {
     three_body_state s;

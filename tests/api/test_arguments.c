@@ -322,7 +322,7 @@ static void batches_look_before_they_run(void **state)
     check_done(impactlab_batch(s, paths, 1, NULL, 0, 1, take, &taken, error), error);
     assert_int_equal(taken, 8);
 
-    // a value that cannot be is told before any run
+    // an impossible value is reported before any run
     const char *const two[] = {"arm.k2", "motor.voltage"};
     const double values[] = {5, 1, -5, 1};
     check_refused(h, impactlab_batch(s, two, 2, values, 2, 1, take, &taken, error), "arm.k2");
@@ -359,7 +359,7 @@ static void states_of_others_are_refused(void **state)
     free(bytes);
 }
 
-// Whoever wants no sentence gets the status all the same, of what is done and of what is not.
+// A caller who passes no fault gets the same status, on success and on failure.
 static void an_error_may_be_left_out(void **state)
 {
     handles *h = *state;

@@ -95,7 +95,7 @@ static void runs_have_what_was_asked_for(void **state)
     assert_string_equal(impactlab_run_message(bare), "");
     impactlab_run_destroy(bare);
 
-    // angles and velocities lie beside each other, the hub's first
+    // angles and velocities are stored next to each other, the hub's first
     check_done(impactlab_run_angles(h->run, &angles, &h->error), &h->error);
     check_done(impactlab_run_velocities(h->run, &velocities, &h->error), &h->error);
     check_done(impactlab_run_signal(h->run, "hub_velocity", &series, &h->error), &h->error);
@@ -143,7 +143,8 @@ static void what_there_is_not(void **state)
     check_refused(h, impactlab_scenario_add_push(h->scenario, 0.1, 1e-3, &h->error), "pushes");
 }
 
-// What stopped a loop stays, whatever is asked of it next; a law that cannot be had makes none.
+// The reason why a loop stopped is kept for all later calls; a law that is not available gives no
+// loop.
 static void loops_stay_stopped(void **state)
 {
     handles *h = *state;

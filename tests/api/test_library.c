@@ -117,7 +117,7 @@ static void predictions_and_modes(void **state)
     check_done(impactlab_run_predictions(run, said, 8, &count, &error), &error);
     assert_true(count >= 4);
 
-    // the linearised arm knows the simulation's first pulse well
+    // the linearised arm predicts the simulation's first pulse well
     assert_string_equal(said[3].method, "linearised");
     assert_true(said[3].known && said[3].holds);
     assert_true(fabs(said[3].peak / quantity(run, "first_pulse_peak_N") - 1) < 0.05);
@@ -365,7 +365,7 @@ static void states_come_back(void **state)
     }
 }
 
-// Of a program the loop knows what it answered; it is asked again only what is new.
+// The loop keeps the answers of a program; only new questions are asked.
 static void a_process_goes_on_from_a_state(void **state)
 {
     (void)state;

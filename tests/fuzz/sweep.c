@@ -1,5 +1,5 @@
 // What --vary takes, one a line; the first byte chooses the sampling: refused with a sentence, or a
-// sweep whose every run has values that its parameters may have.
+// sweep in which every run has valid values.
 #include "tests/fuzz/fuzz.h"
 
 #include <math.h>

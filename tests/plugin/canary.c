@@ -1,4 +1,4 @@
-// A plug-in that tells that it was loaded: it writes the file that CANARY names.
+// A plug-in that records that it was loaded: it writes the file named by CANARY.
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -7,7 +7,7 @@
 // ---------------------------------------------------------------------------------------------
 // the arm
 
-// First frequency of the straight chain whose hub is held, or with it the first link where that is
+// First frequency of the straight chain with its hub held, or with it the first link where that is
 // fixed to it.
 static double first_clamped_frequency(const body_chain *arm)
 {

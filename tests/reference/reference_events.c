@@ -197,7 +197,7 @@ double event_offset(simulation *s, event_function e)
             probe *= 0.5;
             value = event_value_at(s, e, probe);
         } while (probe > EVENT_RESOLUTION && !(value > 0.0));
-        // nowhere, as far as rounding tells: a flight too low for that ends beyond it
+        // nowhere within rounding: a flight too low for that ends beyond it
         edge = e == GAP_OPEN && !(value > 0.0) ? -EDGE_ROUNDING : 0.0;
         lo = edge < 0.0 ? 0.0 : probe;
     }

@@ -1,6 +1,6 @@
 // A general Taylor integrator in the manner of Jorba and Zou's `taylor` and of heyoka: equations of
 // motion as a list of operations whose Taylor coefficients follow from one another, order by order
-// (automatic differentiation). It knows nothing of arms; the two-link arm is written down for it
+// (automatic differentiation). It is independent of arms; the two-link arm is written down for it
 // below, a list for each combination of contact and hub friction. Events are roots of polynomials,
 // since what they watch is an operation of the list like any other.
 //
@@ -337,10 +337,10 @@ static void write_mode(mode *m, bool contact, int friction)
     // what events watch
     const double most = EXPERIMENT_STICTION * EXPERIMENT_STICTION;
     m->watched[WALL_EVENT] = contact ? m->force : gap;
-    m->watched[HUB_EVENT] = friction == FORWARD    ? SPEED_1
-                            : friction == BACKWARD ? scaled(l, -1, SPEED_1)
-                                                   : minus(l, constant(l, most),
-                                                           times(l, m->holding, m->holding));
+    m->watched[HUB_EVENT] = friction == FORWARD ? SPEED_1
+                            : friction == BACKWARD
+                                ? scaled(l, -1, SPEED_1)
+                                : minus(l, constant(l, most), times(l, m->holding, m->holding));
 }
 
 static mode *now(simulation *s)
@@ -441,8 +441,8 @@ static bool run(void *instance, peer_answer *answer)
         // the first event ends the stride
         int event = -1;
         for (int k = 0; k < EVENTS; k++) {
-            double root = next_fall(m->list.series[m->watched[k]], ORDER,
-                                    s->since[k] + COOLDOWN - t, stride);
+            double root =
+                next_fall(m->list.series[m->watched[k]], ORDER, s->since[k] + COOLDOWN - t, stride);
             if (!isnan(root)) {
                 stride = root;
                 event = k;
