@@ -1,4 +1,4 @@
-// What an arm does at its wall, as it is compared between engines, step lengths and the independent
+// Contact quantities of an arm that are compared between engines, step lengths and the independent
 // simulation.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What every test program needs on top of cmocka: comparisons of doubles that print both values.
+// Additions to cmocka for every test program: comparisons of doubles that print both values.
 #pragma once
 
 #include <math.h>

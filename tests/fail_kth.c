@@ -1,4 +1,4 @@
-// Preloaded into the program: lets the FAIL_AT-th call of the function that FAIL_CALL names fail,
+// Preloaded into the program: makes the FAIL_AT-th call of the function named by FAIL_CALL fail,
 // and writes how many calls there were to the file FAIL_COUNT.
 #undef _FILE_OFFSET_BITS // both names of open are wanted, each as itself
 #include <dlfcn.h>

@@ -1,4 +1,4 @@
-// Parameters for tests of their table and of what goes together.
+// Parameters for tests of their table and of their combinations.
 #pragma once
 
 #include <string.h>

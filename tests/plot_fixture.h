@@ -1,4 +1,4 @@
-// A run that looks like one, and ways to look at what a figure draws of it.
+// A synthetic run, and checks of what a figure draws of it.
 #pragma once
 
 #include "tests/check.h"

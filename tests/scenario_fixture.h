@@ -1,4 +1,4 @@
-// What the tests of scenarios share: reading a text and keeping the sentences about it.
+// Shared by the tests of scenarios: reading a text and keeping the sentences about it.
 #pragma once
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-// What tests of sweeps share: a folder of their own, and sweeps of one scenario.
+// Shared by tests of sweeps: a folder of their own, and sweeps of one scenario.
 #pragma once
 
 #include "src/study/sweep_rows.h"

@@ -1,4 +1,4 @@
-// The best that could be done after an impact: closed forms, and controllers tried at random.
+// The best possible result after an impact: closed forms, and controllers tried at random.
 #include "src/base/random.h"
 #include "src/predict/best_stop.h"
 #include "tests/arm_fixture.h"

@@ -1,4 +1,4 @@
-// The look-up table of (5.26): reading and interpolating it, measuring it, and what it is worth.
+// The look-up table of (5.26): reading, interpolating and measuring it, and its benefit.
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-// What the explorer must never do: change something else than was asked, lose something, or leave
-// one in the dark about what has an effect and when.
+// What the explorer must never do: change something that was not requested, lose something, or
+// leave one in the dark about what has an effect and when.
 #include "tests/explorer_on_screen.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-// The explorer on small and narrow screens: nothing is cut in a word, what matters most stays.
+// The explorer on small and narrow screens: no word is cut, and the most important parts stay.
 #include "tests/explorer_on_screen.h"
 
 static char *lines_of(const char *text, int width, bool *split)

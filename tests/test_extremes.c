@@ -1,5 +1,5 @@
-// Numbers at the far end of what may be asked for: a run ends in bounded effort, and nothing that
-// is no finite number passes for a result.
+// Parameters at the ends of their ranges: a run ends with bounded effort, and nothing that is no
+// finite number passes for a result.
 #include <math.h>
 #include <signal.h>
 #include <string.h>

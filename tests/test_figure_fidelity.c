@@ -1,5 +1,5 @@
-// Figures that follow the thesis: what their captions own up to, their axes, and the numbers of
-// their diagrams against equations that the drawing does not use.
+// Figures that follow the thesis: differences stated in their captions, their axes, and the numbers
+// of their diagrams against equations that the drawing does not use.
 #include "tests/check.h"
 
 #include <cairo.h>

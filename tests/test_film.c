@@ -1,4 +1,4 @@
-// Films of runs: their clock, their frames, and what becomes of them when the encoder fails.
+// Films of runs: their clock, their frames, and failures of the encoder.
 #include "tests/scene_fixture.h"
 
 #include "render/scene/film.h"

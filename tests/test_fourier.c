@@ -1,4 +1,4 @@
-// The Fourier transform: sines come out as what they are.
+// The Fourier transform of sines and other known series.
 #include "tests/check.h"
 
 #include <math.h>

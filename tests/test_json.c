@@ -1,4 +1,4 @@
-// JSON files: what jansson reads back, in the order and with the digits that were meant.
+// JSON files: read back by jansson, with the intended order and digits.
 #include "src/base/json.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-// The table of stiffness by force: what it reads, what lies between its entries, what it refuses.
+// The table of stiffness by force: reading, interpolation and refusals.
 #include "src/quantities/k2_table.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-// Keys of the user's own, the help page that shows them, and the settings that keep them.
+// Keys bound by the user, the help page that shows them, and the settings that store them.
 #include "tests/explorer_on_screen.h"
 
 #include <sys/stat.h>

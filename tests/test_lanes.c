@@ -1,4 +1,4 @@
-// The lanes below the curves: what they hold is what the rows hold.
+// The lanes below the curves agree with the rows.
 #include "tests/explorer_on_screen.h"
 
 // The part of a kind that was drawn last, of width 0 if none was.

@@ -1,4 +1,4 @@
-// What the control laws have to show, on the impact of the thesis's 5.4: 1 V from rest, 0.1 rad
+// Required results of the control laws, on the impact of the thesis's 5.4: 1 V from rest, 0.1 rad
 // before the wall.
 #include "tests/rig_fixture.h"
 

@@ -1,6 +1,6 @@
-// No step, event or push asks for memory: whoever strides in real time, or a million times, relies
-// on it. The linker puts the counting functions below in the place of the allocator's
-// (-Wl,--wrap=malloc and so on, see meson.build).
+// No step, event or push allocates memory: runs in real time, or a million of them, rely on it. The
+// linker puts the counting functions below in the place of the allocator's (-Wl,--wrap=malloc and
+// so on, see meson.build).
 #include <stdlib.h>
 
 #include "src/predict/linearised.h"

@@ -1,4 +1,4 @@
-// Numbers as text: short, exact, and nothing read that people would not write.
+// Numbers as text: short, exact, and read only in the usual notations.
 #include "src/base/numbers.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-// The sensors that need not be there, each against its data: piezoelectric force sensor, piezo film
-// along the beam, accelerometer on the hub.
+// The optional sensors, each against its data: piezoelectric force sensor, piezo film along the
+// beam, accelerometer on the hub.
 #include <string.h>
 
 #include "src/rig/rig.h"

@@ -1,4 +1,4 @@
-// The palette: everything is found by words, and what is found is what happens.
+// The palette: every entry is found by words, and does what it shows.
 #include "tests/explorer_on_screen.h"
 
 static void test_words_find_things_of_every_kind(void **state)

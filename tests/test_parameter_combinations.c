@@ -1,4 +1,4 @@
-// Parameters together: what contradicts what, and what follows from what was given.
+// Combinations of parameters: contradictions, and values derived from given ones.
 #include "tests/given_parameters.h"
 
 // The pair of settings cannot be resolved and the sentence says `expected`.

@@ -1,5 +1,5 @@
-// Lists of joint stiffnesses and link lengths: as they are written, what contradicts them, and what
-// they make of the arm.
+// Lists of joint stiffnesses and link lengths: their notation, what contradicts them, and what they
+// make of the arm.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-// The table of parameters: what every entry has to keep, and how values are read.
+// The table of parameters: properties of every entry, and reading of values.
 #include "tests/given_parameters.h"
 
 #include <stdlib.h>

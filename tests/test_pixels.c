@@ -1,5 +1,5 @@
-// Pictures for terminals: what is written is decoded and compared with what was drawn, and
-// terminals are believed only what they answer.
+// Pictures for terminals: the output is decoded and compared with the drawing, and terminals are
+// believed only what they answer.
 #include "tests/explorer_on_screen.h"
 
 #include <stdint.h>

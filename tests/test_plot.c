@@ -1,4 +1,4 @@
-// Figures, judged by what is drawn: texts and where they are, pixels.
+// Figures, judged by their drawing: texts and their places, pixels.
 #include "tests/plot_fixture.h"
 
 // fontconfig keeps its cache until the process ends

@@ -1,6 +1,6 @@
-// Whenever the linearised predictor says that a touch holds, it is right within 2 %: on random arms
-// of both hub joints, at both walls, of 2 to 12 links, damped weakly and strongly. And it does say
-// so in most cases.
+// If the linearised predictor says that its answer holds, it is right within 2 %: on random arms of
+// both hub joints, at both walls, of 2 to 12 links, damped weakly and strongly. And it does say so
+// in most cases.
 //
 // test_predictor_claims [CASES [SEED]]
 #include <stdlib.h>

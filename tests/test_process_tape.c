@@ -1,5 +1,5 @@
-// What a program was asked, and what it answered then: found again however much there is, on every
-// way that was gone, and not without a tape.
+// Questions to a program and its answers: found again in any number, on every way that was gone,
+// and not without a tape.
 #include "src/rig/process_tape.h"
 
 #include <stdio.h>

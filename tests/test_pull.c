@@ -1,4 +1,4 @@
-// The tip pulled by the mouse, and the run slowed down round impacts.
+// The tip pulled by the mouse, and slow motion near impacts.
 #include "tests/explorer_on_screen.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-// Laws held in a mode (control.lock): what they do then, how they go on, and that a lock made in a
-// session is an input like any other.
+// Laws held in a mode (control.lock): their behaviour, their continuation, and that a lock made in
+// a session is an input like any other.
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
-// Scenarios as files: found by name, listed, changed by --set, and written so that they read back.
+// Scenarios as files: found by name, listed, changed by --set, and written so that they can be read
+// back.
 #include "tests/scenario_fixture.h"
 
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-// Statistics of a signal: of straight pieces they are known, cut anywhere.
+// Statistics of piecewise linear signals, cut anywhere, against exact values.
 #include "tests/check.h"
 
 #include <math.h>

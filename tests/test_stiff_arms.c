@@ -1,6 +1,6 @@
-// Arms whose fastest decay or vibration is beyond all that matters: they take few strides or say
-// why not, and their slow modes are right. And arms that start on the wall, whose first flights are
-// lower than rounding.
+// Arms with decays or vibrations much faster than the motion of interest: they take few strides or
+// report why not, and their slow modes are right. And arms that start on the wall, with first
+// flights that are lower than rounding.
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-// Sweeps that are killed or stopped on the way, and go on.
+// Sweeps that are killed or stopped, and continue.
 #include <signal.h>
 #include <sqlite3.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-// Pictures of sweeps: what each kind shows.
+// Pictures of each kind of sweep.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

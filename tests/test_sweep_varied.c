@@ -1,4 +1,4 @@
-// What a sweep varies: grids, lists, drawn values; requests that are none.
+// The varied values of a sweep: grids, lists, random values; invalid requests.
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-// The word nearest to a misspelt one, and texts that a terminal may show.
+// The word most similar to a misspelt one, and texts that a terminal may show.
 #include "tests/check.h"
 
 #include <string.h>

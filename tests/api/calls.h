@@ -1,4 +1,4 @@
-// Calls libimpactlab from end to end, for tests that refuse it memory.
+// Calls every part of libimpactlab, for tests in which requests for memory fail.
 #pragma once
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-// What tests of the library share: handles of each kind, and checks of what calls say.
+// Shared by tests of the library: handles of each kind, and checks of the sentences of calls.
 #pragma once
 
 #include <math.h>

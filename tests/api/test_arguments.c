@@ -1,4 +1,4 @@
-// What callers of libimpactlab may get wrong: each call says what it lacks and changes nothing.
+// Wrong arguments to libimpactlab: each call reports what is wrong and changes nothing.
 #include "handles.h"
 
 // --- missing arguments ------------------------------------------------------------------------

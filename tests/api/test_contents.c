@@ -1,4 +1,4 @@
-// What handles of libimpactlab hold, and what they say that there is not.
+// Contents of the handles of libimpactlab, and queries for what they do not contain.
 #include "handles.h"
 
 static void codes_have_texts(void **state)

@@ -1,4 +1,4 @@
-// What the fuzz targets share. Each target is a program with one function that takes any bytes;
+// Shared by the fuzz targets. Each target is a program with one function that takes any bytes;
 // libFuzzer calls it (tests/fuzz/run), or driver.c with mutations of the corpus.
 #pragma once
 

@@ -1,4 +1,4 @@
-// A controller that has nothing to say at a sample.
+// A controller without an answer at a sample.
 #include "src/rig/controller.h"
 
 static const controller silent = {.interface = CONTROLLER_INTERFACE, .name = "silent"};

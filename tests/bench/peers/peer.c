@@ -1,5 +1,5 @@
-// What peers share: their answers, and for those of a fixed step finding contact times and peaks in
-// their samples.
+// Shared by the peers: their answers, and for those with a fixed step finding contact times and
+// peaks in their samples.
 #include "tests/bench/peers/peer.h"
 
 #include <math.h>

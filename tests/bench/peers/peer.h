@@ -1,4 +1,4 @@
-// One experiment for several simulators: what it is, what they answer, how they are called.
+// One experiment for several simulators: its definition, their answers and interface.
 //
 // The arm of the laboratory (corrected model, two links, rigid hub) is driven by a constant command
 // against a flat wall: first impact, bounce, second contact, rest. A second experiment swings

@@ -1,4 +1,4 @@
-// Runs all peers that were built in turn, several rounds, and prints what they took and answered.
+// Runs all peers that were built in turn, in several rounds, and prints their times and answers.
 //
 // Every round runs each peer once for at least SAMPLE_TIME, one after the other on one core; a
 // peer's ratio is the median over the rounds of its time over impactlab's in the same round, so
