@@ -88,6 +88,33 @@ static void low_bounces_are_those_of_the_series(void **state)
     }
 }
 
+// With a rest speed of 1e-7 m/s flights become as short as 4e-14 s and as low as 1e-22 m, which is
+// less than what the modes' sums are rounded to. None of them regains any speed.
+static void flights_lower_than_any_rounding_are_those_of_the_series(void **state)
+{
+    (void)state;
+    static const char *const arms[2][10] = {
+        {"arm.links=23", "arm.hub_joint=beam", "arm.damping_ratio=0.595492",
+         "wall.restitution=0.223733", "motor.voltage=0.587403", "arm.k2=32.794", "arm.mass=1.31544",
+         "arm.hub_inertia=0.00196971", "motor.stiction=0.00418453"},
+        {"arm.links=19", "arm.hub_joint=beam", "arm.damping_ratio=0.340306", "wall.kind=plane",
+         "wall.restitution=0.162903", "motor.voltage=0.624174", "arm.k2=8.1031",
+         "arm.mass=0.276462", "arm.hub_inertia=0.00200183"}};
+    for (int i = 0; i < 2; i++) {
+        parameters p = fixture_parameters(arms[i]);
+        p.wall.angle = 0.1;
+        p.method.rest_speed = 1e-7;
+        const double velocity = 3.6, gap = 1e-4 * velocity, until = 1.1e-4;
+        const bounces series = bounces_of(&p, &series_engine, gap, velocity, until);
+        const bounces modes = bounces_of(&p, &modal_engine, gap, velocity, until);
+        assert_in_range(series.impacts, 10, 20);
+        assert_int_equal(modes.impacts, series.impacts);
+        check_relative(modes.slowest, series.slowest, 1e-4);
+        check_relative(modes.peak, series.peak, 1e-6);
+        check_close(modes.peak_time, series.peak_time, 1e-12);
+    }
+}
+
 // An arm that closes a gap of less than 1e-9 m meets the wall where the gap is none, wherever its
 // strides end before it.
 static void a_slow_arm_meets_its_wall_in_time(void **state)
@@ -160,6 +187,7 @@ int main(void)
         cmocka_unit_test(a_chain_that_bends_keeps_its_strides),
         cmocka_unit_test(a_strongly_damped_chain_that_bounces_keeps_its_strides),
         cmocka_unit_test(low_bounces_are_those_of_the_series),
+        cmocka_unit_test(flights_lower_than_any_rounding_are_those_of_the_series),
         cmocka_unit_test(a_slow_arm_meets_its_wall_in_time),
         cmocka_unit_test(a_small_motion_slips_as_a_larger_one)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -44,7 +44,8 @@
 enum { MOST_TRIES = 24, FEW_SWEEPS = 5, PATIENCE = 16 };
 
 typedef struct modal_memory {
-    bool by_series;              // the stride in hand is one of the series
+    bool by_series;              // the stride in hand is one of the series,
+    bool brief;                  // for a brief flight
     series_stride *series;       // that one
     modal_stride *stride;        // or that of the modes
     modal_function contact, hub; // gap or force; hub's velocity or friction
@@ -218,6 +219,21 @@ static double begin_modes(const arm *a, motion *m, double remaining, double seri
     return 0;
 }
 
+// A stride of the series from next to the wall for a flight that ends within it, or 0 where the
+// flight is longer: the series' strides are `series` [s]. Such flights are as low as 1e-22 m, which
+// is less than the rounding of what the modes add up.
+static double begin_brief_flight(const arm *a, motion *m, double remaining, double series)
+{
+    const double *state = m->state;
+    if (state[SLOT_CONTACT] != 0 || fabs(state[SLOT_GAP]) > MODAL_ON_WALL ||
+        2 * state[SLOT_GAP_VELOCITY] >= -state[SLOT_GAP_ACCELERATION] * series) {
+        return 0;
+    }
+    series_stride *s = ((modal_memory *)m->memory)->series;
+    const double h = series_stride_begin(s, a, m, remaining, SERIES_EXACT);
+    return series_stride_look(s, WATCH_GAP, h).value < 0 ? h : 0;
+}
+
 static double begin(const arm *a, motion *m, double remaining, double step)
 {
     (void)step;
@@ -225,16 +241,22 @@ static double begin(const arm *a, motion *m, double remaining, double step)
     const double series = SERIES_REACH / chain_series_rate(a, state_angles(m, m->state),
                                                            state_velocities(m, m->state));
     memory->fitted = false;
+    memory->by_series = true;
+
+    const double flight = begin_brief_flight(a, m, remaining, series);
+    memory->brief = flight > 0;
+    if (memory->brief) {
+        return flight;
+    }
 
     // strides of the series in a row are counted below zero
     if (remaining > ADVANTAGE * series && !(m->state[SLOT_STRIDE] < 0)) {
         const double h = begin_modes(a, m, remaining, series);
-        memory->by_series = false;
+        memory->by_series = !(h > 0);
         if (h > 0) {
             return h;
         }
     }
-    memory->by_series = true;
     return series_stride_begin(memory->series, a, m, remaining, LAST_TERMS);
 }
 
@@ -246,7 +268,7 @@ static double proposal(const motion *m)
         return memory->stride->next;
     }
     const double waiting = m->state[SLOT_STRIDE];
-    return waiting < 0 ? waiting + 1 : 1 - PATIENCE;
+    return memory->brief ? waiting : waiting < 0 ? waiting + 1 : 1 - PATIENCE;
 }
 
 // The stride's end into m->trial, which has the slots that no evaluation gives.

@@ -8,8 +8,6 @@
 
 // Share of a limit of the current below which its margin counts as rounding (edge_limits.h).
 #define EDGE_CURRENT 1e-10
-// The series' last terms where nothing but rounding is to be left.
-#define EXACT 1e-13
 
 // --- polynomials --------------------------------------------------------------------------------
 
@@ -339,7 +337,7 @@ glance series_stride_force(const series_stride *s, double h)
 static double begin(const arm *a, motion *m, double remaining, double step)
 {
     (void)step;
-    return series_stride_begin(m->memory, a, m, remaining, EXACT);
+    return series_stride_begin(m->memory, a, m, remaining, SERIES_EXACT);
 }
 
 static status state_at(const arm *a, motion *m, double h)

@@ -12,6 +12,9 @@ typedef struct series_function {
     bool divided; // by a power of x
 } series_function;
 
+// The series' last terms where nothing but rounding is to be left.
+#define SERIES_EXACT 1e-13
+
 typedef struct series_stride {
     series_function watched[WATCHES]; // those of the contact state; stiction, current: nearer limit
     series_function far_limit, far_current; // the other ones
