@@ -3,7 +3,6 @@
 // (modal_stride.row); behind the last mode stand modes that do nothing.
 #pragma once
 
-#include "src/solve/engine.h"
 #include "src/solve/modal_stride.h"
 
 enum { MODAL_LANES = 8 };
@@ -19,15 +18,8 @@ typedef double modal_weights[MODAL_NODES][MODAL_NODES];
 typedef struct modal_mode_losses {
     double time; // [s]
     modal_weights weights;
-    double *all, *vibrating; // [row]: 2 a times the integral of v^2; of that what the vibration
-                             // adds to s->followed
+    double *all; // [row]: 2 a times the integral of v^2
 } modal_mode_losses;
-
-// Decays side by side, on to a whole vector.
-typedef struct modal_decays {
-    int count;
-    double *now, *rate, *factor; // value, decay [1/s], what a step leaves
-} modal_decays;
 
 typedef struct modal_loops {
     // modal_momenta_at without what there is across a constraint
@@ -41,11 +33,12 @@ typedef struct modal_loops {
     // r and s of a point from x, y and what the sweeps say there, brought to the modes
     void (*take)(const modal_stride *s, int point, const double *x, const double *y,
                  const double *modal);
-    // a walk's next step of the modes and the polynomials
-    void (*walk)(const modal_stride *s, modal_walk *w);
     void (*losses)(const modal_stride *s, modal_mode_losses *l);
-    // value and slope of all decays together, then a step of each
-    glance (*decay)(modal_decays *d);
+    // integrals of the products of transients and a power series of so many terms, by its
+    // derivatives at both ends
+    double (*series)(const modal_transients *v, const double *start, const double *end, int terms);
+    // integrals of the products of all pairs of different transients
+    double (*overlap)(const modal_transients *v);
 } modal_loops;
 
 // Those for this processor, or for vectors as narrow as taylor_limit_width (taylor_lanes.h) takes.

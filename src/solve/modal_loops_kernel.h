@@ -18,6 +18,9 @@ typedef double loose __attribute__((vector_size(8 * LANES), aligned(8), may_alia
 #define OF(array, k) (*(loose *)((array) + (k)))
 #define IN(array, k) ((real) * (const loose *)((array) + (k)))
 
+// Below this square of an exponent its integral is that of a series, to the last bits.
+#define SMALL_SQUARE 1e-6
+
 static_assert(LANES == MODAL_LANES, "arrays go on to whole vectors");
 
 static void loop_momenta(const modal_stride *s, const modal_table *at, double *x, double *y)
@@ -139,46 +142,6 @@ static void loop_take(const modal_stride *s, int point, const double *x, const d
     }
 }
 
-static void loop_walk(const modal_stride *s, modal_walk *w)
-{
-    const modal_table *at = &w->at;
-    double step[MODAL_NODES] = {1}; // step^n / n!
-    for (int n = 1; n < MODAL_NODES; n++) {
-        step[n] = step[n - 1] * w->step / n;
-    }
-
-    for (int k = 0; k < w->count; k += LANES) {
-        const real twice = 2 * IN(s->damping, k), rate = IN(s->modes->rate, k);
-        const real stiff = rate * rate, x = IN(w->x, k), y = IN(w->y, k);
-        const real g = IN(at->impulse, k), gr = IN(at->impulse_rate, k);
-        real force[MODAL_NODES], drift[MODAL_NODES];
-        real place = x * (gr + twice * g) + y * g, speed = y * gr - stiff * g * x, lower = g;
-#pragma GCC unroll 6
-        for (int j = 0; j < MODAL_NODES; j++) {
-            force[j] = IN(w->force[j], k);
-            drift[j] = IN(w->drift[j], k);
-            const real power = IN(at->power[j], k);
-            place += force[j] * power + drift[j] * (lower + twice * power);
-            speed += force[j] * lower - stiff * drift[j] * power;
-            lower = power;
-        }
-        OF(w->x, k) = place;
-        OF(w->y, k) = speed;
-
-        // the polynomials about the next instant
-#pragma GCC unroll 6
-        for (int j = 0; j < MODAL_NODES - 1; j++) {
-#pragma GCC unroll 6
-            for (int higher = j + 1; higher < MODAL_NODES; higher++) {
-                force[j] += step[higher - j] * force[higher];
-                drift[j] += step[higher - j] * drift[higher];
-            }
-            OF(w->force[j], k) = force[j];
-            OF(w->drift[j], k) = drift[j];
-        }
-    }
-}
-
 // Integral of the product of two polynomials.
 KERNEL real product(const real p[MODAL_NODES], const real q[MODAL_NODES], modal_weights weights)
 {
@@ -257,27 +220,68 @@ static void loop_losses(const modal_stride *s, modal_mode_losses *l)
         }
         loss -= product(force, drift, l->weights);
         OF(l->all, k) = loss;
-
-        // less the same of what does not vibrate
-        real speed[MODAL_NODES];
-        for (int j = 0; j < MODAL_NODES; j++) {
-            speed[j] = j + 1 < MODAL_NODES ? IN(s->followed[j + 1], k) : (real){0};
-        }
-        OF(l->vibrating, k) = loss - twice * product(speed, speed, l->weights);
     }
 }
 
-static glance loop_decay(modal_decays *d)
+// By parts: the integral of p(x) e^(zx) is sum (-1)^j (p^(j)(1) e^z - p^(j)(0)) / z^(j+1).
+static double loop_series(const modal_transients *v, const double *start, const double *end,
+                          int terms)
 {
-    real value = {0}, slope = {0};
-    for (int k = 0; k < d->count; k += LANES) {
-        const real now = IN(d->now, k);
-        value += now;
-        slope -= IN(d->rate, k) * now;
-        OF(d->now, k) = now * IN(d->factor, k);
+    real sum = {0};
+    for (int k = 0; k < v->count; k += LANES) {
+        const real x = -IN(v->decay, k), y = IN(v->turn, k), per = 1 / (x * x + y * y);
+        const real u = x * per, w = -y * per; // 1 / z
+        const real e = IN(v->end_cosine, k), s = IN(v->end_sine, k);
+        real re = {0}, im = {0};
+        for (int j = terms - 1; j >= 0; j--) {
+            const real f = end[j] * e - start[j] - re, g = end[j] * s - im;
+            re = f * u - g * w;
+            im = f * w + g * u;
+        }
+        sum += IN(v->cosine, k) * re + IN(v->sine, k) * im;
     }
-    return (glance){total(value), total(slope)};
+    return total(sum);
+}
+
+// Real and imaginary part of the integral of e^(zx) from 0 to 1, (e^z - 1) / z, where e^z is known.
+KERNEL void growth(real x, real y, real end_x, real end_y, real *re, real *im)
+{
+    const real square = x * x + y * y;
+    const mask small = MASK(square < (real){0} + SMALL_SQUARE);
+    const real per = 1 / choose(small, (real){0} + 1, square), ex = end_x - 1;
+
+    // near zero 1 + z/2 (1 + z/3 (1 + z/4))
+    real u = 1 + x / 4, v = y / 4;
+    real next = 1 + (x * u - y * v) / 3;
+    v = (x * v + y * u) / 3;
+    u = 1 + (x * next - y * v) / 2;
+    v = (x * v + y * next) / 2;
+    *re = choose(small, u, (ex * x + end_y * y) * per);
+    *im = choose(small, v, (end_y * x - ex * y) * per);
+}
+
+static double loop_overlap(const modal_transients *v)
+{
+    real sum = {0};
+    for (int i = 0; i < v->count; i++) {
+        const double a = v->decay[i], b = v->turn[i], c = v->cosine[i], d = v->sine[i];
+        const double end = v->end_cosine[i], end_sine = v->end_sine[i];
+        for (int k = i + 1; k < v->count; k += LANES) {
+            const real x = -(IN(v->decay, k) + a), turn = IN(v->turn, k);
+            const real cosine = IN(v->cosine, k), sine = IN(v->sine, k);
+            const real e = IN(v->end_cosine, k), s = IN(v->end_sine, k);
+
+            // half of Re((C - iD)(C' - iD') e^(z + z')) + Re((C - iD)(C' + iD') e^(z + z'*))
+            real re, im;
+            growth(x, b + turn, end * e - end_sine * s, end * s + end_sine * e, &re, &im);
+            real both = (c * cosine - d * sine) * re + (c * sine + d * cosine) * im;
+            growth(x, b - turn, end * e + end_sine * s, end_sine * e - end * s, &re, &im);
+            both += (c * cosine + d * sine) * re + (d * cosine - c * sine) * im;
+            sum += both;
+        }
+    }
+    return 0.5 * total(sum);
 }
 
 const modal_loops GLUE(modal_loops_, WIDTH) = {loop_momenta, loop_fit,    loop_leave_out, loop_take,
-                                               loop_walk,    loop_losses, loop_decay};
+                                               loop_losses,  loop_series, loop_overlap};

@@ -6,7 +6,7 @@
 //     modal_collocation.c  r and s by Picard's sweeps
 //     modal_points.c       the chain at all points of a stride side by side (modal_points.h)
 //     modal_loops_kernel.h all modes in the lanes of vectors (modal_loops.h)
-//     modal_losses.c       walks along the stride, energy lost in it
+//     modal_losses.c       energy lost in it
 #pragma once
 
 #include "src/solve/modal_stride.h"

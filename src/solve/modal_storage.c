@@ -5,12 +5,18 @@
 #include "src/solve/modal_parts.h"
 #include "src/solve/modal_points.h"
 
-enum { COLUMNS = 2 * MODAL_NODES };
+enum { COLUMNS = 2 * MODAL_NODES, TRANSIENT_ARRAYS = 6 };
 
 // Doubles of an array by mode.
 static size_t row_of(int dof)
 {
     return ((size_t)dof + MODAL_LANES - 1) / MODAL_LANES * MODAL_LANES;
+}
+
+// Doubles of an array of transients, of which an overdamped mode has two.
+static size_t transients_of(size_t n)
+{
+    return 2 * n + MODAL_LANES;
 }
 
 static size_t table_size(size_t n)
@@ -35,9 +41,10 @@ size_t modal_stride_size(const arm *a)
     size_t doubles =
         MODAL_CONTACT_STATES * (modal_basis_size(a->dof) + modal_vibrations_size(a->dof)) +
         modal_basis_scratch(a->dof);
-    doubles += 2 * table_size(n);
+    doubles += table_size(n);
     doubles += MODAL_CONTACT_STATES * MODAL_KEPT * kept_size(n);
-    doubles += n * (9 + 9 * MODAL_NODES + 3 * COLUMNS + 3);
+    doubles += n * (10 + 7 * MODAL_NODES + 3 * COLUMNS);
+    doubles += TRANSIENT_ARRAYS * transients_of(n);
     doubles += modal_points_size(a->dof) + MODAL_LANES;
     return sizeof(modal_stride) + doubles * sizeof(double);
 }
@@ -82,8 +89,6 @@ void modal_stride_place(modal_stride *s, const arm *a)
     for (int i = 0; i < MODAL_NODES; i++) {
         s->point_angles[i] = take(&storage, n);
         s->point_velocities[i] = take(&storage, n);
-        s->walk.force[i] = take(&storage, n);
-        s->walk.drift[i] = take(&storage, n);
         s->drift[i] = take(&storage, n);
         s->force[i] = take(&storage, n);
         s->followed[i] = take(&storage, n);
@@ -107,9 +112,12 @@ void modal_stride_place(modal_stride *s, const arm *a)
     s->rates = take(&storage, n);
     s->place = take(&storage, n);
     s->momenta = take(&storage, n);
-    s->walk.x = take(&storage, n);
-    s->walk.y = take(&storage, n);
-    place_table(&s->walk.at, &storage, n, MODAL_POWERS);
+    s->transients.decay = take(&storage, transients_of(n));
+    s->transients.turn = take(&storage, transients_of(n));
+    s->transients.cosine = take(&storage, transients_of(n));
+    s->transients.sine = take(&storage, transients_of(n));
+    s->transients.end_cosine = take(&storage, transients_of(n));
+    s->transients.end_sine = take(&storage, transients_of(n));
     place_table(&s->at[0], &storage, n, MODAL_POWERS);
     for (int i = 0; i < MODAL_CONTACT_STATES; i++) {
         for (int j = 0; j < MODAL_KEPT; j++) {

@@ -37,14 +37,14 @@ typedef struct modal_kept {
     modal_table at[MODAL_NODES];
 } modal_kept;
 
-// The modes on a walk through the stride in steps of one length.
-typedef struct modal_walk {
-    int count;         // modes that walk
-    double step, time; // [s]
-    double *x, *y;     // by mode; of the vector across the constraint only x
-    double *force[MODAL_NODES], *drift[MODAL_NODES]; // of the polynomials about the present instant
-    modal_table at;                                  // responses at one step
-} modal_walk;
+// Vibrations e^(-a x) (C cos bx + D sin bx) over a time, x being the share of it; behind the last
+// one stand as many that do nothing as a vector has lanes.
+typedef struct modal_transients {
+    int count;
+    double *decay, *turn;          // a, b
+    double *cosine, *sine;         // C, D
+    double *end_cosine, *end_sine; // e^-a cos b, e^-a sin b
+} modal_transients;
 
 typedef struct modal_stride {
     // bases of the contact states, by contact + 2 * stuck, as far as they were wanted yet
@@ -85,11 +85,11 @@ typedef struct modal_stride {
     double *lanes;                       // of modal_sweep_points
     double *angles, *velocities, *rates; // at one instant
     double *point_angles[MODAL_NODES], *point_velocities[MODAL_NODES]; // at the points; [0] unused
-    double *place, *momenta;   // x and y at the instant of the state last asked for
-    double time;               // that instant [s]
-    const modal_table *ending; // responses there
-    modal_walk walk;           // through the stride in steps of one length
-    double next;               // length proposed for the next stride [s]
+    double *place, *momenta;     // x and y at the instant of the state last asked for
+    double time;                 // that instant [s]
+    const modal_table *ending;   // responses there
+    modal_transients transients; // of the hub's velocity until that instant
+    double next;                 // length proposed for the next stride [s]
 } modal_stride;
 
 // Bytes that the stride of an arm wants, and its arrays laid into so many.

@@ -6,10 +6,9 @@
 #include "src/base/sincos.h"
 #include "src/solve/modal_response.h"
 
-#define PHASE_A_STEP  1    // of the fastest vibration that matters [rad]
-#define SHARE_A_STEP  0.25 // of the stride, in which no mode of the series turns by more than 1 rad
-#define NEAR_CRITICAL 1e-4 // of its rate: a mode is that far from critical damping at least
-#define NEGLIGIBLE    1e-17 // share of all amplitudes that is passed over for good
+#define PHASE_A_STEP 1     // of the fastest vibration that matters [rad]
+#define SHARE_A_STEP 0.25  // of the stride, in which no mode of the series turns by more than 1 rad
+#define NEGLIGIBLE   1e-17 // share of all amplitudes that is passed over for good
 
 enum { COARSEST = 6, LANES = 4 };
 
@@ -60,7 +59,7 @@ void modal_vibrations_compute(modal_vibrations *v, const modal_basis *b, const d
         v->entry[k] = -1;
         if (w > 0 && a < w) {
             v->entry[k] = v->vibrating++;
-            set_entry(v, v->entry[k], a, fmax(sqrt((w - a) * (w + a)), NEAR_CRITICAL * w));
+            set_entry(v, v->entry[k], a, fmax(sqrt((w - a) * (w + a)), MODAL_NEAR_CRITICAL * w));
         } else if (w > 0) {
             v->overdamped++;
         }
@@ -70,7 +69,7 @@ void modal_vibrations_compute(modal_vibrations *v, const modal_basis *b, const d
     for (int k = 0, i = 0; k < modes; k++) {
         const double w = b->rate[k], a = damping[k];
         if (w > 0 && a >= w) {
-            const double root = fmax(sqrt((a - w) * (a + w)), NEAR_CRITICAL * w);
+            const double root = fmax(sqrt((a - w) * (a + w)), MODAL_NEAR_CRITICAL * w);
             v->entry[k] = v->vibrating + i++;
             set_entry(v, v->entry[k], w * w / (a + root), 0);
             set_entry(v, v->entry[k] + v->overdamped, a + root, 0);

@@ -29,6 +29,9 @@ enum {
     MODAL_LEVELS = 36   // lengths of steps: 2^-level s
 };
 
+// A mode is that far from critical damping at least: a share of its rate.
+#define MODAL_NEAR_CRITICAL 1e-4
+
 // The vibrations of a basis with its damping: one an entry, or two of an overdamped mode. Entries
 // of vibrating modes come first, then the slow decays, then the fast ones, each by rising mode.
 typedef struct modal_vibrations {
