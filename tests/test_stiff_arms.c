@@ -149,6 +149,10 @@ static void a_run_that_could_not_end_says_why(void **state)
          0,
          0,
          "fewer links or less damping"},
+        {{"arm.links=40", "arm.damping_ratio=0.01", "motor.inductance=0.1"},
+         0,
+         0,
+         "only without motor.inductance"},
         {{"arm.links=4", "arm.hub_joint=spring", "arm.k1=169468", "arm.hub_inertia=2.29663e-4"},
          0,
          0,
@@ -214,6 +218,40 @@ static void a_run_that_stands_still_at_a_wall_says_so(void **state)
     assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
     assert_non_null(strstr(f.text, "wall.damping"));
     motion_destroy(m);
+}
+
+// Where strides are expensive, fewer of them are enough to give a run up: of many links, and in
+// contact with a wall that has a damper.
+static void expensive_strides_are_given_up_sooner(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *settings[4];
+        int most; // strides
+    } cases[] = {
+        {{"arm.links=128", "arm.damping_ratio=0.01", "motor.inductance=1e-3"}, PACE_STRIDES / 8},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e15"}, PACE_STRIDES / 2},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const parameters p = fixture_parameters(cases[i].settings);
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        assert_non_null(m);
+        motion_start(&a, m, 0.099, 0.7);
+        pace kept = pace_begin();
+        fault f;
+        status s = STATUS_OK;
+        for (int strides = 0; s == STATUS_OK; strides++) {
+            motion_report r;
+            assert_true(strides < cases[i].most);
+            assert_int_equal(motion_step(&a, m, 1, 1e-3, &r), STATUS_OK);
+            motion_apply(&a, m, &r);
+            s = pace_keep(&kept, &a, m, 1, 1e-3, &f);
+        }
+        assert_int_equal(s, STATUS_NO_PROGRESS);
+        motion_destroy(m);
+    }
 }
 
 // Strides of a quarter of a microsecond: a run that a mode keeps so short goes on, one that follows
@@ -431,6 +469,7 @@ int main(void)
         cmocka_unit_test(a_run_that_could_not_end_says_so),
         cmocka_unit_test(a_run_that_could_not_end_says_why),
         cmocka_unit_test(a_run_that_stands_still_at_a_wall_says_so),
+        cmocka_unit_test(expensive_strides_are_given_up_sooner),
         cmocka_unit_test(a_current_that_leads_is_given_up_sooner),
         cmocka_unit_test(an_arm_without_damping_loses_nothing_to_it),
         cmocka_unit_test(a_loop_makes_as_many_strides_as_are_asked_for),

@@ -14,6 +14,11 @@
 #define DAMPED_PACE  1e-6
 #define ASKED_FOR    1e-3 // share of method.step
 
+// Links up to which all chains have PACE_STRIDES between two checks, the least number of those of
+// more links, and what a wall with a damper divides it by: Hunt and Crossley's strides near the
+// touch are expensive.
+enum { FEW_LINKS = 8, LEAST_STRIDES = 1 << 12, DAMPED_SHARE = 4 };
+
 // The wall makes strides short where more than one in so many ends in contact.
 enum { FEW_TOUCHING = 8 };
 
@@ -40,6 +45,16 @@ static bool current_leads(const arm *a, const motion *m)
 {
     const double rate = current_rate(a, m);
     return rate > 0 && rate >= a->fastest_rate;
+}
+
+// Whether the damping makes strides short, and only the motor's current keeps the arm from the
+// modes, which pass over it.
+static bool waits_for_current(const arm *a, const motion *m)
+{
+    arm direct = *a;
+    direct.motor.electric = false;
+    return a->motor.electric && arm_is_plain(&direct) && motion_wall_is_rigid(m) &&
+           a->fastest_decay > a->highest_frequency;
 }
 
 // Whether an event is one of the wall.
@@ -90,6 +105,13 @@ void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *tex
                       "its modes decay at up to %.3g 1/s, which those of the straight arm show "
                       "ever worse as it bends, and fewer links or less damping have longer strides",
                       a->fastest_decay);
+    } else if (waits_for_current(a, m)) {
+        decimal_print(
+            text, size,
+            "its modes decay at up to %.3g 1/s, which long strides pass over only without "
+            "motor.inductance and motor.current_limit; fewer links or less damping have "
+            "longer strides, too",
+            a->fastest_decay);
     } else {
         decimal_print(text, size,
                       "the fastest mode of the arm changes at %.3g 1/s, and softer or fewer "
@@ -103,6 +125,17 @@ pace pace_begin(void)
     return (pace){.looked_from = -1};
 }
 
+long pace_strides(const arm *a)
+{
+    assert(a != NULL);
+    long strides = PACE_STRIDES;
+    if (a->dof > FEW_LINKS) {
+        strides = strides * FEW_LINKS / a->dof;
+        strides = strides > LEAST_STRIDES ? strides : LEAST_STRIDES;
+    }
+    return wall_gives(&a->wall) && a->wall.damping > 0 ? strides / DAMPED_SHARE : strides;
+}
+
 status pace_look(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f)
 {
     assert(p != NULL && a != NULL && m != NULL && duration > 0 && asked > 0);
@@ -111,10 +144,12 @@ status pace_look(pace *p, const arm *a, const motion *m, double duration, double
     // the first stride only begins to count
     const bool decays = is_damped(a, m) || current_leads(a, m);
     const double slowest = decays ? DAMPED_PACE : SLOWEST_PACE;
-    const double least = PACE_STRIDES * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
+    const long strides = pace_strides(a);
+    const double least = (double)strides * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
     const bool passes = from < 0 || now - from >= least;
     const bool meets_wall = p->touching * FEW_TOUCHING > p->strides;
     p->strides = p->touching = 0;
+    p->due = strides;
     p->looked_from = now;
     if (passes) {
         return STATUS_OK;
@@ -123,7 +158,7 @@ status pace_look(pace *p, const arm *a, const motion *m, double duration, double
     char cause[PACE_CAUSE_SIZE];
     pace_tell_cause(a, m, meets_wall ? MOTION_TOUCH : MOTION_REACHED, cause, sizeof cause);
     return fault_set(f, STATUS_NO_PROGRESS,
-                     "at t = %.9g s of %g s: %d strides by %s passed %.3g s, at which the run is "
+                     "at t = %.9g s of %g s: %ld strides by %s passed %.3g s, at which the run is "
                      "given up: %s",
-                     now, duration, PACE_STRIDES, m->engine->name, now - from, cause);
+                     now, duration, strides, m->engine->name, now - from, cause);
 }

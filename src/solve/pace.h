@@ -5,12 +5,13 @@
 #include "src/solve/contact_machine.h"
 
 enum {
-    PACE_STRIDES = 1 << 16, // between two checks; more than any short phase takes
+    PACE_STRIDES = 1 << 16, // between two checks at most; more than any short phase takes
     PACE_CAUSE_SIZE = 240   // characters that pace_tell_cause writes at most
 };
 
 typedef struct pace {
     long strides;       // since the last look
+    long due;           // of them at which to look again
     long touching;      // of them, those that ended in contact
     double looked_from; // instant of the last look, -1 before the first stride [s]
 } pace;
@@ -29,12 +30,16 @@ status pace_look(pace *p, const arm *a, const motion *m, double duration, double
 // has just had, MOTION_REACHED if none.
 void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *text, size_t size);
 
-// Counts a stride that was just made, and checks the pace every PACE_STRIDES of them.
+// Strides between two checks: fewer of arms whose strides are expensive, so that a run without
+// progress ends after some seconds of processor time.
+long pace_strides(const arm *a);
+
+// Counts a stride that was just made, and checks the pace every pace_strides() of them.
 static inline status pace_keep(pace *p, const arm *a, const motion *m, double duration,
                                double asked, fault *f)
 {
     p->strides++;
     p->touching += m->state[SLOT_CONTACT] != 0;
-    const bool looks = p->looked_from < 0 || p->strides >= PACE_STRIDES;
+    const bool looks = p->looked_from < 0 || p->strides >= p->due;
     return looks ? pace_look(p, a, m, duration, asked, f) : STATUS_OK;
 }
