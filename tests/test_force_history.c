@@ -106,6 +106,45 @@ static void a_line_that_meets_the_band_at_a_steps_end_settles_there(void **state
     }
 }
 
+// A force that comes back to the edge of its band at the last instant has settled then.
+static void a_force_at_the_edge_of_its_band_has_settled(void **state)
+{
+    (void)state;
+    double final = 1;
+    while (final + SETTLED_BAND * final - final != SETTLED_BAND * final) {
+        final += 0.0625; // until the edge is a number
+    }
+    const double edge = final + SETTLED_BAND * final;
+    const force_step steps[] = {{0, 1, final, 2 * final, 1.5 * final},
+                                {1, 2, 2 * final, edge, (2 * final + edge) / 2},
+                                parabolic_step(1, 2, edge + 2, -3, 1)};
+    for (int last = 1; last < 3; last++) {
+        force_history h;
+        force_history_init(&h);
+        assert_int_equal(force_history_add(&h, steps[0]), STATUS_OK);
+        assert_int_equal(force_history_add(&h, steps[last]), STATUS_OK);
+        check_close(force_settled_since(&h, final), 2, 1e-12);
+        force_history_finish(&h);
+    }
+}
+
+static void a_history_keeps_all_of_its_steps(void **state)
+{
+    (void)state;
+    enum { STEPS = 5000 };
+    force_history h;
+    force_history_init(&h);
+    for (int i = 0; i < STEPS; i++) {
+        assert_int_equal(force_history_add(&h, (force_step){i, i + 1, i, i, i}), STATUS_OK);
+    }
+    assert_int_equal(h.count, STEPS);
+    for (int i = 0; i < STEPS; i++) {
+        check_close(force_steps(&h)[i].start, i, 0);
+        check_close(force_steps(&h)[i].mean, i, 0);
+    }
+    force_history_finish(&h);
+}
+
 // Steps as long as their lines are steep, with what rounding leaves of their curves: the instant of
 // the crossing is that of the line, for any unit of the force.
 static void lines_are_crossed_where_they_are(void **state)
@@ -301,6 +340,8 @@ int main(void)
         cmocka_unit_test(an_empty_history_has_no_answer),
         cmocka_unit_test(the_largest_mean_is_where_the_curve_is_highest),
         cmocka_unit_test(an_impulse_counts_as_long_as_the_window_holds_it),
+        cmocka_unit_test(a_force_at_the_edge_of_its_band_has_settled),
+        cmocka_unit_test(a_history_keeps_all_of_its_steps),
         cmocka_unit_test(the_force_kept_has_the_impulse_of_decays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

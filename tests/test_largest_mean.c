@@ -156,20 +156,21 @@ static void no_window_of_random_forces_has_more(void **state)
     for (int round = 0; round < ROUNDS; round++) {
         run_result r = empty_run();
         double time = 0, last = 1;
+        const double unit = round % 2 ? 1 : 50; // of time
         for (int i = 0; i < 6; i++) {
-            const double length = 0.1 + 0.2 * random_uniform(&g);
+            const double length = unit * (0.1 + 0.2 * random_uniform(&g));
             const double slope = 4 * random_uniform(&g) - 2, curve = 4 * random_uniform(&g) - 2;
             add_step(&r, time, time + length, last, slope, curve);
             last += slope + curve;
             time += length;
         }
-        const double at = time * random_uniform(&g), impulse = round % 3 == 0 ? 0.3 : 0;
+        const double at = time * random_uniform(&g), impulse = round % 3 == 0 ? 0.3 * unit : 0;
         if (impulse > 0) {
             add_impulse(&r, at, impulse, false);
         }
 
-        const double window = 0.03 + 0.4 * random_uniform(&g);
-        const double from = 0.1 * random_uniform(&g);
+        const double window = unit * (0.03 + 0.4 * random_uniform(&g));
+        const double from = unit * 0.1 * random_uniform(&g);
         const double found = force_largest_mean(&r, from, window);
         double seen = -HUGE_VAL;
         for (int i = 0; i <= FINE; i++) {
@@ -182,6 +183,20 @@ static void no_window_of_random_forces_has_more(void **state)
         check_below(found, seen + (impulse > 0 ? 0.1 : 1e-4));
         finish(&r);
     }
+}
+
+// The largest force at the start of a history that fills its memory: behind it nothing has more.
+static void a_full_history_is_looked_at_to_its_end(void **state)
+{
+    (void)state;
+    run_result r = empty_run();
+    add_step(&r, 0, 1, 5, -4, 0);
+    for (int i = 1; r.history.forces.count < r.history.forces.array.capacity; i++) {
+        add_step(&r, i, i + 1, 1, 0, 0);
+    }
+    check_close(force_largest_mean(&r, 0, 0.25), 4.5, 1e-14);
+    check_close(force_largest_mean(&r, 1, 0.25), 1, 1e-14);
+    finish(&r);
 }
 
 static void a_run_on_the_rig_has_it_and_the_bare_arm_has_not(void **state)
@@ -202,6 +217,7 @@ int main(void)
         cmocka_unit_test(what_has_no_impulse_changes_nothing),
         cmocka_unit_test(it_is_the_largest_of_many),
         cmocka_unit_test(no_window_of_random_forces_has_more),
+        cmocka_unit_test(a_full_history_is_looked_at_to_its_end),
         cmocka_unit_test(a_run_on_the_rig_has_it_and_the_bare_arm_has_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

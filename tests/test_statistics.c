@@ -148,11 +148,31 @@ static void whatever_is_cut_is_the_sum_of_its_pieces(void **state)
     }
 }
 
+// Whole pieces have the values of their rows, to the last bit.
+static void extremes_are_values_of_rows(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 3);
+    for (int trial = 0; trial < 200; trial++) {
+        const double value[] = {random_uniform(&g), random_uniform(&g)};
+        trace t;
+        trace_init(&t, 1);
+        add(&t, random_uniform(&g), value[0]);
+        add(&t, 1 + random_uniform(&g), value[1]);
+        const signal_statistics s = trace_statistics(&t, SIGNAL_INDEX(force), 0, 3);
+        check_close(s.minimum, fmin(value[0], value[1]), 0);
+        check_close(s.maximum, fmax(value[0], value[1]), 0);
+        trace_finish(&t);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ramp_and_a_step),
         cmocka_unit_test(whatever_is_cut_is_the_sum_of_its_pieces),
+        cmocka_unit_test(extremes_are_values_of_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

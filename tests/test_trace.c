@@ -120,6 +120,21 @@ static void rows_need_no_angles(void **state)
     trace_finish(&copy);
 }
 
+// A signal is there if one row has it, whichever.
+static void a_signal_is_there_if_one_row_has_it(void **state)
+{
+    (void)state;
+    enum { COUNT = 5 };
+    for (int row = 0; row <= COUNT; row++) {
+        sample rows[COUNT];
+        for (int i = 0; i < COUNT; i++) {
+            rows[i] = (sample){.time = i, .force = i == row ? 0 : (double)NAN};
+        }
+        const trace t = {.rows = rows, .row_count = COUNT};
+        assert_int_equal(trace_has(&t, SIGNAL_INDEX(force)), row < COUNT);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -127,6 +142,7 @@ int main(void)
         cmocka_unit_test(a_copy_outlives_the_original),
         cmocka_unit_test(a_shared_beginning_goes_on_by_itself),
         cmocka_unit_test(rows_need_no_angles),
+        cmocka_unit_test(a_signal_is_there_if_one_row_has_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -55,7 +55,7 @@ status force_history_add(force_history *h, force_step step)
     return STATUS_OK;
 }
 
-// The last instant within a step at which the force is `edge`, as a share of it; -1 if none.
+// The last instant within a step at which the force is `edge`, as a share of it; negative if none.
 static double last_crossing(const force_step *step, double edge)
 {
     const step_parabola force = step_parabola_of(step);
@@ -65,14 +65,14 @@ static double last_crossing(const force_step *step, double edge)
     // a straight line
     if (fabs(curve) < 1e-12 * (fabs(slope) + fabs(offset))) {
         double s = slope != 0 ? -offset / slope : -1;
-        return s >= 0 && s <= 1 ? s : -1;
+        return s <= 1 ? s : -1;
     }
 
-    // the later one of the parabola's two crossings that lies within the step
-    double square = slope * slope - 4 * curve * offset;
-    for (int sign = -1; sign <= 1 && square >= 0; sign += 2) {
-        double s = (-slope + sign * sqrt(square)) / (2 * curve);
-        latest = s >= 0 && s <= 1 && s > latest ? s : latest;
+    // the later one of the parabola's two crossings, which are NaN if there are none
+    double root = sqrt(slope * slope - 4 * curve * offset);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        double s = (sign * root - slope) / (2 * curve);
+        latest = s <= 1 ? fmax(latest, s) : latest;
     }
     return latest;
 }

@@ -14,11 +14,11 @@ typedef struct window_end {
     double impulses; // of those that it has passed [N s]
 } window_end;
 
-// Integral of the force from the step's start to an instant within it [N s].
+// Integral of the force from the step's start to an instant within it [N s]; zero over no length.
 static double integral_within(const force_step *step, double time)
 {
     double length = step->end - step->start;
-    double s = length > 0 ? fmin(fmax((time - step->start) / length, 0), 1) : 0;
+    double s = fmin(fmax((time - step->start) / length, 0), 1);
     step_parabola p = step_parabola_of(step);
     return length * s * (p.first + s * (p.slope / 2 + s * p.curve / 3));
 }
@@ -66,22 +66,28 @@ static double next_change(const run_result *r, const window_end *front, const wi
                           double window)
 {
     const force_step *steps = force_steps(&r->history.forces);
-    double next = steps[front->step].end;
-    double after = steps[back->step].end + window;
-    next = after > front->time && after < next ? after : next;
+    double next = fmin(steps[front->step].end, steps[back->step].end + window);
 
     // events of both ends, the back's as the front meets them later
-    for (int end = 0; end < 2; end++) {
-        const window_end *w = end == 0 ? front : back;
-        for (size_t i = w->event; i < r->trace.event_count; i++) {
-            double at = r->trace.events[i].time + (end == 0 ? 0 : window);
-            if (at > front->time) {
-                next = fmin(next, at);
-                break;
-            }
-        }
+    const trace *t = &r->trace;
+    if (front->event < t->event_count) {
+        next = fmin(next, t->events[front->event].time);
+    }
+    if (back->event < t->event_count) {
+        next = fmin(next, t->events[back->event].time + window);
     }
     return next;
+}
+
+// Adds the parabola a + b u + c u^2 of a step's force to the sums of such, u being the time since
+// `from` [s].
+static void add_parabola(double *sums, const force_step *step, double from, double sign)
+{
+    const double length = step->end - step->start, s = (from - step->start) / length;
+    const step_parabola p = step_parabola_of(step);
+    sums[0] += sign * (p.first + s * (p.slope + s * p.curve));
+    sums[1] += sign * (p.slope + 2 * s * p.curve) / length;
+    sums[2] += sign * p.curve / (length * length);
 }
 
 // The largest integral over the window with its front strictly between `from` and `to`, where the
@@ -92,26 +98,14 @@ static double largest_between(const run_result *r, const window_end *front, cons
     // both parabolas as ones of the time since `from`: difference a + b u + c u^2
     const force_step *steps = force_steps(&r->history.forces);
     double from = front->time, sums[3] = {0}, largest = -HUGE_VAL;
-    for (int end = 0; end < 2; end++) {
-        const force_step *step = &steps[end == 0 ? front->step : back->step];
-        double length = step->end - step->start, sign = end == 0 ? 1 : -1;
-        if (!(length > 0)) {
-            continue;
-        }
+    add_parabola(sums, &steps[front->step], from, 1);
+    add_parabola(sums, &steps[back->step], from - window, -1);
 
-        // the step's parabola, moved to `from` and scaled to seconds
-        double s = (from - (end == 0 ? 0 : window) - step->start) / length;
-        step_parabola p = step_parabola_of(step);
-        sums[0] += sign * (p.first + s * (p.slope + s * p.curve));
-        sums[1] += sign * (p.slope + 2 * s * p.curve) / length;
-        sums[2] += sign * p.curve / (length * length);
-    }
-
-    // its roots: between them the integral only grows or only falls
-    double square = sums[1] * sums[1] - 4 * sums[2] * sums[0];
-    for (int sign = -1; sign <= 1 && square >= 0; sign += 2) {
-        double denominator = -sums[1] + sign * sqrt(square); // 2 a / (...) stands c = 0 as well
-        double u = denominator != 0 ? 2 * sums[0] / denominator : -1;
+    // its roots, of which those that are none are no numbers: between them the integral only grows
+    // or only falls
+    double root = sqrt(sums[1] * sums[1] - 4 * sums[2] * sums[0]);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        double u = 2 * sums[0] / (sign * root - sums[1]); // 2 a / (...) stands c = 0 as well
         if (u > 0 && from + u < to) {
             largest = fmax(largest, integral_to(r, front, from + u) -
                                         integral_to(r, back, from + u - window));

@@ -28,24 +28,25 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
     // from row to row, the first and the last piece cut
     size_t r = trace_row_at(t, from);
     for (; r + 1 < t->row_count && t->rows[r].time <= to; r++) {
-        const double t0 = t->rows[r].time, t1 = t->rows[r + 1].time, width = t1 - t0;
+        const double t0 = t->rows[r].time, t1 = t->rows[r + 1].time;
+        if (t0 == t1) {
+            continue; // both sides of an event
+        }
         const double v0 = signal_value(&t->rows[r], signal);
         const double v1 = signal_value(&t->rows[r + 1], signal);
         const double begin = fmax(t0, from), stop = fmin(t1, to);
-        const double slope = width > 0 ? (v1 - v0) / width : 0;
+        const double slope = (v1 - v0) / (t1 - t0);
         const double a = v0 + slope * (begin - t0);
         const double b = stop < t1 ? v0 + slope * (stop - t0) : v1;
-        if (width > 0) {
-            add_piece(&s, &squares, stop - begin, a, b);
-        }
+        add_piece(&s, &squares, stop - begin, a, b);
     }
 
     // at the end, or where pieces have no value, the row itself
-    if (!(s.maximum >= s.minimum)) {
+    if (isinf(s.minimum)) {
         const double value = signal_value(&t->rows[trace_row_at(t, from)], signal);
         add_piece(&s, &squares, 0, value, value);
     }
-    if (!(s.maximum >= s.minimum)) {
+    if (isinf(s.minimum)) {
         const double none = (double)NAN;
         return (signal_statistics){none, none, none, none, none, 0};
     }

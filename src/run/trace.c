@@ -111,8 +111,8 @@ status trace_copy(trace *t, const trace *from)
 static bool make_room(trace *t, size_t rows)
 {
     bool grown = shared_array_grow(&t->row_array, rows) &&
-                 shared_array_grow(&t->angle_array, rows) &&
-                 shared_array_grow(&t->velocity_array, rows);
+                 shared_array_grow(&t->velocity_array, rows) &&
+                 shared_array_grow(&t->angle_array, rows); // last: the velocities have their room
     if (t->row_array.reserved == 0) {
         find_places(t);
     }
@@ -128,8 +128,7 @@ bool trace_expect(trace *t, size_t rows)
 status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities)
 {
     size_t n = (size_t)t->angle_count;
-    bool full = t->row_count >= t->row_array.capacity || t->row_count >= t->angle_array.capacity ||
-                t->row_count >= t->velocity_array.capacity;
+    bool full = t->row_count >= t->row_array.capacity || t->row_count >= t->angle_array.capacity;
     if (full && !make_room(t, t->row_count + 1)) {
         return STATUS_NO_MEMORY;
     }
