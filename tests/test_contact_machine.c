@@ -76,6 +76,22 @@ static void the_state_at_the_start_follows_from_where_the_arm_is(void **state)
     motion_destroy(driven.motion);
 }
 
+// A face that starts with the arm has energy to begin with.
+static void a_face_starts_with_the_arm(void **state)
+{
+    (void)state;
+    const double speed = 0.2, mass = 0.5;
+    moving_rod r =
+        start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt", "wall.stiffness=1e4",
+                           "wall.mass=0.5", "initial.angle=0.1", "initial.velocity=0.2"));
+    assert_true(touches(&r));
+    const double face = r.motion->state[SLOT_FACE_VELOCITY];
+    check_relative(face, speed * r.arm.link_length, 1e-3);
+    check_relative(r.motion->start_energy, r.inertia * speed * speed / 2 + mass * face * face / 2,
+                   1e-12);
+    motion_destroy(r.motion);
+}
+
 static void a_plastic_impact_stops_the_rod_and_holds_it(void **state)
 {
     (void)state;
@@ -491,6 +507,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_state_at_the_start_follows_from_where_the_arm_is),
+        cmocka_unit_test(a_face_starts_with_the_arm),
         cmocka_unit_test(a_plastic_impact_stops_the_rod_and_holds_it),
         cmocka_unit_test(a_push_parts_arm_and_face),
         cmocka_unit_test(an_elastic_impact_turns_the_rod_back),

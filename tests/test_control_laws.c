@@ -38,6 +38,8 @@ static void parameters_of_the_scenario_are_described_there_alone(void **state)
         for (int i = 0; i < c->parameter_count; i++) {
             char path[80];
             snprintf(path, sizeof path, "control.%s", c->parameters[i].name);
+            assert_true(controller_has_parameter(c, c->parameters[i].name));
+            assert_false(controller_has_parameter(c, path));
             int index = parameter_find(path);
             if (index < 0) {
                 // one of the law's own, from control.settings

@@ -102,6 +102,58 @@ static void doubling_makes_the_cost_least(void **state)
     check_optimal(&m, &cost, 1e-9);
 }
 
+// As many states as there may be: six vibrations, in any unit of the cost.
+static void all_states_have_a_gain_in_any_unit(void **state)
+{
+    (void)state;
+    double rate[N][N] = {{0}}, input[N] = {0}, gain[3][N];
+    for (int i = 0; i < N; i += 2) {
+        rate[i][i + 1] = 1;
+        rate[i + 1][i] = -100 * (i + 1) * (i + 1);
+        rate[i + 1][i + 1] = -0.4 * (i + 1);
+        input[i + 1] = 1 + 0.3 * i;
+    }
+    sampled_model m;
+    sampled_model_init(&m, N, rate, input, 0.004);
+    for (int k = 0; k < 3; k++) {
+        const double unit = (double[]){1, 1e-12, 1e12}[k];
+        quadratic_cost cost = {.effort = 0.3 * unit, .growth = 1};
+        for (int i = 0; i < N; i++) {
+            double row[N] = {0};
+            row[i] = 1;
+            quadratic_cost_add(&cost, N, row, 0.1 * (i % 3), (1 + i) * unit);
+        }
+        check_optimal(&m, &cost, 1e-9);
+        assert_true(quadratic_gain(&m, &cost, gain[k]));
+        for (int i = 0; i < N; i++) {
+            check_close(gain[k][i], gain[0][i], 1e-9 * fabs(gain[0][1]));
+        }
+    }
+}
+
+// Each term is weight (row z + direct u)^2 = z'C z + 2 u s'z + r u^2.
+static void a_cost_is_the_sum_of_its_squares(void **state)
+{
+    (void)state;
+    const double rows[2][2] = {{2, -3}, {0.5, 4}}, direct[2] = {0.7, -1.1}, weight[2] = {3, 5};
+    const double z[2] = {0.3, -0.8}, u = 1.7;
+    quadratic_cost cost = {.growth = 1};
+    double sum = 0;
+    for (int k = 0; k < 2; k++) {
+        quadratic_cost_add(&cost, 2, rows[k], direct[k], weight[k]);
+        const double term = rows[k][0] * z[0] + rows[k][1] * z[1] + direct[k] * u;
+        sum += weight[k] * term * term;
+    }
+    double told = cost.effort * u * u;
+    for (int i = 0; i < 2; i++) {
+        told += 2 * u * cost.cross[i] * z[i];
+        for (int j = 0; j < 2; j++) {
+            told += cost.state[i][j] * z[i] * z[j];
+        }
+    }
+    check_relative(told, sum, 1e-14);
+}
+
 // A scalar: p = a^2 p/(1 + p b^2/r) + q has a root in closed form.
 static void doubling_solves_the_scalar_equation(void **state)
 {
@@ -117,6 +169,12 @@ static void doubling_solves_the_scalar_equation(void **state)
     // what no command reaches and is unstable has no gain
     sampled_model lost = {.n = 1, .a = {{1.2}}, .b = {0}};
     assert_false(quadratic_gain(&lost, &cost, gain));
+
+    // nor has what costs nothing or no number
+    quadratic_cost free = {.state = {{2}}, .growth = 1};
+    assert_false(quadratic_gain(&m, &free, gain));
+    cost.cross[0] = (double)NAN;
+    assert_false(quadratic_gain(&m, &cost, gain));
 }
 
 static controller_setup two_links(void)
@@ -497,6 +555,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(doubling_makes_the_cost_least),
         cmocka_unit_test(doubling_solves_the_scalar_equation),
+        cmocka_unit_test(all_states_have_a_gain_in_any_unit),
+        cmocka_unit_test(a_cost_is_the_sum_of_its_squares),
         cmocka_unit_test(two_links_reduce_to_themselves),
         cmocka_unit_test(a_touch_loses_energy),
         cmocka_unit_test(overshoot_is_small_when_told_the_truth),

@@ -117,6 +117,85 @@ static void short_strides_lose_no_digits(void **state)
     check_relative(s.fsr.value, slope * of_u + curve * of_square, 1e-11);
 }
 
+// What a lag holds, and the input at a stride's ends and in its mean, add up: each is followed
+// whether the others are there or not.
+static void a_lag_is_linear(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        sensors s = fresh_sensors(NULL, 1);
+        const double h = (i == 0 ? 5e-4 : 0.8) * s.fsr.time_constant;
+        double of[16];
+        for (int parts = 0; parts < 16; parts++) {
+            s.fsr.value = parts & 1 ? 0.7 : 0;
+            follow_force(&s, h, parts & 2 ? 3 : 0, parts & 4 ? 2 : 0, parts & 8 ? -1.3 : 0);
+            of[parts] = s.fsr.value;
+        }
+        check_close(of[0], 0, 0);
+        check_relative(of[1], 0.7 * exp(-h / s.fsr.time_constant), 1e-13);
+        for (int parts = 1; parts < 16; parts++) {
+            double sum = 0;
+            for (int part = 1; part < 16; part *= 2) {
+                sum += parts & part ? of[part] : 0;
+            }
+            check_close(of[parts], sum, 1e-13);
+        }
+    }
+}
+
+// Strides that are as long as the one before up to rounding decay as if there had been none before.
+static void strides_of_nearly_one_length_decay_by_their_own(void **state)
+{
+    (void)state;
+    sensors s = fresh_sensors(NULL, 1);
+    const double lag = s.fsr.time_constant;
+    follow_force(&s, 0.5 * lag, 1, 1, 1);
+    for (double longer = -9e-10; longer < 1e-9; longer += 3e-10) {
+        s.fsr.value = 1;
+        follow_force(&s, (0.5 + longer) * lag, 0, 0, 0);
+        check_relative(s.fsr.value, exp(-0.5 - longer), 1e-15);
+    }
+}
+
+// What has no noise takes no numbers from the others.
+static void quiet_sensors_draw_nothing(void **state)
+{
+    (void)state;
+    const char *const *one = SETTINGS("sensor.adc_bits=0", "sensor.fsr_noise=0");
+    const char *const *two = SETTINGS("sensor.adc_bits=0", "sensor.fsr_noise=0.01");
+    sensors alone = fresh_sensors(one, 7), both = fresh_sensors(two, 7);
+    for (int i = 0; i < 100; i++) {
+        const double taken = read_hub(&alone, 0, 0.5, 1).tachometer;
+        if (i % 2 == 0) {
+            check_close(read_hub(&both, 0, 0.5, 1).tachometer, taken, 0);
+        }
+    }
+}
+
+// In flight nothing needs to be followed, unless a force is remembered or the arm itself is felt.
+static void sensors_at_rest_remember_no_force(void **state)
+{
+    (void)state;
+    const sensors fresh = fresh_sensors(NULL, 1);
+    assert_true(sensors_at_rest(&fresh));
+    for (int i = 0; i < 3; i++) {
+        sensors s = fresh;
+        *(double *[]){&s.fsr.value, &s.piezo_rise.value, &s.piezo_leak.value}[i] = 1e-9;
+        assert_false(sensors_at_rest(&s));
+    }
+    sensors film = fresh_sensors(SETTINGS("sensor.film=true"), 1);
+    sensors accelerometer = fresh_sensors(SETTINGS("sensor.accelerometer=true"), 1);
+    assert_false(sensors_at_rest(&film) || sensors_at_rest(&accelerometer));
+
+    // an instant sensor keeps nothing of a blow
+    sensors ideal = fresh_sensors(SETTINGS("sensor.ideal=true", "sensor.piezo=true"), 1);
+    sensors_strike(&ideal, 0.1);
+    assert_true(sensors_at_rest(&ideal));
+    sensors real = fresh;
+    sensors_strike(&real, 0.1);
+    assert_false(sensors_at_rest(&real));
+}
+
 static void impulse_arrives_whole(void **state)
 {
     (void)state;
@@ -199,6 +278,10 @@ int main(void)
         cmocka_unit_test(force_sensor_rises_in_its_time),
         cmocka_unit_test(force_sensor_follows_a_stride_exactly),
         cmocka_unit_test(short_strides_lose_no_digits),
+        cmocka_unit_test(a_lag_is_linear),
+        cmocka_unit_test(strides_of_nearly_one_length_decay_by_their_own),
+        cmocka_unit_test(quiet_sensors_draw_nothing),
+        cmocka_unit_test(sensors_at_rest_remember_no_force),
         cmocka_unit_test(impulse_arrives_whole),
         cmocka_unit_test(divider_follows_the_power_law),
         cmocka_unit_test(noise_has_its_spread_and_follows_its_seed),

@@ -293,6 +293,11 @@ static void test_delays_and_limits_follow_a_change(void **state)
     check_close(r->delay, 2e-3 + 0.5 / 100, 1e-15);
     check_close(r->period, 1e-2, 1e-17);
 
+    // before the first sample the clock begins as it would have
+    check_close(r->clock_start, 0, 0);
+    check_close(r->sample_time, 0, 0);
+    assert_int_equal(r->clock_samples, 0);
+
     // sensors alone do not ask the law
     p.sensor.dac_bits = 8;
     assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
@@ -356,6 +361,11 @@ static void what_nobody_took_at_the_start_can_change(void **state)
     }
     p.control.law = LAW_PLUGIN; // whose parameters are not known
     assert_false(rig_can_change(&p, force));
+
+    // one that plans at its start has taken the limit of its command; of the arm it takes no note
+    p.control.law = LAW_INVERSE_DYNAMICS;
+    assert_false(rig_can_change(&p, PARAMETER_INDEX(motor.voltage_limit)));
+    assert_true(rig_can_change(&p, PARAMETER_INDEX(arm.k2)));
 }
 
 int main(void)

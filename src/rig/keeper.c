@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,19 +19,6 @@ enum {
 };
 
 // --- the keeper: between fork and _exit nothing but system calls -------------------------------
-
-// Closes every descriptor from `first` on: those of other programs' lifelines above all.
-static void close_from(int first)
-{
-#ifdef SYS_close_range
-    if (syscall(SYS_close_range, (unsigned)first, ~0u, 0) == 0) {
-        return;
-    }
-#endif
-    for (int fd = first; fd < 4096; fd++) {
-        close(fd);
-    }
-}
 
 // Kills the children that the kernel lists; those of theirs are adopted and listed the next time.
 static void kill_children(void)
@@ -143,7 +129,8 @@ static _Noreturn void become_keeper(const int ends[4], const char *command)
             _exit(127);
         }
     }
-    close_from(LIFELINE + 1);
+    // other programs' lifelines above all
+    closefrom(LIFELINE + 1);
     keep(command);
 }
 

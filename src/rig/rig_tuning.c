@@ -83,22 +83,19 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
 
     // the next sample comes one new period after the last
     const double period = 1 / p->control.rate;
-    if (period != r->period) {
-        r->clock_start =
-            r->samples > 0
-                ? r->clock_start + (double)(r->samples - 1 - r->clock_samples) * r->period
-                : r->clock_start;
-        r->clock_samples = r->samples > 0 ? r->samples - 1 : 0;
-        r->period = period;
-        r->sample_time = r->samples > 0 ? r->clock_start + period : r->sample_time;
+    if (r->samples > 0 && period != r->period) {
+        r->clock_start += (double)(r->samples - 1 - r->clock_samples) * r->period;
+        r->clock_samples = r->samples - 1;
+        r->sample_time = r->clock_start + period;
 
         // the clock goes on from now where that sample would have been due earlier
-        if (r->samples > 0 && r->sample_time < time) {
+        if (r->sample_time < time) {
             r->sample_time = time;
             r->clock_start = time;
             r->clock_samples = r->samples;
         }
     }
+    r->period = period;
     r->delay = p->control.delay + p->control.delay_periods * r->period;
     return tell_controller(r, told, f);
 }

@@ -39,9 +39,10 @@ static void draw_ahead(noise_source *n)
     n->taken = 0;
 }
 
-static void noise_start(noise_source *n, uint64_t seed)
+// Each sensor has numbers of its own: its place stands above the bits of the scenario's seed.
+static void noise_start(noise_source *n, uint64_t sensor, int seed)
 {
-    random_seed(&n->random, seed);
+    random_seed(&n->random, sensor << 32 | (uint32_t)seed);
     n->taken = NOISE_AHEAD;
 }
 
@@ -58,9 +59,8 @@ converter converter_of(int bits, double range)
 {
     assert(bits >= 0 && bits < 63 && range >= 0);
     const double codes = (double)(INT64_C(1) << bits);
-    return bits == 0 || range == 0
-               ? (converter){.range = range}
-               : (converter){range, 2 * range / codes, codes, codes / (2 * range)};
+    return bits == 0 ? (converter){.range = range}
+                     : (converter){range, 2 * range / codes, codes, codes / (2 * range)};
 }
 
 // --- in time --------------------------------------------------------------------------------
@@ -108,17 +108,15 @@ void sensors_retune(sensors *s, const sensor_parameters *p)
 void sensors_init(sensors *s, const sensor_parameters *p, int seed)
 {
     assert(s != NULL && p != NULL);
-    const uint64_t other_sensor = UINT64_C(1) << 32; // beyond any seed
 
     // lags and leaks, all at rest
     *s = (sensors){.seen_velocity = (double)NAN};
     sensors_retune(s, p);
 
-    // each sensor that need not be there has numbers of its own
-    noise_start(&s->noise, (uint64_t)seed);
-    noise_start(&s->piezo_noise, (uint64_t)seed + other_sensor);
-    noise_start(&s->film_noise, (uint64_t)seed + 2 * other_sensor);
-    noise_start(&s->acceleration_noise, (uint64_t)seed + 3 * other_sensor);
+    noise_start(&s->noise, 0, seed);
+    noise_start(&s->piezo_noise, 1, seed);
+    noise_start(&s->film_noise, 2, seed);
+    noise_start(&s->acceleration_noise, 3, seed);
 }
 
 // A stride shorter than this share of the time constant leaves the closed form too few digits.
@@ -128,11 +126,11 @@ void sensors_init(sensors *s, const sensor_parameters *p, int seed)
 // the square of the share is nothing.
 #define SAME_STRETCH 1e-9
 
-// exp(-h/time_constant).
+// exp(-h/time_constant), h no shorter than SHORT_STRIDE.
 static double left_after(first_order_lag *y, double h)
 {
     const double longer = h - y->stretch;
-    if (!(fabs(longer) < SAME_STRETCH * y->time_constant) || y->stretch == 0) {
+    if (!(fabs(longer) < SAME_STRETCH * y->time_constant)) {
         y->stretch = h;
         y->left = plain_exp(-h / y->time_constant);
         return y->left;
@@ -270,12 +268,9 @@ static double felt_volts(sensors *s, double force)
 // The force that the volts at the A/D are taken for.
 static double read_force(sensors *s, double volts)
 {
-    if (!(volts > 0) || s->adc.step == 0) {
-        return fsr_force(&s->p, volts);
-    }
-
     // one place for each of some codes in a row
-    fsr_point *known = &s->read[(int64_t)(volts * s->adc.a_unit + 0.5) & (FSR_POINTS_READ - 1)];
+    const uint64_t code = (uint64_t)(int64_t)(volts * s->adc.a_unit + 0.5);
+    fsr_point *known = &s->read[code % FSR_POINTS_READ];
     if (volts != known->volts) {
         *known = (fsr_point){fsr_force(&s->p, volts), volts};
     }

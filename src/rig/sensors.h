@@ -55,7 +55,7 @@ typedef struct fsr_point {
     double volts; // at the A/D [V]
 } fsr_point;
 
-enum { FSR_POINTS_READ = 32 }; // a power of two
+enum { FSR_POINTS_READ = 32 };
 
 typedef struct sensors {
     sensor_parameters p;      // with sensor.ideal carried out
