@@ -98,6 +98,20 @@ static void what_is_too_long_or_no_value_is_refused(void **state)
     assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.k2), endless, &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "too long"));
     assert_int_not_equal(session_adjust(&s, PARAMETER_INDEX(arm.k2), "soft", &f), STATUS_OK);
+    assert_false(s.has_ghost);
+
+    // too long by its last character
+    char just[SESSION_INPUT_TEXT + 1];
+    memset(just, '0', SESSION_INPUT_TEXT);
+    just[SESSION_INPUT_TEXT] = '\0';
+    just[SESSION_INPUT_TEXT - 2] = '7';
+    just[SESSION_INPUT_TEXT - 1] = ' ';
+    f = (fault){0};
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.k2), just, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "too long"));
+    f = (fault){0};
+    assert_int_equal(session_change_input(&s, 0, just, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "too long"));
 
     // another value for one there is
     assert_int_equal(session_change_input(&s, 0, endless, &f), STATUS_BAD_ARGUMENT);
@@ -173,6 +187,26 @@ static void inputs_that_cannot_go_stay(void **state)
     session_finish(&s);
 }
 
+// A gesture that nothing comes before, and one whose number another one had that was undone.
+static void gestures_end_where_their_inputs_end(void **state)
+{
+    (void)state;
+    session s = opened(brief);
+    fault f = {0};
+    for (int i = 0; i < 3; i++) {
+        session_seek(&s, 0.05 * (i + 1));
+        assert_int_equal(session_pull(&s, 1e-4, 1, &f), STATUS_OK);
+    }
+    assert_int_equal(session_undo(&s, &f), STATUS_OK);
+    assert_int_equal(s.input_count, 0);
+    assert_int_equal(session_pull(&s, 1e-4, 1, &f), STATUS_OK);
+    assert_int_equal(session_undo(&s, &f), STATUS_OK);
+    assert_int_equal(session_redo(&s, &f), STATUS_OK);
+    assert_int_equal(s.input_count, 1);
+    assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
+    session_finish(&s);
+}
+
 // An input that may not go leaves all of them as and where they were, whichever it is.
 static void a_refused_drop_keeps_the_order(void **state)
 {
@@ -189,6 +223,7 @@ static void a_refused_drop_keeps_the_order(void **state)
     assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "2", &f), STATUS_OK);
     assert_int_equal(s.input_count, 5);
     memcpy(before, s.inputs, sizeof before);
+    assert_int_equal(session_take_inputs(&s, before, 5, &f), STATUS_OK); // with room for no more
     assert_int_equal(session_drop_input(&s, 1, &f), STATUS_BAD_SCENARIO);
     assert_int_equal(s.input_count, 5);
     assert_memory_equal(before, s.inputs, sizeof before);
@@ -271,6 +306,15 @@ static void taken_inputs_make_the_same_run(void **state)
         assert_memory_equal(to.run.trace.rows, from.run.trace.rows,
                             to.run.trace.row_count * sizeof *to.run.trace.rows);
     }
+
+    // it goes on with inputs of its own, after none, too
+    for (int taken = 7; taken >= 0; taken -= 7) {
+        assert_int_equal(session_take_inputs(&to, from.inputs, taken, &f), STATUS_OK);
+        for (int i = 1; i <= 3; i++) {
+            assert_int_equal(session_push(&to, 1e-6, &f), STATUS_OK);
+            assert_int_equal(to.input_count, taken + i);
+        }
+    }
     session_finish(&from);
     session_finish(&to);
 }
@@ -313,7 +357,10 @@ static void what_is_done_at_any_event_belongs_to_its_row(void **state)
     session s = opened("title: t\nwall: {angle: 0.3, restitution: 0.6}\nmotor: {stiction: 0.02}\n"
                        "run: {duration: 0.6 s}\n");
     fault f = {0};
-    int events = 0;
+    int events = 0, changes = 0;
+    const double change = 0.25;
+    session_seek(&s, change);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "1.1", &f), STATUS_OK);
     for (size_t r = 1; r + 1 < s.run.trace.row_count; r++) {
         const sample *rows = s.run.trace.rows;
         const double last = rows[r - 1].time, now = rows[r].time;
@@ -329,8 +376,8 @@ static void what_is_done_at_any_event_belongs_to_its_row(void **state)
         }
         assert_int_equal(s.row, r);
         assert_int_equal(session_push(&s, 1e-9, &f), STATUS_OK);
-        const double given = s.inputs[0].time;
-        if (twice) {
+        const double given = s.inputs[1].time;
+        if (twice && now != change) {
             check_close(given, fmax(now - 1e-7, (last + now) / 2), 0);
             assert_true(given < now && given > last);
         } else {
@@ -338,9 +385,10 @@ static void what_is_done_at_any_event_belongs_to_its_row(void **state)
         }
         assert_int_equal(session_undo(&s, &f), STATUS_OK);
         assert_int_equal(s.row, r);
-        events += twice;
+        events += twice && now != change;
+        changes += twice && now == change;
     }
-    assert_true(events >= 3);
+    assert_true(events >= 3 && changes > 0);
     session_finish(&s);
 }
 
@@ -409,6 +457,7 @@ int main(void)
         cmocka_unit_test(what_is_too_long_or_no_value_is_refused),
         cmocka_unit_test(adjusting_keeps_what_was_before),
         cmocka_unit_test(inputs_that_cannot_go_stay),
+        cmocka_unit_test(gestures_end_where_their_inputs_end),
         cmocka_unit_test(a_refused_drop_keeps_the_order),
         cmocka_unit_test(undoing_leads_to_the_instant_in_another_run),
         cmocka_unit_test(a_push_before_a_contact_at_once_is_at_the_start),

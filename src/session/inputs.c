@@ -26,7 +26,7 @@ static void restore_cursor(session *s, const session_input *in)
 {
     const trace *t = &s->run.trace;
     session_seek(s, in->seen_at);
-    if (in->seen_row < t->row_count && t->rows[in->seen_row].time <= in->seen_at &&
+    if (in->seen_row < trace_rows_until(t, in->seen_at) &&
         t->rows[s->row].time == t->rows[in->seen_row].time) {
         s->row = in->seen_row;
     }
@@ -38,8 +38,7 @@ static double effect_time(const session *s)
 {
     const trace *t = &s->run.trace;
     const double now = s->now;
-    if (s->row + 1 >= t->row_count || !same_instant(t->rows[s->row].time, now) ||
-        !same_instant(t->rows[s->row + 1].time, now)) {
+    if (s->row + 1 >= t->row_count || !same_instant(t->rows[s->row + 1].time, now)) {
         return now;
     }
 
