@@ -19,6 +19,11 @@ static void the_order_of_made_up_errors_is_found(void **state)
     assert_true(isnan(observed_order(1, 1 + 1e-15, 1 - 1e-15)));
     assert_true(isnan(observed_order(1, 2, 1.5)));
     assert_true(isnan(observed_order(1, 1.1, 1.3)));
+    assert_true(isnan(observed_order(1, 1.25, 1.5)));
+
+    // differences that are rounding of large values
+    assert_true(isnan(observed_order(0x1p20, 0x1p20 + 0x1p-28, 0x1p20 + 0x3p-29)));
+    check_close(observed_order(0x1p20, 0x1p20 + 0x1p-18, 0x1p20 + 0x3p-19), 1, 1e-12);
     assert_true(isnan(observed_order((double)NAN, 1, 2)));
 }
 
@@ -187,6 +192,9 @@ static void the_least_cost_is_read_off_a_study(void **state)
     }
     check_close(method_study_cost(&study, 1, 0, 0.1, &step), 3, 0);
     check_close(step, pow(2, -(STUDY_STEPS - 1)), 0);
+    study.points[1][0].cost = 2; // the longest
+    check_close(method_study_cost(&study, 1, 0, 0.1, &step), 2, 0);
+    check_close(step, 1, 0);
     assert_true(isnan(method_study_cost(&study, 0, 1, 1, &step)));
 }
 
@@ -217,6 +225,12 @@ static void a_study_that_is_stopped_keeps_the_runs_before(void **state)
     assert_int_equal(method_study_compute(&s, &monitor, &study, &f), STATUS_STOPPED);
     thrd_join(other, NULL);
     assert_int_equal(f.code, STATUS_STOPPED);
+
+    // the steps are 10 ms, 5 ms, 2 ms and so on
+    check_relative(study.points[0][0].step, 10e-3, 1e-15);
+    check_relative(study.points[0][1].step, 5e-3, 1e-15);
+    check_relative(study.points[0][2].step, 2e-3, 1e-15);
+    check_relative(study.points[0][3].step, 1e-3, 1e-15);
 
     // the reference and the longest steps were run, the shortest ones were not
     assert_true(atomic_load(&monitor.pieces) < STUDY_RUNS);

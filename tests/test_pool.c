@@ -8,7 +8,10 @@
 
 #include "src/study/pool.h"
 
-enum { PIECES = 1000 };
+enum {
+    PIECES = 1000,
+    QUEUE = 256 // results that wait for the calling thread at most
+};
 
 typedef struct tally {
     double results[PIECES];
@@ -110,7 +113,7 @@ static void every_thread_is_joined_once(void **state)
 static void every_piece_is_computed_and_collected_once(void **state)
 {
     (void)state;
-    for (int threads = 1; threads <= 8; threads *= 2) {
+    for (int threads = 1; threads <= POOL_MOST_THREADS; threads *= threads < 8 ? 2 : 32) {
         tally t = {.fail_at = 0};
         pool_work w = work_on(&t);
         assert_int_equal(pool_run(&w, threads, NULL), STATUS_OK);
@@ -132,6 +135,7 @@ static void a_failure_ends_the_work_and_is_returned(void **state)
     assert_int_equal(pool_run(&w, 4, &f), STATUS_CANNOT_WRITE);
     assert_int_equal(f.code, STATUS_CANNOT_WRITE);
     assert_int_equal(t.total, 10);
+    assert_true(t.computed <= 2 * QUEUE + 4); // what was there when it failed and what came then
 }
 
 static void a_stop_ends_it_early_without_a_fault(void **state)
@@ -142,6 +146,26 @@ static void a_stop_ends_it_early_without_a_fault(void **state)
     assert_int_equal(pool_run(&w, 2, NULL), STATUS_OK);
     // what was under way is collected, all the rest is left
     assert_int_equal(t.total, t.computed);
+    assert_true(t.computed <= QUEUE + 2);
+}
+
+static void compute_slowly(void *context, size_t i, void *scratch, void *result)
+{
+    usleep(250000);
+    compute(context, i, scratch, result);
+}
+
+// A piece may take longer than the calling thread waits before it looks again.
+static void a_slow_piece_is_waited_for(void **state)
+{
+    (void)state;
+    tally t = {.fail_at = 0};
+    pool_work w = work_on(&t);
+    w.count = 1;
+    w.compute = compute_slowly;
+    assert_int_equal(pool_run(&w, 1, NULL), STATUS_OK);
+    assert_int_equal(t.total, 1);
+    assert_int_equal(t.last_ticks, 1);
 }
 
 static void no_pieces_are_no_work(void **state)
@@ -166,6 +190,7 @@ static void the_work_is_done_without_threads(void **state)
         assert_int_equal(pool_run(&w, left == 0 ? 1 : 4, NULL), STATUS_OK);
         assert_int_equal(t.total, PIECES);
         assert_int_equal(t.last_ticks, 1);
+        assert_true(left > 0 || t.ticks == PIECES + 1); // after each, and at the end
         for (int i = 0; i < PIECES; i++) {
             assert_int_equal(t.collected[i], 1);
             check_close(t.results[i], sqrt(i), 0);
@@ -196,6 +221,7 @@ int main(void)
         cmocka_unit_test(every_piece_is_computed_and_collected_once),
         cmocka_unit_test(a_failure_ends_the_work_and_is_returned),
         cmocka_unit_test(a_stop_ends_it_early_without_a_fault),
+        cmocka_unit_test(a_slow_piece_is_waited_for),
         cmocka_unit_test(no_pieces_are_no_work),
         cmocka_unit_test(the_work_is_done_without_threads),
     };

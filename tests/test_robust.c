@@ -33,7 +33,7 @@ static void a_set_is_its_lines(void **state)
     unlink(path);
 
     // a file without a line, and none
-    write_set(path, "# nothing\n");
+    write_set(path, "\n# nothing\n");
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
     unlink(path);
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_CANNOT_READ);

@@ -77,6 +77,22 @@ static void a_spike_in_brief_strides_is_felt_as_its_impulse(void **state)
     check_relative(s.peak, fading, 1e-4);
 }
 
+// Over a thousandth of the time constant: a constant force to the last digits, a rising one to the
+// cube of the share.
+static void a_brief_stride_is_that_of_its_lag(void **state)
+{
+    (void)state;
+    const double tau = 1e-3, share = 0.9e-3;
+    sensor_lag constant, rising;
+    sensor_lag_start(&constant, tau, 0);
+    sensor_lag_start(&rising, tau, 0);
+    sensor_lag_force(&constant, share * tau, 5, 5, 5);
+    check_relative(constant.value, -5 * expm1(-share), 1e-13);
+    sensor_lag_force(&rising, share * tau, -3, 5, 1);
+    const double felt = -expm1(-share);
+    check_close(rising.value, -3 * felt + 8 * (1 - felt / share), 1e-9);
+}
+
 // Whether a stretch is given whole or in two pieces makes no difference.
 static void pieces_make_the_whole(void **state)
 {
@@ -215,6 +231,11 @@ static void a_force_without_time_is_not_felt(void **state)
     sensor_lag_force(&lag, 0, 5, 5, 5);
     check_close(lag.value, 0, 0);
     check_close(lag.peak, 0, 0);
+
+    // and where there is none, the largest is where it began
+    sensor_lag_force(&lag, 1, 0, 0, 0);
+    check_close(lag.peak, 0, 0);
+    check_close(lag.peak_time, 0, 0);
 }
 
 // The study's rows are the views of their numbers of links, with the beam that stops alike.
@@ -367,6 +388,7 @@ int main(void)
         cmocka_unit_test(a_constant_force_is_reached_without_overshoot),
         cmocka_unit_test(a_curved_force_is_followed_exactly),
         cmocka_unit_test(a_spike_in_brief_strides_is_felt_as_its_impulse),
+        cmocka_unit_test(a_brief_stride_is_that_of_its_lag),
         cmocka_unit_test(pieces_make_the_whole),
         cmocka_unit_test(the_sensor_converges_where_the_force_does_not),
         cmocka_unit_test(two_links_read_as_one_impulse),

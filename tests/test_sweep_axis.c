@@ -133,6 +133,8 @@ static void a_refusal_says_what_is_expected(void **state)
     check_refused("arm.k2", "-1:4:log", true, "out of range");
     check_refused("initial.angle", "-1:1:3:log", false, "ends above zero");
     check_refused("initial.angle", "0.1:-1:3:log", false, "ends above zero");
+    check_refused("initial.angle", "0:1:3:log", false, "ends above zero");
+    check_refused("initial.angle", "0.1:0:3:log", false, "ends above zero");
     check_refused("arm.links", "2:4:9", false, "links");
     check_refused("arm.k2", "4:5:many", false, "no number of values");
     check_refused("arm.k2", "4:5:1", false, "no number of values");
@@ -212,6 +214,7 @@ static void values_and_texts_are_those_that_were_asked_for(void **state)
         {"sensor.ideal", "true,false", false, 2, {1, 0}, "true,false"},
         {"arm.k2", "4:8", true, 0, {0}, "4:8"},
         {"arm.k2", "4:8:9", true, 0, {0}, "4:8"},
+        {"arm.k2", "4:8:10000000", true, 0, {0}, "4:8"},
         {"arm.k2", "4:8:log", true, 0, {0}, "4:8:log"},
         {"arm.joint_stiffness[2]", "4:6:3", false, 3, {4, 5, 6}, "4:6:3"},
         {"arm.joint_stiffness[2]", "4.5,6", false, 2, {4.5, 6}, "4.5,6"},
@@ -238,6 +241,7 @@ static void values_and_texts_are_those_that_were_asked_for(void **state)
     check_refused("arm.k2", "5,3,5", false, "twice");
     check_refused("arm.k2", "3,5,5", false, "twice");
     check_refused("arm.links", "2:4:9:log", false, "9 values give 2 twice");
+    check_refused("arm.k2", "4:8:10000001", true, "2 to 10000000");
     check_refused("arm.k2", "4:5:6:log:7", false, "a:b:n");
     check_refused("arm.k2", "4:5:6:7", true, "a:b or a:b:n");
     check_refused("arm.k2", "4:log", true, "log");

@@ -117,7 +117,6 @@ typedef struct leader {
     led_rank *ranks; // by number; 0 is unused
     size_t next;     // the first piece that may be wanted
     double each;     // a piece took on the average of late, 0: not known [s]
-    bool closed;     // nothing more is handed out
     char *buffer;    // for a message with results
     status code;
     fault *fault;
@@ -127,11 +126,11 @@ typedef struct leader {
 static bool next_piece(leader *l, size_t *piece)
 {
     const pool_work *w = l->work;
-    l->closed = l->closed || l->code != STATUS_OK || (w->stop != NULL && *w->stop);
+    const bool closed = l->code != STATUS_OK || (w->stop != NULL && *w->stop);
     while (l->next < w->count && l->done != NULL && l->done[l->next]) {
         l->next++;
     }
-    if (l->closed || l->next >= w->count) {
+    if (closed || l->next >= w->count) {
         return false;
     }
     *piece = l->next++;
