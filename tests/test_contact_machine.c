@@ -92,6 +92,27 @@ static void a_face_starts_with_the_arm(void **state)
     motion_destroy(r.motion);
 }
 
+// How fast a face is met decides whether the arm bounces: one that flees is met slowly.
+static void a_face_that_flees_is_met_slowly(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        moving_rod r = start_rod(SETTINGS(
+            "arm.links=1", "wall.contact=kelvin-voigt", "wall.stiffness=1e4", "wall.mass=0.5",
+            "wall.restitution=0.5", "method.rest_speed=0.02", "initial.velocity=0.2"));
+        motion *m = r.motion;
+        const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+        const double met = i == 0 ? 0.01 : 0.03;
+        m->state[SLOT_FACE_VELOCITY] = chain_penetration_rate(&r.arm, q, w) - met;
+        motion_report impact = {.event = MOTION_IMPACT};
+        motion_apply(&r.arm, m, &impact);
+        const double left = chain_penetration_rate(&r.arm, q, w) - m->state[SLOT_FACE_VELOCITY];
+        check_relative(impact.speed, met, 1e-9);
+        check_close(left, i == 0 ? 0 : -0.5 * met, 1e-12);
+        motion_destroy(m);
+    }
+}
+
 static void a_plastic_impact_stops_the_rod_and_holds_it(void **state)
 {
     (void)state;
@@ -508,6 +529,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_state_at_the_start_follows_from_where_the_arm_is),
         cmocka_unit_test(a_face_starts_with_the_arm),
+        cmocka_unit_test(a_face_that_flees_is_met_slowly),
         cmocka_unit_test(a_plastic_impact_stops_the_rod_and_holds_it),
         cmocka_unit_test(a_push_parts_arm_and_face),
         cmocka_unit_test(an_elastic_impact_turns_the_rod_back),

@@ -71,7 +71,7 @@ static const struct {
 static void steps_find_what_series_find(void **state)
 {
     (void)state;
-    int of[MOTION_SLIP + 1] = {0}, far = 0, total = 0;
+    int of[MOTION_SLIP + 1] = {0}, far[MOTION_SLIP + 1] = {0}, total[MOTION_SLIP + 1] = {0};
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
         static found exact[MOST], stepped[MOST];
         const int count = events_of(runs[i].settings, NULL, 1e-3, runs[i].until, exact);
@@ -90,23 +90,50 @@ static void steps_find_what_series_find(void **state)
                 // superlinear, if the function does not begin very close to zero
                 const double since = e > 0 ? exact[e].time - exact[e - 1].time : exact[e].time;
                 check_below(stepped[e].looks, since > 3 * step ? 30 : 80);
-                far += since > 3 * step;
-                total += since > 3 * step ? stepped[e].looks : 0;
+                far[stepped[e].event] += since > 3 * step;
+                total[stepped[e].event] += since > 3 * step ? stepped[e].looks : 0;
             }
         }
     }
 
-    // of every kind there were some
+    // of every kind there were some, and few looks on the average; where a hub breaks away the
+    // slopes are not known, which the first guess otherwise goes by
     for (int event = MOTION_IMPACT; event <= MOTION_SLIP; event++) {
         assert_true(of[event] > 0);
+        check_below(total[event], (event == MOTION_SLIP ? 9 : 7.5) * far[event]);
     }
-    check_below(total, 8 * far);
+}
+
+// A rod that is pulled back reaches the wall and would be in front of it again when the step ends.
+static void a_touch_between_the_ends_of_a_step_is_found(void **state)
+{
+    (void)state;
+    const double wall = 0.1, reach[] = {0.5, 0.9, 0.99};
+    for (int i = 0; i < 3; i++) {
+        // it turns back after 2 ms, when `reach` of its way leads to the wall
+        parameters p =
+            fixture_parameters(SETTINGS("arm.links=1", "motor.voltage=-2", "motor.stiction=0"));
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create_by(&a, &p.method, &explicit_engine);
+        motion_start(&a, m, 0, 0);
+        const double turn = 2e-3, pull = -state_accelerations(m, m->state)[0];
+        const double way = pull * turn * turn / 2, touch = turn * (1 - sqrt(1 - reach[i]));
+        motion_start(&a, m, wall - reach[i] * way, pull * turn);
+        motion_report report;
+        assert_int_equal(motion_step(&a, m, 0.1, 2 * turn, &report), STATUS_OK);
+        assert_int_equal(report.event, MOTION_IMPACT);
+        check_relative(m->state[SLOT_TIME], touch, 0.01); // but for the friction
+        check_close(m->state[SLOT_GAP], 0, 1e-15);
+        motion_destroy(m);
+    }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_find_what_series_find),
+        cmocka_unit_test(a_touch_between_the_ends_of_a_step_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,6 +1,7 @@
 #include "src/rig/keeper.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -30,7 +31,7 @@ static void kill_children(void)
 
     // each number ends with a space, the last one too
     for (ssize_t i = 0; i < length; i++) {
-        if (text[i] >= '0' && text[i] <= '9') {
+        if (isdigit((unsigned char)text[i])) {
             child = 10 * child + (text[i] - '0');
         } else {
             if (child > 0) {
