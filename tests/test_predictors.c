@@ -121,6 +121,25 @@ static void commands_after_the_touch_count_while_it_lasts(void **state)
     }
 }
 
+// A command acts from its own instant on, not from that of the next sample, a tenth of a radian
+// later: the later more voltage comes, by half a millisecond each time, the less the arm presses.
+static void a_command_counts_from_its_own_instant(void **state)
+{
+    (void)state;
+    enum { STEPS = 24 };
+    const parameters p = fixture_parameters(NULL);
+    const double more[] = {3 * p.motor.voltage};
+    double force[STEPS + 1];
+    for (int i = 0; i <= STEPS; i++) {
+        const double when[] = {0.02 + 5e-4 * i};
+        force[i] = predicted(PREDICTOR_LINEARISED, 1, when, more).force;
+    }
+    const double usual = (force[0] - force[STEPS]) / STEPS;
+    for (int i = 0; i < STEPS; i++) {
+        check_below(force[i + 1], force[i] - 0.2 * usual);
+    }
+}
+
 static void who_cannot_answer_says_why(void **state)
 {
     (void)state;
@@ -199,6 +218,7 @@ int main(void)
         cmocka_unit_test(the_linearised_arm_says_what_it_lacks),
         cmocka_unit_test(commands_after_the_touch_count_while_it_lasts),
         cmocka_unit_test(the_row_before_contact_is_asked_about),
+        cmocka_unit_test(a_command_counts_from_its_own_instant),
         cmocka_unit_test(who_cannot_answer_says_why),
         cmocka_unit_test(a_state_that_is_not_finite_fails_with_a_sentence),
     };
