@@ -115,7 +115,8 @@ static void follow_sign(const flight *f, const responses *r, int n, double weigh
 {
     *tip = *press = 0;
     for (int k = 1; k <= n; k++) {
-        double torque = sense * (r->press[k] - weight * r->tip[k]) > 0 ? f->torque : -f->torque;
+        const bool forward = (r->press[k] > weight * r->tip[k]) == (sense > 0);
+        const double torque = forward ? f->torque : -f->torque;
         *tip += torque * r->tip[k];
         *press += torque * r->press[k];
     }
