@@ -236,6 +236,32 @@ static void a_reader_that_left_is_told_from_a_full_disk(void **state)
     fclose(stream);
 }
 
+// Where the standard input is closed a file gets its descriptor, and is written all the same, whole
+// or in its place.
+static void a_file_may_have_the_first_descriptor(void **state)
+{
+    (void)state;
+    const char *const names[] = {"first", "/dev/null"};
+    const int input = dup(0);
+    assert_true(input > 0);
+    for (int i = 0; i < 2; i++) {
+        whole_file w;
+        fault f = {0};
+        close(0);
+        const status opened = whole_file_open(&w, names[i], &f);
+        if (opened == STATUS_OK) {
+            fputs("text", w.stream);
+        }
+        const status written = opened == STATUS_OK ? whole_file_commit(&w, &f) : opened;
+        dup2(input, 0);
+        assert_int_equal(written, STATUS_OK);
+    }
+    close(input);
+    assert_holds("first", "text");
+    assert_int_equal(files(), 1);
+    unlink("first");
+}
+
 // A write that failed at once leaves nothing to be flushed, and is still a failure.
 static void a_failure_before_the_last_flush_is_one(void **state)
 {
@@ -577,6 +603,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_written_is_said_beforehand),
         cmocka_unit_test(a_reader_that_left_is_told_from_a_full_disk),
         cmocka_unit_test(a_failure_before_the_last_flush_is_one),
+        cmocka_unit_test(a_file_may_have_the_first_descriptor),
         cmocka_unit_test(why_a_write_failed_is_known_at_the_end),
         cmocka_unit_test(what_killed_runs_left_goes),
         cmocka_unit_test(a_strangers_link_is_not_followed),
