@@ -268,6 +268,19 @@ static void damping_by_mode_is_followed(void **state)
     check_relative(a.fastest_decay, 1.05 * 2 * 0.9 * free[1] * free[1] / held, 1e-5);
 }
 
+// Set up where a longer, stiffer arm was, an arm has nothing of that.
+static void an_arm_has_nothing_of_the_one_before(void **state)
+{
+    (void)state;
+    const parameters stiff =
+        fixture_parameters(SETTINGS("arm.links=4", "arm.joint_stiffness=9,500,500"));
+    const parameters soft = fixture_parameters(SETTINGS("arm.links=3", "arm.joint_stiffness=7,5"));
+    arm a;
+    arm_init(&a, &stiff);
+    arm_init(&a, &soft);
+    check_close(a.joint_stiffness, 7, 0);
+}
+
 // The longest chain is as good as a beam: w1 = 1.8751^2 sqrt(EI / (m L^3)), with EI = k2 L / 2.
 static void the_longest_chain_has_the_damping_of_a_beam(void **state)
 {
@@ -412,6 +425,7 @@ int main(void)
         cmocka_unit_test(any_arm_has_the_damping_asked_for),
         cmocka_unit_test(whatever_decays_faster_is_followed),
         cmocka_unit_test(damping_by_mode_is_followed),
+        cmocka_unit_test(an_arm_has_nothing_of_the_one_before),
         cmocka_unit_test(the_longest_chain_has_the_damping_of_a_beam),
         cmocka_unit_test(the_highest_frequency_bounds_the_modes),
         cmocka_unit_test(an_overdamped_mode_decays_by_the_roots_of_its_equation),
