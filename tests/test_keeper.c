@@ -54,6 +54,7 @@ static void the_status_of_a_program_that_ended_is_told(void **state)
     assert_int_equal(ended("exit 7"), 7);
     assert_int_equal(ended("no-such-program-here"), 127);
     assert_int_equal(ended("kill -TERM $$"), 128 + SIGTERM);
+    assert_int_equal(ended("sleep 0.4; exit 5"), 5); // it may take its time
     assert_int_equal(open_descriptors(), before);
 }
 
