@@ -275,8 +275,7 @@ KERNEL void evaluate(coefficients x, taylor_form form, taylor_instants *at)
 
     // where the links point, and what follows from that
     real s[2], c[2];
-    sine_cosine(q[1], &s[0], &c[0]);
-    sine_cosine(q[2], &s[1], &c[1]);
+    sines_cosines(q + 1, s, c);
     gap_of(x, form.point, s, c, w + 1, al + 1, at);
     energies_of(x, form.hub_spring, s, c, q, w, at);
 }

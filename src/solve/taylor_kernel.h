@@ -111,6 +111,68 @@ KERNEL real gap_term(const factors *x, ptrdiff_t n, real l, const int point)
     return point ? l * PART(DIRECTIONS(x, n), 1) - S2 : -(PART(DIRECTION1(x, n), 1) + S2);
 }
 
+// What a stride leaves of the function that the wall has watched: `count` terms of the gap, or in
+// contact of the force. Little work tells nearly always that it stays above zero.
+KERNEL void bound_wall(real *block, const int contact, const real *wall, int count, mask jumped)
+{
+    const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
+    const real value = zero + (contact ? EDGE_VALUE : EDGE_GAP);
+    const bounds by_terms = bounds_of(wall, count, h);
+    const real least = by_terms.low - choose(jumped, value, zero);
+    const mask clear = MASK(least > 0);
+    block[AT_WALL_LEAST] = least;
+    block[AT_FORCE_MOST] = by_terms.high;
+    block[AT_WALL_ROOT] = zero - 1.0;
+    if (!any(~clear)) {
+        return;
+    }
+
+    // else piece by piece
+    const course near = course_of(wall, count, h);
+    const real lacking = contact ? zero : EDGE_RATE + LEFT_OUT * (block[AT_EDGE_RATE] - EDGE_RATE);
+    const edge_limits edge = {value, zero + EDGE_RATE, greater(lacking, zero + EDGE_MORE)};
+    const real first = least_at_first(&near, wall, one, h, jumped, &edge);
+    block[AT_WALL_LEAST] = choose(clear, least, least_of(&near, one, first));
+    block[AT_FORCE_MOST] = choose(clear, by_terms.high, highest(&near));
+    if (any(~MASK(block[AT_WALL_LEAST] > 0))) {
+        const watched_course gone = {wall, count, &near, one, first, h, jumped};
+        block[AT_WALL_ROOT] = first_root(&gone);
+    }
+}
+
+// The same of the hub: of its velocity, or where it is stuck of what holds it.
+KERNEL void bound_hub(real *block, const real *rates, const real *hold, int order, mask stuck,
+                      mask jumped)
+{
+    const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
+    const real sense = choose(MASK(block[AT_FRICTION] < 0), -one, one);
+    const bounds by_terms = bounds_of(rates, order + 1, h);
+    const real least = choose(MASK(sense < 0), -by_terms.high, by_terms.low);
+    const mask clear = MASK(least > 0) & ~stuck;
+    block[AT_HUB_LEAST] = least;
+    block[AT_HUB_ROOT] = zero - 1.0;
+    if (!any(~clear)) {
+        return;
+    }
+
+    const course turning = course_of(rates, order + 1, h);
+    const edge_limits edge = {zero, block[AT_EDGE_RATE], zero + EDGE_MORE};
+    const real first = least_at_first(&turning, rates, sense, h, jumped, &edge);
+    real left = choose(clear, least, least_of(&turning, sense, first));
+    if (any(stuck)) {
+        const course torque = course_of(hold, order, h);
+        const real low = lowest(&torque, torque.start - torque.off);
+        const real most = greater(highest(&torque), -low);
+        const real spared = choose(jumped, zero + EDGE_VALUE, zero);
+        left = choose(stuck, block[AT_STICTION] - most - spared, left);
+    }
+    block[AT_HUB_LEAST] = left;
+    if (any(~stuck & ~MASK(left > 0))) {
+        const watched_course gone = {rates, order + 1, &turning, sense, first, h, jumped};
+        block[AT_HUB_ROOT] = choose(stuck, zero - 1.0, first_root(&gone));
+    }
+}
+
 KERNEL int series(real *block, const int contact, const int point, const int hub_spring,
                   bool damped)
 {
@@ -150,9 +212,10 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         q0[0] = block[AT_START_ANGLE];
         w0[0] = block[AT_START_VELOCITY];
     }
-    real sine, cosine, s0, c0;
-    sine_cosine(q2[0] - q1[0], &s0, &c0);
-    sine_cosine(q2[0], &sine, &cosine);
+    const real turned_by[2] = {q2[0] - q1[0], q2[0]};
+    real sines[2], cosines[2];
+    sines_cosines(turned_by, sines, cosines);
+    const real s0 = sines[0], c0 = cosines[0], sine = sines[1], cosine = cosines[1];
     const real reach_x = point ? block[AT_WALL_X] : l * block[AT_WALL_X];
     const real reach_y = point ? block[AT_WALL_Y] : l * block[AT_WALL_Y];
     const real S20 = reach_x * sine - reach_y * cosine;
@@ -203,10 +266,12 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         // directions of the next order end what the last pass has left open
         const double share = inverse[n + 1];
         const real hub = hub_spring ? w0[n] : rate1;
-        v[n] = rate2 - rate1;
-        keep_rates(&x, n, rate1, rate2);
+        const real bend_rate = rate2 - rate1;
+        keep_rates(&x, n, bend_rate, rate1, rate2);
         ADD_TURNING(sum, &x, n, n - 1);
-        turn(&sum.turning, share, &DIRECTIONS(&x, n + 1));
+        four next;
+        turn(&sum.turning, share, &next);
+        DIRECTIONS(&x, n + 1) = next;
         if (!point) {
             ADD_TURNING1(sum, &x, n, n - 1);
             turn_one(&sum.turning1, share, &DIRECTION1(&x, n + 1));
@@ -232,11 +297,11 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         }
         product = PART(sum.products, 1) + rate1 * first2;
         hub_square[n] = PART(sum.products, 3) + hub * first_hub;
-        const real swung = PART(sum.products, 0) + PART(DIRECTIONS(&x, n + 1), 0) * first2;
+        const real swung = PART(sum.products, 0) + PART(next, 0) * first2;
         const real turned = s0 * product + PART(sum.products, 2), bent = PART(sum.turning, 0);
 
         // derivatives of the momenta without what f_n and these give
-        const real pull = k * (q2[n] - q1[n]) + kd * v[n];
+        const real pull = k * (q2[n] - q1[n]) + kd * bend_rate;
         const real driven = n == 0 ? drive : zero;
         real push1 = pull, push2 = -pull;
         if (hub_spring) {
@@ -342,8 +407,7 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
 
     // the gap, as far as the angles are known
     if (!contact) {
-        v[order] = w2[order] - w1[order];
-        keep_rates(&x, order, w1[order], w2[order]);
+        keep_rates(&x, order, w2[order] - w1[order], w1[order], w2[order]);
         ADD_TURNING(sum, &x, order, order - 1);
         turn(&sum.turning, inverse[order + 1], &DIRECTIONS(&x, order + 1));
         if (!point) {
@@ -388,44 +452,10 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     }
     block[AT_ALLOWED] = h;
 
-    // what the stride leaves of the wall's function and the hub's
-    const real one = zero + 1.0, edge_rate = block[AT_EDGE_RATE];
-    const mask jumped = MASK(edge_rate >= 0);
-    const real *wall = contact ? f : gap;
-    const course near = course_of(wall, contact ? (int)order : (int)order + 2, h);
-    const real lacking = contact ? zero : EDGE_RATE + LEFT_OUT * (edge_rate - EDGE_RATE);
-    const edge_limits wall_edge = {zero + (contact ? EDGE_VALUE : EDGE_GAP), zero + EDGE_RATE,
-                                   greater(lacking, zero + EDGE_MORE)};
-    const real wall_first = least_at_first(&near, wall, one, h, jumped, &wall_edge);
-    block[AT_WALL_LEAST] = least_of(&near, one, wall_first);
-    block[AT_FORCE_MOST] = highest(&near);
-    const real *hub_rates = hub_spring ? w0 : w1;
-    const course turning = course_of(hub_rates, (int)order + 1, h);
-    const real sense = choose(MASK(block[AT_FRICTION] < 0), -one, one);
-    const edge_limits hub_edge = {zero, edge_rate, zero + EDGE_MORE};
-    const real hub_first = least_at_first(&turning, hub_rates, sense, h, jumped, &hub_edge);
-    real left = least_of(&turning, sense, hub_first);
-    if (sticks) {
-        const course torque = course_of(hold, (int)order, h);
-        const real low = lowest(&torque, torque.start - torque.off);
-        const real most = greater(highest(&torque), -low);
-        const real spared = choose(jumped, zero + EDGE_VALUE, zero);
-        left = choose(stuck, block[AT_STICTION] - most - spared, left);
-    }
-    block[AT_HUB_LEAST] = left;
-
-    // and where it ends in between
-    block[AT_WALL_ROOT] = block[AT_HUB_ROOT] = zero - 1.0;
-    if (any(~MASK(block[AT_WALL_LEAST] > 0))) {
-        const watched_course gone = {
-            wall, contact ? (int)order : (int)order + 2, &near, one, wall_first, h, jumped};
-        block[AT_WALL_ROOT] = first_root(&gone);
-    }
-    if (any(~stuck & ~MASK(left > 0))) {
-        const watched_course gone = {hub_rates, (int)order + 1, &turning, sense, hub_first,
-                                     h,         jumped};
-        block[AT_HUB_ROOT] = choose(stuck, zero - 1.0, first_root(&gone));
-    }
+    // what the stride leaves of the wall's function and the hub's, and where it ends in between
+    const mask jumped = MASK(block[AT_EDGE_RATE] >= 0);
+    bound_wall(block, contact, contact ? f : gap, contact ? (int)order : (int)order + 2, jumped);
+    bound_hub(block, hub_spring ? w0 : w1, hold, (int)order, stuck, jumped);
     return (int)order;
 }
 

@@ -92,3 +92,22 @@ KERNEL void sine_cosine(real x, real *sine, real *cosine)
         *cosine = choose(left, -b, b);
     }
 }
+
+// The same of two angles: those of a single arm share a vector.
+KERNEL void sines_cosines(const real x[2], real sine[2], real cosine[2])
+{
+#if LANES == 1
+    typedef double two __attribute__((vector_size(16)));
+    if (fabs(x[0]) <= 0.78539816339744831 && fabs(x[1]) <= 0.78539816339744831) {
+        const two r = {x[0], x[1]};
+        two s, c;
+        SINCOS_NEAR_ZERO(two, r, s, c);
+        memcpy(sine, &s, sizeof s);
+        memcpy(cosine, &c, sizeof c);
+        return;
+    }
+#endif
+    for (int i = 0; i < 2; i++) {
+        sine_cosine(x[i], &sine[i], &cosine[i]);
+    }
+}

@@ -179,9 +179,10 @@ KERNEL real square(const real *x, int n)
 
 // What the newest coefficients are to the products, where that is not read from the series.
 #if LANES == 1
-KERNEL void keep_rates(factors *x, ptrdiff_t n, real w1, real w2)
+KERNEL void keep_rates(factors *x, ptrdiff_t n, real v, real w1, real w2)
 {
-    x->of[n].rates = FOUR(x->v[n], x->v[n], w2, w2);
+    x->v[n] = v;
+    x->of[n].rates = FOUR(v, v, w2, w2);
     x->of[n].rate1 = TWO(w1, w1);
 }
 
@@ -203,9 +204,10 @@ KERNEL void keep_force(factors *x, ptrdiff_t n, real f)
     x->of[n].forces = TWO(f, f);
 }
 #else
-KERNEL void keep_rates(factors *x, ptrdiff_t n, real w1, real w2)
+KERNEL void keep_rates(factors *x, ptrdiff_t n, real v, real w1, real w2)
 {
-    (void)x, (void)n, (void)w1, (void)w2;
+    x->v[n] = v;
+    (void)w1, (void)w2;
 }
 
 KERNEL void keep_products(factors *x, ptrdiff_t n, real w1, real w2, real coupled, real hub)
