@@ -109,17 +109,6 @@ static status cut_step(const arm *a, motion *m, double step, status tried, doubl
     return s == STATUS_OK ? s : step_to_event(a, m, h, first, any);
 }
 
-// A step of an arm that is held still: time passes up to the cut or by h [s], and its force stays
-// the same.
-static status rest(const arm *a, motion *m, double wanted, double *h)
-{
-    *h = smaller(m->cut - m->state[SLOT_TIME], wanted);
-    if (m->state[SLOT_CONTACT] != 0) {
-        motion_note_force(m, m->state[SLOT_TIME], m->state[SLOT_FORCE]);
-    }
-    return motion_try_step(a, m, *h);
-}
-
 // A step of a stepping engine, which locates events and peaks by further, shorter steps.
 static status tried_step(const arm *a, motion *m, double step, double wanted, double *h,
                          watch *first, bool *any)
@@ -277,6 +266,24 @@ static bool glide(const arm *a, motion *m, double until, double step)
     return true;
 }
 
+// The step of an arm that is held still: time passes up to `until` or the cut [s], and its force
+// stays the same. m->trial gets its start.
+static void rest(motion *m, double until, double step)
+{
+    double *state = m->state;
+    const double now = state[SLOT_TIME], h = smaller(m->cut - now, until - now);
+    if (state[SLOT_CONTACT] != 0) {
+        motion_note_force(m, now, state[SLOT_FORCE]);
+    }
+    memcpy(m->trial, state, (size_t)m->size * sizeof *state);
+    state[SLOT_TIME] += h;
+    state_quadratures(m, state)[QUADRATURE_FORCE] += h * state[SLOT_FORCE];
+    m->reached = unknown_energy;
+    m->made = h;
+    count_step(m, state[SLOT_TIME] - now, step);
+    meet_stop(m, until);
+}
+
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL && step > 0);
@@ -290,15 +297,17 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     if ((m->ahead.known || !motion_held_still(m)) && glide(a, m, until, step)) {
         return STATUS_OK;
     }
+    if (motion_held_still(m)) {
+        rest(m, until, step);
+        return STATUS_OK;
+    }
 
     // as far as accuracy allows, the cut, or the first event
     double h;
     watch first = WATCH_GAP;
     bool any = false;
     status s;
-    if (motion_held_still(m)) {
-        s = rest(a, m, until - m->state[SLOT_TIME], &h);
-    } else if (engine_is_dense(m->engine)) {
+    if (engine_is_dense(m->engine)) {
         s = dense_stride(a, m, until, step, &h, &first, &any);
     } else {
         double wanted = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step);
