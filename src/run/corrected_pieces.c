@@ -202,8 +202,9 @@ static status keep_force(corrected_run *c, const way *from, const way *to, doubl
                                                          .mean = mean});
 }
 
-// Keeps the force over the step just made, in pieces over which it is nearly a parabola.
-static status record_force(corrected_run *c, const force_step *whole)
+// Keeps the force over the step just made, in pieces over which it is nearly a parabola: so many
+// where nothing decays.
+static status record_force(corrected_run *c, const force_step *whole, int pieces)
 {
     recording *r = c->recording;
     const motion *m = c->motion;
@@ -226,12 +227,11 @@ static status record_force(corrected_run *c, const force_step *whole)
     }
 
     // what vibrates
-    double length = m->made;
     if (rest.start > whole->start) {
-        length = whole->end - rest.start;
+        const double length = whole->end - rest.start;
+        pieces = pieces_of_step(c, length, FORCE_REACH);
         rest.mean = (state_quadratures(m, m->state)[QUADRATURE_FORCE] - before) / length;
     }
-    const int pieces = pieces_of_step(c, length, FORCE_REACH);
     return pieces > 1 ? record_equal_pieces(c, &rest, before, pieces) : recording_add_step(r, rest);
 }
 
@@ -272,16 +272,25 @@ status corrected_follow_flight(corrected_run *c, const way *to)
     return s;
 }
 
-// Lets the sensors follow the arm over the step just made, or over what is left of it.
-static status follow_with_sensors(corrected_run *c, const force_step *whole)
+// Lets the sensors follow the arm over the step just made, or over what is left of it. One piece: a
+// parabola represents the force over all of it.
+static status follow_with_sensors(corrected_run *c, const force_step *whole, bool one_piece)
 {
     const motion *m = c->motion;
+    sensors *felt = &c->recording->rig->sensors;
     const step_under_way *on = &c->under_way;
     const bool rest = on->goes_on && on->sensed.time > whole->start;
     const bool pressed = whole->first != 0 || whole->last != 0 || whole->mean != 0;
-    if (!pressed && sensors_at_rest(&c->recording->rig->sensors)) {
+    if (!pressed && sensors_at_rest(felt)) {
         return STATUS_OK;
     }
+    if (one_piece && !rest) {
+        const sensed_motion first = corrected_sensed_motion(c, m->trial);
+        const sensed_motion last = corrected_sensed_motion(c, m->state);
+        sensors_follow(felt, whole->end - whole->start, &first, &last, whole->mean);
+        return STATUS_OK;
+    }
+
     const way first = rest ? on->sensed : corrected_way_at(c, whole->start, m->trial);
     const way last = corrected_way_at(c, whole->end, m->state);
     return follow_to(c, first, &last, rest ? 0 : whole->mean);
@@ -290,6 +299,20 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole)
 status corrected_record_forces(corrected_run *c)
 {
     const force_step force = force_over_step(c->motion);
-    const status s = c->recording->rig != NULL ? follow_with_sensors(c, &force) : STATUS_OK;
-    return s == STATUS_OK && force.end > force.start ? record_force(c, &force) : s;
+
+    // most under a rig need not be cut in pieces, which are shorter for the force than for the
+    // sensors
+    const bool touches = c->motion->trial[SLOT_CONTACT] != 0;
+    const int pieces = touches ? pieces_of_step(c, c->motion->made, FORCE_REACH) : 0;
+    const bool one_piece = pieces == 1 && !decays_outrun(&c->arm);
+    if (c->recording->rig != NULL) {
+        const status s = follow_with_sensors(c, &force, one_piece);
+        if (s != STATUS_OK) {
+            return s;
+        }
+    }
+    if (!(force.end > force.start)) {
+        return STATUS_OK;
+    }
+    return one_piece ? recording_add_step(c->recording, force) : record_force(c, &force, pieces);
 }
