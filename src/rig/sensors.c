@@ -17,8 +17,9 @@
 static const double turn = 2 * 3.14159265358979323846; // [rad]
 
 // Draws numbers of the standard normal distribution by Marsaglia's polar method, some at a time, as
-// their logarithms and roots then need not wait for each other.
-static void draw_ahead(noise_source *n)
+// their logarithms and roots then need not wait for each other. Apart from the readings that take
+// them, which stay short.
+static __attribute__((noinline)) void draw_ahead(noise_source *n)
 {
     enum { PAIRS = NOISE_AHEAD / 2 };
     double x[PAIRS], y[PAIRS], r[PAIRS];
@@ -336,12 +337,13 @@ static double read_accelerometer(sensors *s, const sensed_motion *now)
 sensor_reading sensors_read(sensors *s, const sensed_motion *now)
 {
     const sensor_parameters *p = &s->p;
+
+    // what takes longest first
+    const double felt = felt_volts(s, lag_output(&s->fsr, now->force));
     see_angle(s, now->angle);
     double tachometer =
         convert(s, &s->noise, p->tachometer_gain * now->velocity * s->ripple, p->tachometer_noise);
-
-    double fsr =
-        convert(s, &s->noise, felt_volts(s, lag_output(&s->fsr, now->force)), p->fsr_noise);
+    double fsr = convert(s, &s->noise, felt, p->fsr_noise);
 
     // the others draw from noise of their own, in any order
     return (sensor_reading){.encoder = s->counted,

@@ -42,7 +42,7 @@ const char *hybrid_start_with_own(void *memory, const controller_setup *setup)
 
 static double sign(double x)
 {
-    return x > 0 ? 1 : x < 0 ? -1 : 0;
+    return (x > 0) - (x < 0);
 }
 
 // Stiffness of the hub in contact: 6 k2 in (5.13) as printed, 4 k2 once the spring is counted right
