@@ -241,7 +241,9 @@ static void cut_strides_go_on(void **state)
     }
 }
 
-// No watched function is anywhere below what its ends and the bound on its bend leave room for.
+// No watched function is anywhere below what its ends and the bound on its bend leave room for, and
+// none falls in a stride over which the kernel has it stay above zero, nor is the force above the
+// kernel's bound.
 static void the_bounds_hold(void **state)
 {
     (void)state;
@@ -273,6 +275,18 @@ static void the_bounds_hold(void **state)
                     double t = from + width * k / 16;
                     check_below(lower, e->look(&moving.arm, m, w, t).value + 1e-12);
                 }
+            }
+        }
+
+        const double *block = ((const taylor_stride *)m->memory)->lane.block;
+        const double least[] = {block[AT_WALL_LEAST], block[AT_HUB_LEAST]};
+        for (int k = 1; k <= 64; k++) {
+            const double t = h * k / 64;
+            for (int n = 0; n < 2; n++) {
+                assert_true(!(least[n] > 0) || e->look(&moving.arm, m, watched[n], t).value > 0);
+            }
+            if (contact) {
+                check_below(e->force_at(&moving.arm, m, t).value, block[AT_FORCE_MOST] + 1e-12);
             }
         }
         motion_destroy(m);
