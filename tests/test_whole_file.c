@@ -236,6 +236,38 @@ static void a_reader_that_left_is_told_from_a_full_disk(void **state)
     fclose(stream);
 }
 
+// Who reads the standard output may leave when he has enough; of any other pipe it is a failure.
+static void only_the_reader_of_the_standard_output_may_leave(void **state)
+{
+    (void)state;
+    int ends[2];
+    whole_file w;
+    fault f = {0};
+    signal(SIGPIPE, SIG_IGN);
+    assert_int_equal(pipe(ends), 0);
+    close(ends[0]);
+    fflush(stdout);
+    const int output = dup(1);
+    dup2(ends[1], 1);
+    const status opened = whole_file_open(&w, "-", &f);
+    fputs("text", opened == STATUS_OK ? w.stream : stderr);
+    const status written = opened == STATUS_OK ? whole_file_commit(&w, &f) : opened;
+    dup2(output, 1);
+    close(output);
+    clearerr(stdout);
+    assert_int_equal(written, STATUS_OK);
+
+    close(ends[1]);
+    assert_int_equal(mkfifo("pipe", 0600), 0);
+    const int reader = open("pipe", O_RDONLY | O_NONBLOCK);
+    assert_true(reader >= 0);
+    assert_int_equal(whole_file_open(&w, "pipe", &f), STATUS_OK);
+    close(reader);
+    fputs("text", w.stream);
+    assert_int_equal(whole_file_commit(&w, &f), STATUS_CANNOT_WRITE);
+    unlink("pipe");
+}
+
 // Where the standard input is closed a file gets its descriptor, and is written all the same, whole
 // or in its place.
 static void a_file_may_have_the_first_descriptor(void **state)
@@ -604,6 +636,7 @@ int main(void)
         cmocka_unit_test(a_reader_that_left_is_told_from_a_full_disk),
         cmocka_unit_test(a_failure_before_the_last_flush_is_one),
         cmocka_unit_test(a_file_may_have_the_first_descriptor),
+        cmocka_unit_test(only_the_reader_of_the_standard_output_may_leave),
         cmocka_unit_test(why_a_write_failed_is_known_at_the_end),
         cmocka_unit_test(what_killed_runs_left_goes),
         cmocka_unit_test(a_strangers_link_is_not_followed),
