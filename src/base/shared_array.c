@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-enum { LEAST_ELEMENTS = 256 };
+enum { LEAST_ELEMENTS = 64 };
 
 // All chunks of the program lie in one file without a name. An array maps those that it has side by
 // side, so that its elements are an ordinary array.
