@@ -235,7 +235,9 @@ status pool_run(const pool_work *work, int threads, fault *f)
 
     // on threads, or on this one if there are none to be had
     if (allocate(&p, each, threads)) {
-        int started = start_threads(&p, each, threads);
+        // a single thread that nobody waits for while it computes is this one
+        const bool alone = threads == 1 && work->tick == NULL;
+        int started = alone ? 0 : start_threads(&p, each, threads);
         code = started > 0 ? collect_results(&p, f) : work_alone(&p, &each[0], f);
         for (int i = 0; i < started; i++) {
             pthread_join(each[i].thread, NULL);
