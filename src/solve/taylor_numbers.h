@@ -6,6 +6,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
+#if defined __x86_64__
+#include <immintrin.h>
+#endif
 
 #include "src/base/sincos.h"
 #include "src/solve/by_width.h"
@@ -52,10 +55,18 @@ KERNEL real greater(real x, real y)
     return choose(MASK(x > y), x, y);
 }
 
+// Whether some lane of a mask is set: by the signs of all its lanes at once, where there is an
+// instruction for that.
 KERNEL bool any(mask m)
 {
 #if LANES == 1
     return m != 0;
+#elif LANES == 2 && defined __SSE2__
+    return _mm_movemask_pd((__m128d)m) != 0;
+#elif LANES == 4 && defined __AVX2__
+    return _mm256_movemask_pd((__m256d)m) != 0;
+#elif LANES == 8 && defined __AVX512DQ__
+    return _mm512_movepi64_mask((__m512i)m) != 0;
 #else
     int64_t some = 0;
     for (int i = 0; i < LANES; i++) {
