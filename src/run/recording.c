@@ -30,17 +30,6 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
     return s == STATUS_OK ? s : fault_set(f, s, "no address space for %zu rows", expected);
 }
 
-bool recording_is_abandoned(const recording *r)
-{
-    const atomic_bool *abandon = r->options->abandon;
-    return abandon != NULL && atomic_load_explicit(abandon, memory_order_relaxed);
-}
-
-bool recording_asked_to_stop(const recording *r)
-{
-    return run_monitor_stops(r->options->monitor) || recording_is_abandoned(r);
-}
-
 void recording_publish(const recording *r, double time)
 {
     run_monitor *m = r->options->monitor;

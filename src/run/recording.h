@@ -46,10 +46,17 @@ size_t recording_most_rows(size_t expected);
 status recording_open_trace(recording *r, int angle_count, fault *f);
 
 // Whether the run is to end at once.
-bool recording_is_abandoned(const recording *r);
+static inline bool recording_is_abandoned(const recording *r)
+{
+    const atomic_bool *abandon = r->options->abandon;
+    return abandon != NULL && atomic_load_explicit(abandon, memory_order_relaxed);
+}
 
 // Whether that, or whoever watches it wants it to stop.
-bool recording_asked_to_stop(const recording *r);
+static inline bool recording_asked_to_stop(const recording *r)
+{
+    return run_monitor_stops(r->options->monitor) || recording_is_abandoned(r);
+}
 
 // Publishes how far the run is to observers: all rows and events counted there are complete.
 void recording_publish(const recording *r, double time);

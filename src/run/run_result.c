@@ -13,11 +13,6 @@ void run_finish(run_result *result)
     result->before_impact = NULL;
 }
 
-bool run_monitor_stops(const run_monitor *monitor)
-{
-    return monitor != NULL && atomic_load_explicit(&monitor->stop, memory_order_relaxed);
-}
-
 void run_monitor_count(run_monitor *monitor)
 {
     if (monitor != NULL) {

@@ -34,7 +34,10 @@ typedef struct run_monitor {
 } run_monitor;
 
 // Whether somebody asked for the end; monitor may be NULL: nobody looks on.
-bool run_monitor_stops(const run_monitor *monitor);
+static inline bool run_monitor_stops(const run_monitor *monitor)
+{
+    return monitor != NULL && atomic_load_explicit(&monitor->stop, memory_order_relaxed);
+}
 
 // A piece of the work is over; monitor may be NULL.
 void run_monitor_count(run_monitor *monitor);

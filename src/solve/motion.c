@@ -317,13 +317,6 @@ double motion_vibration(const arm *a, motion *m, double *state)
     return wall > 0 || current > 0 ? sqrt(own * own + wall * wall + current * current) : own;
 }
 
-double motion_wall_energy(const arm *a, const motion *m, const double *state)
-{
-    return m->wall_has_face ? wall_face_energy(&a->wall, state_face(state))
-           : m->wall_gives  ? wall_stored_energy(&a->wall, -state[SLOT_GAP])
-                            : 0;
-}
-
 state_energy motion_energy(const arm *a, const motion *m, double *state)
 {
     const double *q = state_angles(m, state), *w = state_velocities(m, state);
@@ -335,17 +328,6 @@ double motion_energy_residual(const arm *a, const motion *m, double *state)
     const state_energy has = motion_energy(a, m, state);
     const double energy = has.kinetic + has.strain;
     return motion_unaccounted(m, state, energy + motion_wall_energy(a, m, state));
-}
-
-double motion_unaccounted(const motion *m, double *state, double energy)
-{
-    const double *quadrature = state_quadratures(m, state);
-    double stored = energy - m->start_energy;
-    double work = motion_motor_work(m, state) + state[SLOT_EXTERNAL_WORK];
-    double lost = state[SLOT_FRICTION_LOSS] + state[SLOT_IMPACT_LOSS] +
-                  quadrature[QUADRATURE_VISCOUS] + quadrature[QUADRATURE_DAMPING] +
-                  quadrature[QUADRATURE_WALL];
-    return stored + lost - work;
 }
 
 // --- a step of smooth motion ----------------------------------------------------------------

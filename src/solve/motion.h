@@ -346,7 +346,12 @@ double motion_vibration(const arm *a, motion *m, double *state);
 double motion_decay_length(const arm *a, double reach, double since);
 
 // Energy that a wall that gives holds, with that of its face's motion; 0 in a rigid one [J].
-double motion_wall_energy(const arm *a, const motion *m, const double *state);
+static inline double motion_wall_energy(const arm *a, const motion *m, const double *state)
+{
+    return m->wall_has_face ? wall_face_energy(&a->wall, state_face(state))
+           : m->wall_gives  ? wall_stored_energy(&a->wall, -state[SLOT_GAP])
+                            : 0;
+}
 
 // Energy of motion and of bending in a state of this motion.
 state_energy motion_energy(const arm *a, const motion *m, double *state);
@@ -357,4 +362,13 @@ double motion_energy_residual(const arm *a, const motion *m, double *state);
 
 // The same if the energy of the state is known already: kinetic and strain energy and that of a
 // wall that gives [J].
-double motion_unaccounted(const motion *m, double *state, double energy);
+static inline double motion_unaccounted(const motion *m, double *state, double energy)
+{
+    const double *quadrature = state_quadratures(m, state);
+    const double stored = energy - m->start_energy;
+    const double work = motion_motor_work(m, state) + state[SLOT_EXTERNAL_WORK];
+    const double lost = state[SLOT_FRICTION_LOSS] + state[SLOT_IMPACT_LOSS] +
+                        quadrature[QUADRATURE_VISCOUS] + quadrature[QUADRATURE_DAMPING] +
+                        quadrature[QUADRATURE_WALL];
+    return stored + lost - work;
+}
