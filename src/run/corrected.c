@@ -49,7 +49,7 @@ static status begin(corrected_run *c, fault *f)
     motion *m = c->motion;
     const parameters *p = &r->scenario->parameters;
     summary *s = &r->result->summary;
-    snprintf(s->method, sizeof s->method, "%s", m->engine->name);
+    memccpy(s->method, m->engine->name, 0, sizeof s->method - 1);
 
     if (motion_unresolved(&c->arm, m)) {
         decimal_print(

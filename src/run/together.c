@@ -117,10 +117,12 @@ static void fetch_run(const side_run *one)
     const motion *m = run->motion;
     fetch(m, sizeof *m);
     fetch(m->state, (size_t)m->size * sizeof *m->state);
+    fetch(m->trial, (size_t)m->size * sizeof *m->trial);
     fetch(one->lane, offsetof(taylor_lane, block[AT_ANGLE_0]));
     fetch(run, offsetof(corrected_run, arm.modal_damping));
     fetch(&one->recording.state, sizeof one->recording.state);
     fetch(&one->recording.result->summary.first_contact_s, SUMMARY_SHARE);
+    fetch(&one->recording.result->history.forces, sizeof(force_history));
 }
 
 // Makes the stride whose series are computed, and goes on.
