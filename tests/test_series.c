@@ -59,6 +59,21 @@ static void the_explicit_formula_gives_the_same(void **state)
     }
 }
 
+// One link on a hub spring moves by a linear law, and its strides are long: it turns by radians in
+// one, and what air takes is a series of sines of that.
+static void air_on_one_link_that_turns_far_closes_the_ledger(void **state)
+{
+    (void)state;
+    const char *const *settings =
+        SETTINGS("arm.links=1", "arm.hub_joint=spring", "arm.k1=4.94721", "arm.hub_inertia=0.0272",
+                 "arm.mass=0.0675", "arm.air_drag=0.0015", "arm.damping_ratio=0", "wall.kind=none",
+                 "motor.voltage=3.965", "motor.stiction=0", "motor.viscous_friction=0.05");
+    parameters p = fixture_parameters(settings);
+    chain_outcome o = chain_outcome_of(&(chain_start){&p, -0.083, 0, 0.6, 0.6, NULL});
+    assert_int_equal(o.status, STATUS_OK);
+    check_below(o.residual, 1e-12 * o.put_in);
+}
+
 // Random chain 61036: by the modes it was off by 29 times what may be, its ledger closed.
 static void a_chain_that_bounces_keeps_its_impacts(void **state)
 {
@@ -144,6 +159,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_explicit_formula_gives_the_same),
+        cmocka_unit_test(air_on_one_link_that_turns_far_closes_the_ledger),
         cmocka_unit_test(a_chain_that_bounces_keeps_its_impacts),
         cmocka_unit_test(every_width_of_vectors_gives_the_same_bits),
         cmocka_unit_test(strides_cut_short_make_no_difference),

@@ -272,8 +272,8 @@ static bool force_converges(const chain_series *s, double share)
 }
 
 // How far the last terms are small, as a share of the stride; 0 if they are not finite. In free
-// flight those of the gap's rate over the arm's length count, too: of a link that gathers speed the
-// velocity is a short polynomial, the gap the sine of one.
+// flight those of the gap's rate over the arm's length count, too, and in air those of the links'
+// velocities: of a link that gathers speed the rate is a short polynomial, the gap the sine of one.
 static double small_terms(const chain_series *s, const arm *a, double last_terms)
 {
     const chain_rows *r = &s->rows;
@@ -294,6 +294,14 @@ static double small_terms(const chain_series *s, const arm *a, double last_terms
         before = fmax(before, order * fabs(gap[order]) / reach);
         last = fmax(last, (order + 1) * fabs(gap[order + 1]) / reach);
         sum += last;
+    }
+    if (a->air_drag > 0) {
+        for (int k = 0; k < s->links; k++) {
+            const size_t at = chain_term(order - 1, chain_place(r, k));
+            const double speed = fmax(fabs(r->air_x[at]), fabs(r->air_y[at]));
+            before = fmax(before, speed / a->link_length);
+            sum += speed;
+        }
     }
     if (!isfinite(sum)) {
         return 0;
