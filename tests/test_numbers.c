@@ -101,7 +101,8 @@ static double some_number(random_generator *g, int i)
                         : value;
 }
 
-// What is written reads back to the last bit, and no number of one digit less does.
+// What is written reads back to the last bit, and no number of one digit less does; of those with
+// as many digits it is the nearest.
 static void digits_are_as_few_as_read_back(void **state)
 {
     (void)state;
@@ -112,7 +113,7 @@ static void digits_are_as_few_as_read_back(void **state)
         if (!isfinite(value) || value == 0) {
             continue;
         }
-        char text[NUMBER_TEXT], less[NUMBER_TEXT];
+        char text[NUMBER_TEXT], less[NUMBER_TEXT], nearest[NUMBER_TEXT];
         number_format(text, value);
         assert_true(strtod(text, NULL) == value);
 
@@ -123,6 +124,10 @@ static void digits_are_as_few_as_read_back(void **state)
         if (digits > 1 && digits <= 17 && strchr(text, 'e') != NULL) {
             snprintf(less, sizeof less, "%.*e", digits - 2, value);
             assert_true(strtod(less, NULL) != value);
+        }
+        if (digits > 0 && digits <= 17 && strchr(text, 'e') != NULL) {
+            snprintf(nearest, sizeof nearest, "%.*e", digits - 1, value);
+            assert_true(strtod(nearest, NULL) != value || strcmp(nearest, text) == 0);
         }
     }
 }
