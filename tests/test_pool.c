@@ -168,6 +168,21 @@ static void a_slow_piece_is_waited_for(void **state)
     assert_int_equal(t.last_ticks, 1);
 }
 
+// One thread is the calling one, unless that has ticks to give meanwhile.
+static void one_thread_without_ticks_is_the_calling_one(void **state)
+{
+    (void)state;
+    for (int ticks = 0; ticks < 2; ticks++) {
+        tally t = {.fail_at = 0};
+        pool_work w = work_on(&t);
+        w.tick = ticks > 0 ? tick : NULL;
+        started = 0;
+        assert_int_equal(pool_run(&w, 1, NULL), STATUS_OK);
+        assert_int_equal(started, ticks);
+        assert_int_equal(t.total, PIECES);
+    }
+}
+
 static void no_pieces_are_no_work(void **state)
 {
     (void)state;
@@ -222,6 +237,7 @@ int main(void)
         cmocka_unit_test(a_failure_ends_the_work_and_is_returned),
         cmocka_unit_test(a_stop_ends_it_early_without_a_fault),
         cmocka_unit_test(a_slow_piece_is_waited_for),
+        cmocka_unit_test(one_thread_without_ticks_is_the_calling_one),
         cmocka_unit_test(no_pieces_are_no_work),
         cmocka_unit_test(the_work_is_done_without_threads),
     };

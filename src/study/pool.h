@@ -36,8 +36,9 @@ typedef struct pool_work {
 } pool_work;
 
 // Does the work on up to `threads` threads (1 ... POOL_MOST_THREADS), which leave signals to the
-// calling one; on the calling one if none can be started. Returns when all threads have ended: what
-// collect or tick returned, STATUS_OK also when stopped, or STATUS_NO_MEMORY.
+// calling one; on the calling one if none can be started, or if one is enough and there is no tick.
+// Returns when all threads have ended: what collect or tick returned, STATUS_OK also when stopped,
+// or STATUS_NO_MEMORY.
 status pool_run(const pool_work *work, int threads, fault *f);
 
 // Frees a thread's scratch (may be NULL) and what it keeps.
