@@ -3,32 +3,6 @@
 
 #include "src/solve/taylor_products.h"
 
-// Bounds of a function over a stride.
-typedef struct bounds {
-    real low, high;
-} bounds;
-
-// Those of a polynomial for times from 0 to t that little work gives: its linear part is extreme at
-// an end, and the higher terms add at most the sum of their magnitudes. Rounding is allowed for. Of
-// more than two arms one nearly always needs closer bounds: there these say nothing.
-KERNEL bounds bounds_of(const real *terms, int count, real t)
-{
-    if (LANES > 2) {
-        return (bounds){(real){0} - 1.0, (real){0} + 1.0};
-    }
-    const real u = t * t;
-    const int pairs = count - count % 2;
-    real even = count % 2 == 0 ? (real){0} : magnitude(terms[count - 1]), odd = (real){0};
-    for (int n = pairs - 1; n >= 3; n -= 2) {
-        even = even * u + magnitude(terms[n - 1]);
-        odd = odd * u + magnitude(terms[n]);
-    }
-    const real bent = u * (even + t * odd), linear = terms[1] * t, end = terms[0] + linear;
-    const real off = (bent + magnitude(terms[0]) + magnitude(linear)) * 1e-12 + bent;
-    const mask falls = MASK(end < terms[0]);
-    return (bounds){choose(falls, end, terms[0]) - off, choose(falls, terms[0], end) + off};
-}
-
 // A function over a stride, which is looked at in four equal pieces.
 typedef struct course {
     real start;

@@ -111,29 +111,19 @@ KERNEL real gap_term(const factors *x, ptrdiff_t n, real l, const int point)
     return point ? l * PART(DIRECTIONS(x, n), 1) - S2 : -(PART(DIRECTION1(x, n), 1) + S2);
 }
 
-// What a stride leaves of the function that the wall has watched: `count` terms of the gap, or in
-// contact of the force. Little work tells nearly always that it stays above zero.
+// What a stride leaves of the function that the wall has watched, and where it ends in between:
+// `count` terms of the gap, or in contact of the force.
 KERNEL void bound_wall(real *block, const int contact, const real *wall, int count, mask jumped)
 {
     const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
     const real value = zero + (contact ? EDGE_VALUE : EDGE_GAP);
-    const bounds by_terms = bounds_of(wall, count, h);
-    const real least = by_terms.low - choose(jumped, value, zero);
-    const mask clear = MASK(least > 0);
-    block[AT_WALL_LEAST] = least;
-    block[AT_FORCE_MOST] = by_terms.high;
-    block[AT_WALL_ROOT] = zero - 1.0;
-    if (!any(~clear)) {
-        return;
-    }
-
-    // else piece by piece
     const course near = course_of(wall, count, h);
     const real lacking = contact ? zero : EDGE_RATE + LEFT_OUT * (block[AT_EDGE_RATE] - EDGE_RATE);
     const edge_limits edge = {value, zero + EDGE_RATE, greater(lacking, zero + EDGE_MORE)};
     const real first = least_at_first(&near, wall, one, h, jumped, &edge);
-    block[AT_WALL_LEAST] = choose(clear, least, least_of(&near, one, first));
-    block[AT_FORCE_MOST] = choose(clear, by_terms.high, highest(&near));
+    block[AT_WALL_LEAST] = least_of(&near, one, first);
+    block[AT_FORCE_MOST] = highest(&near);
+    block[AT_WALL_ROOT] = zero - 1.0;
     if (any(~MASK(block[AT_WALL_LEAST] > 0))) {
         const watched_course gone = {wall, count, &near, one, first, h, jumped};
         block[AT_WALL_ROOT] = first_root(&gone);
@@ -146,19 +136,10 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
 {
     const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
     const real sense = choose(MASK(block[AT_FRICTION] < 0), -one, one);
-    const bounds by_terms = bounds_of(rates, order + 1, h);
-    const real least = choose(MASK(sense < 0), -by_terms.high, by_terms.low);
-    const mask clear = MASK(least > 0) & ~stuck;
-    block[AT_HUB_LEAST] = least;
-    block[AT_HUB_ROOT] = zero - 1.0;
-    if (!any(~clear)) {
-        return;
-    }
-
     const course turning = course_of(rates, order + 1, h);
     const edge_limits edge = {zero, block[AT_EDGE_RATE], zero + EDGE_MORE};
     const real first = least_at_first(&turning, rates, sense, h, jumped, &edge);
-    real left = choose(clear, least, least_of(&turning, sense, first));
+    real left = least_of(&turning, sense, first);
     if (any(stuck)) {
         const course torque = course_of(hold, order, h);
         const real low = lowest(&torque, torque.start - torque.off);
@@ -167,6 +148,7 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
         left = choose(stuck, block[AT_STICTION] - most - spared, left);
     }
     block[AT_HUB_LEAST] = left;
+    block[AT_HUB_ROOT] = zero - 1.0;
     if (any(~stuck & ~MASK(left > 0))) {
         const watched_course gone = {rates, order + 1, &turning, sense, first, h, jumped};
         block[AT_HUB_ROOT] = choose(stuck, zero - 1.0, first_root(&gone));
