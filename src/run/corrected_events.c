@@ -125,7 +125,7 @@ static status record_applied_event(corrected_run *c, const motion_report *report
     summary *s = &r->result->summary;
     const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
 
-    // the event itself; one that never came leaves nothing
+    // the event itself; where a start on the wall was no touch, what follows has nothing to release
     status failed = STATUS_OK;
     if (report->event != MOTION_RELEASE || !isnan(s->first_contact_s)) {
         failed = record_event(r, m, kind_of(m, report), report);
