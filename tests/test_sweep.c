@@ -268,6 +268,24 @@ static void two_sweeps_do_not_write_to_one_file_at_once(void **state)
     unlink("busy.sqlite");
 }
 
+static void a_file_deleted_within_a_transaction_is_missed(void **state)
+{
+    (void)state;
+    sweep s;
+    fault f = {0};
+    must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
+    sweep_store *store = must_open("gone.sqlite", &s);
+    const summary result = {.peak_force_N = 2};
+    assert_int_equal(sweep_store_put(store, 0, &result, &f), STATUS_OK);
+    assert_int_equal(sweep_store_commit(store, &f), STATUS_OK);
+    assert_int_equal(sweep_store_put(store, 1, &result, &f), STATUS_OK);
+    unlink("gone.sqlite");
+    assert_int_equal(sweep_store_commit(store, &f), STATUS_CANNOT_WRITE);
+    assert_non_null(strstr(f.text, "'gone.sqlite' was deleted, moved or replaced"));
+    sweep_store_close(store);
+    sweep_finish(&s);
+}
+
 static void a_failed_run_is_a_row_with_its_message(void **state)
 {
     (void)state;
@@ -310,6 +328,7 @@ int main(void)
         cmocka_unit_test(rows_that_are_no_runs_are_refused),
         cmocka_unit_test(what_is_no_sweep_is_left_alone),
         cmocka_unit_test(two_sweeps_do_not_write_to_one_file_at_once),
+        cmocka_unit_test(a_file_deleted_within_a_transaction_is_missed),
         cmocka_unit_test(a_failed_run_is_a_row_with_its_message),
     };
     return cmocka_run_group_tests(tests, sweep_fixture_open, sweep_fixture_close) != 0;

@@ -35,12 +35,17 @@ status database_fault(const sweep_store *store, fault *f)
         return fault_set(f, STATUS_CANNOT_READ, "'%s' cannot be read: %s", path, why);
     }
     if (sqlite3_extended_errcode(store->database) == SQLITE_READONLY_DBMOVED) {
-        return fault_set(f, STATUS_CANNOT_WRITE,
-                         "'%s' was deleted, moved or replaced while runs were added to it; those "
-                         "since then are lost",
-                         path);
+        return database_moved_fault(store, f);
     }
     return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path, why);
+}
+
+status database_moved_fault(const sweep_store *store, fault *f)
+{
+    return fault_set(f, STATUS_CANNOT_WRITE,
+                     "'%s' was deleted, moved or replaced while runs were added to it; those since "
+                     "then are lost",
+                     store->path);
 }
 
 status database_execute(sweep_store *store, const char *sql, fault *f)

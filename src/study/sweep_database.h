@@ -39,6 +39,9 @@ status database_prepare_insert(sweep_store *store, sqlite3_stmt **insert, fault 
 // What the database complains about, as a fault.
 status database_fault(const sweep_store *store, fault *f);
 
+// That the file is no longer where it was opened.
+status database_moved_fault(const sweep_store *store, fault *f);
+
 // Executes statements that give no rows.
 status database_execute(sweep_store *store, const char *sql, fault *f);
 

@@ -147,5 +147,9 @@ status sweep_store_commit(sweep_store *store, fault *f)
     }
     status code = database_execute(store, "COMMIT", f);
     store->in_transaction = code != STATUS_OK;
-    return code;
+
+    // SQLite looks at the beginning of a transaction whether the file is still there
+    int moved = 0;
+    sqlite3_file_control(store->database, "main", SQLITE_FCNTL_HAS_MOVED, &moved);
+    return code != STATUS_OK || !moved ? code : database_moved_fault(store, f);
 }

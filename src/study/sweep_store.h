@@ -22,5 +22,5 @@ status sweep_store_open(sweep_store **store, const char *path, const sweep *s, f
 // Commits what is not committed and closes; NULL is nothing. Errors are lost here: commit first.
 void sweep_store_close(sweep_store *store);
 
-// Makes what was put permanent.
+// Makes what was put permanent. STATUS_CANNOT_WRITE also where the file was deleted or moved since.
 status sweep_store_commit(sweep_store *store, fault *f);
