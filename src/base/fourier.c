@@ -2,10 +2,17 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 
 #include "src/base/sincos.h"
 
 #define PI 3.14159265358979323846
+
+// For assertions, which a build without them does not ask.
+static inline bool is_power_of_two(size_t n)
+{
+    return n > 0 && (n & (n - 1)) == 0;
+}
 
 // Puts every number where its index with bits in reverse order says.
 static void reverse_bits(double *real, double *imaginary, size_t n)
@@ -31,7 +38,7 @@ static void reverse_bits(double *real, double *imaginary, size_t n)
 
 void fourier_transform(double *real, double *imaginary, size_t n)
 {
-    assert(real != NULL && imaginary != NULL && n > 0 && (n & (n - 1)) == 0);
+    assert(real != NULL && imaginary != NULL && is_power_of_two(n));
     reverse_bits(real, imaginary, n);
 
     // transforms of twice the length each time
@@ -55,7 +62,7 @@ void fourier_transform(double *real, double *imaginary, size_t n)
 
 void fourier_amplitudes(const double *series, size_t n, double *scratch, double *amplitude)
 {
-    assert(series != NULL && scratch != NULL && amplitude != NULL && n > 1 && (n & (n - 1)) == 0);
+    assert(series != NULL && scratch != NULL && amplitude != NULL && n > 1 && is_power_of_two(n));
     double *real = scratch, *imaginary = scratch + n, mean = 0, weight = 0;
     for (size_t i = 0; i < n; i++) {
         mean += series[i] / (double)n;

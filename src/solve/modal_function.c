@@ -4,8 +4,7 @@
 #include <string.h>
 
 #include "src/base/sincos.h"
-
-#define SLOW_TURN 1 // of a mode in the stride, or its decay, that the series takes [rad]
+#include "src/solve/modal_parts.h"
 
 // --- the functional ---------------------------------------------------------------------------
 
@@ -147,28 +146,6 @@ static void add_vibration(modal_function *f, const modal_vibrations *v, int mode
     f->sum.sine[e] = p * b - s * (a * b + turn * place);
 }
 
-// `weight` times the decay u' + rate u = n(t) from u = start, into an amplitude and the series'
-// derivatives: where it hardly decays in the stride that has all of it.
-static void add_decay(double rate, double length, double start, const double *n, double weight,
-                      double *amplitude, double *total)
-{
-    double g = start;
-    if (rate * length <= SLOW_TURN) {
-        for (int j = 0; j < MODAL_SERIES; j++) {
-            total[j] += weight * g;
-            g = (j < MODAL_NODES ? n[j] : 0) - rate * g;
-        }
-        return;
-    }
-    const double per_rate = 1 / rate;
-    g = 0;
-    for (int j = MODAL_NODES - 1; j >= 0; j--) {
-        g = (n[j] - g) * per_rate;
-        total[j] += weight * g;
-    }
-    *amplitude = weight * (start - g);
-}
-
 // An overdamped mode from x = 0 with a speed under n(t). With decays a and b, u = x' + b x and
 // v = x' + a x decay at a and b, x = (u - v)/(b - a) and x' = (b v - a u)/(b - a). Apart, since one
 // may be slow and the other fast by any factor.
@@ -178,8 +155,9 @@ static void add_overdamped(modal_function *f, const modal_vibrations *v, int mod
     const int e = v->entry[mode], other = e + v->overdamped;
     const double slow = v->decay[e], fast = v->decay[other], per = 1 / (fast - slow);
     const double p = f->place[mode], s = f->speed[mode], length = f->sum.length;
-    add_decay(slow, length, speed, n, per * (p - s * slow), &f->sum.cosine[e], total);
-    add_decay(fast, length, speed, n, -per * (p - s * fast), &f->sum.cosine[other], total);
+    const modal_decay_course at[2] = {{slow, length, speed, n}, {fast, length, speed, n}};
+    modal_add_decay(&at[0], per * (p - s * slow), &f->sum.cosine[e], total);
+    modal_add_decay(&at[1], -per * (p - s * fast), &f->sum.cosine[other], total);
 }
 
 // The function on the whole stride from its value, functional and rest.
@@ -217,7 +195,8 @@ static void fit_sum(modal_function *f, const modal_stride *s)
                 g[j + 1] = s->drift[j][k];
             }
             g[++terms] = 0;
-        } else if (v->entry[k] < 0 || (rate * h <= SLOW_TURN && 2 * damping * h <= SLOW_TURN)) {
+        } else if (v->entry[k] < 0 ||
+                   (rate * h <= MODAL_SLOW_TURN && 2 * damping * h <= MODAL_SLOW_TURN)) {
             slow_mode(damping, rate, speed, n, g);
             terms = MODAL_SERIES;
             sum->first =

@@ -35,25 +35,17 @@ static void add_transient(hub_motion *h, double decay, double turn, double cosin
     v->end_sine[k] = keep * s;
 }
 
-// Adds `weight` times u, u' + rate u = sum n[j] t^j / j! from u = start. Where it hardly decays the
-// series has all of it: what it settles at and the decay would be large and of opposite sign.
+// Adds `weight` times the decay u' + rate u = sum n[j] t^j / j! from u = start.
 static void add_decay(hub_motion *h, double rate, double start, const double *n, double weight)
 {
-    double g = start;
-    if (rate * h->time <= 1) {
-        for (int j = 0; j < MODAL_SERIES; j++) {
-            h->series[j] += weight * g * h->power[j];
-            g = (j < MODAL_NODES ? n[j] : 0) - rate * g;
-        }
-        return;
+    const modal_decay_course u = {rate, h->time, start, n};
+    double derivatives[MODAL_SERIES] = {0}, amplitude = 0;
+    if (modal_add_decay(&u, weight, &amplitude, derivatives)) {
+        add_transient(h, rate, 0, amplitude, 0);
     }
-    const double per_rate = 1 / rate;
-    g = 0;
-    for (int j = MODAL_NODES - 1; j >= 0; j--) {
-        g = (n[j] - g) * per_rate;
-        h->series[j] += weight * g * h->power[j];
+    for (int j = 0; j < MODAL_SERIES; j++) {
+        h->series[j] += derivatives[j] * h->power[j];
     }
-    add_transient(h, rate, 0, weight * (start - g), 0);
 }
 
 // Adds an overdamped mode: u = x' + fast x and v = x' + slow x decay at slow and fast, and

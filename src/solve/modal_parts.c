@@ -1,5 +1,6 @@
 #include "src/solve/modal_parts.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -289,4 +290,29 @@ double modal_stride_shown(const modal_stride *s, double energy)
         }
     }
     return 1e-300;
+}
+
+// --- decays -----------------------------------------------------------------------------------
+
+bool modal_add_decay(const modal_decay_course *u, double weight, double *amplitude, double *total)
+{
+    assert(u != NULL && u->n != NULL && amplitude != NULL && total != NULL);
+    double g = u->start;
+    if (u->rate * u->length <= MODAL_SLOW_TURN) {
+        for (int j = 0; j < MODAL_SERIES; j++) {
+            total[j] += weight * g;
+            g = (j < MODAL_NODES ? u->n[j] : 0) - u->rate * g;
+        }
+        return false;
+    }
+
+    // what it settles at, and how far from that it starts
+    const double per_rate = 1 / u->rate;
+    g = 0;
+    for (int j = MODAL_NODES - 1; j >= 0; j--) {
+        g = (u->n[j] - g) * per_rate;
+        total[j] += weight * g;
+    }
+    *amplitude += weight * (u->start - g);
+    return true;
 }

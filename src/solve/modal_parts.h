@@ -33,6 +33,21 @@ double modal_to_momenta(const modal_stride *s, const arm *a, const double *x, do
 void modal_take_remainders(const modal_stride *s, int point, const double *x, const double *y,
                            const double *modal);
 
+// A mode's turn in a stride, or its decay, up to which a power series takes it [rad].
+#define MODAL_SLOW_TURN 1
+
+// A decay u' + rate u = n(t) = sum n[j] t^j / j! over a stride, from u = start.
+typedef struct modal_decay_course {
+    double rate, length; // [1/s], of the stride [s]
+    double start;
+    const double *n; // MODAL_NODES of them
+} modal_decay_course;
+
+// Adds `weight` times it to the derivatives at the start, total[MODAL_SERIES], and what decays to
+// *amplitude. Where it hardly decays in the stride the series has all of it: what it settles at and
+// what decays would be large and of opposite sign. Returns whether something decays.
+bool modal_add_decay(const modal_decay_course *u, double weight, double *amplitude, double *total);
+
 // Torque of motor and friction on the hub [N m].
 static inline double modal_hub_torque(const modal_stride *s, const arm *a)
 {
