@@ -1,7 +1,35 @@
 #include "tests/fuzz/fuzz.h"
 
 #include <fcntl.h>
+#include <ftw.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+static char folder[] = "/tmp/impactlab-fuzz-XXXXXX";
+
+// Removes what is in the folder, and in the end the folder.
+static int drop(const char *path, const struct stat *about, int kind, struct FTW *where)
+{
+    (void)about;
+    (void)kind;
+    return where->level > 0 ? remove(path) : 0;
+}
+
+static void drop_folder(void)
+{
+    nftw(folder, drop, 16, FTW_DEPTH | FTW_PHYS);
+    rmdir(folder);
+}
+
+void fuzz_folder(void)
+{
+    if (folder[strlen(folder) - 1] == 'X') {
+        FUZZ_CHECK(mkdtemp(folder) != NULL && chdir(folder) == 0);
+        atexit(drop_folder);
+    }
+    nftw(folder, drop, 16, FTW_DEPTH | FTW_PHYS);
+}
 
 const char *fuzz_file(const uint8_t *data, size_t size)
 {

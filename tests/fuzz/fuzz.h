@@ -15,7 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static inline void fuzz_fail(const char *file, int line, const char *promise)
 {
-    fprintf(stderr, "%s:%d: broken: %s\n", file, line, promise);
+    dprintf(2, "%s:%d: broken: %s\n", file, line, promise);
     abort();
 }
 
@@ -30,6 +30,9 @@ static inline char *fuzz_text(const uint8_t *data, size_t size)
     text[size] = '\0';
     return text;
 }
+
+// Makes a folder of the target's own the current one, which goes with the program, and empties it.
+void fuzz_folder(void);
 
 // Writes the bytes into a file of the target's own, which the next call replaces. Returns its path.
 const char *fuzz_file(const uint8_t *data, size_t size);

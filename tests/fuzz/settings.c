@@ -35,6 +35,24 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         FUZZ_CHECK(!s.parameters.set[i] ||
                    (value >= parameter_table[i].minimum && value <= parameter_table[i].maximum));
     }
+    // what was set is written so that it is read; bytes of another character set no file can hold
+    bool ascii = true;
+    for (size_t i = 0; i < size; i++) {
+        ascii = ascii && data[i] < 0x80;
+    }
+    if (code == STATUS_OK && ascii) {
+        scenario back;
+        char *written = NULL;
+        size_t length = 0;
+        FILE *stream = open_memstream(&written, &length);
+        FUZZ_CHECK(stream != NULL);
+        scenario_write(stream, &s);
+        FUZZ_CHECK(fclose(stream) == 0);
+        FUZZ_CHECK(scenario_parse(&back, written, length, "f", "back", note, &reported) ==
+                   STATUS_OK);
+        scenario_finish(&back);
+        free(written);
+    }
     scenario_finish(&s);
     free(text);
     return 0;

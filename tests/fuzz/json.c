@@ -1,0 +1,52 @@
+// JSON from outside: the line that a program answers a sample with, and a file of earlier times for
+// bench. Each is taken whole, with the numbers that it says, or refused.
+#include "tests/fuzz/fuzz.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "src/rig/process_lines.h"
+#include "src/study/bench.h"
+
+static void try_answer(const uint8_t *data, size_t size)
+{
+    char *line = fuzz_text(data, size);
+    controller_output out = {.command = -7};
+    switch (process_read_answer(line, size, &out)) {
+    case PROCESS_ANSWERED:
+        // JSON has no other numbers
+        FUZZ_CHECK(isfinite(out.command) && !isinf(out.desired_angle));
+        FUZZ_CHECK(!isinf(out.desired_velocity) && !isinf(out.calculated_force));
+        FUZZ_CHECK(memchr(line, '{', size) != NULL && strstr(line, "\"") != NULL);
+        break;
+    case PROCESS_BABBLED:
+        break;
+    default:
+        FUZZ_CHECK(!"there was memory");
+    }
+    free(line);
+}
+
+static void try_times(const uint8_t *data, size_t size)
+{
+    bench_result *results = NULL;
+    int count = -1;
+    fault f = {.text = ""};
+    const status code = bench_read(fuzz_file(data, size), &results, &count, &f);
+    FUZZ_CHECK((code == STATUS_OK) == (results != NULL) &&
+               (code == STATUS_OK) == (f.text[0] == '\0'));
+    for (int i = 0; code == STATUS_OK && i < count; i++) {
+        FUZZ_CHECK(results[i].median > 0 && isfinite(results[i].median));
+        FUZZ_CHECK(isfinite(results[i].min) && isfinite(results[i].max));
+        FUZZ_CHECK(memchr(results[i].name, '\0', sizeof results[i].name) != NULL);
+        FUZZ_CHECK(memchr(results[i].unit, '\0', sizeof results[i].unit) != NULL);
+    }
+    free(results);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    try_answer(data, size);
+    try_times(data, size);
+    return 0;
+}
