@@ -237,6 +237,9 @@ static void next_order(chain_series *s, const arm *a, const chain_loops *loops, 
         const size_t now = chain_term(n, first);
         s->hold.term[n] =
             r->start_c[first] * r->gy[now] - r->start_s[first] * r->gx[now] - on_first;
+        if (point && s->links == 1) { // the point is beyond the middle, where G has its force
+            s->hold.term[n] += (s->along.term[0] - r->half[first]) * s->force.term[n];
+        }
     }
 }
 

@@ -13,13 +13,17 @@
 // + c v, where d2g/dt2 is its value without the force plus the response to the force.
 #include <math.h>
 
+#include "src/base/extremes.h"
 #include "src/base/plain_math.h"
 #include "src/solve/chain_series_parts.h"
 
 #define NEXT_TO_TOUCH  1e-3  // at most, in (fastest rate) x (time)
 #define NO_FORCE       1e-15 // share of the velocity that a force may do and be none
+#define DEPTH_ROUNDING 1e-16 // of the arm's length
 #define LAST_ORDER     1e-13 // the same of its orders that are left out
 #define ORDERLESS_COST 200   // of a stride, in those of which its order squared are the rest
+
+#define FARTHEST       10 // in times from a turn to the touch, beyond which series overflow
 
 enum { LEAST_GRADED = 8 };
 
@@ -134,23 +138,26 @@ double chain_series_force_term(chain_series *s, const arm *a, int n)
     return mass > 0 ? (mass * free_term(s, a, n) + law) / (1 - mass * s->response) : law;
 }
 
-// x'' = -(c x' + k x)/M of a face that nothing touches; one that creeps back has x' = -rate x, and
-// of the fast decay, which would outgrow all else in its series, nothing is left.
+// x'' = -(c x' + k x)/M of a face that nothing touches; one without a mass, or that creeps back,
+// has x'' = -rate x', and of the fast decay, which would outgrow all else in its series, nothing is
+// left.
 double chain_series_add_face(chain_series *s, const arm *a, wall_face face)
 {
     const wall_model *w = &a->wall;
     const double t = s->length, k = t * t * w->stiffness / w->face_mass;
-    const double c = t * w->damping / w->face_mass, rate = t * wall_face_rate(w, face);
-    const bool creeps = rate * rate < 0.999 * k;
-    double now = face.position, next = creeps ? -rate * now : t * face.velocity;
+    const double c = t * w->damping / w->face_mass, rate = wall_face_rate(w, face);
+    const bool creeps = t * rate * t * rate < 0.999 * k; // k of no mass is beyond all numbers
+    const bool lacks = creeps && wall_has_face(w);
+    const double lost = lacks ? face.velocity + rate * face.position : 0;
+    double now = face.position, next = t * (face.velocity - lost);
     for (int n = 0; n <= s->order + 1; n++) {
         s->gap.term[n] += now;
-        const double after =
-            creeps ? -rate * next / (n + 2) : -(c * (n + 1) * next + k * now) / ((n + 1) * (n + 2));
+        const double after = creeps ? -rate * t * next / (n + 2)
+                                    : -(c * (n + 1) * next + k * now) / ((n + 1) * (n + 2));
         now = next;
         next = after;
     }
-    return creeps ? fabs(face.velocity + wall_face_rate(w, face) * face.position) : 0;
+    return fabs(lost);
 }
 
 // Bound on the relative change of velocity by the wall's force within a time from here, from the
@@ -163,11 +170,19 @@ static double share_of_force(const wall_model *w, const wall_approach *at, doubl
            speed;
 }
 
-// The time from here in which the wall's force changes the velocity by rounding only.
-static double forceless_time(const wall_model *w, const wall_approach *at, double longest)
+// How far the arm may go within a time, into the wall or out of it [m].
+static double way_within(const wall_approach *at, double time)
+{
+    return (fabs(at->speed) + fabs(at->acceleration) * time / 2) * time;
+}
+
+// The time from here in which the wall's force changes the velocity by rounding only, or the arm
+// moves by no more than that [m].
+static double forceless_time(const wall_model *w, const wall_approach *at, double longest,
+                             double rounding)
 {
     double time = longest;
-    while (time > 0 && share_of_force(w, at, time) > NO_FORCE) {
+    while (time > 0 && share_of_force(w, at, time) > NO_FORCE && way_within(at, time) > rounding) {
         time /= 2;
     }
     return time;
@@ -219,14 +234,16 @@ double chain_series_wall_reach(chain_series *s, const arm *a, const wall_approac
 
     // next to the touch, or so far from it
     const double longest = NEXT_TO_TOUCH / rate;
-    if (at->depth <= 0.5 * longest * speed) {
-        const double forceless = forceless_time(w, at, longest);
-        s->at_touch = at->depth <= 0.5 * forceless * speed;
+    const double rounding = DEPTH_ROUNDING * a->links * a->link_length;
+    if (at->depth <= larger(0.5 * way_within(at, longest), rounding)) {
+        const double forceless = forceless_time(w, at, longest, rounding);
+        s->at_touch = at->depth <= larger(0.5 * way_within(at, forceless), rounding);
         reach = s->at_touch ? fmin(reach, forceless) : reach;
     }
     if (s->at_touch) {
         s->graded_order = LEAST_GRADED;
         return reach;
     }
+    reach = fmin(reach, FARTHEST * sqrt(2 * at->depth / fabs(at->acceleration)));
     return speed > 0 ? fmin(reach, choose_grading(w, at, &s->graded_order)) : reach;
 }

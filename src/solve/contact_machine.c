@@ -28,20 +28,12 @@
 // information: release(), stick() and slip() then take the state that the event suggests, and the
 // next step corrects it.
 //
-// A wall that gives imposes no constraint and causes no impact. There touch() begins the contact at
-// any speed, and release() ends it where the law's force falls to zero: in front of the wall, or
-// still behind it, if a damped face cannot follow. PARTED is free flight behind the face, until the
-// face is touched again or passed:
-//
-//     +------+  gap closes: touch()  +---------+  force falls to zero:  +--------+
-//     | FREE | --------------------> | CONTACT | --- release() -------> | PARTED |
-//     +------+ <-------------------- +---------+ <-- touch() ---------- +--------+
-//        ^       depth falls to zero: release()   law's force rises         | gap opens
-//        +------------------------------------------------------------------+
-//
-// A face with a mass is met as a rigid wall is, by impact() and release(), but gap and speed are
-// those to the face, which swings on its own while the arm is free (motion_try_step) and goes with
-// it in contact.
+// A wall that gives has a face, which goes with the arm in contact and moves on its own while the
+// arm is free (motion_try_step); gap and speed are those to the face. One with a mass is met as a
+// rigid wall is, by impact() and release(). One without imposes no constraint and causes no impact:
+// there touch() begins the contact at any speed, and release() ends it where the law's force falls
+// to zero. Behind its place at rest a damped face cannot follow then, and returns at its own rate
+// (wall.h).
 //
 // After every transition hold:
 //
@@ -64,9 +56,8 @@
 #include "src/base/extremes.h"
 #include "src/solve/locate.h"
 
-#define SHORT_FLIGHT   0.01  // of the arm's shortest period, a flight that says nothing by itself
-#define PARTED_DEPTH   1e-12 // less of it left behind at a release is rounding [m]
-#define START_ROUNDING 1e-15 // gap of an arm that starts on the wall, as a share of its length
+#define SHORT_FLIGHT 0.01  // of the arm's shortest period, a flight that says nothing by itself
+#define AT_REST      1e-20 // velocities all of which are below it are rounding of rest [rad/s]
 
 // --- what holds at an instant -----------------------------------------------------------------
 
@@ -115,6 +106,19 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     return worst;
 }
 
+// Ends a motion that is only rounding, which would say that contact or friction end.
+static void end_rounding(motion *m)
+{
+    double *w = state_velocities(m, m->state);
+    bool rests = true;
+    for (int i = 0; i < m->dof; i++) {
+        rests = rests && fabs(w[i]) < AT_REST;
+    }
+    if (rests) {
+        memset(w, 0, (size_t)m->dof * sizeof *w);
+    }
+}
+
 // Finds the one combination of contact and hub friction that violates nothing and evaluates the
 // state under it. Gauss's principle makes the problem a strictly convex one, since the friction
 // torque is bounded independently of the contact force: there is exactly one solution. At an event
@@ -125,8 +129,17 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
 {
     static const hub_friction sticking_first[] = {HUB_STICK, HUB_FORWARD, HUB_BACKWARD};
     static const hub_friction sliding_first[] = {HUB_FORWARD, HUB_BACKWARD, HUB_STICK};
-    const hub_friction *at_rest = event == MOTION_SLIP ? sliding_first : sticking_first;
     double *state = m->state;
+    end_rounding(m);
+
+    // a hub that breaks away goes on doing so where the contact changes at that instant
+    const bool breaks_away =
+        (event == MOTION_RELEASE || event == MOTION_TOUCH) && state[SLOT_FRICTION] != HUB_STICK;
+    const bool slides = event == MOTION_SLIP || breaks_away;
+    const hub_friction *at_rest = slides ? sliding_first : sticking_first;
+    if (touching && m->dof == 1 && motion_wall_is_rigid(m)) {
+        state_velocities(m, state)[0] = 0; // but for rounding it is
+    }
     double hub_velocity = state_velocities(m, state)[0];
     bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
     hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
@@ -183,18 +196,30 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     state[SLOT_JUMPED] = 1;
 }
 
-// Whether the face of a wall that gives is on the arm, which was in contact or parted from it,
-// after its velocity or the wall's law changed.
+// The arm leaves the face of a wall that gives, which returns by itself from now on. What does so
+// at once gives up its energy at once, if there is a damper to take it.
+static void leave_face(const arm *a, motion *m)
+{
+    double *state = m->state;
+    const double held = motion_wall_energy(a, m, state);
+    const wall_face face = wall_face_left_behind(&a->wall, state[SLOT_FACE]);
+    state[SLOT_FACE] = face.position;
+    state[SLOT_FACE_VELOCITY] = face.velocity;
+    if (a->wall.damping > 0) {
+        state_quadratures(m, state)[QUADRATURE_WALL] += held - motion_wall_energy(a, m, state);
+    }
+}
+
+// Whether an arm on the face of a wall that gives still presses on it, after its velocity or the
+// law changed; else it leaves it.
 static bool face_follows(const arm *a, motion *m)
 {
-    double *state = m->state, depth, rate;
-    if (state[SLOT_CONTACT] == 0 && state[SLOT_PARTED] == 0) {
-        return false;
+    double depth, rate;
+    chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &depth, &rate);
+    const bool follows = wall_force(&a->wall, depth, rate) >= 0;
+    if (!follows) {
+        leave_face(a, m);
     }
-    chain_penetration(a, state_angles(m, state), state_velocities(m, state), &depth, &rate);
-    double law = wall_force(&a->wall, depth, rate);
-    bool follows = law > 0 || (law == 0 && state[SLOT_CONTACT] != 0);
-    state[SLOT_PARTED] = !follows && depth > 0;
     return follows;
 }
 
@@ -238,9 +263,9 @@ static void impact(const arm *a, motion *m, motion_report *report)
     report->loss = result.loss;
     assert(!(result.loss < 0)); // 7
 
-    if (motion_unresolved(a, m) && e == 0) {
+    m->state[SLOT_CONTACT] = 1;
+    if (motion_unresolved(a, m) && e == 0 && !motion_held_still(m)) {
         // the impact happens within the next step, whose own damping takes the loss (after Moreau)
-        m->state[SLOT_CONTACT] = 1;
         m->state[SLOT_FORCE] = 0;
         m->state[SLOT_IMPULSE] = result.impulse;
         m->state[SLOT_JUMPED] = 1;
@@ -261,7 +286,6 @@ static void impact(const arm *a, motion *m, motion_report *report)
 // gives at any speed.
 static void touch(const arm *a, motion *m)
 {
-    m->state[SLOT_PARTED] = 0;
     resolve(a, m, true, MOTION_TOUCH);
 }
 
@@ -272,7 +296,7 @@ static void release(const arm *a, motion *m)
         m->state[SLOT_CONTACT] = m->state[SLOT_FORCE] = 0;
         m->state[SLOT_JUMPED] = 1;
     } else if (m->wall_gives) {
-        m->state[SLOT_PARTED] = -m->state[SLOT_GAP] > PARTED_DEPTH;
+        leave_face(a, m);
         resolve(a, m, false, MOTION_REACHED);
     } else {
         resolve(a, m, true, MOTION_RELEASE);
@@ -357,12 +381,12 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
 
     double g, rate;
     chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &g, &rate);
-    // an arm on a rigid wall that moves into it counts as free until the impact that follows at
-    // once; a gap of rounding is none
+    // an arm on a rigid wall or a face, at rest, that moves into it counts as free until the impact
+    // that follows at once; a gap of rounding is none
     const bool closed = g >= -START_ROUNDING * a->links * a->link_length;
-    const bool touching = closed && (motion_wall_is_rigid(m) ? rate == 0 : rate >= 0);
+    const bool touching = closed && (m->wall_gives ? rate >= 0 : rate == 0);
     resolve(a, m, touching, MOTION_REACHED);
-    m->start_energy += motion_wall_energy(a, m, m->state); // of a face that starts with the arm
+    m->start_energy += motion_wall_energy(a, m, m->state); // of a depth by rounding
     check_invariants(a, m);
 }
 
@@ -391,7 +415,7 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
 
     // in contact the wall takes up the part of the push that is directed into it
     if (m->wall_gives) {
-        resolve(a, m, face_follows(a, m), MOTION_REACHED);
+        resolve(a, m, contact && face_follows(a, m), MOTION_REACHED);
     } else {
         const double speed = chain_penetration_rate(a, q, w) - m->state[SLOT_FACE_VELOCITY];
         if (contact && speed > TOUCH_SPEED) {
@@ -448,10 +472,7 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
     motion_note_change(m);
     motion_follow_arm(after, m);
     m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
-    if (m->wall_gives) {
-        resolve(after, m, face_follows(after, m), MOTION_REACHED);
-    } else {
-        resolve(after, m, m->state[SLOT_CONTACT] != 0, MOTION_REACHED);
-    }
+    const bool contact = m->state[SLOT_CONTACT] != 0;
+    resolve(after, m, contact && (!m->wall_gives || face_follows(after, m)), MOTION_REACHED);
     check_invariants(after, m);
 }

@@ -213,7 +213,7 @@ void dense_peak(const arm *a, motion *m, double h)
 static glance rest_gap_at(const arm *a, const motion *m, double h)
 {
     glance gap = m->engine->gap_at(a, m, h);
-    if (m->wall_has_face && m->state[SLOT_CONTACT] == 0) {
+    if (state_face_swings(m->state)) {
         const wall_face face = wall_face_after(&a->wall, state_face(m->state), h);
         gap.value -= face.position;
         gap.slope -= face.velocity;

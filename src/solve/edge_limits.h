@@ -10,14 +10,15 @@
 #define EDGE_RATE  1e-9
 #define EDGE_MORE  1e-7
 #define EDGE_GAP   1e-12 // of the gap's value [m]
+#define EDGE_PLACE 1e-15 // what a place of the arm is known to [m]
 
 // Depth in the wall, by truncation of the preceding series, at which an arm may still be found that
 // leaves it.
 #define EDGE_DEPTH 1e-6 // [m]
 
 // By how many powers of the time a function may be divided, 0 to 3: the number of its first terms
-// that are only rounding. The terms are those of a polynomial of the time over `length`; `limits`
-// are for the value and its derivatives by time.
+// that are only rounding. The terms, at least four, are those of a polynomial of the time over
+// `length`; `limits` are for the value and its derivatives by time.
 static inline int edge_powers(const double *terms, const double limits[3], double length)
 {
     int powers = 0;

@@ -7,6 +7,16 @@
 //     state_at   gives the state anywhere within the stride: at its end, at an event, at a row;
 //     look, bend (dense engines) let locate.h find events and peaks without another stride.
 //
+// Of a wall that gives an engine follows the arm alone. In contact the wall's law is a force on it
+// (wall_force) or, where the face has a mass, one more mass (wall.h); the face goes along. In free
+// flight the arm knows nothing of the face, which motion.c moves by its closed form; but gap and
+// gap_at are those to it, so that with state_face_swings(m->state)
+//
+//     gap(h) = wall_face_after(wall, state_face(m->state), h).position - penetration(h),
+//
+// `bend` counts both, and a stride lasts at most wall_face_lasts(). Just after a release gap and
+// rate start at zero, to rounding (motion_gap_edges).
+//
 // A dense engine provides dense output: after `begin` it holds the whole stride as a function of
 // time (a power series, a collocation polynomial, a sum of modes), so state_at is one evaluation. A
 // stepping engine does not: there state_at takes one step of the method from the stride's start,
@@ -29,7 +39,7 @@ typedef struct motion motion;
 // Watched functions (event functions): each is positive as long as the present contact state can
 // last, and falls below zero where it ends.
 typedef enum watch {
-    WATCH_GAP,      // the gap, in free flight [m]
+    WATCH_GAP,      // the gap, in free flight; the depth, in contact without a constraint [m]
     WATCH_FORCE,    // the contact force [N]
     WATCH_HUB,      // the hub's velocity in the direction it slides [rad/s]
     WATCH_STICTION, // margin to break-away while the hub sticks, kst - |friction| [N m]
@@ -96,6 +106,12 @@ typedef struct engine {
     // [rad/s].
     glance (*hub_at)(const arm *a, const motion *m, double h);
 
+    // Dense engines, or NULL: into `state`, at an instant [s] of the last step, what sensors and
+    // the history of the force see, as the stride has it and not evaluated: angles, velocities and
+    // accelerations of the hub, the first and the last link, SLOT_FORCE and QUADRATURE_FORCE.
+    void (*sense_at)(const arm *a, const motion *m, double time, double *state);
+    int parabolas; // that represent the force over a whole stride of such an engine
+
     // Dense engines, or NULL: state_at, to the last bit, for several h at once and from the
     // stride's start in `start`, into states[count], whose other slots are set already, with the
     // energy that each holds. Up to MOTION_TOGETHER; false if this arm's states must be computed
@@ -118,6 +134,10 @@ typedef struct engine {
     // hub slides and the contact state stays the same.
     void (*retorque)(const arm *a, motion *m, double change);
 
+    // Engines whose states keep more of a stride than KEPT_COUNT (motion.h), else NULL: so many
+    // numbers of theirs follow it. Their states keep the energy ledger from the stride's start on.
+    size_t (*kept_for)(const arm *a);
+
     // Engines whose memory grows with the arm, else NULL: bytes needed in m->memory, and the
     // function that initialises them.
     size_t (*memory_for)(const arm *a);
@@ -137,6 +157,7 @@ extern const engine generalized_alpha_engine; // the same step with other coeffi
 extern const engine series_engine; // power series of chains; dense
 extern const engine modal_engine;  // exponential collocation for chains of many links; dense
 extern const engine taylor_engine; // power series of the two-link arm; dense
+extern const engine stiff_engine;  // Radau IIA of seven stages for every arm; dense
 
 // Whether the two-link power series can integrate the arm: two links, hub joint and damping of any
 // kind, and a rigid wall that is a point, a plane or none.

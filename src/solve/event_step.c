@@ -66,7 +66,7 @@ static motion_event event_of(const motion *m, watch w)
         }
         return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
     case WATCH_FORCE:
-        return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
+        return MOTION_RELEASE;
 
     // the hub
     case WATCH_HUB:
@@ -135,8 +135,9 @@ static bool held_folded(const arm *a, motion *m)
 static bool went_through_fold(const arm *a, const motion *m)
 {
     const double *before = state_angles(m, m->trial), *now = state_angles(m, m->state);
-    bool through = !engine_is_dense(m->engine) && m->trial[SLOT_CONTACT] != 0 &&
-                   motion_wall_is_rigid(m) && a->wall.kind == WALL_PLANE && a->links > 1;
+    bool through = (!engine_is_dense(m->engine) || m->engine->kept_for != NULL) &&
+                   m->trial[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m) &&
+                   a->wall.kind == WALL_PLANE && a->links > 1;
     for (int k = a->first; k < a->dof && through; k++) {
         const double was =
             inline_cos(before[k]) * a->wall.cosine + inline_sin(before[k]) * a->wall.sine;
@@ -144,13 +145,6 @@ static bool went_through_fold(const arm *a, const motion *m)
         through = was * is < 0;
     }
     return through;
-}
-
-// Whether the wall has a face that swings on its own: an arm that has left it may still be deeper
-// than it stands at rest, and turn back there.
-static bool face_moves(const arm *a, const motion *m)
-{
-    return m->wall_has_face && wall_face_rate(&a->wall, state_face(m->state)) > 0;
 }
 
 // Unused length of the stride that the state keeps [s].
@@ -184,7 +178,8 @@ static void look_ahead(const arm *a, motion *m, double until, double far, double
         if (touches) {
             dense_peak(a, m, h);
         }
-        if (!motion_wall_is_rigid(m) && (touches || face_moves(a, m))) {
+        // an arm that has left a swinging face may still be deeper than it stands at rest
+        if (!motion_wall_is_rigid(m) && (touches || state_face_swings(m->state))) {
             dense_deepest(a, m, h);
         }
     }
@@ -220,7 +215,15 @@ static status dense_stride(const arm *a, motion *m, double until, double step, d
     *h = m->ahead.length;
     *any = m->ahead.any;
     *first = m->ahead.first;
-    return m->ahead.begun ? motion_try_step(a, m, *h) : STATUS_NO_PROGRESS;
+    m->aim = smaller(until, m->cut);
+    if (!m->ahead.begun) {
+        double sum = 0;
+        for (int i = 0; i < m->dof; i++) {
+            sum += state_accelerations(m, m->state)[i];
+        }
+        return isfinite(sum) ? STATUS_NO_PROGRESS : STATUS_NOT_FINITE;
+    }
+    return motion_try_step(a, m, *h);
 }
 
 // A requested instant is reached to the last bit.
@@ -327,9 +330,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
         m->failure_time = m->state[SLOT_TIME];
         return STATUS_FOLDED;
     }
-    if (any && first == WATCH_GAP && m->state[SLOT_PARTED] != 0) {
-        m->state[SLOT_PARTED] = m->state[SLOT_WALL_POWER] = 0; // free flight goes on as it was
-    } else if (any) {
+    if (any) {
         report->event = event_of(m, first);
     } else {
         come_to_rest(m);
@@ -345,6 +346,7 @@ double *motion_between(const arm *a, motion *m, double time)
     double *now = m->state, *start = m->trial;
     m->state = start;
     m->trial = m->between;
+    m->aim = time;
     status s = motion_try_step(a, m, time - start[SLOT_TIME]);
     m->state = now;
     m->trial = start;

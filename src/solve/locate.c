@@ -9,7 +9,7 @@
 #define UNRESOLVED_IMPACT 0.1 // share of a step that an impact takes where steps do not resolve it
 #define LOCATION_TIME     1e-15 // width to which the bracket of an event is narrowed [s]
 
-// Depth within a wall that gives and what its law says there, where the arm is on or in it.
+// What the law of a wall that gives says of an arm in contact.
 static double law_at(const arm *a, const double *state)
 {
     return wall_force(&a->wall, -state[SLOT_GAP], -state[SLOT_GAP_VELOCITY]);
@@ -21,15 +21,11 @@ static double law_slope_at(const arm *a, const double *state)
                             -state[SLOT_GAP_ACCELERATION]);
 }
 
-// Whether the arm is behind the face of a wall that gives: -1 with the face on it, 1 parted from
-// it, 0 if it is not. Inside, the watched gap is the depth, and the watched force is the force of
-// the law: positive while the face follows the arm, negative while it does not.
-static int within_wall(const motion *m, const double *state)
+// Whether the arm is in contact with a wall that gives, and no constraint holds it: the watched gap
+// is then the depth, and the watched force that of the law, negative where it would pull.
+static bool within_wall(const motion *m, const double *state)
 {
-    if (!m->wall_gives) {
-        return 0;
-    }
-    return state[SLOT_CONTACT] != 0 ? -1 : state[SLOT_PARTED] != 0 ? 1 : 0;
+    return m->wall_gives && state[SLOT_CONTACT] != 0;
 }
 
 // Positive on the admissible side.
@@ -37,10 +33,9 @@ static double watch_value(const arm *a, const motion *m, const double *state, wa
 {
     switch (w) {
     case WATCH_GAP:
-        return within_wall(m, state) != 0 ? -state[SLOT_GAP] : state[SLOT_GAP];
+        return within_wall(m, state) ? -state[SLOT_GAP] : state[SLOT_GAP];
     case WATCH_FORCE:
-        return within_wall(m, state) != 0 ? -within_wall(m, state) * law_at(a, state)
-                                          : state[SLOT_FORCE];
+        return within_wall(m, state) ? law_at(a, state) : state[SLOT_FORCE];
     case WATCH_HUB:
         return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
     case WATCH_STICTION:
@@ -80,17 +75,17 @@ static bool watch_slopes(const arm *a, const motion *m, double h, watch w, doubl
 {
     const double *state = m->state, *trial = m->trial;
 
-    const int within = within_wall(m, state);
+    const bool within = within_wall(m, state);
 
     // states contain the slopes of gap and hub velocity; the law of a wall that gives has its own
     // slope
     if (w == WATCH_GAP) {
-        double sign = within != 0 ? -1 : 1;
+        double sign = within ? -1 : 1;
         *d0 = sign * state[SLOT_GAP_VELOCITY] * h;
         *d1 = sign * trial[SLOT_GAP_VELOCITY] * h;
-    } else if (w == WATCH_FORCE && within != 0) {
-        *d0 = -within * law_slope_at(a, state) * h;
-        *d1 = -within * law_slope_at(a, trial) * h;
+    } else if (w == WATCH_FORCE && within) {
+        *d0 = law_slope_at(a, state) * h;
+        *d1 = law_slope_at(a, trial) * h;
     } else if (w == WATCH_HUB) {
         *d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
         *d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;

@@ -19,7 +19,7 @@ static inline bool watch_active(const arm *a, const motion *m, watch w)
     case WATCH_GAP:
         return (!contact || m->wall_gives) && wall_stands(&a->wall);
     case WATCH_FORCE:
-        return contact || m->state[SLOT_PARTED] != 0;
+        return contact;
     case WATCH_HUB:
         return !stuck && !held && a->motor.stiction > 0;
     case WATCH_STICTION:

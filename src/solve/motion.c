@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "src/base/extremes.h"
+#include "src/solve/edge_limits.h"
 
 // The event method takes the modes of the straight chain where the arm's fastest rate or decay is
 // beyond this [1/s]: a stride of theirs then replaces dozens of the series.
@@ -21,9 +22,22 @@
 
 #define CACHE_LINE 64 // [bytes]
 
+// A link that friction holds so near the wall rests on it [m].
+#define RESTING_GAP 1e-12
+
 // A few units in the last place of an acceleration, relative to 1e-9, which counts as zero in a
 // slow soft arm.
 #define LAST_BITS 4e-4
+
+// The engine asked for by name, NULL where the arm is to decide.
+static const engine *named_engine(engine_kind name)
+{
+    static const engine *const named[] = {[ENGINE_AUTO] = NULL,
+                                          [ENGINE_PAIR] = &taylor_engine,
+                                          [ENGINE_STIFF] = &stiff_engine,
+                                          [ENGINE_SERIES] = &series_engine};
+    return named[name];
+}
 
 // The event method's engine: series of the two-link arm, modes of stiff plain chains, series of all
 // others. It does not depend on the time step.
@@ -64,8 +78,10 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->gamma = 0.5 - m->alpha_m + m->alpha_f;
         m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
     } else {
-        m->engine = chosen != NULL ? chosen : event_engine(a);
-        m->chosen = chosen != NULL;
+        const engine *wanted = chosen != NULL ? chosen : named_engine((engine_kind)method->engine);
+        m->engine = wanted != NULL ? wanted : event_engine(a);
+        m->chosen = wanted != NULL;
+        m->tolerance = method->tolerance;
     }
 }
 
@@ -151,6 +167,7 @@ motion *motion_create_by(const arm *a, const method_parameters *method, const en
     m->cut = HUGE_VAL;
     m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT + KEPT_COUNT;
     choose_engine(a, m, method, chosen);
+    m->size += m->engine->kept_for != NULL ? (int)m->engine->kept_for(a) : 0;
 
     // its storage: all of it or none
     layout l = {0};
@@ -245,16 +262,36 @@ void motion_evaluate(const arm *a, motion *m, double *state)
     state[SLOT_DAMPING_POWER] = r.damping_power;
     state[SLOT_WALL_POWER] = r.wall_power;
 
-    // a face with a mass goes with the arm in contact, else the gap is that to it
-    if (m->wall_has_face && mode.contact) {
+    // the wall's face goes with the arm in contact, else the gap is that to it
+    if (mode.contact && !motion_wall_is_rigid(m)) {
         state[SLOT_FACE] = -r.gap;
         state[SLOT_FACE_VELOCITY] = -r.gap_velocity;
-    } else if (m->wall_has_face) {
+    } else if (state_face_swings(state)) {
         const wall_face face = state_face(state);
         state[SLOT_GAP] += face.position;
         state[SLOT_GAP_VELOCITY] += face.velocity;
         state[SLOT_GAP_ACCELERATION] += wall_face_acceleration(&a->wall, face);
     }
+}
+
+force_bounds motion_held_forces(const arm *a, const motion *m, double *state)
+{
+    assert(a != NULL && m != NULL && state != NULL && m->dof == 1 && wall_stands(&a->wall));
+    const double one = 1, lever = chain_penetration_rate(a, state_angles(m, state), &one);
+    const double balanced = (a->motor.torque + state[SLOT_MOTOR_TORQUE]) / lever;
+    const double friction = a->motor.stiction / fabs(lever);
+    return (force_bounds){larger(balanced - friction, 0), larger(balanced + friction, 0)};
+}
+
+force_bounds motion_force_bounds(const arm *a, const motion *m, double *state)
+{
+    assert(a != NULL && m != NULL && state != NULL);
+    const contact_state now = contact_state_of(state);
+    const bool single = m->dof == 1 && wall_stands(&a->wall) && motion_wall_is_rigid(m);
+    const bool near = state[SLOT_GAP] <= RESTING_GAP && now.friction == HUB_STICK;
+    const bool rests = single && state_velocities(m, state)[0] == 0 && (now.contact || near);
+    return rests ? motion_held_forces(a, m, state)
+                 : (force_bounds){state[SLOT_FORCE], state[SLOT_FORCE]};
 }
 
 void motion_watch(motion *m)
@@ -268,9 +305,17 @@ double motion_rounding(const arm *a, const motion *m)
     return motion_rounding_at(a, m->dof, state_angles(m, m->state), state_velocities(m, m->state));
 }
 
-double motion_gap_rounding(const arm *a, const motion *m)
+void motion_gap_edges(const arm *a, const motion *m, double limits[3])
 {
-    return motion_rounding(a, m) + (m->wall_has_face ? 1 / a->wall.face_mass : 0);
+    // a rounding error of the force accelerates a face by that error over its mass; one without a
+    // mass returns at a rate that has the error of the place where it was left
+    const bool returns = m->wall_gives && state_face_swings(m->state);
+    const double rate = returns ? wall_face_rate(&a->wall, state_face(m->state)) : 0;
+    const double yields = m->wall_has_face ? 1 / a->wall.face_mass : 0;
+    limits[0] = EDGE_GAP;
+    limits[1] = EDGE_RATE + EDGE_PLACE * rate;
+    limits[2] = EDGE_RATE * (motion_rounding(a, m) + yields) + EDGE_PLACE * rate * rate;
+    limits[2] = fmax(EDGE_MORE, limits[2]);
 }
 
 double motion_rounding_at(const arm *a, int dof, const double *q, const double *w)
@@ -299,7 +344,7 @@ double motion_wall_compliance(const arm *a, motion *m, double *state)
 double motion_wall_rate(const arm *a, motion *m, double *state)
 {
     if (motion_wall_is_rigid(m) || !contact_state_of(state).contact) {
-        return m->wall_has_face ? wall_face_rate(&a->wall, state_face(state)) : 0;
+        return state_face_swings(state) ? wall_face_rate(&a->wall, state_face(state)) : 0;
     }
     return wall_rate(&a->wall, motion_wall_compliance(a, m, state), fmax(-state[SLOT_GAP], 0),
                      -state[SLOT_GAP_VELOCITY]);
@@ -368,12 +413,6 @@ static void let_time_pass(motion *m, double h)
     state_quadratures(m, m->trial)[QUADRATURE_FORCE] += h * m->state[SLOT_FORCE];
 }
 
-// Whether a face that nothing touches swings on its own.
-static bool face_swings(const motion *m, const double *state)
-{
-    return m->wall_has_face && state[SLOT_CONTACT] == 0;
-}
-
 // The parts of a state, `h` after another one, that need no evaluation.
 static void set_slots(const arm *a, const motion *m, double *from, double h, double *state)
 {
@@ -384,7 +423,7 @@ static void set_slots(const arm *a, const motion *m, double *from, double h, dou
     for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
         state_quadratures(m, state)[kept[i]] = state_quadratures(m, from)[kept[i]];
     }
-    if (face_swings(m, from)) {
+    if (state_face_swings(from)) {
         const wall_face face = wall_face_after(&a->wall, state_face(from), h);
         state[SLOT_FACE] = face.position;
         state[SLOT_FACE_VELOCITY] = face.velocity;
@@ -394,7 +433,7 @@ static void set_slots(const arm *a, const motion *m, double *from, double h, dou
 // Updates the energy ledger of an evaluated state from that of an earlier one.
 static void book(const arm *a, const motion *m, double *from, double *state)
 {
-    if (face_swings(m, from)) {
+    if (state_face_swings(from)) {
         state_quadratures(m, state)[QUADRATURE_WALL] +=
             motion_wall_energy(a, m, from) - motion_wall_energy(a, m, state);
     }
@@ -425,7 +464,9 @@ status motion_try_step(const arm *a, motion *m, double h)
         return s;
     }
 
-    book(a, m, m->state, trial);
+    if (m->engine->kept_for == NULL) {
+        book(a, m, m->state, trial);
+    }
     return is_finite(m, trial) ? STATUS_OK : STATUS_NOT_FINITE;
 }
 

@@ -31,19 +31,18 @@ enum motion_slot {
     SLOT_EXTERNAL_WORK,    // [J]
     SLOT_FRICTION_LOSS,    // [J]
     SLOT_IMPACT_LOSS,      // [J]
-    SLOT_GAP,              // to a face with a mass; in contact minus the depth of arm and face [m]
+    SLOT_GAP,              // to the wall's face; in contact minus the depth of arm and face [m]
     SLOT_GAP_VELOCITY,     // [m/s]
     SLOT_VISCOUS_POWER,    // at this state [W]
     SLOT_DAMPING_POWER,    // at this state [W]
     SLOT_JUMPED,           // 1 just after an event, before the first step
     SLOT_IMPULSE,          // of an unresolved impact, which the next step is to deliver [N s]
-    SLOT_PARTED,           // 1 inside a wall that gives, whose face no longer follows the arm
     SLOT_MOTOR_TORQUE,     // of an electric drive's current, at this state [N m]
     SLOT_WALL_POWER,       // lost in a wall that gives, at this state [W]
     SLOT_LAST_IMPACT,      // when it was, -1 if there was none [s]
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
     SLOT_STRIDE,           // length of the next stride proposed by the engine, 0 if none [s]
-    SLOT_FACE,             // how far a wall's face with a mass is pushed in [m]
+    SLOT_FACE,             // how far the face of a wall that gives is pushed in [m]
     SLOT_FACE_VELOCITY,    // [m/s]
     SLOT_COUNT
 };
@@ -93,11 +92,13 @@ struct motion {
     const engine *engine;
     bool chosen;         // by the caller: it stays when the arm changes
     double nominal_step; // method.step [s]
+    double tolerance;    // method.tolerance, of the stiff engine's steps [-]
     bool wall_gives;     // contact is no constraint
     bool wall_has_face;  // contact ties the arm to a mass on a spring
     bool electric;       // the motor's current is followed
     bool starved;        // no memory for the engine that a changed arm asks for
     double cut;          // where a step ends early, its course before unchanged [s]; HUGE_VAL: none
+    double aim; // the instant where a state is wanted, if it is to be met to the last bit [s]
     double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
 
     // scratch, nothing of it outlives a step
@@ -162,14 +163,19 @@ static inline double *state_kept(const motion *m, double *state)
 }
 static inline contact_state contact_state_of(const double *state)
 {
-    return (contact_state){state[SLOT_CONTACT] != 0, (hub_friction)(int)state[SLOT_FRICTION],
-                           state[SLOT_PARTED] != 0};
+    return (contact_state){state[SLOT_CONTACT] != 0, (hub_friction)(int)state[SLOT_FRICTION]};
 }
 
-// The wall's face of a state, at rest in place where it has no mass.
+// The wall's face of a state, at rest in place where the wall is rigid.
 static inline wall_face state_face(const double *state)
 {
     return (wall_face){state[SLOT_FACE], state[SLOT_FACE_VELOCITY]};
+}
+
+// Whether that face moves on its own.
+static inline bool state_face_swings(const double *state)
+{
+    return state[SLOT_CONTACT] == 0 && (state[SLOT_FACE] != 0 || state[SLOT_FACE_VELOCITY] != 0);
 }
 
 // Gap to where the wall's face stands at rest [m], and its rate [m/s].
@@ -181,6 +187,20 @@ static inline double state_rest_gap_velocity(const double *state)
 {
     return state[SLOT_GAP_VELOCITY] - (state[SLOT_CONTACT] != 0 ? 0 : state[SLOT_FACE_VELOCITY]);
 }
+
+// Bounds of a contact force [N].
+typedef struct force_bounds {
+    double low, high;
+} force_bounds;
+
+// The forces with which friction can hold one link on a rigid hub at rest in an evaluated state: f
+// >= 0 with |T - J f| <= kst, T the motor's torque and J = dg/dq.
+force_bounds motion_held_forces(const arm *a, const motion *m, double *state);
+
+// The bounds of the contact force in an evaluated state, both the force itself where it is
+// determined. It is not for one link on a rigid hub that rests on a rigid wall: wall and friction
+// hold it both, with any of the forces above. The state's own is that without friction, T/J.
+force_bounds motion_force_bounds(const arm *a, const motion *m, double *state);
 
 // Prepares a motion of the arm with the given method; all storage is allocated here. NULL if out of
 // memory.
@@ -257,9 +277,7 @@ static inline bool state_is_held_still(const motion *m, const double *state)
     }
     const contact_state now = contact_state_of(state);
     const bool stuck = now.friction == HUB_STICK, held = now.contact && motion_wall_is_rigid(m);
-    const bool face_moves =
-        !now.contact && (state[SLOT_FACE] != 0 || state[SLOT_FACE_VELOCITY] != 0);
-    return !face_moves && (m->dof == 1 ? stuck || held : stuck && held);
+    return !state_face_swings(state) && (m->dof == 1 ? stuck || held : stuck && held);
 }
 static inline bool motion_held_still(const motion *m)
 {
@@ -306,9 +324,9 @@ bool motion_project(const arm *a, motion *m, double *state);
 // into an acceleration error of (k/I) q 2^-52, where k/I is at most the square of the arm's highest
 // frequency; and what turns at w has accelerations of w^2, with an error in their last bit.
 double motion_rounding(const arm *a, const motion *m);
-// The same for the gap's acceleration: a rounding error of the force accelerates a face by that
-// error over the face's mass.
-double motion_gap_rounding(const arm *a, const motion *m);
+// What counts as rounding of the gap just after an event, and of its first and second derivatives
+// by time (edge_limits.h) [m], [m/s], [m/s2].
+void motion_gap_edges(const arm *a, const motion *m, double limits[3]);
 // motion_rounding for dof angles q [rad] and velocities w [rad/s].
 double motion_rounding_at(const arm *a, int dof, const double *q, const double *w);
 
@@ -348,9 +366,7 @@ double motion_decay_length(const arm *a, double reach, double since);
 // Energy that a wall that gives holds, with that of its face's motion; 0 in a rigid one [J].
 static inline double motion_wall_energy(const arm *a, const motion *m, const double *state)
 {
-    return m->wall_has_face ? wall_face_energy(&a->wall, state_face(state))
-           : m->wall_gives  ? wall_stored_energy(&a->wall, -state[SLOT_GAP])
-                            : 0;
+    return motion_wall_is_rigid(m) ? 0 : wall_face_energy(&a->wall, state_face(state));
 }
 
 // Energy of motion and of bending in a state of this motion.

@@ -75,6 +75,10 @@ void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *tex
     if (fabs(w[fastest]) >= a->fastest_rate) {
         decimal_print(text, size, "its angle %d turns at %.3g rad/s, too fast to follow",
                       fastest + 1, w[fastest]);
+    } else if (last == MOTION_STICK || last == MOTION_SLIP) {
+        decimal_print(text, size,
+                      "the hub comes to rest and breaks away by turns, and another motor.stiction, "
+                      "or none, has longer strides");
     } else if (is_within(m) || (is_of_wall(last) && !motion_wall_is_rigid(m))) {
         decimal_print(text, size,
                       "it is in contact with a wall that gives, and a smaller %swall.stiffness%s "
@@ -85,10 +89,6 @@ void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *tex
         decimal_print(text, size,
                       "it bounces off the wall, which a smaller wall.restitution or a larger "
                       "method.rest_speed ends sooner");
-    } else if (last == MOTION_STICK || last == MOTION_SLIP) {
-        decimal_print(text, size,
-                      "the hub comes to rest and breaks away by turns, and another motor.stiction, "
-                      "or none, has longer strides");
     } else if (current_leads(a, m)) {
         decimal_print(text, size,
                       "the motor's current follows at %.3g 1/s, and a larger motor.inductance, or "

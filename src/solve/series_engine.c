@@ -89,25 +89,20 @@ void series_stride_place(series_stride *s, const arm *a)
     chain_series_place(s->series, a);
 }
 
-// Of an arm within a wall that gives: its depth, and what the law says, positive while the face
-// follows in contact, negative while it does not. Of Hunt and Crossley's law that is the factor
-// k + c v of the power, which is analytic.
-static void prepare_within(series_stride *s, const arm *a, contact_state now)
+// Of an arm in contact with a wall that gives: its depth, and of Hunt and Crossley's law, for the
+// force itself, the factor k + c v of the power, which is analytic.
+static void prepare_within(series_stride *s, const arm *a)
 {
     const chain_series *c = s->series;
-    const double sign = now.contact ? 1 : -1;
     series_function *law = &s->watched[WATCH_FORCE];
     set_function(&s->watched[WATCH_GAP], c->gap.term, c->order + 2, -1);
-    const bool factor = a->wall.law == WALL_HUNT_CROSSLEY;
-    if (now.contact && !factor) {
-        return; // the force itself
+    if (a->wall.law == WALL_KELVIN_VOIGT) {
+        return;
     }
     law->count = c->order + 1;
-    law->divided = false;
     for (int n = 0; n < law->count; n++) {
         const double rate = -(n + 1) * c->gap.term[n + 1] / c->length;
-        const double spring = !factor ? -c->gap.term[n] : n == 0 ? 1 : 0;
-        law->term[n] = sign * (a->wall.stiffness * spring + a->wall.damping * rate);
+        law->term[n] = a->wall.damping * rate + (n == 0 ? a->wall.stiffness : 0);
     }
 }
 
@@ -125,8 +120,8 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m, dou
     series_function *distance = &s->watched[WATCH_GAP];
     set_function(&s->force, c->force.term, now.contact ? order : 1, per * per);
     s->watched[WATCH_FORCE] = s->force;
-    if (m->wall_gives && (now.contact || now.parted)) {
-        prepare_within(s, a, now);
+    if (m->wall_gives && now.contact) {
+        prepare_within(s, a);
     } else if (!now.contact) {
         set_function(distance, c->gap.term, order + 2, 1);
         if (distance->term[0] < 0 && distance->term[0] > -EDGE_DEPTH && distance->term[1] > 0) {
@@ -162,22 +157,21 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m, dou
     }
 
     // just after an event they may begin at zero, as the gap does after a bounce cut short
-    const bool edge = wall_at_edge || jumped;
-    const double acceleration = EDGE_RATE * (edge ? motion_rounding(a, m) : 0);
-    const double apart = EDGE_RATE * (edge ? motion_gap_rounding(a, m) : 0);
     const double stiffness = m->wall_gives ? a->wall.stiffness * EDGE_GAP : 0;
     const double reaction[] = {EDGE_VALUE + stiffness, EDGE_RATE + stiffness, EDGE_MORE};
-    const double gap[] = {EDGE_GAP, EDGE_RATE + 2 * face_lacks, fmax(EDGE_MORE, apart)};
-    const double hub_rate[] = {0, acceleration, EDGE_MORE};
-    if (wall_at_edge && (now.contact || now.parted)) {
+    if (wall_at_edge && now.contact) {
         leave_edge(&s->watched[WATCH_FORCE], reaction, c->length);
     }
     s->force_apart = s->watched[WATCH_FORCE].divided || !now.contact ||
                      (m->wall_gives && a->wall.law == WALL_HUNT_CROSSLEY);
     if (wall_at_edge && (!now.contact || m->wall_gives)) {
+        double gap[3];
+        motion_gap_edges(a, m, gap);
+        gap[1] += 2 * face_lacks;
         leave_edge(distance, gap, c->length);
     }
     if (jumped && now.friction != HUB_STICK) {
+        const double hub_rate[] = {0, EDGE_RATE * motion_rounding(a, m), EDGE_MORE};
         leave_edge(&s->watched[WATCH_HUB], hub_rate, c->length);
     } else if (jumped && fabs(s->watched[WATCH_STICTION].term[0]) <= EDGE_VALUE) {
         s->watched[WATCH_STICTION].term[0] = EDGE_VALUE; // what holds it may hold as much more
@@ -206,11 +200,15 @@ double series_stride_begin(series_stride *s, const arm *a, motion *m, double rem
     if (m->wall_gives && c->mode.contact && a->wall.law == WALL_HUNT_CROSSLEY) {
         approach.compliance = motion_wall_compliance(a, m, m->state);
     }
-    const double reach = chain_series_wall_reach(c, a, &approach);
+    const bool swings = state_face_swings(m->state);
+    double reach = chain_series_wall_reach(c, a, &approach);
+    if (swings) {
+        reach = fmin(reach, wall_face_lasts(&a->wall, state_face(m->state)));
+    }
     const double length = fmin(remaining, reach);
     chain_series_compute(c, a, q, w, length, last_terms);
     double face_lacks = 0;
-    if (m->wall_has_face && !c->mode.contact) {
+    if (swings) {
         face_lacks = chain_series_add_face(c, a, state_face(m->state));
     }
     s->force_until = -1;
@@ -267,10 +265,6 @@ status series_stride_state(const series_stride *s, const arm *a, motion *m, doub
     if (c->mode.contact && c->gives) {
         after[QUADRATURE_WALL] = before[QUADRATURE_WALL] +
                                  per * per * integral_to(c->wall_loss.term, c->square_terms, x);
-    } else if (c->mode.parted) { // what the spring held goes into the damper
-        after[QUADRATURE_WALL] = before[QUADRATURE_WALL] +
-                                 wall_stored_energy(&a->wall, -m->state[SLOT_GAP]) -
-                                 wall_stored_energy(&a->wall, -state[SLOT_GAP]);
     }
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
            (size_t)m->dof * sizeof(double));
@@ -391,7 +385,7 @@ static void open_memory(const arm *a, motion *m)
     series_stride_place(m->memory, a);
 }
 
-const engine series_engine = {.name = "power series",
+const engine series_engine = {.name = "series",
                               .begin = begin,
                               .state_at = state_at,
                               .look = look,

@@ -241,7 +241,7 @@ taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
     return &s->lane;
 }
 
-const engine taylor_engine = {.name = "Taylor series",
+const engine taylor_engine = {.name = "pair",
                               .begin = begin,
                               .state_at = taylor_state_at,
                               .states_at = taylor_states_at,
