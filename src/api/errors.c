@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/loss.h"
 #include "src/base/numbers.h"
 #include "src/base/words.h"
 
@@ -85,12 +86,13 @@ void api_keep_first(void *context, const char *sentence)
     }
 }
 
-int api_finish_first(impactlab_error *error, status code)
+int api_finish_first(impactlab_error *error, const fault_place *at, status code)
 {
     if (error != NULL) {
         error->status = (int)code;
-        error->line = error->column = 0;
-        error->parameter[0] = '\0';
+        error->line = at->line;
+        error->column = at->column;
+        copy_text(error->parameter, sizeof error->parameter, at->path != NULL ? at->path : "");
     }
     return (int)code;
 }
@@ -126,6 +128,8 @@ int api_signal(const char *name, impactlab_error *error)
 
 int api_open_text(text_stream *stream, char **text, impactlab_error *error)
 {
+    // what was lost on this thread before is nothing of this text's
+    loss_forget();
     *text = NULL;
     return text_stream_open(stream) ? IMPACTLAB_OK
                                     : api_fail(error, STATUS_NO_MEMORY, "no memory for a text");

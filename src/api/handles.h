@@ -44,8 +44,9 @@ typedef struct api_first_fault {
     int count;
 } api_first_fault;
 void api_keep_first(void *context, const char *sentence);
-// Gives the sentence kept that way (in error, may be NULL) its code, which it returns.
-int api_finish_first(impactlab_error *error, status code);
+// Gives the sentence kept that way (in error, may be NULL) its place and its code, which it
+// returns.
+int api_finish_first(impactlab_error *error, const fault_place *at, status code);
 
 // Index of a parameter as people write it, -1 with an error that names the nearest.
 int api_parameter(const char *path, impactlab_error *error);

@@ -179,23 +179,10 @@ int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *e
         return IMPACTLAB_NO_MEMORY;
     }
 
-    // what was lost on this thread before is nothing of this run's
-    json_lost_something();
     json_t *object = export_run(&run->scenario, &run->result);
-    if (object != NULL) {
-        json_write(stream.stream, object);
-    }
-    const bool lost = json_lost_something() || object == NULL;
+    json_write(stream.stream, object);
     json_decref(object);
-
-    // the text is the caller's if it is whole
-    int code = api_close_text(&stream, json, error);
-    if (code == IMPACTLAB_OK && lost) {
-        impactlab_text_free(*json);
-        *json = NULL;
-        code = api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
-    }
-    return code;
+    return api_close_text(&stream, json, error);
 }
 
 int impactlab_run_csv(const impactlab_run *run, char **csv, impactlab_error *error)
@@ -224,11 +211,15 @@ int impactlab_run_predictions(const impactlab_run *run, impactlab_prediction *pr
         return api_fail(error, STATUS_BAD_ARGUMENT, "the run kept no rows, expected KEEP_ROWS");
     }
     if (predict_first_contact(&run->scenario, &run->result, NULL, answers) == NULL) {
-        return api_fail(error, STATUS_BAD_ARGUMENT, "the arm did not touch the wall in this run");
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the arm did not touch the wall after a free flight in this run");
     }
 
     for (size_t i = 0; i < count && i < PREDICTOR_COUNT; i++) {
         const prediction_answer *a = &answers[i];
+        if (a->fault.code == STATUS_NO_MEMORY) {
+            return api_error(error, &a->fault);
+        }
         predictions[i] = (impactlab_prediction){.method = a->name,
                                                 .known = prediction_known(a),
                                                 .holds = a->outcome == PREDICTION_HOLDS,

@@ -46,9 +46,10 @@ static int finish_reading(impactlab_scenario **handle, status code, impactlab_er
     if (code == STATUS_OK) {
         return api_done(error);
     }
+    const fault_place at = (*handle)->scenario.refused;
     free(*handle);
     *handle = NULL;
-    return api_finish_first(error, code);
+    return api_finish_first(error, &at, code);
 }
 
 int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_file,
@@ -68,15 +69,22 @@ int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_fil
 int impactlab_scenario_parse(impactlab_scenario **handle, const char *text, size_t length,
                              impactlab_error *error)
 {
+    return impactlab_scenario_parse_named(handle, text, length, "text", error);
+}
+
+int impactlab_scenario_parse_named(impactlab_scenario **handle, const char *text, size_t length,
+                                   const char *name, impactlab_error *error)
+{
     API_NEEDS_CALLED(error, handle, "scenario");
     *handle = NULL;
     API_NEEDS(error, text);
+    API_NEEDS(error, name);
     if (new_handle(handle, error) == NULL) {
         return IMPACTLAB_NO_MEMORY;
     }
     api_first_fault first = {.error = error};
     status code =
-        scenario_parse(&(*handle)->scenario, text, length, "text", NULL, api_keep_first, &first);
+        scenario_parse(&(*handle)->scenario, text, length, "text", name, api_keep_first, &first);
     return finish_reading(handle, code, error);
 }
 
@@ -227,7 +235,7 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     if (!whole) {
         return api_missing(error, "assignments[i]");
     }
-    return api_finish_first(error, code);
+    return api_finish_first(error, &handle->scenario.refused, code);
 }
 
 // Sets a parameter from a text, or without one from a number.
@@ -308,8 +316,11 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
         parameter_set_text(&p, index, text, &f) != STATUS_OK) {
         return api_error(error, &f);
     }
-    action a = {
-        .time = time, .kind = ACTION_SET, .parameter = index, .value = parameter_get(&p, index)};
+    action a = {.time = time,
+                .kind = ACTION_SET,
+                .parameter = index,
+                .value = parameter_get(&p, index),
+                .added = true};
     if (parameter_is_text(&parameter_table[index])) {
         parameter_format(&p, index, a.text, sizeof a.text);
     }
@@ -342,6 +353,7 @@ int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double 
     if (!make_room(s)) {
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
     }
-    scenario_insert_action(s, (action){.time = time, .kind = ACTION_PUSH, .value = impulse});
+    scenario_insert_action(
+        s, (action){.time = time, .kind = ACTION_PUSH, .value = impulse, .added = true});
     return api_done(error);
 }

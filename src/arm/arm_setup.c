@@ -21,15 +21,17 @@ void arm_set_voltage(arm *a, double volts)
 // First frequency of the straight chain clamped at the hub, from inverse iteration on
 // M x = (1/w^2) K x: bending moments of the inertia forces, summed twice, give the next shape.
 // Uniform rods: force on node and moment per unit acceleration of link k, see chain.h. The clamp
-// holds the first link, or the root of a beam that bends there too.
+// holds the first link, or the root where that bends, too: of a beam, and of a link that has no
+// other joint.
 static double first_clamped_frequency(const arm *a)
 {
     // the angles of a quadratic deflection are a fair first shape; Rayleigh's quotient after one
     // smoothing sweep is right to second order in the error of the shape
     enum { LONGEST = 1024, SWEEPS = 6 };
+    const bool root = a->root_bends || a->links == 1;
     double shape[LONGEST], next[LONGEST], frequency = 0;
     for (int k = 0; k < a->links; k++) {
-        shape[k] = a->root_bends ? k + 0.5 : k;
+        shape[k] = root ? k + 0.5 : k;
     }
 
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
@@ -43,7 +45,7 @@ static double first_clamped_frequency(const arm *a)
 
         // M x as the moment on each joint, from the tip inwards
         double force = a->tip_mass * y;
-        for (int k = a->links - 1; k >= (a->root_bends ? 0 : 1); k--) {
+        for (int k = a->links - 1; k >= (root ? 0 : 1); k--) {
             const double l = arm_link_length(a, k);
             double base = tip_y[k] - l * shape[k];
             double own_force = arm_link_mass(a, k) * (base + l * shape[k] / 2);
@@ -56,7 +58,7 @@ static double first_clamped_frequency(const arm *a)
 
         // the next shape, and Rayleigh's quotient on the way
         double sum = 0, numerator = 0, denominator = 0;
-        next[0] = a->root_bends ? next[0] : 0;
+        next[0] = root ? next[0] : 0;
         for (int k = 0; k < a->links; k++) {
             sum += next[k];
             next[k] = sum;
@@ -222,7 +224,7 @@ void arm_init(arm *a, const parameters *p)
     wall_init(&a->wall, p);
 
     // structural damping
-    if (p->arm.damping_ratio > 0 && (a->links > 1 || a->root_bends)) {
+    if (p->arm.damping_ratio > 0 && (a->links > 1 || a->hub_spring)) {
         // torque c dot(bend) in each spring, c = 2 zeta k / w1, damps the first mode by zeta
         double per_stiffness = 2 * p->arm.damping_ratio / first_clamped_frequency(a);
         a->joint_damping = per_stiffness * a->joint_stiffness;

@@ -79,7 +79,7 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
 
     // a wall that gives answers to place and velocity alone, one with a mass also to accelerations
     double pressed = 0, held_back = 0, wall_power = 0;
-    if (gives && (mode.contact || mode.parted)) {
+    if (gives && mode.contact) {
         double lever = wall_last_lever(&wall, l_last, link[N - 1].c, link[N - 1].s);
         double depth = wall.penetration;
         double rate = wall_penetration_rate(&wall, vx, vy, lever, omega[N - 1]);
@@ -87,9 +87,9 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
             held_back = wall_force(&a->wall, depth, rate);
             wall_power = a->wall.damping * rate * rate;
         } else {
-            pressed = mode.contact ? wall_force(&a->wall, depth, rate) : 0;
+            pressed = wall_force(&a->wall, depth, rate);
             // a step tries Kelvin-Voigt's law in front of the wall, too, and loses nothing there
-            const bool damper = mode.contact && a->wall.law == WALL_KELVIN_VOIGT;
+            const bool damper = a->wall.law == WALL_KELVIN_VOIGT;
             wall_power = damper ? a->wall.damping * rate * rate
                                 : (pressed - wall_spring_force(&a->wall, depth)) * rate;
         }

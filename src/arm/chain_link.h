@@ -18,7 +18,6 @@ typedef enum hub_friction { HUB_STICK = 0, HUB_FORWARD = 1, HUB_BACKWARD = -1 } 
 typedef struct contact_state {
     bool contact;
     hub_friction friction;
-    bool parted;    // the arm is still within a wall that gives, whose face no longer follows
     double current; // of a motor whose current is a state of its own [A]
 } contact_state;
 

@@ -7,6 +7,9 @@
 
 // A face that swings less than this is at rest [m].
 #define FACE_AT_REST 1e-15
+// One without a mass that is left behind by less [m], or returns within less [s], has not been.
+#define LEAST_DEPTH  1e-12
+#define LEAST_RETURN 1e-14
 // A bounce slower than this counts as no bounce [m/s]: half of it is what the series take for
 // rounding of a rate just after an impact (EDGE_RATE in edge_limits.h).
 #define LEAST_REBOUND 2e-9
@@ -75,27 +78,54 @@ double wall_rate(const wall_model *w, double compliance, double depth, double ra
     return fmax(sqrt(stiffness * compliance), damping * compliance);
 }
 
-// --- a face with a mass, left alone -----------------------------------------------------------
+// --- a face left alone --------------------------------------------------------------------------
+
+// How long a face without a mass takes from a depth [m] to its place at rest [s], by a factor of e
+// nearer to it for Kelvin-Voigt's wall.
+static double return_time(const wall_model *w, double depth)
+{
+    const double time = w->damping / w->stiffness;
+    return w->law == WALL_KELVIN_VOIGT ? time : time * depth;
+}
+
+// Such a face on its way back, or at rest where it is next to its place.
+static wall_face returning(const wall_model *w, double depth, double least)
+{
+    return depth > least ? (wall_face){depth, -depth / return_time(w, depth)} : (wall_face){0};
+}
+
+wall_face wall_face_left_behind(const wall_model *w, double depth)
+{
+    assert(w != NULL && !wall_has_face(w));
+    return returning(w, return_time(w, depth) > LEAST_RETURN ? depth : 0, LEAST_DEPTH);
+}
 
 double wall_face_acceleration(const wall_model *w, wall_face face)
 {
-    assert(w != NULL && wall_has_face(w));
-    return -(w->stiffness * face.position + w->damping * face.velocity) / w->face_mass;
+    assert(w != NULL);
+    return wall_has_face(w)
+               ? -(w->stiffness * face.position + w->damping * face.velocity) / w->face_mass
+               : -wall_face_rate(w, face) * face.velocity;
 }
 
 double wall_face_energy(const wall_model *w, wall_face face)
 {
     assert(w != NULL);
-    return 0.5 * (w->face_mass * face.velocity * face.velocity +
-                  w->stiffness * face.position * face.position);
+    return 0.5 * w->face_mass * face.velocity * face.velocity +
+           wall_stored_energy(w, fabs(face.position));
 }
 
-// x'' + 2 d x' + w0^2 x = 0 has x(h) = x0 C + (x0' + d x0) S and x'(h) = x0' C - (d x0' + w0^2 x0)
-// S with C = e^-dh cos(sh), S = e^-dh sin(sh)/s, s^2 = w0^2 - d^2; hyperbolic where that is
-// negative.
+// Without a mass as wall.h has it. x'' + 2 d x' + w0^2 x = 0 has x(h) = x0 C + (x0' + d x0) S and
+// x'(h) = x0' C - (d x0' + w0^2 x0) S with C = e^-dh cos(sh), S = e^-dh sin(sh)/s, s^2 = w0^2 -
+// d^2; hyperbolic where that is negative.
 wall_face wall_face_after(const wall_model *w, wall_face face, double h)
 {
-    assert(w != NULL && wall_has_face(w) && h >= 0);
+    assert(w != NULL && h >= 0);
+    if (!wall_has_face(w)) {
+        const double passed = face.position > 0 ? h / return_time(w, face.position) : 0;
+        const double left = w->law == WALL_KELVIN_VOIGT ? plain_exp(-passed) : 1 - passed;
+        return returning(w, face.position * left, FACE_AT_REST);
+    }
     const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
     const double turn = square - d * d, s = sqrt(fabs(turn)), phase = turn * h * h;
     double c, sine;
@@ -125,11 +155,14 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
 
 double wall_face_rate(const wall_model *w, wall_face face)
 {
-    assert(w != NULL && wall_has_face(w));
-    const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
+    assert(w != NULL);
     if (face.position == 0 && face.velocity == 0) {
         return 0;
     }
+    if (!wall_has_face(w)) {
+        return w->law == WALL_KELVIN_VOIGT ? w->stiffness / w->damping : 0;
+    }
+    const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
     if (d * d <= square) {
         return sqrt(square);
     }
@@ -138,4 +171,11 @@ double wall_face_rate(const wall_model *w, wall_face face)
     const double root = sqrt(d * d - square), fast = d + root, slow = square / fast;
     const double share = fabs(face.velocity + slow * face.position);
     return share > FACE_AT_REST * 2 * root ? fast : slow;
+}
+
+double wall_face_lasts(const wall_model *w, wall_face face)
+{
+    assert(w != NULL);
+    return w->law == WALL_HUNT_CROSSLEY && face.position > 0 ? return_time(w, face.position)
+                                                             : HUGE_VAL;
 }

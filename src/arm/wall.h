@@ -18,12 +18,21 @@
 //   Kelvin-Voigt:    f = k x + c v
 //   Hunt-Crossley:   f = x^n (k + c v)
 //
-// as long as that pushes, and with nothing where it would pull: its face then comes back on its
-// own. It stores k x^(n+1)/(n+1) (n = 1 for Kelvin-Voigt) and turns the rest of f v into heat.
+// as long as that pushes. It stores k x^(n+1)/(n+1) (n = 1 for Kelvin-Voigt) and turns the rest of
+// f v into heat.
 //
-// Face. A Kelvin-Voigt wall may have a face of mass M in front of its spring and damper. Arm and
-// face meet as two rigid bodies: an impact returns the share e of their relative speed, and in
-// contact both move as one, x = g. With the force f on the face
+// Face. In contact the wall's face is as deep as the arm, x = g. Where the law would pull, the arm
+// leaves it behind, and it returns on its own: with f = 0 the law says its rate,
+//
+//   Kelvin-Voigt:    x' = -k x / c,    x = x_0 exp(-k t / c)
+//   Hunt-Crossley:   x' = -k / c,      x = max(x_0 - k t / c, 0)
+//
+// at once without a damper; what the spring holds goes into the damper. The arm is met where the
+// face is by then, without an impact, since the face has no mass.
+//
+// Mass. A Kelvin-Voigt wall's face may have a mass M. Arm and face then meet as two rigid bodies:
+// an impact returns the share e of their relative speed, and in contact both move as one. With the
+// force f on the face
 //
 //   M x'' + c x' + k x = f
 //
@@ -33,7 +42,8 @@
 //   f = (M a_f + k x + c x') / (1 + M C),
 //
 // which is the law above for M = 0 and the rigid wall's a_f / C for M without bound. Contact ends
-// where f falls to zero; the face then swings on its own, f = 0, until the arm meets it again.
+// where f falls to zero; the face then swings on its own, f = 0, until the arm meets it again, and
+// for M = 0 that is the return above.
 #pragma once
 
 #include <math.h>
@@ -55,7 +65,7 @@ typedef struct wall_model {
     double face_mass; // M, 0: the face has none [kg]
 } wall_model;
 
-// How a face with a mass moves.
+// How the wall's face moves.
 typedef struct wall_face {
     double position; // x, into the wall [m]
     double velocity; // [m/s]
@@ -130,15 +140,23 @@ double wall_stored_energy(const wall_model *w, double depth);
 // depth [m] and its rate [m/s] on: frequency or decay [1/s].
 double wall_rate(const wall_model *w, double compliance, double depth, double rate);
 
-// A face with a mass on its spring and damper alone, h [s] later.
+// A face without a mass that an arm leaves behind at a depth [m]: there, with the rate of its
+// return; at rest in place where it returns in less than can be told.
+wall_face wall_face_left_behind(const wall_model *w, double depth);
+
+// A face on its spring and damper alone, h [s] later.
 wall_face wall_face_after(const wall_model *w, wall_face face, double h);
 
 // Its acceleration there [m/s2]; the energy of face and spring [J].
 double wall_face_acceleration(const wall_model *w, wall_face face);
 double wall_face_energy(const wall_model *w, wall_face face);
 
-// How fast the motion of a face left alone changes: frequency or decay [1/s], 0 for one at rest.
+// How fast the motion of a face left alone changes: frequency or decay [1/s], 0 for one at rest or
+// at a constant rate.
 double wall_face_rate(const wall_model *w, wall_face face);
+
+// How long that motion stays analytic [s]: that of Hunt and Crossley's wall ends at rest.
+double wall_face_lasts(const wall_model *w, wall_face face);
 
 // Place of the contact point in a frame with direction (c, s) through the hub's axis: along it, and
 // how far it lies to its right [m].

@@ -7,25 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/loss.h"
 #include "src/base/numbers.h"
-
-static _Thread_local bool lost; // something that was to be put or written
 
 void json_put(json_t *object, const char *key, json_t *value)
 {
-    lost = json_object_set_new(object, key, value) != 0 || lost;
+    loss_unless(json_object_set_new(object, key, value) == 0);
 }
 
 void json_add(json_t *array, json_t *value)
 {
-    lost = json_array_append_new(array, value) != 0 || lost;
-}
-
-bool json_lost_something(void)
-{
-    const bool since = lost;
-    lost = false;
-    return since;
+    loss_unless(json_array_append_new(array, value) == 0);
 }
 
 json_t *json_number(double value)
@@ -64,7 +56,7 @@ json_t *json_numbers(const double *values, int count)
 static void write_string(FILE *stream, const char *text)
 {
     json_t *string = json_text(text);
-    lost = string == NULL || json_dumpf(string, stream, JSON_ENCODE_ANY) != 0 || lost;
+    loss_unless(string != NULL && json_dumpf(string, stream, JSON_ENCODE_ANY) == 0);
     json_decref(string);
 }
 
@@ -161,15 +153,14 @@ static void write_indented(FILE *stream, const json_t *value, int depth)
 
 void json_write(FILE *stream, const json_t *value)
 {
-    assert(stream != NULL && value != NULL);
-    write_indented(stream, value, 0);
+    json_write_member(stream, value, 0);
     fputc('\n', stream);
 }
 
 void json_write_member(FILE *stream, const json_t *value, int depth)
 {
     assert(stream != NULL && depth >= 0);
-    lost = value == NULL || lost;
+    loss_unless(value != NULL);
     if (value != NULL) {
         write_indented(stream, value, depth);
     }

@@ -16,18 +16,16 @@ json_t *json_numbers(const double *values, int count);
 json_t *json_text(const char *text);
 
 // Puts a member into an object, an element at the end of an array, and takes the value over. What
-// cannot be put for want of memory (value or container may be NULL then) is lost, and noted.
+// cannot be put for want of memory (value or container may be NULL then) is lost, and noted
+// (loss.h).
 void json_put(json_t *object, const char *key, json_t *value);
 void json_add(json_t *array, json_t *value);
 
-// Whether anything was lost on this thread since the last call: what it made is not whole.
-bool json_lost_something(void);
-
 // Writes a JSON value with two spaces of indentation, keys in the order in which they were set and
-// numbers as number_format gives them. Errors stay in the stream (ferror).
+// numbers as number_format gives them. Errors stay in the stream (ferror); NULL, for which there
+// was no memory, is lost.
 void json_write(FILE *stream, const json_t *value);
 
 // The same within an array or object that the caller writes, `depth` levels deep, without the end
-// of the line: for what is too long to be held as one value. NULL, for which there was no memory,
-// is lost.
+// of the line: for what is too long to be held as one value.
 void json_write_member(FILE *stream, const json_t *value, int depth);

@@ -5,6 +5,8 @@
 #include <string.h>
 #include <sys/types.h>
 
+#include "src/base/loss.h"
+
 // Makes room for some bytes more and the 0 behind them.
 static bool make_room(text_stream *t, size_t count)
 {
@@ -46,7 +48,7 @@ char *text_stream_close(text_stream *t, size_t *length)
     assert(t != NULL && t->stream != NULL);
     bool whole = ferror(t->stream) == 0;
     whole = fclose(t->stream) == 0 && whole;
-    whole = whole && make_room(t, 0);
+    whole = !loss_noted() && whole && make_room(t, 0);
     if (!whole) {
         free(t->text);
         return NULL;

@@ -14,8 +14,8 @@ typedef struct text_stream {
 
 // Opens an empty one in the caller's storage, which stays in its place until it is closed. False
 // without memory; then there is nothing to be closed.
-bool text_stream_open(text_stream *t);
+bool text_stream_open(text_stream *t) __attribute__((warn_unused_result));
 
 // Closes it and returns the text, ended by a 0 and to be freed; *length (may be NULL) is without
-// that. NULL if any of it was lost.
-char *text_stream_close(text_stream *t, size_t *length);
+// that. NULL if any of it was lost, here or before it came here (loss.h).
+char *text_stream_close(text_stream *t, size_t *length) __attribute__((warn_unused_result));

@@ -16,6 +16,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/base/loss.h"
+
 static status cannot_write(fault *f, const char *path, int reason)
 {
     bool standard_output = strcmp(path, "-") == 0;
@@ -129,8 +131,8 @@ static char *target_of(const char *path)
 
         free(target);
         target = next;
-        errno = target == NULL ? ENOMEM : errno;
     }
+    errno = target == NULL ? ENOMEM : errno;
     return target;
 }
 
@@ -446,6 +448,10 @@ status whole_file_commit(whole_file *w, fault *f)
     int reason = w->sink == NULL ? stream_failure(stdout) : close_sink(w, true);
     if (w->sink == NULL && reason == EPIPE) {
         reason = 0;
+    }
+    // what was lost before it came here is missing in it
+    if (loss_noted() && reason == 0) {
+        reason = ENOMEM;
     }
 
     // the new file takes the place of the old one, or goes

@@ -24,23 +24,25 @@ typedef struct whole_file {
 
 // Tells early, before long work, whether path could be written. Creates nothing.
 // STATUS_CANNOT_WRITE, with path and reason in f, if it could not.
-status whole_file_check(const char *path, fault *f);
+status whole_file_check(const char *path, fault *f) __attribute__((warn_unused_result));
 
 // Opens path for writing through w->stream. A new file gets its mode from the umask, an existing
 // one keeps its own. On failure nothing is left behind and w needs no further call.
-status whole_file_open(whole_file *w, const char *path, fault *f);
+status whole_file_open(whole_file *w, const char *path, fault *f)
+    __attribute__((warn_unused_result));
 
 // Checks everything written so far, brings it to the disk and puts the file in its place. If
-// anything failed the target is as it was before and f says why. A reader of the standard output
+// anything failed, or was lost for want of memory (loss.h), the target is as it was before and f says why. A reader of the standard output
 // that went away (a closed pipe) had what it wanted and is no failure. Closes w in either case.
-status whole_file_commit(whole_file *w, fault *f);
+status whole_file_commit(whole_file *w, fault *f) __attribute__((warn_unused_result));
 
 // Gives up: the target stays as it was. Closes w.
 void whole_file_abandon(whole_file *w);
 
 // Commits w if writing succeeded (`written` is STATUS_OK), otherwise abandons it and returns
 // `written`. Closes w in either case.
-status whole_file_close(whole_file *w, status written, fault *f);
+status whole_file_close(whole_file *w, status written, fault *f)
+    __attribute__((warn_unused_result));
 
 // Removes what runs that were killed left in a folder. Opening a file does so by itself; this is
 // for who asks beforehand what the folder holds. One that cannot be read is left alone.
@@ -56,4 +58,4 @@ void whole_file_set_writer(pid_t process);
 
 // Flushes a stream and tells whether all that was ever written to it arrived: 0, or an errno (EPIPE
 // if the reader of a pipe went away).
-int stream_failure(FILE *stream);
+int stream_failure(FILE *stream) __attribute__((warn_unused_result));

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/loss.h"
 #include "src/base/numbers.h"
 
 static int smaller(int a, int b)
@@ -143,24 +144,33 @@ void make_lines_printable(char *text)
     replace_unprintable(text, '\n');
 }
 
-bool print_printable_list(FILE *stream, const char *format, va_list list)
+void print_printable_list(FILE *stream, const char *format, va_list list)
 {
     assert(stream != NULL && format != NULL);
-    char *text = decimal_vtext(format, list);
-    if (text == NULL) {
-        return false;
+    char brief[1024], *text = brief;
+    va_list again;
+    va_copy(again, list);
+
+    // most texts need no memory; a longer one is cut where there is none
+    const int length = decimal_vprint(brief, sizeof brief, format, list);
+    if (length >= (int)sizeof brief) {
+        char *whole = decimal_vtext(format, again);
+        text = whole != NULL ? whole : brief;
     }
+    va_end(again);
+    loss_unless(length >= 0 && (length < (int)sizeof brief || text != brief));
+
     make_lines_printable(text);
-    const bool printed = fputs(text, stream) != EOF;
-    free(text);
-    return printed;
+    fputs(text, stream);
+    if (text != brief) {
+        free(text);
+    }
 }
 
-bool print_printable(FILE *stream, const char *format, ...)
+void print_printable(FILE *stream, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    const bool printed = print_printable_list(stream, format, list);
+    print_printable_list(stream, format, list);
     va_end(list);
-    return printed;
 }

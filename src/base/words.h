@@ -41,8 +41,8 @@ void make_printable(char *text);
 // The same for a text of several lines, whose line feeds stay.
 void make_lines_printable(char *text);
 
-// Prints like printf, with a decimal point, what make_lines_printable leaves of the text. Returns
-// false without memory or if it could not be written.
-bool print_printable(FILE *stream, const char *format, ...) __attribute__((format(printf, 2, 3)));
-bool print_printable_list(FILE *stream, const char *format, va_list list)
+// Prints like printf, with a decimal point, what make_lines_printable leaves of the text. What is
+// lost of a long one without memory is noted (loss.h); errors stay in the stream.
+void print_printable(FILE *stream, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void print_printable_list(FILE *stream, const char *format, va_list list)
     __attribute__((format(printf, 2, 0)));

@@ -264,7 +264,7 @@ static bool path_peak(pressed_arm *p, const pressed_path *path, double first, pr
 // --- the touch ------------------------------------------------------------------------------
 
 // The velocities just after the touch, and whether it holds: on a rigid wall after a plastic
-// impact, at one that gives if the arm comes nearer.
+// impact, at one that gives if the arm comes nearer. *mode has the motor's current.
 static bool touch_holds(const arm *touched, chain_link *links, const double *q, const double *w,
                         double *after, contact_state *mode, double *impulse)
 {
@@ -278,7 +278,8 @@ static bool touch_holds(const arm *touched, chain_link *links, const double *q, 
     }
 
     // an elastic impact throws the arm back
-    *mode = (contact_state){.contact = true, .friction = after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD};
+    mode->contact = true;
+    mode->friction = after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD;
     if (gives) {
         return jump.speed > 0;
     }
@@ -312,12 +313,6 @@ static bool predict_closed_form(const arm *touched, const double *q, const doubl
            fabs(p.bend) < CLOSED_FORM_BEND;
 }
 
-static prediction no_prediction(void)
-{
-    const double none = (double)NAN;
-    return (prediction){.force = none, .delay = none, .impulse = none, .restitution = none};
-}
-
 status predict_pulse(const arm *a, motion *work, const double *q, const double *w,
                      const voltage_profile *command, prediction *out)
 {
@@ -326,17 +321,18 @@ status predict_pulse(const arm *a, motion *work, const double *q, const double *
     arm touched = touching_now(a, q);
     double *after = work->scratch;
     pulse found;
-    *out = no_prediction();
+    *out = prediction_none();
     if (!wall_stands(&a->wall)) {
         return STATUS_OK;
     }
 
     pulse_start start = {.q = q, .w = after};
+    start.command = command != NULL ? *command : (voltage_profile){0};
+    start.mode.current = start.command.current;
     out->holds = touch_holds(&touched, work->links, q, w, after, &start.mode, &out->impulse);
     if (!out->holds) {
         return STATUS_OK;
     }
-    start.command = command != NULL ? *command : (voltage_profile){0};
     status code = pulse_follow(&touched, work->links, &start, &found);
     if (code != STATUS_OK) {
         return code;
@@ -359,8 +355,8 @@ status predict_linearised(const arm *a, motion *work, const double *q, const dou
     assert(a != NULL && work != NULL && q != NULL && w != NULL && out != NULL);
     arm touched = touching_now(a, q);
     double *after = work->scratch;
-    contact_state mode;
-    *out = no_prediction();
+    contact_state mode = {.current = 0};
+    *out = prediction_none();
     if (!wall_stands(&a->wall)) {
         return STATUS_OK;
     }
@@ -369,6 +365,7 @@ status predict_linearised(const arm *a, motion *work, const double *q, const dou
     if (!out->holds) {
         return STATUS_OK;
     }
+    assert(a->motor.inductance == 0);
     if (closed_form_suits(a, after) && predict_closed_form(&touched, q, after, mode, out)) {
         return STATUS_OK;
     }

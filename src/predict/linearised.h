@@ -13,12 +13,13 @@
 // work: a motion created for this arm, used as scratch; its state is not touched.
 // A wall that gives is taken as it is, a mass at the tip too. Where the number could not be relied
 // on, `doubt` says why and the prediction does not hold.
+// A motor with inductance, whose current the state does not tell, is for predict_pulse.
 // Costs about a microsecond for two links on a rigid hub whose force peaks near standstill, a chain
 // of matrix exponentials otherwise.
 status predict_linearised(const arm *a, motion *work, const double *q, const double *w,
                           prediction *out);
 
-// The same by pulse.h for any arm, which also tells e_eq of 4.1.1, and for a voltage that is
-// prescribed from the touch on (command; NULL or empty: the one in force stays).
+// The same by pulse.h for any arm and motor, which also tells e_eq of 4.1.1, and for a voltage that
+// is prescribed from the touch on (command; NULL or empty: the one in force stays).
 status predict_pulse(const arm *a, motion *work, const double *q, const double *w,
                      const voltage_profile *command, prediction *out);

@@ -28,11 +28,13 @@ typedef enum prediction_doubt {
 } prediction_doubt;
 
 typedef struct prediction {
-    bool holds;             // false: the touch would not hold, contact is lost at once
-    double force;           // peak of the first pulse [N]
-    double delay;           // from contact to the peak [s]; NaN where the method gives none
-    double impulse;         // of the impact [N s]; NaN where the method gives none
-    double restitution;     // e_eq of 4.1.1 [-]; NaN where the method gives none
+    bool holds;         // false: the touch would not hold, contact is lost at once
+    double force;       // peak of the first pulse [N]
+    double delay;       // from contact to the peak [s]; NaN where the method gives none
+    double impulse;     // of the impact [N s]; NaN where the method gives none
+    double restitution; // e_eq of 4.1.1 [-]; NaN where the method gives none
+    double inductance;  // what the motor's inductance changes of the peak [N], NaN where that is
+                        // not asked or not known
     prediction_doubt doubt; // not DOUBT_NONE: force and delay are NaN, and it does not hold
 } prediction;
 
@@ -40,8 +42,11 @@ typedef struct prediction {
 static inline prediction prediction_none(void)
 {
     const double unknown = (double)NAN;
-    return (prediction){
-        .force = unknown, .delay = unknown, .impulse = unknown, .restitution = unknown};
+    return (prediction){.force = unknown,
+                        .delay = unknown,
+                        .impulse = unknown,
+                        .restitution = unknown,
+                        .inductance = unknown};
 }
 
 // Commands of the motor after the touch, each in force from its time on: v(t) of the remark in 4.2.
@@ -49,6 +54,7 @@ typedef struct voltage_profile {
     int count;           // 0: the present command stays
     const double *times; // since the touch, rising [s]
     const double *volts; // [V]
+    double current;      // at the touch, of a motor with inductance [A]
 } voltage_profile;
 
 // A touch holds if the contact point approaches (or rests) and force and delay come out positive;

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "src/arm/motor.h"
+#include "src/base/numbers.h"
 #include "src/predict/linearised.h"
 
 // The linearised arm asks for the state of all links.
@@ -22,11 +23,13 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
     arm a;
     arm_init(&a, p);
     motion *work = motion_create(&a, &p->method);
-    status code = work == NULL ? STATUS_NO_MEMORY
-                  : question->whole_pulse || question->command.count > 0
-                      ? predict_pulse(&a, work, question->angles, question->velocities,
-                                      &question->command, out)
-                      : predict_linearised(&a, work, question->angles, question->velocities, out);
+    voltage_profile command = question->command;
+    command.current = question->current;
+    status code =
+        work == NULL ? STATUS_NO_MEMORY
+        : question->whole_pulse || command.count > 0 || p->motor.inductance > 0
+            ? predict_pulse(&a, work, question->angles, question->velocities, &command, out)
+            : predict_linearised(&a, work, question->angles, question->velocities, out);
     motion_destroy(work);
 
     if (code != STATUS_OK) {
@@ -101,10 +104,9 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     const three_body_state *s = &question->bodies;
     status code = STATUS_OK;
 
-    if (p->motor.inductance > 0 ||
-        (which != PREDICTOR_LINEARISED && p->motor.drive == DRIVE_VOLTAGE &&
-         p->motor.current_limit > 0)) {
-        return PREDICTION_CURRENT_AT_ONCE_ONLY;
+    if (which != PREDICTOR_LINEARISED && p->motor.drive == DRIVE_VOLTAGE &&
+        p->motor.current_limit > 0) {
+        return PREDICTION_UNLIMITED_ONLY;
     }
 
     // the thesis's begin with an impact of two bare links
@@ -150,7 +152,6 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
         PREDICTOR_LIST(PREDICTOR_TEXT)
 #undef PREDICTOR_TEXT
     };
-    const double none = (double)NAN;
     assert(which < PREDICTOR_COUNT && question != NULL && question->parameters != NULL);
 
     prediction_answer answer = {.name = texts[which].name,
@@ -159,13 +160,35 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
                                 .fault = {.code = STATUS_OK}};
     answer.outcome = ask(which, question, &answer.prediction, &answer.fault);
     if (!prediction_known(&answer)) {
-        answer.prediction = (prediction){.force = none,
-                                         .delay = none,
-                                         .impulse = none,
-                                         .restitution = none,
-                                         .doubt = answer.prediction.doubt};
+        const prediction_doubt doubt = answer.prediction.doubt;
+        answer.prediction = prediction_none();
+        answer.prediction.doubt = doubt;
     }
     return answer;
+}
+
+// Tells the answers what the inductance changes of the peak, as far as the linearised arm knows.
+static void tell_inductance(const prediction_question *question,
+                            prediction_answer answers[PREDICTOR_COUNT])
+{
+    parameters at_once = *question->parameters;
+    prediction_question without = *question;
+    at_once.motor.inductance = 0;
+    without.parameters = &at_once;
+    const prediction_answer other = predict_with(PREDICTOR_LINEARISED, &without);
+    const double change = answers[PREDICTOR_LINEARISED].prediction.force - other.prediction.force;
+
+    for (predictor which = 0; which < PREDICTOR_COUNT; which++) {
+        prediction_answer *answer = &answers[which];
+        answer->prediction.inductance = prediction_known(answer) ? change : (double)NAN;
+        if (which != PREDICTOR_LINEARISED && answer->outcome == PREDICTION_HOLDS) {
+            decimal_print(answer->note, sizeof answer->note,
+                          isnan(change) ? "without the motor's inductance"
+                                        : "without the motor's inductance, which changes the peak "
+                                          "by %.2g N",
+                          change);
+        }
+    }
 }
 
 void predict_all(const prediction_question *question, prediction_answer answers[PREDICTOR_COUNT])
@@ -173,6 +196,9 @@ void predict_all(const prediction_question *question, prediction_answer answers[
     assert(question != NULL && answers != NULL);
     for (predictor which = 0; which < PREDICTOR_COUNT; which++) {
         answers[which] = predict_with(which, question);
+    }
+    if (question->parameters->motor.inductance > 0) {
+        tell_inductance(question, answers);
     }
 }
 
@@ -203,5 +229,5 @@ const char *prediction_reason(const prediction_answer *answer)
     if (answer->outcome == PREDICTION_DOUBTFUL) {
         return doubts[answer->prediction.doubt];
     }
-    return answer->outcome == PREDICTION_HOLDS ? "" : texts[answer->outcome];
+    return answer->outcome == PREDICTION_HOLDS ? answer->note : texts[answer->outcome];
 }

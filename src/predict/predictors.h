@@ -30,7 +30,7 @@ typedef enum predictor {
     X(PREDICTION_NO_FACE_ONLY, "for a wall whose face has no mass only")                           \
     X(PREDICTION_BARE_TIP_ONLY, "for a tip that carries nothing only")                             \
     X(PREDICTION_EQUAL_LINKS_ONLY, "for equal links with equal linear joints only")                \
-    X(PREDICTION_CURRENT_AT_ONCE_ONLY, "for a motor whose current follows at once only")           \
+    X(PREDICTION_UNLIMITED_ONLY, "for a motor whose current has no limit only")                    \
     X(PREDICTION_KNOWS_NO_TIME, "knows no time over which a voltage could act")                    \
     X(PREDICTION_LINKS_UNKNOWN, "the state of all links is not known")                             \
     X(PREDICTION_FAILED, "there is no prediction")
@@ -50,6 +50,7 @@ typedef struct prediction_question {
     const double *velocities;     // them [rad/s]; NULL where they are not known
     voltage_profile command;      // what the motor is to be given from the touch on; count 0: as is
     bool whole_pulse;             // also e_eq, at the cost of following the pulse to its end
+    double current;               // of a motor with inductance, at that instant [A]
 } prediction_question;
 
 typedef struct prediction_answer {
@@ -59,17 +60,20 @@ typedef struct prediction_answer {
     prediction_outcome outcome; // PREDICTION_HOLDS, PREDICTION_LOST: `prediction` is filled in
     prediction prediction;      // else NaN, and not held
     fault fault;                // why there is none after PREDICTION_FAILED; else STATUS_OK
+    char note[96];              // what a known answer leaves out, else ""
 } prediction_answer;
 
 // Whether the predictor has an answer: a touch that holds or one that does not.
 bool prediction_known(const prediction_answer *answer);
 
-// Why there is no pulse to speak of: a sentence for people; "" if the touch would hold.
+// Why there is no pulse to speak of, or what is left out of one: for people; "" if nothing is.
 const char *prediction_reason(const prediction_answer *answer);
 
-// Asks one predictor. The linearised arm of many links takes milliseconds and allocates, the others
-// microseconds.
+// Asks one predictor. Of a motor with inductance the linearised arm follows the current, and the
+// thesis's predictors take it as following at once. The linearised arm of many links takes
+// milliseconds and allocates, the others microseconds.
 prediction_answer predict_with(predictor which, const prediction_question *question);
 
-// Asks all of them, in the order of the list.
+// Asks all of them, in the order of the list, and how much an inductance changes the peak: what the
+// linearised arm says with it less what it says without.
 void predict_all(const prediction_question *question, prediction_answer answers[PREDICTOR_COUNT]);

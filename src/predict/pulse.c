@@ -9,6 +9,8 @@
 
 // Samples a radian of the fastest mode.
 #define SAMPLES_A_RADIAN 10
+// The first sample after a command changes, in times that the current lags behind; others double.
+#define FIRST_SAMPLE 0.1
 // What a linear arm may be off in the force, or by its gap bring into it, of the largest force so
 // far.
 #define FORCE_DEFECT 5e-4
@@ -25,17 +27,23 @@ enum { MOST_PIECES = 1000, MOST_SAMPLES = 60000 };
 typedef struct instant_of_pulse {
     double time;           // since the touch [s]
     double *q, *w, *alpha; // [dof]
+    double current;        // of a motor with inductance [A]
     chain_reaction reaction;
 } instant_of_pulse;
 
 typedef struct follower {
     arm arm; // with the command in force
     chain_link *links;
-    int n, size; // dof; of z
+    int n, size;          // dof; of z
+    bool flows;           // the current is the last element of z
+    bool held;            // at its limit, by the linear arm in use
+    double current_limit; // HUGE_VAL: none [A]
     contact_state mode;
     voltage_profile command;
     int next_command;
     double sample;    // usual time between two samples [s]
+    double step;      // to the next one, shorter where a current begins to change [s]
+    double reach;     // of the propagator, 0: of none yet [s]
     double stiffness; // of the outermost joint at the tip, zero at a wall that gives [N/m]
 
     // the linear arm in use
@@ -47,6 +55,8 @@ typedef struct follower {
 
     // what was seen so far
     double before_last, last;           // the two forces before, NaN at the start of a piece [N]
+    double earlier_times[2];            // when they were [s]
+    double turning;                     // force where friction changes, before that; else NaN [N]
     double most_strain, kinetic_there;  // [J]
     double first_zero, kinetic_at_zero; // where the force vanished [s], [J]
     double peak_at_graze;               // NaN if it never grazed zero [N]
@@ -94,7 +104,52 @@ static double *allocate(follower *f)
 
 static void evaluate(follower *f, instant_of_pulse *at)
 {
+    f->mode.current = at->current;
     chain_accelerations(&f->arm, f->links, at->q, at->w, f->mode, at->alpha, &at->reaction);
+}
+
+// How fast the current of a motor with inductance changes [A/s].
+static double current_slope(const motor_model *m, double current, double w)
+{
+    return (m->gain * m->voltage - m->resistance * current - m->back_emf * w) / m->inductance;
+}
+
+// Whether it stays at its limit, where the voltage would drive it on.
+static bool current_is_held(const follower *f, const instant_of_pulse *at)
+{
+    const bool there = fabs(at->current) >= f->current_limit;
+    return f->flows && there &&
+           at->current * current_slope(&f->arm.motor, at->current, at->w[0]) > 0;
+}
+
+// The current's equation, and what it does to accelerations and force, of which the other terms are
+// those of one that stays.
+static void linearise_current(follower *f)
+{
+    const int n = f->n, size = f->size, last = size - 1;
+    const motor_model *m = &f->arm.motor;
+    double *alpha = f->scratch, *matrix = f->matrix;
+    chain_reaction r;
+
+    // they are straight lines of it
+    f->mode.current = f->now.current + 1;
+    chain_accelerations(&f->arm, f->links, f->now.q, f->now.w, f->mode, alpha, &r);
+    f->output[last] = r.force - f->now.reaction.force;
+    f->output[2 * n] -= f->output[last] * f->now.current;
+    for (int i = 0; i < n; i++) {
+        const double slope = alpha[i] - f->now.alpha[i];
+        matrix[(n + i) * size + last] = slope;
+        matrix[(n + i) * size + 2 * n] -= slope * f->now.current;
+    }
+
+    // at its limit it stays
+    f->held = current_is_held(f, &f->now);
+    if (!f->held) {
+        matrix[last * size + last] = -m->resistance / m->inductance;
+        matrix[last * size + n] = -m->back_emf / m->inductance;
+        matrix[last * size + 2 * n] = m->gain * m->voltage / m->inductance;
+    }
+    f->z[last] = f->now.current;
 }
 
 // Puts the arm back onto a rigid wall, from which linear motion drifts, along M^-1 J^T.
@@ -163,6 +218,9 @@ static void linearise(follower *f)
     memset(f->z, 0, (size_t)size * sizeof *f->z);
     memcpy(f->z + n, f->now.w, (size_t)n * sizeof *f->z);
     f->z[2 * n] = 1;
+    if (f->flows) {
+        linearise_current(f);
+    }
 }
 
 // Begins the next linear arm where the arm is now.
@@ -171,7 +229,7 @@ static void begin_piece(follower *f)
     put_on_wall(f);
     evaluate(f, &f->now);
     linearise(f);
-    matrix_exponential(f->matrix, f->size, f->sample, f->propagator, f->power, f->product);
+    f->reach = 0;
     f->last = f->before_last = (double)NAN;
 }
 
@@ -180,6 +238,10 @@ static double advance(follower *f, double h)
 {
     const int n = f->n, size = f->size;
     double force = 0;
+    if (f->reach != h) {
+        matrix_exponential(f->matrix, size, h, f->propagator, f->power, f->product);
+        f->reach = h;
+    }
     for (int i = 0; i < size; i++) {
         double sum = 0;
         for (int j = 0; j < size; j++) {
@@ -194,9 +256,21 @@ static double advance(follower *f, double h)
         f->then.q[i] = f->base[i] + f->next[i];
         f->then.w[i] = f->next[n + i];
     }
+    f->then.current = f->flows ? f->next[size - 1] : 0;
     f->then.time = f->now.time + h;
     evaluate(f, &f->then);
     return fabs(force - f->then.reaction.force);
+}
+
+// Whether the current meets its limit between the two samples, where it then is, or leaves it.
+static bool current_turns(follower *f)
+{
+    if (f->held || !(fabs(f->then.current) > f->current_limit)) {
+        return f->held && !current_is_held(f, &f->then);
+    }
+    f->then.current = copysign(f->current_limit, f->then.current);
+    evaluate(f, &f->then);
+    return true;
 }
 
 // f->then moved back to a share of the way from f->now: cubics through both ends' values and rates.
@@ -210,7 +284,15 @@ static void move_back(follower *f, double share)
         f->then.q[i] = f->now.q[i] + last * (f->then.q[i] - f->now.q[i]) + rate0 * w0 + rate1 * w1;
         f->then.w[i] = w0 + last * (w1 - w0) + rate0 * f->now.alpha[i] + rate1 * f->then.alpha[i];
     }
+    if (f->flows && !f->held) {
+        const double i0 = f->now.current, i1 = f->then.current;
+        f->then.current = i0 + last * (i1 - i0) +
+                          rate0 * current_slope(&f->arm.motor, i0, f->now.w[0]) +
+                          rate1 * current_slope(&f->arm.motor, i1, f->then.w[0]);
+    }
     f->then.time = f->now.time + share * h;
+    evaluate(f, &f->then);
+    f->turning = f->then.reaction.force;
 }
 
 // --- what happens on the way ----------------------------------------------------------------
@@ -262,6 +344,14 @@ static bool friction_changes(follower *f)
     return true;
 }
 
+// A command, or the touch, changes how fast the current does: samples are near each other at first.
+static void begin_samples(follower *f)
+{
+    const motor_model *m = &f->arm.motor;
+    const double lag = f->flows ? m->inductance / m->resistance : HUGE_VAL;
+    f->step = fmin(f->sample, FIRST_SAMPLE * lag);
+}
+
 // Commands that are due.
 static bool command_changes(follower *f)
 {
@@ -270,6 +360,10 @@ static bool command_changes(follower *f)
            f->command.times[f->next_command] <= f->now.time * (1 + 1e-12)) {
         arm_set_voltage(&f->arm, f->command.volts[f->next_command++]);
         changed = true;
+    }
+
+    if (changed) {
+        begin_samples(f);
     }
 
     // a stuck hub may break away under the new one
@@ -284,30 +378,37 @@ static double next_command_time(const follower *f)
     return f->next_command < f->command.count ? f->command.times[f->next_command] : HUGE_VAL;
 }
 
-// Whether wall and friction leave the arm no way to move.
+// Whether wall and friction leave the arm no way to move, and no current changes.
 static bool held_still(const follower *f)
 {
     int holds = !wall_gives(&f->arm.wall) + (f->mode.friction == HUB_STICK);
-    return f->n == 1 ? holds > 0 : holds >= f->n;
+    return !f->flows && (f->n == 1 ? holds > 0 : holds >= f->n);
 }
 
 // --- what is seen on the way ----------------------------------------------------------------
 
 // The top of the parabola through the last three forces, if it lies between them.
-static void see_peak(follower *f, double h, pulse *out)
+static void see_peak(follower *f, pulse *out)
 {
-    double force = f->now.reaction.force;
+    const bool turns = !isnan(f->turning);
+    const double now = f->now.time, last = f->earlier_times[1], first = f->earlier_times[0];
+    const double force = fmax(f->now.reaction.force, f->turning);
     if (force > out->peak) {
         out->peak = force;
-        out->delay = f->now.time;
+        out->delay = now;
     }
 
-    double second = f->before_last - 2 * f->last + force, slope = (force - f->before_last) / 2;
-    if (f->last > f->before_last && f->last >= force) { // so that the parabola has a top
-        double s = -slope / second, top = f->last + slope * s / 2;
+    // within its last interval where no other will see that
+    const double end = turns ? f->turning : f->now.reaction.force;
+    const double rise = (f->last - f->before_last) / (last - first);
+    const double bend = ((end - f->last) / (now - last) - rise) / (now - first);
+    const double when = (first + last) / 2 - rise / (2 * bend);
+    const bool tops = f->last > f->before_last && f->last >= end;
+    if (bend < 0 && (tops || (turns && when > last && when < now))) {
+        const double top = f->before_last + (when - first) * (rise + bend * (when - last));
         if (top > out->peak) {
             out->peak = top;
-            out->delay = f->now.time - h + s * h;
+            out->delay = when;
         }
     }
 }
@@ -365,7 +466,7 @@ static void follow(follower *f, pulse *out)
         if (command_changes(f) || fresh) {
             evaluate(f, &f->now);
             if (held_still(f)) {
-                see_peak(f, 0, out);
+                see_peak(f, out);
                 before = early ? out->peak : before; // it presses so until it is told otherwise
                 f->now.time = next_command_time(f);
                 fresh = true;
@@ -379,25 +480,26 @@ static void follow(follower *f, pulse *out)
         }
 
         // up to the next sample, or the next command
-        double h = f->sample, due = next_command_time(f) - f->now.time;
-        bool cut = due < h;
-        if (cut) {
-            h = due;
-            matrix_exponential(f->matrix, f->size, h, f->propagator, f->power, f->product);
-        }
+        const double due = next_command_time(f) - f->now.time, h = fmin(f->step, due);
+        const bool cut = due < f->step;
+        f->step = fmin(2 * f->step, f->sample);
         double defect = advance(f, h), gap = f->then.reaction.gap;
+        f->turning = (double)NAN;
         bool changed = friction_changes(f);
+        changed |= current_turns(f);
         bool off = defect + f->stiffness * fabs(gap) > FORCE_DEFECT * out->peak;
 
         // on to it
         f->before_last = f->last;
         f->last = f->now.reaction.force;
+        f->earlier_times[0] = f->earlier_times[1];
+        f->earlier_times[1] = f->now.time;
         instant_of_pulse behind = f->now;
         f->now = f->then;
         f->then = behind;
         memcpy(f->z, f->next, (size_t)f->size * sizeof *f->z);
         see_energy(f);
-        see_peak(f, h, out);
+        see_peak(f, out);
         if (see_end(f, h, out)) {
             return;
         }
@@ -426,13 +528,20 @@ status pulse_follow(const arm *a, chain_link *work, const pulse_start *start, pu
     follower f = {.arm = *a,
                   .links = work,
                   .n = a->dof,
-                  .size = 2 * a->dof + 1,
+                  .flows = a->motor.inductance > 0,
+                  .current_limit = a->motor.inductance > 0 ? a->motor.current_limit : HUGE_VAL,
                   .mode = start->mode,
                   .command = start->command,
                   .stiffness = wall_gives(&a->wall) ? 0 : tip_stiffness(a),
+                  .turning = none,
                   .first_zero = none,
                   .peak_at_graze = none};
     *out = (pulse){.length = none, .restitution = none};
+    f.size = 2 * f.n + 1 + f.flows;
+    if (f.flows) {
+        f.arm.motor.current_limit = HUGE_VAL; // of which this file takes care
+        f.now.current = fmax(-f.current_limit, fmin(start->mode.current, f.current_limit));
+    }
 
     double *block = allocate(&f);
     if (block == NULL) {
@@ -446,8 +555,15 @@ status pulse_follow(const arm *a, chain_link *work, const pulse_start *start, pu
     out->peak = f.lowest = f.now.reaction.force;
     see_energy(&f);
 
-    // the fastest motion to come; a wall that gives has a say
+    // the fastest motion to come; a wall that gives has a say, and current and hub by turns
     double rate = fmax(a->highest_frequency, 1), compliance;
+    if (f.flows) {
+        const motor_model *motor = &a->motor;
+        const double coupled = motor->torque_constant * motor->back_emf / motor->inductance /
+                               (a->hub_inertia + a->link_inertia);
+        const double decay = motor->resistance / (2 * motor->inductance);
+        rate = coupled > decay * decay ? sqrt(rate * rate + coupled) : rate;
+    }
     if (wall_gives(&a->wall)) {
         chain_contact_response(a, work, start->q, false, f.scratch, &compliance);
         double wall = wall_rate(&a->wall, compliance, fmax(-f.now.reaction.gap, 0),
@@ -455,6 +571,7 @@ status pulse_follow(const arm *a, chain_link *work, const pulse_start *start, pu
         rate = sqrt(rate * rate + wall * wall);
     }
     f.sample = 1 / (SAMPLES_A_RADIAN * rate);
+    begin_samples(&f);
     follow(&f, out);
 
     // what is too close to call is left open

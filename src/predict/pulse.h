@@ -4,7 +4,8 @@
 // z' = A z + b with z = (q, w, 1), and followed exactly by the propagator exp(A h). At every sample
 // the true equations say how far off the linear ones are; where that is no longer small, the next
 // linear arm begins. Hub friction changes its direction, sticks and breaks away on the way, and a
-// voltage may be prescribed. The pulse ends where the force vanishes.
+// voltage may be prescribed. The current of a motor with inductance is one more element of z, and
+// held where it is at its limit. The pulse ends where the force vanishes.
 #pragma once
 
 #include "src/arm/chain.h"
@@ -19,7 +20,7 @@
 typedef struct pulse_start {
     const double *q;         // angles[dof] at the touch [rad]
     const double *w;         // velocities[dof] just after the impact [rad/s]
-    contact_state mode;      // just after it
+    contact_state mode;      // just after it, with the motor's current
     voltage_profile command; // from the touch on; empty: the arm's own command stays
 } pulse_start;
 

@@ -7,6 +7,8 @@
 #include "src/base/numbers.h"
 #include "src/quantities/parameters.h"
 
+#define LEAST 1e-100 // of what is not 0: squares and quotients of it are numbers, too
+
 // The row of an index that a look-up gave.
 static const parameter_info *row_of(int index)
 {
@@ -119,6 +121,12 @@ static status check_number(const parameter_info *info, double value, fault *f)
         return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
                             "%s = %g is out of range, expected %g to %g%s%s", info->path, value,
                             info->minimum, info->maximum, space, unit);
+    }
+    if (value != 0 && fabs(value) < LEAST) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, info->path,
+            "%s = %g is too small to be computed with, expected 0 or at least %g%s%s", info->path,
+            value, LEAST, space, unit);
     }
     return STATUS_OK;
 }

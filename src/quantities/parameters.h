@@ -17,6 +17,7 @@ typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
 typedef enum wall_law { WALL_RIGID, WALL_KELVIN_VOIGT, WALL_HUNT_CROSSLEY } wall_law;
 typedef enum motor_drive { DRIVE_VOLTAGE, DRIVE_CURRENT } motor_drive;
 typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
+typedef enum engine_kind { ENGINE_AUTO, ENGINE_PAIR, ENGINE_STIFF, ENGINE_SERIES } engine_kind;
 typedef enum listing_reevaluation {
     REEVALUATE_RHS,
     REEVALUATE_LISTING,
@@ -86,6 +87,8 @@ typedef struct method_parameters {
     double rest_speed;      // approach speed below which an impact is plastic (rest rule) [m/s]
     double residual_bound;  // largest residual of the energy balance, as a share of the energy put
                             // in [-]
+    int engine;             // engine_kind, of the event method
+    double tolerance;       // of the stiff engine's steps, as a share of the momentum [-]
 } method_parameters;
 
 typedef struct printed_parameters {
@@ -264,6 +267,9 @@ void parameters_joint_stiffness(const arm_parameters *a, double *stiffness);
 // Whether all links have one length and all joints the stiffness of one beam, as they do without
 // lists; a hub spring of its own does not count.
 bool parameters_even_links(const arm_parameters *a);
+
+// How far behind the wall an arm may start, by rounding, as a share of its length.
+#define START_ROUNDING 1e-15
 
 // Index of a path in the table, or -1.
 int parameter_find(const char *path);

@@ -252,13 +252,15 @@ status parameters_resolve_arm(parameters *p, fault *f)
                             "expected above 0 or arm.hub_joint = rigid");
     }
 
-    // the arm starts in front of the wall
-    if (p->wall.kind != WALL_NONE && p->initial.angle > p->wall.angle) {
+    // the straight arm starts in front of the wall, whose gap is length sin(ahead) for any kind
+    const double ahead = p->wall.angle - p->initial.angle;
+    const bool in_front = ahead >= -START_ROUNDING && ahead <= M_PI + START_ROUNDING;
+    if (p->wall.kind != WALL_NONE && !in_front) {
         return fault_set_at(
             f, STATUS_BAD_SCENARIO, BLAME2(p, initial.angle, wall.angle),
-            "initial.angle = %g rad lies behind the wall, expected at most wall.angle = "
-            "%g rad",
-            p->initial.angle, p->wall.angle);
+            "initial.angle = %.10g rad lies behind the wall, expected from wall.angle - pi = "
+            "%.10g to wall.angle = %.10g rad",
+            p->initial.angle, p->wall.angle - M_PI, p->wall.angle);
     }
     return STATUS_OK;
 }

@@ -99,6 +99,27 @@ static status resolve_wall(parameters *p, fault *f)
     return STATUS_OK;
 }
 
+// The engine asked for by name, which must be able to take the arm.
+static status check_engine(const parameters *p, fault *f)
+{
+    if (p->method.engine != ENGINE_AUTO && p->method.name != METHOD_EVENT) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, method.engine, method.name),
+                            "method.engine is for method.name = event");
+    }
+    const arm_parameters *a = &p->arm;
+    const bool electric =
+        p->motor.inductance > 0 || (p->motor.current_limit > 0 && p->motor.drive == DRIVE_VOLTAGE);
+    const bool bare = a->tip_mass == 0 && a->stiffening == 0 && a->air_drag == 0 &&
+                      a->modal_ratios[0] == '\0' && parameters_even_links(a);
+    const bool pair = a->links == 2 && bare && !electric && p->wall.contact == WALL_RIGID;
+    if (p->method.engine == ENGINE_PAIR && !pair) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.engine),
+                            "method.engine = pair takes two equal bare links on a rigid wall, with "
+                            "a motor whose current follows at once; expected auto or stiff");
+    }
+    return STATUS_OK;
+}
+
 // The controller's texts, and its timing: a command goes out before the next one does.
 static status check_control(const parameters *p, fault *f)
 {
@@ -231,6 +252,7 @@ status parameters_resolve(parameters *p, fault *f)
     status code = parameters_resolve_arm(p, f);
     code = code == STATUS_OK ? resolve_motor(p, f) : code;
     code = code == STATUS_OK ? resolve_wall(p, f) : code;
+    code = code == STATUS_OK ? check_engine(p, f) : code;
     code = code == STATUS_OK ? check_control(p, f) : code;
     code = code == STATUS_OK ? resolve_impact_angle(p, f) : code;
     code = code == STATUS_OK ? resolve_piezo(p, f) : code;

@@ -95,7 +95,7 @@ const signal_info signal_table[] = {
      "Strain energy", 5, LINE_DASHED, AT(wall_energy), OPTIONAL},
     {"wall_loss", "D<sub>w</sub>", "Dw", "J", "lost in a wall that gives", BODY_NONE, "Energy lost",
      5, LINE_DASH_DOT, AT(wall_loss), OPTIONAL},
-    {"face_depth", "x<sub>w</sub>", "xw", "m", "how far a wall's face with a mass is pushed in",
+    {"face_depth", "x<sub>w</sub>", "xw", "m", "how far the face of a wall that gives is pushed in",
      BODY_NONE, "Depth of the wall's face", 2, LINE_DASHED, AT(face_depth), OPTIONAL},
     {"predicted_force", "f<sub>pred</sub>", "fpred", "N",
      "largest contact force if the tip struck now, as the rig predicts it", BODY_NONE,
@@ -133,6 +133,13 @@ int signal_index(const char *name)
     int index = signal_find(name);
     assert(index >= 0);
     return index;
+}
+
+bool signal_is_state(int index)
+{
+    assert(index >= 0 && index < signal_count);
+    return index == SIGNAL_INDEX(contact) || index == SIGNAL_INDEX(sticking) ||
+           index == SIGNAL_INDEX(controller_mode);
 }
 
 double signal_value(const sample *row, int index)

@@ -50,7 +50,7 @@ typedef struct sample {
     // of a wall that gives; NaN at a rigid one
     double wall_energy; // that its spring and the motion of its face hold [J]
     double wall_loss;   // lost in it [J]
-    double face_depth;  // how far its face is pushed in, NaN where it has no mass [m]
+    double face_depth;  // how far its face is pushed in, NaN in a rigid one [m]
     // on the rig with a limit on the force
     double predicted_force; // largest force if the tip struck now, as of the last sample [N]
 } sample;
@@ -90,6 +90,10 @@ int signal_index(const char *name);
 
 // "hub", "first link", "last link"; "" for BODY_NONE.
 const char *signal_body_name(signal_body body);
+
+// Whether a signal is a state, such as contact or a mode: a number that names it and is no amount,
+// so that nothing can be subtracted from it.
+bool signal_is_state(int index);
 
 // The signal's value in a row.
 double signal_value(const sample *row, int index);

@@ -9,6 +9,11 @@
 #define NUMBER(field, ...) [SUMMARY_INDEX(field)] = {#field, __VA_ARGS__}
 #define TIMING             .timing = true
 #define SPECIAL            .special = true
+#define BOUNDS(number, label, what)                                                                \
+    NUMBER(number##_low_N, #number "_low", label " low", "N",                                      \
+           "least that the " what " may be where it is not determined", SPECIAL),                  \
+        NUMBER(number##_high_N, #number "_high", label " high", "N",                               \
+               "most that the " what " may be where it is not determined", SPECIAL)
 
 const summary_info summary_table[] = {
     // number, name, label, unit, description, what is special about it
@@ -18,15 +23,19 @@ const summary_info summary_table[] = {
            "impulse of the first impact"),
     NUMBER(first_pulse_peak_N, "first_pulse_peak", "first pulse peak", "N",
            "largest force from first contact to first release"),
+    BOUNDS(first_pulse_peak, "first pulse peak",
+           "largest force from first contact to first release"),
     NUMBER(first_pulse_time_to_peak_s, "first_pulse_time_to_peak", "first pulse time to peak", "s",
            "from first contact to that force"),
     NUMBER(first_pulse_s, "first_pulse", "first pulse", "s", "from first contact to first release"),
     NUMBER(peak_force_N, "peak_force", "peak force", "N", "largest force of the whole run"),
+    BOUNDS(peak_force, "peak force", "largest force of the whole run"),
     NUMBER(time_to_peak_s, "time_to_peak", "time to peak", "s", "from first contact to that force"),
     NUMBER(impacts, "impacts", "impacts", "", "impacts of the whole run"),
     NUMBER(separations, "separations", "separations", "",
            "times that the arm leaves the wall by more than 1 um"),
     NUMBER(steady_force_N, "steady_force", "steady force", "N", "mean force over the last 0.1 s"),
+    BOUNDS(steady_force, "steady force", "mean force over the last 0.1 s"),
     NUMBER(force_overshoot_percent, "force_overshoot", "force overshoot", "%",
            "largest force over the steady one"),
     NUMBER(settling_time_s, "settling_time", "settling time", "s",

@@ -10,21 +10,25 @@
 // The results of a run. A quantity that did not occur is NaN (null in JSON).
 typedef struct summary {
     status status;
-    bool inaccurate; // it came to its end, but the residual of the energy balance exceeds its bound
+    bool inaccurate;    // it came to its end, but not to be relied on: the message says why
     const char *path;   // of the parameter that stopped the run, a literal; "" if none did
     char message[1024]; // what stopped the run, or a remark; "" if there is none
-    char method[32];    // the method in fact used, "power series"
+    char method[32];    // the method in fact used, "pair"
     // numbers only from here on, see summary_value
     double first_contact_s;
     double contact_impulse_Ns; // impulse of the first impact
     double first_pulse_peak_N; // largest force from first contact to first release
+    // the bounds of a force that is not determined, else NaN
+    double first_pulse_peak_low_N, first_pulse_peak_high_N;
     double first_pulse_time_to_peak_s;
-    double first_pulse_s;  // length of the first pulse; NaN if it never ends
-    double peak_force_N;   // largest force of the whole run
+    double first_pulse_s; // length of the first pulse; NaN if it never ends
+    double peak_force_N;  // largest force of the whole run
+    double peak_force_low_N, peak_force_high_N;
     double time_to_peak_s; // after first contact
     double impacts;
-    double separations;             // episodes after first contact with a gap above 1 um
-    double steady_force_N;          // mean over the last 0.1 s
+    double separations;    // episodes after first contact with a gap above 1 um
+    double steady_force_N; // mean over the last 0.1 s
+    double steady_force_low_N, steady_force_high_N;
     double force_overshoot_percent; // of peak_force_N over steady_force_N
     double settling_time_s; // from first contact until within 5 % of steady_force_N for good
     double max_penetration_m;
@@ -53,7 +57,7 @@ typedef struct summary_info {
     const char *unit;        // "s", "" for a count
     const char *description; // one sentence without a full stop
     bool timing;             // depends on the machine, not on the scenario
-    bool special;            // present only with a control law, or with a wall that gives
+    bool special;            // present only in some runs: with a control law, a wall that gives
 } summary_info;
 
 // The table, in the order of the numbers of struct summary and of `run --json`.

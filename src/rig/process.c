@@ -194,9 +194,12 @@ static bool take_in(process *p)
     if (count < 0 && (errno == EAGAIN || errno == EINTR)) {
         return true;
     }
+    if (count < 0) {
+        return fail(p, "gave an answer that cannot be read: %s", strerror(errno));
+    }
 
     // at its end it can say no more
-    if (count <= 0) {
+    if (count == 0) {
         return fail(p, "ended without an answer");
     }
 

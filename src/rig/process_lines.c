@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "src/base/json.h"
+#include "src/base/loss.h"
 #include "src/base/numbers.h"
 #include "src/rig/controller_values.h"
 
@@ -86,6 +87,7 @@ char *process_question(const controller_setup *setup, const control_parameters *
                        const controller_input *in)
 {
     assert(control != NULL && in != NULL);
+    const bool lost_before = loss_noted(); // of other output on this thread
     json_t *object = json_object();
     if (setup != NULL) {
         json_put(object, "protocol", json_integer(PROTOCOL));
@@ -108,7 +110,8 @@ char *process_question(const controller_setup *setup, const control_parameters *
     // enough digits for every bit
     char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(object);
-    const bool whole = !json_lost_something() && text != NULL;
+    const bool whole = !loss_noted() && text != NULL;
+    loss_unless(!lost_before);
     const size_t length = whole ? strlen(text) : 0;
     char *line = whole ? realloc(text, length + 2) : NULL;
     if (line == NULL) {

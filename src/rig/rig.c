@@ -67,7 +67,7 @@ static status start_controller(rig *r, const parameters *p, const given_law *giv
 {
     // at least one of each, as nothing allocated would look like no memory
     size_t count = (size_t)(r->law->parameter_count > 0 ? r->law->parameter_count : 1);
-    r->memory = calloc(1, r->law->memory_size + 1);
+    r->memory = calloc(r->law->memory_size > 0 ? r->law->memory_size : 1, 1);
     r->values = calloc(count, sizeof *r->values);
     if (r->memory == NULL || r->values == NULL) {
         return fault_set(f, STATUS_NO_MEMORY, "no memory for the controller '%s'", r->law->name);

@@ -79,6 +79,10 @@ status rig_lock(rig *r, const char *lock, fault *f);
 enum { MODE_NAME_SIZE = 32 };
 int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, bool *lockable);
 
+// Whether the controller can be told these parameters during the run. STATUS_BAD_SCENARIO, with a
+// sentence in f, if its law takes them at the start only and they are others now.
+status rig_takes(const rig *r, const parameters *p, fault *f);
+
 // Adopts changes of control.*, belief.*, sensor.* and motor.voltage_limit made at `time` [s]; they
 // hold from the next sample on. What the controller was told of the arm stays as at the start.
 // STATUS_BAD_SCENARIO, with a sentence in f, if the law takes its parameters at the start only.

@@ -25,17 +25,29 @@ static bool group_differs(const parameters *a, const parameters *b, const char *
     return false;
 }
 
-// Gives the controller what it is told now. STATUS_BAD_SCENARIO, with a sentence in f, if its law
-// takes its parameters at the start only.
+// Whether parameters say something else of what the controller is told than it was told last.
+static bool tells_anew(const rig *r, const parameters *p)
+{
+    const parameters *told = &r->told;
+    return group_differs(told, p, "control.") || group_differs(told, p, "belief.") ||
+           told->motor.voltage_limit != p->motor.voltage_limit;
+}
+
+status rig_takes(const rig *r, const parameters *p, fault *f)
+{
+    assert(r != NULL && p != NULL);
+    return r->law->tune != NULL || !tells_anew(r, p)
+               ? STATUS_OK
+               : fault_set(f, STATUS_BAD_SCENARIO,
+                           "the controller '%s' takes its parameters at the start only: they "
+                           "cannot change during the run",
+                           r->law->name);
+}
+
+// Gives the controller what it is told now. STATUS_BAD_SCENARIO, with a sentence in f, if it
+// refuses.
 static status tell_controller(rig *r, const parameters *p, fault *f)
 {
-    if (r->law->tune == NULL) {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "the controller '%s' takes its parameters at the start only: they cannot "
-                         "change during the run",
-                         r->law->name);
-    }
-
     // its parameters, and the rig as it is to believe it
     status s = controller_values(r->law, p, r->values, f);
     if (s != STATUS_OK) {
@@ -61,8 +73,11 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
 {
     assert(r != NULL && p != NULL);
     parameters *told = &r->told;
-    const bool changes = group_differs(told, p, "control.") || group_differs(told, p, "belief.") ||
-                         told->motor.voltage_limit != p->motor.voltage_limit;
+    const bool changes = tells_anew(r, p);
+    const status taken = rig_takes(r, p, f);
+    if (taken != STATUS_OK) {
+        return taken;
+    }
     if (group_differs(told, p, "sensor.")) {
         told->sensor = p->sensor;
         sensors_retune(&r->sensors, &p->sensor);

@@ -17,6 +17,8 @@
 #define SMALL_FLIGHT   1e-10 // motions of this size are followed to 1e-5 of it [rad, m, N m]
 #define SMALL_CONTACT  1e-7  // the same of those that meet the wall
 #define SMALL_BY_MODES 1e-6  // and of those whose events the modes locate
+#define DEEPEST        1e-9  // that an arm may be in a rigid wall by rounding [m]
+#define ANGLE_ROUNDING 1e-16 // of an arm that something holds [rad]
 #define GRID_TOLERANCE 1e-9  // of a step: the end so near a row of the grid has that row
 
 // Whether the stretch between two stops is through.
@@ -65,6 +67,7 @@ static status begin(corrected_run *c, fault *f)
         return failed;
     }
 
+    r->state.earlier_peak = -1;
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
     failed = corrected_begin_in_contact(c);
     return failed == STATUS_OK ? failed : fault_no_memory(f);
@@ -119,6 +122,7 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
         // the mean force of the end begins to count here
         if (!c->under_way.goes_on && same_instant(m->state[SLOT_TIME], window)) {
             r->state.integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+            r->state.in_window = (force_bounds){0};
         }
 
         // what is due now, then how far the motion may go on its own
@@ -203,6 +207,44 @@ static void judge_size(const corrected_run *c, double energy)
     }
 }
 
+// What friction leaves open of the force of one link.
+static void remark_on_single_link(const corrected_run *c)
+{
+    const motion *m = c->motion;
+    summary *s = &c->recording->result->summary;
+    if (!isnan(s->peak_force_high_N)) {
+        const bool steady = !isnan(s->steady_force_high_N);
+        remark(s,
+               "wall and friction hold the one link both, so that its force on the wall is "
+               "determined within bounds only, the %s from %.6g to %.6g N; the number given is "
+               "that without friction",
+               steady ? "steady one" : "largest",
+               steady ? s->steady_force_low_N : s->peak_force_low_N,
+               steady ? s->steady_force_high_N : s->peak_force_high_N);
+        return;
+    }
+
+    // within a wall that gives the depth says the force
+    const bool within = !motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0;
+    if (within && m->dof == 1 && m->state[SLOT_FRICTION] == HUB_STICK) {
+        const force_bounds held = motion_held_forces(&c->arm, m, m->state);
+        remark(s,
+               "friction holds the link where it came to rest in the wall, and would at any force "
+               "from %.6g to %.6g N: on another way there it is another one",
+               held.low, held.high);
+    }
+}
+
+// What rounding of the angles makes of the largest torque and the beam's stiffness [J]: an arm that
+// something holds seems to have so much put in.
+static double rounding_energy(const corrected_run *c)
+{
+    const arm *a = &c->arm;
+    const double force = larger(c->motion->pulse_peak, 0);
+    const double torque = larger(fabs(a->motor.torque), force * a->links * a->link_length);
+    return ANGLE_ROUNDING * (torque + ANGLE_ROUNDING * beam_stiffness(a));
+}
+
 // Judges whether the numbers can be relied on, and remarks on what the run left out.
 static void judge(const corrected_run *c)
 {
@@ -211,6 +253,7 @@ static void judge(const corrected_run *c)
     summary *s = &r->result->summary;
     double bound = r->scenario->parameters.method.residual_bound;
     double energy = m->start_energy + r->state.energy_put_in;
+    const double rounding = rounding_energy(c);
     if (r->state.chatters > 0) {
         remark(s,
                "the wall's restitution would have made the arm bounce without end: %ld times more "
@@ -226,14 +269,31 @@ static void judge(const corrected_run *c)
                r->state.from_behind);
     }
 
-    s->inaccurate = s->energy_residual_J > bound * energy;
+    remark_on_single_link(c);
+    s->inaccurate = s->energy_residual_J > bound * energy + rounding;
     if (s->inaccurate) {
         remark(s,
                "the energy ledger lacks up to %.3g J of the %.3g J put in, more than "
                "method.residual_bound = %g allows: the method was %s%s",
                s->energy_residual_J, energy, bound, m->engine->name, corrected_advice(m));
     }
-    judge_size(c, energy);
+
+    if (motion_wall_is_rigid(m) && s->max_penetration_m > DEEPEST) {
+        s->inaccurate = true;
+        remark(s, "the arm was %.3g m inside a rigid wall: the method was %s%s",
+               s->max_penetration_m, m->engine->name, corrected_advice(m));
+    }
+    judge_size(c, energy > rounding ? energy : 0);
+}
+
+// The bounds of the mean force over the last of the run.
+static void tell_steady_bounds(const corrected_run *c)
+{
+    const recording *r = c->recording;
+    summary *s = &r->result->summary;
+    const double window = fmin(STEADY_WINDOW, r->scenario->parameters.run.duration);
+    const force_bounds mean = {r->state.in_window.low / window, r->state.in_window.high / window};
+    corrected_tell_bounds(mean, &s->steady_force_low_N, &s->steady_force_high_N);
 }
 
 // Sums up what is known of the run, also of one that failed or has not come to its end (`failed`
@@ -256,21 +316,30 @@ static void sum_up(corrected_run *c, status failed)
     s->separations += r->state.separated;
 
     // results of the contact
+    if (r->state.landing_open) {
+        corrected_close_landing(c);
+    }
+    r->result->landing = r->state.landing;
     if (!isnan(s->first_contact_s)) {
         if (r->state.pulse_open) {
             corrected_close_first_pulse(c);
             s->first_pulse_s = (double)NAN; // it never ended
         }
-        if (m->pulse_peak >= 0) {
-            s->peak_force_N = m->pulse_peak;
-            s->time_to_peak_s = m->pulse_peak_time - s->first_contact_s;
+        const bool earlier = r->state.earlier_peak > m->pulse_peak;
+        const double peak = earlier ? r->state.earlier_peak : m->pulse_peak;
+        const double when = earlier ? r->state.earlier_peak_time : m->pulse_peak_time;
+        if (peak >= 0) {
+            s->peak_force_N = peak;
+            s->time_to_peak_s = when - s->first_contact_s;
         }
     }
+    corrected_tell_bounds(r->state.largest, &s->peak_force_low_N, &s->peak_force_high_N);
 
     // results that only a complete run has
     if (failed == STATUS_OK) {
         double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         recording_finish_summary(r, integral - r->state.integral_at_window);
+        tell_steady_bounds(c);
         recording_finish_rig_summary(r, state_angles(m, m->state)[0]);
         judge(c);
     }

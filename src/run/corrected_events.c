@@ -14,6 +14,9 @@
 #define AT_ONCE  1e-6
 #define NO_FORCE 1e-9
 
+// A face pushed in by less is back [m].
+#define FACE_RETURNED 1e-9
+
 void corrected_bind_arm(corrected_run *c)
 {
     const recording *r = c->recording;
@@ -46,7 +49,52 @@ static void open_first_pulse(corrected_run *c, double impulse)
     s->first_contact_s = c->motion->state[SLOT_TIME];
     s->contact_impulse_Ns = impulse;
     r->state.pulse_open = true;
+    r->state.largest = (force_bounds){0};
     motion_watch(c->motion);
+}
+
+// Whether it is not the last link that meets a point but its line, on the other side of its base.
+static bool touches_from_behind(const corrected_run *c)
+{
+    const arm *a = &c->arm;
+    if (a->wall.kind != WALL_POINT) {
+        return false;
+    }
+    const double *q = state_angles(c->motion, c->motion->state);
+    const double last = q[a->dof - 1];
+    double x, y;
+    chain_node(a, q, a->links - 1, &x, &y);
+    return (a->wall.x - x) * inline_cos(last) + (a->wall.y - y) * inline_sin(last) < 0;
+}
+
+// Whether an arm that comes to the wall meets it where it stands at rest, not a face on its way
+// back.
+static bool lands(const motion *m)
+{
+    return m->state[SLOT_FACE] < FACE_RETURNED;
+}
+
+// The landing, and with it its pulse, begins now: its peak counts from here.
+static void open_landing(corrected_run *c, double impulse)
+{
+    recording_state *r = &c->recording->state;
+    motion *m = c->motion;
+    r->landing_open = true;
+    r->landing = (landing){m->state[SLOT_TIME], impulse, (double)NAN, (double)NAN};
+    r->earlier_peak = isnan(c->recording->result->summary.first_contact_s) ? -1 : m->pulse_peak;
+    r->earlier_peak_time = m->pulse_peak_time;
+    motion_watch(m);
+}
+
+void corrected_close_landing(corrected_run *c)
+{
+    recording_state *r = &c->recording->state;
+    const motion *m = c->motion;
+    r->landing_open = false;
+    if (m->pulse_peak >= 0) {
+        r->landing.peak = m->pulse_peak;
+        r->landing.time_to_peak = m->pulse_peak_time - r->landing.time;
+    }
 }
 
 status corrected_begin_in_contact(corrected_run *c)
@@ -57,6 +105,7 @@ status corrected_begin_in_contact(corrected_run *c)
     }
     const motion_report none = {.event = MOTION_TOUCH, .holds = true};
     open_first_pulse(c, 0);
+    c->recording->state.from_behind += touches_from_behind(c);
     return record_event(c->recording, m, EVENT_CONTACT, &none);
 }
 
@@ -71,13 +120,23 @@ void corrected_close_first_pulse(corrected_run *c)
         s->first_pulse_peak_N = m->pulse_peak;
         s->first_pulse_time_to_peak_s = m->pulse_peak_time - s->first_contact_s;
     }
+    corrected_tell_bounds(r->state.largest, &s->first_pulse_peak_low_N,
+                          &s->first_pulse_peak_high_N);
+}
+
+void corrected_tell_bounds(force_bounds bounds, double *low, double *high)
+{
+    if (bounds.high > bounds.low) {
+        *low = bounds.low;
+        *high = bounds.high;
+    }
 }
 
 // Whether an arm that started on the wall has swung off at once, without ever pressing on it.
 static bool has_not_touched(const corrected_run *c)
 {
     const summary *s = &c->recording->result->summary;
-    return s->first_contact_s == 0 && s->contact_impulse_Ns == 0 &&
+    return s->first_contact_s < AT_ONCE && s->contact_impulse_Ns == 0 &&
            c->motion->state[SLOT_TIME] < AT_ONCE && !(c->motion->pulse_peak > NO_FORCE);
 }
 
@@ -103,22 +162,30 @@ static event_kind kind_of(const motion *m, const motion_report *report)
     return turns_back ? EVENT_REVERSAL : kinds[report->event];
 }
 
-// Whether it is not the last link that meets a point but its line, on the other side of its base.
-static bool touches_from_behind(const corrected_run *c)
+// Adds the events that one which has just been recorded brought with it, or a change from outside:
+// what was in contact no longer is, friction holds or lets go the hub.
+static status record_consequences(corrected_run *c, contact_state before,
+                                  const motion_report *report)
 {
-    const arm *a = &c->arm;
-    if (a->wall.kind != WALL_POINT) {
-        return false;
+    recording *r = c->recording;
+    const motion *m = c->motion;
+    const bool holds = m->state[SLOT_FRICTION] == HUB_STICK, held = before.friction == HUB_STICK;
+    const bool contact = m->state[SLOT_CONTACT] != 0;
+    const bool lost = before.contact && !contact && report->event != MOTION_RELEASE;
+    status failed = lost ? record_event(r, m, EVENT_RELEASE, report) : STATUS_OK;
+    if (failed == STATUS_OK && holds && !held && report->event != MOTION_STICK) {
+        failed = record_event(r, m, EVENT_STICK, report);
     }
-    const double *q = state_angles(c->motion, c->motion->state);
-    const double last = q[a->dof - 1];
-    double x, y;
-    chain_node(a, q, a->links - 1, &x, &y);
-    return (a->wall.x - x) * inline_cos(last) + (a->wall.y - y) * inline_sin(last) < 0;
+    if (failed == STATUS_OK && held && !holds && report->event != MOTION_SLIP) {
+        failed = record_event(r, m, EVENT_SLIP, report);
+    }
+    return failed;
 }
 
-// Puts an event that has just been applied into trace and summary.
-static status record_applied_event(corrected_run *c, const motion_report *report)
+// Puts an event that has just been applied into trace and summary; `before`: the contact state that
+// it ended.
+static status record_applied_event(corrected_run *c, contact_state before,
+                                   const motion_report *report)
 {
     recording *r = c->recording;
     motion *m = c->motion;
@@ -137,6 +204,9 @@ static status record_applied_event(corrected_run *c, const motion_report *report
         r->state.from_behind += touches_from_behind(c);
         s->separations += r->state.separated;
         r->state.separated = false;
+        if (r->state.landing.time == 0 && lands(m)) {
+            open_landing(c, report->impulse);
+        }
         if (isnan(s->first_contact_s)) {
             open_first_pulse(c, report->impulse);
         }
@@ -149,15 +219,31 @@ static status record_applied_event(corrected_run *c, const motion_report *report
         failed = record_event(r, m, EVENT_CHATTER, report);
         r->state.chatters++;
     }
+    failed = failed == STATUS_OK ? record_consequences(c, before, report) : failed;
 
     // it opens again, for the first time the pulse ends
-    bool apart = m->state[SLOT_CONTACT] == 0 && (closes || report->event == MOTION_RELEASE);
+    bool apart = m->state[SLOT_CONTACT] == 0 && (closes || before.contact);
     if (apart && r->state.pulse_open && !closes && has_not_touched(c)) {
         forget_first_contact(c);
     } else if (apart && r->state.pulse_open) {
         corrected_close_first_pulse(c);
     }
+    if (apart && r->state.landing_open) {
+        corrected_close_landing(c);
+    }
     return failed;
+}
+
+// Records what a push, which may be an impact, a change of a parameter or a command has done to the
+// contact state.
+static status record_change(corrected_run *c, contact_state before, motion_report *report)
+{
+    const bool contact = c->motion->state[SLOT_CONTACT] != 0;
+    if (report->event == MOTION_REACHED && contact != before.contact) {
+        report->event = contact ? MOTION_TOUCH : MOTION_RELEASE;
+    }
+    return report->event == MOTION_REACHED ? record_consequences(c, before, report)
+                                           : record_applied_event(c, before, report);
 }
 
 // Adds the impulse of an impact that has just been applied to the force sensors' lag.
@@ -170,7 +256,7 @@ static void add_impulse_to_sensors(corrected_run *c, const motion_report *report
     }
 }
 
-// Keeps angles and velocities as they are before the first impact.
+// Keeps angles and velocities as they are before the landing.
 static status keep_state_before_impact(run_result *result, const motion *m)
 {
     size_t size = 2 * (size_t)m->dof * sizeof(double); // velocities stand behind the angles
@@ -190,9 +276,8 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
 
     // before it
     status failed = corrected_record_row(c, m->state, 0);
-    const bool strikes =
-        report->event == MOTION_IMPACT || (m->wall_gives && report->event == MOTION_TOUCH);
-    if (failed == STATUS_OK && strikes && result->before_impact == NULL) {
+    const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
+    if (failed == STATUS_OK && closes && lands(m) && result->before_impact == NULL) {
         failed = keep_state_before_impact(result, m);
     }
     if (failed != STATUS_OK) {
@@ -200,10 +285,11 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
     }
 
     // and after it
+    const contact_state ended = contact_state_of(m->state);
     motion_apply(&c->arm, m, report);
     c->recording->state.last_jump = m->state[SLOT_TIME];
     add_impulse_to_sensors(c, report);
-    failed = record_applied_event(c, report);
+    failed = record_applied_event(c, ended, report);
     if (failed == STATUS_OK) {
         failed = corrected_audit(c);
     }
@@ -242,6 +328,7 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
     motion_report report = {.event = MOTION_REACHED};
     event e = {.time = m->state[SLOT_TIME], .kind = EVENT_CHANGE, .index = index};
     const double work = m->state[SLOT_EXTERNAL_WORK];
+    const contact_state before = contact_state_of(m->state);
     status failed = corrected_record_row(c, m->state, 0);
     if (failed != STATUS_OK) {
         return failed;
@@ -269,11 +356,7 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
     }
 
     // a push in contact is an impact; either may end the contact
-    if (failed == STATUS_OK && report.event == MOTION_IMPACT) {
-        failed = record_applied_event(c, &report);
-    } else if (failed == STATUS_OK && m->state[SLOT_CONTACT] == 0 && r->state.pulse_open) {
-        corrected_close_first_pulse(c);
-    }
+    failed = failed == STATUS_OK ? record_change(c, before, &report) : failed;
     return failed == STATUS_OK ? corrected_record_row(c, m->state, report.impulse) : failed;
 }
 
@@ -297,19 +380,17 @@ status corrected_apply_command(corrected_run *c)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    bool contact = m->state[SLOT_CONTACT] != 0;
-    double now = m->state[SLOT_TIME], before = c->arm.motor.torque;
+    contact_state before = contact_state_of(m->state);
+    const double now = m->state[SLOT_TIME], torque = c->arm.motor.torque;
 
     // the motor's torque until now is done with
     recording_change_command(r, now, state_angles(m, m->state)[0]);
     arm_set_voltage(&c->arm, r->rig->voltage);
-    motion_retorque(&c->arm, m, before);
+    motion_retorque(&c->arm, m, torque);
 
-    // less torque may let the contact go
-    status failed = STATUS_OK;
-    if (contact && m->state[SLOT_CONTACT] == 0) {
-        motion_report lost = {.event = MOTION_RELEASE};
-        failed = record_applied_event(c, &lost);
-    }
+    // less torque may let the contact go, or hold the hub no more; the first command finds it so
+    before.friction = now > 0 ? before.friction : contact_state_of(m->state).friction;
+    motion_report done = {.event = MOTION_REACHED};
+    const status failed = record_change(c, before, &done);
     return failed == STATUS_OK && now > 0 ? corrected_record_row(c, m->state, 0) : failed;
 }

@@ -14,6 +14,13 @@ status corrected_begin_in_contact(corrected_run *c);
 // The first pulse is over: takes note of its length and of the largest force until now.
 void corrected_close_first_pulse(corrected_run *c);
 
+// The same of the landing's pulse.
+void corrected_close_landing(corrected_run *c);
+
+// The bounds [N] of a force into two numbers of the summary, which stay as they are where it is
+// determined.
+void corrected_tell_bounds(force_bounds bounds, double *low, double *high);
+
 // Applies an event that the motion stopped at and records the rows on its both sides.
 status corrected_pass_event(corrected_run *c, motion_report *report);
 

@@ -56,12 +56,16 @@ static int pieces_of_step(const corrected_run *c, double length, double reach)
     if (!engine_is_dense(m->engine)) {
         return 1;
     }
-    const double pieces = length * motion_vibration(&c->arm, m, m->trial) / reach;
+    double pieces = length * motion_vibration(&c->arm, m, m->trial) / reach;
+    const double whole = state_kept(m, m->trial)[KEPT_LENGTH];
+    if (m->engine->parabolas > 0 && whole > 0) { // it follows nothing that is faster
+        pieces = smaller(pieces, m->engine->parabolas * FORCE_REACH / reach * (length / whole));
+    }
     if (!(pieces > 1) || motion_held_still(m)) {
         return 1;
     }
-    const int whole = pieces < MOST_PIECES ? (int)pieces : MOST_PIECES;
-    return whole < MOST_PIECES ? whole + (whole < pieces) : MOST_PIECES;
+    const int least = pieces < MOST_PIECES ? (int)pieces : MOST_PIECES;
+    return least < MOST_PIECES ? least + (least < pieces) : MOST_PIECES;
 }
 
 // Whether the decays that an event excites are faster than the arm's vibrations.
@@ -105,12 +109,17 @@ way corrected_way_at(const corrected_run *c, double time, double *state)
 // Goes on to an instant within the step. False if the state there cannot be had.
 static bool go_to(const corrected_run *c, way *w, double time)
 {
-    double *state = motion_between(&c->arm, c->motion, time);
-    if (state == NULL) {
-        return false;
+    motion *m = c->motion;
+    double *state = m->between;
+    if (m->engine->sense_at != NULL) {
+        m->engine->sense_at(&c->arm, m, time, state);
+    } else {
+        state = motion_between(&c->arm, m, time);
     }
-    *w = corrected_way_at(c, time, state);
-    return true;
+    if (state != NULL) {
+        *w = corrected_way_at(c, time, state);
+    }
+    return state != NULL;
 }
 
 // Takes a piece of the step just made, over which the force has that mean [N].
@@ -296,6 +305,36 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole, boo
     return follow_to(c, first, &last, rest ? 0 : whole->mean);
 }
 
+// Follows the bounds of a force that is not determined, over the step just made: Simpson's rule
+// over its pieces.
+static status follow_bounds(corrected_run *c, const force_step *whole)
+{
+    motion *m = c->motion;
+    recording_state *r = &c->recording->state;
+    const bool single = m->dof == 1 && motion_wall_is_rigid(m);
+    if (!single || motion_force_bounds(&c->arm, m, m->trial).high == 0) {
+        return STATUS_OK;
+    }
+    const double length = whole->end - whole->start;
+    const int halves = 2 * pieces_of_step(c, length, FORCE_REACH / 4);
+    for (int i = 0; i <= halves; i++) {
+        const bool inner = i > 0 && i < halves;
+        const double share = (inner ? i % 2 != 0 ? 4 : 2 : 1) * length / (3 * halves);
+        double *state = inner    ? motion_between(&c->arm, m, whole->start + i * length / halves)
+                        : i == 0 ? m->trial
+                                 : m->state;
+        if (state == NULL) {
+            return STATUS_NOT_FINITE;
+        }
+        const force_bounds at = motion_force_bounds(&c->arm, m, state);
+        r->in_window.low += share * at.low;
+        r->in_window.high += share * at.high;
+        r->largest.low = larger(at.low, r->largest.low);
+        r->largest.high = larger(at.high, r->largest.high);
+    }
+    return STATUS_OK;
+}
+
 status corrected_record_forces(corrected_run *c)
 {
     const force_step force = force_over_step(c->motion);
@@ -313,6 +352,10 @@ status corrected_record_forces(corrected_run *c)
     }
     if (!(force.end > force.start)) {
         return STATUS_OK;
+    }
+    const status s = follow_bounds(c, &force);
+    if (s != STATUS_OK) {
+        return s;
     }
     return one_piece ? recording_add_step(c->recording, force) : record_force(c, &force, pieces);
 }

@@ -80,7 +80,7 @@ static sample row_of(const corrected_run *c, double *state, state_energy has, do
         .energy_residual = motion_unaccounted(m, state, has.kinetic + has.strain + held),
         .wall_energy = rigid ? (double)NAN : held,
         .wall_loss = rigid ? (double)NAN : quadrature[QUADRATURE_WALL],
-        .face_depth = m->wall_has_face ? state[SLOT_FACE] : (double)NAN,
+        .face_depth = rigid ? (double)NAN : state[SLOT_FACE],
     };
 
     recording_add_rig_signals(c->recording, &row);

@@ -2,13 +2,15 @@
 
 #include <assert.h>
 
-const sample *row_before_contact(const trace *t)
+const sample *row_before_landing(const run_result *result)
 {
-    assert(t != NULL);
-    for (size_t i = 0; i < t->row_count; i++) {
-        bool touches = t->rows[i].contact != 0 || t->rows[i].impulse != 0;
-        if (touches) {
-            return i > 0 ? &t->rows[i - 1] : NULL;
+    assert(result != NULL);
+    const trace *t = &result->trace;
+    const double from = result->landing.time;
+    for (size_t i = 1; from > 0 && i < t->row_count; i++) {
+        const sample *row = &t->rows[i];
+        if (row->time >= from && (row->contact != 0 || row->impulse != 0)) {
+            return &t->rows[i - 1];
         }
     }
     return NULL;
@@ -23,12 +25,18 @@ three_body_state row_bodies(const sample *row)
     };
 }
 
+double row_current(const motor_parameters *motor, const sample *row)
+{
+    assert(motor != NULL && row != NULL);
+    return motor->torque_constant > 0 ? row->motor_torque / motor->torque_constant : 0;
+}
+
 const sample *predict_first_contact(const scenario *s, const run_result *result,
                                     const voltage_profile *then,
                                     prediction_answer answers[PREDICTOR_COUNT])
 {
     assert(s != NULL && result != NULL && answers != NULL);
-    const sample *row = row_before_contact(&result->trace);
+    const sample *row = row_before_landing(result);
     if (row == NULL) {
         return NULL;
     }
@@ -43,7 +51,8 @@ const sample *predict_first_contact(const scenario *s, const run_result *result,
                                     .angles = all,
                                     .velocities = all != NULL ? all + half : NULL,
                                     .command = then != NULL ? *then : (voltage_profile){0},
-                                    .whole_pulse = true};
+                                    .whole_pulse = true,
+                                    .current = row_current(&now.motor, row)};
     predict_all(&question, answers);
     return row;
 }

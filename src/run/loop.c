@@ -223,6 +223,7 @@ static status act(run_loop *l, const action *todo, fault *f)
     if (code == STATUS_OK && on != NULL) {
         int mode;
         code = rig_find_mode(on->law, tried.control.lock, &mode, f);
+        code = code == STATUS_OK ? rig_takes(on, &tried, f) : code;
     }
     if (code == STATUS_OK) {
         code = l->failed = l->run.model->act(&l->run, todo, &l->fault);

@@ -1,11 +1,11 @@
 // A run that a program steps: to an instant, with inputs in between, and back to a state it kept.
 //
 // It is a run like any other, observed at the requested instants; stepped from sample to sample of
-// the rig it equals the uninterrupted run to the last bit. Such instants do not influence the
-// choice of steps: a step that goes beyond one is cut there or, in flight on the rig, continues
-// (corrected_step.h); the printed model, which has no states between the ends of its steps, stops
-// at the end of the first step that reaches it. What is due at an instant (a sample of the rig, an
-// action of the script) happens when the loop goes on from it.
+// the rig it equals the uninterrupted run to the last bit, cut elsewhere to rounding (1e-16). Such
+// instants do not influence the choice of steps: a step that goes beyond one is cut there or, in
+// flight on the rig, continues (corrected_step.h); the printed model, which has no states between
+// the ends of its steps, stops at the end of the first step that reaches it. What is due at an
+// instant (a sample of the rig, an action of the script) happens when the loop goes on from it.
 #pragma once
 
 #include "src/rig/rig.h"
@@ -67,6 +67,7 @@ const scenario *loop_scenario(const run_loop *l);
 size_t loop_saved_size(const run_loop *l);
 void loop_save(const run_loop *l, void *bytes);
 // Goes back (or forth) to such a state; rows that are later than it are dropped.
-// STATUS_BAD_ARGUMENT if the bytes are of another scenario or version, or of a plug-in's or
-// process's loop that is not this one, whose memory may hold addresses.
+// STATUS_BAD_ARGUMENT, and nothing is changed, if the bytes are damaged, of another scenario or
+// version, or of a plug-in's or process's loop that is not this one, whose memory may hold
+// addresses.
 status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f);

@@ -9,6 +9,7 @@
 
 // The head of a saved state; the run, the rig's memory and its values follow.
 typedef struct saved_head {
+    uint64_t check; // of all that follows it
     uint64_t fingerprint;
     size_t size;
     bool ended;
@@ -36,6 +37,20 @@ size_t loop_saved_size(const run_loop *l)
     assert(l != NULL);
     const rig *r = l->recording.rig;
     return sizeof(saved_head) + l->run.model->saved_size(&l->run) + memory_size(r) + values_size(r);
+}
+
+// A number that other bytes behind the head's `check` would not give, but for one in 2^64: eight
+// bytes a turn are mixed in as by FNV-1a, and the upper half down into the lower one.
+static uint64_t check_of(const char *bytes, size_t size)
+{
+    uint64_t check = 0xcbf29ce484222325u;
+    for (size_t at = sizeof check; at < size; at += sizeof check) {
+        uint64_t word = 0;
+        memcpy(&word, bytes + at, size - at < sizeof word ? size - at : sizeof word);
+        check = (check ^ word) * 0x100000001b3u;
+        check ^= check >> 32;
+    }
+    return check;
 }
 
 void loop_save(const run_loop *l, void *bytes)
@@ -71,6 +86,8 @@ void loop_save(const run_loop *l, void *bytes)
         memcpy(at, r->rig->memory, memory_size(r->rig));
         memcpy(at + memory_size(r->rig), r->rig->values, values_size(r->rig));
     }
+    head.check = check_of(bytes, head.size);
+    memcpy(bytes, &head.check, sizeof head.check);
 }
 
 // Puts the rig back; where its law, memory and values lie stays. The memory of a law that a program
@@ -112,6 +129,10 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "the state is of another scenario, another controller or another version");
     }
+    if (head.check != check_of(bytes, size)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "the state is damaged, expected the bytes as they were saved");
+    }
 
     // what was recorded, as far as this loop has it
     recording *r = &l->recording;
@@ -127,7 +148,7 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
     r->command = head.command;
     result->summary = head.summary;
     result->summary.path = "";
-    if (isnan(head.summary.first_contact_s)) {
+    if (head.recording.landing.time == 0) {
         free(result->before_impact); // of a contact that is yet to come
         result->before_impact = NULL;
         result->before_impact_size = 0;

@@ -15,11 +15,21 @@ typedef struct run_history {
     size_t checkpoint_count;
 } run_history;
 
+// The first contact that ends a free flight, and its pulse: it is the run's first contact, but of
+// an arm that starts on the wall.
+typedef struct landing {
+    double time;         // [s]; 0: there was none
+    double impulse;      // of its impact [N s]
+    double peak;         // of its pulse [N], NaN if there was none
+    double time_to_peak; // after it [s]
+} landing;
+
 typedef struct run_result {
     summary summary;
     trace trace; // rows at every step and on both sides of every event; empty if not asked for
+    landing landing;
     double *before_impact;     // corrected model: angles[dof], then velocities[dof], at the instant
-                               // before the first impact [rad], [rad/s]; NULL if there was none
+                               // before the landing [rad], [rad/s]; NULL if there was none
     size_t before_impact_size; // [bytes]
     run_history history;       // empty unless asked for
 } run_result;

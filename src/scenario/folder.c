@@ -34,16 +34,31 @@ __attribute__((format(printf, 1, 2))) static char *text_of(const char *format, .
     return length < 0 ? NULL : text;
 }
 
+// Whether a call that failed says that there is nothing of that name, or nothing to be had.
+static bool is_missing(int reason)
+{
+    return reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG || reason == ELOOP ||
+           reason == EACCES;
+}
+
 static bool is_folder(const char *path)
 {
     struct stat information;
     return stat(path, &information) == 0 && S_ISDIR(information.st_mode);
 }
 
+// Whether there is no folder of that name; what cannot be looked at may be one.
+static bool is_no_folder(const char *path)
+{
+    struct stat information;
+    return stat(path, &information) == 0 ? !S_ISDIR(information.st_mode) : is_missing(errno);
+}
+
+// Whether there is a file of that name, or what cannot be looked at: its reader will tell.
 static bool is_file(const char *path)
 {
     struct stat information;
-    return stat(path, &information) == 0 && !S_ISDIR(information.st_mode);
+    return stat(path, &information) == 0 ? !S_ISDIR(information.st_mode) : !is_missing(errno);
 }
 
 // ---- reading ------------------------------------------------------------------------------------
@@ -55,7 +70,8 @@ static status report_no_memory(fault_handler report, void *context)
 }
 
 // What is wrong with a file as a whole.
-static status report_file(const char *path, const char *what, fault_handler report, void *context)
+static status report_file(scenario *s, const char *path, const char *what, fault_handler report,
+                          void *context)
 {
     char *sentence = text_of("%s:1:1: %s, expected a scenario file", path, what);
     if (sentence == NULL) {
@@ -63,6 +79,7 @@ static status report_file(const char *path, const char *what, fault_handler repo
     }
     report(context, sentence);
     free(sentence);
+    s->refused = (fault_place){1, 1, NULL};
     return STATUS_CANNOT_READ;
 }
 
@@ -72,26 +89,36 @@ status scenario_read(scenario *s, const char *path, const char *name, fault_hand
     assert(s != NULL && path != NULL);
     char what[256];
     if (is_folder(path)) {
-        return report_file(path, "it is a folder", report, context);
+        return report_file(s, path, "it is a folder", report, context);
     }
     FILE *file = fopen(path, "rb");
+    if (file == NULL && errno == ENOMEM) {
+        return report_no_memory(report, context);
+    }
     if (file == NULL) {
         snprintf(what, sizeof what, "cannot be opened (%s)", strerror(errno));
-        return report_file(path, what, report, context);
+        return report_file(s, path, what, report, context);
     }
 
     // one byte more than is allowed, so that the parser sees what is too long
     size_t room = (size_t)TREE_MAX_BYTES + 1;
     char *text = malloc(room);
-    size_t length = text != NULL ? fread(text, 1, room, file) : 0;
-    bool failed = ferror(file) != 0;
+    size_t length = 0;
+    bool failed = false;
+    do {
+        clearerr(file);
+        length += text != NULL ? fread(text + length, 1, room - length, file) : 0;
+        failed = ferror(file) != 0;
+    } while (failed && errno == EINTR);
+    const int reason = errno;
     fclose(file);
 
     status result;
     if (text == NULL) {
         result = report_no_memory(report, context);
     } else if (failed) {
-        result = report_file(path, "it cannot be read", report, context);
+        snprintf(what, sizeof what, "cannot be read (%s)", strerror(reason));
+        result = report_file(s, path, what, report, context);
     } else {
         result = scenario_parse(s, text, length, path, name, report, context);
     }
@@ -124,9 +151,10 @@ static void free_names(char **names, int count)
     free(names);
 }
 
-// The folders to look in: those of IMPACTLAB_SCENARIOS, then that of the scenarios that ship. False
-// without memory: a folder less would be another scenario of the same name.
-static bool open_folders(name_list *all)
+// The folders to look in: those of IMPACTLAB_SCENARIOS, then that of the scenarios that ship.
+// STATUS_CANNOT_READ if one is not there, all are named nevertheless. STATUS_NO_MEMORY, and then
+// none is: a folder less would be another scenario of the same name.
+static status name_folders(name_list *all, fault *f)
 {
     const char *chosen = getenv("IMPACTLAB_SCENARIOS");
     bool good = true;
@@ -146,8 +174,21 @@ static bool open_folders(name_list *all)
     if (!good) {
         free_names(all->names, all->count);
         *all = (name_list){0};
+        return fault_no_memory(f);
     }
-    return good;
+
+    // those that were named are enough
+    status result = STATUS_OK;
+    for (int i = 0; i < all->count && result == STATUS_OK; i++) {
+        const bool needed = i < all->count - 1 || i == 0;
+        if (needed && is_no_folder(all->names[i])) {
+            result = fault_set(f, STATUS_CANNOT_READ,
+                               "%.500s: no such folder, expected the scenarios there "
+                               "(IMPACTLAB_SCENARIOS adds folders, separated by colons)",
+                               all->names[i]);
+        }
+    }
+    return result;
 }
 
 // The file of that name in the first folder that has it, else in the last; NULL without memory.
@@ -155,7 +196,7 @@ static char *find_file(const char *name, const char *ending)
 {
     name_list all;
     char *path = NULL;
-    bool found = !open_folders(&all); // or nothing to look in
+    bool found = name_folders(&all, NULL) == STATUS_NO_MEMORY; // or nothing to look in
     for (int i = 0; !found && i < all.count; i++) {
         free(path);
         path = text_of("%s/%s%s", all.names[i], name, ending);
@@ -171,52 +212,70 @@ char *scenario_folder_file(const char *name)
     return find_file(name, "");
 }
 
-static bool walk(name_list *list, const char *folder, const char *prefix, int depth);
+static const char no_scenarios[] = "recipes"; // a folder of what belongs to figures
+
+static status walk(name_list *list, const char *folder, const char *prefix, int depth, fault *f);
+
+// Why a folder's scenarios are not known.
+static status cannot_list(const char *folder, fault *f)
+{
+    return errno == ENOMEM ? fault_no_memory(f)
+                           : fault_set(f, STATUS_CANNOT_READ,
+                                       "%.500s cannot be listed (%s), expected scenarios there",
+                                       folder, strerror(errno));
+}
 
 // Adds one entry of a folder, or what is below it.
-static bool add_entry(name_list *list, const char *folder, const char *prefix, const char *entry,
-                      int depth)
+static status add_entry(name_list *list, const char *folder, const char *prefix, const char *entry,
+                        int depth, fault *f)
 {
     char *path = text_of("%s/%s", folder, entry), *name = text_of("%s%s", prefix, entry);
-    bool good = path != NULL && name != NULL;
-    size_t length = good ? strlen(name) : 0;
+    char *below = name != NULL ? text_of("%s/", name) : NULL;
+    status code = path != NULL && below != NULL ? STATUS_OK : fault_no_memory(f);
+    size_t length = code == STATUS_OK ? strlen(name) : 0;
     const size_t tail = sizeof suffix - 1;
+    struct stat about = {0};
+    if (code == STATUS_OK && stat(path, &about) != 0 && !is_missing(errno)) {
+        code = cannot_list(folder, f);
+    }
 
     // a folder's scenarios have its name before theirs; other files than .yaml are none
-    if (good && is_folder(path)) {
-        char *below = text_of("%s/", name);
-        good = below != NULL && (depth >= MAX_FOLDER_DEPTH || walk(list, path, below, depth + 1));
-        free(below);
-    } else if (good && strlen(entry) > tail && strcmp(name + length - tail, suffix) == 0) {
-        good = add_name(list, name, length - tail);
+    if (code == STATUS_OK && S_ISDIR(about.st_mode)) {
+        code = depth < MAX_FOLDER_DEPTH ? walk(list, path, below, depth + 1, f) : STATUS_OK;
+    } else if (code == STATUS_OK && strlen(entry) > tail &&
+               strcmp(name + length - tail, suffix) == 0) {
+        code = add_name(list, name, length - tail) ? STATUS_OK : fault_no_memory(f);
     }
 
     free(path);
     free(name);
-    return good;
+    free(below);
+    return code;
 }
 
-// Adds the scenarios in and below a folder; a folder that cannot be read counts as empty. False
-// without memory.
-static bool walk(name_list *list, const char *folder, const char *prefix, int depth)
+// Adds the scenarios in and below a folder; one that is not the user's to read counts as empty.
+static status walk(name_list *list, const char *folder, const char *prefix, int depth, fault *f)
 {
-    bool good = true;
     DIR *directory = opendir(folder);
     if (directory == NULL) {
-        return true;
+        return errno == EACCES || errno == ENOENT ? STATUS_OK : cannot_list(folder, f);
     }
 
     // every entry that may be a scenario or a folder of them
-    for (struct dirent *entry; good && (entry = readdir(directory)) != NULL;) {
-        // recipes of figures are no scenarios
-        bool recipes = depth == 0 && strcmp(entry->d_name, "recipes") == 0;
-        if (entry->d_name[0] != '.' && !recipes) {
-            good = add_entry(list, folder, prefix, entry->d_name, depth);
+    status code = STATUS_OK;
+    struct dirent *entry;
+    while (code == STATUS_OK && (errno = 0, entry = readdir(directory)) != NULL) {
+        bool skipped = depth == 0 && strcmp(entry->d_name, no_scenarios) == 0;
+        if (entry->d_name[0] != '.' && !skipped) {
+            code = add_entry(list, folder, prefix, entry->d_name, depth, f);
         }
+    }
+    if (code == STATUS_OK && errno != 0) {
+        code = cannot_list(folder, f);
     }
 
     closedir(directory);
-    return good;
+    return code;
 }
 
 // Digits are compared as numbers: fig-3-2 comes before fig-3-10.
@@ -254,20 +313,9 @@ status scenario_list(char ***names, int *count, fault *f)
 
     // those of every folder
     name_list all;
-    status result = open_folders(&all) ? STATUS_OK : fault_no_memory(f);
+    status result = name_folders(&all, f);
     for (int i = 0; i < all.count && result == STATUS_OK; i++) {
-        const bool shipped = i == all.count - 1;
-        if (shipped && i > 0 && !is_folder(all.names[i])) {
-            break; // those that were named are enough
-        }
-        if (!is_folder(all.names[i])) {
-            result = fault_set(f, STATUS_CANNOT_READ,
-                               "%.500s: no such folder, expected the scenarios there "
-                               "(IMPACTLAB_SCENARIOS adds folders, separated by colons)",
-                               all.names[i]);
-        } else if (!walk(&list, all.names[i], "", 0)) {
-            result = fault_no_memory(f);
-        }
+        result = walk(&list, all.names[i], "", 0, f);
     }
     free_names(all.names, all.count);
     if (result != STATUS_OK) {
@@ -326,25 +374,44 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
     return STATUS_BAD_ARGUMENT;
 }
 
+// Whether the list may show a name: none of its parts is empty or hidden, nor are they too many.
+static bool may_be_listed(const char *name)
+{
+    const size_t skipped = sizeof no_scenarios - 1;
+    int depth = 0;
+    for (const char *part = name; part != NULL; depth++) {
+        if (*part == '/' || *part == '.' || *part == '\0') {
+            return false;
+        }
+        part = strchr(part, '/');
+        part += part != NULL;
+    }
+    return depth <= MAX_FOLDER_DEPTH + 1 &&
+           !(strncmp(name, no_scenarios, skipped) == 0 && name[skipped] == '/');
+}
+
 // The file of a scenario that the list has, on the heap; *path is NULL if it has none of that name.
-// Folders that cannot be listed have none; STATUS_NO_MEMORY is the only failure.
+// It has none at all if a folder is not there; STATUS_NO_MEMORY is the only failure.
 static status find_name(const char *wanted, char **path)
 {
-    char **names;
-    int count;
-    bool found = false;
+    struct stat about;
+    name_list all;
     *path = NULL;
-    if (scenario_list(&names, &count, NULL) == STATUS_NO_MEMORY) {
-        return STATUS_NO_MEMORY;
+    status folders = name_folders(&all, NULL);
+    free_names(all.names, all.count);
+    if (folders != STATUS_OK || !may_be_listed(wanted)) {
+        return folders == STATUS_NO_MEMORY ? folders : STATUS_OK;
     }
 
-    // a file is looked for only if the list has its name
-    for (int i = 0; i < count && !found; i++) {
-        found = strcmp(names[i], wanted) == 0;
+    // a link that leads nowhere is listed, too; of one that cannot be looked at its reader tells
+    *path = find_file(wanted, suffix);
+    const bool missing = *path != NULL && lstat(*path, &about) != 0 && is_missing(errno);
+    if (*path != NULL && (missing || is_folder(*path))) {
+        free(*path);
+        *path = NULL;
+        return STATUS_OK;
     }
-    free_names(names, count);
-    *path = found ? find_file(wanted, suffix) : NULL;
-    return found && *path == NULL ? STATUS_NO_MEMORY : STATUS_OK;
+    return *path == NULL ? STATUS_NO_MEMORY : STATUS_OK;
 }
 
 status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context)

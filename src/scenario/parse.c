@@ -7,8 +7,6 @@
 
 #include "src/base/words.h"
 
-enum { LONGEST_TITLE = 200 }; // bytes
-
 // Copies prose; only the description may have several lines. NULL after a fault.
 static char *parse_prose(reader *r, const tree_node *node, const char *what, bool many_lines)
 {
@@ -33,8 +31,8 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what, boo
     }
 
     // a title fits on a line
-    if (!many_lines && length > LONGEST_TITLE) {
-        report_node(r, node, "%s has %zu bytes, expected at most %d", what, length, LONGEST_TITLE);
+    if (!many_lines && length > SCENARIO_TITLE) {
+        report_node(r, node, "%s has %zu bytes, expected at most %d", what, length, SCENARIO_TITLE);
         return NULL;
     }
 
@@ -150,12 +148,13 @@ static void complete(reader *r, const char *name)
 {
     scenario *s = r->s;
     const char *called = name != NULL ? name : r->path;
+    s->written = s->parameters;
     s->name = strdup(called);
     s->file = strdup(r->path);
 
-    // the name stands in for a title
+    // the name stands in for a title, if it can
     if (s->title == NULL) {
-        s->title = strdup(called);
+        s->title = strdup(strlen(called) <= SCENARIO_TITLE ? called : "untitled");
     }
     if (s->description == NULL) {
         s->description = strdup("");
@@ -193,6 +192,7 @@ status scenario_parse(scenario *s, const char *text, size_t length, const char *
     reader_report_all(&r, report, context);
     if (r.no_memory || r.faults > 0) {
         scenario_finish(s);
+        s->refused = r.refused;
         return r.no_memory ? STATUS_NO_MEMORY : STATUS_BAD_SCENARIO;
     }
     return STATUS_OK;

@@ -14,7 +14,7 @@ void reader_report_at(reader *r, int line, int column, const char *format, ...)
 {
     assert(line > 0 && column > 0);
     char what[1280];
-    found_fault found = {{line, column}, r->faults, NULL};
+    found_fault found = {{line, column}, r->about, r->faults, NULL};
     va_list args;
     va_start(args, format);
     decimal_vprint(what, sizeof what, format, args);
@@ -47,6 +47,8 @@ void reader_report_all(reader *r, fault_handler report, void *context)
 {
     if (r->faults > 0) {
         qsort(r->found, (size_t)r->faults, sizeof *r->found, compare_places);
+        const found_fault *first = &r->found[0];
+        r->refused = (fault_place){first->at.line, first->at.column, first->about};
     }
     for (int i = 0; i < r->faults; i++) {
         report(context, r->found[i].sentence);

@@ -11,8 +11,9 @@ typedef struct place {
 // A fault found, with its place in the file and among the others.
 typedef struct found_fault {
     place at;
-    int number;     // in the order found
-    char *sentence; // with path and place
+    const char *about; // path of the parameter, NULL if it is of none
+    int number;        // in the order found
+    char *sentence;    // with path and place
 } found_fault;
 
 // What the functions below share while one file is read.
@@ -22,6 +23,8 @@ typedef struct reader {
     int faults; // how many were found
     bool no_memory;
     scenario *s;
+    const char *about;   // path of the parameter that is being read, NULL if none is
+    fault_place refused; // of the first fault, once all are reported
     place given[sizeof(((parameters *)0)->set)]; // where each parameter's value stands
     bool duration_known;                         // false if a fault may hide run.duration
 } reader;

@@ -66,13 +66,29 @@ static const tree_node *value_of(reader *r, const tree_node *map, const char *wa
     return NULL;
 }
 
-// A number of a map; the value stays where the key may be left out and is.
-static void read_number(reader *r, const tree_node *map, const char *key, bool needed,
+// Reports the keys of a map other than those of `known`, which stand between blanks. What is no key
+// at all is reported where the others are looked for.
+static void refuse_other_keys(reader *r, const tree_node *map, const char *known)
+{
+    for (const tree_node *child = map->first; child != NULL; child = child->next) {
+        const char *key = node_is_scalar(child->key) ? child->key->text : NULL;
+        char word[64];
+        snprintf(word, sizeof word, " %.60s ", key != NULL ? key : "");
+        if (key != NULL && (strchr(key, ' ') != NULL || strstr(known, word) == NULL)) {
+            report_node(r, child->key, "unknown key '%.60s', expected some of:%s", key, known);
+        }
+    }
+}
+
+// A number of a map, not below the least; the value stays where the key may be left out and is.
+static void read_number(reader *r, const tree_node *map, const char *key, bool needed, double least,
                         double *value)
 {
     const tree_node *node = value_of(r, map, key);
     if (node != NULL) {
-        reader_quantity(r, node, key, "", value);
+        if (reader_quantity(r, node, key, "", value) && *value < least) {
+            report_node(r, node, "%s = %g, expected at least %g", key, *value, least);
+        }
     } else if (needed) {
         report_node(r, map, "there is no '%s' here, expected one", key);
     }
@@ -111,6 +127,7 @@ static void read_choice(reader *r, const tree_node *map, lesson_step *step)
 {
     const tree_node *of = value_of(r, map, "of"), *right = value_of(r, map, "right");
     step->check = LESSON_CHOICE;
+    refuse_other_keys(r, map, " of right ");
 
     // without answers there is nothing to choose
     const bool answers = of != NULL && (of->kind != TREE_LIST || of->first != NULL);
@@ -197,18 +214,21 @@ static bool read_check(reader *r, const char *key, const tree_node *node, lesson
         read_value(r, node, step);
     } else if (kind == NUMBER) {
         step->check = LESSON_NUMBER;
+        refuse_other_keys(r, node, " quantity within ");
         read_quantity(r, node, "quantity", &step->quantity);
-        read_number(r, node, "within", true, &step->within);
+        read_number(r, node, "within", true, 0, &step->within);
     } else if (kind == CURSOR) {
         step->check = LESSON_CURSOR;
+        refuse_other_keys(r, node, " at offset within ");
         read_quantity(r, node, "at", &step->quantity);
-        read_number(r, node, "offset", false, &step->offset);
-        read_number(r, node, "within", true, &step->within);
+        read_number(r, node, "offset", false, -HUGE_VAL, &step->offset);
+        read_number(r, node, "within", true, 0, &step->within);
     } else {
         step->check = LESSON_RATIO;
+        refuse_other_keys(r, node, " quantity from to ");
         read_quantity(r, node, "quantity", &step->quantity);
-        read_number(r, node, "from", true, &step->low);
-        read_number(r, node, "to", true, &step->high);
+        read_number(r, node, "from", true, -HUGE_VAL, &step->low);
+        read_number(r, node, "to", true, step->low, &step->high);
     }
     return true;
 }
@@ -275,6 +295,7 @@ void reader_lesson(reader *r, const tree_node *map)
     if (!reader_expect_map(r, map, "lesson", "steps: [...]")) {
         return;
     }
+    refuse_other_keys(r, map, " steps parameters ");
     const tree_node *steps = value_of(r, map, "steps");
     const tree_node *parameters_that_matter = value_of(r, map, "parameters");
     if (steps == NULL || steps->kind != TREE_LIST || steps->first == NULL) {

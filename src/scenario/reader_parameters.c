@@ -126,6 +126,7 @@ void reader_group(reader *r, const tree_node *map, const char *group)
     }
 
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
+        r->about = NULL;
         const char *key = reader_key(r, map, child);
         if (key == NULL) {
             continue;
@@ -141,6 +142,7 @@ void reader_group(reader *r, const tree_node *map, const char *group)
         }
 
         // its value, and where it stands
+        r->about = parameter_table[index].path;
         char list[PARAMETER_TEXT_SIZE];
         const char *text = parameter_table[index].type == PARAMETER_LIST
                                ? list_text(r, child, index, list)
@@ -151,6 +153,7 @@ void reader_group(reader *r, const tree_node *map, const char *group)
             r->given[index] = (place){child->line, child->column};
         }
     }
+    r->about = NULL;
 }
 
 void reader_resolve(reader *r)
@@ -161,11 +164,13 @@ void reader_resolve(reader *r)
         // defaults go together, so that a parameter which the file gives is to blame
         const int blamed = parameter_find(f.path);
         assert(blamed >= 0 && r->given[blamed].line > 0);
+        r->about = parameter_table[blamed].path;
         reader_report_at(r, r->given[blamed].line, r->given[blamed].column, "%s", f.text);
 
         // with its default the others may show faults of their own
         trial.set[blamed] = 0;
     }
+    r->about = NULL;
     r->s->parameters = trial;
 }
 

@@ -170,7 +170,9 @@ static int override_each(scenario *s, char *const *assignments, int count, fault
     for (int i = 0; i < count; i++) {
         fault f = {0};
         if (scenario_override(s, assignments[i], &f) != STATUS_OK) {
-            failures++;
+            if (failures++ == 0) {
+                s->refused = (fault_place){.path = f.path};
+            }
             if (report != NULL) {
                 report(context, f.text);
             }

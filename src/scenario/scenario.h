@@ -15,6 +15,7 @@ typedef struct action {
     double value;  // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the last link,
                    // positive towards growing angle [N s]
     char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new value
+    bool added;                     // not of the scenario's file
 } action;
 
 // A quantity of the run's summary that the file expects.
@@ -26,6 +27,12 @@ typedef struct expectation {
     int line, column; // where it stands in the file, from 1
 } expectation;
 
+// Where a fault lies that was reported.
+typedef struct fault_place {
+    int line, column; // in the file, from 1; 0 if it is of none
+    const char *path; // of the parameter, a literal; NULL if it is of none
+} fault_place;
+
 enum { SCENARIO_PANES = 6 }; // signals that a scenario is looked at by, at most
 
 typedef struct scenario {
@@ -36,11 +43,13 @@ typedef struct scenario {
     int panes[SCENARIO_PANES]; // signals to look at first, indices in signal_table
     int pane_count;
     parameters parameters; // resolved
+    parameters written;    // those of the file; all zero of a scenario that has none
     action *actions;       // sorted by time
     int action_count;
     expectation *expectations;
     int expectation_count;
-    lesson lesson; // of no steps if it has none
+    lesson lesson;       // of no steps if it has none
+    fault_place refused; // of the first fault that reading or overriding it reported
 } scenario;
 
 // Inserts an action behind those that are not later. s->actions has room for it.
@@ -66,7 +75,8 @@ typedef void (*fault_handler)(void *context, const char *sentence);
 
 // Reads and validates the file (layout: docs/scenarios.md). Every fault is reported through
 // `report`; STATUS_BAD_SCENARIO if there was any (STATUS_CANNOT_READ if the file cannot be opened),
-// and then nothing is to be freed. `name` is the scenario's name, NULL to use the path.
+// and then nothing is to be freed; s->refused is the place of the first one. `name` is the
+// scenario's name, NULL to use the path.
 status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
                      void *context);
 
@@ -79,7 +89,16 @@ void scenario_finish(scenario *s);
 // A copy of one's own; STATUS_NO_MEMORY, and then nothing is to be freed.
 status scenario_copy(scenario *copy, const scenario *s);
 
-// Writes a file that reads back with the same title, description, parameters, script and lesson.
+enum { SCENARIO_CHANGES = 512, SCENARIO_TITLE = 200 }; // SCENARIO_TITLE: most bytes of a title
+
+// What is another than in the file, to stand after its title or name: ", with motor.voltage = 4 V,
+// a push of 0.1 N s at 0.2 s", or "". What has no room is counted. Returns text.
+const char *scenario_changes(const scenario *s, char text[SCENARIO_CHANGES]);
+// The same in at most `room` bytes, its end included.
+const char *scenario_changes_within(const scenario *s, char *text, size_t room);
+
+// Writes a file that reads back with the same title (with what was changed since the scenario was
+// read), description, parameters, script and lesson.
 // What it expects is not written: with other parameters it would not hold. Errors stay in the
 // stream.
 void scenario_write(FILE *stream, const scenario *s);

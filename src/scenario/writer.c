@@ -7,10 +7,9 @@
 #include "src/scenario/scenario.h"
 #include "src/base/numbers.h"
 
-// A text between quotation marks as YAML reads it back.
-static void write_text(FILE *stream, const char *text)
+// What stands between quotation marks so that YAML reads it back.
+static void write_inside(FILE *stream, const char *text)
 {
-    fputc('"', stream);
     for (const char *c = text; *c != '\0'; c++) {
         if (*c == '\n' || *c == '\t') {
             fputs(*c == '\n' ? "\\n" : "\\t", stream);
@@ -20,6 +19,13 @@ static void write_text(FILE *stream, const char *text)
             fprintf(stream, "%s%c", *c == '"' || *c == '\\' ? "\\" : "", *c);
         }
     }
+}
+
+// A text between quotation marks.
+static void write_text(FILE *stream, const char *text)
+{
+    fputc('"', stream);
+    write_inside(stream, text);
     fputc('"', stream);
 }
 
@@ -189,9 +195,14 @@ void scenario_write(FILE *stream, const scenario *s)
 {
     assert(stream != NULL && s != NULL && s->title != NULL && s->description != NULL);
 
-    // prose
-    fputs("title: ", stream);
-    write_text(stream, s->title);
+    // prose; the title goes on with what was changed, as far as a title may
+    char changes[SCENARIO_TITLE + 1];
+    const size_t length = strlen(s->title);
+    const size_t room = length < SCENARIO_TITLE ? SCENARIO_TITLE + 1 - length : 1;
+    fputs("title: \"", stream);
+    write_inside(stream, s->title);
+    write_inside(stream, scenario_changes_within(s, changes, room));
+    fputc('"', stream);
     if (s->description[0] != '\0') {
         fputs("\ndescription: ", stream);
         write_text(stream, s->description);

@@ -4,8 +4,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "src/rig/process_tape.h"
+#include "src/base/loss.h"
 #include "src/run/background_run.h"
 #include "src/run/resume.h"
 #include "src/session/cursor.h"
@@ -50,7 +52,8 @@ static status build_effective(const session *s, scenario *to, fault *f)
             action a = {.time = in->time,
                         .kind = in->kind == SESSION_INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
                         .parameter = in->parameter,
-                        .value = in->value};
+                        .value = in->value,
+                        .added = true};
             snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
             scenario_insert_action(to, a);
         }
@@ -108,13 +111,29 @@ static bool end_computing(session *s)
     return s->run.summary.status == STATUS_STOPPED;
 }
 
+// Whether the files that parameters name are those of the runs before. If they are others, what a
+// program answered then says nothing of now.
+static bool outside_is_same(session *s, const parameters *p)
+{
+    char stamp[SHA256_TEXT];
+    outside_stamp(p->code_allowed ? ~0u : 0, p, stamp); // before a consent nothing is opened
+    if (strcmp(stamp, s->outside) == 0) {
+        return true;
+    }
+    memcpy(s->outside, stamp, sizeof stamp);
+    process_tape_destroy(s->tape);
+    s->tape = NULL;
+    return false;
+}
+
 // Computes the run of a scenario, and resumes the present one where it can. A run that is not there
 // within the session's patience is left to its thread. On failure the present run stays.
 static status start_run(session *s, const scenario *effective, fault *f)
 {
-    run_result run;
+    run_result run = {.before_impact = NULL};
     size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
-    bool resume = run_resume(&s->run, &s->effective, effective, rows, &run);
+    bool resume = outside_is_same(s, &effective->parameters) &&
+                  run_resume(&s->run, &s->effective, effective, rows, &run);
     if (s->tape == NULL && effective->parameters.control.law == LAW_PROCESS) {
         s->tape = process_tape_create(); // without memory the program is always asked
     }
@@ -142,7 +161,9 @@ static status start_run(session *s, const scenario *effective, fault *f)
         run.history = (run_history){0};
     }
 
-    // a run that diverges is worth looking at; one without a single row is not
+    // a run that diverges is worth looking at; one without a single row is not, and one that had no
+    // memory is not whole
+    loss_unless(run.summary.status != STATUS_NO_MEMORY);
     if (run.trace.row_count == 0) {
         status code =
             run.summary.status != STATUS_OK ? summary_fault(&run.summary, f) : fault_no_memory(f);

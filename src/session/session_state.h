@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/run/run.h"
+#include "src/scenario/outside.h"
 
 struct background_run;
 struct process_tape;
@@ -43,5 +44,6 @@ typedef struct session {
     struct background_run *computing; // the run, if it is not complete
     double patience;                  // for how long a change waits for its run [s]
     struct process_tape *tape;        // what a process was asked in all runs, NULL if there is none
+    char outside[SHA256_TEXT];        // stamp of what the runs could read from outside
     size_t surveyed;                  // rows whose force is in the summary of an incomplete run
 } session;

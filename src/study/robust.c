@@ -94,7 +94,10 @@ static void judge(robust_law *out, const sweep *s, double *values)
         settled += !isnan(of[SETTLING][i]);
         separated += of[SEPARATIONS][i] > 0;
         exceeded += (many ? of[SMOOTHED][i] + command : of[PEAK][i]) > allowed;
-        out->overshoots[i] = 100 * of[many ? SMOOTHED : OVER][i] / command;
+        of[OVER][i] *= 100 / command;
+        of[SMOOTHED][i] *= 100 / command;
+        out->overshoots[i] = of[many ? SMOOTHED : OVER][i];
+        out->by_smoothed += many;
         of[ERROR][i] = 100 * fabs(of[ERROR][i]) / command;
 
         of[BACK][i] /= of[APPROACH][i];
@@ -110,6 +113,8 @@ static void judge(robust_law *out, const sweep *s, double *values)
     out->separated = (double)separated / (double)n;
     out->exceeded = (double)exceeded / (double)n;
     find_quantiles(out->overshoots, n, out->overshoot);
+    find_quantiles(of[OVER], n, out->raw);
+    find_quantiles(of[SMOOTHED], n, out->smoothed);
     find_quantiles(of[SETTLING], n, out->settling);
     find_quantiles(of[CONTACT], n, out->from_start);
     find_quantiles(of[ERROR], n, out->error);
@@ -135,6 +140,14 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sto
     }
     free(values);
     return code;
+}
+
+const char *robust_overshoot_of(const robust_law *law)
+{
+    assert(law != NULL);
+    return law->by_smoothed == 0           ? "peak"
+           : law->by_smoothed == law->runs ? "smoothed"
+                                           : "peak and smoothed";
 }
 
 void robust_law_finish(robust_law *law)

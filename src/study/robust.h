@@ -22,8 +22,11 @@ typedef struct robust_law {
     const char *case_title; // of a case, borrowed; NULL without cases
     size_t runs, failed;
     double settled, separated, exceeded; // shares of the runs
-    double overshoot[ROBUST_QUANTILES];  // peak over the command (more than two links: of its mean
-                                         // over 5 ms, smoothed_over_command_N) [%]
+    double raw[ROBUST_QUANTILES];        // peak of the force over the command [%]
+    double smoothed[ROBUST_QUANTILES];   // smoothed_over_command_N, a mean over 5 ms, of it [%]
+    double overshoot[ROBUST_QUANTILES];  // of each run the one or, with more than two links, the
+                                         // other: a chain's peak depends on the number of links [%]
+    size_t by_smoothed;                  // runs of the other kind
     double settling[ROBUST_QUANTILES];   // from first contact, or the last push after it [s]
     double from_start[ROBUST_QUANTILES]; // until it has settled, from the run's start;
                                          // NaN where the tip is pushed [s]
@@ -39,6 +42,10 @@ typedef struct robust_law {
 status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_store *store,
                      fault *f);
 void robust_law_finish(robust_law *law);
+
+// Which `overshoot` is: "peak", "smoothed", or "peak and smoothed" where the number of links is
+// drawn.
+const char *robust_overshoot_of(const robust_law *law);
 
 // Laws to be shown together.
 typedef struct robust_table {

@@ -11,7 +11,7 @@
 
 enum { MOST_SET_BYTES = 65536 };
 
-// The whole file as a text on the heap.
+// The whole file as a text on the heap; nothing is handed over on failure.
 static status read_text(const char *path, char **text, fault *f)
 {
     FILE *file = fopen(path, "rb");
@@ -21,21 +21,29 @@ static status read_text(const char *path, char **text, fault *f)
     }
 
     // all of it, if it is not too long
-    *text = calloc(1, MOST_SET_BYTES + 1);
-    size_t length = *text != NULL ? fread(*text, 1, MOST_SET_BYTES, file) : 0;
-    bool whole = *text != NULL && ferror(file) == 0 && fgetc(file) == EOF;
+    char *bytes = calloc(1, MOST_SET_BYTES + 1);
+    const size_t length = bytes != NULL ? fread(bytes, 1, MOST_SET_BYTES, file) : 0;
+    const bool whole = bytes != NULL && ferror(file) == 0 && fgetc(file) == EOF;
+    const int reason = ferror(file) != 0 ? errno : 0;
     fclose(file);
 
-    if (*text == NULL) {
-        return fault_no_memory(f);
+    status code = STATUS_OK;
+    if (bytes == NULL) {
+        code = fault_no_memory(f);
+    } else if (reason != 0) {
+        code = fault_set(f, STATUS_CANNOT_READ, "the set '%s' cannot be read: %s", path,
+                         strerror(reason));
+    } else if (!whole || strlen(bytes) != length) {
+        code =
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%s' is no set, expected lines PATH=a:b or PATH=v1,v2 of at most %d bytes",
+                      path, MOST_SET_BYTES);
     }
-    if (!whole || strlen(*text) != length) {
-        free(*text);
-        return fault_set(
-            f, STATUS_BAD_ARGUMENT,
-            "'%s' is no set, expected lines PATH=a:b or PATH=v1,v2 of at most %d bytes", path,
-            MOST_SET_BYTES);
+    if (code != STATUS_OK) {
+        free(bytes);
+        return code;
     }
+    *text = bytes;
     return STATUS_OK;
 }
 
@@ -72,7 +80,7 @@ static bool read_push(robust_case *c, const char *text)
 static bool read_case(robust_case *c, char *text, char **settings)
 {
     char *rest = strchr(text, ':');
-    *c = (robust_case){.settings = settings};
+    c->settings = settings;
     if (rest == NULL) {
         return false;
     }
@@ -96,7 +104,7 @@ static bool read_case(robust_case *c, char *text, char **settings)
 }
 
 // Sorts the lines of the text into what is drawn and what is a case.
-static status read_lines(robust_set *set, const char *path, fault *f)
+static status read_lines(robust_set *set, fault *f)
 {
     static const char word[] = "case ";
     char *rest = set->text, **settings = set->settings;
@@ -108,42 +116,49 @@ static status read_lines(robust_set *set, const char *path, fault *f)
             continue;
         }
         if (strncmp(line, word, strlen(word)) != 0) {
+            set->line_numbers[set->count] = number;
             set->lines[set->count++] = line;
             continue;
         }
 
         robust_case *c = &set->cases[set->case_count++];
+        *c = (robust_case){.file = set->file, .line = number};
         if (!read_case(c, line + strlen(word), settings)) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "%s:%d: no case, expected 'case TITLE: PATH=VALUE; PATH=VALUE', or "
-                             "push=IMPULSE@TIME for a value",
-                             path, number);
+            return fault_set_place(f, STATUS_BAD_ARGUMENT, number, 1,
+                                   "%s:%d: no case, expected 'case TITLE: PATH=VALUE; PATH=VALUE', "
+                                   "or push=IMPULSE@TIME for a value",
+                                   set->file, number);
         }
         settings += c->setting_count;
     }
     return STATUS_OK;
 }
 
+// Room for everything that the text of the set may have: a line, a case and a setting have at least
+// one character. False without memory.
+static bool make_room(robust_set *set)
+{
+    const size_t most = strlen(set->text) + 1;
+    size_t lines = 1;
+    for (const char *c = set->text; *c != '\0'; c++) {
+        lines += *c == '\n';
+    }
+    set->lines = calloc(lines, sizeof *set->lines);
+    set->line_numbers = calloc(lines, sizeof *set->line_numbers);
+    set->settings = calloc(most, sizeof *set->settings);
+    set->cases = calloc(lines, sizeof *set->cases);
+    return set->lines != NULL && set->line_numbers != NULL && set->settings != NULL &&
+           set->cases != NULL;
+}
+
 status robust_set_read(robust_set *set, const char *path, fault *f)
 {
     assert(set != NULL && path != NULL);
-    *set = (robust_set){0};
-    status code = read_text(path, &set->text, f);
-    if (code != STATUS_OK) {
-        return code;
+    *set = (robust_set){.file = strdup(path)};
+    status code = set->file != NULL ? read_text(path, &set->text, f) : fault_no_memory(f);
+    if (code == STATUS_OK) {
+        code = make_room(set) ? read_lines(set, f) : fault_no_memory(f);
     }
-
-    // a line, a case and a setting have at least one character
-    size_t most = strlen(set->text) + 1, cases = 1;
-    for (const char *c = set->text; *c != '\0'; c++) {
-        cases += *c == '\n';
-    }
-    set->lines = calloc(most, sizeof *set->lines);
-    set->settings = calloc(most, sizeof *set->settings);
-    set->cases = calloc(cases, sizeof *set->cases);
-    bool room = set->lines != NULL && set->settings != NULL && set->cases != NULL;
-
-    code = room ? read_lines(set, path, f) : fault_no_memory(f);
     if (code == STATUS_OK && set->count == 0) {
         code = fault_set(f, STATUS_BAD_ARGUMENT,
                          "the set '%s' names no parameter, expected lines PATH=a:b or PATH=v1,v2",
@@ -158,8 +173,10 @@ status robust_set_read(robust_set *set, const char *path, fault *f)
 void robust_set_finish(robust_set *set)
 {
     if (set != NULL) {
+        free(set->file);
         free(set->text);
         free(set->lines);
+        free(set->line_numbers);
         free(set->settings);
         free(set->cases);
         *set = (robust_set){0};
@@ -175,6 +192,36 @@ static void keep_first(void *context, const char *sentence)
     }
 }
 
+status robust_case_fault(const robust_case *c, const fault *why, fault *f)
+{
+    assert(c != NULL && why != NULL);
+    return why->code == STATUS_NO_MEMORY
+               ? fault_no_memory(f)
+               : fault_set_place(f, why->code, c->line, 1, "%.200s:%d: case '%.60s': %.600s",
+                                 c->file, c->line, c->title, why->text);
+}
+
+// The settings and pushes of a case, which must go together with the scenario.
+static status apply_case(scenario *derived, const robust_case *c, fault *f)
+{
+    status code = scenario_override_all(derived, c->settings, c->setting_count, keep_first, f);
+    const double duration = derived->parameters.run.duration;
+    for (int i = 0; i < c->push_count && code == STATUS_OK; i++) {
+        if (c->push_time[i] > duration) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT,
+                             "a push at %g s is outside the run, expected 0 to %g s (run.duration)",
+                             c->push_time[i], duration);
+        }
+        scenario_insert_action(derived, (action){.time = c->push_time[i],
+                                                 .kind = ACTION_PUSH,
+                                                 .parameter = -1,
+                                                 .value = c->push_impulse[i],
+                                                 .added = true});
+    }
+    const parameters p = derived->parameters;
+    return code == STATUS_OK ? scenario_take_parameters(derived, &p, f) : code;
+}
+
 status robust_case_scenario(scenario *derived, const scenario *base, const robust_case *c, fault *f)
 {
     assert(derived != NULL && base != NULL);
@@ -187,21 +234,11 @@ status robust_case_scenario(scenario *derived, const scenario *base, const robus
     if (base->action_count > 0) {
         memcpy(derived->actions, base->actions, (size_t)base->action_count * sizeof(action));
     }
-    if (c == NULL) {
-        return STATUS_OK;
-    }
 
-    fault first = {0};
-    status code = scenario_override_all(derived, c->settings, c->setting_count, keep_first, &first);
-    if (code != STATUS_OK) {
+    fault why = {.code = STATUS_OK};
+    if (c != NULL && apply_case(derived, c, &why) != STATUS_OK) {
         robust_case_finish(derived);
-        return fault_set(f, STATUS_BAD_ARGUMENT, "case '%.60s': %.400s", c->title, first.text);
-    }
-    for (int i = 0; i < pushes; i++) {
-        scenario_insert_action(derived, (action){.time = c->push_time[i],
-                                                 .kind = ACTION_PUSH,
-                                                 .parameter = -1,
-                                                 .value = c->push_impulse[i]});
+        return robust_case_fault(c, &why, f);
     }
     return STATUS_OK;
 }

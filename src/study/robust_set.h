@@ -12,6 +12,8 @@
 enum { ROBUST_CASE_PUSHES = 4 }; // at most
 
 typedef struct robust_case {
+    const char *file;                        // borrowed from the set
+    int line;                                // in the file, from 1
     char *title;                             // borrowed from the set's text
     char **settings;                         // "PATH=VALUE"; borrowed from the set's list
     int setting_count;                       //
@@ -21,8 +23,10 @@ typedef struct robust_case {
 } robust_case;
 
 typedef struct robust_set {
+    char *file;         // its path; owned
     char *text;         // owned; the lines point into it
     char **lines;       // what is drawn; owned
+    int *line_numbers;  // of each in the file, from 1; owned
     int count;          // of lines
     robust_case *cases; // owned
     int case_count;
@@ -30,14 +34,18 @@ typedef struct robust_set {
 } robust_set;
 
 // Reads a set file. STATUS_CANNOT_READ, STATUS_BAD_ARGUMENT (nothing is drawn, too long, a case
-// that cannot be read) or STATUS_NO_MEMORY, with a sentence in f that names file and line; then
-// nothing is to be freed.
+// that cannot be read) or STATUS_NO_MEMORY, with a sentence in f that names file and line; then the
+// set is empty, and nothing is to be freed.
 status robust_set_read(robust_set *set, const char *path, fault *f);
 void robust_set_finish(robust_set *set);
 
 // The scenario of a case, c NULL: the base's own. It borrows all but its parameters and its actions
-// from the base; robust_case_finish. STATUS_BAD_ARGUMENT if a setting does not go,
-// STATUS_NO_MEMORY.
+// from the base; robust_case_finish. STATUS_BAD_ARGUMENT if a setting or a push does not go, with
+// robust_case_fault's sentence, STATUS_NO_MEMORY.
 status robust_case_scenario(scenario *derived, const scenario *base, const robust_case *c,
                             fault *f);
 void robust_case_finish(scenario *derived);
+
+// What is wrong with a case, with file, line and title before the sentence. Returns the code of
+// why.
+status robust_case_fault(const robust_case *c, const fault *why, fault *f);

@@ -19,7 +19,10 @@ enum {
     FROM_START = ERROR + ROBUST_QUANTILES,
     BACK = FROM_START + ROBUST_QUANTILES,
     AGAINST = BACK + ROBUST_QUANTILES,
-    COLUMNS
+    RAW,
+    SMOOTHED = RAW + ROBUST_QUANTILES,
+    COLUMNS = SMOOTHED + ROBUST_QUANTILES,
+    OVER_OF // a word: which overshoot it is
 };
 
 typedef struct column {
@@ -48,7 +51,14 @@ static const column columns[COLUMNS] = {
     {"back_share_nine_tenths", "back_share_nine_tenths", ""},
     {"back_share_worst", "back_share_worst", ""},
     {"from_start_share", "from_start_share", ""},
+    {"raw_overshoot_median_percent", "raw_overshoot_median", "%"},
+    {"raw_overshoot_nine_tenths_percent", "raw_overshoot_nine_tenths", "%"},
+    {"raw_overshoot_worst_percent", "raw_overshoot_worst", "%"},
+    {"smoothed_overshoot_median_percent", "smoothed_overshoot_median", "%"},
+    {"smoothed_overshoot_nine_tenths_percent", "smoothed_overshoot_nine_tenths", "%"},
+    {"smoothed_overshoot_worst_percent", "smoothed_overshoot_worst", "%"},
 };
+static const char over_of[] = "overshoot_of"; // in JSON and CSV
 
 // What people see, of the laws and of cases.
 typedef struct shown_column {
@@ -60,6 +70,7 @@ static const shown_column of_laws[] = {
     {SETTLED, "settled/%"},
     {SEPARATED, "separated/%"},
     {EXCEEDED, "exceeded/%"},
+    {OVER_OF, "over of"},
     {OVER + ROBUST_MEDIAN, "over/%"},
     {OVER + ROBUST_NINE_TENTHS, "90 %"},
     {OVER + ROBUST_WORST, "worst"},
@@ -73,6 +84,7 @@ static const shown_column of_laws[] = {
 };
 static const shown_column of_cases[] = {
     {SEPARATED, "separated/%"},
+    {OVER_OF, "over of"},
     {OVER + ROBUST_WORST, "over/%"},
     {SETTLING + ROBUST_WORST, "settling/s"},
     {ERROR + ROBUST_WORST, "error/%"},
@@ -112,15 +124,21 @@ static void values_of(const robust_law *law, double *values)
         values[ERROR + i] = law->error[i];
         values[FROM_START + i] = law->from_start[i];
         values[BACK + i] = law->back[i];
+        values[RAW + i] = law->raw[i];
+        values[SMOOTHED + i] = law->smoothed[i];
     }
 }
 
-static void format_value(char *text, size_t size, double value)
+// A law's cell in a column that people see; its values are values_of it.
+static void format_cell(char *text, size_t size, const robust_law *law, const double *values,
+                        int which)
 {
-    if (isnan(value)) {
+    if (which == OVER_OF) {
+        snprintf(text, size, "%s", robust_overshoot_of(law));
+    } else if (isnan(values[which])) {
         snprintf(text, size, "-");
     } else {
-        decimal_print(text, size, fabs(value) >= 1000 ? "%.0f" : "%.3g", value);
+        decimal_print(text, size, fabs(values[which]) >= 1000 ? "%.0f" : "%.3g", values[which]);
     }
 }
 
@@ -157,7 +175,7 @@ void robust_text(FILE *stream, const robust_table *t)
         }
         fprintf(stream, "%-16s  %5zu", law->law, law->runs);
         for (int k = 0; k < count; k++) {
-            format_value(text, sizeof text, values[shown[k].column]);
+            format_cell(text, sizeof text, law, values, shown[k].column);
             fprintf(stream, "  %12s", text);
         }
         if (law->failed > 0) {
@@ -197,7 +215,7 @@ void robust_markdown(FILE *stream, const robust_table *t)
         }
         fprintf(stream, "| %s | %zu |", law->law, law->runs);
         for (int k = 0; k < count; k++) {
-            format_value(text, sizeof text, values[shown[k].column]);
+            format_cell(text, sizeof text, law, values, shown[k].column);
             fprintf(stream, " %s |", text);
         }
         fputc('\n', stream);
@@ -217,6 +235,7 @@ void robust_csv(FILE *stream, const robust_table *t)
     csv_heading(&csv, "law", "");
     csv_heading(&csv, "runs", "");
     csv_heading(&csv, "failed", "");
+    csv_heading(&csv, over_of, "");
     for (int k = 0; k < COLUMNS; k++) {
         csv_heading(&csv, columns[k].name, columns[k].unit);
     }
@@ -233,6 +252,7 @@ void robust_csv(FILE *stream, const robust_table *t)
         csv_text(&csv, law->law);
         csv_number(&csv, (double)law->runs);
         csv_number(&csv, (double)law->failed);
+        csv_text(&csv, robust_overshoot_of(law));
         for (int k = 0; k < COLUMNS; k++) {
             csv_number(&csv, values[k]);
         }
@@ -257,6 +277,7 @@ json_t *robust_json(const robust_table *t)
         json_put(law, "law", json_text(found->law));
         json_put(law, "runs", json_integer((json_int_t)found->runs));
         json_put(law, "failed", json_integer((json_int_t)found->failed));
+        json_put(law, over_of, json_text(robust_overshoot_of(found)));
         for (int k = 0; k < COLUMNS; k++) {
             json_put(law, columns[k].key, json_number(values[k]));
         }

@@ -174,16 +174,16 @@ void sweep_value_text(const sweep *s, size_t run, int axis, char *text, size_t s
 
 status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f)
 {
-    assert(s != NULL && derived != NULL);
+    assert(s != NULL && s->base != NULL && derived != NULL);
     *derived = *s->base;
+    parameters p = s->base->parameters;
     for (int i = 0; i < s->axis_count; i++) {
-        status code =
-            sweep_axis_apply(&s->axes[i], sweep_value(s, run, i), &derived->parameters, f);
+        status code = sweep_axis_apply(&s->axes[i], sweep_value(s, run, i), &p, f);
         if (code != STATUS_OK) {
             return code;
         }
     }
-    return parameters_resolve(&derived->parameters, f);
+    return scenario_take_parameters(derived, &p, f);
 }
 
 // Tells before anything is computed if values do not go together (links and the printed model).
@@ -212,13 +212,12 @@ static status check_combinations(const sweep *s, fault *f)
     return STATUS_OK;
 }
 
-status sweep_init(sweep *s, const scenario *base, const sweep_request *request, fault *f)
+status sweep_plan(sweep *s, const sweep_request *request, fault *f)
 {
-    assert(s != NULL && base != NULL && request != NULL);
+    assert(s != NULL && request != NULL);
 
     status code = STATUS_OK;
     memset(s, 0, sizeof *s);
-    s->base = base;
     s->sampling = request->sampling;
     s->seed = request->seed;
 
@@ -232,15 +231,35 @@ status sweep_init(sweep *s, const scenario *base, const sweep_request *request, 
         fault why = {.path = ""};
         code = read_axis(s, request->vary[i], &why);
         if (code != STATUS_OK) {
-            code = fault_set_at(f, code == STATUS_NO_MEMORY ? code : STATUS_BAD_ARGUMENT, why.path,
-                                "--vary %.200s: %.700s", request->vary[i], why.text);
+            code = code == STATUS_NO_MEMORY ? code : STATUS_BAD_ARGUMENT;
+            code = request->lines == NULL
+                       ? fault_set_at(f, code, why.path, "--vary %.200s: %.700s", request->vary[i],
+                                      why.text)
+                       : fault_set_place(f, code, request->lines[i], 1, "%.200s:%d: %.700s",
+                                         request->file, request->lines[i], why.text);
         }
     }
 
-    // the runs, and whether each can be begun
+    // the runs
     code = code == STATUS_OK ? count_runs(s, request->runs, f) : code;
     code = code == STATUS_OK ? draw_values(s, f) : code;
-    code = code == STATUS_OK ? check_combinations(s, f) : code;
+    if (code != STATUS_OK) {
+        sweep_finish(s);
+    }
+    return code;
+}
+
+status sweep_init(sweep *s, const scenario *base, const sweep_request *request, fault *f)
+{
+    assert(s != NULL && base != NULL && request != NULL);
+    status code = sweep_plan(s, request, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // whether each run can be begun
+    s->base = base;
+    code = check_combinations(s, f);
     if (code != STATUS_OK) {
         sweep_finish(s);
     }

@@ -19,7 +19,7 @@ typedef enum sweep_sampling { SWEEP_GRID, SWEEP_RANDOM, SWEEP_LATIN } sweep_samp
 const char *sweep_sampling_name(sweep_sampling sampling);
 
 typedef struct sweep {
-    const scenario *base; // borrowed
+    const scenario *base; // borrowed; NULL in a plan
     sweep_axis axes[SWEEP_MOST_AXES];
     int axis_count;
     sweep_sampling sampling;
@@ -36,6 +36,8 @@ typedef struct sweep_request {
     sweep_sampling sampling;
     size_t runs; // random, latin: number of runs; 0 for a grid, which is as large as it is
     uint64_t seed;
+    const char *file; // in whose lines `vary` stands, one number for each; NULL: a command line
+    const int *lines;
 } sweep_request;
 
 // Reads a request and checks every value and combination of values. The last parameter of a grid
@@ -43,6 +45,10 @@ typedef struct sweep_request {
 // with equal chances. `base` has to live as long as the sweep. On failure (STATUS_BAD_ARGUMENT,
 // STATUS_NO_MEMORY) f says why and nothing is to be freed.
 status sweep_init(sweep *s, const scenario *base, const sweep_request *request, fault *f);
+
+// The same without a scenario: which values each run has, not whether they go together. What a
+// database says of its sweep is enough for that.
+status sweep_plan(sweep *s, const sweep_request *request, fault *f);
 void sweep_finish(sweep *s);
 
 // Value of parameter axes[axis] in run `run`.

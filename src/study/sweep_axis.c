@@ -276,9 +276,14 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
 // Reads "v1,v2,v3".
 static status read_list(sweep_axis *axis, char *text, fault *f)
 {
+    enum { MOST_VALUES = 20000 }; // each is compared with those before it
     size_t most = 1;
     for (const char *c = text; *c != '\0'; c++) {
         most += *c == ',';
+    }
+    if (most > MOST_VALUES) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "a list has at most %d values, here are %zu",
+                         MOST_VALUES, most);
     }
 
     // room for as many as there are commas, and the text as it would be written

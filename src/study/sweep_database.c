@@ -1,6 +1,8 @@
 #include "src/study/sweep_database.h"
 
 #include <assert.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,6 +11,9 @@
 // Marks a database as ours (PRAGMA application_id): "ILSw". The layout's version is user_version.
 #define APPLICATION_ID "1229738871"
 #define LAYOUT         "1"
+
+// Of a value or a row: what is stored is shorter, what a file may make up on reading need not be.
+enum { MOST_BYTES = 16 << 20 };
 
 status database_fault(const sweep_store *store, fault *f)
 {
@@ -27,7 +32,7 @@ status database_fault(const sweep_store *store, fault *f)
     }
 
     // what is asked of it is always the same, so that tables of others are at fault
-    if (code == SQLITE_ERROR) {
+    if (code == SQLITE_ERROR || code == SQLITE_TOOBIG) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is not laid out as this program does it: %s",
                          path, why);
     }
@@ -176,37 +181,117 @@ static const char *column_name(const sweep *s, int column)
                                         : summary_table[word - RUN_OUTCOME_COLUMNS].key;
 }
 
-// Looks for a run with a text where a number belongs or the other way round, or that ended in no
-// way that is known: SQLite lets others write any type into any column.
-static status check_types(sweep_store *store, fault *f)
+// The text in that column of the row that a statement stands on; NULL if there is none, one that
+// does not end where it ends, or no memory for it.
+static const char *text_at(sqlite3_stmt *row, int column)
+{
+    const char *text = sqlite3_column_type(row, column) == SQLITE_TEXT
+                           ? (const char *)sqlite3_column_text(row, column)
+                           : NULL;
+    const bool whole = text != NULL && strlen(text) == (size_t)sqlite3_column_bytes(row, column);
+    return whole ? text : NULL;
+}
+
+static bool is_number(sqlite3_stmt *row, int column)
+{
+    const int type = sqlite3_column_type(row, column);
+    return type == SQLITE_FLOAT || type == SQLITE_INTEGER;
+}
+
+// Whether the row that a statement stands on has in that column what the sweep gives run `run`.
+static bool is_value(const sweep *s, size_t run, int axis, sqlite3_stmt *row, int column)
+{
+    if (has_words(&parameter_table[s->axes[axis].parameter])) {
+        char text[SWEEP_VALUE_TEXT];
+        const char *found = text_at(row, column);
+        sweep_value_text(s, run, axis, text, sizeof text);
+        return found != NULL && strcmp(found, text) == 0;
+    }
+    return is_number(row, column) &&
+           sqlite3_column_double(row, column) == sweep_value(s, run, axis);
+}
+
+// Whether that column, of the outcome, has what this program writes there: how the run ended, a
+// message, finite numbers, and nothing where a quantity did not occur; what is counted always does
+// in a run that did not fail.
+static bool is_outcome(int word, bool failed, sqlite3_stmt *row, int column)
+{
+    const int quantity = word - RUN_OUTCOME_COLUMNS;
+    if (quantity >= 0) {
+        const bool counted = quantity == SUMMARY_INDEX(impacts) ||
+                             quantity == SUMMARY_INDEX(separations) ||
+                             quantity == SUMMARY_INDEX(steps);
+        const bool always = summary_table[quantity].timing || (counted && !failed);
+        return (!always && sqlite3_column_type(row, column) == SQLITE_NULL) ||
+               (is_number(row, column) && isfinite(sqlite3_column_double(row, column)));
+    }
+    const char *text = text_at(row, column);
+    return text != NULL && (word > 0 || strcmp(text, "ok") == 0 ||
+                            strcmp(text, "inaccurate") == 0 || strcmp(text, "failed") == 0);
+}
+
+// Checks the row that a statement stands on: SQLite lets others write anything into any column.
+static status check_row(const sweep_store *store, sqlite3_stmt *row, unsigned char *seen, fault *f)
 {
     const sweep *s = store->sweep;
-    sqlite3_str *sql = sqlite3_str_new(store->database);
-    sqlite3_str_appendall(sql, "SELECT min(run) FROM run WHERE typeof(message) <> 'text' OR "
-                               "status NOT IN ('ok', 'inaccurate', 'failed')");
-    for (int i = 0; i < s->axis_count; i++) {
-        const parameter_info *info = &parameter_table[s->axes[i].parameter];
-        sqlite3_str_appendf(sql, " OR typeof(\"%w\") %s", s->axes[i].name,
-                            has_words(info) ? "<> 'text'" : "IN ('text', 'blob')");
+    const long long run = sqlite3_column_int64(row, 0);
+    if (sqlite3_column_type(row, 0) != SQLITE_INTEGER || run < 1 ||
+        (unsigned long long)run > s->run_count) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu",
+                         store->path, run, s->run_count);
     }
-    for (int i = 0; i < summary_count; i++) {
-        sqlite3_str_appendf(sql, " OR typeof(\"%w\") IN ('text', 'blob')", summary_table[i].key);
+    if (seen[run - 1]++) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld twice", store->path, run);
     }
 
-    // the first of them, if there is one
-    char *text = sqlite3_str_finish(sql);
-    long long run = 0;
-    status code = text ? database_query_number(store, text, &run, f) : fault_no_memory(f);
-    sqlite3_free(text);
-    if (code == STATUS_OK && run != 0) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%s' has values of another kind in run %lld than this program writes",
-                         store->path, run);
+    // what was put in, as planned
+    int column = RUN_FIRST_VALUE;
+    for (int i = 0; i < s->axis_count; i++, column++) {
+        if (!is_value(s, (size_t)run - 1, i, row, column)) {
+            const char *found = (const char *)sqlite3_column_text(row, column);
+            char text[SWEEP_VALUE_TEXT];
+            sweep_value_text(s, (size_t)run - 1, i, text, sizeof text);
+            return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' has %s = %.60s in run %lld, expected %s",
+                             store->path, s->axes[i].name, found != NULL ? found : "nothing", run,
+                             text);
+        }
     }
+
+    // what came out
+    const char *ended = text_at(row, column);
+    const bool failed = ended != NULL && strcmp(ended, "failed") == 0;
+    for (int i = 0; i < RUN_OUTCOME_COLUMNS + summary_count; i++, column++) {
+        if (!is_outcome(i, failed, row, column)) {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             "'%s' has values of another kind in run %lld than this program "
+                             "writes, under %s",
+                             store->path, run, sqlite3_column_name(row, column));
+        }
+    }
+    return STATUS_OK;
+}
+
+// The same of all rows.
+static status check_rows(sweep_store *store, fault *f)
+{
+    sqlite3_stmt *rows = NULL;
+    unsigned char *seen = calloc(store->sweep->run_count, 1);
+    status code =
+        seen != NULL ? database_prepare(store, &rows, "SELECT * FROM run", f) : fault_no_memory(f);
+    while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
+        code = check_row(store, rows, seen, f);
+        if (code != STATUS_OK && sqlite3_errcode(store->database) == SQLITE_NOMEM) {
+            code = fault_no_memory(f);
+        }
+    }
+    if (sqlite3_finalize(rows) != SQLITE_OK && code == STATUS_OK) {
+        code = database_fault(store, f);
+    }
+    free(seen);
     return code;
 }
 
-status database_check_columns(sweep_store *store, fault *f)
+status database_check_runs(sweep_store *store, fault *f)
 {
     assert(store != NULL && store->sweep != NULL);
     const sweep *s = store->sweep;
@@ -232,7 +317,32 @@ status database_check_columns(sweep_store *store, fault *f)
                          store->path, found, columns);
     }
     sqlite3_finalize(rows);
-    return code == STATUS_OK ? check_types(store, f) : code;
+    return code == STATUS_OK ? check_rows(store, f) : code;
+}
+
+// A journal that an interrupted sweep left is rolled back, and one of a transaction over several
+// databases then has SQLite delete the file it names at its end. This program makes no such one.
+static status check_journal(const sweep_store *store, fault *f)
+{
+    static const unsigned char mark[] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
+    unsigned char end[sizeof mark];
+    const char *name = sqlite3_filename_journal(sqlite3_db_filename(store->database, "main"));
+    FILE *journal = name != NULL ? fopen(name, "rb") : NULL;
+    if (journal == NULL) {
+        return STATUS_OK;
+    }
+
+    // what SQLite looks for, and where
+    const bool names_file = fseek(journal, -(long)sizeof mark, SEEK_END) == 0 &&
+                            fread(end, sizeof end, 1, journal) == 1 &&
+                            memcmp(end, mark, sizeof mark) == 0;
+    fclose(journal);
+    return names_file
+               ? fault_set(f, STATUS_BAD_ARGUMENT,
+                           "'%s' is no journal of this program: it names another file, which "
+                           "would be deleted; remove the journal, or do without '%s'",
+                           name, store->path)
+               : STATUS_OK;
 }
 
 status database_open(sweep_store *store, int flags, fault *f)
@@ -253,5 +363,6 @@ status database_open(sweep_store *store, int flags, fault *f)
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, NULL);
-    return STATUS_OK;
+    sqlite3_limit(store->database, SQLITE_LIMIT_LENGTH, MOST_BYTES);
+    return store->path != NULL ? check_journal(store, f) : STATUS_OK;
 }

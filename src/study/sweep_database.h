@@ -3,6 +3,7 @@
 
 #include <sqlite3.h>
 
+#include "src/base/sha256.h"
 #include "src/study/sweep.h"
 
 // Of the table `run`: number of the run, then the varied values, status and message, then the
@@ -16,6 +17,7 @@ typedef struct sweep_store {
     char *path; // NULL: in memory
     int lock;   // descriptor that holds the lock, -1 if there is none
     bool in_transaction;
+    char stamp[SHA256_TEXT]; // of what the runs read from outside
 } sweep_store;
 
 // Opens the database file store->path, or memory where it is NULL, with SQLite's open flags.
@@ -26,8 +28,9 @@ status database_open(sweep_store *store, int flags, fault *f);
 // this program.
 status database_recognise(sweep_store *store, bool *empty, fault *f);
 
-// STATUS_BAD_ARGUMENT unless the table `run` has the columns of store->sweep, in their order.
-status database_check_columns(sweep_store *store, fault *f);
+// STATUS_BAD_ARGUMENT unless the table `run` has the columns of store->sweep, in their order, and
+// in each row a run of it, once, with the values that the sweep gives it and finite numbers.
+status database_check_runs(sweep_store *store, fault *f);
 
 // Creates the tables `sweep` and `run` and marks the database as a sweep; in a transaction of the
 // caller's.

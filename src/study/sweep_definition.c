@@ -1,6 +1,7 @@
 #include "src/study/sweep_definition.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,26 +10,28 @@
 #include "src/base/numbers.h"
 #include "src/base/text_stream.h"
 #include "src/base/version.h"
+#include "src/scenario/outside.h"
+
+enum { MOST_LINES = sizeof((definition *)0)->lines / sizeof(definition_line) };
+
+// What comes before the path of a parameter in the key of what it names outside.
+static const char content_of[] = "content of ";
+static const char untold[] = "cannot be told"; // in place of a digest
 
 // Adds a line; printf-like.
 __attribute__((format(printf, 3, 4))) static void define(definition *d, const char *key,
                                                          const char *format, ...)
 {
     va_list list;
+    assert(d->count < MOST_LINES);
     definition_line *line = &d->lines[d->count];
-
-    // more lines than any sweep has count as too much
-    if (d->count == sizeof d->lines / sizeof d->lines[0]) {
-        d->out_of_memory = true;
-        return;
-    }
 
     // a value may be long: it has memory of its own
     snprintf(line->key, sizeof line->key, "%s", key);
     va_start(list, format);
     line->value = decimal_vtext(format, list);
     if (line->value == NULL) {
-        d->out_of_memory = true;
+        d->code = STATUS_NO_MEMORY;
     } else {
         d->count++;
     }
@@ -73,7 +76,7 @@ static void define_script(definition *d, const scenario *s)
 {
     text_stream line;
     if (!text_stream_open(&line)) {
-        d->out_of_memory = true;
+        d->code = STATUS_NO_MEMORY;
         return;
     }
 
@@ -94,12 +97,57 @@ static void define_script(definition *d, const scenario *s)
     if (text != NULL) {
         define(d, "script", "%s", text);
     } else {
-        d->out_of_memory = true;
+        d->code = STATUS_NO_MEMORY;
     }
     free(text);
 }
 
-void definition_init(definition *d, const sweep *s)
+// What any run of the sweep reads from outside, as bits: whether it does may be varied.
+static unsigned read_outside(const sweep *s)
+{
+    unsigned sources = outside_read(&s->base->parameters);
+    for (int i = 0; i < outside_count; i++) {
+        const outside_source *source = &outside_table[i];
+        for (int k = 0; k < s->axis_count; k++) {
+            const sweep_axis *axis = &s->axes[k];
+            const bool chooses = axis->parameter == parameter_at(source->chooser);
+            sources &= ~((unsigned)chooses << i);
+            for (size_t v = 0; chooses && v < axis->count; v++) {
+                sources |= (unsigned)(axis->values[v] == source->choice) << i;
+            }
+        }
+    }
+    return sources;
+}
+
+// The content of what lies outside the scenario.
+static void define_outside(definition *d, const sweep *s, fault *f)
+{
+    const unsigned sources = read_outside(s);
+    for (int i = 0; i < outside_count && d->code == STATUS_OK; i++) {
+        const outside_source *source = &outside_table[i];
+        const parameters *p = &s->base->parameters;
+        char key[sizeof d->lines[0].key], digest[SHA256_TEXT];
+        if ((sources >> i & 1) == 0) {
+            continue;
+        }
+        snprintf(key, sizeof key, "%s%s", content_of,
+                 parameter_table[parameter_at(source->parameter)].path);
+        const bool told = outside_is_told(source, p);
+        d->code = told ? outside_digest(source, p, digest, f) : STATUS_OK;
+        if (d->code == STATUS_OK) {
+            define(d, key, "%s", told ? digest : untold);
+        }
+    }
+}
+
+void definition_stamp(const sweep *s, char stamp[SHA256_TEXT])
+{
+    assert(s != NULL && stamp != NULL);
+    outside_stamp(read_outside(s), &s->base->parameters, stamp);
+}
+
+status definition_init(definition *d, const sweep *s, fault *f)
 {
     assert(d != NULL && s != NULL);
     memset(d, 0, sizeof *d);
@@ -121,6 +169,8 @@ void definition_init(definition *d, const sweep *s)
     // what stays
     define_script(d, s->base);
     define_parameters(d, s);
+    define_outside(d, s, f);
+    return d->code == STATUS_NO_MEMORY ? fault_no_memory(f) : d->code;
 }
 
 void definition_finish(definition *d)
@@ -129,6 +179,7 @@ void definition_finish(definition *d)
     for (int i = 0; i < d->count; i++) {
         free(d->lines[i].value);
     }
+    d->count = 0;
 }
 
 const char *definition_value(const definition *d, const char *key)
@@ -142,6 +193,29 @@ const char *definition_value(const definition *d, const char *key)
     return NULL;
 }
 
+// Adds the line that a statement stands on.
+static status read_line(definition *d, const char *path, sqlite3_stmt *row, fault *f)
+{
+    const char *key = (const char *)sqlite3_column_text(row, 0);
+    const char *value = (const char *)sqlite3_column_text(row, 1);
+    if (sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM) {
+        return fault_no_memory(f);
+    }
+    if (key == NULL || value == NULL || strlen(key) >= sizeof d->lines[0].key ||
+        strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
+        strlen(value) != (size_t)sqlite3_column_bytes(row, 1)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' has a line without text in what defines its sweep", path);
+    }
+    if (d->count == MOST_LINES || definition_value(d, key) != NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' has more lines in what defines its sweep than this program writes",
+                         path);
+    }
+    define(d, key, "%s", value);
+    return d->code == STATUS_OK ? STATUS_OK : fault_no_memory(f);
+}
+
 status definition_read(sweep_store *store, definition *d, fault *f)
 {
     assert(store != NULL && d != NULL);
@@ -149,23 +223,74 @@ status definition_read(sweep_store *store, definition *d, fault *f)
     memset(d, 0, sizeof *d);
 
     // as it was written, line by line
-    status code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
-    while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
-        const char *key = (const char *)sqlite3_column_text(rows, 0);
-        const char *value = (const char *)sqlite3_column_text(rows, 1);
-        if (key == NULL || value == NULL) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT,
-                             "'%s' has a line without text in what defines its sweep", store->path);
-            break;
-        }
-        define(d, key, "%s", value);
+    d->code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
+    while (d->code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
+        d->code = read_line(d, store->path, rows, f);
     }
 
     // a damaged file shows at the end
-    if (sqlite3_finalize(rows) != SQLITE_OK && code == STATUS_OK) {
-        code = database_fault(store, f);
+    if (sqlite3_finalize(rows) != SQLITE_OK && d->code == STATUS_OK) {
+        d->code = database_fault(store, f);
     }
-    return code;
+    return d->code;
+}
+
+// The whole number that a line holds. False if it is none, or too large.
+static bool read_number(const definition *d, const char *key, unsigned long long *number)
+{
+    const char *text = definition_value(d, key);
+    const size_t length = text != NULL ? strspn(text, "0123456789") : 0;
+    errno = 0;
+    *number = length > 0 ? strtoull(text, NULL, 10) : 0;
+    return length > 0 && text[length] == '\0' && errno == 0;
+}
+
+status definition_plan(const definition *d, const char *path, sweep *plan, fault *f)
+{
+    assert(d != NULL && path != NULL && plan != NULL);
+    char *vary[SWEEP_MOST_AXES];
+    const char *sample = definition_value(d, "sample");
+    unsigned long long runs = 0, seed = 0;
+    fault why = {.text = "it does not say how its values are combined"};
+    sweep_request request = {.vary = vary, .sampling = SWEEP_LATIN + 1};
+    *plan = (sweep){.axis_count = 0};
+
+    // how the values are combined, and of how many runs
+    for (int i = SWEEP_GRID; sample != NULL && i <= SWEEP_LATIN; i++) {
+        request.sampling =
+            strcmp(sample, sweep_sampling_name(i)) == 0 ? (sweep_sampling)i : request.sampling;
+    }
+    const bool drawn = request.sampling != SWEEP_GRID;
+    bool good = request.sampling <= SWEEP_LATIN;
+    if (good && (!read_number(d, "runs", &runs) || (drawn && !read_number(d, "seed", &seed)))) {
+        snprintf(why.text, sizeof why.text, "it does not say how many runs its sweep has");
+        good = false;
+    }
+
+    // what is varied: lines "vary 1" = "PATH=..."
+    for (char key[20]; request.vary_count < SWEEP_MOST_AXES; request.vary_count++) {
+        snprintf(key, sizeof key, "vary %d", request.vary_count + 1);
+        const char *line = definition_value(d, key);
+        if (line == NULL) {
+            break;
+        }
+        vary[request.vary_count] = (char *)line; // is only read
+    }
+    request.runs = drawn ? (size_t)runs : 0;
+    request.seed = seed;
+    status code = good ? sweep_plan(plan, &request, &why) : STATUS_BAD_ARGUMENT;
+    if (code == STATUS_OK && plan->run_count != runs) {
+        snprintf(why.text, sizeof why.text,
+                 "it says that it has %llu runs, but its values make %zu", runs, plan->run_count);
+        sweep_finish(plan);
+        code = STATUS_BAD_ARGUMENT;
+    }
+    return code == STATUS_OK          ? STATUS_OK
+           : code == STATUS_NO_MEMORY ? fault_no_memory(f)
+                                      : fault_set(f, code,
+                                                  "'%.200s' holds no sweep that this "
+                                                  "version can make: %.700s",
+                                                  path, why.text);
 }
 
 status definition_write(sweep_store *store, const definition *d, fault *f)
@@ -197,8 +322,16 @@ static void add_difference(char *text, size_t size, int *count, const char *key,
     enum { SHOWN = 4 };
     size_t length = strlen(text);
 
+    // a digest says nothing to people
+    if ((*count)++ < SHOWN && strncmp(key, content_of, strlen(content_of)) == 0) {
+        const bool told = now == NULL || strcmp(now, untold) != 0;
+        snprintf(text + length, size - length, "%sthe %s %s", *count > 1 ? "; " : "", key,
+                 told ? "is another one" : "may be another one, it cannot be told");
+        return;
+    }
+
     // named as the user gives it: an axis is an option
-    if ((*count)++ < SHOWN) {
+    if (*count <= SHOWN) {
         snprintf(text + length, size - length, "%s%s%s was %.80s, now it is %.80s",
                  *count > 1 ? "; " : "", strncmp(key, "vary", 4) == 0 ? "--" : "", key,
                  was == NULL   ? "not there"
@@ -228,7 +361,8 @@ status definition_compare(const char *path, const definition *was, const definit
         const char *key = now->lines[i].key, *before = definition_value(was, key);
         // which parameters were given is worth saying only if all values are the same
         bool aside = !is_compared(key) || (count > 0 && strcmp(key, "given") == 0);
-        if (!aside && (before == NULL || strcmp(before, now->lines[i].value) != 0)) {
+        const bool same = before != NULL && strcmp(before, now->lines[i].value) == 0;
+        if (!aside && (!same || strcmp(before, untold) == 0)) {
             add_difference(text, sizeof text, &count, key, before, now->lines[i].value);
         }
     }

@@ -11,21 +11,30 @@ typedef struct definition_line {
 } definition_line;
 
 typedef struct definition {
-    definition_line lines[160];
+    definition_line lines[256];
     int count;
-    bool out_of_memory;
+    status code; // STATUS_OK, or why it is incomplete
 } definition;
 
 // The definition of a sweep: version, scenario, sampling, seed, what is varied, every other
-// parameter and the script. definition_finish in any case; out_of_memory says if it is incomplete.
-void definition_init(definition *d, const sweep *s);
+// parameter, the script, and a digest of all that its runs read from outside.
+// STATUS_NO_MEMORY, or STATUS_CANNOT_READ where that cannot be read. definition_finish in any case.
+status definition_init(definition *d, const sweep *s, fault *f);
 void definition_finish(definition *d);
+
+// outside_stamp of all that the sweep's runs read.
+void definition_stamp(const sweep *s, char stamp[SHA256_TEXT]);
 
 // A text that two definitions share only if they are equal (SHA-256 of their lines).
 void definition_digest(const definition *d, char digest[SHA256_TEXT]);
 
-// Reads the definition that the database holds, with the same remarks.
+// Reads the definition that the database holds, with the same remarks; STATUS_BAD_ARGUMENT if this
+// program never writes such a one.
 status definition_read(sweep_store *store, definition *d, fault *f);
+
+// The plan of the sweep that the definition in the database at `path` is of: which values each run
+// has. STATUS_BAD_ARGUMENT if it is of none; else sweep_finish.
+status definition_plan(const definition *d, const char *path, sweep *plan, fault *f);
 
 // The value of a key, NULL if the definition has none.
 const char *definition_value(const definition *d, const char *key);
@@ -33,6 +42,6 @@ const char *definition_value(const definition *d, const char *key);
 // Writes the definition into the table `sweep`.
 status definition_write(sweep_store *store, const definition *d, fault *f);
 
-// STATUS_BAD_ARGUMENT if the definition in the database at `path` is not that of now; f says in
-// what they differ.
+// STATUS_BAD_ARGUMENT if the definition in the database at `path` is not that of now, or it cannot
+// be told whether the runs read the same from outside; f says in what they differ.
 status definition_compare(const char *path, const definition *was, const definition *now, fault *f);

@@ -10,7 +10,7 @@
 
 // The merged sweep while it grows, in memory.
 typedef struct merging {
-    sweep shape;           // as far as the columns depend on it: axes and number of runs
+    sweep plan;            // which values each run has
     definition definition; // of the first part; all others are compared with it
     sweep_store store;     // in memory
     sweep_merged *merged;
@@ -22,48 +22,20 @@ static status open_part(sweep_store *part, char *path, definition *d, fault *f)
     bool empty;
     *part = (sweep_store){.path = path, .lock = -1};
     status code = database_open(part, SQLITE_OPEN_READONLY, f);
+    code = code == STATUS_OK ? database_execute(part, "BEGIN", f) : code; // as it is now
     code = code == STATUS_OK ? database_recognise(part, &empty, f) : code;
     if (code == STATUS_OK && empty) {
         code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is empty, expected a part of a sweep", path);
     }
-    code = code == STATUS_OK ? definition_read(part, d, f) : code;
-    return code == STATUS_OK && d->out_of_memory ? fault_no_memory(f) : code;
-}
-
-// Which columns the runs have follows from what is varied: lines "vary 1" = "PATH=...".
-static status shape_of(const char *path, const definition *d, sweep *shape, fault *f)
-{
-    const char *runs = definition_value(d, "runs"), *varied;
-    char key[16];
-    *shape = (sweep){.run_count = runs != NULL ? strtoull(runs, NULL, 10) : 0};
-
-    // each names the parameter before its equals sign
-    for (int i = 0; i < SWEEP_MOST_AXES; i++) {
-        char name[SWEEP_NAME] = "";
-        snprintf(key, sizeof key, "vary %d", i + 1);
-        if ((varied = definition_value(d, key)) == NULL) {
-            break;
-        }
-
-        // which this version must know
-        snprintf(name, sizeof name, "%.*s", (int)strcspn(varied, "="), varied);
-        if (sweep_axis_find(&shape->axes[i], name, NULL) != STATUS_OK) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "'%s' varies '%s', which is no parameter of this version", path, name);
-        }
-        shape->axis_count++;
-    }
-    return shape->run_count > 0 ? STATUS_OK
-                                : fault_set(f, STATUS_BAD_ARGUMENT,
-                                            "'%s' does not say how many runs its sweep has", path);
+    return code == STATUS_OK ? definition_read(part, d, f) : code;
 }
 
 // Begins the merged sweep with the definition of its first part, which it takes over.
 static status begin(merging *m, const char *path, fault *f)
 {
-    status code = shape_of(path, &m->definition, &m->shape, f);
-    m->merged->total = m->shape.run_count;
-    m->store = (sweep_store){.sweep = &m->shape, .lock = -1};
+    status code = definition_plan(&m->definition, path, &m->plan, f);
+    m->merged->total = m->plan.run_count;
+    m->store = (sweep_store){.sweep = &m->plan, .lock = -1};
     code = code == STATUS_OK
                ? database_open(&m->store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f)
                : code;
@@ -76,12 +48,6 @@ static status begin(merging *m, const char *path, fault *f)
 // Adds the row that a statement stands on.
 static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
 {
-    long long run = sqlite3_column_int64(row, 0);
-    if (run < 1 || (unsigned long long)run > m->shape.run_count) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu", path, run,
-                         m->shape.run_count);
-    }
-
     int done = SQLITE_OK;
     for (int i = 0; i < sqlite3_column_count(row) && done == SQLITE_OK; i++) {
         done = sqlite3_bind_value(m->store.insert, i + 1, sqlite3_column_value(row, i));
@@ -90,11 +56,11 @@ static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
     sqlite3_reset(m->store.insert);
     m->merged->runs += done == SQLITE_DONE;
 
-    // the number of a run is its key: the only constraint but that nothing is NULL
+    // the number of a run is its key
     return done == SQLITE_DONE ? STATUS_OK
            : done == SQLITE_CONSTRAINT
-               ? fault_set(f, STATUS_BAD_ARGUMENT,
-                           "run %lld of '%s' is in another part too, or incomplete", run, path)
+               ? fault_set(f, STATUS_BAD_ARGUMENT, "run %lld of '%s' is in another part too",
+                           sqlite3_column_int64(row, 0), path)
                : database_fault(&m->store, f);
 }
 
@@ -102,8 +68,8 @@ static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
 static status add_rows(merging *m, sweep_store *part, fault *f)
 {
     sqlite3_stmt *rows;
-    part->sweep = &m->shape;
-    status code = database_check_columns(part, f);
+    part->sweep = &m->plan;
+    status code = database_check_runs(part, f);
     if (code != STATUS_OK) {
         return code;
     }
@@ -181,6 +147,7 @@ status sweep_merge(char *const *files, int count, const char *output, sweep_merg
     code = code == STATUS_OK ? write_database(&m, output, f) : code;
 
     definition_finish(&m.definition);
+    sweep_finish(&m.plan);
     sqlite3_finalize(m.store.insert);
     sqlite3_close(m.store.database);
     return code;

@@ -244,7 +244,5 @@ status sweep_store_json(sweep_store *store, FILE *stream, fault *f)
         separator = ",\n    ";
     }
     fputs("\n  ]\n}\n", stream);
-    const bool lost = json_lost_something();
-    code = sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);
-    return code == STATUS_OK && lost ? fault_no_memory(f) : code;
+    return sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);
 }

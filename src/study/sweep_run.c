@@ -106,11 +106,16 @@ static void count_failure(sweep_progress *p, size_t run, const summary *s)
     p->failed++;
 }
 
+// Whether a run ended by what says nothing about the scenario, and may be otherwise the next time.
+static bool must_be_repeated(status ended)
+{
+    return ended == STATUS_NO_MEMORY || ended == STATUS_NOT_ALLOWED || ended == STATUS_CANNOT_READ;
+}
+
 static status store_run(sweep_execution *e, size_t run, const summary *s, fault *f)
 {
-    if (s->status == STATUS_NO_MEMORY) {
-        // says nothing about the scenario: the run has to be done again
-        return fault_set(f, STATUS_NO_MEMORY, "run %zu: %s", run + 1, s->message);
+    if (must_be_repeated(s->status)) {
+        return fault_set(f, s->status, "run %zu: %s", run + 1, s->message);
     }
 
     // stored, and counted once it is
@@ -214,8 +219,8 @@ static status compute_on_ranks(sweep_execution *e, const pool_work *work, fault 
     definition d;
     char digest[SHA256_TEXT];
     unsigned char *done = calloc(work->count + 1, sizeof *done);
-    definition_init(&d, e->sweep);
-    status code = d.out_of_memory || done == NULL ? fault_no_memory(f) : STATUS_OK;
+    status code = definition_init(&d, e->sweep, f);
+    code = code == STATUS_OK && done == NULL ? fault_no_memory(f) : code;
     if (code == STATUS_OK) {
         for (size_t piece = 0; piece < work->count; piece++) {
             const unsigned char *first = e->present + piece * e->together;

@@ -25,32 +25,61 @@ static status create_tables(sweep_store *store, const definition *d, fault *f)
     return code;
 }
 
+// STATUS_OK if the definition that the database holds is the sweep's.
+static status check_definition(sweep_store *store, const definition *now, fault *f)
+{
+    definition was;
+    status code = definition_read(store, &was, f);
+    code = code == STATUS_OK ? definition_compare(store->path, &was, now, f) : code;
+    definition_finish(&was);
+    return code;
+}
+
 // Continues the sweep in the database or starts it.
 static status adopt(sweep_store *store, fault *f)
 {
-    definition now, was;
+    definition now;
     bool empty;
     status code = database_recognise(store, &empty, f);
     if (code != STATUS_OK) {
         return code;
     }
 
+    // what lies outside is looked at before it is read: later it can only be newer
+    definition_stamp(store->sweep, store->stamp);
+    code = definition_init(&now, store->sweep, f);
+
     // a new file is given the definition, another one must have the same
-    definition_init(&now, store->sweep);
-    if (now.out_of_memory) {
-        code = fault_no_memory(f);
-    } else if (empty) {
+    if (code == STATUS_OK && empty) {
         code = create_tables(store, &now, f);
-    } else {
-        code = definition_read(store, &was, f);
-        if (code == STATUS_OK) {
-            code = was.out_of_memory ? fault_no_memory(f)
-                                     : definition_compare(store->path, &was, &now, f);
-            code = code == STATUS_OK ? database_check_columns(store, f) : code;
-        }
-        definition_finish(&was);
+    } else if (code == STATUS_OK) {
+        code = check_definition(store, &now, f);
+        code = code == STATUS_OK ? database_check_runs(store, f) : code;
     }
     definition_finish(&now);
+    return code;
+}
+
+// STATUS_OK if what the runs read from outside is what it was when the store was opened.
+static status check_outside(sweep_store *store, fault *f)
+{
+    char stamp[SHA256_TEXT];
+    if (store->path == NULL) {
+        return STATUS_OK;
+    }
+    definition_stamp(store->sweep, stamp);
+    if (strcmp(stamp, store->stamp) == 0) {
+        return STATUS_OK;
+    }
+
+    // written to, but perhaps with the same content
+    definition now;
+    status code = definition_init(&now, store->sweep, f);
+    code = code == STATUS_OK ? check_definition(store, &now, f) : code;
+    definition_finish(&now);
+    if (code == STATUS_OK) {
+        memcpy(store->stamp, stamp, sizeof stamp);
+    }
     return code;
 }
 
@@ -86,9 +115,9 @@ static status open_database(sweep_store *store, fault *f)
         return code;
     }
 
-    // somebody may be reading the results of a sweep that goes on
+    // what is kept in memory nobody goes on with; somebody may be reading the results in a file
     sqlite3_busy_timeout(store->database, 10000);
-    code = adopt(store, f);
+    code = store->path == NULL ? database_create_tables(store, f) : adopt(store, f);
     return code == STATUS_OK ? database_prepare_insert(store, &store->insert, f) : code;
 }
 
@@ -145,7 +174,15 @@ status sweep_store_commit(sweep_store *store, fault *f)
     if (!store->in_transaction) {
         return STATUS_OK;
     }
-    status code = database_execute(store, "COMMIT", f);
+
+    // runs that may have read something else are not kept
+    status code = check_outside(store, f);
+    if (code != STATUS_OK) {
+        sqlite3_exec(store->database, "ROLLBACK", NULL, NULL, NULL);
+        store->in_transaction = false;
+        return code;
+    }
+    code = database_execute(store, "COMMIT", f);
     store->in_transaction = code != STATUS_OK;
 
     // SQLite looks at the beginning of a transaction whether the file is still there

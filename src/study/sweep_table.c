@@ -1,18 +1,14 @@
 #include "src/study/sweep_table.h"
 
 #include <assert.h>
-#include <sqlite3.h>
+#include <math.h>
 #include <stdlib.h>
 
-static status cannot_read(sqlite3 *database, const char *path, fault *f)
-{
-    return fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", path,
-                     sqlite3_errmsg(database));
-}
+#include "src/study/sweep_database.h"
 
 // All rows of a statement with a number in each of its columns.
-static status read_rows(sqlite3_stmt *rows, const char *path, int key_count, double **columns,
-                        size_t *count, fault *f)
+static status read_rows(const sweep_store *store, sqlite3_stmt *rows, int key_count,
+                        double **columns, size_t *count, fault *f)
 {
     size_t room = 0;
     int step;
@@ -31,49 +27,48 @@ static status read_rows(sqlite3_stmt *rows, const char *path, int key_count, dou
 
         for (int k = 0; k < key_count; k++) {
             columns[k][*count] = sqlite3_column_double(rows, k);
+            if (!isfinite(columns[k][*count])) {
+                return fault_set(f, STATUS_CANNOT_READ, "'%s' has an infinite %s, expected numbers",
+                                 store->path, sqlite3_column_name(rows, k));
+            }
         }
         (*count)++;
     }
 
     // rows that end by a failure are not all
-    return step == SQLITE_DONE ? STATUS_OK : cannot_read(sqlite3_db_handle(rows), path, f);
+    return step == SQLITE_DONE ? STATUS_OK : database_fault(store, f);
 }
 
 // Looks for a column in the runs' table: sqlite would take an unknown name for a text.
-static status find_column(sqlite3 *database, const char *path, const char *key, fault *f)
+static status find_column(sweep_store *store, const char *key, fault *f)
 {
-    sqlite3_stmt *found = NULL;
-    const char *sql = "SELECT 1 FROM pragma_table_info('run') WHERE name = ?1";
-    int step = sqlite3_prepare_v2(database, sql, -1, &found, NULL);
-    if (step == SQLITE_OK) {
+    sqlite3_stmt *found;
+    status code = database_prepare(store, &found,
+                                   "SELECT 1 FROM pragma_table_info('run') WHERE name = ?1", f);
+    if (code == STATUS_OK) {
         sqlite3_bind_text(found, 1, key, -1, SQLITE_STATIC);
-        step = sqlite3_step(found);
-    }
-
-    status code = STATUS_OK;
-    if (step == SQLITE_DONE) {
-        code = fault_set(f, STATUS_CANNOT_READ,
-                         "%s: no column '%s' in it, expected the database of a sweep", path, key);
-    } else if (step != SQLITE_ROW) {
-        code = cannot_read(database, path, f);
+        const int step = sqlite3_step(found);
+        code = step == SQLITE_ROW ? STATUS_OK
+               : step == SQLITE_DONE
+                   ? fault_set(f, STATUS_CANNOT_READ,
+                               "%s: no column '%s' in it, expected the database of a sweep",
+                               store->path, key)
+                   : database_fault(store, f);
     }
     sqlite3_finalize(found);
     return code;
 }
 
 // Opens the rows of runs that have a number in every column.
-static status query(sqlite3 *database, const char *path, const char *const *keys, int key_count,
-                    sqlite3_stmt **rows, fault *f)
+static status query(sweep_store *store, const char *const *keys, int key_count, sqlite3_stmt **rows,
+                    fault *f)
 {
-    sqlite3_str *sql = sqlite3_str_new(database);
+    sqlite3_str *sql = sqlite3_str_new(store->database);
 
     // what is wanted
-    for (int k = 0; k < key_count; k++) {
-        status found = find_column(database, path, keys[k], f);
-        if (found != STATUS_OK) {
-            sqlite3_free(sqlite3_str_finish(sql));
-            return found;
-        }
+    status code = STATUS_OK;
+    for (int k = 0; k < key_count && code == STATUS_OK; k++) {
+        code = find_column(store, keys[k], f);
         sqlite3_str_appendf(sql, "%s\"%w\"", k == 0 ? "SELECT " : ", ", keys[k]);
     }
 
@@ -85,9 +80,11 @@ static status query(sqlite3 *database, const char *path, const char *const *keys
     sqlite3_str_appendf(sql, " ORDER BY 1%s", key_count > 1 ? ", 2" : "");
 
     char *text = sqlite3_str_finish(sql);
-    int code = text != NULL ? sqlite3_prepare_v2(database, text, -1, rows, NULL) : SQLITE_NOMEM;
+    if (code == STATUS_OK) {
+        code = text != NULL ? database_prepare(store, rows, text, f) : fault_no_memory(f);
+    }
     sqlite3_free(text);
-    return code == SQLITE_OK ? STATUS_OK : cannot_read(database, path, f);
+    return code;
 }
 
 status sweep_table_read(const char *path, const char *const *keys, int key_count, double **columns,
@@ -95,7 +92,7 @@ status sweep_table_read(const char *path, const char *const *keys, int key_count
 {
     assert(path != NULL && keys != NULL && columns != NULL && count != NULL);
     assert(key_count >= 1 && key_count <= SWEEP_TABLE_COLUMNS);
-    sqlite3 *database = NULL;
+    sweep_store store = {.path = (char *)path, .lock = -1};
     sqlite3_stmt *rows = NULL;
     *count = 0;
     for (int k = 0; k < key_count; k++) {
@@ -103,20 +100,15 @@ status sweep_table_read(const char *path, const char *const *keys, int key_count
     }
 
     // read only: nothing is created where no file is
-    status code = STATUS_OK;
-    if (sqlite3_open_v2(path, &database, SQLITE_OPEN_READONLY, NULL) != SQLITE_OK) {
-        code = cannot_read(database, path, f);
-    }
-    if (code == STATUS_OK) {
-        code = query(database, path, keys, key_count, &rows, f);
-    }
-    if (code == STATUS_OK) {
-        code = read_rows(rows, path, key_count, columns, count, f);
-    }
+    bool empty;
+    status code = database_open(&store, SQLITE_OPEN_READONLY, f);
+    code = code == STATUS_OK ? database_recognise(&store, &empty, f) : code;
+    code = code == STATUS_OK ? query(&store, keys, key_count, &rows, f) : code;
+    code = code == STATUS_OK ? read_rows(&store, rows, key_count, columns, count, f) : code;
 
     // all or nothing
     sqlite3_finalize(rows);
-    sqlite3_close(database);
+    sqlite3_close(store.database);
     for (int k = 0; k < key_count && code != STATUS_OK; k++) {
         free(columns[k]);
         columns[k] = NULL;

@@ -106,7 +106,7 @@ static status simulate_corrected(const parameters *p, cell *c, fault *f)
     status outcome = run_scenario(&s, true, &result);
 
     if (outcome == STATUS_OK) {
-        const sample *before = row_before_contact(&result.trace);
+        const sample *before = row_before_landing(&result);
         assert(before != NULL);
         c->touched = true;
         c->at_touch = row_bodies(before);

@@ -112,12 +112,16 @@ typedef struct impactlab_scenario impactlab_scenario;
 IMPACTLAB_EXPORT int impactlab_scenario_names(char ***names, size_t *count, impactlab_error *error);
 IMPACTLAB_EXPORT void impactlab_names_free(char **names, size_t count);
 
-// Opens a scenario by its name or file; reads one from a text (`length` bytes of YAML); creates one
-// with all defaults; copies one. The error describes the first fault found.
+// Opens a scenario by its name or file; reads one from a text (`length` bytes of YAML), with a name
+// of its own or, without, "text"; creates one with all defaults; copies one. The error describes
+// the first fault found.
 IMPACTLAB_EXPORT int impactlab_scenario_open(impactlab_scenario **scenario,
                                              const char *name_or_file, impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_scenario_parse(impactlab_scenario **scenario, const char *text,
                                               size_t length, impactlab_error *error);
+IMPACTLAB_EXPORT int impactlab_scenario_parse_named(impactlab_scenario **scenario, const char *text,
+                                                    size_t length, const char *name,
+                                                    impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_scenario_create(impactlab_scenario **scenario,
                                                impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_scenario_copy(impactlab_scenario **scenario,
@@ -310,7 +314,7 @@ IMPACTLAB_EXPORT int impactlab_loop_state(const impactlab_loop *loop, impactlab_
 // (to the last bit). A block fits any loop of the same scenario and version on the same kind of
 // machine. With a plug-in or a process as the controller it fits only the loop that saved it, and
 // not at all if the process has a state of its own. Recorded rows are not part of the state:
-// restoring drops those that are later. Only bytes of impactlab_loop_save_state may be restored.
+// restoring drops those that are later. Bytes that are damaged are refused, and change nothing.
 IMPACTLAB_EXPORT size_t impactlab_loop_state_size(const impactlab_loop *loop);
 IMPACTLAB_EXPORT int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t size,
                                                impactlab_error *error);
@@ -359,8 +363,9 @@ typedef struct impactlab_prediction {
     char message[1024];  // why there is no answer or no pulse, else ""
 } impactlab_prediction;
 
-// Asks all predictors about the run's state before its first contact; the run must have rows. At
-// most `count` are written, *written says how many. IMPACTLAB_BAD_ARGUMENT if there was no contact.
+// Asks all predictors about the run's state before its first contact after a free flight; the run
+// must have rows. At most `count` are written, *written says how many. IMPACTLAB_BAD_ARGUMENT if
+// there was no such contact.
 IMPACTLAB_EXPORT int impactlab_run_predictions(const impactlab_run *run,
                                                impactlab_prediction *predictions, size_t count,
                                                size_t *written, impactlab_error *error);

@@ -6,6 +6,7 @@ from typing import Any, Callable, Dict, Optional, Tuple
 
 import numpy as np
 
+from .library import number
 from .loop import Loop
 from .run import Run
 from .scenario import Scenario
@@ -33,7 +34,7 @@ class Box:
 
 def follow_force(loop: Loop, volts: float) -> float:
     """The usual reward of a sample: how near the contact force is to the commanded one."""
-    return -abs(loop["force"] - loop.wanted_force)  # type: ignore[attr-defined]
+    return -abs(loop["force"] - loop.wanted_force)
 
 
 class Environment:
@@ -49,7 +50,9 @@ class Environment:
 
     def __init__(self, scenario: Optional[Scenario] = None,
                  reward: Callable[[Loop, float], float] = follow_force) -> None:
-        self.scenario = (scenario or Scenario("corrected/first-impact")).copy()
+        if not isinstance(scenario, (Scenario, type(None))):
+            raise TypeError(f"expected a Scenario, not {type(scenario).__name__}")
+        self.scenario = Scenario("corrected/first-impact") if scenario is None else scenario.copy()
         self.reward = reward
         limit = float(self.scenario["motor.voltage_limit"])
         self.action_space = Box(np.array([-limit]), np.array([limit]))
@@ -64,7 +67,7 @@ class Environment:
         if options:
             self.scenario.set(options)
         self._loop = Loop(self.scenario, command=True)
-        self._loop.wanted_force = float(self.scenario["control.force"])  # type: ignore
+        self._loop.wanted_force = float(self.scenario["control.force"])
         return self._observation(), {"time": 0.0}
 
     def _observation(self) -> np.ndarray:
@@ -75,7 +78,10 @@ class Environment:
     def step(self, action: Any) -> Tuple[np.ndarray, float, bool, bool, Dict[str, Any]]:
         if self._loop is None:
             raise RuntimeError("reset comes before step")
-        volts = float(np.asarray(action, float).reshape(-1)[0])
+        given = np.asarray(action)
+        if given.size != 1:
+            raise ValueError(f"expected one command [V] as the action, not {given.size} numbers")
+        volts = number(given.reshape(-1)[0], "an action")
         self._loop.command(volts)
         time = self._loop.step()
         reward = float(self.reward(self._loop, volts))

@@ -1,12 +1,17 @@
-"""The shared library: where it is, its functions and structures, and its errors as exceptions."""
+"""The shared library: where it is, its functions and structures, its errors as exceptions, and what
+owns one of its handles."""
 
 from __future__ import annotations
 
 import ctypes
+import difflib
 import os
+import threading
 from ctypes import POINTER, c_char, c_char_p, c_double, c_int, c_size_t, c_void_p
 from pathlib import Path
-from typing import Any, Iterator, Optional
+from typing import Any, Callable, Iterable, Iterator, Optional
+
+import numpy as np
 
 KEEP_ROWS = 1
 COMMAND = 2
@@ -14,12 +19,64 @@ SONAME = "libimpactlab.so.1"
 
 
 class Error(Exception):
-    """What the library could not do: a sentence, with `status` and the path of the `parameter`."""
+    """What the library could not do: a sentence, with `status`, the path of the `parameter`, and
+    `line` and `column` of the fault in the file or text that was read, from 1 (0: of none)."""
 
-    def __init__(self, sentence: str, status: int = 0, parameter: str = "") -> None:
+    def __init__(self, sentence: str, status: int = 0, parameter: str = "", line: int = 0,
+                 column: int = 0) -> None:
         super().__init__(sentence)
         self.status = status
         self.parameter = parameter
+        self.line = line
+        self.column = column
+
+    def __reduce__(self) -> Any:
+        # a run that came to it stays behind: it cannot be pickled
+        return type(self), (str(self), self.status, self.parameter, self.line, self.column)
+
+
+# --- what callers give ------------------------------------------------------------------------
+
+def missing(what: str, name: Any, names: Iterable[str]) -> str:
+    """The sentence about a name that is not known, with the nearest that is: `what` begins it. Of
+    names with a dot, the part behind it is one, too."""
+    public = [other for other in names if not other.startswith("_")]
+    meant = {other.split(".")[-1]: other for other in public} | {other: other for other in public}
+    near = [] if str(name).startswith("_") else difflib.get_close_matches(str(name), meant, 1)
+    return f"{what} '{name}'" + (f", did you mean '{meant[near[0]]}'?" if near else "")
+
+
+class Table(dict):  # type: ignore[type-arg]
+    """A table by names; one that is not there is told with the nearest."""
+
+    def __missing__(self, name: Any) -> Any:
+        raise KeyError(missing("there is no", name, self))
+
+
+def text(value: Any, what: str) -> bytes:
+    """A text as the library takes it, which ends at a NUL: one that holds a NUL is refused."""
+    if not isinstance(value, str):
+        raise TypeError(f"expected a text for {what}, not {type(value).__name__}")
+    if "\0" in value:
+        raise ValueError(f"expected a text without NUL for {what}, not {value!r}")
+    return value.encode()
+
+
+def number(value: Any, what: str) -> float:
+    """A number. Texts and truth values are none, although float() takes them."""
+    if type(value) is float:
+        return value
+    if not isinstance(value, (str, bytes, bytearray, bool, np.bool_)):
+        try:
+            return float(value)
+        except OverflowError:
+            raise ValueError(f"{what} is too large, expected a finite number") from None
+        except (TypeError, ValueError):
+            pass
+    raise TypeError(f"expected a number for {what}, not {type(value).__name__}")
+
+
+# --- structures -------------------------------------------------------------------------------
 
 
 class ErrorStruct(ctypes.Structure):
@@ -56,9 +113,23 @@ class EventStruct(ctypes.Structure):
                 ("speed", c_double), ("loss", c_double)]
 
 
-class ReadingStruct(ctypes.Structure):
+class Readings:
+    """Numbers under names, to be read only."""
+
+    __slots__ = ()
+    _fields_: Any
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(missing("a reading has no", name, [field[0] for field in self._fields_]))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"a reading cannot be set, {name} neither")
+
+
+class ReadingStruct(Readings, ctypes.Structure):
     """What the sensors read; NaN where one is not fitted."""
 
+    __slots__ = ()
     _fields_ = [(name, c_double) for name in
                 ("time", "encoder", "tachometer", "force", "piezo_force", "film", "accelerometer")]
 
@@ -75,9 +146,10 @@ class PredictionStruct(ctypes.Structure):
 
 # controller.h
 
-class InputStruct(ctypes.Structure):
+class InputStruct(Readings, ctypes.Structure):
     """What a controller sees at a sample: the sensors' readings and the command in effect."""
 
+    __slots__ = ()
     _fields_ = [("time", c_double), ("encoder", c_double), ("tachometer", c_double),
                 ("force", c_double), ("voltage", c_double), ("piezo_force", c_double),
                 ("film", c_double), ("accelerometer", c_double), ("wanted_mode", c_int),
@@ -144,6 +216,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "names_free": (None, [POINTER(c_char_p), c_size_t]),
     "scenario_open": (c_int, [POINTER(_handle), _text, _error]),
     "scenario_parse": (c_int, [POINTER(_handle), _text, c_size_t, _error]),
+    "scenario_parse_named": (c_int, [POINTER(_handle), _text, c_size_t, _text, _error]),
     "scenario_create": (c_int, [POINTER(_handle), _error]),
     "scenario_copy": (c_int, [POINTER(_handle), _handle, _error]),
     "scenario_destroy": (None, [_handle]),
@@ -213,7 +286,56 @@ def call(name: str, *arguments: Any) -> None:
 
 
 def raise_error(error: ErrorStruct) -> None:
-    raise Error(error.sentence.decode(errors="replace"), error.status, error.parameter.decode())
+    raise error_of(error)
+
+
+def error_of(error: ErrorStruct) -> Error:
+    """The exception of what the library says."""
+    return Error(error.sentence.decode(errors="replace"), error.status, error.parameter.decode(),
+                 error.line, error.column)
+
+
+class Owner:
+    """What owns a handle of the library, and destroys it. One thread at a time gets at the handle.
+
+    It has the attributes that its class has, and what is set is there to be set: another name is
+    refused with the nearest.
+    """
+
+    _kind = "object"
+    _instead = ""
+    _destroy: Callable[[Any], None]
+
+    _handle: c_void_p
+    _lock: Any
+
+    def __new__(cls, *arguments: Any, **named: Any) -> Any:
+        made = super().__new__(cls)
+        made._handle, made._lock = c_void_p(), threading.RLock()
+        return made
+
+    def __del__(self) -> None:
+        if self._handle:
+            self._destroy(self._handle)
+
+    def _call(self, name: str, *arguments: Any) -> None:
+        """Calls a function of the handle that can fail."""
+        with self._lock:
+            call(name, self._handle, *arguments)
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise TypeError(f"a {self._kind} can be neither copied nor pickled: {self._instead}")
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(missing(f"a {self._kind} has no", name, dir(self)))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_"):
+            there = getattr(type(self), name, None)
+            if there is None or callable(there) or getattr(there, "fset", self) is None:
+                getattr(self, name)
+                raise AttributeError(f"{name} of a {self._kind} cannot be set")
+        object.__setattr__(self, name, value)
 
 
 def take_text(name: str, handle: Any) -> str:

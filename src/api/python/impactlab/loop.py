@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from ctypes import byref, c_double, c_void_p
-from typing import TYPE_CHECKING, Any, Union
+from typing import Any, Union
 
 import numpy as np
 
 from . import library
-from .library import COMMAND, KEEP_ROWS, ErrorStruct, call, lib, raise_error
+from .library import COMMAND, KEEP_ROWS, ErrorStruct, Owner, call, lib, number, raise_error, text
 from .run import Run
-
-if TYPE_CHECKING:
-    from .scenario import Scenario
+from .scenario import Scenario, value_of
 
 
-class Loop:
+class Loop(Owner):
     """Steps a scenario. With `command=True` the caller is the controller on the rig:
 
         loop = Loop(Scenario("corrected/first-impact"), command=True)
@@ -26,27 +25,34 @@ class Loop:
             loop.step()
     """
 
-    def __init__(self, scenario: "Scenario", command: bool = False, rows: bool = False) -> None:
-        self._handle = c_void_p()
+    _kind = "loop"
+    _instead = "save_state() keeps a state, which another loop of its scenario can go on from"
+    _destroy = staticmethod(lib.impactlab_loop_destroy)
+
+    #: what follow_force, the usual reward of an environment, measures by [N]
+    wanted_force: float = math.nan
+
+    def __init__(self, scenario: Scenario, command: bool = False, rows: bool = False) -> None:
+        if not isinstance(scenario, Scenario):
+            raise TypeError(f"expected a Scenario, not {type(scenario).__name__}")
         self._error = ErrorStruct()
         flags = (COMMAND if command else 0) | (KEEP_ROWS if rows else 0)
-        call("loop_create", byref(self._handle), scenario._handle, flags)
+        with scenario._lock:
+            call("loop_create", byref(self._handle), scenario._handle, flags)
 
-    def __del__(self) -> None:
-        if getattr(self, "_handle", None):
-            lib.impactlab_loop_destroy(self._handle)
+    # what is called at every step has the loop's own place for errors
 
     def step(self) -> float:
         """Goes on to the rig's next sample (without a rig by method.step). Returns the time [s]."""
-        if lib.impactlab_loop_step(self._handle, byref(self._error)) != 0:
-            raise_error(self._error)
-        return lib.impactlab_loop_time(self._handle)
+        with self._lock:
+            if lib.impactlab_loop_step(self._handle, byref(self._error)) != 0:
+                raise_error(self._error)
+            return lib.impactlab_loop_time(self._handle)
 
     def step_until(self, time: float) -> float:
         """Goes on to an instant [s], at most to the end. Returns the time [s]."""
-        if lib.impactlab_loop_step_until(self._handle, time, byref(self._error)) != 0:
-            raise_error(self._error)
-        return lib.impactlab_loop_time(self._handle)
+        self._call("loop_step_until", number(time, "an instant"))
+        return self.time
 
     @property
     def time(self) -> float:
@@ -58,59 +64,63 @@ class Loop:
 
     def command(self, volts: float) -> None:
         """What goes out at the sample due now or next, and is held [V]."""
-        if lib.impactlab_loop_command(self._handle, volts, byref(self._error)) != 0:
-            raise_error(self._error)
+        given = number(volts, "a command")
+        with self._lock:
+            if lib.impactlab_loop_command(self._handle, given, byref(self._error)) != 0:
+                raise_error(self._error)
 
     def set_input(self, path: str, value: Union[float, str]) -> None:
         """Gives a parameter that may change during a run another value now: a number, or a text
         such as "2 V" or the mode of control.lock."""
-        if isinstance(value, str):
-            call("loop_set_text", self._handle, path.encode(), value.encode())
-            return
-        if lib.impactlab_loop_set_input(self._handle, path.encode(), value,
-                                        byref(self._error)) != 0:
-            raise_error(self._error)
+        key, given = text(path, "the path of a parameter"), value_of(path, value)
+        if isinstance(given, str):
+            self._call("loop_set_text", key, text(given, path))
+        else:
+            self._call("loop_set_input", key, given)
 
     def push(self, impulse: float) -> None:
         """Pushes the tip now [N s]."""
-        call("loop_push", self._handle, impulse)
+        self._call("loop_push", number(impulse, "an impulse"))
 
     def read_sensors(self) -> library.ReadingStruct:
         """What the sensors read: of the sample due now, else of the last one."""
         reading = library.ReadingStruct()
-        if lib.impactlab_loop_read_sensors(self._handle, byref(reading), byref(self._error)) != 0:
-            raise_error(self._error)
+        with self._lock:
+            if lib.impactlab_loop_read_sensors(self._handle, byref(reading),
+                                               byref(self._error)) != 0:
+                raise_error(self._error)
         return reading
 
     def __getitem__(self, name: str) -> float:
         """The true value of a signal now."""
         value = c_double()
-        call("loop_signal", self._handle, name.encode(), byref(value))
+        self._call("loop_signal", text(name, "the name of a signal"), byref(value))
         return value.value
 
     @property
     def state(self) -> np.ndarray:
         """Angles (first row) and velocities of all degrees of freedom now, a copy."""
         table = library.TableStruct()
-        call("loop_state", self._handle, byref(table))
-        count = table.rows * table.columns
-        flat = np.array((c_double * count).from_address(table.values))
+        with self._lock:
+            call("loop_state", self._handle, byref(table))
+            count = table.rows * table.columns
+            flat = np.array((c_double * count).from_address(table.values))
         return flat.reshape(table.rows, table.columns)
 
     def save_state(self) -> bytes:
         """The whole state as bytes."""
         size = lib.impactlab_loop_state_size(self._handle)
         buffer = ctypes.create_string_buffer(size)
-        call("loop_save_state", self._handle, buffer, size)
+        self._call("loop_save_state", buffer, size)
         return buffer.raw
 
     def restore_state(self, state: Union[bytes, bytearray]) -> None:
-        """Goes back, or forth, to bytes of save_state."""
-        data: Any = bytes(state)
-        call("loop_restore_state", self._handle, data, len(data))
+        """Goes back, or forth, to bytes of save_state; others are refused and change nothing."""
+        data: Any = state if isinstance(state, bytes) else memoryview(state).tobytes()
+        self._call("loop_restore_state", data, len(data))
 
     def run(self) -> Run:
         """What the loop has come to so far, as a run."""
         handle = c_void_p()
-        call("loop_run", self._handle, byref(handle))
+        self._call("loop_run", byref(handle))
         return Run._of(handle)

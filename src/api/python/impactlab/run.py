@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, NamedTuple
 import numpy as np
 
 from . import library
-from .library import Error, ErrorStruct, call, lib
+from .library import Error, ErrorStruct, Owner, Table, call, error_of, lib, missing, number, text
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -57,15 +57,17 @@ class Prediction(NamedTuple):
     message: str
 
 
-SIGNALS: Dict[str, Signal] = {
-    row.name.decode(): Signal(row.name.decode(), row.symbol.decode(), row.unit.decode(),
-                              row.description.decode())
-    for row in library.rows("signal_at")}
-QUANTITIES: Dict[str, Quantity] = {
-    row.key.decode(): Quantity(row.key.decode(), row.label.decode(), row.unit.decode(),
-                               row.description.decode())
-    for row in library.rows("quantity_at")}
-_INDEX = {key: i for i, key in enumerate(QUANTITIES)}
+SIGNALS: Dict[str, Signal] = Table(
+    (row.name.decode(), Signal(row.name.decode(), row.symbol.decode(), row.unit.decode(),
+                               row.description.decode()))
+    for row in library.rows("signal_at"))
+QUANTITIES: Dict[str, Quantity] = Table(
+    (row.key.decode(), Quantity(row.key.decode(), row.label.decode(), row.unit.decode(),
+                                row.description.decode()))
+    for row in library.rows("quantity_at"))
+_NAMED: Dict[str, Any] = Table({**QUANTITIES, **SIGNALS})
+_INDEX: Dict[str, int] = Table(
+    (key, i) for i, key in enumerate(QUANTITIES))
 
 
 def _view(owner: Any, address: Optional[int], rows: int, columns: int) -> np.ndarray:
@@ -79,27 +81,32 @@ def _view(owner: Any, address: Optional[int], rows: int, columns: int) -> np.nda
     return array
 
 
-class Run:
+class Run(Owner):
     """A run. `run["force"]` is a signal as an array, `run.peak_force_N` one of its quantities."""
 
-    _handle: c_void_p
+    _kind = "run"
+    _instead = "its scenario can, and gives the same run again"
+    _destroy = staticmethod(lib.impactlab_run_destroy)
     _scenario: Optional["Scenario"] = None
+
+    def __init__(self) -> None:
+        raise TypeError("a run comes from scenario.run() or loop.run()")
 
     @classmethod
     def _create(cls, scenario: "Scenario", flags: int, law: Any = None) -> "Run":
+        """A run of a scenario that nobody else has."""
         run = cls.__new__(cls)
-        run._handle = c_void_p()
         error = ErrorStruct()
         if law is None:
             code = lib.impactlab_run_create(byref(run._handle), scenario._handle, flags,
                                             byref(error))
-            run._scenario = scenario.copy() if flags else None
+            run._scenario = scenario if flags else None
         else:
             code = lib.impactlab_run_create_with(byref(run._handle), scenario._handle, flags,
                                                  byref(law), None, byref(error))
         run._read()
         if code != 0:
-            failure = Error(error.sentence.decode(errors="replace"), code, error.parameter.decode())
+            failure = error_of(error)
             failure.run = run if run._handle else None  # type: ignore[attr-defined]
             raise failure
         return run
@@ -118,10 +125,6 @@ class Run:
                                          self._quantities.ctypes.data_as(POINTER(c_double)),
                                          len(self._quantities))
 
-    def __del__(self) -> None:
-        if getattr(self, "_handle", None):
-            lib.impactlab_run_destroy(self._handle)
-
     @property
     def status(self) -> str:
         """"ok", "inaccurate" or "failed"."""
@@ -138,17 +141,16 @@ class Run:
         return dict(zip(QUANTITIES, map(float, self._quantities)))
 
     def __getattr__(self, key: str) -> float:
-        index = _INDEX.get(key)
-        if index is None:
-            raise AttributeError(f"a run has no quantity {key}")
-        return float(self._quantities[index])
+        if key not in _INDEX:
+            raise AttributeError(missing("a run has no", key, dir(self)))
+        return float(self._quantities[_INDEX[key]])
 
     def __dir__(self) -> List[str]:
         return [*super().__dir__(), *QUANTITIES]
 
     def __getitem__(self, name: str) -> np.ndarray:
         series = library.SeriesStruct()
-        call("run_signal", self._handle, name.encode(), byref(series))
+        call("run_signal", self._handle, text(name, "the name of a signal"), byref(series))
         columns = max(series.stride // 8, 1)
         if not series.values or series.count == 0:
             return np.empty(0)
@@ -199,7 +201,7 @@ class Run:
     @staticmethod
     def unit(name: str) -> str:
         """The unit of a signal or quantity."""
-        return SIGNALS[name].unit if name in SIGNALS else QUANTITIES[name].unit
+        return _NAMED[name].unit
 
     @property
     def json(self) -> str:
@@ -245,6 +247,8 @@ class Run:
 class Batch:
     """The outcomes of many runs: `batch["peak_force_N"]` is an array, one number a run."""
 
+    __slots__ = ("parameters", "status", "messages", "_quantities")
+
     def __init__(self, parameters: Mapping[str, np.ndarray], quantities: np.ndarray,
                  status: List[str], messages: List[str]) -> None:
         self.parameters = dict(parameters)
@@ -265,19 +269,33 @@ class Batch:
                                  **{key: self[key] for key in QUANTITIES}})
 
 
+ANSWERS = ("command", "desired_angle", "desired_velocity", "calculated_force")
+
+
+def _take_answer(out: Any, answered: Any) -> None:
+    """What a controller returned: volts, or a mapping of what it may answer."""
+    if not isinstance(answered, Mapping):
+        out.command = number(answered, "the command of a controller")
+        return
+    for name, value in answered.items():
+        if name not in ANSWERS:
+            raise KeyError(missing("a controller's answer has no", name, ANSWERS))
+        setattr(out, name, number(value, name))
+    if "command" not in answered:
+        raise KeyError("a controller's answer lacks 'command', expected volts")
+
+
 def run_with(scenario: "Scenario", flags: int, function: Callable[[Any], Any]) -> Run:
     """A run with a Python function as its controller; what it raises is raised again."""
     raised: List[BaseException] = []
+    if not callable(function):
+        raise TypeError(f"expected a function as the controller, not {type(function).__name__}")
 
     def sample(memory: Any, reading: Any, answer: Any) -> None:
         out = answer.contents
         try:
-            answered = function(reading.contents)
-            if isinstance(answered, Mapping):
-                for name, value in answered.items():
-                    setattr(out, name, value)
-            else:
-                out.command = float(answered)
+            # a copy, as the function may keep it
+            _take_answer(out, function(library.InputStruct.from_buffer_copy(reading.contents)))
         except BaseException as failure:  # it cannot pass through the library
             raised.append(failure)
             out.command = float("nan")
@@ -287,8 +305,10 @@ def run_with(scenario: "Scenario", flags: int, function: Callable[[Any], Any]) -
                                    modes=modes, memory_size=ctypes.sizeof(c_void_p),
                                    sample=library.SampleFunction(sample))
     try:
-        return Run._create(scenario, flags, law)
+        run = Run._create(scenario, flags, law)
     except Error:
-        if raised:
-            raise raised[0]
-        raise
+        if not raised:
+            raise
+    if raised:
+        raise raised[0]
+    return run

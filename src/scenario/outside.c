@@ -1,0 +1,188 @@
+#include "src/scenario/outside.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define PATH(field) offsetof(parameters, field)
+
+const outside_source outside_table[] = {
+    {PATH(control.plugin), PATH(control.law), LAW_PLUGIN, OUTSIDE_LIBRARY},
+    {PATH(control.command), PATH(control.law), LAW_PROCESS, OUTSIDE_COMMAND},
+};
+const int outside_count = sizeof outside_table / sizeof outside_table[0];
+
+// What is taken in of each file: its bytes, or only when and where they were written. Of a small
+// one the bytes in any case: two writes may come at one tick of the clock of files.
+enum { SMALL = 256 << 10 };
+typedef enum reading { CONTENT, STAMP } reading;
+
+bool outside_is_read(const outside_source *source, const parameters *p)
+{
+    assert(source != NULL && p != NULL);
+    return parameter_get(p, parameter_at(source->chooser)) == source->choice;
+}
+
+unsigned outside_read(const parameters *p)
+{
+    unsigned sources = 0;
+    for (int i = 0; i < outside_count; i++) {
+        sources |= (unsigned)outside_is_read(&outside_table[i], p) << i;
+    }
+    return sources;
+}
+
+// Takes in a text with its end, so that two texts are not taken for two others.
+static void add_text(sha256 *h, const char *text)
+{
+    sha256_add(h, text, strlen(text) + 1);
+}
+
+// Takes in the digest of a plain file's content. False, with the reason in errno, if it cannot be
+// read.
+static bool add_content(sha256 *h, const char *path)
+{
+    char bytes[16384], digest[SHA256_TEXT];
+    sha256 content;
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        return false;
+    }
+    sha256_init(&content);
+    for (size_t count; (count = fread(bytes, 1, sizeof bytes, file)) > 0;) {
+        sha256_add(&content, bytes, count);
+    }
+    const bool whole = ferror(file) == 0;
+    const int reason = errno;
+    fclose(file);
+    errno = reason;
+    sha256_finish(&content, digest);
+    add_text(h, digest);
+    return whole;
+}
+
+// Takes in a plain file. False, with the reason in errno, if it cannot be read: ENOENT also where
+// something else stands in its place.
+static bool add_file(sha256 *h, const char *path, reading how)
+{
+    struct stat what;
+    if (stat(path, &what) != 0) {
+        return false;
+    }
+    if (!S_ISREG(what.st_mode)) {
+        errno = ENOENT;
+        return false;
+    }
+    if (how == CONTENT || what.st_size <= SMALL) {
+        return add_content(h, path);
+    }
+
+    // the time of a file's last change cannot be set back
+    const long long stamp[] = {(long long)what.st_dev, (long long)what.st_ino, what.st_size,
+                               what.st_ctim.tv_sec, what.st_ctim.tv_nsec};
+    sha256_add(h, stamp, sizeof stamp);
+    return true;
+}
+
+// Whether a name that could not be read may mean something else than a file.
+static bool is_no_file(void)
+{
+    return errno == ENOENT || errno == ENOTDIR;
+}
+
+// Takes in the program that a word without a slash starts. True, too, where there is none.
+static bool add_program(sha256 *h, const char *word, reading how)
+{
+    const char *folders = getenv("PATH");
+    char path[4096];
+    while (folders != NULL && *folders != '\0') {
+        const int length = (int)strcspn(folders, ":");
+        snprintf(path, sizeof path, "%.*s%s%s", length, folders, length > 0 ? "/" : "", word);
+        const bool found = access(path, X_OK) == 0, taken = found && add_file(h, path, how);
+        if (taken || (found && !is_no_file())) {
+            return taken;
+        }
+        folders += length + (folders[length] == ':');
+    }
+    return true;
+}
+
+// Takes in the command and every file that one of its words names: "law.sh", "--table=law.csv",
+// and a program that PATH finds.
+static bool add_command(sha256 *h, const char *command, reading how)
+{
+    char word[PARAMETER_TEXT_SIZE];
+    add_text(h, command);
+    for (const char *at = command; *(at += strspn(at, " ")) != '\0'; at += strlen(word)) {
+        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, " "), at);
+        const char *value = strchr(word, '='), *names[] = {word, value != NULL ? value + 1 : ""};
+        for (int i = 0; i < 2; i++) {
+            const bool taken = add_file(h, names[i], how);
+            if (!taken && !is_no_file()) {
+                return false;
+            }
+            add_text(h, taken ? "a file" : "no file");
+        }
+
+        // options may be anything but programs
+        if (strpbrk(word, "/=") == NULL && word[0] != '-' && !add_program(h, word, how)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool add_source(sha256 *h, const outside_source *source, const char *value, reading how)
+{
+    add_text(h, parameter_table[parameter_at(source->parameter)].path);
+    return source->kind == OUTSIDE_COMMAND ? add_command(h, value, how) : add_file(h, value, how);
+}
+
+bool outside_is_told(const outside_source *source, const parameters *p)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                " ./_+-:,@=%";
+    assert(source != NULL && p != NULL);
+    char value[PARAMETER_TEXT_SIZE];
+    parameter_format(p, parameter_at(source->parameter), value, sizeof value);
+    return source->kind == OUTSIDE_COMMAND ? value[strspn(value, plain)] == '\0'
+                                           : strchr(value, '/') != NULL;
+}
+
+status outside_digest(const outside_source *source, const parameters *p, char digest[SHA256_TEXT],
+                      fault *f)
+{
+    assert(outside_is_told(source, p) && digest != NULL);
+    const int parameter = parameter_at(source->parameter);
+    const char *path = parameter_table[parameter].path;
+    char value[PARAMETER_TEXT_SIZE];
+    sha256 h;
+    parameter_format(p, parameter, value, sizeof value);
+
+    sha256_init(&h);
+    const bool whole = add_source(&h, source, value, CONTENT);
+    const int reason = errno;
+    sha256_finish(&h, digest);
+    return whole ? STATUS_OK
+                 : fault_set_at(f, STATUS_CANNOT_READ, path, "%s = '%s' cannot be read: %s", path,
+                                value, strerror(reason));
+}
+
+void outside_stamp(unsigned sources, const parameters *p, char stamp[SHA256_TEXT])
+{
+    assert(p != NULL && stamp != NULL);
+    sha256 h;
+    sha256_init(&h);
+    for (int i = 0; i < outside_count; i++) {
+        if ((sources >> i & 1) != 0 && outside_is_told(&outside_table[i], p)) {
+            char value[PARAMETER_TEXT_SIZE];
+            parameter_format(p, parameter_at(outside_table[i].parameter), value, sizeof value);
+            add_source(&h, &outside_table[i], value, STAMP);
+        }
+    }
+    sha256_finish(&h, stamp);
+}
