@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "src/base/loss.h"
 #include "src/base/whole_file.h"
 #include "src/base/version.h"
 #include "ui/commands/command.h"
@@ -107,10 +108,14 @@ static int dispatch(int argc, char **argv, const rank_group *ranks)
     return found != NULL ? run_command(found, argc - 1, argv + 1, ranks) : complain_command(word);
 }
 
-// What was printed must have arrived, unless its reader went away first (impactlab list | head).
+// What was printed must be whole and have arrived, unless its reader went away first (impactlab list
+// | head).
 static int close_output(int result)
 {
     int reason = stream_failure(stdout);
+    if (loss_noted()) {
+        reason = ENOMEM;
+    }
     if (reason == 0 || reason == EPIPE || result != EXIT_DONE) {
         return result;
     }

@@ -77,6 +77,16 @@ static void check_source(recipe_context *c, const tree_node *node, recipe_source
         report_node(&c->reader, node, "a table needs 'x' and 'y', the names of its columns");
     }
 
+    // a run is more than its scenario's name
+    if (s->label == NULL && s->name == NULL && s->change_count > 0 && needed != NULL) {
+        GString *label = g_string_new(needed);
+        for (int i = 0; i < s->change_count; i++) {
+            g_string_append_printf(label, "%s%s", i == 0 ? ", with " : ", ", s->change[i]);
+        }
+        g_ptr_array_add(c->recipe->owned, label->str);
+        s->label = g_string_free(label, FALSE);
+    }
+
     // a name that only it has
     s->name = s->name != NULL ? s->name : needed != NULL ? needed : "";
     for (const recipe_source *other = c->recipe->sources; other != s; other++) {

@@ -3,8 +3,6 @@
 
 #include "render/plot/drawing.h"
 
-#define LABEL_GAP 3.0 // least distance of tick labels that are set by hand or by decades
-
 double widest_tick(const drawing *d, const axis *a, double size)
 {
     double widest = 0;

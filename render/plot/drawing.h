@@ -17,6 +17,7 @@ enum { MARKS_LABELLED = 64, MARK_ROWS = 4, LEVELS_LABELLED = 8 };
 #define MINOR_LENGTH  1.7
 #define TICK_SPACE    2.0  // between a tick and its label
 #define LABEL_SPACE   4.0  // between tick labels and the axis' label
+#define LABEL_GAP     3.0  // least distance of labels of ticks
 #define PANEL_SPACE   8.0  // between panels
 #define HEADING_ROW   11.0 // height of a panel's heading
 #define MARK_ROW      9.0  // height of a row of event labels
@@ -82,11 +83,13 @@ typedef struct drawing {
     double left, right; // of all panels
     column_layout column[FIGURE_PANELS];
     double title_y, legend_y, caption_y, x_label_y;
-    double marks_bottom;                // of the lowest row of event labels
-    int mark_row[MARKS_LABELLED];       // counted upwards; -1: no label
-    bool marks_inside;                  // labels of marks are inside the first panel
-    double mark_text_x[MARKS_LABELLED]; // in the first column
-    double mark_text_y[MARKS_LABELLED]; // inside the panel
+    double marks_bottom;                     // of the lowest row of event labels
+    int mark_row[MARKS_LABELLED];            // counted upwards; -1: no label
+    bool marks_inside;                       // labels of marks are inside the first panel
+    bool mark_away[MARKS_LABELLED];          // there is no room for its label at its point
+    figure_rect point_label[MARKS_LABELLED]; // of a label at its point; width 0: none
+    double mark_text_x[MARKS_LABELLED];      // in the first column
+    double mark_text_y[MARKS_LABELLED];      // inside the panel
     panel_layout panels[FIGURE_PANELS];
 } drawing;
 
@@ -164,12 +167,18 @@ void draw_colour_bar(drawing *d, const panel_layout *l);
 int place_marks(drawing *d);
 void draw_intervals(const drawing *d, const plane *p);
 void draw_marks(drawing *d);
+// Keeps hairlines out of the legends that stand inside panels, and of labels at points.
+void clip_out_labels(const drawing *d);
+// The dots of marks with a point, and the labels at them.
+void draw_points(drawing *d);
 void draw_levels(drawing *d, const panel_layout *l);
 void draw_notes(drawing *d, const panel_layout *l);
 // Adds the ink of levels and marks to the placement.
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid);
-// Finds places for the labels of all marks free of curves of the first panel; false if there is
-// none for one of them.
+// Finds places for labels at the points of their marks; false if one that had one has none now.
+bool place_pointed_marks(drawing *d, placement *grid);
+// Finds places for the labels of all other marks free of curves of the first panel; false if there
+// is none for one of them.
 bool place_marks_inside(drawing *d, placement *grid);
 
 // --- impulses: impulses.c

@@ -204,6 +204,7 @@ static void draw_all(drawing *d)
     for (int i = 0; i < d->fig->panel_count; i++) {
         draw_panel(d, i);
     }
+    draw_points(d);
 }
 
 static status check_description(const figure *fig, fault *f)

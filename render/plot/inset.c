@@ -29,8 +29,16 @@ static void divide_inset(const drawing *d, panel_layout *l)
     axis_choose_ticks(&l->inset_x, &d->fig->x, axis_wish(l->inset.width, 35, 2, 5));
     axis_choose_ticks(&l->inset_y, &panel->y, axis_wish(l->inset.height, 15, 2, 4));
     double left = widest_tick(d, &l->inset_y, d->style.small) + TICK_SPACE + 4;
-    double right = widest_tick(d, &l->inset_x, d->style.small) / 2;
-    p->box = (figure_rect){l->inset.x + left, l->inset.y + 3, l->inset.width - left - right,
+    double wide = widest_tick(d, &l->inset_x, d->style.small);
+    double width = l->inset.width - left - wide / 2;
+
+    // the digits of a short stretch of time are many: labels that would meet are left out
+    double space = l->inset_x.even.step / (p->x.high - p->x.low) * width;
+    int every = space > 0 ? (int)ceil((wide + LABEL_GAP) / space) : 1;
+    for (int i = 0; i < l->inset_x.count; i++) {
+        l->inset_x.text[i] = i % every == 0 ? l->inset_x.text[i] : "";
+    }
+    p->box = (figure_rect){l->inset.x + left, l->inset.y + 3, width,
                            l->inset.height - 3 - line - TICK_SPACE - 2};
 }
 
@@ -84,7 +92,10 @@ void draw_inset(drawing *d, const panel_layout *l)
     double top = fmax(plane_y(&l->plane, scale_value(p->y.kind, p->y.high)), l->plane.box.y);
     double bottom = fmin(plane_y(&l->plane, scale_value(p->y.kind, p->y.low)),
                          l->plane.box.y + l->plane.box.height);
+    cairo_save(d->cr);
+    clip_out_labels(d);
     set_plain_line(d->cr, d->style.colours->mark, MARK_WIDTH);
     cairo_rectangle(d->cr, left, top, right - left, bottom - top);
     picture_stroke(d->cr);
+    cairo_restore(d->cr);
 }

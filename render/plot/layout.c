@@ -8,11 +8,11 @@
 
 #define LEAST_WIDTH    50.0 // of a panel [pt]
 #define LEAST_HEIGHT   16.0
+#define POINT_ROOM     0.14 // of the data's range, above the point of a mark
 #define RANGE_SPACE    0.06 // of the data's range, kept free above and below them
 #define END_LABEL_LEAD 12.0 // from the axis' end to the labels at the curves' ends
 #define RIGHT_SPACE    10.0 // of a panel without labels next to it
 #define SHARED_SPACE   6.0  // of a panel whose vertical axis is labelled in the first column
-#define LABEL_GAP      3.0  // between the last label of a column and the first of the next
 #define BAR_TICK       16.0 // of a colour bar to a tick
 #define FIRST_LEFT     40.0 // where the panels begin before anything is known
 
@@ -87,6 +87,13 @@ static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
     // what is said about the axis
     if (panel->y.with_zero && !scale_is_empty(y)) {
         scale_include(y, 0);
+    }
+    for (int i = 0; i < d->fig->mark_count && l == d->panels && y->kind == SCALE_LINEAR; i++) {
+        // the label of a peak stands above it
+        const figure_mark *m = &d->fig->marks[i];
+        if (m->pointed && !scale_is_empty(y)) {
+            scale_include(y, m->y + POINT_ROOM * (y->high - y->low));
+        }
     }
     status code = check_range(y, &panel->y, f);
     scale_widen(y, panel->y.room > 0 ? panel->y.room : panel->map != NULL ? 0 : RANGE_SPACE);
@@ -327,6 +334,9 @@ static bool fill_panels(drawing *d, placement *grid)
         }
 
         // marks, inset and legend take the places that are left
+        if (i == 0 && !place_pointed_marks(d, grid)) {
+            moved = true;
+        }
         if (i == 0 && d->marks_inside && !place_marks_inside(d, grid)) {
             d->marks_inside = false;
             moved = true;

@@ -233,30 +233,32 @@ void draw_end_labels(drawing *d, const panel_layout *l)
 
 // ---- one for all panels
 
-// Lines and labels of the first panel's series, in rows that are wrapped where they are too long.
-// Returns their height.
+// Lines and labels of the key's series, in rows that are wrapped where they are too long. Returns
+// their height.
 static double common_legend(drawing *d, bool draw)
 {
-    const figure_panel *panel = &d->fig->panels[0];
+    panel_layout key = {.panel = d->fig->key}, *l = key.panel != NULL ? &key : &d->panels[0];
     double x = d->left, y = d->legend_y, line = 0;
-    for (int i = 0; d->fig->common_legend && i < panel->series_count; i++) {
+    for (int i = 0; d->fig->common_legend && i < l->panel->series_count; i++) {
         double width, height;
-        text_block t = figure_text_of(d, entry(d, &panel->series[i]), d->style.tick);
+        text_block t = figure_text_of(d, entry(d, &l->panel->series[i]), d->style.tick);
         if (t.markup == NULL) {
             continue;
         }
 
         // a new row where this one is full
+        t.width = d->right - d->left - SWATCH - SWATCH_SPACE;
         text_measure(d->context, &t, &width, &height);
         width += SWATCH + SWATCH_SPACE;
         if (x > d->left && x + width > d->right) {
             x = d->left;
             y += line;
+            line = 0;
         }
 
         line = fmax(line, height);
         if (draw) {
-            draw_swatch(d, &d->panels[0], i, x, y + 0.55 * height);
+            draw_swatch(d, l, i, x, y + 0.55 * height);
             draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
         }
 

@@ -5,9 +5,29 @@
 
 #define LEVEL_ROOM   10.0 // above a level, for its label [pt]
 #define NOTE_SPACE   4.0  // from a note to its point [pt]
+#define DOT_RADIUS   1.3  // of the point of a note or a mark [pt]
 #define INSIDE_SHARE 0.75 // of the first panel's height, where labels of marks may stand
 
-enum { INSIDE_MOST = 6 }; // labels of marks inside the first panel
+#define POINT_SPACE  2.5 // from a mark's point to its label [pt]
+#define ARROW        "\u2009\u2192"
+
+enum {
+    INSIDE_MOST = 6, // labels of marks inside the first panel
+    POINT_ROWS = 3   // that a label may be away from its point
+};
+
+// Whether the label of a mark stands at its point.
+static bool at_point(const drawing *d, int index)
+{
+    return d->fig->marks[index].pointed && !d->mark_away[index];
+}
+
+// Whether the first panel shows the point of a mark.
+static bool has_point(const drawing *d, const figure_mark *m)
+{
+    const plane *p = &d->panels[0].plane;
+    return m->pointed && m->label != NULL && scale_holds(&p->x, m->x) && scale_holds(&p->y, m->y);
+}
 
 // ---- where labels go
 
@@ -32,12 +52,13 @@ int place_marks(drawing *d)
         const figure_mark *m = &d->fig->marks[next];
         d->mark_row[next] = -1;
         begins[next] = ends[next] = -1;
-        if (m->label == NULL || !scale_holds(&d->x.scale, m->x)) {
+        if (m->label == NULL || !scale_holds(&d->x.scale, m->x) || at_point(d, next)) {
             continue;
         }
         double x = plane_x(&d->panels[0].plane, m->x),
                width = width_of(d, m->label, d->style.small);
         bool fits = x + 2 + width <= d->page.width - PAGE_MARGIN;
+        width += !fits && m->onwards ? width_of(d, ARROW, d->style.small) : 0;
         begins[next] = fits ? x + 2 : x - 2 - width;
         ends[next] = begins[next] + width;
 
@@ -86,7 +107,7 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
 
     // from above, at the right of its line, then at the left
     for (double y = box->y + 1; y + MARK_ROW < box->y + INSIDE_SHARE * box->height; y += MARK_ROW) {
-        for (int side = 0; side < 2; side++) {
+        for (int side = 0; side < (d->fig->marks[index].onwards ? 1 : 2); side++) {
             figure_rect r = {side == 0 ? x + 2 : x - 2 - width, y, width, MARK_ROW};
             bool fits = r.x >= box->x + 1 && r.x + r.width <= box->x + box->width &&
                         placement_ink(grid, r) < INK_CURVE && !crosses_line(d, &r, index);
@@ -102,6 +123,53 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
     return false;
 }
 
+// A place for a label beside the point of its mark: above, at its height or below, on either side,
+// as near as can be, rather not over another mark's line; false if there is none.
+static bool find_at_point(const drawing *d, const placement *grid, int index, figure_rect *found)
+{
+    const figure_mark *m = &d->fig->marks[index];
+    const plane *p = &d->panels[0].plane;
+    const figure_rect *box = &p->box;
+    double x = plane_x(p, m->x), y = plane_y(p, m->y);
+    double width = width_of(d, m->label, d->style.small);
+
+    for (int k = 0; k < 12 * POINT_ROWS; k++) {
+        bool left = k % 2, over_lines = k / 6 % 2;
+        double away = POINT_SPACE + k / 12 * MARK_ROW;
+        double tops[] = {y - away - MARK_ROW, y - MARK_ROW / 2, y + away};
+        figure_rect r = {left ? x - POINT_SPACE - width : x + POINT_SPACE, tops[k / 2 % 3], width,
+                         MARK_ROW};
+        if (r.x >= box->x + 1 && r.x + r.width <= box->x + box->width && r.y >= box->y &&
+            r.y + r.height <= box->y + box->height && placement_ink(grid, r) < INK_CURVE &&
+            (over_lines || !crosses_line(d, &r, index))) {
+            *found = r;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool place_pointed_marks(drawing *d, placement *grid)
+{
+    bool placed = true;
+    for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
+        figure_rect *r = &d->point_label[i];
+        *r = (figure_rect){0};
+        if (!at_point(d, i) || !scale_holds(&d->x.scale, d->fig->marks[i].x)) {
+            continue;
+        }
+
+        // without a place it stands with the labels of the others
+        if (!has_point(d, &d->fig->marks[i]) || !find_at_point(d, grid, i, r)) {
+            d->mark_away[i] = true;
+            placed = false;
+            continue;
+        }
+        placement_block(grid, *r, INK_CURVE);
+    }
+    return placed;
+}
+
 bool place_marks_inside(drawing *d, placement *grid)
 {
     figure_rect taken[INSIDE_MOST];
@@ -109,7 +177,8 @@ bool place_marks_inside(drawing *d, placement *grid)
 
     // a place for every label, or none
     for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
-        if (d->fig->marks[i].label == NULL || !scale_holds(&d->x.scale, d->fig->marks[i].x)) {
+        if (d->fig->marks[i].label == NULL || !scale_holds(&d->x.scale, d->fig->marks[i].x) ||
+            at_point(d, i)) {
             continue;
         }
         if (count == INSIDE_MOST || !find_inside(d, grid, i, taken, count, &taken[count])) {
@@ -242,8 +311,7 @@ static void set_mark_line(const drawing *d)
     cairo_set_dash(d->cr, pattern, 2, 0);
 }
 
-// Keeps hairlines out of the legends that stand inside panels.
-static void clip_out_legends(const drawing *d)
+void clip_out_labels(const drawing *d)
 {
     cairo_new_path(d->cr);
     cairo_rectangle(d->cr, d->page.x, d->page.y, d->page.width, d->page.height);
@@ -253,11 +321,15 @@ static void clip_out_legends(const drawing *d)
             cairo_rectangle(d->cr, l->legend.x, l->legend.y, l->legend.width, l->legend.height);
         }
     }
+    for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
+        const figure_rect *r = &d->point_label[i];
+        cairo_rectangle(d->cr, r->x, r->y, r->width, r->height);
+    }
     cairo_set_fill_rule(d->cr, CAIRO_FILL_RULE_EVEN_ODD);
     cairo_clip(d->cr);
 }
 
-// Whether the line of a mark would cross a legend inside a panel.
+// Whether the line of a mark would cross a legend inside a panel, or a label at a point.
 static bool crosses_legend(const drawing *d, double x)
 {
     bool found = false;
@@ -265,6 +337,10 @@ static bool crosses_legend(const drawing *d, double x)
         const panel_layout *l = &d->panels[i];
         found = found ||
                 (l->legend_inside && x > l->legend.x - 1 && x < l->legend.x + l->legend.width + 1);
+    }
+    for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
+        const figure_rect *r = &d->point_label[i];
+        found = found || (x > r->x && x < r->x + r->width);
     }
     return found;
 }
@@ -274,11 +350,37 @@ static void draw_hairline(const drawing *d, double x, double top, double bottom)
 {
     cairo_save(d->cr);
     if (crosses_legend(d, x)) {
-        clip_out_legends(d);
+        clip_out_labels(d);
     }
     set_mark_line(d);
     draw_line(d->cr, x, top, x, bottom);
     cairo_restore(d->cr);
+}
+
+// The point of a mark, with the label that stands at it.
+static void draw_point(drawing *d, int index)
+{
+    const figure_mark *m = &d->fig->marks[index];
+    const plane *p = &d->panels[0].plane;
+    if (!has_point(d, m)) {
+        return;
+    }
+    set_colour(d->cr, d->style.colours->text);
+    cairo_new_path(d->cr);
+    cairo_arc(d->cr, plane_x(p, m->x), plane_y(p, m->y), DOT_RADIUS, 0, 2 * G_PI);
+    cairo_fill(d->cr);
+    if (at_point(d, index)) {
+        const figure_rect *r = &d->point_label[index];
+        draw_text(d, figure_text_of(d, m->label, d->style.small), r->x, r->y, (anchor){0, 0},
+                  d->style.colours->text);
+    }
+}
+
+void draw_points(drawing *d)
+{
+    for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
+        draw_point(d, i);
+    }
 }
 
 // The marks of a column of panels, `shift` to the right of the first column.
@@ -303,7 +405,11 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
                 draw_hairline(d, x, first->box.y, last->box.y + last->box.height);
                 continue;
             }
+            bool before = m->onwards && d->mark_text_x[i] < x;
+            char *towards = before ? g_strconcat(m->label, ARROW, NULL) : NULL;
+            t.markup = before ? towards : t.markup;
             draw_text(d, t, d->mark_text_x[i] + shift, top, (anchor){0, 0}, d->style.colours->text);
+            g_free(towards);
         }
         draw_hairline(d, x, top + 1, last->box.y + last->box.height);
     }
@@ -357,7 +463,8 @@ void draw_notes(drawing *d, const panel_layout *l)
         figure_rect place = note_place(d, l, n);
         set_colour(d->cr, d->style.colours->text);
         cairo_new_path(d->cr);
-        cairo_arc(d->cr, plane_x(&l->plane, n->x), plane_y(&l->plane, n->y), 1.3, 0, 2 * G_PI);
+        cairo_arc(d->cr, plane_x(&l->plane, n->x), plane_y(&l->plane, n->y), DOT_RADIUS, 0,
+                  2 * G_PI);
         cairo_fill(d->cr);
         draw_text(d, figure_text_of(d, n->text, d->style.tick), place.x, place.y, (anchor){0, 0},
                   d->style.colours->text);

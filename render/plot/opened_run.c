@@ -56,6 +56,19 @@ status run_begin_changed(opened_run *r, const char *name, const char *const *cha
     return code;
 }
 
+char *scenario_title(const scenario *s)
+{
+    assert(s != NULL && s->title != NULL);
+    char changes[SCENARIO_CHANGES];
+    GString *out = g_string_new(s->title);
+
+    // lines break between changes, not within one
+    for (const char *c = scenario_changes(s, changes); *c != '\0'; c++) {
+        g_string_append(out, *c == ' ' && c[-1] != ',' ? "\u00a0" : (char[]){*c, '\0'});
+    }
+    return g_string_free(out, FALSE);
+}
+
 char *parameters_line(const scenario *s)
 {
     assert(s != NULL);

@@ -14,6 +14,9 @@ typedef struct opened_run {
 status run_begin(opened_run *r, const char *name, const char *change, fault *f);
 void run_end(opened_run *r);
 
+// The scenario's title, and what was changed of what it speaks of. Free with g_free.
+char *scenario_title(const scenario *s);
+
 // The scenario's name and every parameter in one line, for a file's metadata. Free with g_free.
 char *parameters_line(const scenario *s);
 

@@ -14,7 +14,7 @@
 #include "src/base/fault.h"
 #include "src/quantities/signals.h"
 
-enum { PANEL_SERIES = 16 }; // most series of a panel
+enum { PANEL_SERIES = 36 }; // most series of a panel
 
 typedef enum marker_kind {
     MARKER_NONE,
@@ -63,6 +63,8 @@ typedef struct figure_series {
     size_t stride;      // bytes from one value to the next, in x, y and shade; 0: sizeof(double)
     int colour;         // slot in the palette, 0-7
     line_style style;   // changed if an earlier series of the panel has the same
+    int run;            // 1 to 8: of one of several runs. It keeps its style, which tells the
+                        // signal, and has a grey and a width of its own where there are no colours
     marker_kind marker; // at every point
     double radius;      // of markers [pt]; 0: the style's
     bool secondary;     // thinner and dashed, for a second run of the same quantity
@@ -95,6 +97,9 @@ typedef struct figure_level {
 typedef struct figure_mark {
     double x;
     const char *label;
+    bool onwards; // the label names what begins there: it is not put on the line's other side
+    bool pointed; // the label stands at the point (x, y) of the first panel, which has a dot
+    double y;
 } figure_mark;
 
 // A shaded stretch across all panels.
@@ -141,8 +146,9 @@ typedef struct figure {
     figure_axis x;
     const figure_panel *panels;
     int panel_count;
-    int columns;        // panels in a row; 0 counts as 1
-    bool common_legend; // the first panel's legend holds for all and stands above them
+    int columns;             // panels in a row; 0 counts as 1
+    bool common_legend;      // one legend for all panels stands above them: the first one's,
+    const figure_panel *key; // or that of these series, which are not drawn themselves
     const figure_mark *marks;
     int mark_count;
     bool marks_above; // their labels stand above the panels even where they would fit inside

@@ -21,13 +21,13 @@ static figure_series describe_law(owned_figure *o, const robust_law *law, int co
                            .colour = colour};
 }
 
-owned_figure *robust_figure_create(const robust_table *t)
+owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 {
     assert(t != NULL && t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
     static const int colours[ROBUST_MOST_CURVES] = {0, 5, 2, 4, 1, 3, 6, 7};
     owned_figure *o = owned_figure_create();
 
-    // a curve for each law
+    // a curve for each law: the same runs, and so the same kind of overshoot
     for (int i = 0; i < t->count; i++) {
         o->series[i] = describe_law(o, &t->laws[i], colours[i]);
     }
@@ -40,10 +40,13 @@ owned_figure *robust_figure_create(const robust_table *t)
                                .high = 100};
 
     // the page
-    o->figure.title = owned_figure_keep(
-        o, g_strdup_printf("%s: what the laws make of what they were not told", t->scenario));
+    o->figure.title =
+        owned_figure_keep(o, g_strdup_printf("%s: what the laws make of what they were not told%s",
+                                             t->scenario, changes));
     o->figure.caption = owned_figure_keep(
-        o, g_strdup_printf("%zu runs a law. impactlab %s.", t->laws[0].runs, lab_version()));
+        o, g_strdup_printf("%zu runs a law. Overshoot of the force: %s%s. impactlab %s.",
+                           t->laws[0].runs, robust_overshoot_of(&t->laws[0]),
+                           t->laws[0].by_smoothed > 0 ? " (mean over 5 ms)" : "", lab_version()));
     o->figure.x = (figure_axis){.name = "overshoot",
                                 .label = "Overshoot over the commanded force",
                                 .unit = "%",

@@ -5,6 +5,7 @@
 #include "render/plot/drawing.h"
 
 #define MARKER_RADIUS 1.6
+#define RUN_WIDER     0.7 // of the runs that have a grey for the second or third time
 #define RIM           0.8 // of the page's colour, at either side of what needs one
 
 // A line that turns up and down more often than this is busy: no pattern of dashes would show [pt].
@@ -52,6 +53,14 @@ double set_series(const drawing *d, const panel_layout *l, int index)
     const figure_series *s = &l->panel->series[index];
     double width = s->secondary ? SECONDARY_WIDTH : CURVE_WIDTH;
 
+    if (s->run > 0) {
+        // its style is the signal's and its colour the run's; there are three greys
+        const int rank = s->run - 1;
+        width *= d->style.theme == THEME_MONO ? 1 + RUN_WIDER * (rank / 3) : 1;
+        set_colour(d->cr, palette_series(d->style.theme, s->colour, 2 * rank));
+        set_line_style(d->cr, s->style, width);
+        return width;
+    }
     if (l->busy[index]) {
         // no pattern shows in it; without colours a lighter and wider line does
         bool wide = d->style.theme == THEME_MONO && !s->secondary;

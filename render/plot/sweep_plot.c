@@ -15,7 +15,7 @@
 #define DOTS_ROOM    0.03 // of an axis, free at both ends
 #define LINE_ROOM    0.05 // of the quantity's range, free above and below it
 
-enum { LABELLED_VALUES = 9, MOST_MARKERS = 80 };
+enum { LABELLED_VALUES = 9, MOST_MARKERS = 80, MOST_CURVES = 16 };
 
 // A varied parameter as an axis: where its points lie, in order.
 typedef struct varied {
@@ -241,7 +241,7 @@ static void describe_words(sweep_drawing *s, const sweep_picture *p, int words, 
 static int axis_of_curves(const sweep_drawing *s, const sweep *from)
 {
     for (int i = 0; i < 2 && from->sampling == SWEEP_GRID && from->axis_count == 2; i++) {
-        if (s->varied[i].words && !s->varied[1 - i].words && s->varied[i].count <= PANEL_SERIES) {
+        if (s->varied[i].words && !s->varied[1 - i].words && s->varied[i].count <= MOST_CURVES) {
             return i;
         }
     }
@@ -319,8 +319,10 @@ static char *title_of(const sweep_picture *p, const char *quantity)
 {
     static const char *const how[] = {
         [SWEEP_GRID] = "", [SWEEP_RANDOM] = " at random", [SWEEP_LATIN] = " of a Latin hypercube"};
-    return g_strdup_printf("%s: %s of %zu runs%s", p->sweep->base->name, quantity,
-                           p->sweep->run_count, how[p->sweep->sampling]);
+    char changes[SCENARIO_CHANGES];
+    return g_strdup_printf("%s: %s of %zu runs%s%s", p->sweep->base->name, quantity,
+                           p->sweep->run_count, how[p->sweep->sampling],
+                           scenario_changes(p->sweep->base, changes));
 }
 
 // What was varied, as on the command line.

@@ -7,9 +7,9 @@
 
 #include "render/page/text.h"
 
-static void add_mark(trace_figure *t, double time, char *label)
+static void add_mark(trace_figure *t, double time, const char *label)
 {
-    t->marks[t->figure.mark_count++] = (figure_mark){time, label};
+    t->marks[t->figure.mark_count++] = (figure_mark){.x = time, .label = label};
 }
 
 // What the script did at an event, "voltage 2 V"; NULL if the event is no action.
@@ -56,6 +56,7 @@ static bool mark_modes(trace_figure *t, const trace_run *run, GPtrArray *texts)
         if (isfinite(now) && isfinite(mode) && now != mode && t->figure.mark_count < TRACE_MARKS) {
             const char *name = trace_mode_name(run->scenario, (int)now);
             add_mark(t, rows->rows[i].time, trace_keep(texts, mode_label(name, now)));
+            t->marks[t->figure.mark_count - 1].onwards = true;
             marked = true;
         }
         mode = isfinite(now) ? now : mode;
@@ -87,6 +88,10 @@ void trace_mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts)
     if (isfinite(m->first_pulse_time_to_peak_s)) {
         add_mark(t, m->first_contact_s + m->first_pulse_time_to_peak_s,
                  trace_keep(texts, peak_label(m->first_pulse_peak_N)));
+        // at its point where the first panel shows forces
+        figure_mark *peak = &t->marks[t->figure.mark_count - 1];
+        peak->pointed = strcmp(t->panels[0].y.name, "force") == 0;
+        peak->y = m->first_pulse_peak_N;
     }
     if (isfinite(m->first_pulse_s)) {
         add_mark(t, m->first_contact_s + m->first_pulse_s, "release");

@@ -29,8 +29,10 @@ typedef struct trace_run {
     bool brief;               // further runs only: the first signal of each panel, in grey
     bool steps;               // a small point at every row: the steps of the method
     bool points;              // further runs only: reference data, points where it has a number
-    int rank; // 0: as above; otherwise a solid line with a colour of its own, 1 to 8
+    int rank; // 0: as above; otherwise a colour of its own, 1 to 8, and lines tell signals
 } trace_run;
+
+enum { TRACE_KEY = TRACE_RUNS + FIGURE_PANELS * TRACE_SIGNALS };
 
 // A figure with everything it borrows, except for the runs.
 typedef struct trace_figure {
@@ -38,6 +40,9 @@ typedef struct trace_figure {
     figure_panel panels[FIGURE_PANELS];
     figure_series series[FIGURE_PANELS][TRACE_SIGNALS * TRACE_RUNS];
     figure_series residual; // in an additional last panel, if there are reference data
+    figure_panel key;       // of runs side by side: their colours, then lines, then data
+    figure_series key_series[TRACE_KEY];
+    int key_signals[TRACE_KEY]; // what the entry is a line of, see trace_key.c; 0: no signal
     figure_level wall;
     GPtrArray *owned; // blocks
     figure_mark *marks;

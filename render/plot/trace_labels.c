@@ -193,7 +193,7 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     } else if (p->method.name == METHOD_GENERALIZED_ALPHA) {
         text_append(out, "generalised α, <i>ρ</i><sub>∞</sub> = %g", p->method.spectral_radius);
     } else {
-        g_string_append_printf(out, "%s, located events", run->result->summary.method);
+        g_string_append_printf(out, "%s engine, located events", run->result->summary.method);
     }
     g_string_append_printf(out, located ? ", a row every %s. " : ", <i>h</i> = %s. ", step);
     add_shading(out, runs, run_count, shaded);

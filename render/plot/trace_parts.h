@@ -32,6 +32,23 @@ char *trace_axis_label(const scenario *s, const signal_info *signal);
 // shading and the marks belong to.
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 
+// --- runs side by side: trace_key.c
+
+// Whether a run has a signal of a panel to show: not the first link's where it equals the hub's,
+// and of data only what was measured.
+bool trace_shows(const trace_run *run, const trace_panel *panel, int index);
+
+// Slot of the colour of a run with a rank.
+int trace_run_colour(const trace_run *run);
+
+// Gives signals that stand in one panel different lines, and the figure one key for all panels of
+// both runs and signals; does nothing where no run has a rank. Before the panels are described.
+void trace_make_key(trace_figure *t, const trace_panel *panels, const trace_run *runs,
+                    int run_count);
+
+// The line of a signal by that key, solid of one that it does not have.
+line_style trace_line(const trace_figure *t, int index);
+
 // --- what happened: trace_events.c
 
 // Marks contact, peak, release and changes by the script; on the rig changes of mode.

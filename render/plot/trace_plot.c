@@ -18,26 +18,20 @@
 
 // ---- panels
 
-// Colours of runs that stand side by side, the most different first.
-static const int rank_colours[8] = {0, 5, 2, 4, 1, 3, 6, 7};
-
-// The series of one run; signals of the first link are left out where they equal the hub's.
+// The series of one run.
 static void add_series(trace_figure *t, int panel_index, const trace_panel *from,
                        const trace_run *runs, int run, int run_count, GPtrArray *texts)
 {
     figure_panel *panel = &t->panels[panel_index];
     const scenario *s = runs[run].scenario;
-    bool alone = from->signals[1] == NULL, named = false;
+    bool alone = from->signals[1] == NULL, points = run > 0 && runs[run].points, named = false;
 
     for (int i = 0; i < TRACE_SIGNALS && from->signals[i] != NULL; i++) {
         int index = signal_index(from->signals[i]);
-        bool twin =
-            !alone && signal_table[index].body == BODY_FIRST_LINK && trace_hub_is_first_link(s);
-        bool points = run > 0 && runs[run].points;
 
         // what the hub shows already, and what was not measured
         bool left_out = run > 0 && runs[run].brief && i > 0;
-        if (twin || left_out || (points && !trace_has(&runs[run].result->trace, index))) {
+        if (left_out || !trace_shows(&runs[run], from, index)) {
             continue;
         }
 
@@ -60,11 +54,12 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->colour = alone ? 6 : runs[run].brief ? 7 : out->colour;
         }
 
-        // runs side by side have a colour each
+        // runs side by side have a colour each, the same signal has one line in all
         if (runs[run].rank > 0) {
             out->secondary = false;
-            out->colour = rank_colours[(runs[run].rank - 1) % 8];
-            out->label = i == 0 ? trace_keep(texts, text_escape(runs[run].name)) : NULL;
+            out->run = runs[run].rank;
+            out->colour = trace_run_colour(&runs[run]);
+            out->style = trace_line(t, index);
             continue;
         }
 
@@ -244,7 +239,7 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     // the page
     GPtrArray *texts = t->owned = g_ptr_array_new_with_free_func(g_free);
     figure *fig = &t->figure;
-    fig->title = title ? title : runs[0].scenario->title;
+    fig->title = title ? title : trace_keep(texts, scenario_title(runs[0].scenario));
 
     char *shading = mode != NULL ? g_strdup_printf("%s mode", mode)
                                  : g_strdup(modes ? "second mode" : "contact");
@@ -256,7 +251,8 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     fig->panels = t->panels;
     fig->panel_count = panel_count;
 
-    // panels with their curves
+    // panels with their curves; side by side, runs are told by colours and signals by lines
+    trace_make_key(t, panels, runs, run_count);
     for (int i = 0; i < panel_count; i++) {
         describe_panel(t, i, &panels[i], runs, run_count, texts);
     }

@@ -217,8 +217,9 @@ static status record(film_making *m, const char *path, fault *f)
     // the same notes as a picture's, of the first run
     const film_plan *plan = m->plan;
     char software[64], *values = parameters_line(plan->runs[0].scenario);
+    char *title = scenario_title(plan->runs[0].scenario);
     snprintf(software, sizeof software, "impactlab %s", lab_version());
-    const png_note notes[] = {{"Title", plan->runs[0].scenario->title},
+    const png_note notes[] = {{"Title", title},
                               {"Software", software},
                               {"Parameters", values},
                               {"Renderer", film_painter_name(m->painter)}};
@@ -238,6 +239,7 @@ static status record(film_making *m, const char *path, fault *f)
             film_file_abandon(m->file);
         }
     }
+    g_free(title);
     g_free(values);
     return code;
 }

@@ -121,6 +121,7 @@ status film_plan_init(film_plan *plan, const film_run *runs, int run_count,
     const run_result *results[FILM_RUNS];
     for (int i = 0; i < run_count; i++) {
         results[i] = runs[i].result;
+        scene_options_scale(&plan->options.view, &results[i]->trace);
     }
     plan->clock = film_clock_of(results, run_count, options->seconds, options->slow);
     place_views(plan);

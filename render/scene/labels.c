@@ -77,13 +77,21 @@ void labels_force(const labels *l, vector from, vector end, double force, colour
     draw_text(l, x, y, text, TITLE_LETTERS, true, ink);
 }
 
-void labels_caption(const labels *l, const char *title, const char *facts)
+void labels_caption(const labels *l, const char *title, const char *facts, double width)
 {
-    assert(l != NULL && title != NULL && facts != NULL);
-    double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale;
+    assert(l != NULL && title != NULL && facts != NULL && width > 0);
+    double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale, line, all;
+    double top = bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * l->scale;
     char *escaped = text_escape(title);
-    draw_text(l, left, bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * l->scale, escaped,
-              TITLE_LETTERS, true, l->strong);
+
+    // a title of several lines grows upwards
+    text_block t = {.markup = escaped, .size = TITLE_LETTERS * l->scale, .bold = true};
+    text_measure(l->context, &t, &(double){0}, &line);
+    t.width = width;
+    text_measure(l->context, &t, &(double){0}, &all);
+    set_colour(l->cr, l->strong);
+    cairo_move_to(l->cr, left, top - (all - line));
+    text_draw(l->cr, l->context, &t);
     draw_text(l, left, bottom - FACT_LETTERS * 1.25 * l->scale, facts, FACT_LETTERS, false,
               l->faint);
     g_free(escaped);

@@ -21,8 +21,9 @@ void labels_flash(const labels *l, vector place, double radius, double strength)
 // "1.34 N" next to the head of an arrow that starts at `from`.
 void labels_force(const labels *l, vector from, vector end, double force, colour ink);
 
-// Title and a line of facts at the lower left corner; `facts` is markup, `title` plain.
-void labels_caption(const labels *l, const char *title, const char *facts);
+// Title, in lines of at most `width` [pixels], and a line of facts at the lower left corner;
+// `facts` is markup, `title` plain.
+void labels_caption(const labels *l, const char *title, const char *facts, double width);
 
 // The length in pixels of a length [m] at a point.
 double labels_pixels(const camera *c, vector place, double length);

@@ -21,12 +21,18 @@ typedef struct scene_options {
     bool keyless;       // no legend of the instants
     double letters;     // scale of letters, 1 for a picture 720 pixels high; 0: by its size
     double exaggerate;  // factor by which bending is enlarged, also shown as text; 0: none
+    double force;       // of the longest arrow [N], at least the run's own largest
+    double impulse;     // of the largest flash [N s], likewise
     bool inset;         // close-up of the contact in a corner
     figure_theme theme; // THEME_DARK, else light
     bool transparent;   // without floor and background, for a surface ARGB32
 } scene_options;
 
 typedef struct scene scene;
+
+// Raises the options' force and impulse to the largest of a run, so that pictures of several runs
+// have one scale.
+void scene_options_scale(scene_options *o, const trace *t);
 
 // Prepares pictures of a run, which must outlive them and have its trace. STATUS_BAD_ARGUMENT for a
 // size out of range or a run without rows, STATUS_CANNOT_READ if the font is missing, otherwise the

@@ -45,8 +45,9 @@ static status write_surface(const scene *sc, cairo_surface_t *surface, const cha
 {
     whole_file file;
     char software[64], *values = parameters_line(sc->scenario);
+    char *title = scenario_title(sc->scenario);
     snprintf(software, sizeof software, "impactlab %s", lab_version());
-    const png_note notes[] = {{"Title", sc->scenario->title},
+    const png_note notes[] = {{"Title", title},
                               {"Software", software},
                               {"Parameters", values},
                               {"Renderer", scene_renderer_name(sc)}};
@@ -56,6 +57,7 @@ static status write_surface(const scene *sc, cairo_surface_t *surface, const cha
         code = png_file_write(file.stream, surface, PICTURE_DPI, notes, 4, f);
         code = whole_file_close(&file, code, f);
     }
+    g_free(title);
     g_free(values);
     return code;
 }

@@ -6,6 +6,7 @@
 
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
+#include "render/plot/opened_run.h"
 #include "render/scene/labels.h"
 #include "render/scene/scene_parts.h"
 #include "src/base/numbers.h"
@@ -18,6 +19,7 @@ enum {
 #define FLASH_RADIUS 0.075 // [beam lengths]
 #define FLASH_FADE   0.010 // the flash has faded to a third after that [s]
 #define PALEST       0.80  // share of the ground in the palest of several arms
+#define TITLE_SHARE  0.72  // of the picture's width, beside the key of instants
 #define INSET_SHARE  0.30  // of the picture's width, for the inset
 #define INSET_MARGIN 0.02  // of the picture's width
 
@@ -61,9 +63,19 @@ static status open_inset(scene *sc, fault *f)
     return scene_create(&sc->tip, sc->scenario, sc->result, &o, f);
 }
 
+void scene_options_scale(scene_options *o, const trace *t)
+{
+    assert(o != NULL && t != NULL);
+    for (size_t i = 0; i < t->row_count; i++) {
+        o->force = fmax(o->force, t->rows[i].force);
+    }
+    for (size_t i = 0; i < t->event_count; i++) {
+        o->impulse = fmax(o->impulse, t->events[i].impulse);
+    }
+}
+
 static status prepare(scene *sc, fault *f)
 {
-    const trace *t = &sc->result->trace;
     status code = check_options(sc, f);
     if (code != STATUS_OK) {
         return code;
@@ -76,14 +88,7 @@ static status prepare(scene *sc, fault *f)
         return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d links", sc->links);
     }
 
-    // arrows and flashes are drawn relative to the largest force and impulse
-    for (size_t i = 0; i < t->row_count; i++) {
-        sc->largest = fmax(sc->largest, t->rows[i].force);
-    }
-    for (size_t i = 0; i < t->event_count; i++) {
-        sc->impulse = fmax(sc->impulse, t->events[i].impulse);
-    }
-
+    scene_options_scale(&sc->options, &sc->result->trace);
     sc->context = text_context_create();
     code = scene_set_view(sc, f);
     if (code == STATUS_OK) {
@@ -158,7 +163,7 @@ static void draw_flashes(scene *sc, const labels *l, double time)
         const event *e = &t->events[i];
         double strength = exp(-(time - e->time) / FLASH_FADE);
         if (e->kind == EVENT_IMPACT && e->impulse > 0 && strength > 0.03) {
-            double size = FLASH_RADIUS * sqrt(e->impulse / sc->impulse);
+            double size = FLASH_RADIUS * sqrt(e->impulse / sc->options.impulse);
             scene_joints(t, &sc->scenario->parameters, e->time, sc->joints);
             labels_flash(l, scene_contact(sc, sc->joints), size * sc->length, strength);
         }
@@ -203,7 +208,9 @@ static status draw_labels(scene *sc, const double *times, const colour *inks, in
         }
         decimal_print(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s",
                       1e3 * time, sc->grid, bending);
-        labels_caption(&l, sc->scenario->title, facts);
+        char *title = scenario_title(sc->scenario);
+        labels_caption(&l, title, facts, TITLE_SHARE * sc->camera.width);
+        g_free(title);
         if (count > 1 && !sc->options.keyless) {
             labels_instants(&l, times, inks, count);
         }

@@ -32,10 +32,8 @@ struct scene {
     const run_result *result;
     scene_options options;
     int links;
-    double length;  // of the beam [m]
-    double largest; // force [N]
-    double impulse; // largest of an impact [N s]
-    double grid;    // [m]
+    double length; // of the beam [m]
+    double grid;   // [m]
     camera camera;
     vector light;
     scene_floor floor;

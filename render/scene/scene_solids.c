@@ -111,7 +111,7 @@ vector scene_contact(const scene *sc, const vector *joints)
 
 bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector *end)
 {
-    double l = sc->length, length = row->force / sc->largest * ARROW_LENGTH * l;
+    double l = sc->length, length = row->force / sc->options.force * ARROW_LENGTH * l;
     const wall_parameters *w = &sc->scenario->parameters.wall;
     double across = w->kind == WALL_PLANE ? w->angle : row->last_angle;
     vector away = at_angle(across, 0, -1, 0);

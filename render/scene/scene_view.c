@@ -52,7 +52,7 @@ static int extent(scene *sc, vector *points)
             points[count++] = at_angle(p->wall.angle, (i & 1 ? from : to) * l,
                                        i & 2 ? behind * l : 0, i & 4 ? low : high);
         }
-        if (sc->largest > 0) {
+        if (sc->options.force > 0) {
             points[count++] = at_angle(p->wall.angle, l, -(ARROW_LENGTH + 0.05) * l, 0);
         }
     }

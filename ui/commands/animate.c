@@ -83,9 +83,6 @@ static int open_all(filmed *m, const arguments *a)
                                       complain_sentence, NULL) != STATUS_OK) {
                 return EXIT_BAD_ARGUMENTS;
             }
-            // its own words below its arm, instead of the same title twice
-            free(s->title);
-            s->title = strdup(m->names[i]);
         }
     }
     return EXIT_DONE;

@@ -53,8 +53,8 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
 
 static void print_points(const calibration *c, const scenario *s, const char *table)
 {
-    say("%s: %s\n\n", s->name, s->title);
-    printf("  %9s  %9s  %11s  %11s  %9s  %9s  %9s\n", "command/V", "force/N", "hub/rad",
+    say_title(s);
+    printf("\n  %9s  %9s  %11s  %11s  %9s  %9s  %9s\n", "command/V", "force/N", "hub/rad",
            "K2/(Nm/rad)", "K2/arm.k2", "+-force/N", "+-hub/rad");
 
     bool drifts = false;

@@ -1,6 +1,7 @@
 #include "ui/commands/command.h"
 
 #include "src/base/json.h"
+#include "src/base/loss.h"
 #include "src/base/words.h"
 
 #include <assert.h>
@@ -132,6 +133,21 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
     return result;
 }
 
+// Keeps the last of several.
+static void keep_fault(void *context, const char *sentence)
+{
+    fault_set(context, STATUS_OK, "%s", sentence);
+}
+
+int open_listed(scenario *s, const char *name, bool *faulty)
+{
+    assert(s != NULL && name != NULL && faulty != NULL);
+    fault f = {0};
+    f.code = scenario_open(s, name, keep_fault, &f);
+    *faulty = f.code == STATUS_BAD_SCENARIO;
+    return *faulty || f.code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+}
+
 int with_scenario(const char *name_or_file, const arguments *a,
                   int (*use)(const arguments *a, scenario *s))
 {
@@ -150,14 +166,13 @@ int write_json(const char *path, json_t *value)
     assert(path != NULL);
     whole_file file;
     fault f = {0};
-    bool lost = json_lost_something() || value == NULL;
-    status code = lost ? fault_no_memory(&f) : whole_file_open(&file, path, &f);
 
     // all of it or nothing
+    bool lost = loss_noted() || value == NULL;
+    status code = lost ? fault_no_memory(&f) : whole_file_open(&file, path, &f);
     if (code == STATUS_OK) {
         json_write(file.stream, value);
-        code = json_lost_something() ? fault_no_memory(&f) : STATUS_OK;
-        code = whole_file_close(&file, code, &f);
+        code = whole_file_commit(&file, &f);
     }
 
     json_decref(value);
@@ -203,7 +218,25 @@ void say(const char *format, ...)
     va_end(list);
 }
 
+void say_title(const scenario *s)
+{
+    assert(s != NULL);
+    char changes[SCENARIO_CHANGES];
+    say("%s: %s%s\n", s->name, s->title, scenario_changes(s, changes));
+}
+
 bool terminal_has_utf8(void)
 {
-    return strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
+    if (strcmp(nl_langinfo(CODESET), "UTF-8") == 0) {
+        return true;
+    }
+
+    // a locale that is not installed, or had no memory, tells by its name
+    static const char *const places[] = {"LC_ALL", "LC_CTYPE", "LANG"};
+    const char *name = NULL;
+    for (int i = 0; i < 3 && (name == NULL || *name == '\0'); i++) {
+        name = getenv(places[i]);
+    }
+    return name != NULL &&
+           (strcasestr(name, ".UTF-8") != NULL || strcasestr(name, ".utf8") != NULL);
 }

@@ -126,8 +126,11 @@ int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int complain_fault(const fault *f);
 
 // Prints a text that contains words from outside (titles, names of files and scenarios) to the
-// standard output, without unprintable characters (src/base/words.h).
+// standard output, without unprintable characters and with what is lost noted (src/base/words.h).
 void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+// Prints "NAME: TITLE" and what was changed since the scenario was read, as a line.
+void say_title(const scenario *s);
 
 // A fault_handler that prints the sentence to stderr.
 void report_to_stderr(void *context, const char *sentence);
@@ -188,17 +191,23 @@ void write_fish_completion(FILE *stream);
 // Returns EXIT_DONE, or the exit status to end with; in that case nothing has to be freed.
 int open_scenario(scenario *s, const char *name_or_file, const arguments *a);
 
+// Opens a scenario of the list. One with faults is no failure and none is told: *faulty says so, and
+// then nothing has to be freed. Returns EXIT_DONE, or the exit status if it could not be read, which
+// has been reported.
+int open_listed(scenario *s, const char *name, bool *faulty) __attribute__((warn_unused_result));
+
 // Opens the scenario, calls `use` with it and closes it. Returns the exit status.
 int with_scenario(const char *name_or_file, const arguments *a,
                   int (*use)(const arguments *a, scenario *s));
 
 // Writes the JSON value to path ("-": standard output) whole or not at all. Takes over value, which
 // may be NULL (no memory). Returns the exit status.
-int write_json(const char *path, json_t *value);
+int write_json(const char *path, json_t *value) __attribute__((warn_unused_result));
 
 // Writes a file whole or not at all ("-": standard output): calls `write` with the stream and
 // `what`; errors stay in the stream. Returns the exit status.
-int write_file(const char *path, void (*write)(FILE *stream, const void *what), const void *what);
+int write_file(const char *path, void (*write)(FILE *stream, const void *what), const void *what)
+    __attribute__((warn_unused_result));
 
 // The larger of two exit statuses, so that a failure is kept.
 int worse(int a, int b);
@@ -221,5 +230,5 @@ bool next_paragraph(const char **text, paragraph *p);
 // Prints words in lines of at most `width` characters.
 void print_wrapped(FILE *stream, const char *text, int bytes, int width);
 
-// True if the terminal's character set is UTF-8.
+// True if the terminal's character set is UTF-8, by the locale or, where it is not there, its name.
 bool terminal_has_utf8(void);

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "src/study/compare.h"
 #include "src/study/sweep.h"
@@ -200,11 +201,34 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
     return result;
 }
 
+// What the runs are called: changes that all have stand in the title, else beside the scenario's
+// name. Each name is on the heap. False without memory.
+static bool name_runs(const comparison *c, char *names[TRACE_RUNS], char *title, size_t size)
+{
+    char all[SCENARIO_CHANGES], own[SCENARIO_CHANGES];
+    bool same = true, named = true;
+    scenario_changes(&c->scenarios[0], all);
+    for (int i = 1; i < c->opened; i++) {
+        same = same && strcmp(scenario_changes(&c->scenarios[i], own), all) == 0;
+    }
+
+    for (int i = 0; i < c->opened; i++) {
+        const char *changes = same ? "" : scenario_changes(&c->scenarios[i], own);
+        if (asprintf(&names[i], "%s%s", c->scenarios[i].name, changes) < 0) {
+            names[i] = NULL;
+            named = false;
+        }
+    }
+    snprintf(title, size, "Runs compared%s", same ? all : "");
+    return named;
+}
+
 // The recorded signals of all scenarios in one figure, a colour each.
 static int plot_runs(const arguments *a, const comparison *c)
 {
     trace_run shown[TRACE_RUNS] = {{.scenario = NULL}};
     run_result results[TRACE_RUNS];
+    char *names[TRACE_RUNS], title[64 + SCENARIO_CHANGES];
     int count = 0, code = EXIT_DONE;
 
     // what cannot be shown
@@ -216,6 +240,7 @@ static int plot_runs(const arguments *a, const comparison *c)
     }
 
     // each runs once more, this time recorded
+    const bool named = name_runs(c, names, title, sizeof title);
     run_monitor *monitor = work_begin(a, PIECES, c->opened);
     const run_options options = {.keep_trace = true, .monitor = monitor};
     for (; count < c->opened; count++) {
@@ -224,7 +249,7 @@ static int plot_runs(const arguments *a, const comparison *c)
         run_monitor_count(monitor);
         shown[count] = (trace_run){.scenario = &c->scenarios[count],
                                    .result = &results[count],
-                                   .name = c->scenarios[count].name,
+                                   .name = names[count],
                                    .rank = count + 1};
     }
 
@@ -232,12 +257,15 @@ static int plot_runs(const arguments *a, const comparison *c)
     const bool stopped = run_monitor_stops(monitor);
     if (stopped) {
         complain("stopped: the table is whole, the picture is not drawn");
+    } else if (!named) {
+        code = worse(EXIT_FAILED, complain("out of memory"));
     } else {
-        code = publish_runs(a, "Runs compared", shown, count);
+        code = publish_runs(a, title, shown, count);
     }
 
     for (int i = 0; i < count; i++) {
         run_finish(&results[i]);
+        free(names[i]);
     }
     if (stopped) {
         leave_interrupted();

@@ -51,7 +51,8 @@ static void print_panel(const scenario *s, const convergence_panel *panel)
 
     // head: scenario, method and the three steps
     parameter_format(&s->parameters, PARAMETER_INDEX(method.name), method, sizeof method);
-    say("%s: %s\nmethod %s\n\n  %-26s", s->name, s->title, method, "step [s]");
+    say_title(s);
+    printf("method %s\n\n  %-26s", method, "step [s]");
     for (int i = 0; i < PANEL_STEPS; i++) {
         decimal_print(step[i], sizeof step[i], "%g", panel->step[i]);
         printf(" %15s", step[i]);
@@ -113,7 +114,8 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
     static const int colours[PANEL_STEPS] = {5, 0, 6};
     static const char *const names[PANEL_STEPS] = {"h", "h/2", "h/4"};
     const trace *finest = &r->result[PANEL_STEPS - 1].trace;
-    char label[PANEL_STEPS][48], software[64], title[256];
+    char label[PANEL_STEPS][48], software[64], title[256 + SCENARIO_CHANGES],
+        changes[SCENARIO_CHANGES];
     figure_series force[PANEL_STEPS], less[PANEL_STEPS - 1];
 
     // each run's force, and what it lacks of the finest
@@ -150,7 +152,8 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
     };
 
     snprintf(software, sizeof software, "impactlab %s", lab_version());
-    snprintf(title, sizeof title, "%s: the same run at three steps", r->scenario[0].name);
+    snprintf(title, sizeof title, "%s: the same run at three steps%s", r->scenario[0].name,
+             scenario_changes(&r->scenario[0], changes));
     const figure fig = {.title = title,
                         .x = {.name = "time", .label = "Time <i>t</i>", .unit = "s"},
                         .panels = panels,

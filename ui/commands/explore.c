@@ -4,8 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <wchar.h>
 
 #include "src/base/clock.h"
+#include "src/base/loss.h"
 #include "ui/explorer/commands.h"
 #include "ui/explorer/keys.h"
 #include "ui/explorer/mouse.h"
@@ -39,11 +41,21 @@ static int run_script(explorer *ex, const char *path)
     int code = EXIT_DONE;
     for (int number = 1; code == EXIT_DONE && !ex->state.quit && fgets(line, sizeof line, stream);
          number++) {
+        if (strchr(line, '\n') == NULL && !feof(stream)) {
+            code =
+                complain("%s:%d: no command, expected a text of less than %d bytes and the end of "
+                         "the line",
+                         path, number, LINE_TEXT);
+            break;
+        }
         line[strcspn(line, "\r\n")] = '\0';
         if (!explorer_carry_out(ex, line)) {
             complain("%s:%d: %s", path, number, ex->state.message.text);
             code = EXIT_FAILED;
         }
+    }
+    if (ferror(stream)) {
+        code = complain("%s cannot be read: %s", path, strerror(errno));
     }
 
     if (!is_stdin) {
@@ -134,6 +146,7 @@ static void show(explorer *ex, screen *s, picture_layer *layer)
     terminal_show(s, ex->state.looks.glyphs, ex->state.looks.theme, ex->state.looks.depth,
                   ex->state.looks.redraw);
     ex->state.looks.redraw = false;
+    loss_forget(); // the next picture shows what this one lacks
 }
 
 // How long to wait from one picture to the next, after one that took some seconds of the processor:
@@ -229,7 +242,8 @@ static int open_explorer(explorer *ex, const arguments *a)
     if (live) {
         ex->state.looks.theme = terminal_is_light() ? COLOURS_LIGHT : COLOURS_DARK;
         explorer_load_settings(ex);
-        ex->state.looks.glyphs = terminal_has_utf8() ? ex->state.looks.glyphs : GLYPHS_ASCII;
+        const bool wide = wcwidth(L'\u28ff') == 1; // the locale is there and knows braille
+        ex->state.looks.glyphs = wide ? ex->state.looks.glyphs : GLYPHS_ASCII;
     }
 
     // what the command line says comes last

@@ -6,24 +6,21 @@
 
 #include "src/base/json.h"
 
-// A scenario with faults is not listed as a lesson; its faults are reported when it is opened.
-static void ignore_fault(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
-// Whether a scenario is a lesson; its title if so, "" if not.
-static bool read_lesson(const char *name, char *title, size_t size)
+// Tells whether a scenario is a lesson, and its title if so. One with faults is none; they are
+// reported when it is opened. Returns the exit status.
+static int read_lesson(const char *name, bool *is_lesson, char *title, size_t size)
 {
     scenario s;
-    if (scenario_open(&s, name, ignore_fault, NULL) != STATUS_OK) {
-        return false;
+    bool faulty;
+    int code = open_listed(&s, name, &faulty);
+    *is_lesson = code == EXIT_DONE && !faulty && s.lesson.step_count > 0;
+    if (*is_lesson) {
+        snprintf(title, size, "%s", s.title != NULL ? s.title : "");
     }
-    const bool found = s.lesson.step_count > 0;
-    snprintf(title, size, "%s", found && s.title != NULL ? s.title : "");
-    scenario_finish(&s);
-    return found;
+    if (code == EXIT_DONE && !faulty) {
+        scenario_finish(&s);
+    }
+    return code;
 }
 
 // The last part of a scenario's name.
@@ -66,26 +63,33 @@ static int run_lesson(const arguments *a)
     if (a->json != NULL && a->operand_count > 0) {
         return complain("--json lists the lessons, expected no name beside it");
     }
+    json_t *all = a->json != NULL ? json_array() : NULL;
+    if (a->json != NULL && all == NULL) {
+        fault_no_memory(&f);
+        return complain_fault(&f);
+    }
     if (scenario_list(&names, &count, &f) != STATUS_OK) {
+        json_decref(all);
         return complain_fault(&f);
     }
 
     // without a name all of them, otherwise the one with that name
     const char *wanted = a->operand_count > 0 ? a->operands[0] : NULL;
-    json_t *all = a->json != NULL ? json_array() : NULL;
     for (int i = 0; i < count && !found; i++) {
         const bool named = wanted != NULL && (strcmp(names[i], wanted) == 0 ||
                                               strcmp(leaf_of(names[i]), wanted) == 0);
-        if ((wanted == NULL || named) && read_lesson(names[i], title, sizeof title)) {
-            found = named;
-            if (named) {
-                code = open_lesson(a, names[i]);
-            } else {
-                list_lesson(all, names[i], title);
-            }
+        bool is_lesson = false;
+        if (wanted == NULL || named) {
+            code = worse(code, read_lesson(names[i], &is_lesson, title, sizeof title));
+        }
+        found = is_lesson && named;
+        if (found) {
+            code = open_lesson(a, names[i]);
+        } else if (is_lesson) {
+            list_lesson(all, names[i], title);
         }
     }
-    if (wanted != NULL && !found) {
+    if (wanted != NULL && !found && code == EXIT_DONE) {
         code = complain("there is no lesson '%s', 'impactlab lesson' lists them", wanted);
     }
 
@@ -93,7 +97,7 @@ static int run_lesson(const arguments *a)
         free(names[i]);
     }
     free(names);
-    return wanted == NULL && a->json != NULL ? write_json(a->json, all) : code;
+    return a->json != NULL ? worse(code, write_json(a->json, all)) : code;
 }
 
 const command lesson_command = {

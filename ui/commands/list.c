@@ -5,70 +5,63 @@
 
 #include "src/base/json.h"
 
-// A scenario with faults is listed all the same, without a title.
-static void ignore_fault(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
-static void print_scenario(const char *name, int width)
+// Adds a line or, for a program, an object of name and title, which is null of one with faults.
+// Returns the exit status.
+static int list_one(const char *name, int width, json_t *all)
 {
     scenario s;
-    if (scenario_open(&s, name, ignore_fault, NULL) != STATUS_OK) {
+    bool faulty;
+    int result = open_listed(&s, name, &faulty);
+    if (result != EXIT_DONE) {
+        return result;
+    }
+
+    // the titles of all stand in a column
+    const char *title = faulty || s.title == NULL ? "" : s.title;
+    if (all != NULL) {
+        json_t *object = json_object();
+        json_put(object, "name", json_text(name));
+        json_put(object, "title", faulty ? json_null() : json_text(title));
+        json_add(all, object);
+    } else if (faulty) {
         say("%-*s  (has faults, see impactlab check %s)\n", width, name, name);
-        return;
+    } else {
+        say("%-*s  %s\n", width, name, title);
     }
-    say("%-*s  %s\n", width, name, s.title ? s.title : "");
-    scenario_finish(&s);
-}
-
-// An object of name and title; the title of one with faults is null.
-static json_t *scenario_object(const char *name)
-{
-    scenario s;
-    json_t *object = json_object();
-    json_put(object, "name", json_text(name));
-    if (scenario_open(&s, name, ignore_fault, NULL) != STATUS_OK) {
-        json_put(object, "title", json_null());
-        return object;
+    if (!faulty) {
+        scenario_finish(&s);
     }
-    json_put(object, "title", json_text(s.title ? s.title : ""));
-    scenario_finish(&s);
-    return object;
+    return EXIT_DONE;
 }
 
 static int list(const arguments *a)
 {
     char **names;
-    int count, width = 0;
+    int count, width = 0, result = EXIT_DONE;
     fault f = {0};
 
+    // for a program or for people
+    json_t *all = a->json != NULL ? json_array() : NULL;
+    if (a->json != NULL && all == NULL) {
+        fault_no_memory(&f);
+        return complain_fault(&f);
+    }
     if (scenario_list(&names, &count, &f) != STATUS_OK) {
+        json_decref(all);
         return complain_fault(&f);
     }
 
-    // for a program
-    json_t *all = a->json != NULL ? json_array() : NULL;
-    for (int i = 0; i < count && a->json != NULL; i++) {
-        json_add(all, scenario_object(names[i]));
-    }
-
-    // or for people: titles stand in a column
     for (int i = 0; i < count; i++) {
         int length = (int)strlen(names[i]);
         width = length > width ? length : width;
     }
-
     for (int i = 0; i < count; i++) {
-        if (a->json == NULL) {
-            print_scenario(names[i], width);
-        }
+        result = worse(result, list_one(names[i], width, all));
         free(names[i]);
     }
 
     free(names);
-    return a->json != NULL ? write_json(a->json, all) : EXIT_DONE;
+    return a->json != NULL ? worse(result, write_json(a->json, all)) : result;
 }
 
 const command list_command = {

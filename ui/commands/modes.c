@@ -117,7 +117,8 @@ static int plot_modes(const arguments *args, const scenario *s, const arm *a, co
     static const int colours[MODES_DRAWN] = {0, 5, 2};
     figure_series series[HOLDS][MODES_DRAWN] = {{{0}}};
     figure_panel panels[HOLDS] = {{0}};
-    char headings[HOLDS][64], labels[HOLDS][MODES_DRAWN][48], title[256];
+    char headings[HOLDS][64], labels[HOLDS][MODES_DRAWN][48], title[256 + SCENARIO_CHANGES],
+        changes[SCENARIO_CHANGES];
     size_t points = (size_t)a->links + 1;
     double *numbers = calloc((size_t)HOLDS * MODES_DRAWN * 2 * points, sizeof *numbers);
     if (numbers == NULL) {
@@ -152,7 +153,8 @@ static int plot_modes(const arguments *args, const scenario *s, const arm *a, co
                                    .series = series[i],
                                    .series_count = shown};
     }
-    snprintf(title, sizeof title, "%s: first modes of the arm", s->name);
+    snprintf(title, sizeof title, "%s: first modes of the arm%s", s->name,
+             scenario_changes(s, changes));
     const figure fig = {
         .title = title,
         .x = {.name = "position", .label = "Position along the arm", .unit = "m", .room = 0.02},
@@ -179,8 +181,9 @@ static int report(const arguments *args, const scenario *s, const arm *a, const 
 
     // what is meant to be read at once
     if (summary_wanted(args)) {
-        say("%s: %s\nsmall vibrations of the straight arm, %d link%s, without damping\n", s->name,
-            s->title, a->links, a->links == 1 ? "" : "s");
+        say_title(s);
+        printf("small vibrations of the straight arm, %d link%s, without damping\n", a->links,
+               a->links == 1 ? "" : "s");
         for (int i = 0; i < HOLDS; i++) {
             print_set(a, &sets[i], holds[i].hub_name, holds[i].tip_name);
         }

@@ -47,17 +47,18 @@ static json_t *prediction_object(const prediction_answer *answer)
     bool known = prediction_known(answer);
     const prediction *p = &answer->prediction;
     json_put(object, "method", json_string(answer->name));
-    json_put(object, "message", json_text(known ? "" : prediction_reason(answer)));
+    json_put(object, "message", json_text(known ? answer->note : prediction_reason(answer)));
     json_put(object, "holds", known ? json_boolean(p->holds) : json_null());
     json_put(object, "peak_N", json_number(p->force));
     json_put(object, "time_to_peak_s", json_number(p->delay));
     json_put(object, "impulse_Ns", json_number(p->impulse));
     json_put(object, "equivalent_restitution", json_number(p->restitution));
+    json_put(object, "inductance_changes_peak_N", json_number(p->inductance));
     return object;
 }
 
 static json_t *predict_object(const scenario *s, const sample *row,
-                              const prediction_answer *answers, const summary *m)
+                              const prediction_answer *answers, const landing *came)
 {
     json_t *object = json_object(), *array = json_array(), *simulation = json_object();
     json_put(object, "scenario", json_text(s->name));
@@ -70,9 +71,9 @@ static json_t *predict_object(const scenario *s, const sample *row,
     json_put(object, "predictions", array);
 
     // the same pulse in the run
-    json_put(simulation, "peak_N", json_number(m->first_pulse_peak_N));
-    json_put(simulation, "time_to_peak_s", json_number(m->first_pulse_time_to_peak_s));
-    json_put(simulation, "impulse_Ns", json_number(m->contact_impulse_Ns));
+    json_put(simulation, "peak_N", json_number(came->peak));
+    json_put(simulation, "time_to_peak_s", json_number(came->time_to_peak));
+    json_put(simulation, "impulse_Ns", json_number(came->impulse));
     json_put(object, "simulation", simulation);
     return object;
 }
@@ -95,11 +96,26 @@ static void print_line(const char *label, double force, double delay, double imp
     printf("\n");
 }
 
-static void print_predictions(const scenario *s, const sample *row,
-                              const prediction_answer *answers, const summary *m)
+// What the motor's inductance does to the peak.
+static void print_inductance(const scenario *s, const prediction *linearised)
 {
-    say("%s: %s\nfirst contact at %.6g s, predicted from the instant before it\n\n", s->name,
-        s->title, m->first_contact_s);
+    const motor_parameters *motor = &s->parameters.motor;
+    printf("\n  The current lags by L/R = %.3g ms", 1e3 * motor->inductance / motor->resistance);
+    if (!isnan(linearised->inductance)) {
+        printf(", which changes the peak by %.3g N (%.2g %%)", linearised->inductance,
+               100 * linearised->inductance / (linearised->force - linearised->inductance));
+    }
+    printf(";\n  only the linearised arm follows it, to the others it follows at once.\n");
+}
+
+static void print_predictions(const scenario *s, const sample *row,
+                              const prediction_answer *answers, const run_result *result)
+{
+    const landing *came = &result->landing;
+    const bool first = came->time == result->summary.first_contact_s;
+    say_title(s);
+    printf("%s at %.6g s, predicted from the instant before it\n\n",
+           first ? "first contact" : "first contact after a flight", came->time);
 
     printf("  last free row at %.6g s: hub, first and last link at %.5g, %.5g, %.5g rad,\n"
            "  turning with %.5g, %.5g, %.5g rad/s\n\n",
@@ -117,8 +133,7 @@ static void print_predictions(const scenario *s, const sample *row,
         }
     }
 
-    print_line("simulation", m->first_pulse_peak_N, m->first_pulse_time_to_peak_s,
-               m->contact_impulse_Ns);
+    print_line("simulation", came->peak, came->time_to_peak, came->impulse);
 
     const prediction *pulse = &answers[PREDICTOR_LINEARISED].prediction;
     if (!isnan(pulse->restitution)) {
@@ -126,6 +141,9 @@ static void print_predictions(const scenario *s, const sample *row,
             "\n  Kinetic energy given back by the end of the pulse, of the largest energy in the\n"
             "  springs (e_eq of 4.1.1): %.4g\n",
             pulse->restitution);
+    }
+    if (s->parameters.motor.inductance > 0) {
+        print_inductance(s, pulse);
     }
     if (s->parameters.arm.links != 2) {
         printf("\n  The thesis's predictors know two links, the simulation has %d.\n",
@@ -135,11 +153,11 @@ static void print_predictions(const scenario *s, const sample *row,
 
 // The peak that each predictor says, one below the other, with that of the simulation as a line.
 static int plot_predictions(const arguments *a, const scenario *s, const prediction_answer *answers,
-                            const summary *m)
+                            const landing *came)
 {
     double peak[PREDICTOR_COUNT], place[PREDICTOR_COUNT], line_y[2], line_x[2];
     figure_tick ticks[PREDICTOR_COUNT];
-    char title[256];
+    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
 
     // a tick for each, but no point where a predictor does not hold
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
@@ -150,7 +168,7 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
     }
 
     // the simulation as an upright line past all of them
-    line_x[0] = line_x[1] = m->first_pulse_peak_N;
+    line_x[0] = line_x[1] = came->peak;
     line_y[0] = 0.4;
     line_y[1] = PREDICTOR_COUNT + 0.6;
     const figure_series series[] = {{.name = "predicted",
@@ -181,7 +199,8 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
                                 .weight = 1.6};
 
     // zero is on the axis, so that peaks compare by their distance from it
-    snprintf(title, sizeof title, "%s: peak of the first pulse, predicted and simulated", s->name);
+    snprintf(title, sizeof title, "%s: peak of the first pulse, predicted and simulated%s", s->name,
+             scenario_changes(s, changes));
     const figure fig = {
         .title = title,
         .x = {.name = "peak", .label = "Peak force", .unit = "N", .room = 0.06, .with_zero = true},
@@ -208,15 +227,22 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
         return EXIT_FAILED;
     }
 
+    // what there was no memory for is no answer
+    for (int i = 0; i < PREDICTOR_COUNT; i++) {
+        if (answers[i].fault.code == STATUS_NO_MEMORY) {
+            return complain_fault(&answers[i].fault);
+        }
+    }
+
     int code = EXIT_DONE;
     if (a->json != NULL) {
-        code = write_json(a->json, predict_object(s, row, answers, &result->summary));
+        code = write_json(a->json, predict_object(s, row, answers, &result->landing));
     }
     if (a->plot != NULL) {
-        code = worse(code, plot_predictions(a, s, answers, &result->summary));
+        code = worse(code, plot_predictions(a, s, answers, &result->landing));
     }
     if (summary_wanted(a)) {
-        print_predictions(s, row, answers, &result->summary);
+        print_predictions(s, row, answers, result);
     }
     return code;
 }

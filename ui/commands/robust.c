@@ -108,6 +108,18 @@ static int read_laws(robustness *r)
     return EXIT_DONE;
 }
 
+// What the set draws for each law, in each case.
+static sweep_request request_of(const robustness *r)
+{
+    return (sweep_request){.vary = r->set.lines,
+                           .vary_count = r->set.count,
+                           .sampling = SWEEP_LATIN,
+                           .runs = r->runs,
+                           .seed = r->arguments->seed,
+                           .file = r->set.file,
+                           .lines = r->set.line_numbers};
+}
+
 // The set, and room for what will be found.
 static int read_set(robustness *r)
 {
@@ -124,8 +136,15 @@ static int read_set(robustness *r)
         return complain("--plot shows laws, not the cases of %s", a->over);
     }
 
+    // what is drawn is the same in all cases
     bool cases = r->set.case_count > 0;
     r->runs = a->runs > 0 ? (size_t)a->runs : cases ? DEFAULT_CASE_RUNS : DEFAULT_RUNS;
+    const sweep_request request = request_of(r);
+    sweep plan;
+    if (sweep_plan(&plan, &request, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    sweep_finish(&plan);
     r->found =
         calloc((size_t)(cases ? r->set.case_count : 1) * (size_t)(r->count + 1), sizeof *r->found);
     return r->found != NULL ? EXIT_DONE : (fault_no_memory(&f), complain_fault(&f));
@@ -233,51 +252,74 @@ static void fit_settings(const robustness *r, int law, control_parameters *contr
     }
 }
 
-// A law under case k of the set, -1: under the scenario as it is. The same draws for every law.
-static int run_law(robustness *r, const scenario *base, int which, int k)
+// Why case k (-1: none) cannot be looked at.
+static int refuse(const robustness *r, int k, const fault *why)
+{
+    fault f = *why;
+    if (k >= 0) {
+        robust_case_fault(&r->set.cases[k], why, &f);
+    }
+    return complain_fault(&f);
+}
+
+// What a law gets to do under case k of the set, -1: under the scenario as it is. The same draws
+// for every law. `base` and `under` last as long as the sweep; `tell` says which settings it does
+// without.
+static int open_law(const robustness *r, const scenario *base, int which, int k, bool tell,
+                    scenario *under, sweep *s)
 {
     fault f = {0};
-    sweep s;
-    scenario under = *base; // borrows all but its parameters
-    sweep_request request = {.vary = r->set.lines,
-                             .vary_count = r->set.count,
-                             .sampling = SWEEP_LATIN,
-                             .runs = r->runs,
-                             .seed = r->arguments->seed};
-    under.parameters.control.law = r->laws[which];
-    under.parameters.set[PARAMETER_INDEX(control.law)] = 1;
+    const sweep_request request = request_of(r);
+    *under = *base; // borrows all but its parameters
+    under->parameters.control.law = r->laws[which];
+    under->parameters.set[PARAMETER_INDEX(control.law)] = 1;
 
     // said once, and where a case has settings of its own
     const bool own =
-        strcmp(under.parameters.control.settings, r->scenario.parameters.control.settings) != 0;
-    fit_settings(r, r->laws[which], &under.parameters.control,
-                 (k <= 0 || own) && !r->arguments->quiet);
-    if (parameters_resolve(&under.parameters, &f) != STATUS_OK ||
-        sweep_init(&s, &under, &request, &f) != STATUS_OK) {
-        return complain_fault(&f);
+        strcmp(under->parameters.control.settings, r->scenario.parameters.control.settings) != 0;
+    fit_settings(r, r->laws[which], &under->parameters.control, (k <= 0 || own) && tell);
+    if (parameters_resolve(&under->parameters, &f) != STATUS_OK ||
+        sweep_init(s, under, &request, &f) != STATUS_OK) {
+        return refuse(r, k, &f);
     }
+    return EXIT_DONE;
+}
 
-    int code = judge_law(r, control_law_table[r->laws[which]].word, k, &s);
-    sweep_finish(&s);
+// All laws under case k: looked at, or run.
+static int run_laws(robustness *r, const scenario *base, int k, bool run)
+{
+    int code = EXIT_DONE;
+    for (int i = 0; i < r->count + (r->against == r->count) && code == EXIT_DONE; i++) {
+        scenario under;
+        sweep s;
+        code = open_law(r, base, i, k, run && !r->arguments->quiet, &under, &s);
+        if (code == EXIT_DONE) {
+            code = run ? judge_law(r, control_law_table[r->laws[i]].word, k, &s) : EXIT_DONE;
+            sweep_finish(&s);
+        }
+    }
     return code;
 }
 
-// All laws under case k, and how they compare with that of --against.
-static int run_case(robustness *r, int k)
+// Case k, -1: the scenario as it is. Everything that can be wrong with a case is known before the
+// first one is run.
+static int take_case(robustness *r, int k, bool run)
 {
     fault f = {0};
     scenario base;
-    const int first = r->judged, laws = r->count + (r->against == r->count);
     const robust_case *c = k >= 0 ? &r->set.cases[k] : NULL;
     if (robust_case_scenario(&base, &r->scenario, c, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-
-    int code = EXIT_DONE;
-    for (int i = 0; i < laws && code == EXIT_DONE; i++) {
-        code = run_law(r, &base, i, k);
-    }
+    const int code = run_laws(r, &base, k, run);
     robust_case_finish(&base);
+    return code;
+}
+
+// Runs all laws under case k, and compares them with that of --against.
+static int run_case(robustness *r, int k)
+{
+    const int first = r->judged, code = take_case(r, k, true);
 
     // its own line is shown only where it was asked for
     if (code == EXIT_DONE && r->against >= 0 && !many_runs_only_computes(r->arguments)) {
@@ -319,7 +361,8 @@ static int write_results(const robustness *r)
         code = worse(code, write_file(a->markdown, write_markdown, &table));
     }
     if (a->plot != NULL) {
-        owned_figure *drawn = robust_figure_create(&table);
+        char changes[SCENARIO_CHANGES];
+        owned_figure *drawn = robust_figure_create(&table, scenario_changes(&r->scenario, changes));
         code = worse(code, publish_figure(a, &drawn->figure));
         owned_figure_destroy(drawn);
     }
@@ -349,9 +392,13 @@ static int robust(const arguments *a)
     code = code == EXIT_DONE ? read_set(&r) : code;
     code = code == EXIT_DONE ? read_against(&r) : code;
 
-    // case by case, or the scenario as it is
-    int last = r.set.case_count > 0 ? r.set.case_count - 1 : -1;
-    for (int k = last < 0 ? -1 : 0; k <= last && code == EXIT_DONE; k++) {
+    // case by case, or the scenario as it is; faults of all cases are told
+    const int last = r.set.case_count - 1, begin = last < 0 ? -1 : 0;
+    const bool ready = code == EXIT_DONE;
+    for (int k = begin; k <= last && ready; k++) {
+        code = worse(code, take_case(&r, k, false));
+    }
+    for (int k = begin; k <= last && code == EXIT_DONE; k++) {
         code = run_case(&r, k);
     }
     code = code == EXIT_DONE && !many_runs_only_computes(a) ? write_results(&r) : code;
@@ -405,7 +452,8 @@ const command robust_command = {
         "1.3 times the command), and the median, the 90 %\nquantile and the worst of overshoot, "
         "settling time and steady error. '-': that many do not settle. back/there: the worst of "
         "the\ntip's largest speed towards the wall in the air after first contact, over that "
-        "before it.\n\n"
+        "before it. over: of the peak, of arms with more than two links of the "
+        "force's mean over\n5 ms, as 'over of' says; --json and --csv have both.\n\n"
         "A set with lines 'case TITLE: PATH=VALUE; ...' gives a table of its cases, with the "
         "worst of the\nruns of each. Of control.settings each law gets those that it has.\n\n"
         "Ctrl-C finishes the runs in hand, within five seconds (exit status 130); with --db they "

@@ -25,7 +25,7 @@ static void print_heading(const scenario *s)
 {
     char model[128], joint[128], wall[128], method[128];
     const parameters *p = &s->parameters;
-    say("%s: %s\n", s->name, s->title);
+    say_title(s);
     printf("%s model, %d link%s, %s hub, %s wall, %g V, method %s, h = %g s, %g s\n\n",
            value_text(p, "arm.model", model), p->arm.links, p->arm.links == 1 ? "" : "s",
            value_text(p, "arm.hub_joint", joint),

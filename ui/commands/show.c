@@ -86,7 +86,7 @@ static int print_scenario(const arguments *a, scenario *s)
     if (a->json != NULL) {
         return write_json(a->json, show_object(s));
     }
-    say("%s: %s\n", s->name, s->title);
+    say_title(s);
     print_wrapped(stdout, s->description, (int)strlen(s->description), 96);
 
     printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",

@@ -55,10 +55,11 @@ static void print_cell(int width, double value)
 
 static void print_methods(const scenario *s, const method_study *study)
 {
-    say("%s: error against cost\nreference: event method at %g s; first contact %.12g s, first "
+    char changes[SCENARIO_CHANGES];
+    say("%s%s: error against cost\nreference: event method at %g s; first contact %.12g s, first "
         "pulse peak %.12g N,\nsteady force %.12g N\n",
-        s->name, study->reference_step, study->reference[0], study->reference[1],
-        study->reference[2]);
+        s->name, scenario_changes(s, changes), study->reference_step, study->reference[0],
+        study->reference[1], study->reference[2]);
 
     // a table for each method
     for (int m = 0; m < STUDY_METHODS; m++) {
@@ -120,7 +121,7 @@ static int plot_methods(const arguments *a, const scenario *s, const method_stud
     static const char *const units[STUDY_QUANTITIES] = {"s", "N", "N"};
     figure_series series[STUDY_QUANTITIES][STUDY_METHODS];
     figure_panel panels[STUDY_QUANTITIES];
-    char title[256];
+    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
 
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         for (int m = 0; m < STUDY_METHODS; m++) {
@@ -143,7 +144,8 @@ static int plot_methods(const arguments *a, const scenario *s, const method_stud
                                    .weight = 1.8};
     }
 
-    snprintf(title, sizeof title, "%s: error against cost", s->name);
+    snprintf(title, sizeof title, "%s: error against cost%s", s->name,
+             scenario_changes(s, changes));
 
     figure fig = {
         .title = title,

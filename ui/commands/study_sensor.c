@@ -45,7 +45,9 @@ static json_t *sensor_object(const scenario *s, const sensor_study *study)
 
 static void print_sensor(const scenario *s, const sensor_study *study)
 {
-    say("%s: the first %g ms after first contact\n\n", s->name, 1e3 * SENSOR_WINDOW);
+    char changes[SCENARIO_CHANGES];
+    say("%s%s: the first %g ms after first contact\n\n", s->name, scenario_changes(s, changes),
+        1e3 * SENSOR_WINDOW);
     printf(
         "        ideal point contact           momentum   peak of a sensor with time constant\n");
 
@@ -142,8 +144,9 @@ static int plot_sensor(const arguments *a, const scenario *s, const sensor_study
          .weight = 1.8},
     };
 
-    char title[256];
-    snprintf(title, sizeof title, "%s: what a force sensor would see", s->name);
+    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
+    snprintf(title, sizeof title, "%s: what a force sensor would see%s", s->name,
+             scenario_changes(s, changes));
     figure fig = {.title = title,
                   .caption =
                       "Squares: force and first impulse of the rigid point contact. Circles: "

@@ -79,8 +79,10 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
     const char *unit = quantity->unit;
 
     // how many runs there were
-    say("%s: %zu run%s (%s), %zu failed", o->scenario.name, s->run_count,
-        s->run_count == 1 ? "" : "s", sweep_sampling_name(s->sampling), failed);
+    char changes[SCENARIO_CHANGES];
+    say("%s%s: %zu run%s (%s), %zu failed", o->scenario.name,
+        scenario_changes(&o->scenario, changes), s->run_count, s->run_count == 1 ? "" : "s",
+        sweep_sampling_name(s->sampling), failed);
     if (p->done_now < p->total) {
         printf(", %zu were there already", p->total - p->done_now);
     }

@@ -216,6 +216,10 @@ action_result act_show_difference(explorer_state *st, const char *argument)
         return result_news("minus '%s'; D shows the runs again", name);
     }
     const int signal = st->panes.pane[focused].signals[0];
+    if (signal_is_state(signal)) {
+        return result_news("minus '%s', but states such as %s are this run's; D shows the runs",
+                           name, signal_table[signal].name);
+    }
     const double first = difference_first_beyond(d, signal, tolerance);
     if (first < 0) {
         return result_news("minus '%s': %s never differs by more than %g %s", name,

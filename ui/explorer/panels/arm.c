@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "render/scene/plan.h"
+#include "src/base/loss.h"
 #include "ui/terminal/pictures.h"
 
 enum {
@@ -124,14 +125,15 @@ static plane_vector tip_of(const explorer_state *st)
 
 // --- as dots ----------------------------------------------------------------------------------
 
-// The links of a recorded row as a line of dots, or a line two dots thick; false without memory.
-static bool draw_links(const explorer_state *st, const stage *g, const trace *t, double time,
+// The links of a recorded row as a line of dots, or a line two dots thick.
+static void draw_links(const explorer_state *st, const stage *g, const trace *t, double time,
                        ink in, bool dotted)
 {
     const parameters *p = &st->session.effective.parameters;
     vector *joints = malloc(((size_t)p->arm.links + 1) * sizeof *joints);
+    loss_unless(joints != NULL);
     if (joints == NULL) {
-        return false;
+        return;
     }
     scene_joints(t, p, time, joints);
     scene_exaggerate(joints, p->arm.links, st->looks.bending);
@@ -150,7 +152,6 @@ static bool draw_links(const explorer_state *st, const stage *g, const trace *t,
         }
     }
     free(joints);
-    return true;
 }
 
 static void draw_hub(const stage *v, double angle)

@@ -20,7 +20,9 @@ void draw_title(const explorer_state *st, screen *s)
     }
 
     // the name and the changes go before the title
-    const char *title = e->base.title ? e->base.title : "";
+    char title[LINE_TEXT + SCENARIO_CHANGES], given[SCENARIO_CHANGES];
+    snprintf(title, sizeof title, "%s%s", e->base.title ? e->base.title : "",
+             scenario_changes(&e->base, given));
     int room = s->width - 2 - (changes[0] ? text_cells(changes) + 2 : 0), x = 1;
     if (12 + text_cells(e->base.name) <= room) {
         x += screen_text(s, x, 0, room, INK_TITLE, "impactlab  ");

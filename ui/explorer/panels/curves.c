@@ -125,7 +125,7 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     }
     if (!showing_difference(st)) {
         draw_levels(st, &f, s, &st->panes.pane[index]);
-    } else if (st->difference.tolerance > 0) {
+    } else if (st->difference.tolerance > 0 && pane_has_amounts(shown)) {
         plot_frame_level(&f, s, st->difference.tolerance, "tolerance");
         plot_frame_level(&f, s, -st->difference.tolerance, "tolerance");
     }

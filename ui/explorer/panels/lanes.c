@@ -139,7 +139,8 @@ static lane_band band_between(const explorer_state *st, lane l, double from, dou
     static const ink mode_colours[] = {INK_SERIES_0,     INK_SERIES_0 + 1, INK_SERIES_0 + 2,
                                        INK_SERIES_0 + 3, INK_SERIES_0 + 4, INK_SERIES_0 + 5};
     enum { COLOURS = sizeof mode_colours / sizeof mode_colours[0] };
-    const trace *t = state_run(st, l.run).trace;
+    // what the run did, also where panes show a difference
+    const trace *t = l.run == 0 ? &st->session.run.trace : state_run(st, l.run).trace;
     lane_band band = {-1, INK_FORCE, ""};
 
     // on or off, if anything in between is on

@@ -121,7 +121,7 @@ void draw_pane_title(const explorer_state *st, screen *s, int index, area a)
 {
     const pane *p = &st->panes.pane[index];
     static const char *const axes[] = {"", "grows", "fixed"};
-    const bool difference = state_run(st, 0).kind == SHOWN_DIFFERENCE;
+    const bool difference = state_run(st, 0).kind == SHOWN_DIFFERENCE && pane_has_amounts(p);
     bool focused = index == panes_focused(&st->panes);
     int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
 

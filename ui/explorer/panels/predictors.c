@@ -4,6 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/loss.h"
+#include "src/run/first_contact.h"
+
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds
 enum { ROWS = 6 };            // of the panel [cells]
 
@@ -30,7 +33,8 @@ static prediction_answer ask(const explorer_state *st, layout *lay, predictor wh
         .bodies = {{row->hub_angle, row->first_angle, row->last_angle},
                    {row->hub_velocity, row->first_velocity, row->last_velocity}},
         .angles = t->angles + state,
-        .velocities = t->velocities + state};
+        .velocities = t->velocities + state,
+        .current = row_current(&p.motor, row)};
     if (which != PREDICTOR_LINEARISED) {
         return predict_with(which, &question);
     }
@@ -87,6 +91,7 @@ static prediction what_came(const session *s, size_t r)
 static const char *reason_of(const prediction_answer *answer, area a)
 {
     const char *reason = prediction_reason(answer);
+    loss_unless(answer->fault.code != STATUS_NO_MEMORY);
     if (answer->outcome == PREDICTION_LINKS_UNKNOWN) {
         return "-";
     }

@@ -3,6 +3,7 @@
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "src/run/statistics.h"
 
@@ -30,16 +31,30 @@ static int find_signals(const explorer_state *st, int signals[PANES * PANE_SIGNA
     return count;
 }
 
+// The unit of a signal's integral over time: "N s", of "rad/s" it is "rad".
+static void integral_unit(const char *unit, char *text, size_t size)
+{
+    const size_t length = strlen(unit);
+    if (length > 3 && strcmp(unit + length - 3, "/s2") == 0) {
+        snprintf(text, size, "%.*s", (int)length - 1, unit);
+    } else if (length > 2 && strcmp(unit + length - 2, "/s") == 0) {
+        snprintf(text, size, "%.*s", (int)length - 2, unit);
+    } else {
+        snprintf(text, size, "%s%ss", unit, length > 0 ? " " : "");
+    }
+}
+
 // The three lines of a signal, as far as they are in the area's rows.
 static void draw_signal(screen *s, area a, int signal, const signal_statistics *x)
 {
     const signal_info *info = &signal_table[signal];
-    char low[32], high[32], mean[32], rms[32], integral[32];
+    char low[32], high[32], mean[32], rms[32], integral[32], unit[32];
     draw_number(low, sizeof low, x->minimum);
     draw_number(high, sizeof high, x->maximum);
     draw_number(mean, sizeof mean, x->mean);
     draw_number(rms, sizeof rms, x->rms);
     draw_number(integral, sizeof integral, x->integral);
+    integral_unit(info->unit, unit, sizeof unit);
 
     // name, then two rows of numbers
     screen_print(s, a.x, a.y, a.width, INK_TITLE, "%s", info->name);
@@ -51,9 +66,11 @@ static void draw_signal(screen *s, area a, int signal, const signal_statistics *
     }
     if (a.height > 1 && a.width >= 40) {
         screen_print(s, a.x + 28, a.y + 1, a.width - 28, INK_TEXT, "mean %s", mean);
-        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " rms %-9s integral %s s", rms, integral);
+        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " rms %-9s integral %s %s", rms, integral,
+                     unit);
     } else if (a.height > 2) {
-        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " mean %-8s \u222b %s", mean, integral);
+        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " mean %-8s \u222b %s %s", mean, integral,
+                     unit);
     }
 }
 
@@ -73,7 +90,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     }
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "statistics (m sets the mark)");
     layout_add_hit(lay, (hit_area){.panel = PANEL_STATISTICS, .area = a});
-    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s %.5g to %.5g s",
+    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s%s %.5g to %.5g s",
+                 state_run(st, 0).kind == SHOWN_DIFFERENCE ? "minus baseline, " : "",
                  st->mark.set ? "mark and cursor," : "visible part,", from, to);
     for (int i = first; i < count && i - first < fit; i++) {
         const signal_statistics x = trace_statistics(t, signals[i], from, to);

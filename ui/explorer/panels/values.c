@@ -70,6 +70,9 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         x += NUMBER;
         if (beside != NULL) {
             draw_number(text, sizeof text, difference);
+            if (signal_is_state(i)) {
+                snprintf(text, sizeof text, "%s", differs ? "other" : "same");
+            }
             screen_print(s, x, y, NUMBER, differs ? INK_WARNING : INK_DIM, "%9s", text);
             x += NUMBER;
         }

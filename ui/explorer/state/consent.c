@@ -4,13 +4,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "src/base/sha256.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
+#include "src/scenario/outside.h"
 #include "ui/explorer/state/settings_folder.h"
 
 bool consent_needed(const scenario *s)
@@ -26,23 +26,6 @@ bool consent_needed(const scenario *s)
 static void add_text(sha256 *h, const char *text)
 {
     sha256_add(h, text, strlen(text) + 1);
-}
-
-// Takes in a file's content if it is a plain file. False if it cannot be read.
-static bool add_file(sha256 *h, const char *path)
-{
-    char bytes[16384];
-    struct stat what;
-    FILE *file = stat(path, &what) == 0 && S_ISREG(what.st_mode) ? fopen(path, "rb") : NULL;
-    if (file == NULL) {
-        return false;
-    }
-    for (size_t count; (count = fread(bytes, 1, sizeof bytes, file)) > 0;) {
-        sha256_add(h, bytes, count);
-    }
-    const bool whole = ferror(file) == 0;
-    fclose(file);
-    return whole;
 }
 
 // The scenario as text.
@@ -64,47 +47,30 @@ static bool add_scenario(sha256 *h, const scenario *s)
     return text != NULL;
 }
 
-// The command, the folder it starts in, and the content of every file that one of its words names.
-// False where a shell would take it for more than words.
-static bool add_command(sha256 *h, const char *command)
-{
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                                " ./_+-:,@=%";
-    char folder[4096], word[PARAMETER_TEXT_SIZE];
-    if (command[strspn(command, plain)] != '\0' || getcwd(folder, sizeof folder) == NULL) {
-        return false;
-    }
-    add_text(h, command);
-    add_text(h, folder);
-
-    // a word that names no file of this folder is an option, or a program that PATH finds
-    for (const char *at = command; *(at += strspn(at, " ")) != '\0'; at += strlen(word)) {
-        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, " "), at);
-        add_text(h, add_file(h, word) ? "a file" : "no file");
-    }
-    return true;
-}
-
-// The digest of a scenario and its program or plug-in. False where their content does not tell.
+// The digest of a scenario, of what it reads from outside, and of the folder in which a command
+// starts. False where their content does not tell.
 static bool digest_of(const scenario *s, char digest[SHA256_TEXT])
 {
-    const control_parameters *c = &s->parameters.control;
+    char folder[4096], content[SHA256_TEXT];
     sha256 h;
     sha256_init(&h);
 
-    // the kinds, so that a program never passes for a plug-in
+    // the scenario may read nothing that needs a consent
+    int named = 0;
     bool told = add_scenario(&h, s);
-    if (c->law == LAW_PROCESS) {
-        add_text(&h, "process");
-        told = told && add_command(&h, c->command);
-    } else if (c->law != LAW_PLUGIN) {
-        told = false; // the scenario names neither
-    } else {
-        add_text(&h, "plugin");
-        told = told && strchr(c->plugin, '/') != NULL && add_file(&h, c->plugin);
+    for (int i = 0; i < outside_count && told; i++) {
+        const outside_source *source = &outside_table[i];
+        if (outside_is_read(source, &s->parameters)) {
+            told = outside_is_told(source, &s->parameters) &&
+                   outside_digest(source, &s->parameters, content, NULL) == STATUS_OK &&
+                   getcwd(folder, sizeof folder) != NULL;
+            add_text(&h, told ? content : "");
+            add_text(&h, told && source->kind == OUTSIDE_COMMAND ? folder : "");
+            named++;
+        }
     }
     sha256_finish(&h, digest);
-    return told;
+    return told && named > 0;
 }
 
 // --- the file ---------------------------------------------------------------------------------

@@ -52,9 +52,12 @@ static status add_row(run_difference *d, const trace *run, const trace *other, s
         row + 1 < run->row_count && same_instant(run->rows[row + 1].time, now->time);
     const sample beside = sample_at(other, now->time, before);
 
-    // signal by signal: a sample is a row of numbers
+    // signal by signal: a sample is a row of numbers; states stay this run's own
     sample difference = *now;
     for (int i = 0; i < SIGNALS_AT_MOST; i++) {
+        if (signal_is_state(i)) {
+            continue;
+        }
         const size_t at = (size_t)i * sizeof(double);
         double a, b;
         memcpy(&a, (const char *)now + at, sizeof a);

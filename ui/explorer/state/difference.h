@@ -1,4 +1,5 @@
 // The difference between the present run and the one kept beside it, row by row of the present one.
+// Contact, sticking and the controller's mode are those of the present run.
 #pragma once
 
 #include "src/session/session.h"

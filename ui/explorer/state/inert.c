@@ -32,14 +32,18 @@ static const char *reason_of_arm(const parameters *p, int parameter)
     if (IS_OF(parameter, arm.link_inertia) && p->arm.links != 2) {
         return "it is for two links";
     }
-    if (IS_OF(parameter, arm.k2) && p->arm.links == 1) {
+    const bool of_joints =
+        IS_OF(parameter, arm.k2) || IS_OF(parameter, arm.EI) || IS_OF(parameter, arm.stiffening);
+    const bool of_springs =
+        IS_OF(parameter, arm.damping_ratio) || IS_OF(parameter, arm.modal_ratios);
+    if (p->arm.links == 1 && ((of_joints && p->arm.hub_joint != HUB_BEAM) ||
+                              (of_springs && p->arm.hub_joint == HUB_RIGID))) {
         return "one link has no joint";
     }
     if (IS_OF(parameter, wall) && !IS_OF(parameter, wall.kind) && p->wall.kind == WALL_NONE) {
         return "there is no wall (wall.kind)";
     }
-    if ((IS_OF(parameter, motor.transconductance) || IS_OF(parameter, motor.current_limit)) &&
-        p->motor.drive != DRIVE_CURRENT) {
+    if (IS_OF(parameter, motor.transconductance) && p->motor.drive != DRIVE_CURRENT) {
         return "it belongs to motor.drive = current";
     }
 

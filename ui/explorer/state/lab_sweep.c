@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "src/base/loss.h"
 #include "ui/explorer/state/parameter_list.h"
 
 bool lab_sweep_is_on(const lab_sweep *sweep)
@@ -83,6 +84,7 @@ status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
     }
     if (code == STATUS_OK) {
         run_scenario(&s, true, &next->run);
+        loss_unless(next->run.summary.status != STATUS_NO_MEMORY);
         code = next->run.trace.row_count > 0 ? STATUS_OK : summary_fault(&next->run.summary, f);
     }
     if (code != STATUS_OK) {

@@ -131,6 +131,16 @@ int panes_focused(const pane_set *set)
     return -1;
 }
 
+bool pane_has_amounts(const pane *p)
+{
+    assert(p != NULL);
+    bool found = false;
+    for (int k = 0; k < p->count; k++) {
+        found = found || !signal_is_state(p->signals[k]);
+    }
+    return found;
+}
+
 void pane_fix_axis(pane *p, value_range limits)
 {
     assert(p != NULL);

@@ -68,6 +68,9 @@ void panes_define(pane_set *set, const pane_wishes *wishes);
 // The pane to which the keys for axes apply: one that is shown, or -1.
 int panes_focused(const pane_set *set);
 
+// Whether a pane has a signal that is an amount: of states alone there is no difference.
+bool pane_has_amounts(const pane *p);
+
 // Fixes a pane's axis to limits, unless they are not finite, nearly equal or far too wide.
 void pane_fix_axis(pane *p, value_range limits);
 

@@ -4,19 +4,21 @@
 #include <math.h>
 #include <stdlib.h>
 
-static bool add_entry(run_log *log, log_entry entry)
+#include "src/base/loss.h"
+
+static void add_entry(run_log *log, log_entry entry)
 {
     if (log->count == log->capacity) {
         size_t more = log->capacity ? 2 * log->capacity : 64;
         log_entry *grown = realloc(log->entries, more * sizeof *grown);
+        loss_unless(grown != NULL);
         if (grown == NULL) {
-            return false;
+            return;
         }
         log->entries = grown;
         log->capacity = more;
     }
     log->entries[log->count++] = entry;
-    return true;
 }
 
 // The events up to a time.

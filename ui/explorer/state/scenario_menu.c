@@ -4,16 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/loss.h"
 #include "src/scenario/scenario.h"
 #include "ui/explorer/state/filters.h"
 
 void scenario_menu_read(scenario_menu *menu)
 {
     assert(menu != NULL);
-    fault ignored;
-    if (scenario_list(&menu->names, &menu->count, &ignored) != STATUS_OK) {
-        menu->count = 0;
-    }
+    const status code = scenario_list(&menu->names, &menu->count, NULL);
+    loss_unless(code != STATUS_NO_MEMORY);
+    menu->count = code == STATUS_OK ? menu->count : 0;
 }
 
 // A scenario with faults is listed all the same; opening it tells them.
@@ -37,14 +37,18 @@ void scenario_menu_read_titles(scenario_menu *menu)
     const bool room = menu->titles != NULL && menu->descriptions != NULL && menu->lessons != NULL;
 
     // a file that cannot be read has only its name
+    loss_unless(room);
     for (int i = 0; room && i < menu->count; i++) {
         scenario s;
-        if (scenario_open(&s, menu->names[i], ignore_fault, NULL) == STATUS_OK) {
-            menu->titles[i] = s.title != NULL ? strdup(s.title) : NULL;
+        const status code = scenario_open(&s, menu->names[i], ignore_fault, NULL);
+        if (code == STATUS_OK) {
+            menu->titles[i] = s.title;
             menu->lessons[i] = s.lesson.step_count > 0;
-            menu->descriptions[i] = s.description != NULL ? strdup(s.description) : NULL;
+            menu->descriptions[i] = s.description;
+            s.title = s.description = NULL;
             scenario_finish(&s);
         }
+        loss_unless(code != STATUS_NO_MEMORY);
     }
 }
 
