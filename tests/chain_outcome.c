@@ -7,6 +7,8 @@
 #include "tests/check.h"
 
 #define SENSOR 1e-3 // time constant [s]
+#define FLIGHT 1e-9 // one that is shorter [s], and comes back slower [m/s], is rounding
+#define SPEED  1e-8
 
 enum { MOST_EVENTS = 200000 };
 
@@ -33,10 +35,15 @@ chain_outcome chain_outcome_of(const chain_start *start)
     assert_non_null(m);
     motion_start(&a, m, start->angle, start->velocity);
     chain_outcome o = {.first_contact = (double)NAN};
-    double impulses = 0, end = start->duration;
+    double impulses = 0, end = start->duration, parted = 0;
+    if (motion_starts_in_contact(m)) {
+        o.first_contact = 0;
+        o.momentum[o.samples++] = 0;
+    }
     for (int events = 0; m->state[SLOT_TIME] < end; events++) {
         motion_report r;
-        const double before = m->state[SLOT_TIME], work = m->state[SLOT_MOTOR_WORK];
+        const double before_contact = m->state[SLOT_CONTACT];
+        const double before = m->state[SLOT_TIME], work = motion_motor_work(m, m->state);
         o.status =
             events < MOST_EVENTS ? motion_step(&a, m, end, p->method.step, &r) : STATUS_NO_PROGRESS;
         if (o.status != STATUS_OK) {
@@ -45,12 +52,28 @@ chain_outcome chain_outcome_of(const chain_start *start)
 
         // momentum and ledger, then the event
         take_samples(&a, m, before, impulses, &o);
-        o.put_in += fabs(m->state[SLOT_MOTOR_WORK] - work);
+        o.put_in += fabs(motion_motor_work(m, m->state) - work);
         o.residual = fmax(o.residual, fabs(motion_energy_residual(&a, m, m->state)));
         if (r.event != MOTION_REACHED) {
             motion_apply(&a, m, &r);
         }
         const bool begins = r.event == MOTION_TOUCH && isnan(o.first_contact);
+        const double speed = r.event == MOTION_IMPACT ? r.speed : -m->state[SLOT_GAP_VELOCITY];
+        const bool flew = speed > SPEED || m->state[SLOT_TIME] - parted > FLIGHT;
+        if (flew &&
+            (r.event == MOTION_IMPACT || (r.event == MOTION_TOUCH && before_contact == 0))) {
+            if (o.contacts < OUTCOME_CONTACTS) {
+                o.contact_times[o.contacts] = m->state[SLOT_TIME];
+                o.contact_speeds[o.contacts] = speed;
+            }
+            o.contacts++;
+        }
+        if (before_contact != 0 && m->state[SLOT_CONTACT] == 0) {
+            parted = m->state[SLOT_TIME];
+        }
+        if (start->most_contacts > 0 && o.contacts >= start->most_contacts) {
+            end = m->state[SLOT_TIME];
+        }
         if (r.event != MOTION_IMPACT && !begins) {
             continue;
         }
@@ -65,7 +88,8 @@ chain_outcome chain_outcome_of(const chain_start *start)
             end = fmin(end, o.first_contact + start->after_contact);
         }
     }
-    o.motor_work = m->state[SLOT_MOTOR_WORK];
+    o.ended = m->state[SLOT_TIME];
+    o.motor_work = motion_motor_work(m, m->state);
     o.put_in += m->start_energy;
     o.peak = m->pulse_peak;
     o.peak_time = m->dof > 1 ? m->pulse_peak_time : 0;

@@ -8,6 +8,7 @@
 #include "tests/reference/reference_arm.h"
 
 #define OUTCOME_FIRST_MS 10 // the sample 1 ms after first contact
+#define OUTCOME_CONTACTS 10 // whose instants are kept
 
 typedef struct chain_outcome {
     status status;           // of the last step; else as far as it came
@@ -19,6 +20,10 @@ typedef struct chain_outcome {
                              // [N], [s]
     double lost[5]; // to friction, impacts, viscous friction, structural damping, the wall [J]
     int impacts, samples; // samples: of momentum
+    int contacts;         // that began in flight, by an impact or on a wall that gives
+    double contact_times[OUTCOME_CONTACTS];  // [s]
+    double contact_speeds[OUTCOME_CONTACTS]; // of approach [m/s]
+    double ended;                            // [s]
     // that the wall took until instants REFERENCE_INTERVAL apart, from first contact on [N s]
     double momentum[REFERENCE_SAMPLES];
 } chain_outcome;
@@ -30,6 +35,7 @@ typedef struct chain_start {
     double duration;        // [s]
     double after_contact;   // behind first contact it ends, if that is earlier [s]
     const engine *by;       // that moves it; NULL: the one of its own method
+    int most_contacts;      // after which it ends, 0: whatever there are
 } chain_start;
 
 // Moves it with the time step of its parameters. A step that fails, or events without end, end it

@@ -231,6 +231,7 @@ static double graded(const arm *a, const motion *m, double rate, double longest)
 static double graded_face(const arm *a, const motion *m, double longest)
 {
     const double rate = wall_face_rate(&a->wall, state_face(m->state));
+    longest = fmin(longest, wall_face_lasts(&a->wall, state_face(m->state)));
     return rate > 0 ? fmin(longest, EXPLICIT_RESOLUTION / rate) : longest;
 }
 
@@ -266,7 +267,7 @@ static double begin(const arm *a, motion *m, double remaining, double step_lengt
     double longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step_length
                                 : step_length / ceil(step_length * rate / EXPLICIT_RESOLUTION);
     longest = pressed ? graded(a, m, rate, longest) : longest;
-    longest = m->wall_has_face && !pressed ? graded_face(a, m, longest) : longest;
+    longest = state_face_swings(m->state) ? graded_face(a, m, longest) : longest;
     longest = m->electric ? graded_current(a, m, rate, longest) : longest;
 
     return remaining < longest * (1 + 1e-9) ? remaining : longest;

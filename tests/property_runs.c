@@ -4,6 +4,7 @@
 // - it comes to its end with a closed ledger, or says in a sentence why it did not;
 // - it takes less than MOST_SECONDS of a processor for a simulated second;
 // - a tenth of the step gives the same first contact and the same impulse of it;
+// - its events tell what is in contact and what sticks;
 // - computed again, and resumed from a checkpoint with a change at any instant, it has the same
 // bytes.
 //
@@ -23,6 +24,7 @@
 #include "src/base/random.h"
 #include "src/run/resume.h"
 #include "src/run/run.h"
+#include "tests/told_events.h"
 
 #define MOST_SECONDS 20.0 // of the processor for one simulated second
 #define SAME_CONTACT 1e-7 // [s], between the step and a tenth of it
@@ -258,6 +260,13 @@ static void run_one(tally *t, uint64_t number, run_kind kind)
     }
     if (cost > MOST_SECONDS) {
         complain(t, &r, "took too long", "");
+    }
+
+    const event *wrong = result.trace.row_count > 0 ? contradicting_event(&result) : NULL;
+    if (wrong != NULL) {
+        char text[80];
+        snprintf(text, sizeof text, "%s at %.9g s", event_name(wrong->kind), wrong->time);
+        complain(t, &r, "an event contradicts others", text);
     }
 
     // the same again, in other ways

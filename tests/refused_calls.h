@@ -2,6 +2,7 @@
 // refused_requests.h). Included by one file of a test.
 #pragma once
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <stdarg.h>
@@ -43,6 +44,13 @@ int __wrap_openat64(int folder, const char *path, int flags, ...)
     return __real_openat64(folder, path, flags);
 }
 
+static long folders_opened;
+static bool refuses_folder(void)
+{
+    folders_opened++;
+    return refuses();
+}
+REFUSABLE(refuses_folder(), DIR *, opendir, NULL, EMFILE, (const char *path), (path))
 REFUSABLE(refuses(), FILE *, fopen64, NULL, EMFILE, (const char *path, const char *mode),
           (path, mode))
 REFUSABLE(refuses(), FILE *, tmpfile64, NULL, ENOSPC, (void), ())
@@ -117,8 +125,18 @@ static bool interrupts(void)
 {
     return refuses() && atomic_load(&requests) == refused_at;
 }
-REFUSABLE(interrupts(), ssize_t, read, -1, EINTR, (int fd, void *bytes, size_t size),
-          (fd, bytes, size))
+static long reads, unreadable_at; // of reads, the one that fails for good; 0: none
+ssize_t __real_read(int fd, void *bytes, size_t size);
+ssize_t __wrap_read(int fd, void *bytes, size_t size);
+ssize_t __wrap_read(int fd, void *bytes, size_t size)
+{
+    const bool interrupted = interrupts();
+    if (interrupted || ++reads == unreadable_at) {
+        errno = interrupted ? EINTR : EIO;
+        return -1;
+    }
+    return __real_read(fd, bytes, size);
+}
 REFUSABLE(interrupts(), int, poll, -1, EINTR, (struct pollfd * ends, nfds_t count, int ms),
           (ends, count, ms))
 REFUSABLE(interrupts(), ssize_t, send, -1, EINTR,

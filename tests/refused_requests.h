@@ -16,6 +16,7 @@
 #include <sys/mman.h>
 
 #include "src/base/json.h"
+#include "src/base/loss.h"
 #include "src/scenario/scenario.h"
 #include "tests/check.h"
 
@@ -224,10 +225,12 @@ static status carry_out_refused(const attempt *a, long k, bool later, char **tex
     atomic_store(&requests, 0);
     refused_later = later;
     refused_at = k;
+    loss_forget();
     const status code = carry_out(a, out);
+    const bool lost = loss_noted();
     refused_at = 0;
     fclose(out);
-    return code;
+    return code == STATUS_OK && lost ? STATUS_NO_MEMORY : code;
 }
 
 // The work with no request refused is the measure; then one after the other is, alone and with all

@@ -121,6 +121,33 @@ static void test_what_has_no_effect_says_why(void **state)
     explorer_finish(&ex);
 }
 
+// What one link's springs and a limited current do is not called without effect, and the other way
+// round.
+static void test_inert_is_what_has_no_effect(void **state)
+{
+    (void)state;
+    const struct {
+        const char *lines;
+        int parameter;
+        bool inert;
+    } cases[] = {
+        {":set arm.links 1<Enter>", PARAMETER_INDEX(arm.k2), true},
+        {":set arm.links 1<Enter>", PARAMETER_INDEX(arm.damping_ratio), true},
+        {":set arm.links 1<Enter>:set arm.hub_joint spring<Enter>", PARAMETER_INDEX(arm.k2), true},
+        {":set arm.links 1<Enter>:set arm.hub_joint spring<Enter>",
+         PARAMETER_INDEX(arm.damping_ratio), false},
+        {":set arm.links 1<Enter>:set arm.hub_joint beam<Enter>", PARAMETER_INDEX(arm.k2), false},
+        {"", PARAMETER_INDEX(motor.current_limit), false},
+        {"", PARAMETER_INDEX(motor.transconductance), true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        explorer ex;
+        open_explorer(&ex, "corrected/first-impact");
+        press(&ex, cases[i].lines);
+        assert_int_equal(state_inert_reason(&ex.state, cases[i].parameter) != NULL, cases[i].inert);
+        explorer_finish(&ex);
+    }
+}
+
 static void test_predictors_take_the_voltage_in_force(void **state)
 {
     (void)state;
@@ -538,6 +565,7 @@ int main(void)
         cmocka_unit_test(test_typing_replaces_the_value),
         cmocka_unit_test(test_a_change_comes_before_the_contact_it_was_made_before),
         cmocka_unit_test(test_what_has_no_effect_says_why),
+        cmocka_unit_test(test_inert_is_what_has_no_effect),
         cmocka_unit_test(test_predictors_take_the_voltage_in_force),
         cmocka_unit_test(test_predictors_say_that_they_know_two_links),
         cmocka_unit_test(test_values_that_have_no_room_are_cut_visibly),

@@ -251,6 +251,27 @@ says err "arm.k2"
 expect 2 run hit.yaml --set motor.voltage
 expect 2 run hit.yaml --set wall.angle=99
 
+# --- a start behind the wall, on either side of it, by every way in
+printf 'title: Behind\nwall: {kind: plane, angle: 2.9}\ninitial: {angle: -0.4}\n' >behind.yaml
+for how in "check behind.yaml" "run behind.yaml" "predict behind.yaml" "sweep behind.yaml --vary motor.voltage=1,2"; do
+    # shellcheck disable=SC2086
+    expect 2 $how
+    says err "behind.yaml:3:"
+    says err "initial.angle = -0.4 rad lies behind the wall"
+done
+for contact in rigid kelvin-voigt hunt-crossley; do
+    for kind in point plane; do
+        expect 2 run hit.yaml --quiet --set wall.kind=$kind --set wall.contact=$contact --set wall.angle=2.9 \
+            --set initial.angle=-0.4
+        says err "initial.angle = -0.4 rad lies behind the wall"
+    done
+done
+expect 2 run thesis/fig-3-4 --set wall.angle=2.9 --set initial.angle=-0.4 --quiet
+expect 2 sweep hit.yaml --vary initial.angle=-0.1,-3.1 --quiet
+expect 2 sweep hit.yaml --set initial.angle=-0.4 --vary wall.angle=0.1:2.9:3 --quiet
+says err "initial.angle"
+expect 0 run hit.yaml --set wall.angle=2.9 --set initial.angle=-0.2 --quiet
+
 # expectations
 expect 1 run unmet.yaml
 says err "unmet.yaml:4:"
@@ -280,6 +301,19 @@ expect 2 run hit.yaml --json a --json b
 ("$lab" run hit.yaml --csv - 2>err; echo $? >status) | head -n 1 >out
 [ "$(cat status)" = 0 ] || fail "a closed pipe gave exit status $(cat status)"
 silent err
+
+# what has no descriptors left is not listed as if it were not there
+(ulimit -n 4 && "$lab" list >out 2>err)
+[ $? != 0 ] && [ -s err ] || fail "list without descriptors does not fail"
+
+# a script ends, or what is no line of one ends it
+expect 2 lab hit.yaml --quiet --script /dev/zero
+says err "/dev/zero:1: no command, expected a text of less than"
+expect 2 lab hit.yaml --quiet --script .
+says err ". cannot be read: Is a directory"
+{ printf 'seek 0.1\nseek '; printf '%0300d\n' 1; } >long.script
+expect 2 lab hit.yaml --quiet --script long.script
+says err "long.script:2: no command"
 
 # descriptors that are closed at the start are not taken by the first files opened
 "$lab" sweep hit.yaml --vary motor.voltage=1:2:2 --db closed.db --csv closed.csv <&- >&- 2>&- || true

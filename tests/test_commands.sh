@@ -138,6 +138,74 @@ printf 'control.seed=1,2\ncase a: arm.k2=4\ncase b: control.settings=stiffness=2
 expect 0 robust compare/observer --laws hybrid,impedance --runs 2 --over settings.set
 says err "hybrid runs without 'stiffness=20'"
 
+# --- what is wrong with a set is told before anything is run, with its lines, and all cases at once
+printf 'control.seed=1,2\ncase a: control.settings=kp=2\ncase b: arm.links=-3\ncase c:\ncase d: arm.k2=x\n' >faulty.set
+expect 2 robust compare/observer --runs 2 --over faulty.set --db faulty.sqlite
+says err "faulty.set:3: case 'b': --set arm.links=-3: arm.links = -3 is out of range"
+says err "faulty.set:5: case 'd': "
+[ "$(ls faulty*.sqlite 2>/dev/null | wc -l)" = 0 ] || fail "cases were run before others were looked at"
+printf 'control.seed=1,2\n\ninitial.angle=-0.1,9\ncase a:\ncase b:\n' >faulty.set
+expect 2 robust compare/observer --runs 2 --over faulty.set
+says err "faulty.set:3: "
+[ "$(wc -l <err)" = 1 ] || fail "a line of a set is told for each case"
+printf 'initial.angle=-0.1,0.5\ncase a: arm.k2=4\n' >faulty.set
+expect 2 robust compare/observer --runs 2 --over faulty.set
+says err "faulty.set:2: case 'a': run "
+head -c 70000 /dev/zero | tr '\0' 1 >long.set
+printf 'control.seed=1\0,2\n' >zero.set
+for set in . /dev/full long.set zero.set; do
+    expect 2 robust compare/observer --over "$set"
+    says err "'$set'"
+    [ "$(wc -l <err)" = 1 ] || fail "robust --over $set says more than why"
+done
+
+# --- what lies outside the scenario is changed between two calls: the second one gives what a call
+# --- without the rows of the first gives, or refuses them
+cat >outside.yaml <<'END'
+title: A program that reads a table
+control: {law: process, command: runner law.sh --table=volts.txt, rate: 100 Hz, force: 1 N}
+run: {duration: 0.05 s}
+END
+mkdir -p programs
+reset_outside() {
+    echo 2 >volts.txt
+    echo 'volts=$(cat volts.txt); while read -r line; do echo "{\"command\": $volts}"; done' >law.sh
+    printf '#!/bin/sh\nexec sh "$@"\n' >programs/runner
+    chmod +x programs/runner
+    sed -i 's/duration: .*}/duration: 0.05 s}/' outside.yaml
+    printf 'initial.angle=-0.1,-0.2\ncase a: motor.stiction=0.04\n' >outside.set
+}
+many() { # ROWS COMMAND...: a sweep or cases over the program, with the rows they keep
+    local rows=$1
+    shift
+    code=0
+    PATH=$PWD/programs:$PATH "$program" "$@" --db "$rows" --csv "$rows.csv" --allow-code --quiet 2>err || code=$?
+}
+reset_outside
+for command in 'sweep outside.yaml --vary initial.angle=-0.1,-0.2' 'robust outside.yaml --over outside.set --runs 2'; do
+    for change in 'echo 3 >volts.txt' 'sed -i "s/volts}/volts.5}/" law.sh' 'rm volts.txt' \
+        'sed -i "s/duration: .*}/duration: 0.06 s}/" outside.yaml' 'sed -i s/0.04/0.08/ outside.set' \
+        'touch law.sh volts.txt outside.yaml' 'chmod -x programs/runner' 'echo >programs/runner' 'sed -i s/-0.2/-0.3/ outside.set'; do
+        rm -f kept*.sqlite fresh*.sqlite
+        # shellcheck disable=SC2086
+        many kept.sqlite $command
+        [ "$code" = 0 ] || fail "$command: $(cat err)"
+        eval "$change"
+        # shellcheck disable=SC2086
+        many kept.sqlite $command
+        kept=$code
+        # shellcheck disable=SC2086
+        many fresh.sqlite $command
+        if [ "$kept" != 2 ]; then
+            [ "$kept" = "$code" ] && cmp -s kept.sqlite.csv fresh.sqlite.csv ||
+                fail "$command goes on after '$change' with other rows"
+        elif [ "$change" = 'touch law.sh volts.txt outside.yaml' ]; then
+            fail "$command refuses what is the same: $(cat err)"
+        fi
+        reset_outside
+    done
+done
+
 # --- a plot without a name of its own has its recipe's
 expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --vary arm.k2=4:6:2 --db map.sqlite --quiet
 printf 'tables:\n  - {file: map.sqlite, x: motor.voltage, y: arm.k2, z: peak_force_N}\npanels:\n  - {weight: 2}\n' >map.yaml
@@ -148,6 +216,38 @@ says out "map.png"
 # --- the environments of figures stand in one file, one for each
 expect 0 figures 3.4 3.5 -o pictures --format svg --latex all.tex
 [ "$(grep -c 'begin{figure}' all.tex)" = 2 ] || fail "all.tex has not two figures"
+
+# --- whatever draws or heads a run says what was changed of the scenario: what --help lists with
+# --set, each with what it needs besides; a command that is new has to be added here
+declare -A besides=([run]='' [predict]='' [modes]='' [converge]='' [compare]='hit.yaml' [show]=''
+    [sweep]='--vary motor.voltage=1:2:2' [study]='' [robust]='--set control.force=1 --laws hybrid,force-pd --runs 3'
+    [calibrate]='' [animate]='' [lab]='' [lesson]='')
+title_of() { sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' "$1" | head -1; }
+expect 0 help
+for command in $(awk '/^  [a-z]/ { print $1 }' out); do
+    "$program" "$command" --help 2>/dev/null >help.txt
+    grep -q -e '--set' help.txt || continue
+    [ -n "${besides[$command]+there}" ] || fail "$command takes --set: does its title say what was changed?"
+    operands=hit.yaml
+    [ "$command" != study ] || operands="methods hit.yaml --set wall.angle=0.01"
+    if grep -q -e '--plot' help.txt; then
+        # shellcheck disable=SC2086
+        expect 0 "$command" $operands ${besides[$command]} --set run.duration=0.3 --set arm.tip_mass=0.004 \
+            --plot "$command.svg" --quiet
+        title_of "$command.svg" | grep -q 'arm.tip_mass.=.0.004' ||
+            fail "$command draws a title without what was changed: $(title_of "$command.svg")"
+    fi
+done
+for command in show run predict modes converge; do
+    expect 0 "$command" hit.yaml --set arm.tip_mass=0.004
+    head -1 out | grep -q 'An impact, with arm.tip_mass = 0.004 kg' || fail "$command does not say what was changed"
+done
+expect 0 run hit.yaml --set arm.tip_mass=0.004 --quiet --scene changed.png
+LC_ALL=C grep -aq 'An impact, with..arm.tip_mass..=..0.004..kg' changed.png || fail "a scene does not say what was changed"
+
+# given the value that it has, nothing is changed; a name that stands in for the title is not kept from it
+expect 0 run hit.yaml --set motor.voltage=2
+[ "$(head -1 out)" = "hit.yaml: An impact" ] || fail "what was not changed is said to be: $(head -1 out)"
 
 # --- on a terminal a sweep shows a bar, and takes it away
 if command -v script >/dev/null; then

@@ -5,11 +5,13 @@
 # before stands unchanged (or the whole new one), and nothing is left beside it.
 # $1: the program, $2: fail_kth.so, $3: how many allocations at most fail for each command (default 60)
 set -u
-preload=$(readlink -f "$2")
+fail_kth=$(readlink -f "$2")
 most=${3:-60}
 note_count=$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/note_count
 # shellcheck source=tests/expect.sh
 . "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/expect.sh"
+preload=./fail_kth.so # LD_PRELOAD splits at blanks and colons, which the build folder's name may have
+ln -s "$fail_kth" "$preload"
 injected=0
 
 if ldd "$program" | grep -q 'lib[atu]*san'; then

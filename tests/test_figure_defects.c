@@ -56,6 +56,116 @@ static void the_peak_is_on_the_curve(void **state)
     synthetic_finish(&s);
 }
 
+// ---- labels of marks
+
+static void ignore_sentence(void *context, const char *sentence)
+{
+    (void)context;
+    (void)sentence;
+}
+
+// The text of a mark as it was drawn, with an arrow or not; fails if it is not there.
+static const figure_text *text_of_mark(const figure_report *r, const figure_mark *m)
+{
+    char *wanted = text_plain(m->label);
+    const figure_text *found = NULL;
+    for (int i = 0; i < r->text_count; i++) {
+        found = g_str_has_prefix(r->texts[i].text, wanted) ? &r->texts[i] : found;
+    }
+    if (found == NULL) {
+        fail_msg("'%s' is not drawn", wanted);
+    }
+    g_free(wanted);
+    return found;
+}
+
+// Draws a shipped scenario at both widths, from a time on and to another one, and looks at each
+// mark.
+static void check_labels(const char *name, double from, double to,
+                         void (*check)(const figure_mark *m, const figure_text *t, double x,
+                                       double y))
+{
+    scenario s;
+    run_result result;
+    assert_int_equal(scenario_open(&s, name, ignore_sentence, NULL), STATUS_OK);
+    assert_int_equal(run_scenario(&s, true, &result), STATUS_OK);
+    const trace_run run = {&s, &result, NULL};
+    for (int narrow = 0; narrow < 2; narrow++) {
+        static figure_report r;
+        static trace_figure t;
+        assert_int_equal(trace_figure_init(&t, NULL, usual_panels, USUAL_PANELS, &run, 1, NULL),
+                         STATUS_OK);
+        t.figure.width = narrow ? 85 : 170;
+        t.figure.x.low = from;
+        t.figure.x.high = to;
+        record(&t.figure, &r);
+        expect_tidy(&t.figure);
+        assert_true(t.figure.mark_count > 0);
+        for (int i = 0; i < t.figure.mark_count; i++) {
+            const figure_mark *m = &t.figure.marks[i];
+            const figure_range *range = &r.ranges[0];
+            const figure_rect *box = &r.panels[0];
+            if (m->x < range->x_low || m->x > range->x_high) {
+                continue;
+            }
+            check(m, text_of_mark(&r, m),
+                  box->x + box->width * (m->x - range->x_low) / (range->x_high - range->x_low),
+                  box->y + box->height * (range->y_high - m->y) / (range->y_high - range->y_low));
+        }
+        trace_figure_finish(&t);
+    }
+    run_finish(&result);
+    scenario_finish(&s);
+}
+
+static int arrows;
+
+static void check_mode(const figure_mark *m, const figure_text *t, double x, double y)
+{
+    (void)m;
+    (void)y;
+    const bool arrow = g_str_has_suffix(t->text, "\u2192");
+    arrows += arrow;
+    assert_true(arrow ? t->place.x + t->place.width < x : t->place.x > x);
+}
+
+// What begins at a line stands on that side of it, or points there where the page ends.
+static void labels_of_modes_stand_where_the_mode_is(void **state)
+{
+    (void)state;
+    check_labels("compare/hybrid", 0, 0, check_mode);
+    check_labels("compare/bang-bang", 0, 0, check_mode);
+    check_labels("compare/reverse-torque", 0, 0, check_mode);
+    assert_int_equal(arrows, 0);
+    check_labels("compare/hybrid", 0.2, 0.66, check_mode);
+    assert_int_equal(arrows, 2);
+}
+
+static void check_peak(const figure_mark *m, const figure_text *t, double x, double y)
+{
+    if (!g_str_has_prefix(m->label, "peak")) {
+        return;
+    }
+    const figure_rect *r = &t->place;
+    const double across = fmax(0, fmax(r->x - x, x - r->x - r->width));
+    const double down = fmax(0, fmax(r->y - y, y - r->y - r->height));
+    check_below(hypot(across, down), 5);
+}
+
+// Wherever there is room for a word; no text meets another, not in the insets of short pulses
+// either.
+static void the_label_of_the_peak_stands_at_its_point(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"corrected/first-impact", "corrected/stiff-beam",
+                                        "corrected/five-links",   "corrected/spring-hub",
+                                        "corrected/plane-wall",   "corrected/fast-impact",
+                                        "thesis/fig-3-4"};
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        check_labels(names[i], 0, 0, check_peak);
+    }
+}
+
 static void quantities_have_the_same_digits(void **state)
 {
     (void)state;
@@ -395,6 +505,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_last_of_twenty_links_is_body_21),
         cmocka_unit_test(the_peak_is_on_the_curve),
+        cmocka_unit_test(labels_of_modes_stand_where_the_mode_is),
+        cmocka_unit_test(the_label_of_the_peak_stands_at_its_point),
         cmocka_unit_test(quantities_have_the_same_digits),
         cmocka_unit_test(numbers_keep_their_units),
         cmocka_unit_test(indices_can_be_read_on_scaled_pages),

@@ -182,6 +182,48 @@ static void test_split_screen(void **state)
     forget(&r[1]);
 }
 
+// The arrow's pixels of the left or right one of two views.
+static int arrow_of_view(cairo_surface_t *frame, bool right)
+{
+    const int width = cairo_image_surface_get_width(frame);
+    int count = 0;
+    for (int y = 0; y < 2 * cairo_image_surface_get_height(frame) / 3; y++) {
+        for (int x = right ? width / 2 + 2 : 0; x < (right ? width : width / 2 - 2); x++) {
+            count += count_arrow(pixel_at(frame, x, y));
+        }
+    }
+    return count;
+}
+
+// Runs side by side have one scale of force: where each presses with its share of its own peak, the
+// arrow of four times the force is several times as large.
+static void test_one_scale_of_force(void **state)
+{
+    (void)state;
+    recorded r[2] = {record("corrected/first-impact"), record("corrected/first-impact")};
+    run_finish(&r[1].result);
+    assert_int_equal(scenario_override(&r[1].scenario, "motor.voltage=4", NULL), STATUS_OK);
+    assert_int_equal(run_scenario(&r[1].scenario, true, &r[1].result), STATUS_OK);
+    const film_run runs[2] = {{&r[0].scenario, &r[0].result, "one"},
+                              {&r[1].scenario, &r[1].result, "two"}};
+    film_options options = small_film();
+    options.width = 640;
+    options.height = 480;
+    options.view.plain = true;
+    fault f = {0};
+    if (film_write(runs, 2, &options, in_folder("scale"), &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    cairo_surface_t *frame =
+        cairo_image_surface_create_from_png(in_folder("scale/frame-00005.png"));
+    const int one = arrow_of_view(frame, false), four = arrow_of_view(frame, true);
+    check_below(0, one);
+    check_below(2.5 * one, four);
+    cairo_surface_destroy(frame);
+    forget(&r[0]);
+    forget(&r[1]);
+}
+
 static void test_film(void **state)
 {
     (void)state;
@@ -385,12 +427,19 @@ static void test_film_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clock),         cmocka_unit_test(test_clock_of_bounces),
-        cmocka_unit_test(test_frames),        cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_split_screen),  cmocka_unit_test(test_film),
-        cmocka_unit_test(test_encoder_fails), cmocka_unit_test(test_gif_as_asked),
-        cmocka_unit_test(test_interrupted),   cmocka_unit_test(test_encoder_complains),
-        cmocka_unit_test(test_encoder_hangs), cmocka_unit_test(test_film_refused),
+        cmocka_unit_test(test_clock),
+        cmocka_unit_test(test_clock_of_bounces),
+        cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_split_screen),
+        cmocka_unit_test(test_one_scale_of_force),
+        cmocka_unit_test(test_film),
+        cmocka_unit_test(test_encoder_fails),
+        cmocka_unit_test(test_gif_as_asked),
+        cmocka_unit_test(test_interrupted),
+        cmocka_unit_test(test_encoder_complains),
+        cmocka_unit_test(test_encoder_hangs),
+        cmocka_unit_test(test_film_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down) != 0;
 }

@@ -1,5 +1,6 @@
 // JSON files: read back by jansson, with the intended order and digits.
 #include "src/base/json.h"
+#include "src/base/loss.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -81,22 +82,22 @@ static void what_cannot_be_put_is_noted_once(void **state)
 {
     (void)state;
     json_t *object = json_object(), *array = json_array();
-    (void)json_lost_something();
+    loss_forget();
     json_put(object, "a", json_number(1));
     json_add(array, json_text("b"));
-    assert_false(json_lost_something());
+    assert_false(loss_noted());
 
     // texts that are written are not lost
     free(written(json_text("as it is")));
-    assert_false(json_lost_something());
+    assert_false(loss_noted());
 
     // no value, as without memory, and no container
     json_put(object, "c", NULL);
     json_put(object, "d", json_number(2));
-    assert_true(json_lost_something());
-    assert_false(json_lost_something());
+    assert_true(loss_noted());
+    assert_false(loss_noted());
     json_add(NULL, json_number(3));
-    assert_true(json_lost_something());
+    assert_true(loss_noted());
     json_decref(object);
     json_decref(array);
 }
@@ -109,12 +110,12 @@ static void a_member_that_is_lost_is_noted(void **state)
     FILE *stream = fmemopen(text, sizeof text, "w");
     assert_non_null(stream);
     json_t *value = json_real(1.5);
-    json_lost_something();
+    loss_forget();
     json_write_member(stream, value, 1);
-    assert_false(json_lost_something());
+    assert_false(loss_noted());
     json_write_member(stream, NULL, 1);
-    assert_true(json_lost_something());
-    assert_false(json_lost_something());
+    assert_true(loss_noted());
+    assert_false(loss_noted());
     fclose(stream);
     assert_string_equal(text, "1.5");
     json_decref(value);

@@ -76,10 +76,13 @@ run env -u LC_ALL "$lab" list || fail "exit status $?"
 says "locale none"
 grep -q "packages are missing" "$folder/out" && fail "it installs a second time"
 
-# a moved folder is built anew; the last line of a test counts
+# a moved folder is built anew, and what somebody keeps there stays; the last line of a test counts
+echo mine >"$folder/my lab (one)/build/notes"
 mv "$folder/my lab (one)" "$folder/my lab (two)"
 lab="$folder/my lab (two)/lab"
 run "$lab" test || fail "exit status $?"
+says "building, this takes a moment"
+[ "$(cat "$folder/my lab (two)/build/notes")" = mine ] || fail "a file in a moved build folder is lost"
 [ "$(tail -n 1 "$folder/out")" = "3 passed, 0 failed" ] || fail "wrong last line"
 run env FAILING=2 "$lab" test && fail "failing tests pass"
 [ "$(tail -n 1 "$folder/out")" = "3 passed, 2 failed" ] || fail "wrong last line"
@@ -90,6 +93,40 @@ for command in list test build; do
     says "there is no writing to /proc/none/build"
     says "IMPACTLAB_BUILD="
 done
+
+# refused WHAT FOLDER: no command builds there, and nothing in it changes
+refused() {
+    local command before
+    before=$(cd "$2" && find -H . | sort)
+    for command in list test build; do
+        run env IMPACTLAB_BUILD="$2" "$lab" $command && fail "$command builds in $1"
+        says "name another folder to build in: IMPACTLAB_BUILD="
+    done
+    [ "$(cd "$2" && find -H . | sort)" = "$before" ] || fail "something changed in $1"
+}
+
+# a folder is only taken that is empty, or was made by this clone or one that is gone
+cp -r "$folder/my lab (two)" "$folder/other"
+run "$folder/other/lab" build || fail "a copied folder is not built: exit status $?"
+[ "$(cat "$folder/other/build/notes")" = mine ] || fail "a file in a copied build folder is lost"
+refused "another clone's folder" "$folder/other/build"
+says "$folder/other/build is the build folder of $folder/other"
+ln -s "$folder/other/build" "$folder/link"
+refused "another clone's folder behind a link" "$folder/link"
+cp -r "$folder/other" "$folder/my lab (two)/within"
+run "$folder/my lab (two)/within/lab" build || fail "a clone within another is not built"
+refused "a clone within this one" "$folder/my lab (two)/within/build"
+mkdir "$folder/home" && touch "$folder/home/.profile"
+refused "a home folder" "$folder/home"
+says "holds files that no build of the lab made"
+run env IMPACTLAB_BUILD="$folder/shared" "$folder/other/lab" build || fail "exit status $?"
+refused "a folder that another clone named" "$folder/shared"
+echo mine >"$folder/shared/notes"
+rm -r "$folder/other"
+run env IMPACTLAB_BUILD="$folder/shared" "$lab" build || fail "the folder of a clone that is gone is refused"
+[ "$(cat "$folder/shared/notes")" = mine ] || fail "a file in the folder of a clone that is gone is lost"
+mkdir -p "$folder/my lab (two)/plain/meson-private" && touch "$folder/my lab (two)/plain/build.ninja"
+run env IMPACTLAB_BUILD="$folder/my lab (two)/plain" "$lab" build || fail "what meson set up is refused"
 
 [ $failures = 0 ] && echo "all well"
 exit $failures

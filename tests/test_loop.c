@@ -133,6 +133,40 @@ static void a_state_belongs_to_its_loop(void **state)
     }
 }
 
+// A state kept while the wall's face is on its way back has it where it is: the arm meets it again
+// where it does without going back.
+static void a_state_has_the_face_on_its_way(void **state)
+{
+    (void)state;
+    run_loop *l = begun(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=100",
+                                 "wall.damping=500", "run.duration=2"),
+                        NULL);
+    fault f;
+    assert_int_equal(loop_until(l, 0.8, &f), STATUS_OK);
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(motor.voltage), -0.5, &f), STATUS_OK);
+    assert_int_equal(loop_until(l, 1.2, &f), STATUS_OK);
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(motor.voltage), 2, &f), STATUS_OK);
+    const sample kept_at = loop_row(l);
+    assert_true(kept_at.contact == 0 && kept_at.face_depth > 1e-4);
+    void *kept = malloc(loop_saved_size(l));
+    assert_non_null(kept);
+    loop_save(l, kept);
+
+    // to the end twice
+    sample ends[2];
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(loop_until(l, 2, &f), STATUS_OK);
+        ends[i] = loop_row(l);
+        assert_true(ends[i].contact == 1 && ends[i].face_depth > 1e-4);
+        assert_int_equal(loop_restore(l, kept, loop_saved_size(l), &f), STATUS_OK);
+        const sample now = loop_row(l);
+        assert_memory_equal(&now, &kept_at, sizeof now);
+    }
+    assert_memory_equal(&ends[0], &ends[1], sizeof ends[0]);
+    free(kept);
+    loop_destroy(l);
+}
+
 // Another voltage each millisecond, whose strides are made for no more than the next change or two:
 // the motion is the one that a program finds which stops in between, and the ledger closes.
 static void changes_are_followed_wherever_steps_end(void **state)
@@ -165,13 +199,77 @@ static void changes_are_followed_wherever_steps_end(void **state)
     loop_destroy(cut);
 }
 
+// Cut anywhere, a run of two links differs from the uninterrupted one by rounding alone.
+static void a_cut_elsewhere_is_rounding(void **state)
+{
+    (void)state;
+    const char *const *const cases[] = {
+        SETTINGS("run.duration=1"), SETTINGS("motor.voltage=5", "run.duration=1"),
+        SETTINGS("wall.kind=plane", "run.duration=1"),
+        SETTINGS("wall.angle=0", "initial.angle=-0.1", "control.law=hybrid", "sensor.ideal=true")};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        run_loop *whole = begun(cases[i], NULL), *cut = begun(cases[i], NULL);
+        fault f;
+        assert_int_equal(loop_until(whole, 10, &f), STATUS_OK);
+        for (int k = 0; !loop_ended(cut); k++) {
+            assert_int_equal(loop_until(cut, loop_time(cut) + 0.0014 + 0.0007 * sin(k), &f),
+                             STATUS_OK);
+        }
+        const summary a = loop_summary(whole), b = loop_summary(cut);
+        const sample x = loop_row(whole), y = loop_row(cut);
+        assert_true(isfinite(a.first_contact_s) && a.impacts == b.impacts);
+        check_close(b.first_contact_s, a.first_contact_s, 1e-15);
+        check_close(b.peak_force_N, a.peak_force_N, 1e-14 * a.peak_force_N);
+        check_close(y.hub_angle, x.hub_angle, 1e-15);
+        check_close(y.last_angle, x.last_angle, 1e-15);
+        check_close(y.force, x.force, 1e-13);
+        loop_destroy(whole);
+        loop_destroy(cut);
+    }
+}
+
+// Nor does a cut change where the arm meets the face of a wall that it has left on its way back.
+static void a_cut_leaves_the_face_on_its_way(void **state)
+{
+    (void)state;
+    const char *const *const walls[] = {
+        SETTINGS("arm.links=4", "arm.hub_joint=beam", "motor.voltage=4", "wall.kind=plane",
+                 "wall.contact=kelvin-voigt", "wall.stiffness=2e3", "wall.damping=100",
+                 "run.duration=0.45"),
+        SETTINGS("arm.links=4", "arm.hub_joint=beam", "motor.voltage=8", "wall.kind=plane",
+                 "wall.contact=hunt-crossley", "wall.stiffness=1e4", "wall.damping=1e5",
+                 "run.duration=0.3")};
+    for (int i = 0; i < 2; i++) {
+        run_loop *whole = begun(walls[i], NULL), *cut = begun(walls[i], NULL);
+        fault f;
+        double left = 0;
+        assert_int_equal(loop_until(whole, 1, &f), STATUS_OK);
+        for (int k = 0; !loop_ended(cut); k++) {
+            assert_int_equal(loop_until(cut, loop_time(cut) + 0.0014 + 0.0007 * sin(k), &f),
+                             STATUS_OK);
+            const sample now = loop_row(cut);
+            left = now.contact == 0 ? fmax(left, now.face_depth) : left;
+        }
+        const sample x = loop_row(whole), y = loop_row(cut);
+        assert_true(left > 1e-3 && x.contact == 1);
+        check_close(y.hub_angle, x.hub_angle, 1e-14);
+        check_close(y.face_depth, x.face_depth, 1e-14);
+        check_relative(y.wall_loss, x.wall_loss, 1e-12);
+        loop_destroy(whole);
+        loop_destroy(cut);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_cut_elsewhere_is_rounding),
+        cmocka_unit_test(a_cut_leaves_the_face_on_its_way),
         cmocka_unit_test(the_end_stays),
         cmocka_unit_test(what_stopped_it_is_said_again),
         cmocka_unit_test(a_refused_input_changes_nothing),
         cmocka_unit_test(a_state_belongs_to_its_loop),
+        cmocka_unit_test(a_state_has_the_face_on_its_way),
         cmocka_unit_test(changes_are_followed_wherever_steps_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -61,12 +61,16 @@ static void structural_damping_is_of_the_first_mode(void **state)
         SETTINGS("arm.damping_ratio=0.03", "arm.links=3", "arm.hub_joint=beam",
                  "arm.link_lengths=0.2,0.3,0.5", "arm.joint_stiffness=20,9,5"),
         SETTINGS("arm.damping_ratio=0.03", "arm.links=1", "arm.hub_joint=beam",
-                 "arm.joint_stiffness=7")};
+                 "arm.joint_stiffness=7"),
+        SETTINGS("arm.damping_ratio=0.03", "arm.links=1", "arm.hub_joint=spring", "arm.k1=30"),
+        SETTINGS("arm.damping_ratio=0.03", "arm.links=1", "arm.hub_joint=spring",
+                 "arm.tip_mass=0.2")};
     for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
         parameters p = fixture_parameters(arms[i]);
         held_modes m = modes_of(&p);
         const double per_stiffness = 2 * 0.03 / m.frequencies[0];
-        for (int k = p.arm.hub_joint == HUB_BEAM ? 0 : 1; k < p.arm.links; k++) {
+        const bool root = p.arm.hub_joint == HUB_BEAM || p.arm.links == 1;
+        for (int k = root ? 0 : 1; k < p.arm.links; k++) {
             check_relative(arm_joint_damping(&m.arm, k),
                            per_stiffness * arm_joint_stiffness(&m.arm, k), 1e-6);
         }

@@ -4,6 +4,7 @@
 
 #include "src/run/run.h"
 #include "tests/arm_fixture.h"
+#include "tests/told_events.h"
 
 static run_result run(const char *const *settings)
 {
@@ -120,6 +121,71 @@ static void a_bouncing_rod_rebounds_by_e_and_comes_to_rest(void **state)
     assert_true(find_event(&result, EVENT_IMPACT, impacts - 2)->speed >= 1e-4);
     check_relative(result.summary.steady_force_N, r.torque + 0.045, 1e-12);
     run_finish(&result);
+}
+
+// Parameters refuse an arm that starts behind the wall; put there regardless, it cannot be relied
+// on, whatever moves it.
+static void an_arm_inside_a_rigid_wall_is_never_ok(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"method.name=event", "method.name=newmark",
+                                          "method.name=generalized-alpha"};
+    static const char *const kinds[] = {"wall.kind=point", "wall.kind=plane"};
+    for (int i = 0; i < 12; i++) {
+        scenario s = {.parameters = fixture_parameters(
+                          SETTINGS(methods[i % 3], kinds[i / 3 % 2], "wall.angle=2.9",
+                                   i < 6 ? "arm.links=1" : "arm.links=2"))};
+        run_result r;
+        s.parameters.initial.angle = -0.4;
+        if (run_scenario(&s, true, &r) == STATUS_OK) {
+            assert_true(r.summary.max_penetration_m > 0.1);
+            assert_true(r.summary.inaccurate);
+            assert_non_null(strstr(r.summary.message, "inside a rigid wall"));
+        }
+        run_finish(&r);
+    }
+}
+
+// A point stops the line through the link on both sides of the hub: an arm may start, and press, on
+// its far side, which the run says.
+static void a_start_on_the_point_behind_the_hub_is_a_touch_from_behind(void **state)
+{
+    (void)state;
+    run_result r = run(SETTINGS("arm.links=1", "wall.angle=3", "initial.angle=-0.14159265358979312",
+                                "motor.voltage=-1", "run.duration=0.2"));
+    check_close(r.summary.first_contact_s, 0, 0);
+    check_relative(r.summary.steady_force_N, one_rod().torque + 0.045, 1e-12);
+    assert_non_null(strstr(r.summary.message, "1 of the touches were behind it"));
+    run_finish(&r);
+}
+
+// An arm that starts on its wall does not know at what angle that is, which rounding of the gap
+// does: of every arm, motor and wall the run is the same, and comes to its end.
+static void a_start_on_the_wall_is_the_same_at_any_angle(void **state)
+{
+    (void)state;
+    static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt",
+                                        "wall.contact=hunt-crossley"};
+    static const char *const arms[] = {"arm.links=1", "arm.links=2", "arm.links=4"};
+    static const char *const motors[] = {"motor.inductance=0", "motor.inductance=0.0004",
+                                         "motor.inductance=0.1", "motor.current_limit=2"};
+    static const double angles[] = {0, 0.44995051704215783, -1.0452626829386438,
+                                    -1.6363530097793064, -2.9183526112184675};
+    for (int i = 0; i < 72; i++) {
+        const char *kind = i % 2 == 0 ? "wall.kind=point" : "wall.kind=plane";
+        double peak = 0;
+        for (int k = 0; k < 5; k++) {
+            char wall[40], start[40];
+            snprintf(wall, sizeof wall, "wall.angle=%.17g", angles[k]);
+            snprintf(start, sizeof start, "initial.angle=%.17g", angles[k]);
+            run_result r = run(SETTINGS(kind, walls[i / 2 % 3], arms[i / 6 % 3], motors[i / 18],
+                                        wall, start, "motor.voltage=1.2", "run.duration=0.1"));
+            peak = k == 0 ? r.summary.peak_force_N : peak;
+            check_relative(r.summary.peak_force_N, peak, 1e-5);
+            assert_false(r.summary.inaccurate);
+            run_finish(&r);
+        }
+    }
 }
 
 static void check_complementarity(const run_result *r)
@@ -243,6 +309,99 @@ static void script_acts_at_its_time_and_is_booked(void **state)
     assert_true(apart);
     check_complementarity(&r);
     run_finish(&r);
+}
+
+static void check_events_tell_the_state(const run_result *r)
+{
+    const event *wrong = contradicting_event(r);
+    if (wrong != NULL) {
+        fail_msg("%s at %.9g s", event_name(wrong->kind), wrong->time);
+    }
+}
+
+static void events_tell_what_is_in_contact_and_what_sticks(void **state)
+{
+    (void)state;
+    static const char *const arms[] = {"arm.links=1", "arm.links=2", "arm.links=3",
+                                       "arm.hub_joint=spring"};
+    static const char *const walls[][3] = {
+        {"wall.contact=rigid", "wall.restitution=0", "wall.mass=0"},
+        {"wall.contact=rigid", "wall.restitution=0.5", "wall.mass=0"},
+        {"wall.contact=kelvin-voigt", "wall.damping=200", "wall.mass=0"},
+        {"wall.contact=kelvin-voigt", "wall.damping=20", "wall.mass=0.05"},
+        {"wall.contact=hunt-crossley", "wall.damping=1e6", "wall.mass=0"}};
+    const int voltage = PARAMETER_INDEX(motor.voltage), stiction = PARAMETER_INDEX(motor.stiction);
+    for (int i = 0; i < 4 * 5 * 2; i++) {
+        action todo[] = {{.time = 0.9, .kind = ACTION_PUSH, .value = -0.05},
+                         {.time = 1.4, .kind = ACTION_PUSH, .value = 0.05},
+                         {.time = 1.5, .kind = ACTION_SET, .parameter = voltage, .value = -3},
+                         {.time = 1.7, .kind = ACTION_SET, .parameter = voltage, .value = 4},
+                         {.time = 2.3, .kind = ACTION_SET, .parameter = stiction, .value = 2},
+                         {.time = 2.4, .kind = ACTION_PUSH, .value = -0.02},
+                         {.time = 2.6, .kind = ACTION_SET, .parameter = stiction, .value = 0}};
+        const char *const *wall = walls[i / 4 % 5];
+        scenario s = {.parameters = fixture_parameters(
+                          SETTINGS(arms[i % 4], wall[0], wall[1], wall[2], "run.duration=3",
+                                   "arm.k1=300", i < 20 ? "wall.kind=point" : "wall.kind=plane")),
+                      .actions = todo,
+                      .action_count = sizeof todo / sizeof *todo};
+        run_result r;
+        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+        check_events_tell_the_state(&r);
+        run_finish(&r);
+    }
+}
+
+// The hub stops, friction turns round, and the arm lifts off: that is a release, too.
+static void a_hub_that_stops_may_release_the_arm(void **state)
+{
+    (void)state;
+    action todo = {.time = 0.284,
+                   .kind = ACTION_SET,
+                   .parameter = PARAMETER_INDEX(motor.voltage),
+                   .value = 0.3};
+    scenario s = {.parameters =
+                      fixture_parameters(SETTINGS("motor.voltage=2", "motor.stiction=0.35")),
+                  .actions = &todo,
+                  .action_count = 1};
+    run_result r;
+    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    int lifted = 0;
+    for (size_t i = 0; i + 1 < r.trace.event_count; i++) {
+        const event *e = &r.trace.events[i];
+        lifted += e->kind == EVENT_STICK && e[1].kind == EVENT_RELEASE && e[1].time == e->time;
+    }
+    assert_int_equal(lifted, 1);
+    check_events_tell_the_state(&r);
+    run_finish(&r);
+}
+
+// A contact that a push or the script ends is released then.
+static void a_contact_ended_from_outside_is_released(void **state)
+{
+    (void)state;
+    const int voltage = PARAMETER_INDEX(motor.voltage);
+    const struct {
+        const char *restitution;
+        action todo;
+    } cases[] = {
+        {"wall.restitution=0", {.time = 1, .kind = ACTION_PUSH, .value = -0.02}},
+        {"wall.restitution=0.5", {.time = 1, .kind = ACTION_PUSH, .value = 0.02}},
+        {"wall.restitution=0", {.time = 1, .kind = ACTION_SET, .parameter = voltage, .value = -1}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        action todo = cases[i].todo;
+        scenario s = {.parameters =
+                          fixture_parameters(SETTINGS("arm.links=1", cases[i].restitution)),
+                      .actions = &todo,
+                      .action_count = 1};
+        s.parameters.run.duration = 1.2;
+        run_result r;
+        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+        check_close(find_event(&r, EVENT_RELEASE, 0)->time, 1, 0);
+        check_events_tell_the_state(&r);
+        run_finish(&r);
+    }
 }
 
 // An arm that starts at rest on the wall is in its first contact at once, held still or not, for
@@ -488,6 +647,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_single_rod_follows_its_closed_form),
+        cmocka_unit_test(an_arm_inside_a_rigid_wall_is_never_ok),
+        cmocka_unit_test(a_start_on_the_wall_is_the_same_at_any_angle),
+        cmocka_unit_test(a_start_on_the_point_behind_the_hub_is_a_touch_from_behind),
         cmocka_unit_test(a_rod_that_gathers_speed_meets_the_wall_where_it_is),
         cmocka_unit_test(a_coasting_rod_sticks_when_friction_says),
         cmocka_unit_test(a_bouncing_rod_rebounds_by_e_and_comes_to_rest),
@@ -496,6 +658,9 @@ int main(void)
         cmocka_unit_test(the_located_peak_does_not_depend_on_the_step),
         cmocka_unit_test(without_a_trace_the_summary_is_the_same),
         cmocka_unit_test(script_acts_at_its_time_and_is_booked),
+        cmocka_unit_test(events_tell_what_is_in_contact_and_what_sticks),
+        cmocka_unit_test(a_hub_that_stops_may_release_the_arm),
+        cmocka_unit_test(a_contact_ended_from_outside_is_released),
         cmocka_unit_test(an_arm_that_starts_on_the_wall_is_in_contact),
         cmocka_unit_test(an_arm_that_moves_into_the_wall_is_in_contact),
         cmocka_unit_test(an_arm_on_the_wall_does_not_strike_it),

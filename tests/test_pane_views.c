@@ -85,7 +85,7 @@ static void test_statistics_are_from_the_mark_to_the_cursor(void **state)
     assert_shows(&ex, "mark and cursor, 0.25 to 0.45 s");
     assert_shows(&ex, wanted);
     draw_number(number, sizeof number, s.integral);
-    snprintf(wanted, sizeof wanted, "integral %s s", number);
+    snprintf(wanted, sizeof wanted, "integral %s N s", number);
     assert_shows(&ex, wanted);
     press(&ex, "X");
     assert_hides(&ex, "mark and cursor,");

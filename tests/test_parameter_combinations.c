@@ -1,4 +1,6 @@
 // Combinations of parameters: contradictions, and values derived from given ones.
+#include "src/arm/chain.h"
+#include "src/base/random.h"
 #include "tests/given_parameters.h"
 
 // The pair of settings cannot be resolved and the sentence says `expected`.
@@ -80,6 +82,73 @@ static void defaults_are_never_to_blame(void **state)
     give(&p, "initial.angle", "-1 rad");
     assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
     assert_string_equal(f.path, "initial.angle");
+}
+
+// Where a straight arm starts: how far its tip is behind the flat wall, or its line behind the
+// point, is by the sine of the angle between them, for any number of links.
+static void check_start(parameters p, double angle, double wall)
+{
+    fault f = {0};
+    arm a;
+    double q[5], rest[5] = {0}, behind;
+    p.initial.angle = angle;
+    p.wall.angle = wall;
+    p.set[parameter_find("initial.angle")] = p.set[parameter_find("wall.angle")] = true;
+    const status code = parameters_resolve(&p, &f);
+    p.arm.hub_joint = p.arm.model == ARM_PRINTED ? HUB_RIGID : p.arm.hub_joint;
+    arm_init(&a, &p);
+    assert_in_range(a.dof, 1, 5);
+    for (int k = 0; k < a.dof; k++) {
+        q[k] = angle;
+    }
+    chain_penetration(&a, q, rest, &behind, NULL);
+
+    const bool far = angle > wall + 1e-14; // where the wall is in front only after a turn
+    if (fabs(behind) > 1e-14 && (code == STATUS_OK) != (behind < 0 && !far)) {
+        fail_msg("start at %.17g, wall at %.17g, %.3g m behind: %s", angle, wall, behind, f.text);
+    }
+    const double ahead = wall - angle;
+    if (ahead == 0 || ahead == M_PI) {
+        assert_int_equal(code, STATUS_OK);
+    }
+    assert_true(code == STATUS_OK || strcmp(f.path, "initial.angle") == 0);
+}
+
+static void an_arm_starts_in_front_of_its_wall(void **state)
+{
+    (void)state;
+    static const char *const kinds[] = {"point", "plane"};
+    static const char *const contacts[] = {"rigid", "kelvin-voigt", "hunt-crossley"};
+    static const char *const methods[] = {"event", "newmark", "generalized-alpha"};
+    static const char *const links[] = {"1", "2", "5"};
+    random_generator g;
+    random_seed(&g, 29);
+    for (int i = 0; i < 3000; i++) {
+        const int contact = (int)random_below(&g, 3);
+        parameters p = fresh(i % 10 == 0 ? ARM_PRINTED : ARM_CORRECTED);
+        if (i % 10 > 0) {
+            give(&p, "wall.kind", kinds[random_below(&g, 2)]);
+            give(&p, "wall.contact", contacts[contact]);
+            give(&p, "method.name", methods[contact > 0 ? 0 : random_below(&g, 3)]);
+            give(&p, "arm.links", links[random_below(&g, 3)]);
+        }
+        const double wall = 6 * random_uniform(&g) - 3, near = exp(-40 * random_uniform(&g));
+        const double sign = random_uniform(&g) < 0.5 ? -1 : 1;
+        check_start(p, 6 * random_uniform(&g) - 3, wall);
+        check_start(p, wall, wall);
+        check_start(p, fmax(-3, fmin(wall + sign * near, 3)), wall);
+        if (wall - M_PI - near >= -3) {
+            check_start(p, wall - M_PI, wall);
+            check_start(p, wall - M_PI + sign * near, wall);
+        }
+    }
+
+    // without a wall anywhere
+    parameters p = fresh(ARM_CORRECTED);
+    fault f = {0};
+    give(&p, "wall.kind", "none");
+    give(&p, "initial.angle", "2");
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
 }
 
 // The bound of what the ledger may lack follows the method, unless it was given.
@@ -269,6 +338,7 @@ int main(void)
         cmocka_unit_test(conditions_hold_up_to_their_limits),
         cmocka_unit_test(walls_motors_and_sensors_follow_what_was_given),
         cmocka_unit_test(defaults_are_never_to_blame),
+        cmocka_unit_test(an_arm_starts_in_front_of_its_wall),
         cmocka_unit_test(the_ledgers_bound_follows_the_method),
         cmocka_unit_test(resolving_twice_changes_nothing),
     };

@@ -210,6 +210,26 @@ static void wrong_values_are_refused(void **state)
     check_refused("printed.sign_dead_band", "2", "neither true nor false");
 }
 
+// 5e-324 H for the motor ended the program: what is divided by such a number is none.
+static void values_next_to_nothing_are_refused(void **state)
+{
+    (void)state;
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        for (double value = 1e-101; value > 0; value /= 1e37) {
+            parameters p;
+            fault f;
+            parameters_defaults(&p, ARM_CORRECTED);
+            if (info->type == PARAMETER_REAL && info->minimum <= 0) {
+                assert_int_not_equal(parameter_set_number(&p, i, value, &f), STATUS_OK);
+                assert_non_null(strstr(f.text, "too small"));
+            }
+        }
+    }
+    check_refused("motor.inductance", "5e-324 H",
+                  "too small to be computed with, expected 0 or at least 1e-100 H");
+}
+
 static void an_endless_value_is_refused(void **state)
 {
     (void)state;
@@ -390,6 +410,7 @@ int main(void)
         cmocka_unit_test(notations_of_numbers),
         cmocka_unit_test(words_for_truth),
         cmocka_unit_test(wrong_values_are_refused),
+        cmocka_unit_test(values_next_to_nothing_are_refused),
         cmocka_unit_test(an_endless_value_is_refused),
         cmocka_unit_test(numbers_are_checked_too),
         cmocka_unit_test(ranges_include_their_ends),

@@ -470,6 +470,88 @@ static void mono_has_no_colour(void **state)
     synthetic_finish(&s);
 }
 
+// ---- runs side by side
+
+// The key has an entry that looks like a series in one respect: its colour, or its line.
+static bool is_in_key(const figure *fig, const figure_series *s, bool colour)
+{
+    bool found = false;
+    for (int i = 0; i < fig->key->series_count; i++) {
+        const figure_series *k = &fig->key->series[i];
+        found = found || (k->label != NULL && (colour ? k->colour == s->colour
+                                                      : k->colour == 6 && k->style == s->style));
+    }
+    return found;
+}
+
+// Each curve says which run (by its colour) and which signal (by its line) it is, in every panel
+// alike, and one key on top has them all; of eight runs with three signals each, at both widths.
+static void each_curve_of_a_comparison_says_run_and_signal(void **state)
+{
+    (void)state;
+    static const trace_panel panels[] = {
+        {.signals = {"last_velocity", "first_velocity"}},
+        {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}},
+        {.signals = {"last_angle"}}};
+    static const int signals[] = {2, 3, 1};
+    static trace_figure t;
+    trace_run runs[TRACE_RUNS];
+    char names[TRACE_RUNS][32];
+    synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    for (int count = 2; count <= TRACE_RUNS; count += 6) {
+        for (int i = 0; i < count; i++) {
+            snprintf(names[i], sizeof names[i], "run number %d", i + 1);
+            runs[i] = (trace_run){&s.scenario, &s.result, names[i], .rank = i + 1};
+        }
+        assert_int_equal(trace_figure_init(&t, "Runs", panels, 3, runs, count, NULL), STATUS_OK);
+
+        // colours are the runs', lines the signals': that of a body is the same in all panels
+        line_style of_body[4];
+        for (int p = 0; p < 3; p++) {
+            const figure_panel *panel = &t.figure.panels[p];
+            assert_int_equal(panel->series_count, count * signals[p]);
+            for (int i = 0; i < panel->series_count; i++) {
+                const figure_series *one = &panel->series[i];
+                const int run = i / signals[p], signal = i % signals[p];
+                const int body = signal_table[signal_find(panels[p].signals[signal])].body;
+                assert_int_equal(one->run, run + 1);
+                assert_int_equal(one->colour, t.figure.panels[0].series[run * signals[0]].colour);
+                if (run == 0 && p == (body == BODY_HUB)) {
+                    of_body[body] = one->style;
+                }
+                assert_int_equal(one->style, of_body[body]);
+                assert_true(is_in_key(&t.figure, one, true) && is_in_key(&t.figure, one, false));
+            }
+        }
+        assert_true(of_body[BODY_HUB] != of_body[BODY_FIRST_LINK] &&
+                    of_body[BODY_HUB] != of_body[BODY_LAST_LINK] &&
+                    of_body[BODY_FIRST_LINK] != of_body[BODY_LAST_LINK]);
+        for (int i = 1; i < count; i++) {
+            assert_int_not_equal(t.figure.key->series[i].colour, t.figure.key->series[0].colour);
+        }
+
+        // the key is drawn once, above the panels
+        for (int narrow = 0; narrow < 2; narrow++) {
+            static figure_report r;
+            t.figure.width = narrow ? 85 : 170;
+            t.figure.height = 230;
+            record(&t.figure, &r);
+            expect_tidy(&t.figure);
+            int times = 0;
+            for (int i = 0; i < r.text_count; i++) {
+                const bool named = strcmp(r.texts[i].text, names[0]) == 0;
+                times += named;
+                assert_true(!named || r.texts[i].place.y < r.panels[0].y);
+            }
+            assert_int_equal(times, 1);
+            expect_text(&r, "first link");
+        }
+        trace_figure_finish(&t);
+    }
+    synthetic_finish(&s);
+}
+
 // ---- runs and the thesis's figures
 
 static void ignore(void *context, const char *sentence)
@@ -521,6 +603,7 @@ int main(void)
         cmocka_unit_test(legend_goes_to_a_free_corner),
         cmocka_unit_test(legend_leaves_a_full_panel),
         cmocka_unit_test(mono_has_no_colour),
+        cmocka_unit_test(each_curve_of_a_comparison_says_run_and_signal),
         cmocka_unit_test(a_scenario_is_plotted),
     };
     return cmocka_run_group_tests_name("plot", tests, make_work_folder, remove_work_folder) != 0;

@@ -156,8 +156,9 @@ static void who_cannot_answer_says_why(void **state)
         {SETTINGS("arm.links=3", "arm.modal_ratios=0.1,0.2"), PREDICTOR_ENERGY,
          PREDICTION_EQUAL_LINKS_ONLY},
         {SETTINGS("arm.air_drag=0.1"), PREDICTOR_ENERGY, PREDICTION_EQUAL_LINKS_ONLY},
-        {SETTINGS("motor.inductance=1e-3"), PREDICTOR_LINEARISED, PREDICTION_CURRENT_AT_ONCE_ONLY},
-        {SETTINGS("motor.current_limit=1"), PREDICTOR_ENERGY, PREDICTION_CURRENT_AT_ONCE_ONLY},
+        {SETTINGS("motor.current_limit=1"), PREDICTOR_ENERGY, PREDICTION_UNLIMITED_ONLY},
+        {SETTINGS("motor.current_limit=1", "motor.inductance=1e-3"), PREDICTOR_IMPACT_DYNAMICS,
+         PREDICTION_UNLIMITED_ONLY},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         parameters p = fixture_parameters(cases[i].settings);
@@ -183,18 +184,20 @@ static void who_cannot_answer_says_why(void **state)
 
 // The row of a run that is asked about: none where it begins in contact, and of the printed model
 // what three bodies tell.
-static void the_row_before_contact_is_asked_about(void **state)
+static void the_row_before_landing_is_asked_about(void **state)
 {
     (void)state;
     const double none[1] = {0};
     const sample on_the_wall = {.contact = 1}, struck = {.impulse = 0.1};
-    for (int i = 0; i < 2; i++) {
-        trace t;
-        trace_init(&t, 1);
-        assert_null(row_before_contact(&t));
-        assert_int_equal(trace_add_row(&t, i == 0 ? &on_the_wall : &struck, none, none), STATUS_OK);
-        assert_null(row_before_contact(&t));
-        trace_finish(&t);
+    for (int i = 0; i < 4; i++) {
+        run_result given = {.landing = {.time = i / 2}};
+        trace_init(&given.trace, 1);
+        assert_null(row_before_landing(&given));
+        assert_int_equal(
+            trace_add_row(&given.trace, i % 2 == 0 ? &on_the_wall : &struck, none, none),
+            STATUS_OK);
+        assert_null(row_before_landing(&given));
+        run_finish(&given);
     }
 
     scenario s = {.name = (char *)"printed"};
@@ -210,6 +213,111 @@ static void the_row_before_contact_is_asked_about(void **state)
     run_finish(&r);
 }
 
+// A run up to its first contact and on, and what the predictors say of that.
+static run_result predicted_run(scenario *s, prediction_answer answers[PREDICTOR_COUNT])
+{
+    run_result r;
+    s->name = (char *)"run";
+    assert_int_equal(run_scenario(s, true, &r), STATUS_OK);
+    assert_non_null(predict_first_contact(s, &r, NULL, answers));
+    return r;
+}
+
+// The current of a motor with inductance is followed through the pulse, at its limit, too; what
+// leaves it out says how much that is.
+static void a_current_that_lags_is_followed(void **state)
+{
+    (void)state;
+    static const char *const lags[] = {"motor.inductance=5e-3", "motor.inductance=0.5",
+                                       "motor.inductance=2", "motor.inductance=20"};
+    static const char *const limits[] = {"motor.current_limit=0", "motor.current_limit=0.15"};
+    static const char *const arms[] = {"arm.links=2", "arm.links=1", "arm.links=3",
+                                       "arm.hub_joint=beam"};
+    static const char *const walls[] = {"wall.kind=point", "wall.kind=plane",
+                                        "wall.contact=kelvin-voigt"};
+    int held = 0;
+    for (int i = 0; i < 4 * 2 * 4 * 3; i++) {
+        scenario s = {.parameters = fixture_parameters(SETTINGS(lags[i % 4], limits[i / 4 % 2],
+                                                                arms[i / 8 % 4], walls[i / 32],
+                                                                "run.duration=3"))};
+        prediction_answer answers[PREDICTOR_COUNT];
+        run_result r = predicted_run(&s, answers);
+        const prediction_answer *own = &answers[PREDICTOR_LINEARISED];
+        if (own->outcome == PREDICTION_HOLDS) {
+            check_relative(own->prediction.force, r.landing.peak, 0.01);
+            held++;
+        } else {
+            assert_true(own->outcome == PREDICTION_DOUBTFUL || isnan(r.landing.peak));
+            assert_int_equal(isnan(r.landing.peak), isnan(r.landing.time_to_peak));
+        }
+
+        // what follows at once is the other side of the change
+        scenario direct = s;
+        direct.parameters.motor.inductance = 0;
+        prediction_answer at_once[PREDICTOR_COUNT];
+        assert_non_null(predict_first_contact(&direct, &r, NULL, at_once));
+        const double change =
+            own->prediction.force - at_once[PREDICTOR_LINEARISED].prediction.force;
+        for (predictor which = 0; which < PREDICTOR_COUNT; which++) {
+            const prediction_answer *answer = &answers[which];
+            assert_true(isnan(at_once[which].prediction.inductance));
+            assert_string_equal(at_once[which].note, "");
+            if (which == PREDICTOR_LINEARISED || answer->outcome != PREDICTION_HOLDS) {
+                assert_string_equal(answer->note, "");
+                continue;
+            }
+            assert_true(answer->prediction.inductance == change ||
+                        (isnan(change) && isnan(answer->prediction.inductance)));
+            assert_non_null(strstr(prediction_reason(answer), "without the motor's inductance"));
+            check_close(answer->prediction.force, at_once[which].prediction.force, 0);
+        }
+        run_finish(&r);
+    }
+    assert_true(held >= 70);
+}
+
+// An arm that starts on the wall and swings off is asked about where it comes back.
+static void an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns(void **state)
+{
+    (void)state;
+    static const char *const starts[][3] = {
+        {"wall.contact=rigid", "motor.voltage=1", "initial.velocity=0"},
+        {"wall.contact=kelvin-voigt", "motor.voltage=1", "initial.velocity=0"},
+        {"wall.contact=kelvin-voigt", "motor.voltage=2", "initial.velocity=0.5"},
+        {"wall.contact=hunt-crossley", "motor.voltage=2", "initial.velocity=0.5"}};
+    int held = 0;
+    for (int i = 0; i < 4 * 2; i++) {
+        const char *const *start = starts[i / 2];
+        scenario s = {.parameters = fixture_parameters(
+                          SETTINGS(start[0], start[1], start[2], "wall.angle=0", "run.duration=3",
+                                   i % 2 ? "arm.links=3" : "arm.links=2"))};
+        prediction_answer answers[PREDICTOR_COUNT];
+        run_result r = predicted_run(&s, answers);
+        const sample *row = row_before_landing(&r);
+        assert_true(row->contact == 0 && row->gap < 1e-9 && row->time > 0);
+        check_close(row->time, r.landing.time, 1e-12);
+        const prediction *own = &answers[PREDICTOR_LINEARISED].prediction;
+        if (answers[PREDICTOR_LINEARISED].outcome == PREDICTION_HOLDS) {
+            check_relative(own->force, r.landing.peak, 0.01);
+            check_close(own->impulse, r.landing.impulse, 1e-9);
+            held++;
+        }
+
+        // the run's own peaks are the larger ones, and stay those of all of it
+        const bool from_start = r.summary.first_contact_s == 0;
+        assert_true(from_start || r.summary.first_contact_s == r.landing.time);
+        assert_true(isnan(r.landing.peak) || r.summary.peak_force_N >= r.landing.peak);
+        assert_true(!(r.summary.first_pulse_peak_N > r.summary.peak_force_N));
+        double largest = 0;
+        for (size_t k = 0; k < r.trace.row_count; k++) {
+            largest = fmax(largest, r.trace.rows[k].force);
+        }
+        check_below(largest, r.summary.peak_force_N * (1 + 1e-12));
+        run_finish(&r);
+    }
+    assert_true(held >= 5);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -217,7 +325,9 @@ int main(void)
         cmocka_unit_test(an_arm_that_moves_away_does_not_hold),
         cmocka_unit_test(the_linearised_arm_says_what_it_lacks),
         cmocka_unit_test(commands_after_the_touch_count_while_it_lasts),
-        cmocka_unit_test(the_row_before_contact_is_asked_about),
+        cmocka_unit_test(the_row_before_landing_is_asked_about),
+        cmocka_unit_test(a_current_that_lags_is_followed),
+        cmocka_unit_test(an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns),
         cmocka_unit_test(a_command_counts_from_its_own_instant),
         cmocka_unit_test(who_cannot_answer_says_why),
         cmocka_unit_test(a_state_that_is_not_finite_fails_with_a_sentence),

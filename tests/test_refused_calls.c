@@ -157,6 +157,89 @@ static status ask_a_program(scenario *s, FILE *out)
     return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
 }
 
+// One read of the program's answers or complaints fails for good: the run is the same without it or
+// ends and says why, and never because of a program that ended.
+static void answers_that_cannot_be_read(void **state)
+{
+    (void)state;
+    int failed = 0;
+    bool reached = true;
+    for (long k = 1; reached; k++) {
+        scenario s;
+        run_result result;
+        assert_int_equal(make_scenario(&s, "control.rate=100"), STATUS_OK);
+        char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
+        char law[] = "control.law=process";
+        char *const settings[] = {command, law};
+        assert_int_equal(scenario_override_all(&s, settings, 2, keep_nothing, NULL), STATUS_OK);
+        s.parameters.code_allowed = true;
+
+        reads = 0;
+        unreadable_at = k;
+        const status code = run_scenario(&s, false, &result);
+        reached = reads >= k;
+        unreadable_at = 0;
+        if (code != STATUS_OK) {
+            assert_int_equal(code, STATUS_CONTROLLER_FAILED);
+            assert_non_null(strstr(result.summary.message, "cannot be read: Input/output error"));
+            failed++;
+        }
+        run_finish(&result);
+        scenario_finish(&s);
+    }
+    assert_true(failed > 8);
+}
+
+// --- scenarios ----------------------------------------------------------------------------------
+
+static status list_scenarios(const char *ignored, FILE *out)
+{
+    (void)ignored;
+    char **names;
+    int count;
+    fault f = {0};
+    const status code = scenario_list(&names, &count, &f);
+    assert_true(code == STATUS_OK || f.text[0] != '\0');
+    for (int i = 0; i < count; i++) {
+        fprintf(out, "%s\n", names[i]);
+        free(names[i]);
+    }
+    free(names);
+
+    // a folder that cannot be opened, for want of descriptors, is not an empty one
+    return code == STATUS_CANNOT_READ && refused_at > 0 ? STATUS_NO_MEMORY : code;
+}
+
+static status open_by_name(const char *name, FILE *out)
+{
+    scenario s;
+    const status code = scenario_open(&s, name, keep_nothing, NULL);
+    if (code == STATUS_OK) {
+        fputs(s.title, out);
+        scenario_finish(&s);
+    }
+    return code == STATUS_CANNOT_READ && refused_at > 0 ? STATUS_NO_MEMORY : code;
+}
+
+static void scenarios_are_listed_whole(void **state)
+{
+    (void)state;
+    try_all(list_scenarios, "");
+}
+
+// One that is there is never said to be missing, and to find it no folder is read: a list of all
+// reads each folder once.
+static void scenarios_are_found_by_name(void **state)
+{
+    (void)state;
+    if (everywhere) {
+        skip(); // a folder that cannot be looked at still counts as one that is not there
+    }
+    folders_opened = 0;
+    try_all(open_by_name, "corrected/first-impact");
+    assert_int_equal(folders_opened, 0);
+}
+
 // --- measurements -------------------------------------------------------------------------------
 
 // A number, or a sentence that says why there is none.
@@ -252,8 +335,13 @@ int main(int count, char **arguments)
     everywhere = count > 1;
     scenario_text = short_run;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_first_rows_of_all), cmocka_unit_test(rows_are_shared_or_refused),
-        cmocka_unit_test(whole_files),           cmocka_unit_test(programs_as_controllers),
+        cmocka_unit_test(the_first_rows_of_all),
+        cmocka_unit_test(rows_are_shared_or_refused),
+        cmocka_unit_test(whole_files),
+        cmocka_unit_test(programs_as_controllers),
+        cmocka_unit_test(answers_that_cannot_be_read),
+        cmocka_unit_test(scenarios_are_listed_whole),
+        cmocka_unit_test(scenarios_are_found_by_name),
         cmocka_unit_test(measurements),
     };
     return cmocka_run_group_tests(tests, use_refusing_allocators, NULL) != 0;

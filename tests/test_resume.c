@@ -72,6 +72,71 @@ static void a_resumed_run_is_the_run_from_the_start(void **state)
     run_finish(&whole);
 }
 
+// One link whose force is determined within bounds only, and arms that start on the wall and come
+// back to it: bounds and landing are those of the whole run.
+static void bounds_and_landing_are_resumed(void **state)
+{
+    (void)state;
+    const char *const *const arms[] = {
+        SETTINGS("run.duration=4", "arm.links=1"), SETTINGS("run.duration=2.55", "arm.links=1"),
+        SETTINGS("run.duration=4", "wall.angle=0", "initial.velocity=0.5", "arm.links=3",
+                 "wall.contact=kelvin-voigt")};
+    for (int i = 0; i < 3; i++) {
+        const int volts = PARAMETER_INDEX(motor.voltage);
+        action actions[] = {{.time = 1.5, .kind = ACTION_SET, .parameter = volts, .value = 0.5},
+                            {.time = 2.5, .kind = ACTION_SET, .parameter = volts, .value = 0.2}};
+        scenario s = {.parameters = fixture_parameters(arms[i]), .actions = actions};
+        scenario later = s;
+        s.action_count = 1;
+        later.action_count = 2;
+        run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
+        assert_true(resumed(&old, &s, &later, &result));
+        check_same_run(&result, &whole);
+        assert_int_equal(isnan(result.summary.steady_force_low_N), i == 2);
+        assert_true(whole.landing.time > 0);
+        assert_memory_equal(&result.landing, &whole.landing, sizeof result.landing);
+        run_finish(&old);
+        run_finish(&result);
+        run_finish(&whole);
+    }
+}
+
+// A face that the arm has left behind and that is on its way back when the runs part.
+static void a_face_on_its_way_back_is_resumed_where_it_was(void **state)
+{
+    (void)state;
+    const int volts = PARAMETER_INDEX(motor.voltage);
+    const char *const *const walls[] = {SETTINGS("run.duration=4", "wall.contact=kelvin-voigt",
+                                                 "wall.stiffness=100", "wall.damping=500"),
+                                        SETTINGS("run.duration=4", "wall.contact=hunt-crossley",
+                                                 "wall.stiffness=1e4", "wall.damping=2e7")};
+    for (int i = 0; i < 2; i++) {
+        action actions[] = {{.time = 1, .kind = ACTION_SET, .parameter = volts, .value = -0.5},
+                            {.time = 2.5, .kind = ACTION_SET, .parameter = volts, .value = 2}};
+        scenario s = {.parameters = fixture_parameters(walls[i]), .actions = actions};
+        scenario later = s;
+        s.action_count = 1;
+        later.action_count = 2;
+        run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
+        assert_true(run_resume(&old, &s, &later, ROWS, &result));
+        const sample *last = &result.trace.rows[result.trace.row_count - 1];
+        assert_true(last->contact == 0 && last->face_depth > 1e-4);
+        assert_true(last->gap > -last->face_depth);
+        run_finish(&result);
+        assert_true(resumed(&old, &s, &later, &result));
+        check_same_run(&result, &whole);
+        bool met = false;
+        for (size_t k = 0; k < result.trace.event_count; k++) {
+            const event *e = &result.trace.events[k];
+            met |= e->kind == EVENT_CONTACT && e->time > 2.5;
+        }
+        assert_true(met);
+        run_finish(&old);
+        run_finish(&result);
+        run_finish(&whole);
+    }
+}
+
 // A hub that the script makes so stiff that another engine moves the arm: checkpoints after that
 // are that engine's.
 static void an_arm_made_stiff_is_resumed_as_it_is(void **state)
@@ -246,6 +311,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_resumed_run_is_the_run_from_the_start),
+        cmocka_unit_test(bounds_and_landing_are_resumed),
+        cmocka_unit_test(a_face_on_its_way_back_is_resumed_where_it_was),
         cmocka_unit_test(an_arm_made_stiff_is_resumed_as_it_is),
         cmocka_unit_test(scripts_that_part_are_resumed_where_they_part),
         cmocka_unit_test(a_longer_run_goes_on_from_a_shorter_one),

@@ -41,8 +41,10 @@ static void a_set_is_its_lines(void **state)
     // a folder, and what has no end
     static const char *const others[] = {"/tmp", "/dev/zero"};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        assert_int_equal(robust_set_read(&set, others[i], &f), STATUS_BAD_ARGUMENT);
+        assert_int_equal(robust_set_read(&set, others[i], &f),
+                         i == 0 ? STATUS_CANNOT_READ : STATUS_BAD_ARGUMENT);
         assert_non_null(strstr(f.text, others[i]));
+        robust_set_finish(&set);
     }
 }
 
@@ -109,6 +111,7 @@ static void cases_are_what_differs(void **state)
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         write_set(path, wrong[i]);
         assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
+        robust_set_finish(&set); // as callers do
         unlink(path);
     }
 
@@ -120,8 +123,66 @@ static void cases_are_what_differs(void **state)
     assert_non_null(strstr(f.text, "case 'a'"));
     assert_non_null(strstr(f.text, "arm.links"));
     assert_null(strstr(f.text, "wall.restitution"));
+    assert_non_null(strstr(f.text, path));
+    assert_int_equal(f.line, 2);
+    robust_case_finish(&derived); // as callers do
     robust_set_finish(&set);
     unlink(path);
+}
+
+// A push that would never act, or not on this arm, and what the scenario has besides.
+static void pushes_of_a_case_must_act(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *says;
+    } wrong[] = {{"a=1\n\ncase late: push=1@1.1\n", ":3: case 'late': a push at 1.1 s is outside"},
+                 {"a=1\ncase later: push=1@0.1; push=1@9\n", "a push at 9 s is outside"},
+                 {"a=1\ncase short: run.duration=0.4; push=1@0.5\n", "expected 0 to 0.4 s"},
+                 {"a=1\ncase old: arm.model=printed; push=1@0.1\n", "takes no pushes"}};
+    char path[32];
+    scenario base = {.name = "test", .parameters = rig_parameters(SETTINGS("run.duration=1"))},
+             derived;
+    base.parameters.control.law = LAW_NONE;
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        robust_set set;
+        fault f = {0};
+        write_set(path, wrong[i].text);
+        assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+        assert_int_not_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
+        if (strstr(f.text, wrong[i].says) == NULL) {
+            fail_msg("'%s' does not say '%s'", f.text, wrong[i].says);
+        }
+        robust_case_finish(&derived);
+        robust_set_finish(&set);
+        unlink(path);
+    }
+
+    // at the very end there is still a run
+    robust_set set;
+    fault f = {0};
+    write_set(path, "a=1\ncase last: push=1@1\n");
+    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
+    robust_case_finish(&derived);
+    robust_set_finish(&set);
+    unlink(path);
+}
+
+// Whatever stands in the place of a set is refused once, and the caller goes on.
+static void what_is_no_set_is_refused(void **state)
+{
+    (void)state;
+    static const char *const places[] = {".", "/dev/full", "/dev/zero", "/dev/null", "/nowhere"};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        robust_set set;
+        fault f = {0};
+        const status code = robust_set_read(&set, places[i], &f);
+        assert_true(code == STATUS_BAD_ARGUMENT || code == STATUS_CANNOT_READ);
+        assert_non_null(strstr(f.text, places[i]));
+        robust_set_finish(&set);
+        robust_set_finish(&set);
+    }
 }
 
 // Judges a law over a set, on so many threads; the table as JSON on the heap.
@@ -190,8 +251,8 @@ static void sets_have_limits(void **state)
         assert_int_equal(robust_set_read(&set, path, &f), over ? STATUS_BAD_ARGUMENT : STATUS_OK);
         if (!over) {
             assert_int_equal(strlen(set.lines[0]), LONGEST);
-            robust_set_finish(&set);
         }
+        robust_set_finish(&set);
         unlink(path);
     }
 
@@ -200,6 +261,7 @@ static void sets_have_limits(void **state)
     fwrite("a=1\0b=2\n", 1, 8, file);
     fclose(file);
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
+    robust_set_finish(&set);
     unlink(path);
 
     // four pushes, from the start on, and settings of several cases behind one another
@@ -208,13 +270,16 @@ static void sets_have_limits(void **state)
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
     assert_int_equal(set.count, 2);
     assert_string_equal(set.lines[1], "b=2");
+    assert_int_equal(set.line_numbers[0], 1);
+    assert_int_equal(set.line_numbers[1], 6);
     assert_int_equal(set.case_count, 3);
     const robust_case *c = set.cases;
     assert_string_equal(c[0].title, "one");
     assert_string_equal(c[1].title, "two");
     assert_string_equal(c[2].title, "three");
-    static const int settings[] = {2, 1, 0};
+    static const int settings[] = {2, 1, 0}, lines[] = {2, 4, 5};
     for (int i = 0; i < 3; i++) {
+        assert_int_equal(c[i].line, lines[i]);
         assert_int_equal(c[i].setting_count, settings[i]);
         assert_int_equal(c[i].push_count, i == 0 ? 4 : 0);
     }
@@ -237,6 +302,8 @@ static void sets_have_limits(void **state)
     char place[64];
     snprintf(place, sizeof place, "%s:3: no case", path);
     assert_non_null(strstr(f.text, place));
+    assert_int_equal(f.line, 3);
+    robust_set_finish(&set);
     unlink(path);
 }
 
@@ -411,6 +478,38 @@ static void a_limit_says_what_is_too_much(void **state)
     check_relative(found.overshoot[ROBUST_MEDIAN],
                    100 * s.smoothed_over_command_N / s.force_command_N, 1e-12);
     robust_law_finish(&found);
+
+    // both kinds are there for any number of links, and it is said which is which
+    static const struct {
+        char *line;
+        const char *of;
+    } kinds[] = {{"arm.links=2", "peak"},
+                 {"arm.links=3", "smoothed"},
+                 {"arm.links=2,3", "peak and smoothed"}};
+    for (int i = 0; i < 3; i++) {
+        char *text = judged(LAW_HYBRID, &kinds[i].line, 1, 2, 1, &found);
+        assert_string_equal(robust_overshoot_of(&found), kinds[i].of);
+        char expected[64];
+        snprintf(expected, sizeof expected, "\"overshoot_of\": \"%s\"", kinds[i].of);
+        assert_non_null(strstr(text, expected));
+        for (int q = 0; q < ROBUST_QUANTILES; q++) {
+            check_below(found.smoothed[q], found.raw[q]);
+            assert_true(i == 2 || found.overshoot[q] == (i == 0 ? found.raw : found.smoothed)[q]);
+        }
+        assert_non_null(strstr(text, "\"raw_overshoot_median_percent\": "));
+        assert_non_null(strstr(text, "\"raw_overshoot_nine_tenths_percent\": "));
+        assert_non_null(strstr(text, "\"raw_overshoot_worst_percent\": "));
+        assert_non_null(strstr(text, "\"smoothed_overshoot_median_percent\": "));
+        assert_non_null(strstr(text, "\"smoothed_overshoot_nine_tenths_percent\": "));
+        assert_non_null(strstr(text, "\"smoothed_overshoot_worst_percent\": "));
+        free(text);
+        robust_law_finish(&found);
+    }
+    const summary two = rig_summary(SETTINGS("control.law=hybrid", "run.duration=1"));
+    free(judged(LAW_HYBRID, &kinds[0].line, 1, 1, 1, &found));
+    check_relative(found.smoothed[ROBUST_WORST],
+                   100 * two.smoothed_over_command_N / two.force_command_N, 1e-12);
+    robust_law_finish(&found);
     robust_law_finish(NULL);
     robust_set_finish(NULL);
     robust_case_finish(NULL);
@@ -424,6 +523,8 @@ int main(void)
         cmocka_unit_test(a_limit_says_what_is_too_much),
         cmocka_unit_test(a_set_is_its_lines),
         cmocka_unit_test(cases_are_what_differs),
+        cmocka_unit_test(pushes_of_a_case_must_act),
+        cmocka_unit_test(what_is_no_set_is_refused),
         cmocka_unit_test(sets_have_limits),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(one_run_is_all_its_quantiles),

@@ -166,6 +166,58 @@ static void test_the_difference_is_that_of_the_runs(void **state)
     explorer_finish(&ex);
 }
 
+// Contact, sticking and modes are no amounts: beside the differences they are the present run's, in
+// the curves, at the cursor, in the lanes and in the statistics.
+static void test_states_are_not_subtracted(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":seek 0.4<Enter>b:set control.force 2<Enter>:seek 1<Enter>8D");
+    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+    const trace *d = &ex.state.difference.trace, *run = &ex.state.session.run.trace;
+    double forces = 0;
+    assert_true(d->row_count > 1000);
+    for (size_t i = 0; i < d->row_count; i++) {
+        for (int k = 0; k < signal_count; k++) {
+            const double value = signal_value(&d->rows[i], k);
+            assert_true(!signal_is_state(k) || value == signal_value(&run->rows[i], k));
+            forces += k == SIGNAL_INDEX(force) && value != signal_value(&run->rows[i], k);
+        }
+    }
+    assert_true(forces > 100);
+    assert_shows(&ex, "mode force    \u254c contact 1");
+    assert_shows(&ex, "are this run's; D shows");
+    assert_hides(&ex, "stick 1                    minus baseline");
+    press(&ex, "X");
+    assert_shows(&ex, "minus baseline, visible part");
+    explorer_finish(&ex);
+}
+
+// An integral over time has a unit of its own, where the panel is narrow, too.
+static void test_an_integral_has_its_own_unit(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "X:trace force gap_velocity hub_acceleration contact<Enter>");
+    static const char *const units[] = {" N s ", " m ", " rad/s ", " s "};
+    for (int narrow = 0; narrow < 2; narrow++) {
+        char *text = picture(&ex, narrow ? 100 : 140, 40, GLYPHS_BRAILLE), *line = text;
+        for (int i = 0; i < 4; i++) {
+            line = strstr(line + 1, narrow ? "\u222b" : "integral");
+            assert_non_null(line);
+            const size_t length = strcspn(line, "\n");
+            const char *unit = memmem(line, length, units[i], strlen(units[i]));
+            if (unit == NULL) {
+                fail_msg("no '%s' in '%.*s'", units[i], (int)length, line);
+            }
+        }
+        free(text);
+    }
+    explorer_finish(&ex);
+}
+
 static void test_a_sweep_gives_what_single_runs_give(void **state)
 {
     (void)state;
@@ -222,6 +274,8 @@ int main(void)
         cmocka_unit_test(test_hidden_runs_are_not_drawn),
         cmocka_unit_test(test_a_run_of_a_few_rows_is_pinned_too),
         cmocka_unit_test(test_the_difference_is_that_of_the_runs),
+        cmocka_unit_test(test_states_are_not_subtracted),
+        cmocka_unit_test(test_an_integral_has_its_own_unit),
         cmocka_unit_test(test_a_sweep_gives_what_single_runs_give),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

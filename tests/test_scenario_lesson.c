@@ -64,6 +64,27 @@ static void faults_of_lessons(void **state)
     check_step("{say: ''}", "say is empty, expected text");
     check_step("{say: ' '}", "expected text");
     check_step("{say: a, saw: b}", "unknown key 'saw'");
+
+    // a key that nobody reads is none of a check's or of the lesson's
+    check_fault("lesson: {steps: [{say: a}], paramters: [arm.k2]}\n", 1, 29,
+                "unknown key 'paramters'");
+    check_step("{say: a, number: {quantity: impacts, within: 0, wihtin: 1}}",
+               "unknown key 'wihtin'");
+    check_step("{say: a, cursor: {at: first_contact_s, ofset: 1, within: 0.1}}",
+               "unknown key 'ofset'");
+    check_step("{say: a, choice: {of: [a, b], right: 1, wrong: 2}}", "unknown key 'wrong'");
+    check_step("{say: a, ratio: {quantity: impacts, from: 0, to: 1, form: 2}}",
+               "unknown key 'form'");
+    check_step("{say: a, ratio: {quantity: impacts, from: 0, to: 1, from to: 2}}",
+               "unknown key 'from to'");
+
+    // nor is a step one that nothing can do
+    check_step("{say: a, number: {quantity: impacts, within: -0.1}}",
+               "within = -0.1, expected at least 0");
+    check_step("{say: a, cursor: {at: first_contact_s, within: -1}}",
+               "within = -1, expected at least 0");
+    check_step("{say: a, ratio: {quantity: impacts, from: 2, to: 1}}",
+               "to = 1, expected at least 2");
     check_step("{say: a, do: seek}", "do is a single value, expected a list");
     check_step("{say: a, do: [a, b, c, d, e, f, g, h, i]}", "more than 8");
 

@@ -231,6 +231,22 @@ static void test_a_refused_change_changes_nothing(void **state)
     session_finish(&s);
 }
 
+static void test_no_change_puts_the_arm_behind_the_wall(void **state)
+{
+    (void)state;
+    session s;
+    fault f = {0};
+    open_session(&s, "corrected/first-impact");
+    change(&s, "wall.angle", "2.9");
+    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(initial.angle), "-0.4", &f), 0);
+    assert_non_null(strstr(f.text, "initial.angle = -0.4 rad lies behind the wall"));
+    change(&s, "initial.angle", "-0.2");
+    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(wall.angle), "2.95", &f), 0);
+    assert_non_null(strstr(f.text, "lies behind the wall"));
+    assert_int_equal(s.input_count, 2);
+    session_finish(&s);
+}
+
 static void test_a_saved_scenario_reproduces_the_run(void **state)
 {
     (void)state;
@@ -287,6 +303,7 @@ int main(void)
         cmocka_unit_test(test_undo_and_redo),
         cmocka_unit_test(test_an_input_taken_out_is_put_in_again),
         cmocka_unit_test(test_a_refused_change_changes_nothing),
+        cmocka_unit_test(test_no_change_puts_the_arm_behind_the_wall),
         cmocka_unit_test(test_a_saved_scenario_reproduces_the_run),
         cmocka_unit_test(test_the_model_can_be_exchanged),
     };

@@ -200,6 +200,30 @@ static void an_arm_leaves_a_light_face_once(void **state)
     run_finish(&r);
 }
 
+// An arm that leaves a face without a mass does so once, however fast that returns: where the two
+// part is known to rounding only, and that makes no contact.
+static void an_arm_leaves_a_returning_face_once(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(SETTINGS("wall.kind=plane", "wall.stiffness=3e5",
+                                               "initial.angle=0.0881", "initial.velocity=2.6",
+                                               "motor.voltage=2.8", "run.duration=0.15"));
+    for (int i = 0; i < 2 * 46; i++) {
+        p.wall.contact = i < 46 ? WALL_KELVIN_VOIGT : WALL_HUNT_CROSSLEY;
+        p.wall.damping = pow(10, -10 + i % 46 / 3.0); // to a return in 0.3 s
+        run_result r = run_of(&p, true);
+        double released = -1;
+        for (size_t e = 0; e < r.trace.event_count; e++) {
+            const event *now = &r.trace.events[e];
+            assert_true(now->kind != EVENT_CONTACT || now->time > released + 1e-6);
+            released = now->kind == EVENT_RELEASE ? now->time : released;
+        }
+        assert_true(released > 0);
+        check_face_rows(&r);
+        run_finish(&r);
+    }
+}
+
 // An elastic impact: both go on with the velocities of two free masses.
 static void a_face_bounces_the_arm_like_two_masses(void **state)
 {
@@ -324,6 +348,50 @@ static void a_face_left_alone_obeys_its_equation(void **state)
             check_close(wall_face_energy(&w, from) - wall_face_energy(&w, later), lost,
                         lost * pow(fastest * h, 2) + 1e-15);
         }
+    }
+}
+
+// Without a mass it returns as its law without force says, and what its spring held is lost on the
+// way; Hunt and Crossley's comes to rest in a time that it says. What returns in no time is at once
+// in its place, and so is what an arm leaves that is not behind it.
+static void a_face_without_mass_returns_without_force(void **state)
+{
+    (void)state;
+    const wall_law laws[] = {WALL_KELVIN_VOIGT, WALL_HUNT_CROSSLEY};
+    for (int i = 0; i < 2; i++) {
+        wall_model w = {.law = laws[i],
+                        .stiffness = 2e3,
+                        .damping = i == 0 ? 100 : 4e4,
+                        .exponent = i == 0 ? 1 : 1.5};
+        const double depth = 3e-3, h = 0.02, rate = w.stiffness / w.damping;
+        const wall_face from = wall_face_left_behind(&w, depth),
+                        later = wall_face_after(&w, from, h);
+        check_close(wall_force(&w, from.position, from.velocity), 0, 1e-12);
+        check_close(wall_force(&w, later.position, later.velocity), 0, 1e-12);
+        check_relative(later.position, i == 0 ? depth * exp(-rate * h) : depth - rate * h, 1e-14);
+        const wall_face half = wall_face_after(&w, from, h / 2);
+        check_relative(wall_face_after(&w, half, h / 2).position, later.position, 1e-14);
+        check_relative(wall_face_acceleration(&w, from),
+                       (wall_face_after(&w, from, 1e-7).velocity - from.velocity) / 1e-7, 1e-5);
+
+        // its end
+        const double lasts = wall_face_lasts(&w, from);
+        assert_true(i == 0 ? lasts == HUGE_VAL : fabs(lasts * rate / depth - 1) < 1e-15);
+        const wall_face end = wall_face_after(&w, from, i == 0 ? 40 / rate : depth / rate);
+        assert_true(end.position == 0 && end.velocity == 0);
+        assert_true(wall_face_lasts(&w, end) == HUGE_VAL && wall_face_rate(&w, end) == 0);
+
+        // either side of at once
+        for (int fast = 0; fast < 2; fast++) {
+            w.damping = w.stiffness * (i == 0 ? 1 : 1 / depth) * (fast ? 0.9e-14 : 1.1e-14);
+            assert_true((wall_face_left_behind(&w, depth).position == 0) == (fast == 1));
+        }
+        w.damping = 0;
+        assert_true(wall_face_left_behind(&w, depth).position == 0);
+        w.damping = 1e9;
+        assert_true(wall_face_left_behind(&w, 1.1e-12).position == 1.1e-12);
+        assert_true(wall_face_left_behind(&w, 0.9e-12).position == 0);
+        assert_true(wall_face_left_behind(&w, -depth).position == 0);
     }
 }
 
@@ -480,8 +548,6 @@ static void a_stiff_wall_holds_like_a_rigid_one(void **state)
     check_close(order, 1, 0.05);
 }
 
-// A face that is damped far more than the mass can push parts from it, and the arm leaves it
-// behind.
 // A wall without a damper takes nothing, to the last bit, however often the arm meets it.
 static void a_wall_without_damping_takes_nothing(void **state)
 {
@@ -499,29 +565,101 @@ static void a_wall_without_damping_takes_nothing(void **state)
     }
 }
 
+// A face that is damped far more than the mass can push is left behind in the wall, and returns by
+// itself; what its spring holds goes into the damper as it does.
 static void a_slow_face_lets_go_behind_the_wall(void **state)
 {
     (void)state;
-    parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e5",
-                               "wall.damping=400"); // 1.7 times critical
-    run_result r = run_of(&p, true);
-    bool parted = false;
-    for (size_t i = 0; i < r.trace.event_count; i++) {
-        if (r.trace.events[i].kind == EVENT_RELEASE) {
-            size_t row = 0;
-            while (r.trace.rows[row].time < r.trace.events[i].time) {
-                row++;
-            }
-            parted |= r.trace.rows[row].gap < -1e-9;
+    for (int i = 0; i < 2; i++) {
+        // 1.7 times critical, and an arm that swings back faster than the face can
+        parameters p =
+            i == 0
+                ? single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e5", "wall.damping=400")
+                : fixture_parameters(SETTINGS("arm.links=4", "arm.hub_joint=beam",
+                                              "motor.voltage=8", "wall.kind=plane",
+                                              "wall.contact=hunt-crossley", "wall.stiffness=1e5",
+                                              "wall.damping=1e6", "run.duration=0.2"));
+        run_result r = run_of(&p, true);
+        const event *release = r.trace.events;
+        while (release->kind != EVENT_RELEASE) {
+            release++;
+        }
+        const sample *left = r.trace.rows, *last = &r.trace.rows[r.trace.row_count - 1];
+        while (left->time < release->time) {
+            left++;
+        }
+        check_close(left->gap, -left->face_depth, 1e-15);
+        check_below(1e-6, left->face_depth);
+
+        // on its way
+        const double rate = p.wall.stiffness / p.wall.damping, power = i == 0 ? 2 : 2.5;
+        for (const sample *row = left; row <= last; row++) {
+            const double t = row->time - release->time, start = left->face_depth;
+            const double depth = i == 0 ? start * exp(-rate * t) : fmax(start - rate * t, 0);
+            const double held = p.wall.stiffness * pow(depth, power) / power;
+            check_close(row->face_depth, depth, 1e-15);
+            check_close(row->wall_energy, held, 1e-13 * left->wall_energy);
+            check_close(row->wall_loss + held, left->wall_loss + left->wall_energy, 1e-13);
+        }
+        check_rows(&r);
+        check_face_rows(&r);
+
+        // all the wall held when its face was left behind is lost with it
+        if (i == 0) {
+            const double v = last->hub_velocity;
+            assert_true(v < 0);
+            check_close(r.summary.wall_loss_J, kinetic(SPEED) - kinetic(v), 1e-12);
+        }
+        run_finish(&r);
+    }
+}
+
+// The instant at which the i-th contact began, from 0 on.
+static double contact_time(const run_result *r, int i)
+{
+    size_t e = 0;
+    for (; e < r->trace.event_count; e++) {
+        i -= r->trace.events[e].kind == EVENT_CONTACT;
+        if (i < 0) {
+            break;
         }
     }
-    assert_true(parted);
-    check_rows(&r);
-    // all the wall held when its face was left behind is lost with it
-    double v = r.trace.rows[r.trace.row_count - 1].hub_velocity;
-    assert_true(v < 0);
-    check_close(r.summary.wall_loss_J, kinetic(SPEED) - kinetic(v), 1e-12);
-    run_finish(&r);
+    assert_true(e < r->trace.event_count);
+    return r->trace.events[e].time;
+}
+
+// A face without a mass is what light ones come to, in proportion to their mass, also where the arm
+// meets it again on its way back.
+static void a_face_without_mass_is_the_limit_of_light_ones(void **state)
+{
+    (void)state;
+    parameters p = fixture_parameters(
+        SETTINGS("arm.links=4", "arm.hub_joint=beam", "motor.voltage=4", "wall.kind=plane",
+                 "wall.angle=0.1", "wall.contact=kelvin-voigt", "wall.stiffness=2000",
+                 "wall.damping=100", "run.duration=0.5"));
+    run_result r[3];
+    for (int i = 0; i < 3; i++) {
+        p.wall.mass = i == 0 ? 0 : i == 1 ? 2e-4 : 1e-4;
+        r[i] = run_of(&p, true);
+        check_below(r[i].summary.energy_residual_J, 1e-12);
+    }
+    for (int i = 0; i < 3; i++) {
+        const double limit = contact_time(&r[0], i), far = contact_time(&r[1], i) - limit;
+        const double near = contact_time(&r[2], i) - limit;
+        print_message("contact %d at %.9f s, with a face of 0.2 and 0.1 g %.3g and %.3g s later\n",
+                      i + 1, limit, far, near);
+        if (i == 0) {
+            check_close(far, 0, 1e-14);
+        } else {
+            check_close(log2(far / near), 1, 0.01);
+        }
+    }
+    check_close(contact_time(&r[0], 1), 0.406383, 5e-7);
+    check_rows(&r[0]);
+    check_face_rows(&r[0]);
+    for (int i = 0; i < 3; i++) {
+        run_finish(&r[i]);
+    }
 }
 
 // A sensor's mass strikes a rigid wall: the implicit method, which has equations of its own, comes
@@ -586,10 +724,13 @@ int main(void)
         cmocka_unit_test(a_face_with_a_mass_has_the_closed_form),
         cmocka_unit_test(an_arm_is_deepest_or_apart_beside_its_face),
         cmocka_unit_test(an_arm_leaves_a_light_face_once),
+        cmocka_unit_test(an_arm_leaves_a_returning_face_once),
         cmocka_unit_test(a_face_bounces_the_arm_like_two_masses),
         cmocka_unit_test(a_face_lies_between_the_two_walls),
         cmocka_unit_test(a_light_face_on_a_strong_damper_is_no_face),
         cmocka_unit_test(a_face_left_alone_obeys_its_equation),
+        cmocka_unit_test(a_face_without_mass_returns_without_force),
+        cmocka_unit_test(a_face_without_mass_is_the_limit_of_light_ones),
         cmocka_unit_test(the_force_changes_as_fast_as_the_wall),
         cmocka_unit_test(a_step_from_the_touch_is_of_order_n_plus_1),
         cmocka_unit_test(a_stiff_wall_bounces_like_a_rigid_one),

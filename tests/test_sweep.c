@@ -161,6 +161,40 @@ static void a_changed_script_is_another_sweep(void **state)
     unlink("script.sqlite");
 }
 
+// A push acts on the corrected arm only, also where the model is varied.
+static void a_script_goes_with_every_run(void **state)
+{
+    (void)state;
+    fault f = {.text = ""};
+    sweep s;
+    action push = {.time = 0.2, .kind = ACTION_PUSH, .parameter = -1, .value = 0.01};
+    base.actions = &push;
+    base.action_count = 1;
+    assert_int_equal(
+        sweep_of(&s, SWEEP_GRID, 0, 1, &f, "arm.model=corrected,printed", "motor.voltage=1,2"),
+        STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "run 3 (arm.model = printed, motor.voltage = 1)"));
+    assert_non_null(strstr(f.text, "takes no pushes"));
+    base.actions = NULL;
+    base.action_count = 0;
+}
+
+// A list as long as no command line can be.
+static void lists_have_an_end(void **state)
+{
+    (void)state;
+    enum { VALUES = 400000 };
+    fault f = {.text = ""};
+    sweep s;
+    char *text = malloc(16 + 8 * VALUES), *end = text + sprintf(text, "control.seed=0");
+    for (int i = 1; i < VALUES; i++) {
+        end += sprintf(end, ",%d", i);
+    }
+    assert_int_equal(sweep_of(&s, SWEEP_GRID, 0, 1, &f, text, NULL), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "at most 20000 values, here are 400000"));
+    free(text);
+}
+
 // A name that begins with a colon is a file like any other.
 static void a_colon_begins_a_name(void **state)
 {
@@ -207,7 +241,6 @@ static void rows_that_are_no_runs_are_refused(void **state)
         must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
         sweep_store *store = must_open("rows.sqlite", &s);
         must_run(&s, store, 1);
-        sweep_store_close(store);
         sqlite3 *database;
         assert_int_equal(sqlite3_open("rows.sqlite", &database), SQLITE_OK);
         assert_int_equal(sqlite3_exec(database, changes[i], NULL, NULL, NULL), SQLITE_OK);
@@ -219,13 +252,13 @@ static void rows_that_are_no_runs_are_refused(void **state)
         fault f = {.text = ""};
         sweep_progress progress;
         const sweep_options options = {.jobs = 1};
-        store = must_open("rows.sqlite", &s);
         assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_BAD_ARGUMENT);
         assert_non_null(strstr(f.text, "of a sweep of 3"));
         assert_int_equal(sweep_store_quantity(store, "peak_force_N", values, &failed, &f),
                          STATUS_BAD_ARGUMENT);
         assert_non_null(strstr(f.text, "no run of the sweep"));
         sweep_store_close(store);
+        assert_refused("rows.sqlite", &s, STATUS_BAD_ARGUMENT, "of a sweep of 3");
         sweep_finish(&s);
         unlink("rows.sqlite");
     }
@@ -323,6 +356,8 @@ int main(void)
         cmocka_unit_test(the_number_of_lanes_does_not_change_a_byte),
         cmocka_unit_test(another_sweep_is_refused_with_the_difference),
         cmocka_unit_test(a_changed_script_is_another_sweep),
+        cmocka_unit_test(a_script_goes_with_every_run),
+        cmocka_unit_test(lists_have_an_end),
         cmocka_unit_test(a_colon_begins_a_name),
         cmocka_unit_test(more_axes_than_there_may_be_are_refused),
         cmocka_unit_test(rows_that_are_no_runs_are_refused),

@@ -183,6 +183,58 @@ static void parts_may_vary_several_parameters(void **state)
     unlink("merged");
 }
 
+// What a database says of its values gives the plan again to the last bit: every kind of axis,
+// drawn and in a grid.
+static void the_plan_of_a_merge_is_that_of_the_sweep(void **state)
+{
+    (void)state;
+    static char *const drawn[] = {"motor.voltage=1:2.7:log",
+                                  "wall.angle=-0.0001:0.3333333333333333",
+                                  "control.seed=1:1000",
+                                  "wall.kind=point,plane",
+                                  "printed.clamp_force=true,false",
+                                  "arm.joint_stiffness[2]=8:16:log",
+                                  "arm.joint_stiffness[1]=9.000000000000002,1e1"};
+    static char *const grid[] = {"motor.voltage=1:2.7:3:log", "wall.kind=point,plane",
+                                 "initial.angle=-0.001,-0.1,-1.0000000000000002e-2",
+                                 "control.seed=1:1000:2:log"};
+    const scenario first = base;
+    fault f = {0};
+    char *const links[] = {"arm.links=3", "arm.joint_stiffness=10,12", "run.duration=0.02"};
+    assert_int_equal(scenario_override_all(&base, links, 3, report_fault, NULL), STATUS_OK);
+    for (int i = SWEEP_GRID; i <= SWEEP_LATIN; i++) {
+        const bool draws = i != SWEEP_GRID;
+        sweep_request request = {.vary = draws ? drawn : grid,
+                                 .vary_count = draws ? 7 : 4,
+                                 .sampling = (sweep_sampling)i,
+                                 .runs = draws ? 40 : 0,
+                                 .seed = UINT64_MAX};
+        sweep s;
+        if (sweep_init(&s, &base, &request, &f) != STATUS_OK) {
+            fail_msg("%s", f.text);
+        }
+        char *whole = compute(&s, "whole", (sweep_share){0, 0}), *parts[] = {"1", "2"};
+        for (int k = 0; k < 2; k++) {
+            free(compute(&s, parts[k], (sweep_share){k + 1, 2}));
+        }
+        sweep_merged merged;
+        if (sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK) {
+            fail_msg("%s", f.text);
+        }
+        assert_int_equal(merged.runs, s.run_count);
+        char *rows = compute(&s, "merged", (sweep_share){0, 0});
+        assert_string_equal(rows, whole);
+        free(rows);
+        free(whole);
+        sweep_finish(&s);
+        unlink("1");
+        unlink("2");
+        unlink("whole");
+        unlink("merged");
+    }
+    base = first;
+}
+
 // Carries out SQL on a file, as somebody else's program might.
 static void tamper(const char *path, const char *sql)
 {
@@ -230,6 +282,10 @@ static void foreign_parts_are_refused(void **state)
     unlink("changed");
 }
 
+// The table without what it lets into its columns.
+#define UNBOUND                                                                                    \
+    "CREATE TABLE bare AS SELECT * FROM run; DROP TABLE run; ALTER TABLE bare RENAME TO run; "
+
 // What a file has after others changed it, and why it is refused: as a part, and to go on from.
 static void what_others_changed_is_refused(void **state)
 {
@@ -247,6 +303,43 @@ static void what_others_changed_is_refused(void **state)
         {"UPDATE run SET impacts = x'01' WHERE run = 3", "kind in run 3"},
         {"UPDATE run SET \"motor.voltage\" = 'two' WHERE run = 2", "run 2"},
         {"UPDATE run SET status = 'splendid'", "another kind"},
+        {"UPDATE run SET status = CAST(x'6f6b0078' AS TEXT)", "under status"},
+        {"UPDATE run SET message = x'41'", "under message"},
+        {"UPDATE run SET peak_force_N = 9e999 WHERE run = 2", "run 2 than this program writes, "
+                                                              "under peak_force_N"},
+        {"UPDATE run SET steps = -9e999", "under steps"},
+        {"UPDATE run SET steps = NULL", "under steps"},
+        {"UPDATE run SET impacts = NULL WHERE run = 3",
+         "run 3 than this program writes, under imp"},
+        {"UPDATE run SET status = 'failed', cpu_time_s = NULL", "under cpu_time_s"},
+        {"UPDATE run SET \"motor.voltage\" = 7 WHERE run = 2", "7.0 in run 2, expected 1.5"},
+        {"UPDATE run SET \"motor.voltage\" = 9e999 WHERE run = 1", "Inf in run 1, expected 1"},
+        {"UPDATE run SET run = -run; UPDATE run SET run = 4 + run", "motor.voltage = "},
+        {UNBOUND "UPDATE run SET \"motor.voltage\" = NULL WHERE run = 3", "nothing in run 3"},
+        {UNBOUND "UPDATE run SET status = NULL", "under status"},
+        {UNBOUND "UPDATE run SET run = NULL WHERE run = 1", "run 0 of"},
+        {UNBOUND "UPDATE run SET run = 1.5 WHERE run = 1", "run 1 of"},
+        {UNBOUND "INSERT INTO run SELECT * FROM run WHERE run = 2", "run 2 twice"},
+        {"UPDATE sweep SET value = 'motor.voltage=1:2:4' WHERE key = 'vary 1'", "4"},
+        {"UPDATE sweep SET value = 'motor.voltage=1:3:3' WHERE key = 'vary 1'", "motor.voltage"},
+        {"UPDATE sweep SET value = 'motor.voltage' WHERE key = 'vary 1'", "vary"},
+        {"UPDATE sweep SET value = 'spun' WHERE key = 'sample'", "combined"},
+        {"UPDATE sweep SET value = '3x' WHERE key = 'runs'", "runs"},
+        {"UPDATE sweep SET value = '99999999999999999999999' WHERE key = 'runs'", "runs"},
+        {"UPDATE sweep SET key = printf('%100s', 'x') WHERE key = 'runs'", "without text"},
+        {"UPDATE sweep SET value = CAST(x'330030' AS TEXT) WHERE key = 'runs'", "without text"},
+        {UNBOUND "DROP TABLE run; CREATE TABLE run AS SELECT 1 AS run; "
+                 "ALTER TABLE run ADD COLUMN x AS (zeroblob(100000000))",
+         "expected motor.voltage"},
+        {"DROP TABLE sweep; CREATE TABLE sweep (key, more AS (zeroblob(100000000)), "
+         "value AS (hex(more))); INSERT INTO sweep VALUES ('runs')",
+         "too big"},
+        {"DROP TABLE sweep; CREATE TABLE sweep (key, value); "
+         "INSERT INTO sweep VALUES ('runs', '3'), ('runs', '3')",
+         "more lines"},
+        {"WITH RECURSIVE n(i) AS (SELECT 1 UNION SELECT i + 1 FROM n WHERE i < 300) "
+         "INSERT INTO sweep SELECT 'line ' || i, i FROM n",
+         "more lines"},
         {"UPDATE sweep SET value = 'arm.nothing=1:2:3' WHERE key = 'vary 1'", "arm.nothing"},
         {"DELETE FROM sweep WHERE key = 'runs'", "runs"},
         {"DELETE FROM run; DELETE FROM sweep; DROP TABLE run; DROP TABLE sweep", "is empty"},
@@ -306,15 +399,94 @@ static void what_cannot_be_read_is_said(void **state)
     unlink("part");
 }
 
+// The end of a journal that names a file: SQLite's form of a transaction over several databases.
+static void write_journal(const char *database, const char *named)
+{
+    static const unsigned char mark[] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
+    char path[256];
+    unsigned char head[512] = {0}, size[2];
+    FILE *file = fopen(database, "rb");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 16, SEEK_SET), 0);
+    assert_int_equal(fread(size, 2, 1, file), 1);
+    const unsigned page = (unsigned)size[0] << 8 | size[1];
+    fseek(file, 0, SEEK_END);
+    const unsigned length = (unsigned)strlen(named), pages = (unsigned)ftell(file) / page;
+    fclose(file);
+
+    // as SQLite writes it: no pages, then the page of the locks, the name, its length and its sum
+    unsigned sum = 0;
+    for (unsigned i = 0; i < length; i++) {
+        sum += (unsigned char)named[i];
+    }
+    const unsigned words[] = {0, 0, pages, 512, page, 0x40000000u / page + 1, length, sum};
+    unsigned char bytes[8][4];
+    for (int i = 0; i < 8; i++) {
+        for (int k = 0; k < 4; k++) {
+            bytes[i][k] = (unsigned char)(words[i] >> (24 - 8 * k));
+        }
+    }
+    memcpy(head, mark, sizeof mark);
+    memcpy(head + sizeof mark, bytes, 5 * sizeof bytes[0]);
+    snprintf(path, sizeof path, "%s-journal", database);
+    file = fopen(path, "wb");
+    assert_non_null(file);
+    fwrite(head, sizeof head, 1, file);
+    fwrite(bytes[5], 4, 1, file);
+    fwrite(named, length, 1, file);
+    fwrite(bytes[6], 4, 2, file);
+    fwrite(mark, sizeof mark, 1, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+// A journal beside a database that came from elsewhere deletes nothing.
+static void a_journal_names_no_file_to_delete(void **state)
+{
+    (void)state;
+    char notes[300];
+    sweep s;
+    must_sweep(&s, "motor.voltage=1:2:3");
+    free(compute(&s, "part", (sweep_share){0, 0}));
+    assert_non_null(getcwd(notes, 200));
+    strcat(notes, "/notes");
+    FILE *file = fopen(notes, "w");
+    assert_non_null(file);
+    fputs("my notes", file);
+    fclose(file);
+
+    // also where the database is reached by a link
+    assert_int_equal(symlink("part", "link"), 0);
+    static const char *const names[] = {"part", "link"};
+    for (int i = 0; i < 2; i++) {
+        write_journal("part", notes);
+        sweep_store *store;
+        fault f = {0};
+        assert_int_equal(sweep_store_open(&store, names[i], &s, &f), STATUS_BAD_ARGUMENT);
+        assert_non_null(strstr(f.text, "part-journal' is no journal of this program"));
+        check_refused((char *[]){(char *)names[i]}, 1, "no journal");
+        assert_int_equal(access(notes, F_OK), 0);
+    }
+
+    // without it all is well
+    unlink("part-journal");
+    free(compute(&s, "part", (sweep_share){0, 0}));
+    sweep_finish(&s);
+    unlink("part");
+    unlink("link");
+    unlink(notes);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_may_vary_the_model),
         cmocka_unit_test(parts_in_any_order_give_the_rows_of_one_sweep),
         cmocka_unit_test(parts_may_vary_several_parameters),
+        cmocka_unit_test(the_plan_of_a_merge_is_that_of_the_sweep),
         cmocka_unit_test(foreign_parts_are_refused),
         cmocka_unit_test(what_others_changed_is_refused),
         cmocka_unit_test(what_cannot_be_read_is_said),
+        cmocka_unit_test(a_journal_names_no_file_to_delete),
     };
     return cmocka_run_group_tests(tests, prepare, clean_up) != 0;
 }

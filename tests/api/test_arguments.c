@@ -280,6 +280,13 @@ static void controllers_are_whole(void **state)
     check_done(impactlab_run_create_with(&run, h->scenario, 0, &whole, NULL, &h->error), &h->error);
     impactlab_run_destroy(run);
 
+    // one that wants all the memory there could be gets none, and not less than it asked for
+    controller greedy = whole;
+    greedy.memory_size = SIZE_MAX;
+    assert_int_equal(impactlab_run_create_with(&run, h->scenario, 0, &greedy, NULL, &h->error),
+                     IMPACTLAB_NO_MEMORY);
+    impactlab_run_destroy(run);
+
     // and one with a number of its own
     const controller_parameter gain = {
         .name = "gain", .unit = "", .initial = 1, .maximum = 2, .description = "of nothing"};

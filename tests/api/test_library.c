@@ -158,6 +158,11 @@ static void mistakes_are_told(void **state)
     assert_string_equal(error.parameter, "motor.voltage");
     assert_int_not_equal(impactlab_scenario_set_number(scenario, "wall.angle", (double)NAN, &error),
                          0);
+    check_done(impactlab_scenario_set_number(scenario, "wall.angle", 2.9, &error), &error);
+    assert_int_not_equal(impactlab_scenario_set_number(scenario, "initial.angle", -0.4, &error), 0);
+    assert_string_equal(error.parameter, "initial.angle");
+    check_done(impactlab_scenario_number(scenario, "initial.angle", &value, &error), &error);
+    check_same(value, 0);
     check_done(impactlab_scenario_number(scenario, "motor.voltage", &value, &error), &error);
     check_same(value, 1);
 
@@ -182,13 +187,43 @@ static void mistakes_are_told(void **state)
 static void files_with_faults_are_refused(void **state)
 {
     (void)state;
-    static const char text[] = "title: x\nmotor: {voltage: plenty}\n";
+    // the fault, its place in the text and whose value it is
+    static const struct {
+        const char *text, *parameter;
+        int line, column;
+    } faulty[] = {
+        {"title: x\nmotor: {voltage: plenty}\n", "motor.voltage", 2, 18},
+        {"title: x\narm:\n  links: 3\n  link_inertia: 0.1\n", "arm.link_inertia", 4, 17},
+        {"title: x\narm:\n  linkz: 3\nmotor: {voltage: plenty}\n", "", 3, 3},
+        {"title: x\nmotor: {voltage: 1}\nscript: 5\n", "", 3, 9},
+        {"title: x\n\n  : [", "", 3, 3},
+    };
     impactlab_error error;
     impactlab_scenario *scenario;
-    assert_int_equal(impactlab_scenario_parse(&scenario, text, sizeof text - 1, &error),
-                     IMPACTLAB_BAD_SCENARIO);
-    assert_null(scenario);
-    assert_non_null(strstr(error.sentence, "2:"));
+    for (size_t i = 0; i < sizeof faulty / sizeof faulty[0]; i++) {
+        char place[32];
+        assert_int_equal(
+            impactlab_scenario_parse(&scenario, faulty[i].text, strlen(faulty[i].text), &error),
+            IMPACTLAB_BAD_SCENARIO);
+        assert_null(scenario);
+        snprintf(place, sizeof place, "text:%d:%d: ", error.line, error.column);
+        assert_memory_equal(error.sentence, place, strlen(place));
+        assert_int_equal(error.line, faulty[i].line);
+        assert_int_equal(error.column, faulty[i].column);
+        assert_string_equal(error.parameter, faulty[i].parameter);
+    }
+
+    // what is of no place in a file has none, and is of its parameter
+    static const char *const sets[] = {"motor.voltage=2", "wall.angle=wide"};
+    scenario = opened(first_impact);
+    assert_int_equal(impactlab_scenario_set_all(scenario, sets, 2, &error), IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(error.line, 0);
+    assert_int_equal(error.column, 0);
+    assert_string_equal(error.parameter, "wall.angle");
+    impactlab_scenario_destroy(scenario);
+    assert_int_equal(impactlab_scenario_open(&scenario, "/nowhere.yaml", &error),
+                     IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(error.line, 0);
 }
 
 // --- loops ------------------------------------------------------------------------------------
@@ -357,6 +392,16 @@ static void states_come_back(void **state)
                 check_same(force, again);
             }
             assert_int_not_equal(impactlab_loop_restore_state(loop, bytes, size - 1, &error), 0);
+
+            // a bit that is another is noticed, wherever it is, and changes nothing
+            unsigned char *const damaged = bytes;
+            for (size_t at = 0; at < size; at += 1 + size / 997) {
+                damaged[at] ^= (unsigned char)(1u << at % 8);
+                assert_int_not_equal(impactlab_loop_restore_state(loop, bytes, size, &error), 0);
+                damaged[at] ^= (unsigned char)(1u << at % 8);
+            }
+            check_done(impactlab_loop_signal(loop, "force", &again, &error), &error);
+            check_same(force, again);
             free(bytes);
         }
         impactlab_loop_destroy(loop);
@@ -540,6 +585,11 @@ static void scenarios_are_written_and_read(void **state)
     assert_string_equal(text, "2.5");
     assert_int_equal(impactlab_scenario_is_set(again, "motor.voltage"), 1);
     assert_int_equal(impactlab_scenario_is_set(again, "arm.tip_mass"), 0);
+    assert_string_equal(impactlab_scenario_name(again), "text");
+    impactlab_scenario_destroy(again);
+    check_done(impactlab_scenario_parse_named(&again, yaml, strlen(yaml), first_impact, &error),
+               &error);
+    assert_string_equal(impactlab_scenario_name(again), first_impact);
     assert_int_not_equal(impactlab_scenario_add_push(scenario, -1, 0.001, &error), 0);
 
     // both are the same run

@@ -14,7 +14,7 @@ enum { MOST = 9, AFTER = 6, SIZE = 2 * MOST + AFTER };
 #define RESOLUTION 1e-13 // of an event [s]
 #define TOLERANCE  1e-13 // of the integrator
 
-typedef enum phase { FREE, PRESSED, PARTED } phase;
+typedef enum phase { FREE, PRESSED } phase;
 
 typedef struct soft_arm {
     const soft_wall_case *c;
@@ -22,6 +22,7 @@ typedef struct soft_arm {
     double length, mass, torque, drag;
     double inertia[MOST], root[MOST]; // [kg m2], springs between the bodies [N m/rad]
     phase now;
+    bool face_rests; // at its stop, until the arm presses it
 } soft_arm;
 
 static void build(soft_arm *arm, const soft_wall_case *c)
@@ -97,9 +98,25 @@ static double stored(const soft_wall_case *c, double depth)
     return depth > 0 ? c->stiffness * pow(depth, n + 1) / (n + 1) : 0;
 }
 
-static bool has_face(const soft_arm *arm)
+static bool has_mass(const soft_arm *arm)
 {
     return arm->c->face_mass > 0;
+}
+
+// Depth and rate of the wall's face. With a mass it is integrated, without one it is where the arm
+// is or, left alone, as fast as a law without force demands.
+static void face_at(const soft_arm *arm, const double *y, double *x, double *v)
+{
+    const double *face = y + 2 * arm->bodies + 4, k = arm->c->stiffness, c = arm->c->damping;
+    *x = face[0];
+    *v = face[1];
+    if (arm->now == PRESSED) {
+        *v = depth_rate(arm, y, x);
+    } else if (arm->face_rests) {
+        *x = *v = 0;
+    } else if (!has_mass(arm)) {
+        *v = arm->c->hunt_crossley ? -k / c : -k * *x / c;
+    }
 }
 
 // How fast the rate of the depth grows at constant angular velocities: dG/dt w.
@@ -161,7 +178,7 @@ static void accelerate(const soft_arm *arm, const double *q, double face, double
 static double energy_at(const soft_arm *arm, const double *y)
 {
     const int n = arm->bodies;
-    double sum = 0, gradient[MOST];
+    double sum = 0, x, v;
     for (int i = 0; i < n; i++) {
         sum += arm->inertia[i] * y[n + i] * y[n + i] / 2;
         for (int j = 0; j < n; j++) {
@@ -171,12 +188,8 @@ static double energy_at(const soft_arm *arm, const double *y)
             sum += arm->root[i] * (y[i + 1] - y[i]) * (y[i + 1] - y[i]) / 2;
         }
     }
-    if (has_face(arm)) {
-        const double *face = y + 2 * n + 4;
-        return sum +
-               (arm->c->face_mass * face[1] * face[1] + arm->c->stiffness * face[0] * face[0]) / 2;
-    }
-    return sum + stored(arm->c, depth_at(arm, y, gradient));
+    face_at(arm, y, &x, &v);
+    return sum + arm->c->face_mass * v * v / 2 + stored(arm->c, fabs(x));
 }
 
 // The accelerations x, the face's among them, and the force at a state.
@@ -185,7 +198,7 @@ static double dynamics(const soft_arm *arm, const double *y, double *x, double *
     const int n = arm->bodies;
     double right[MOST] = {0}, gradient[MOST], depth, force = 0;
     const double rate = depth_rate(arm, y, &depth), bend = depth_bend(arm, y);
-    const double joined = has_face(arm) && arm->now == PRESSED ? arm->c->face_mass : 0;
+    const double joined = arm->now == PRESSED ? arm->c->face_mass : 0;
     depth_at(arm, y, gradient);
     if (arm->now == PRESSED) {
         force = law(arm->c, depth, rate) + joined * bend;
@@ -209,7 +222,7 @@ static double dynamics(const soft_arm *arm, const double *y, double *x, double *
             *face += gradient[i] * x[i];
         }
         force = law(arm->c, depth, rate) + arm->c->face_mass * *face;
-    } else if (has_face(arm)) {
+    } else if (has_mass(arm) && !arm->face_rests) {
         *face = -law(arm->c, y[2 * n + 4], y[2 * n + 5]) / arm->c->face_mass;
     }
     return force;
@@ -226,8 +239,9 @@ static int derivative(double t, const double y[], double dydt[], void *context)
     (void)t;
     const soft_arm *arm = context;
     const int n = arm->bodies;
-    double x[MOST], face, depth;
-    const double rate = depth_rate(arm, y, &depth), f = dynamics(arm, y, x, &face);
+    double x[MOST], face, depth, rate;
+    const double f = dynamics(arm, y, x, &face);
+    face_at(arm, y, &depth, &rate);
     for (int i = 0; i < n; i++) {
         dydt[i] = y[n + i];
         dydt[n + i] = x[i];
@@ -236,15 +250,12 @@ static int derivative(double t, const double y[], double dydt[], void *context)
                                           .stiffness = arm->c->stiffness,
                                           .exponent = arm->c->exponent},
                         depth, rate);
-    dydt[2 * n] = arm->now == FREE ? 0 : (f - spring) * rate;
+    dydt[2 * n] = (law(arm->c, depth, rate) - spring) * rate;
     dydt[2 * n + 1] = arm->torque * y[n];
     dydt[2 * n + 2] = arm->drag * y[n] * y[n];
     dydt[2 * n + 3] = f;
-    dydt[2 * n + 4] = y[2 * n + 5];
+    dydt[2 * n + 4] = rate;
     dydt[2 * n + 5] = face;
-    if (has_face(arm)) {
-        dydt[2 * n] = arm->c->damping * y[2 * n + 5] * y[2 * n + 5];
-    }
     return GSL_SUCCESS;
 }
 
@@ -267,19 +278,26 @@ static void later(soft_run *r, double h, double *y)
     }
 }
 
-// What ends the present phase when it falls below zero: 0 the way through the face, 1 the law.
+// What ends the present phase when it falls below zero: 0 the way to the face, or in contact to its
+// place at rest, 1 the force, or of Hunt and Crossley's the factor that may be negative, 2 the way
+// of their face to its stop.
 static double watched(const soft_run *r, const double *y, int which)
 {
-    double depth, rate = depth_rate(&r->arm, y, &depth);
-    double sign = r->arm.now == FREE ? -1 : 1;
-    if (has_face(&r->arm)) {
-        return r->arm.now == FREE ? (which == 0 ? y[2 * r->arm.bodies + 4] - depth : 1)
-                                  : (which == 1 ? force_at(&r->arm, y) : 1);
+    const soft_wall_case *c = r->arm.c;
+    double depth, rate = depth_rate(&r->arm, y, &depth), x, v;
+    face_at(&r->arm, y, &x, &v);
+    if (r->arm.now == FREE) {
+        return which == 0                                             ? x - depth
+               : which == 2 && c->hunt_crossley && !r->arm.face_rests ? x
+                                                                      : 1;
     }
-    if (which == 0) {
-        return sign * depth;
+    if (has_mass(&r->arm)) {
+        return which == 1 ? force_at(&r->arm, y) : 1;
     }
-    return r->arm.now == FREE ? 1 : (r->arm.now == PRESSED ? 1 : -1) * law(r->arm.c, depth, rate);
+    return which == 0         ? depth
+           : which == 2       ? 1
+           : c->hunt_crossley ? c->stiffness + c->damping * rate
+                              : law(c, depth, rate);
 }
 
 // The first instant in (0, h] at which something ends the phase; h and which = -1 if nothing does.
@@ -287,11 +305,11 @@ static double first_end(soft_run *r, double h, int *which)
 {
     double y[SIZE];
     *which = -1;
-    for (int w = 0; w < 2; w++) {
+    for (int w = 0; w < 3; w++) {
         double lo = 0, hi = h;
         later(r, h, y);
         // what starts at its edge (a touch) may be below it by rounding only
-        if (!(watched(r, y, w) < 0) || (w == 1 && r->arm.c->hunt_crossley)) {
+        if (!(watched(r, y, w) < 0)) {
             continue;
         }
         while (hi - lo > RESOLUTION) {
@@ -348,21 +366,48 @@ static void strike(soft_run *r, soft_wall_answer *a)
     for (int i = 0; i < n; i++) {
         r->y[n + i] -= impulse * x[i];
     }
-    r->y[2 * n + 4] = depth;
     r->y[2 * n + 5] += impulse / r->arm.c->face_mass;
     a->impulse = a->touches == 0 ? impulse : a->impulse;
     a->impact_loss += impulse * speed / 2;
 }
 
+// What the present phase gives way to.
+static void change_phase(soft_run *r, int which, soft_wall_answer *a)
+{
+    double *face = r->y + 2 * r->arm.bodies + 4, depth;
+    depth_rate(&r->arm, r->y, &depth);
+    if (which == 2) {
+        // the stop takes what a mass still has
+        r->y[2 * r->arm.bodies] += r->arm.c->face_mass * face[1] * face[1] / 2;
+        r->arm.face_rests = true;
+        face[0] = face[1] = 0;
+    } else if (r->arm.now == FREE) {
+        if (has_mass(&r->arm)) {
+            strike(r, a);
+        }
+        r->arm.now = PRESSED;
+        r->arm.face_rests = false;
+        face[0] = depth;
+        a->touches++;
+        a->first_contact = a->touches == 1 ? r->time : a->first_contact;
+        a->third_contact = a->touches == 3 ? r->time : a->third_contact;
+    } else {
+        r->arm.now = FREE;
+        r->arm.face_rests = !has_mass(&r->arm) && (which == 0 || r->arm.c->damping == 0);
+        a->first_pulse = a->first_pulse < 0 ? r->time - a->first_contact : a->first_pulse;
+    }
+}
+
 bool soft_wall_simulate(const soft_wall_case *c, soft_wall_answer *a)
 {
-    soft_run r = {.time = 0};
+    soft_run r = {.arm = {.now = FREE}};
     build(&r.arm, c);
+    r.arm.face_rests = true;
     const int n = r.arm.bodies;
     r.system = (gsl_odeiv2_system){derivative, NULL, (size_t)(2 * n + AFTER), &r.arm};
     r.driver =
         gsl_odeiv2_driver_alloc_y_new(&r.system, gsl_odeiv2_step_rk8pd, 1e-6, TOLERANCE, TOLERANCE);
-    *a = (soft_wall_answer){.first_contact = -1, .first_pulse = -1};
+    *a = (soft_wall_answer){.first_contact = -1, .first_pulse = -1, .third_contact = -1};
     double window = c->duration - 0.1, at_window = 0;
     while (r.time < c->duration - 1e-12 && !r.failed) {
         double until = r.time < window - 1e-12 ? window : c->duration;
@@ -394,23 +439,8 @@ bool soft_wall_simulate(const soft_wall_case *c, soft_wall_answer *a)
         }
         memcpy(r.y, y, sizeof y);
         r.time += h;
-
-        // what the phase gives way to
-        if (which >= 0 && r.arm.now == FREE) {
-            if (has_face(&r.arm)) {
-                strike(&r, a);
-            }
-            r.arm.now = PRESSED;
-            a->touches++;
-            a->first_contact = a->first_contact < 0 ? r.time : a->first_contact;
-        } else if (which >= 0 && r.arm.now == PRESSED) {
-            double depth;
-            depth_rate(&r.arm, r.y, &depth);
-            r.arm.now = which == 1 && depth > 1e-12 && !has_face(&r.arm) ? PARTED : FREE;
-            a->first_pulse = a->first_pulse < 0 ? r.time - a->first_contact : a->first_pulse;
-        } else if (which >= 0) {
-            r.arm.now = which == 0 ? FREE : PRESSED;
-            a->touches += which == 1;
+        if (which >= 0) {
+            change_phase(&r, which, a);
         }
     }
     gsl_odeiv2_driver_free(r.driver);

@@ -16,7 +16,8 @@ typedef struct soft_wall_case {
     double damping;     // c [N s/m^n]
     double exponent;    // n, Hunt-Crossley only
     double tip_mass;    // [kg]
-    double face_mass;   // M of the face, which the tip strikes plastically; 0: none [kg]
+    double face_mass;   // M of the face, which the tip strikes plastically; 0: none. One of
+                        // Hunt-Crossley's wall comes to rest at a stop where it stands [kg]
     double voltage;     // command [V]
     double duration;    // [s]
 } soft_wall_case;
@@ -34,6 +35,7 @@ typedef struct soft_wall_answer {
     double final_hub_angle;
     double energy_residual; // at the end [J]
     int touches;            // times that the force begins
+    double third_contact;   // of them [s]
     double impulse;         // of the first impact on a face [N s]
     double impact_loss;     // in all of them [J]
 } soft_wall_answer;

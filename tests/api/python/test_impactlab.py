@@ -1,7 +1,12 @@
 """The Python package over the shared library. Tests assert results, never time."""
 
+import copy
+import gc
 import json
 import math
+import pickle
+import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -177,3 +182,288 @@ def test_code_is_not_run_unasked(tmp_path):
     with pytest.raises(Error, match="allow"):
         scenario.run()
     assert not mark.exists()
+
+
+# --- objects that own handles -----------------------------------------------------------------
+
+COPIES = {"copy": copy.copy, "deepcopy": copy.deepcopy,
+          "pickle": lambda one: pickle.loads(pickle.dumps(one)), "method": lambda one: one.copy()}
+
+
+class Named(Scenario):
+    """A kind of one's own."""
+
+
+@pytest.mark.parametrize("way", COPIES)
+def test_scenarios_are_copied_and_pickled(way):
+    scenario = Named(FIRST).change_at(0.2, "motor.voltage", 2.0).push_at(0.5, 1e-3)
+    scenario["control.settings"] = "a=1 b='ü'"
+    other = COPIES[way](scenario)
+    assert type(other) is Named and other.name == FIRST and other.yaml == scenario.yaml
+    # each is its own, and both are the same run
+    other.motor.voltage = 3
+    assert scenario.motor.voltage == 1
+    other.motor.voltage = 1
+    mine, its = json.loads(scenario.run().json), json.loads(other.run().json)
+    # expectations are of the file as it stands, and not in a pickle
+    for key in ("wall_time_s", "cpu_time_s", "expectations"):
+        assert mine.pop(key) and (its.pop(key, None) or way == "pickle")
+    assert mine == its
+    del scenario
+    gc.collect()
+    assert other.run(rows=False).status == "ok"
+
+
+@pytest.mark.parametrize("way", COPIES)
+def test_consent_goes_along_with_a_copy(way, tmp_path):
+    scenario = Scenario(FIRST).set({"control.law": "process", "control.command": "exit 1"})
+    with pytest.raises(Error, match="allow"):
+        COPIES[way](scenario).run()
+    with pytest.raises(Error, match="(?!.*allow)"):
+        COPIES[way](scenario.allow_code()).run()
+    with pytest.raises(TypeError):
+        scenario.allow_code("no")
+
+
+def test_groups_are_of_their_scenario():
+    scenario = Scenario(FIRST)
+    for way in (copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one))):
+        group = way(scenario.motor)
+        group.voltage = 4
+        assert group.voltage == 4 and scenario.motor.voltage == 1
+    copy.copy(scenario.motor).voltage = 4
+    assert scenario.motor.voltage == 4
+
+
+@pytest.mark.parametrize("way", ["copy", "deepcopy", "pickle"])
+def test_loops_and_runs_say_that_they_cannot_be_copied(way):
+    scenario = Scenario(FIRST)
+    loop, run = Loop(scenario), scenario.run()
+    for one, word in ((loop, "save_state"), (run, "scenario")):
+        with pytest.raises(TypeError, match=f"neither copied nor pickled: .*{word}"):
+            COPIES[way](one)
+    gc.collect()
+    assert loop.step() > 0 and len(run.time) > 1000
+
+
+def test_errors_are_pickled_without_their_run():
+    scenario = Scenario(FIRST)
+    with pytest.raises(Error) as raised:
+        scenario.run(controller=lambda reading: math.nan)
+    again = pickle.loads(pickle.dumps(raised.value))
+    assert str(again) == str(raised.value) and again.status == raised.value.status != 0
+
+
+def test_what_does_not_exist_is_not_made():
+    scenario = Scenario(FIRST)
+    loop, run = Loop(scenario), scenario.run()
+    refused = [
+        (scenario, "motor", "scenario.motor.[a-z]+ = "), (scenario, "voltage", "'motor.voltage'"),
+        (scenario, "moter", "'motor'"), (scenario, "run", "scenario.run.[a-z]+ = "),
+        (scenario, "name", "cannot be set"), (scenario, "copy", "cannot be set"),
+        (scenario.motor, "voltag", "'motor.voltage'"), (scenario.run, "duraton", "'run.duration'"),
+        (loop, "command", "cannot be set"), (loop, "time", "cannot be set"),
+        (loop, "ende", "'ended'"), (loop, "wanted_forc", "'wanted_force'"),
+        (run, "peak_force_N", "cannot be set"), (run, "peek_force_N", "'peak_force_N'"),
+        (run, "status", "cannot be set"), (scenario.batch({"motor.voltage": [1]}), "peak", "")]
+    before = scenario.yaml
+    for one, name, sentence in refused:
+        with pytest.raises(AttributeError, match=sentence):
+            setattr(one, name, 5)
+        if "did you" in sentence or "'" in sentence:
+            with pytest.raises(AttributeError, match=f"did you mean {sentence}"):
+                getattr(one, name)
+    loop.wanted_force = 2
+    assert loop.wanted_force == 2 and scenario.yaml == before
+
+    reading = Loop(scenario, command=True).read_sensors()
+    with pytest.raises(AttributeError, match="'force'"):
+        reading.forse
+    for name in ("force", "forse"):
+        with pytest.raises(AttributeError):
+            setattr(reading, name, 1)
+    for table, key, meant in ((impactlab.PARAMETERS, "motor.voltag", "motor.voltage"),
+                              (impactlab.SIGNALS, "forse", "force"),
+                              (impactlab.QUANTITIES, "peek_force_N", "peak_force_N"),
+                              (scenario.batch({"motor.voltage": [1]}), "peek_force_N",
+                               "peak_force_N")):
+        with pytest.raises(KeyError, match=f"did you mean '{meant}'"):
+            table[key]
+    with pytest.raises(KeyError, match="'force'"):
+        run.unit("forse")
+    for one in (run, loop):
+        with pytest.raises(Error, match="'force'"):
+            one["forse"]
+
+
+@pytest.mark.parametrize("answer, sentence", [
+    ({"comand": 1}, "did you mean 'command'"), ({"command": 1, "mode": 7}, "mode"), ({}, "command"),
+    ({"calculated_force": 1}, "command"), ({"command": True}, "command"), (True, "command"),
+    (np.bool_(True), "command"), ("1", "command"), (None, "command"), ([1, 2], "command"),
+    (1j, "command"), ({"command": 1, 5: 1}, "5"), (10**400, "large"), (b"1", "command")])
+def test_answers_of_a_controller_are_volts(answer, sentence):
+    with pytest.raises((TypeError, KeyError, ValueError), match=sentence):
+        Scenario(FIRST).run(controller=lambda reading: answer)
+
+
+def test_what_the_last_sample_raises_comes_out():
+    scenario = Scenario(FIRST)
+    times = []
+    scenario.run(controller=lambda reading: times.append(reading.time) or 1.0)
+
+    def late(reading):
+        assert reading.time < times[-1]
+        return 1.0
+    with pytest.raises(AssertionError):
+        scenario.run(controller=late)
+    with pytest.raises(TypeError, match="function"):
+        scenario.run(controller=5)
+
+
+def test_readings_outlive_their_sample():
+    kept = []
+    Scenario(FIRST).run(controller=lambda reading: kept.append(reading) or 1.0)
+    assert [r.time for r in kept] == sorted({r.time for r in kept})
+    assert all(abs(r.encoder) < 1 for r in kept)
+
+
+def test_a_controller_may_change_its_scenario():
+    scenario = Scenario(FIRST)
+    whole = scenario.run(controller=lambda reading: 1.0)
+
+    def meddle(reading):
+        scenario.motor.voltage = 5
+        scenario.push_at(reading.time, 0.1)
+        return 1.0
+    assert scenario.run(controller=meddle).peak_force_N == whole.peak_force_N
+
+
+def test_texts_end_where_they_end():
+    scenario, loop = Scenario(FIRST), Loop(Scenario(FIRST), command=True)
+    before = scenario.yaml
+    cut = [lambda: Scenario(FIRST + "\0x"), lambda: Scenario.from_yaml("title: x\0\nmotor: 5\n"),
+           lambda: scenario["motor.voltage\0x"],
+           lambda: scenario.__setitem__("motor.voltage", "2\0 V"),
+           lambda: scenario.__setitem__("motor.voltage\0", 2),
+           lambda: scenario.set({"motor.voltage": "2\0"}),
+           lambda: scenario.set({"motor.voltage\0": 2}),
+           lambda: scenario.change_at(0.1, "motor.voltage\0", 2),
+           lambda: scenario.change_at(0.1, "motor.voltage", "2\0"),
+           lambda: scenario.batch({"motor.voltage\0": [1]}),
+           lambda: loop["force\0"], lambda: loop.set_input("control.force\0", 1),
+           lambda: loop.set_input("control.force", "1\0"), lambda: scenario.run()["force\0"]]
+    for call in cut:
+        with pytest.raises((ValueError, Error), match="."):
+            call()
+    assert scenario.yaml == before
+
+
+def test_values_are_what_they_seem():
+    scenario, loop = Scenario(FIRST), Loop(Scenario(FIRST), command=True)
+    before = scenario.yaml
+    for value in (True, np.bool_(False), None, b"2", [1], 1j, {}, object()):
+        for give in (lambda: scenario.__setitem__("motor.voltage", value),
+                     lambda: setattr(scenario.motor, "voltage", value),
+                     lambda: scenario.set({"motor.voltage": value}),
+                     lambda: scenario.change_at(0.1, "motor.voltage", value),
+                     lambda: scenario.push_at(value, 1), lambda: scenario.push_at(0.1, value),
+                     lambda: loop.command(value), lambda: loop.set_input("control.force", value),
+                     lambda: loop.step_until(value), lambda: loop.push(value),
+                     lambda: loop.restore_state(value)):
+            with pytest.raises((TypeError, Error), match="."):
+                give()
+        if value != [1]:  # a grid of values is one
+            with pytest.raises((TypeError, Error), match="."):
+                scenario.batch({"motor.voltage": [value]})
+    for value in (10**400, -10**400, math.nan, math.inf):
+        for give in (lambda: scenario.__setitem__("motor.voltage", value),
+                     lambda: loop.command(value), lambda: loop.push(value),
+                     lambda: scenario.push_at(0.1, value), lambda: loop.step_until(value),
+                     lambda: scenario.batch({"motor.voltage": [value]})):
+            with pytest.raises((TypeError, ValueError, Error), match="."):
+                give()
+    for jobs in (-1, 2**32, 1.5, "2"):
+        with pytest.raises((TypeError, ValueError)):
+            scenario.batch({"motor.voltage": [1]}, jobs=jobs)
+    for wrong in (scenario.run(), FIRST, None, 5):
+        with pytest.raises(TypeError, match="Scenario"):
+            Loop(wrong)
+    for wrong in (FIRST, {}, 0, scenario.run()):
+        with pytest.raises(TypeError, match="Scenario"):
+            Environment(wrong)
+    for wrong in (5, None, b"x", scenario):
+        for call in (lambda: scenario[wrong], lambda: loop[wrong], lambda: scenario.run()[wrong],
+                     lambda: scenario.set({wrong: 1}), lambda: Scenario.from_yaml(wrong)):
+            with pytest.raises(TypeError, match="."):
+                call()
+    with pytest.raises(TypeError):
+        impactlab.Run()
+    with pytest.raises(Error, match="control.command=echo"):
+        scenario.set({"control.command=echo": "x"})
+    assert scenario.yaml == before and loop.time == 0 and loop.step() > 0
+
+
+def test_lists_are_lists():
+    lengths = [p.path for p in impactlab.PARAMETERS.values() if p.type == "list"]
+    scenario = Scenario(FIRST)
+    assert "arm.link_lengths" in lengths and scenario["arm.link_lengths"] == []
+    scenario["arm.link_lengths"] = np.array([0.3, 0.2])
+    assert scenario["arm.link_lengths"] == [0.3, 0.2] == scenario.copy().arm.link_lengths
+    assert scenario.set({"arm.link_lengths": (0.25, 0.25)}).arm.link_lengths == [0.25, 0.25]
+    with pytest.raises(TypeError):
+        scenario["arm.link_lengths"] = [True, 0.1]
+
+
+def test_errors_have_a_place():
+    with pytest.raises(Error) as raised:
+        Scenario.from_yaml("title: x\nmotor:\n  voltage: plenty\n")
+    error = raised.value
+    assert (error.line, error.column, error.parameter) == (3, 12, "motor.voltage")
+    with pytest.raises(Error) as raised:
+        Scenario().set({"motor.voltage": "plenty"})
+    assert (raised.value.line, raised.value.parameter) == (0, "motor.voltage")
+
+
+def test_scenarios_go_when_nobody_has_them():
+    gone = weakref.ref(Scenario(FIRST))
+    assert gone() is None
+    run = Scenario(FIRST).run()
+    force, watched = run["force"], weakref.ref(run)
+    del run
+    assert watched() is not None and force.max() > 1
+    del force
+    assert watched() is None
+
+
+def test_threads_share_objects():
+    scenario, loop, failures = Scenario(FIRST), Loop(Scenario(FIRST), command=True), []
+    peak, stop = scenario.run(rows=False).peak_force_N, threading.Event()
+
+    def repeat(action):
+        try:
+            while not stop.is_set():
+                action()
+        except BaseException as failure:
+            failures.append(failure)
+
+    def links():
+        scenario["arm.links"] = 3
+        frequencies, shapes = scenario.modes()
+        assert len(frequencies) in (2, 3) and len(shapes) == len(frequencies)
+        scenario["arm.links"] = 2
+
+    state = loop.save_state()
+    actions = [links, scenario.modes, lambda: scenario.push_at(0.9, 1e-9), scenario.copy,
+               lambda: scenario.yaml, lambda: scenario.run(rows=False), loop.step,
+               lambda: loop.restore_state(state), loop.read_sensors, loop.run]
+    threads = [threading.Thread(target=repeat, args=(action,)) for action in actions]
+    for thread in threads:
+        thread.start()
+    for _ in range(300):
+        scenario.copy()
+    stop.set()
+    for thread in threads:
+        thread.join()
+    assert not failures
+    scenario["arm.links"] = 2
+    assert Scenario(FIRST).run(rows=False).peak_force_N == peak

@@ -1,0 +1,551 @@
+// Random arms with two to five features at once, by an engine, and by a reference: the same
+// contacts at the same instants with the same momenta, forces and losses, or the engine is wrong.
+//
+//     random_arms [NAME=VALUE]...
+//         count=200 first=0 least=1 most=8       arms FIRST to FIRST + COUNT - 1 of so many links
+//         engine=auto                            or a value of method.engine
+//         by=explicit                            implicit (to 24 links), fine (the same engine at a
+//                                                hundredth of its tolerance), or a value of
+//                                                method.engine
+//         gate=a                                 limits: a 1e-9 s, 1e-7 of momentum, 1e-6 of the
+//         peak;
+//                                                b 1e-11 s, 1e-9, 1e-8
+//         damping=1                              largest damping ratio
+//         place=near                             near: links soon meet a wall at 0.1 rad; whole:
+//                                                half of them one link, walls by decades and at any
+//                                                angle, starts to both of their sides
+//         cost=0                                 1: processor time of both, and their ratio
+//
+// Arm i is made of its own number. A limit is the stated one, or ten times what a mass of 1e-12
+// more changes in the reference, whichever is larger: bounces amplify. Where the reference does not
+// agree with itself at another tolerance nothing is said. An arm that starts behind its wall must
+// be refused, and no other for where it starts.
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "src/arm/chain.h"
+#include "src/base/random.h"
+#include "tests/arm_fixture.h"
+#include "tests/chain_outcome.h"
+#include "tests/explicit_stepper.h"
+#include "tests/reference/implicit_arm.h"
+
+#define AFTER_CONTACT 0.0501
+#define DURATION      0.15
+#define SUBSTEPS      20    // of the explicit formula: its fastest rate times its time step
+#define FASTEST       3e6   // beyond which the explicit formula takes too long [1/s]
+#define FASTEST_WHOLE 1e6   // the same with wall and motor
+#define LOSSES        1e-5  // what may be of each loss, as a share of what was put in
+#define NEXT_TO_NONE  1e-12 // share of the mass
+#define IMPLICIT_MOST 24    // links
+
+enum { MOST_SETTINGS = 24, LONGEST = 2400, LONGEST_LIST = 20 };
+
+typedef struct options {
+    int count, first, least, most;
+    char engine[32], by[32];
+    bool strict, cost, whole;
+    double damping;
+} options;
+
+typedef struct random_arm {
+    parameters parameters;
+    double angle, velocity;
+    char settings[MOST_SETTINGS][LONGEST];
+    int count;
+} random_arm;
+
+// What may be.
+typedef struct limits {
+    double time, momentum, peak;
+} limits;
+
+static double between(random_generator *g, double from, double to)
+{
+    return from * exp(random_uniform(g) * log(to / from));
+}
+static bool chance(random_generator *g, double share)
+{
+    return random_uniform(g) < share;
+}
+
+static __attribute__((format(printf, 2, 3))) void set(random_arm *r, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    vsnprintf(r->settings[r->count], sizeof r->settings[0], format, values);
+    va_end(values);
+    r->count++;
+}
+
+// A list of numbers: `mean` times or over so much.
+static void set_list(random_arm *r, random_generator *g, const char *path, int count, double mean,
+                     double share)
+{
+    char list[LONGEST - 32];
+    int at = 0;
+    for (int k = 0; k < count; k++) {
+        at += snprintf(list + at, sizeof list - (size_t)at, "%s%.2g", k > 0 ? "," : "",
+                       mean * between(g, 1 / share, share));
+    }
+    set(r, "%s=%s", path, list);
+}
+
+typedef enum feature {
+    UNEVEN_LINKS,
+    UNEVEN_JOINTS,
+    TIP_MASS,
+    STIFFENING,
+    MODAL_DAMPING,
+    AIR,
+    INDUCTANCE,
+    CURRENT_LIMIT,
+    SOFT_WALL,
+    RESTITUTION,
+    DAMPING,
+    FEATURES
+} feature;
+
+static void set_wall(random_arm *r, random_generator *g, const options *o)
+{
+    const double which = random_uniform(g);
+    const bool hertz = which<0.35, face = which> 0.75;
+    const double least = o->whole ? 1e-3 : hertz ? 1e2 : 1, most = hertz ? 1e6 : 300;
+    set(r, "wall.contact=%s", hertz ? "hunt-crossley" : "kelvin-voigt");
+    set(r, "wall.stiffness=%.17g", between(g, o->whole ? 1 : 1e2, hertz || o->whole ? 1e8 : 1e6));
+    set(r, "wall.damping=%.17g", chance(g, 0.3) ? 0 : between(g, least, o->whole ? 1e6 : most));
+    if (hertz) {
+        set(r, "wall.exponent=%.17g", chance(g, 0.7) ? 1.5 : between(g, 1, o->whole ? 5 : 3));
+    }
+    if (face) { // which is met by an impact
+        set(r, "wall.mass=%.17g", between(g, o->whole ? 1e-6 : 1e-3, o->whole ? 1e3 : 1));
+        set(r, "wall.restitution=%.17g", chance(g, 0.5) ? 0 : 0.95 * random_uniform(g));
+    }
+}
+
+// One feature of the arm.
+static void add_feature(random_arm *r, random_generator *g, feature f, int links, bool rigid,
+                        double k2, const options *o)
+{
+    const int joints = links - (rigid ? 1 : 0);
+    switch (f) {
+    case UNEVEN_LINKS:
+        set_list(r, g, "arm.link_lengths", links, 1.0 / links, 1.5);
+        break;
+    case UNEVEN_JOINTS:
+        if (joints > 0) {
+            set_list(r, g, "arm.joint_stiffness", joints, k2 * links / 2, 2);
+        }
+        break;
+    case TIP_MASS:
+        set(r, "arm.tip_mass=%.17g", between(g, 1e-3, 0.5));
+        break;
+    case STIFFENING:
+        set(r, "arm.stiffening=%.17g", between(g, 0.1, 30));
+        break;
+    case MODAL_DAMPING:
+        if (joints > 0) {
+            set_list(r, g, "arm.modal_ratios", joints < 4 ? joints : 4, 0.01, 8);
+        }
+        break;
+    case AIR:
+        set(r, "arm.air_drag=%.17g", between(g, 1e-2, 5));
+        break;
+    case INDUCTANCE:
+        set(r, "motor.inductance=%.17g", between(g, 1e-4, 2));
+        break;
+    case CURRENT_LIMIT:
+        set(r, "motor.current_limit=%.17g", between(g, 0.1, 5));
+        break;
+    case SOFT_WALL:
+        set_wall(r, g, o);
+        break;
+    case RESTITUTION:
+        set(r, "wall.restitution=%.17g", 0.95 * random_uniform(g));
+        break;
+    case DAMPING:
+        set(r, "arm.damping_ratio=%.17g", between(g, 1e-4, o->damping));
+        break;
+    case FEATURES:
+        break;
+    }
+}
+
+// Puts the arm in front of a wall at any angle, soon to meet it from one side or the other, on it,
+// or anywhere, which may be behind it.
+static void place_anywhere(random_arm *r, random_generator *g)
+{
+    const double wall = 6 * random_uniform(g) - 3, where = random_uniform(g);
+    const double apart = fabs(r->velocity) * between(g, 2e-3, 2e-2);
+    r->angle = wall - apart;
+    if (where < 0.3) {
+        r->angle = wall - M_PI + apart;
+        r->velocity = -r->velocity;
+    } else if (where < 0.4) {
+        r->angle = wall;
+        r->velocity = chance(g, 0.5) ? 0 : r->velocity;
+    } else if (where < 0.55) {
+        r->angle = 6 * random_uniform(g) - 3;
+    }
+    r->angle = fmax(-3, fmin(r->angle, 3));
+    set(r, "wall.angle=%.17g", wall);
+    set(r, "initial.angle=%.17g", r->angle);
+}
+
+// Whether a feature can be had beside those that there are, with so many links and joints.
+static bool goes_with(const bool *has, feature f, int links, int joints)
+{
+    static const feature clashes[][2] = {{MODAL_DAMPING, DAMPING},
+                                         {STIFFENING, UNEVEN_LINKS},
+                                         {STIFFENING, UNEVEN_JOINTS},
+                                         {RESTITUTION, SOFT_WALL}};
+    for (size_t i = 0; i < sizeof clashes / sizeof *clashes; i++) {
+        if ((f == clashes[i][0] && has[clashes[i][1]]) ||
+            (f == clashes[i][1] && has[clashes[i][0]])) {
+            return false;
+        }
+    }
+    const bool list = f == UNEVEN_LINKS || f == UNEVEN_JOINTS;
+    return (!list || links <= LONGEST_LIST) &&
+           (joints > 0 || (f != UNEVEN_JOINTS && f != MODAL_DAMPING));
+}
+
+static void make_arm(random_arm *r, int number, const options *o)
+{
+    random_generator g;
+    random_seed(&g, (uint64_t)number * 7919 + 17);
+    r->count = 0;
+    const int drawn =
+        o->least + (int)((o->most - o->least + 1) * random_uniform(&g) * random_uniform(&g));
+    const int links = o->whole && chance(&g, 0.5) ? 1 : drawn;
+    const bool rigid = chance(&g, 0.4), beam = !rigid && chance(&g, 0.7);
+    set(r, "arm.links=%d", links);
+    set(r, "arm.hub_joint=%s", rigid ? "rigid" : beam ? "beam" : "spring");
+    set(r, "wall.kind=%s", chance(&g, 0.5) ? "plane" : "point");
+    set(r, "motor.voltage=%.17g", (chance(&g, 0.1) ? -1 : 1) * between(&g, 0.3, 10));
+    const double k2 = between(&g, 1, 50);
+    set(r, "arm.mass=%.17g", between(&g, 0.1, 2));
+    set(r, "arm.hub_inertia=%.17g", between(&g, 1e-3, 5e-2));
+    set(r, "motor.stiction=%.17g", chance(&g, 0.5) ? 0.045 : between(&g, 1e-3, 0.5));
+    r->velocity = between(&g, 0.05, 5);
+    r->angle = 0.1 - r->velocity * between(&g, 2e-3, 2e-2);
+    if (o->whole) {
+        place_anywhere(r, &g);
+    }
+
+    // two to five different features that go together
+    bool has[FEATURES] = {false};
+    for (int wanted = 2 + (int)random_below(&g, 4); wanted > 0;) {
+        const feature f = (feature)random_below(&g, FEATURES);
+        if (!has[f]) {
+            has[f] = goes_with(has, f, links, links - (beam ? 0 : 1));
+            wanted--;
+        }
+    }
+    if (!has[UNEVEN_JOINTS]) {
+        set(r, "arm.k2=%.17g", k2);
+    }
+    for (int f = 0; f < FEATURES; f++) {
+        if (has[f]) {
+            add_feature(r, &g, (feature)f, links, !beam, k2, o);
+        }
+    }
+}
+
+// Parameters of the arm; false if they are refused.
+static bool resolve_arm(random_arm *r)
+{
+    fault f;
+    parameters_defaults(&r->parameters, ARM_CORRECTED);
+    for (int i = 0; i < r->count; i++) {
+        char path[64];
+        const char *equals = strchr(r->settings[i], '=');
+        snprintf(path, sizeof path, "%.*s", (int)(equals - r->settings[i]), r->settings[i]);
+        if (parameter_set_text(&r->parameters, parameter_find(path), equals + 1, &f) != STATUS_OK) {
+            return false;
+        }
+    }
+    return parameters_resolve(&r->parameters, &f) == STATUS_OK;
+}
+
+static void describe(const random_arm *r, int number, const char *what)
+{
+    printf("%d: %s: %g rad, %g rad/s:", number, what, r->angle, r->velocity);
+    for (int i = 0; i < r->count; i++) {
+        printf(" %s", r->settings[i]);
+    }
+    printf("\n");
+    fflush(stdout);
+}
+
+// A run by the method's own engine, with what `setting` says of it.
+static chain_outcome by_setting(const random_arm *r, const parameters *p, const char *path,
+                                const char *value)
+{
+    parameters with = *p;
+    fault f;
+    if (parameter_find(path) >= 0 &&
+        (parameter_set_text(&with, parameter_find(path), value, &f) != STATUS_OK ||
+         parameters_resolve(&with, &f) != STATUS_OK)) {
+        fprintf(stderr, "random_arms: %s\n", f.text);
+        exit(2);
+    }
+    return chain_outcome_of(&(chain_start){&with, r->angle, r->velocity, DURATION, AFTER_CONTACT,
+                                           NULL, OUTCOME_CONTACTS});
+}
+
+// What is taken for right, coarser or finer, of an arm heavier by a share.
+static chain_outcome by_reference(const random_arm *r, const options *o, double heavier,
+                                  double finer)
+{
+    parameters p = r->parameters;
+    p.arm.mass *= 1 + heavier;
+    const chain_start start = {
+        &p, r->angle, r->velocity, DURATION, AFTER_CONTACT, &explicit_engine, OUTCOME_CONTACTS};
+    if (strcmp(o->by, "explicit") == 0) {
+        arm a;
+        arm_init(&a, &p);
+        p.method.step = fmin(1e-5, SUBSTEPS / a.fastest_rate) / finer;
+        return chain_outcome_of(&start);
+    }
+    if (strcmp(o->by, "implicit") == 0) {
+        return implicit_outcome_of(&start, 1e-8 / finer);
+    }
+    if (strcmp(o->by, "fine") == 0) {
+        char value[40];
+        const int tolerance = parameter_find("method.tolerance");
+        snprintf(value, sizeof value, "%.17g", parameter_get(&p, tolerance) / 100 / finer);
+        parameters with = p;
+        fault f;
+        parameter_set_text(&with, parameter_find("method.engine"), o->engine, &f);
+        return by_setting(r, &with, "method.tolerance", value);
+    }
+    return by_setting(r, &p, "method.engine", o->by);
+}
+
+// How fast the explicit formula must follow arm, motor and wall [1/s].
+static double rate_of(const random_arm *r)
+{
+    static chain_link work[PARAMETER_LINKS_MOST];
+    static double q[PARAMETER_LINKS_MOST + 1], response[PARAMETER_LINKS_MOST + 1];
+    const parameters *p = &r->parameters;
+    const double speed = (fabs(r->velocity) + 1) * p->arm.length;
+    arm a;
+    arm_init(&a, p);
+    double compliance, rate = a.fastest_rate;
+    if (p->motor.inductance > 0) {
+        rate = fmax(rate, p->motor.resistance / p->motor.inductance);
+    }
+    if (!wall_gives(&a.wall)) {
+        return rate;
+    }
+
+    // with the wall, straight and at the speed at which it may come; the face on its own
+    for (int i = 0; i < a.dof; i++) {
+        q[i] = r->angle;
+    }
+    chain_contact_response(&a, work, q, false, response, &compliance);
+    compliance /= 1 + a.wall.face_mass * compliance;
+    rate = fmax(rate, wall_rate(&a.wall, compliance, 0, speed));
+    return wall_has_face(&a.wall) ? fmax(rate, wall_face_rate(&a.wall, (wall_face){0, 1})) : rate;
+}
+
+static bool can_follow(const random_arm *r, const options *o)
+{
+    if (strcmp(o->by, "explicit") == 0 && o->whole) {
+        return rate_of(r) <= FASTEST_WHOLE;
+    }
+    if (strcmp(o->by, "explicit") == 0) {
+        arm a;
+        arm_init(&a, &r->parameters);
+        return a.fastest_rate <= FASTEST;
+    }
+    return strcmp(o->by, "implicit") != 0 || r->parameters.arm.links <= IMPLICIT_MOST;
+}
+
+// Distances of two outcomes: contacts as instants times their share of the first speed of approach,
+// momentum and peak as shares.
+typedef struct distances {
+    double time[OUTCOME_CONTACTS], momentum, peak, lost;
+    int contacts; // in common
+    bool same;    // as many contacts
+} distances;
+
+static distances distances_of(const chain_outcome *a, const chain_outcome *b)
+{
+    distances d = {.same = a->contacts == b->contacts};
+    d.contacts = a->contacts < b->contacts ? a->contacts : b->contacts;
+    d.contacts = d.contacts < OUTCOME_CONTACTS ? d.contacts : OUTCOME_CONTACTS;
+    for (int i = 0; i < d.contacts; i++) {
+        // a contact that grazes the wall has an instant as uncertain as its speed is small
+        const double graze = fmin(1, a->contact_speeds[i] / fmax(a->contact_speeds[0], 1e-300));
+        d.time[i] = fabs(a->contact_times[i] - b->contact_times[i]) * graze;
+    }
+    const int samples = a->samples < b->samples ? a->samples : b->samples;
+    for (int i = 0; i < samples; i++) {
+        d.momentum = fmax(d.momentum, fabs(a->momentum[i] - b->momentum[i]));
+    }
+    if (samples > 0) {
+        d.momentum /= fmax(fabs(a->momentum[samples - 1]), 1e-6);
+    }
+    if (a->peak > 0) {
+        d.peak = fabs(a->peak - b->peak) / a->peak;
+    }
+    d.lost = fabs(a->motor_work - b->motor_work) / fmax(a->put_in, b->put_in);
+    for (size_t i = 0; i < sizeof a->lost / sizeof *a->lost; i++) {
+        d.lost = fmax(d.lost, fabs(a->lost[i] - b->lost[i]) / fmax(a->put_in, b->put_in));
+    }
+    return d;
+}
+
+// The largest of the distances as a multiple of what may be; `change` is what next to nothing does.
+static double worst_of(const distances *d, const distances *change, const limits *may)
+{
+    double worst = 0;
+    for (int i = 0; i < d->contacts; i++) {
+        worst = fmax(worst, d->time[i] / fmax(may->time, 10 * change->time[i]));
+    }
+    worst = fmax(worst, d->momentum / fmax(may->momentum, 10 * change->momentum));
+    worst = fmax(worst, d->lost / fmax(LOSSES, 10 * change->lost));
+    return fmax(worst, d->peak / fmax(may->peak, 10 * change->peak));
+}
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static bool take_option(options *o, const char *text)
+{
+    char name[16], value[32];
+    if (sscanf(text, "%15[^=]=%31s", name, value) != 2) {
+        return false;
+    }
+    const struct {
+        const char *name;
+        int *number;
+    } numbers[] = {
+        {"count", &o->count}, {"first", &o->first}, {"least", &o->least}, {"most", &o->most}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        if (strcmp(name, numbers[i].name) == 0) {
+            *numbers[i].number = atoi(value);
+            return true;
+        }
+    }
+    if (strcmp(name, "engine") == 0 || strcmp(name, "by") == 0) {
+        strcpy(name[0] == 'e' ? o->engine : o->by, value);
+    } else if (strcmp(name, "gate") == 0) {
+        o->strict = value[0] == 'b';
+    } else if (strcmp(name, "place") == 0) {
+        o->whole = strcmp(value, "whole") == 0;
+    } else if (strcmp(name, "cost") == 0) {
+        o->cost = value[0] == '1';
+    } else if (strcmp(name, "damping") == 0) {
+        o->damping = atof(value);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+// Counts of what came of the arms.
+typedef struct tally {
+    int compared, wrong, said, unsure, behind, refused;
+    double largest, most_cost;
+} tally;
+
+static void try_arm(random_arm *r, int number, const options *o, tally *t)
+{
+    const limits may = o->strict ? (limits){1e-11, 1e-9, 1e-8} : (limits){1e-9, 1e-7, 1e-6};
+    const bool resolved = resolve_arm(r);
+    const parameters *p = &r->parameters;
+    const bool behind = p->initial.angle > p->wall.angle || p->initial.angle < p->wall.angle - M_PI;
+    if (behind) {
+        t->behind++;
+        t->wrong += resolved;
+        return;
+    }
+    if (!resolved || !can_follow(r, o)) {
+        t->refused++;
+        return;
+    }
+    double before = seconds();
+    const chain_outcome mine = by_setting(r, &r->parameters, "method.engine", o->engine);
+    const double cost = seconds() - before;
+    before = seconds();
+    const chain_outcome truth = by_reference(r, o, 0, 1);
+    const double reference_cost = seconds() - before;
+    if (truth.status != STATUS_OK) {
+        t->unsure++;
+        return;
+    }
+
+    // failed or open: said
+    t->compared++;
+    const bool closes = mine.residual <= (o->strict ? 1e-9 : 1e-7) * fmax(mine.put_in, 1e-9);
+    if (mine.status != STATUS_OK ||
+        mine.residual > r->parameters.method.residual_bound * mine.put_in) {
+        t->said++;
+        describe(r, number, status_text(mine.status));
+        return;
+    }
+    const distances d = distances_of(&truth, &mine);
+    const distances none = {0};
+    double worst = worst_of(&d, &none, &may);
+    char what[300];
+    if (!d.same || worst > 1 || !closes) {
+        const chain_outcome again = by_reference(r, o, 0, 2);
+        const chain_outcome heavier = by_reference(r, o, NEXT_TO_NONE, 1);
+        const distances own = distances_of(&truth, &again);
+        distances change = distances_of(&truth, &heavier);
+        worst = worst_of(&d, &change, &may);
+        const bool sure = own.same && change.same && worst_of(&own, &change, &may) < 0.3;
+        if (!d.same || worst > 1 || !closes) {
+            int at = 0;
+            while (at < d.contacts - 1 && d.time[at] <= may.time) {
+                at++;
+            }
+            snprintf(what, sizeof what,
+                     "%s (%.2g times what may be; contacts %d for %d, the %d-th %.1e s, momentum "
+                     "%.1e, peak "
+                     "%.1e, losses %.1e, ledger %.1e)",
+                     sure ? "WRONG" : "unsure", worst, mine.contacts, truth.contacts, at + 1,
+                     d.contacts > 0 ? d.time[at] : 0, d.momentum, d.peak, d.lost,
+                     mine.residual / mine.put_in);
+            describe(r, number, what);
+            *(sure ? &t->wrong : &t->unsure) += 1;
+            return;
+        }
+    }
+    t->largest = fmax(t->largest, worst);
+    if (o->cost) {
+        printf("%d: %d links, %.1f us, %.1f us, ratio %.3g\n", number, r->parameters.arm.links,
+               1e6 * cost, 1e6 * reference_cost, cost / reference_cost);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    options o = {200, 0, 1, 8, "auto", "explicit", false, false, false, 1};
+    for (int i = 1; i < argc; i++) {
+        if (!take_option(&o, argv[i])) {
+            fprintf(stderr, "random_arms: %s is no option\n", argv[i]);
+            return 2;
+        }
+    }
+    tally t = {0};
+    for (int i = o.first; i < o.first + o.count; i++) {
+        static random_arm r;
+        make_arm(&r, i, &o);
+        try_arm(&r, i, &o, &t);
+    }
+    printf("%d compared, %d wrong, %d with an open ledger or failed, %d of which the reference is "
+           "not sure, "
+           "%d not tried, %d refused behind their wall; of the rest at most %.2g of what may be\n",
+           t.compared, t.wrong, t.said, t.unsure, t.refused, t.behind, t.largest);
+    return t.wrong > 0 || t.compared == 0 || (o.whole && t.compared < t.refused);
+}

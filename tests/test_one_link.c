@@ -1,0 +1,348 @@
+// One link on a wall under a motor with friction: what holds the link, what its force is, and what
+// can only be said of it within bounds.
+#include <math.h>
+#include <string.h>
+
+#include "src/base/random.h"
+#include "src/run/run.h"
+#include "src/solve/pace.h"
+#include "tests/scenario_fixture.h"
+
+// A run of the scenario with this text, which does not fail.
+static run_result run_of(const char *text)
+{
+    scenario s = good(text);
+    run_result r;
+    run_scenario(&s, true, &r);
+    scenario_finish(&s);
+    if (r.summary.status != STATUS_OK) {
+        fail_msg("%s\n%s", text, r.summary.message);
+    }
+    return r;
+}
+
+// The number of the first event of a kind at or after an instant [s]; fails if there is none.
+static size_t event_after(const run_result *r, event_kind kind, double time)
+{
+    for (size_t i = 0; i < r->trace.event_count; i++) {
+        if (r->trace.events[i].kind == kind && r->trace.events[i].time >= time) {
+            return i;
+        }
+    }
+    fail_msg("no %s after %g s", event_name(kind), time);
+    return 0;
+}
+
+// The last row at or before an instant [s].
+static const sample *row_at(const run_result *r, double time)
+{
+    const sample *row = r->trace.rows;
+    for (size_t i = 0; i < r->trace.row_count && r->trace.rows[i].time <= time; i++) {
+        row = &r->trace.rows[i];
+    }
+    return row;
+}
+
+// A link that friction holds within a wall stays there while the current changes, until the motor
+// no longer outweighs what the wall gives and friction holds: T e^(-t R/L) = f l - kst.
+static void a_link_stuck_within_a_wall_slips_when_its_current_lets_it(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *wall;
+        double inductance; // [H]
+        const char *limit;
+    } cases[] = {{"kind: point, contact: kelvin-voigt", 2, ""},
+                 {"kind: plane, contact: kelvin-voigt", 2, ""},
+                 {"kind: point, contact: kelvin-voigt", 5, ", current_limit: 0.5"},
+                 {"kind: plane, contact: kelvin-voigt, mass: 0.1", 5, ", current_limit: 0.5"},
+                 {"kind: point, contact: kelvin-voigt, mass: 0.1", 2, ""},
+                 {"kind: point, contact: hunt-crossley, damping: 1e8", 2, ""},
+                 {"kind: plane, contact: hunt-crossley, damping: 1e7", 5, ", current_limit: 0.5"}};
+    const double stiction = 0.045, resistance = 33.6;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const double inductance = cases[i].inductance;
+        char text[400];
+        snprintf(text, sizeof text,
+                 "arm: {links: 1}\nmotor: {voltage: 3, inductance: %g%s}\nwall: {angle: 0.1, %s}\n"
+                 "script:\n  - at: 2.4 s\n    set: {motor.voltage: 0}\nrun: {duration: 2.42}\n",
+                 inductance, cases[i].limit, cases[i].wall);
+        run_result r = run_of(text);
+        const trace *t = &r.trace;
+        const size_t change = event_after(&r, EVENT_CHANGE, 0);
+        assert_int_equal(t->events[change - 1].kind, EVENT_STICK);
+        assert_int_equal(t->events[change + 1].kind, EVENT_SLIP);
+
+        // held until the change, and on, by the wall's force of that depth
+        const sample *last = row_at(&r, 2.4);
+        const double left = last->force - stiction;
+        assert_true(last->contact != 0 && last->sticking != 0);
+        const double slips = 2.4 + inductance / resistance * log(last->motor_torque / left);
+        check_close(t->events[change + 1].time, slips, 1e-9);
+        check_close(row_at(&r, slips - 1e-3)->force, last->force, 1e-12);
+        run_finish(&r);
+    }
+}
+
+// Where the hub sticks and slips without end, the hub is named, whatever it is in contact with.
+static void what_stands_still_names_the_event_that_repeats(void **state)
+{
+    (void)state;
+    scenario s = good("arm: {links: 1}\nwall: {contact: kelvin-voigt}\n"
+                      "initial: {angle: 0.1}\n");
+    arm a;
+    arm_init(&a, &s.parameters);
+    motion *m = motion_create(&a, &s.parameters.method);
+    assert_non_null(m);
+    motion_start(&a, m, 0.1, 0);
+    assert_true(m->state[SLOT_CONTACT] != 0);
+    static const struct {
+        motion_event last;
+        const char *cause;
+    } cases[] = {{MOTION_STICK, "motor.stiction"},
+                 {MOTION_SLIP, "motor.stiction"},
+                 {MOTION_RELEASE, "wall.stiffness"},
+                 {MOTION_REACHED, "wall.stiffness"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[PACE_CAUSE_SIZE];
+        pace_tell_cause(&a, m, cases[i].last, text, sizeof text);
+        assert_non_null(strstr(text, cases[i].cause));
+    }
+    motion_destroy(m);
+    scenario_finish(&s);
+}
+
+// A script that changes the command.
+#define SETS "script:\n  - at: %g s\n    set: {motor.voltage: %g}\n"
+
+static const double kst = 0.045; // [N m]
+
+// Torque of the motor at rest under a command [N m].
+static double torque_of(double volts)
+{
+    scenario s = good("arm: {links: 1}\n");
+    const double per_volt = motor_torque_per_volt(&s.parameters.motor);
+    scenario_finish(&s);
+    return per_volt * volts;
+}
+
+static void check_bounds(double low, double high, double least, double most)
+{
+    check_close(low, fmax(least, 0), 1e-12);
+    check_close(high, most, 1e-12);
+}
+
+static void check_determined(const summary *s)
+{
+    assert_true(isnan(s->first_pulse_peak_low_N) && isnan(s->first_pulse_peak_high_N));
+    assert_true(isnan(s->peak_force_low_N) && isnan(s->peak_force_high_N));
+    assert_true(isnan(s->steady_force_low_N) && isnan(s->steady_force_high_N));
+}
+
+// On a rigid wall friction may take from the force what it can hold, and add as much.
+static void wall_and_friction_leave_open_what_the_force_is(void **state)
+{
+    (void)state;
+    static const char *const ways[] = {
+        "wall: {kind: point}\n",
+        "wall: {kind: plane}\n",
+        "method: {name: newmark}\n",
+        "method: {name: generalized-alpha}\n",
+        "motor: {inductance: 0.01}\n",
+        "motor: {current_limit: 10}\n",
+        "arm: {links: 1, length: 0.5 m}\n",
+        "wall: {restitution: 0.5}\n",
+        "wall: {angle: 0.1, kind: plane}\ninitial: {angle: 0.1}\n",
+    };
+    static const double volts[] = {1, 0.2, 9};
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        for (int j = 0; j < 3; j++) {
+            char text[300];
+            snprintf(text, sizeof text, "%s%srun: {duration: 4}\n" SETS,
+                     strncmp(ways[i], "arm", 3) == 0 ? "" : "arm: {links: 1}\n", ways[i], 0.0,
+                     volts[j]);
+            run_result r = run_of(text);
+            const summary *s = &r.summary;
+            const double length = i == 6 ? 0.5 : 1;
+            const double least = (torque_of(volts[j]) - kst) / length;
+            const double most = (torque_of(volts[j]) + kst) / length;
+            check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
+            check_bounds(s->peak_force_low_N, s->peak_force_high_N, least, most);
+            if (i == 7) {
+                assert_true(isnan(s->first_pulse_peak_low_N)); // a bounce
+            } else {
+                check_bounds(s->first_pulse_peak_low_N, s->first_pulse_peak_high_N, least, most);
+            }
+            check_close(s->steady_force_N, (least + most) / 2, 1e-12);
+            assert_non_null(strstr(s->message, "within bounds only"));
+
+            // it comes to rest there, and is told so
+            const size_t last = r.trace.event_count - 1;
+            assert_int_equal(r.trace.events[last].kind, i == 8 ? EVENT_CHANGE : EVENT_STICK);
+            run_finish(&r);
+        }
+    }
+}
+
+// Where the motor pulls, less than friction holds, the wall may press as hard as that.
+static void a_link_that_rests_may_be_pressed_or_not(void **state)
+{
+    (void)state;
+    static const double volts[] = {0.05, 0, -0.05};
+    for (int i = 0; i < 3; i++) {
+        char text[200];
+        snprintf(text, sizeof text,
+                 "arm: {links: 1}\nmotor: {voltage: %g}\ninitial: {angle: 0.1}\n", volts[i]);
+        run_result at_start = run_of(text);
+        const double least = torque_of(volts[i]) - kst, most = torque_of(volts[i]) + kst;
+        const summary *s = &at_start.summary;
+        check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
+        check_bounds(s->peak_force_low_N, s->peak_force_high_N, least, most);
+        run_finish(&at_start);
+
+        // the same after an impact and less and less of a command
+        snprintf(text, sizeof text, "arm: {links: 1}\n" SETS, 0.5, volts[i]);
+        run_result later = run_of(text);
+        s = &later.summary;
+        check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
+        check_bounds(s->peak_force_low_N, s->peak_force_high_N, torque_of(1) - kst,
+                     torque_of(1) + kst);
+        run_finish(&later);
+    }
+}
+
+// The mean of bounds that change in the window: at once, with a current, where one reaches zero.
+static void steady_bounds_are_means(void **state)
+{
+    (void)state;
+    run_result r = run_of("arm: {links: 1}\nscript:\n  - at: 0.95 s\n"
+                          "    set: {motor.voltage: 0.05}\n");
+    const double before = torque_of(1), after = torque_of(0.05);
+    check_bounds(r.summary.steady_force_low_N, r.summary.steady_force_high_N, (before - kst) / 2,
+                 (before + after) / 2 + kst);
+    run_finish(&r);
+
+    r = run_of("arm: {links: 1}\nmotor: {inductance: 0.5}\nscript:\n  - at: 0.9 s\n"
+               "    set: {motor.voltage: 0}\n");
+    const double rate = 33.6 / 0.5, zero = log(before / kst) / rate;
+    const double low = before * (1 - exp(-rate * zero)) / rate - kst * zero;
+    const double high = before * (1 - exp(-rate * 0.1)) / rate + kst * 0.1;
+    check_relative(r.summary.steady_force_low_N, low / 0.1, 1e-4);
+    check_relative(r.summary.steady_force_high_N, high / 0.1, 1e-6);
+    run_finish(&r);
+
+    // the same without rows
+    scenario s = good("arm: {links: 1}\n");
+    run_scenario(&s, false, &r);
+    scenario_finish(&s);
+    check_bounds(r.summary.steady_force_low_N, r.summary.steady_force_high_N, before - kst,
+                 before + kst);
+    run_finish(&r);
+}
+
+// Once it has left, the first pulse's bounds stay, and no force is open any more.
+static void a_link_that_was_pushed_off_has_no_open_force(void **state)
+{
+    (void)state;
+    run_result r = run_of("arm: {links: 1}\nscript:\n  - at: 0.5 s\n"
+                          "    set: {motor.voltage: -3}\n");
+    check_bounds(r.summary.first_pulse_peak_low_N, r.summary.first_pulse_peak_high_N,
+                 torque_of(1) - kst, torque_of(1) + kst);
+    check_bounds(r.summary.peak_force_low_N, r.summary.peak_force_high_N, torque_of(1) - kst,
+                 torque_of(1) + kst);
+    assert_true(isnan(r.summary.steady_force_low_N) && isnan(r.summary.steady_force_high_N));
+    run_finish(&r);
+}
+
+// Springs, depths and no friction determine the force; within a wall that gives the way there says
+// which one it is.
+static void what_else_holds_still_has_one_force(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "arm: {links: 2}\n",
+        "arm: {links: 1, hub_joint: spring}\n",
+        "arm: {links: 1, hub_joint: beam}\n",
+        "arm: {links: 1}\nmotor: {stiction: 0}\n",
+        "arm: {links: 1}\nwall: {kind: none}\n",
+        "arm: {links: 1}\nwall: {contact: kelvin-voigt}\n",
+        "arm: {links: 1}\nwall: {contact: kelvin-voigt, damping: 100}\n",
+        "arm: {links: 1}\nwall: {contact: kelvin-voigt, mass: 0.1}\n",
+        "arm: {links: 1}\nwall: {contact: hunt-crossley, damping: 1e8}\n",
+    };
+    for (int i = 0; i < 9; i++) {
+        char text[200];
+        snprintf(text, sizeof text, "%srun: {duration: 4}\n", texts[i]);
+        run_result r = run_of(text);
+        check_determined(&r.summary);
+        const bool tells = strstr(r.summary.message, "where it came to rest") != NULL;
+        const sample *last = &r.trace.rows[r.trace.row_count - 1];
+        assert_int_equal(tells, i >= 5 && last->sticking != 0);
+        if (tells) { // with the bounds of the rest, in which it is
+            assert_true(last->force >= torque_of(1) - kst && last->force <= torque_of(1) + kst);
+            assert_non_null(strstr(r.summary.message, "0.392661 to 0.482661 N"));
+        }
+        run_finish(&r);
+    }
+}
+
+static double between(random_generator *g, double low, double high)
+{
+    return low + (high - low) * random_uniform(g);
+}
+
+// A link that the wall stops rests, to the last bit: friction holds it.
+static void a_link_that_is_stopped_sticks_whatever_rounding_says(void **state)
+{
+    (void)state;
+    random_generator g;
+    random_seed(&g, 5);
+    for (int i = 0; i < 100; i++) {
+        char text[300];
+        snprintf(text, sizeof text,
+                 "arm: {links: 1, mass: %.17g, length: %.17g}\nmotor: {voltage: %.17g}\n"
+                 "wall: {kind: %s, angle: %.17g}\nrun: {duration: 6}\n",
+                 between(&g, 0.1, 1), between(&g, 0.3, 2), between(&g, 0.5, 9),
+                 i % 2 ? "plane" : "point", between(&g, 0.05, 2.5));
+        run_result r = run_of(text);
+        const trace *t = &r.trace;
+        assert_int_equal(t->event_count, 3);
+        assert_int_equal(t->events[2].kind, EVENT_STICK);
+        assert_true(t->rows[t->row_count - 1].sticking != 0);
+        run_finish(&r);
+    }
+}
+
+// Steps too long for the hub's decay stop the link at the wall, too, and it presses.
+static void a_link_stops_in_long_steps(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"newmark", "generalized-alpha"};
+    for (int i = 0; i < 2; i++) {
+        char text[200];
+        snprintf(text, sizeof text,
+                 "arm: {links: 1}\nmotor: {viscous_friction: 150, voltage: 9}\n"
+                 "wall: {angle: 0.02}\nmethod: {name: %s, step: 0.01}\nrun: {duration: 2}\n",
+                 methods[i]);
+        run_result r = run_of(text);
+        check_relative(r.summary.steady_force_N, torque_of(9), 1e-12);
+        check_close(row_at(&r, 2)->hub_velocity, 0, 0);
+        run_finish(&r);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wall_and_friction_leave_open_what_the_force_is),
+        cmocka_unit_test(a_link_that_rests_may_be_pressed_or_not),
+        cmocka_unit_test(steady_bounds_are_means),
+        cmocka_unit_test(a_link_that_was_pushed_off_has_no_open_force),
+        cmocka_unit_test(what_else_holds_still_has_one_force),
+        cmocka_unit_test(a_link_that_is_stopped_sticks_whatever_rounding_says),
+        cmocka_unit_test(a_link_stops_in_long_steps),
+        cmocka_unit_test(a_link_stuck_within_a_wall_slips_when_its_current_lets_it),
+        cmocka_unit_test(what_stands_still_names_the_event_that_repeats),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,515 @@
+// What a run reads from outside its scenario: whoever keeps results of such runs refuses to go on
+// when it is another one.
+//
+//   test_outside PLUGIN OTHER_PLUGIN
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "src/scenario/outside.h"
+#include "src/session/session.h"
+#include "src/study/sweep_merge.h"
+#include "tests/check.h"
+#include "tests/sweep_fixture.h"
+
+static char *plugin_files[2];
+
+static void write_text(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+// A law that answers every sample with so many volts.
+static void write_law(const char *path, const char *volts)
+{
+    char text[128];
+    snprintf(text, sizeof text, "while read -r line; do echo '{\"command\": %s}'; done\n", volts);
+    write_text(path, text);
+}
+
+static void copy_file(const char *from, const char *to)
+{
+    char command[512];
+    snprintf(command, sizeof command, "cp '%s' '%s'", from, to);
+    assert_int_equal(system(command), 0);
+}
+
+static void write_program(int which)
+{
+    write_law("law.sh", which == 0 ? "2" : "4");
+}
+
+static void write_plugin(int which)
+{
+    unlink("law.so"); // a new file, as a compiler writes it
+    copy_file(plugin_files[which], "law.so");
+}
+
+// Everything on the list, with two contents of it.
+static const struct outside_case {
+    size_t parameter; // offset
+    const char *value;
+    control_law law;
+    void (*write)(int which);
+    const char *file;
+} cases[] = {
+    {offsetof(parameters, control.plugin), "./law.so", LAW_PLUGIN, write_plugin, "law.so"},
+    {offsetof(parameters, control.command), "sh law.sh", LAW_PROCESS, write_program, "law.sh"},
+};
+enum { CASES = sizeof cases / sizeof cases[0] };
+
+// The parameters of short runs under what a case names.
+static parameters parameters_of(const struct outside_case *c)
+{
+    parameters p = base.parameters;
+    fault f = {.text = ""};
+    p.control.law = c->law;
+    p.set[PARAMETER_INDEX(control.law)] = 1;
+    p.code_allowed = true;
+    p.run.duration = 0.05;
+    p.control.rate = 100;
+    if (parameter_set_text(&p, parameter_at(c->parameter), c->value, &f) != STATUS_OK ||
+        parameters_resolve(&p, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return p;
+}
+
+static void one_list_has_all_that_names_a_file(void **state)
+{
+    (void)state;
+    assert_int_equal(CASES, outside_count);
+    static const char *const own[] = {"control.settings", "control.lock", "control.k2_table"};
+    for (int i = 0; i < parameter_count; i++) {
+        bool known = parameter_table[i].type != PARAMETER_TEXT;
+        for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) {
+            known = known || strcmp(parameter_table[i].path, own[k]) == 0;
+        }
+        for (int k = 0; k < outside_count; k++) {
+            known = known || parameter_at(outside_table[k].parameter) == i;
+        }
+        if (!known) {
+            fail_msg("%s is a text: does a run read what it names?", parameter_table[i].path);
+        }
+    }
+}
+
+// --- the digest -------------------------------------------------------------------------------
+
+static status digest(const char *command, char text[SHA256_TEXT], fault *f)
+{
+    parameters p = {.control.law = LAW_PROCESS};
+    snprintf(p.control.command, sizeof p.control.command, "%s", command);
+    for (int i = 0; i < outside_count; i++) {
+        if (outside_is_read(&outside_table[i], &p) && outside_is_told(&outside_table[i], &p)) {
+            return outside_digest(&outside_table[i], &p, text, f);
+        }
+    }
+    return STATUS_BAD_ARGUMENT;
+}
+
+// Whether a digest is another one with `text` in the file.
+static bool depends_on(const char *command, const char *path)
+{
+    char before[SHA256_TEXT], after[SHA256_TEXT];
+    fault f = {.text = ""};
+    write_text(path, "one");
+    assert_int_equal(chmod(path, 0755), 0);
+    assert_int_equal(digest(command, before, &f), STATUS_OK);
+    write_text(path, "two");
+    assert_int_equal(digest(command, after, &f), STATUS_OK);
+    return strcmp(before, after) != 0;
+}
+
+static void files_that_a_command_names_are_its_content(void **state)
+{
+    (void)state;
+    char folder[256], path[512];
+    assert_non_null(getcwd(folder, sizeof folder));
+    assert_int_equal(mkdir("bin", 0755), 0);
+    snprintf(path, sizeof path, "%s/bin:/bin:/usr/bin", folder);
+    char *kept = strdup(getenv("PATH"));
+    setenv("PATH", path, 1);
+    assert_true(depends_on("sh law.sh", "law.sh"));
+    assert_true(depends_on("./law.sh", "law.sh"));
+    assert_true(depends_on("sh law.sh --table=table.csv", "table.csv"));
+    assert_true(depends_on("control --gain 3", "bin/control"));
+    assert_true(depends_on("nice control", "bin/control"));
+    assert_false(depends_on("sh law.sh", "bin/control"));
+    assert_false(depends_on("sh law.sh -control", "bin/control"));
+    setenv("PATH", kept, 1);
+    free(kept);
+
+    // bytes do not pass from one file to the next
+    char one[SHA256_TEXT], other[SHA256_TEXT];
+    fault f = {.text = ""};
+    write_text("a", "xy");
+    write_text("b", "z");
+    assert_int_equal(digest("./a ./b", one, &f), STATUS_OK);
+    write_text("a", "x");
+    write_text("b", "yz");
+    assert_int_equal(digest("./a ./b", other, &f), STATUS_OK);
+    assert_string_not_equal(one, other);
+
+    // what a shell would take for more than words
+    assert_int_equal(digest("cat law.sh | sh", one, &f), STATUS_BAD_ARGUMENT);
+    unlink("a");
+    unlink("b");
+    unlink("law.sh");
+    unlink("table.csv");
+    unlink("bin/control");
+    rmdir("bin");
+}
+
+// Writes a file of so many bytes, all the same.
+static void write_bytes(const char *path, size_t count, int byte)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (size_t i = 0; i < count; i++) {
+        fputc(byte, file);
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+// A stamp is another one after a change; of a small file only then.
+static void a_stamp_sees_changes(void **state)
+{
+    (void)state;
+    parameters p = {.control.law = LAW_PROCESS, .control.command = "./law.sh"};
+    char first[SHA256_TEXT], second[SHA256_TEXT];
+    for (size_t count = 1000; count <= 1000000; count *= 1000) {
+        write_bytes("law.sh", count, 'a');
+        outside_stamp(~0u, &p, first);
+        outside_stamp(~0u, &p, second);
+        assert_string_equal(first, second);
+        write_bytes("law.sh", count, 'a');
+        outside_stamp(~0u, &p, second);
+        assert_true(count > 1000 || strcmp(first, second) == 0);
+
+        write_bytes("law.sh", count + 1, 'a');
+        outside_stamp(~0u, &p, second);
+        assert_string_not_equal(first, second);
+        outside_stamp(0, &p, first);
+        write_bytes("law.sh", count, 'b');
+        outside_stamp(0, &p, second);
+        assert_string_equal(first, second);
+    }
+    write_bytes("law.sh", 1000, 'c');
+    outside_stamp(~0u, &p, first);
+    write_bytes("law.sh", 1000, 'd');
+    outside_stamp(~0u, &p, second);
+    assert_string_not_equal(first, second);
+    unlink("law.sh");
+}
+
+static void a_plugin_is_its_file(void **state)
+{
+    (void)state;
+    char text[SHA256_TEXT];
+    fault f = {.text = ""};
+    parameters p = {.control.law = LAW_PLUGIN, .control.plugin = "law.so"};
+    assert_false(outside_is_told(&outside_table[0], &p));
+    strcpy(p.control.plugin, "./law.so");
+    assert_int_equal(outside_digest(&outside_table[0], &p, text, &f), STATUS_CANNOT_READ);
+    assert_non_null(strstr(f.text, "control.plugin = './law.so' cannot be read: No such file"));
+
+    // a folder, and what nobody may read
+    assert_int_equal(mkdir("law.so", 0755), 0);
+    assert_int_equal(outside_digest(&outside_table[0], &p, text, &f), STATUS_CANNOT_READ);
+    rmdir("law.so");
+    write_text("law.so", "x");
+    assert_int_equal(outside_digest(&outside_table[0], &p, text, &f), STATUS_OK);
+    chmod("law.so", 0);
+    if (geteuid() != 0) {
+        assert_int_equal(outside_digest(&outside_table[0], &p, text, &f), STATUS_CANNOT_READ);
+    }
+    unlink("law.so");
+}
+
+// --- sweeps -----------------------------------------------------------------------------------
+
+// Expects to be refused, by name of what changed.
+static void check_refused(const char *path, const sweep *s, const char *name)
+{
+    sweep_store *store;
+    fault f = {.text = ""};
+    assert_int_equal(sweep_store_open(&store, path, s, &f), STATUS_BAD_ARGUMENT);
+    if (strstr(f.text, "the content of ") == NULL || strstr(f.text, name) == NULL) {
+        fail_msg("'%s' does not name %s", f.text, name);
+    }
+}
+
+static void must_compute(const sweep *s, const char *path, sweep_share share)
+{
+    sweep_store *store = must_open(path, s);
+    sweep_progress progress;
+    fault f = {.text = ""};
+    const sweep_options options = {.jobs = 2, .share = share};
+    if (sweep_run(s, store, &options, &progress, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    assert_int_equal(progress.failed, 0);
+    sweep_store_close(store);
+}
+
+// A program, plug-in or file that is another one when a sweep goes on, in a part or in a merge.
+static void rows_of_what_is_gone_are_refused(void **state)
+{
+    (void)state;
+    const parameters first = base.parameters;
+    for (int i = 0; i < CASES; i++) {
+        base.parameters = parameters_of(&cases[i]);
+        const char *name = parameter_table[parameter_at(cases[i].parameter)].path;
+        sweep s;
+        must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
+        cases[i].write(0);
+        char *rows = uninterrupted(&s, 1);
+        must_compute(&s, "first", (sweep_share){1, 2});
+        must_compute(&s, "whole", (sweep_share){0, 0});
+
+        // written again with the same content: it goes on, with the rows of one go
+        cases[i].write(0);
+        must_compute(&s, "whole", (sweep_share){0, 0});
+        sweep_store *store = must_open("whole", &s);
+        char *again = csv_of(store);
+        assert_string_equal(again, rows);
+        free(again);
+        sweep_store_close(store);
+
+        // another one
+        cases[i].write(1);
+        char *fresh = uninterrupted(&s, 1);
+        assert_string_not_equal(fresh, rows);
+        check_refused("whole", &s, name);
+        check_refused("first", &s, name);
+        must_compute(&s, "second", (sweep_share){2, 2});
+        char *parts[] = {"first", "second"};
+        sweep_merged merged;
+        fault f = {.text = ""};
+        assert_int_equal(sweep_merge(parts, 2, "merged", &merged, &f), STATUS_BAD_ARGUMENT);
+        assert_non_null(strstr(f.text, name));
+        assert_int_not_equal(access("merged", F_OK), 0);
+
+        // and the first one again
+        cases[i].write(0);
+        must_compute(&s, "first", (sweep_share){0, 0});
+        store = must_open("first", &s);
+        again = csv_of(store);
+        assert_string_equal(again, rows);
+        free(again);
+        sweep_store_close(store);
+
+        free(fresh);
+        free(rows);
+        sweep_finish(&s);
+        unlink(cases[i].file);
+        unlink("first");
+        unlink("second");
+        unlink("whole");
+    }
+    base.parameters = first;
+}
+
+// What is varied may decide whether a file is read.
+static void a_varied_law_decides_what_is_read(void **state)
+{
+    (void)state;
+    const parameters first = base.parameters;
+    base.parameters = parameters_of(&cases[1]);
+    base.parameters.control.law = LAW_OPEN_LOOP;
+    write_program(0);
+    sweep some, none;
+    must_sweep(&some, SWEEP_GRID, 0, "control.law=open-loop,process", NULL);
+    must_sweep(&none, SWEEP_GRID, 0, "control.law=open-loop,hybrid", NULL);
+    must_compute(&some, "some", (sweep_share){0, 0});
+    must_compute(&none, "none", (sweep_share){0, 0});
+    write_program(1);
+    check_refused("some", &some, "control.command");
+    sweep_store_close(must_open("none", &none));
+    sweep_finish(&some);
+    sweep_finish(&none);
+    unlink("some");
+    unlink("none");
+    unlink("law.sh");
+    base.parameters = first;
+}
+
+// A command that only a shell can read may be of any program: its rows are kept, and not mixed with
+// others.
+static void rows_of_what_cannot_be_told_stay_alone(void **state)
+{
+    (void)state;
+    const parameters first = base.parameters;
+    const struct outside_case shell = {
+        .parameter = cases[1].parameter, .value = "exec sh law.sh; exit", .law = LAW_PROCESS};
+    base.parameters = parameters_of(&shell);
+    write_program(0);
+    sweep s;
+    must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
+    must_compute(&s, "first", (sweep_share){1, 2});
+    must_compute(&s, "second", (sweep_share){2, 2});
+    check_refused("first", &s, "control.command may be another one, it cannot be told");
+    char *parts[] = {"first", "second"};
+    sweep_merged merged;
+    fault f = {.text = ""};
+    assert_int_equal(sweep_merge(parts, 2, "merged", &merged, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "cannot be told"));
+    assert_int_equal(sweep_merge(parts, 1, "merged", &merged, &f), STATUS_OK);
+    sweep_finish(&s);
+    unlink("first");
+    unlink("second");
+    unlink("merged");
+    unlink("law.sh");
+    base.parameters = first;
+}
+
+// Rows that were computed while it changed are not kept.
+static void what_changes_during_a_sweep_ends_it(void **state)
+{
+    (void)state;
+    const parameters first = base.parameters;
+    base.parameters = parameters_of(&cases[1]);
+    write_program(0);
+    sweep s;
+    must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
+    must_compute(&s, "rows", (sweep_share){1, 4});
+
+    sweep_store *store = must_open("rows", &s);
+    write_program(1);
+    sweep_progress progress;
+    fault f = {.text = ""};
+    const sweep_options options = {.jobs = 1};
+    assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(f.text, "the content of control.command is another one"));
+    sweep_store_close(store);
+
+    // the row of before is there, and no other
+    write_program(0);
+    unsigned char present[4];
+    size_t count;
+    store = must_open("rows", &s);
+    assert_int_equal(sweep_store_present(store, present, &count, &f), STATUS_OK);
+    assert_int_equal(count, 1);
+    assert_int_equal(present[0], 1);
+
+    // one that is gone
+    unlink("law.sh");
+    assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_BAD_ARGUMENT);
+    sweep_store_close(store);
+    sweep_finish(&s);
+    unlink("rows");
+    base.parameters = first;
+}
+
+// A run that was not let, or whose plug-in cannot be loaded, is no row: the next time it may be.
+static void what_could_not_begin_is_no_row(void **state)
+{
+    (void)state;
+    const parameters first = base.parameters;
+    sweep_progress progress;
+    const sweep_options options = {.jobs = 1};
+    for (int i = 0; i < CASES; i++) {
+        base.parameters = parameters_of(&cases[i]);
+        base.parameters.code_allowed = false;
+        cases[i].write(0);
+        sweep s;
+        must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
+        fault f = {.text = ""};
+        sweep_store *store = must_open("rows", &s);
+        assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_NOT_ALLOWED);
+        assert_non_null(strstr(f.text, "--allow-code"));
+        sweep_store_close(store);
+        base.parameters.code_allowed = true;
+        must_compute(&s, "rows", (sweep_share){0, 0});
+        sweep_finish(&s);
+        unlink("rows");
+        unlink(cases[i].file);
+    }
+
+    base.parameters = parameters_of(&cases[0]);
+    write_text("law.so", "no library");
+    sweep s;
+    must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
+    fault f = {.text = ""};
+    sweep_store *store = must_open("rows", &s);
+    assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_CANNOT_READ);
+    assert_non_null(strstr(f.text, "run 1: control.plugin = ./law.so cannot be loaded"));
+    sweep_store_close(store);
+    sweep_finish(&s);
+    unlink("rows");
+    unlink("law.so");
+    base.parameters = first;
+}
+
+// --- sessions ---------------------------------------------------------------------------------
+
+static void open_session(session *s)
+{
+    scenario own;
+    fault f = {.text = ""};
+    assert_int_equal(scenario_copy(&own, &base), STATUS_OK);
+    if (session_open(s, &own, (double)INFINITY, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+// The last command of the run.
+static double last_command(const session *s)
+{
+    return s->run.trace.rows[s->run.trace.row_count - 1].voltage;
+}
+
+// A run that is computed again has the program of now, not answers of the one before.
+static void a_session_asks_the_program_of_now(void **state)
+{
+    (void)state;
+    const parameters first = base.parameters;
+    fault f = {.text = ""};
+    for (int i = 0; i < CASES; i++) {
+        base.parameters = parameters_of(&cases[i]);
+        cases[i].write(0);
+        session s, fresh;
+        open_session(&s);
+        const double before = last_command(&s);
+        cases[i].write(1);
+        assert_int_equal(session_compute(&s, &f), STATUS_OK);
+        open_session(&fresh);
+        check_close(last_command(&s), last_command(&fresh), 0);
+        assert_true(last_command(&s) != before);
+        session_finish(&s);
+        session_finish(&fresh);
+        unlink(cases[i].file);
+    }
+    base.parameters = first;
+}
+
+int main(int argc, char **argv)
+{
+    assert(argc == 3);
+    for (int i = 0; i < 2; i++) {
+        plugin_files[i] = realpath(argv[i + 1], NULL); // the tests work in another folder
+        assert(plugin_files[i] != NULL);
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_list_has_all_that_names_a_file),
+        cmocka_unit_test(files_that_a_command_names_are_its_content),
+        cmocka_unit_test(a_stamp_sees_changes),
+        cmocka_unit_test(a_plugin_is_its_file),
+        cmocka_unit_test(rows_of_what_is_gone_are_refused),
+        cmocka_unit_test(a_varied_law_decides_what_is_read),
+        cmocka_unit_test(rows_of_what_cannot_be_told_stay_alone),
+        cmocka_unit_test(what_changes_during_a_sweep_ends_it),
+        cmocka_unit_test(what_could_not_begin_is_no_row),
+        cmocka_unit_test(a_session_asks_the_program_of_now),
+    };
+    const int failed = cmocka_run_group_tests(tests, sweep_fixture_open, sweep_fixture_close);
+    free(plugin_files[0]);
+    free(plugin_files[1]);
+    return failed != 0;
+}

@@ -1,0 +1,250 @@
+// The stiff engine gives the motion of the power series, of every arm and wall, and the same bits
+// in vectors of any width, however a run is cut, and from a copy of its state.
+#include <math.h>
+#include <string.h>
+
+#include "src/solve/contact_machine.h"
+#include "src/solve/taylor_lanes.h"
+#include "tests/arm_fixture.h"
+#include "tests/chain_outcome.h"
+
+#define START_ANGLE 0.09
+#define DURATION    0.06
+
+static const char *const arms[][6] = {
+    {"arm.links=1", "arm.hub_joint=rigid", "wall.kind=plane"},
+    {"arm.links=1", "arm.hub_joint=beam", "wall.contact=kelvin-voigt", "arm.tip_mass=0.01"},
+    {"arm.links=2", "arm.hub_joint=spring", "wall.restitution=0.5", "arm.k1=500"},
+    {"arm.links=3", "arm.hub_joint=rigid", "wall.kind=plane", "arm.tip_mass=0.02"},
+    {"arm.links=4", "arm.hub_joint=beam", "arm.damping_ratio=0.1", "arm.air_drag=2"},
+    {"arm.links=5", "arm.hub_joint=beam", "arm.joint_stiffness=9,7,6,5,4"},
+    {"arm.links=4", "arm.hub_joint=beam", "arm.stiffening=1", "wall.kind=plane"},
+    {"arm.links=5", "arm.hub_joint=beam", "arm.modal_ratios=0.01,0.05", "wall.kind=plane"},
+    {"arm.links=6", "arm.hub_joint=rigid", "motor.inductance=2e-3", "motor.current_limit=0.3"},
+    {"arm.links=3", "arm.hub_joint=beam", "motor.current_limit=0.2", "wall.kind=plane"},
+    {"arm.links=4", "arm.hub_joint=beam", "wall.contact=kelvin-voigt", "motor.inductance=1e-3"},
+    {"arm.links=4", "arm.hub_joint=rigid", "wall.contact=hunt-crossley", "arm.tip_mass=0.01"},
+    {"arm.links=4", "arm.hub_joint=beam", "wall.contact=kelvin-voigt", "wall.mass=0.05",
+     "wall.restitution=0.4"},
+    {"arm.links=7", "arm.hub_joint=beam", "wall.restitution=0.7", "arm.damping_ratio=0.01"},
+};
+enum { ARMS = sizeof arms / sizeof arms[0] };
+
+static parameters parameters_of(int i)
+{
+    const char *settings[7] = {0};
+    for (int k = 0; k < 6; k++) {
+        settings[k] = arms[i][k];
+    }
+    return fixture_parameters(settings);
+}
+
+static chain_outcome outcome_of(const parameters *p, const engine *by)
+{
+    return chain_outcome_of(&(chain_start){p, START_ANGLE, 0.7, DURATION, DURATION, by});
+}
+
+static void the_series_give_the_same(void **state)
+{
+    (void)state;
+    for (int i = 0; i < ARMS; i++) {
+        const parameters p = parameters_of(i);
+        const chain_outcome truth = outcome_of(&p, &series_engine);
+        const chain_outcome stiff = outcome_of(&p, &stiff_engine);
+        assert_int_equal(truth.status, STATUS_OK);
+        assert_int_equal(stiff.status, STATUS_OK);
+        assert_false(isnan(truth.first_contact));
+        assert_int_equal(stiff.impacts, truth.impacts);
+        assert_int_equal(stiff.samples, truth.samples);
+        check_close(stiff.first_contact, truth.first_contact, 1e-11);
+        check_close(stiff.first_impulse, truth.first_impulse, 1e-9 * truth.first_impulse);
+        const int last = truth.samples - 1;
+        check_close(stiff.momentum[last], truth.momentum[last], 1e-9 * truth.momentum[last]);
+        check_close(stiff.peak, truth.peak, 1e-7 * fabs(truth.peak) + 1e-9);
+        check_close(stiff.motor_work, truth.motor_work, 1e-9 * truth.put_in);
+        check_below(stiff.residual, 1e-8 * stiff.put_in);
+        for (int k = 0; k < 5; k++) {
+            check_close(stiff.lost[k], truth.lost[k], 1e-8 * truth.put_in);
+        }
+    }
+}
+
+// The motion after DURATION, made with stops at every `interval`; its state into `end`.
+static size_t motion_to_end(const parameters *p, double interval, bool forgetful, double *end)
+{
+    enum { MOST_COPY = 4096 };
+    arm a;
+    arm_init(&a, p);
+    motion *m = motion_create_by(&a, &p->method, &stiff_engine);
+    assert_non_null(m);
+    motion_start(&a, m, START_ANGLE, 0.7);
+    int stops = 0;
+    while (m->state[SLOT_TIME] < DURATION) {
+        motion_report r;
+        const double stop = fmin(interval * (stops + 1), DURATION);
+        assert_int_equal(motion_step(&a, m, stop, 1e-3, &r), STATUS_OK);
+        stops += !(m->state[SLOT_TIME] < stop);
+        motion_apply(&a, m, &r);
+        if (forgetful) { // only the state is left
+            static double copy[MOST_COPY];
+            assert_true(m->size <= (int)MOST_COPY);
+            memcpy(copy, m->state, (size_t)m->size * sizeof *copy);
+            motion_destroy(m);
+            m = motion_create_by(&a, &p->method, &stiff_engine);
+            memcpy(m->state, copy, (size_t)m->size * sizeof *copy);
+            motion_forget_stride(m);
+        }
+    }
+    const size_t size = (size_t)(SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT);
+    memcpy(end, m->state, size * sizeof *end);
+    motion_destroy(m);
+    return size;
+}
+
+static void check_same_bits(const double *a, const double *b, size_t size)
+{
+    for (size_t i = 0; i < size; i++) {
+        if (memcmp(&a[i], &b[i], sizeof a[i]) != 0) {
+            fail_msg("number %zu differs: %.17g and %.17g", i, a[i], b[i]);
+        }
+    }
+}
+
+static void stops_change_no_bit(void **state)
+{
+    (void)state;
+    for (int i = 1; i < ARMS; i++) { // the first arm's force adds up at rest, from stop to stop
+        const parameters p = parameters_of(i);
+        double whole[256], cut[256];
+        const size_t size = motion_to_end(&p, HUGE_VAL, false, whole);
+        motion_to_end(&p, 1e-3, false, cut);
+        check_same_bits(cut, whole, size);
+        motion_to_end(&p, 0.77e-4, false, cut);
+        check_same_bits(cut, whole, size);
+    }
+}
+
+static void a_copy_of_the_state_goes_on_with_the_same_bits(void **state)
+{
+    (void)state;
+    for (int i = 0; i < ARMS; i++) {
+        const parameters p = parameters_of(i);
+        double whole[256], copied[256];
+        const size_t size = motion_to_end(&p, 0.5e-3, false, whole);
+        motion_to_end(&p, 0.5e-3, true, copied);
+        check_same_bits(copied, whole, size);
+    }
+}
+
+static void every_width_of_vectors_gives_the_same_bits(void **state)
+{
+    (void)state;
+    for (int i = 0; i < ARMS; i++) {
+        const parameters p = parameters_of(i);
+        double narrow[256], wide[256];
+        taylor_limit_width(1);
+        const size_t size = motion_to_end(&p, HUGE_VAL, false, narrow);
+        taylor_limit_width(0);
+        motion_to_end(&p, HUGE_VAL, false, wide);
+        check_same_bits(wide, narrow, size);
+    }
+}
+
+// A light arm behind a spring swings off the wall as the fourth power of the time; one that moves
+// into the wall strikes it at once.
+static void starts_on_the_wall_are_told_from_rounding(void **state)
+{
+    (void)state;
+    const parameters off = fixture_parameters(SETTINGS(
+        "arm.hub_joint=spring", "arm.k1=276", "arm.k2=64", "motor.voltage=2", "wall.angle=0"));
+    const chain_outcome swings =
+        chain_outcome_of(&(chain_start){&off, 0, 0, DURATION, DURATION, &stiff_engine});
+    const chain_outcome by_series =
+        chain_outcome_of(&(chain_start){&off, 0, 0, DURATION, DURATION, &series_engine});
+    check_close(swings.first_contact, by_series.first_contact, 1e-11);
+    assert_int_equal(swings.impacts, by_series.impacts);
+    check_close(swings.peak, by_series.peak, 1e-7 * by_series.peak);
+
+    const parameters into = fixture_parameters(SETTINGS("arm.links=3", "arm.tip_mass=0.01"));
+    const chain_outcome strikes =
+        chain_outcome_of(&(chain_start){&into, 0.1, 0.6, DURATION, DURATION, &stiff_engine});
+    const chain_outcome truth =
+        chain_outcome_of(&(chain_start){&into, 0.1, 0.6, DURATION, DURATION, &series_engine});
+    check_close(strikes.first_contact, 0, 1e-12);
+    check_close(strikes.first_impulse, truth.first_impulse, 1e-10 * truth.first_impulse);
+}
+
+// Tip against a flat wall through the hub's axis, where the force has a pole.
+static void steps_keep_clear_of_a_fold(void **state)
+{
+    (void)state;
+    const char *const voltages[] = {"motor.voltage=8.6", "motor.voltage=8.8", "motor.voltage=9.8"};
+    for (int i = 0; i < 3; i++) {
+        const parameters p = fixture_parameters(
+            SETTINGS("wall.kind=plane", "wall.angle=0.0018", "wall.restitution=0.08",
+                     "arm.mass=1.5", "arm.length=0.3", "arm.hub_inertia=0.00036", "arm.k2=0.27",
+                     "arm.tip_mass=1e-15", voltages[i]));
+        const chain_outcome o = chain_outcome_of(&(chain_start){&p, 0, 0, 0.3, 0.3, &stiff_engine});
+        assert_int_equal(o.status, STATUS_FOLDED);
+    }
+}
+
+// Bounces amplify errors: 62 of them leave a hundred-thousandth of the momentum in doubt.
+static void a_chain_that_bounces_keeps_its_impacts(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(
+        SETTINGS("arm.links=18", "wall.kind=plane", "wall.restitution=0.89485274850248742",
+                 "motor.voltage=5.5178188164179405", "arm.k2=26.16118528162535",
+                 "arm.mass=0.53343796353978479", "arm.hub_inertia=0.001109107661660298"));
+    chain_outcome o[2];
+    for (int i = 0; i < 2; i++) {
+        const engine *by = i == 0 ? &stiff_engine : &series_engine;
+        o[i] = chain_outcome_of(&(chain_start){&p, 0.0930597, 2.17651, 0.1, 0.0501, by});
+        assert_int_equal(o[i].status, STATUS_OK);
+        assert_int_equal(o[i].impacts, 62);
+    }
+    const int last = o[1].samples - 1;
+    check_close(o[0].momentum[last], o[1].momentum[last], 1e-4 * o[1].momentum[last]);
+}
+
+static bool is_refused(const char *const *settings)
+{
+    parameters p;
+    fault f = {.text = ""};
+    parameters_defaults(&p, ARM_CORRECTED);
+    for (int i = 0; settings[i] != NULL; i++) {
+        char path[64];
+        const char *equals = strchr(settings[i], '=');
+        snprintf(path, sizeof path, "%.*s", (int)(equals - settings[i]), settings[i]);
+        assert_int_equal(parameter_set_text(&p, parameter_find(path), equals + 1, &f), STATUS_OK);
+    }
+    return parameters_resolve(&p, &f) == STATUS_BAD_SCENARIO && strstr(f.text, "method.engine");
+}
+
+static void an_engine_that_cannot_take_the_arm_is_refused(void **state)
+{
+    (void)state;
+    assert_true(is_refused(SETTINGS("method.engine=pair", "arm.links=3")));
+    assert_true(is_refused(SETTINGS("method.engine=pair", "arm.tip_mass=0.01")));
+    assert_true(is_refused(SETTINGS("method.engine=pair", "wall.contact=kelvin-voigt")));
+    assert_true(is_refused(SETTINGS("method.engine=pair", "motor.inductance=1e-3")));
+    assert_true(is_refused(SETTINGS("method.engine=stiff", "method.name=newmark")));
+    assert_false(is_refused(SETTINGS("method.engine=pair", "arm.hub_joint=spring")));
+    assert_false(is_refused(SETTINGS("method.engine=series", "arm.tip_mass=0.01")));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_series_give_the_same),
+        cmocka_unit_test(starts_on_the_wall_are_told_from_rounding),
+        cmocka_unit_test(steps_keep_clear_of_a_fold),
+        cmocka_unit_test(a_chain_that_bounces_keeps_its_impacts),
+        cmocka_unit_test(stops_change_no_bit),
+        cmocka_unit_test(a_copy_of_the_state_goes_on_with_the_same_bits),
+        cmocka_unit_test(an_engine_that_cannot_take_the_arm_is_refused),
+        cmocka_unit_test(every_width_of_vectors_gives_the_same_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,436 @@
+// The numbers of docs/thesis.md are those that the program computes: each is computed anew and, in
+// the page's own words and digits, looked up in the page.
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/run/run.h"
+#include "src/study/thesis_tables.h"
+#include "tests/session_fixture.h"
+
+static char *page; // its text
+
+// Fails unless the page says so.
+static __attribute__((format(printf, 1, 2))) void page_says(const char *format, ...)
+{
+    char words[512];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(words, sizeof words, format, values);
+    va_end(values);
+    if (strstr(page, words) == NULL) {
+        print_error("docs/thesis.md does not say '%s'\n", words);
+        fail();
+    }
+}
+
+typedef struct computed {
+    scenario scenario;
+    run_result result;
+} computed;
+
+// Runs a scenario with changes "PATH=VALUE", up to NULL.
+static computed run_with(const char *name, const char *const *sets)
+{
+    computed c;
+    int count = 0;
+    while (sets[count] != NULL) {
+        count++;
+    }
+    assert_int_equal(scenario_open(&c.scenario, name, fail_on_fault, NULL), STATUS_OK);
+    assert_int_equal(
+        scenario_override_all(&c.scenario, (char *const *)sets, count, fail_on_fault, NULL),
+        STATUS_OK);
+    run_scenario(&c.scenario, true, &c.result);
+    return c;
+}
+
+static void forget(computed *c)
+{
+    run_finish(&c->result);
+    scenario_finish(&c->scenario);
+}
+
+#define SETS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+// A number of a run's summary.
+static double number(const char *name, const char *const *sets, const char *key)
+{
+    computed c = run_with(name, sets);
+    const double value = summary_value(&c.result.summary, summary_index(key));
+    forget(&c);
+    return value;
+}
+
+// ---- chapters 1 to 4
+
+static void numbers_of_the_first_chapters(void **state)
+{
+    (void)state;
+    const double pulse = number("corrected/first-impact", SETS(NULL), "first_pulse_s");
+    const double stiff = number("corrected/stiff-beam", SETS(NULL), "first_pulse_s");
+    page_says("lasts %.0f times as long as that of one a hundred times as stiff", pulse / stiff);
+    page_says("agrees: %.0f ms at the nominal $k_2$, %.1f ms at a hundred times that", 1e3 * pulse,
+              1e3 * number("corrected/first-impact", SETS("arm.k2=492"), "first_pulse_s"));
+    page_says("it loses contact once and hits with %.2f N, a constant voltage with %.2f N",
+              number("compare/reverse-torque", SETS(NULL), "peak_force_N"),
+              number("corrected/first-impact", SETS(NULL), "peak_force_N"));
+    check_close(number("compare/reverse-torque", SETS(NULL), "separations"), 1, 0);
+
+    // where the hub turns back
+    computed first = run_with("corrected/first-impact", SETS(NULL));
+    const summary *m = &first.result.summary;
+    const trace *t = &first.result.trace;
+    size_t e = 0;
+    while (t->events[e].kind != EVENT_REVERSAL) {
+        e++;
+    }
+    page_says("(%.1f ms after the touch; the hub turns at %.1f ms)",
+              1e3 * m->first_pulse_time_to_peak_s, 1e3 * (t->events[e].time - m->first_contact_s));
+    forget(&first);
+}
+
+// ---- the single run of 3.1.3
+
+static void the_table_of_the_single_run(void **state)
+{
+    (void)state;
+    static const char *const pairs[][2] = {
+        {"0.2", "0.5"}, {"0.3", "0.5"}, {"0.4", "0.5"}, {"0.4", "0.6"}, {"0.5", "0.5"},
+        {"0.5", "0.7"}, {"0.6", "0.5"}, {"0.6", "0.9"}, {"0.7", "0.5"}, {"0.7", "0.9"}};
+    static const char *const steps[] = {"1e-3", "1e-4", "1e-5"};
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        char row[256], beta[32], gamma[32], step[32];
+        int used = snprintf(row, sizeof row, "| %s, %s |", pairs[i][0], pairs[i][1]);
+        for (int k = 0; k < 3; k++) {
+            snprintf(beta, sizeof beta, "method.beta=%s", pairs[i][0]);
+            snprintf(gamma, sizeof gamma, "method.gamma=%s", pairs[i][1]);
+            snprintf(step, sizeof step, "method.step=%s", steps[k]);
+            computed c = run_with("thesis/fig-3-4", SETS("printed.reevaluation=none",
+                                                         "run.duration=0.6", beta, gamma, step));
+            const summary *m = &c.result.summary;
+            used +=
+                m->status == STATUS_OK
+                    ? snprintf(row + used, sizeof row - (size_t)used, " %.0f |", m->peak_force_N)
+                    : snprintf(row + used, sizeof row - (size_t)used, " fails |");
+            forget(&c);
+        }
+        page_says("%s", row);
+    }
+    page_says("agrees: %.0f N where two runs give %.2f N",
+              number("thesis/fig-3-4", SETS("printed.reevaluation=none"), "peak_force_N"),
+              number("thesis/fig-3-4", SETS(NULL), "peak_force_N"));
+}
+
+// ---- tables 4.1 to 4.3
+
+static const char *const tables[] = {"thesis/table-4-1", "thesis/table-4-2", "thesis/table-4-3"};
+
+// Largest force of the printed model within 0.12 s of the touch, and its delay from there.
+static void run_cell(const char *table, const char *const *more, double voltage, double *peak,
+                     double *delay)
+{
+    char volts[32];
+    snprintf(volts, sizeof volts, "motor.voltage=%g", voltage);
+    const char *sets[16] = {volts, "run.duration=1.2"};
+    for (int i = 0; more[i] != NULL; i++) {
+        sets[i + 2] = more[i];
+    }
+    computed c = run_with(table, sets);
+    const trace *t = &c.result.trace;
+    double touch = -1;
+    *peak = 0;
+    for (size_t i = 0; i < t->row_count; i++) {
+        const sample *row = &t->rows[i];
+        touch = touch < 0 && row->contact > 0 ? row->time : touch;
+        if (touch >= 0 && row->time - touch < 0.12 + 1e-9 && row->force > *peak) {
+            *peak = row->force;
+            *delay = row->time - touch;
+        }
+    }
+    forget(&c);
+}
+
+// Mean |relative error| of forces and delays against what the thesis prints, over some tables.
+static void errors_of(int from, int to, const char *const *sets, double later, double error[2])
+{
+    static const double voltages[TABLE_VOLTAGES] = {1, 2, 5, 10};
+    int cells = 0;
+    error[0] = error[1] = 0;
+    for (int k = from; k <= to; k++) {
+        char name[] = "4.1";
+        double forces[TABLE_VOLTAGES], delays[TABLE_VOLTAGES];
+        name[2] = (char)('1' + k);
+        assert_true(tables_printed(name, "max_force_simulation", forces));
+        assert_true(tables_printed(name, "delay_simulation", delays));
+        for (int v = 0; v < TABLE_VOLTAGES; v++) {
+            double peak = 0, delay = 0;
+            run_cell(tables[k], sets, voltages[v], &peak, &delay);
+            error[0] += fabs(peak - forces[v]) / forces[v];
+            error[1] += fabs(delay + later - delays[v]) / delays[v];
+            cells++;
+        }
+    }
+    error[0] *= 100.0 / cells;
+    error[1] *= 100.0 / cells;
+}
+
+static const table_row *row_of(const thesis_tables *t, const char *table, const char *model,
+                               const char *quantity)
+{
+    for (int i = 0; i < t->row_count; i++) {
+        const table_row *r = &t->rows[i];
+        if (strcmp(r->table, table) == 0 && strcmp(r->model, model) == 0 &&
+            strcmp(r->quantity, quantity) == 0) {
+            return r;
+        }
+    }
+    fail_msg("no row %s of table %s", quantity, table);
+    return NULL;
+}
+
+static void errors_of_the_tables(void **state)
+{
+    (void)state;
+    thesis_tables printed, fitted;
+    fault f = {.text = ""};
+    assert_int_equal(tables_compute(&printed, &f), STATUS_OK);
+    tables_compute_fitted(&fitted);
+    double error[2], mean = tables_mean_error(&printed, "printed", "delay_simulation");
+    page_says("delays of the simulation do not, %.1f %% off on average", 100 * mean);
+    page_says("agrees with %.1f %% of the table; signs",
+              100 * tables_mean_error(&printed, "printed", "max_force_dynamics"));
+    page_says("agrees with %.1f %% of the tables",
+              100 * tables_mean_error(&printed, "printed", "max_force_energy"));
+    page_says("**The delays of the impact dynamics** are %.1f %% off on average",
+              100 * tables_mean_error(&printed, "printed", "delay_dynamics"));
+
+    // the cells run one by one are those of the tables
+    errors_of(0, 2, SETS(NULL), 0, error);
+    check_close(error[0], 100 * tables_mean_error(&printed, "printed", "max_force_simulation"),
+                0.05);
+    check_close(error[1], 100 * mean, 0.05);
+    errors_of(0, 2, SETS(NULL), 1e-3, error);
+    page_says("and the mean error is %.0f %%.", error[1]);
+    errors_of(0, 2, SETS("arm.hub_inertia=1.078e-3"), 1e-3, error);
+    page_says("the forces are %.1f %% and the delays %.1f %% off.", error[0], error[1]);
+    errors_of(1, 1, SETS("arm.k1=50"), 0, error);
+    page_says("with $k_1$ = 50 within %.0f %%", ceil(error[0]));
+    errors_of(2, 2, SETS("arm.k1=120"), 0, error);
+    page_says("with $k_1$ = 120 within %.0f %%", ceil(error[0]));
+
+    // one set for all, and the factor of the impact dynamics
+    page_says("forces %.1f %% and delays %.1f %% off:",
+              100 * tables_mean_error(&fitted, "fitted", "max_force_simulation"),
+              100 * tables_mean_error(&fitted, "fitted", "delay_simulation"));
+    double off = 0, bias = 0;
+    int outside = 0, outside_best = 0;
+    static const char *const names[] = {"4.1", "4.2", "4.3"};
+    for (int k = 0; k < 3; k++) {
+        const table_row *r = row_of(&fitted, names[k], "fitted", "delay_dynamics");
+        const table_row *force = row_of(&fitted, names[k], "fitted", "max_force_simulation");
+        const table_row *delay = row_of(&fitted, names[k], "fitted", "delay_simulation");
+        for (int v = 0; v < TABLE_VOLTAGES; v++) {
+            const double error_of_cell = (r->computed[v] - r->printed[v]) / r->printed[v];
+            off += fabs(error_of_cell) / 12;
+            bias += error_of_cell / 12;
+            outside += fabs(r->computed[v] - r->printed[v]) > 0.5e-3;
+            outside_best += fabs(r->computed[v] * 0.865 / (sqrt(3) / 2) - r->printed[v]) > 0.5e-3;
+            page_says("%.0f / %.1f ms", 1e3 * r->printed[v], 1e3 * r->computed[v]);
+            page_says("%.2f N, %.0f ms", force->computed[v], 1e3 * delay->computed[v]);
+        }
+    }
+    page_says("are %.1f %% off on average, with hardly any bias (%.1f %%)", 100 * off, 100 * bias);
+    assert_int_equal(outside, 8);
+    assert_int_equal(outside_best, 7);
+    page_says("but eight of the twelve cells are further off than their rounding to a millisecond, "
+              "and seven with the factor");
+}
+
+// What was tried to explain the delays of the impact dynamics.
+static void what_was_tried_on_the_delays(void **state)
+{
+    (void)state;
+    thesis_tables t;
+    fault f = {.text = ""};
+    assert_int_equal(tables_compute(&t, &f), STATUS_OK);
+    double error[7] = {0};
+    for (int k = 0; k < 12; k++) {
+        char name[] = "4.1";
+        name[2] = (char)('1' + k / 4);
+        const table_row *r = row_of(&t, name, "printed", "delay_dynamics");
+        const double T = r->computed[k % 4], wanted = r->printed[k % 4];
+        const double tried[] = {floor(1e3 * T) / 1e3, T - 1e-3,  T - 2e-3,   M_PI / 4 * T,
+                                M_PI / 4 * T + 1e-3,  2 * T / 3, T / sqrt(2)};
+        for (int i = 0; i < 7; i++) {
+            error[i] += 100 * fabs(tried[i] - wanted) / wanted / 12;
+        }
+    }
+    page_says(
+        "$T$ cut to whole steps %.1f %%, counted from a step later %.1f %%, from two %.1f %%, "
+        "$\\frac{\\pi}{4}T$ (the true quarter oscillation) %.1f %%, that and a step %.1f %%, "
+        "$\\frac23 T$ %.1f %%, $T/\\sqrt2$ %.1f %%",
+        error[0], error[1], error[2], error[3], error[4], error[5], error[6]);
+}
+
+// ---- chapter 5
+
+// Root mean square of a signal less the plan's while the impact mode lasts, in percent of what the
+// plan spans.
+static double off_the_plan(const trace *t, size_t signal, size_t plan)
+{
+    double low = HUGE_VAL, high = -HUGE_VAL, squares = 0, time = 0;
+    for (size_t i = 0; i + 1 < t->row_count; i++) {
+        const char *row = (const char *)&t->rows[i], *next = (const char *)&t->rows[i + 1];
+        double a[2], b[2];
+        memcpy(&a[0], row + signal, sizeof a[0]);
+        memcpy(&a[1], next + signal, sizeof a[1]);
+        memcpy(&b[0], row + plan, sizeof b[0]);
+        memcpy(&b[1], next + plan, sizeof b[1]);
+        if (t->rows[i].controller_mode != 1 || t->rows[i + 1].controller_mode != 1) {
+            continue;
+        }
+        const double width = t->rows[i + 1].time - t->rows[i].time;
+        const double mean = (fabs(a[0] - b[0]) + fabs(a[1] - b[1])) / 2;
+        low = fmin(low, fmin(b[0], b[1]));
+        high = fmax(high, fmax(b[0], b[1]));
+        squares += width * mean * mean;
+        time += width;
+    }
+    return 100 * sqrt(squares / time) / (high - low);
+}
+
+// From the first contact until the force first reaches nine tenths of the steady one.
+static double rise_time(const computed *c)
+{
+    const trace *t = &c->result.trace;
+    const double goal = 0.9 * c->result.summary.steady_force_N;
+    const double touch = c->result.summary.first_contact_s;
+    size_t i = 1;
+    while (t->rows[i].time <= touch || t->rows[i].force < goal) {
+        i++;
+    }
+    const sample *a = &t->rows[i - 1], *b = &t->rows[i];
+    return a->time + (goal - a->force) / (b->force - a->force) * (b->time - a->time) - touch;
+}
+
+static void figures_of_the_hybrid_controller(void **state)
+{
+    (void)state;
+    double off[2][2];
+    for (int i = 0; i < 2; i++) {
+        computed c = run_with("thesis/fig-5-2", i == 0 ? SETS(NULL) : SETS("arm.links=8"));
+        const trace *t = &c.result.trace;
+        off[i][0] = off_the_plan(t, offsetof(sample, encoder), offsetof(sample, desired_angle));
+        off[i][1] =
+            off_the_plan(t, offsetof(sample, tachometer), offsetof(sample, desired_velocity));
+        if (i == 1) {
+            page_says("they hit %.0f times", c.result.summary.impacts);
+        }
+        forget(&c);
+    }
+    page_says("%.1f %% and %.1f %% of the plan's span off it", off[0][0], off[0][1]);
+    page_says("and are %.0f %% and %.0f %% off |", off[1][0], off[1][1]);
+
+    // 5.6 and 5.7 are the run of 5.1 at twice the force
+    computed one = run_with("thesis/fig-5-1", SETS(NULL)),
+             two = run_with("thesis/fig-5-7", SETS(NULL));
+    computed angle = run_with("thesis/fig-5-6", SETS(NULL));
+    assert_true(one.scenario.parameters.initial.angle == two.scenario.parameters.initial.angle &&
+                one.scenario.parameters.initial.angle == angle.scenario.parameters.initial.angle);
+    computed far = run_with("thesis/fig-5-7", SETS("initial.angle=-0.1"));
+    page_says(
+        "agrees at 1 N: one contact, 90 %% of the steady force after %.3f s, settled after %.2f "
+        "s; at 2 N one contact, settled after %.2f s, but 90 %% only after %.3f s, and after "
+        "%.3f s from 0.1 rad",
+        rise_time(&one), one.result.summary.settling_time_s, two.result.summary.settling_time_s,
+        rise_time(&two), rise_time(&far));
+    assert_true(one.result.summary.separations == 0 && two.result.summary.separations == 0);
+    forget(&one);
+    forget(&two);
+    forget(&far);
+    forget(&angle);
+}
+
+static void numbers_of_the_control_laws(void **state)
+{
+    (void)state;
+    const double hybrid = number("compare/hybrid", SETS(NULL), "peak_force_N");
+    page_says("agrees: %.2f N against %.2f N",
+              number("compare/bang-bang", SETS(NULL), "peak_force_N"), hybrid);
+    page_says("agrees: %.2f N instead of %.2f N, and %.2f s later at the wall",
+              number("compare/speed-limit", SETS(NULL), "peak_force_N"), hybrid,
+              number("compare/speed-limit", SETS(NULL), "first_contact_s") -
+                  number("compare/hybrid", SETS(NULL), "first_contact_s"));
+    page_says("agrees: %.2f N and %.2f N",
+              number("compare/vibration-phase", SETS("wall.angle=0.11"), "peak_force_N"),
+              number("compare/vibration-phase", SETS("wall.angle=0.21"), "peak_force_N"));
+    page_says("steady force %.2f of the command as printed, %.2f corrected",
+              number("compare/hybrid-printed", SETS(NULL), "steady_force_N"),
+              number("compare/hybrid", SETS(NULL), "steady_force_N"));
+    assert_int_equal(
+        (int)number("compare/force-integral-soft-wall", SETS("wall.contact=rigid"), "impacts"), 9);
+    assert_int_equal((int)number("compare/force-integral-soft-wall", SETS(NULL), "separations"), 0);
+
+    // told where the wall is by different means
+    const double told = number("compare/hybrid", SETS("belief.wall_error=0.02"), "steady_force_N");
+    const double film =
+        number("compare/hybrid", SETS("belief.wall_error=0.02", "control.impact_angle=film"),
+               "steady_force_N");
+    const double measured = number(
+        "compare/hybrid", SETS("belief.wall_error=0.02", "control.impact_angle=accelerometer"),
+        "steady_force_N");
+    page_says("the force is %.2f N off when told, %.2f N by film, below 0.003 N by [accelerometer]",
+              fabs(told - 1), fabs(film - 1));
+    check_below(fabs(measured - 1), 0.003);
+
+    // gains from which on the proportional law bounces, and rates at which the hybrid fails
+    static const char *const gains[] = {"control.force_gain=1", "control.force_gain=3",
+                                        "control.force_gain=4", "control.force_gain=6"};
+    for (int i = 0; i < 4; i++) {
+        computed c = run_with("compare/force-pd", SETS(gains[i]));
+        const summary *m = &c.result.summary;
+        assert_true(i == 0   ? m->separations == 0 && m->settling_time_s > 0
+                    : i == 1 ? m->separations == 1 && m->settling_time_s > 0
+                             : m->separations > 1 && isnan(m->settling_time_s));
+        forget(&c);
+    }
+    page_says(
+        "at 1 V/N one contact, at 3 V/N a bounce, from 4 V/N on it bounces and never settles");
+    static const char *const rates[] = {"30", "50", "55", "100", "160", "170", "200"};
+    for (int i = 0; i < 7; i++) {
+        char rate[32];
+        snprintf(rate, sizeof rate, "control.rate=%s", rates[i]);
+        const double on_spring = number("compare/sampling-rate", SETS(rate), "settling_time_s");
+        const double rigid =
+            number("compare/sampling-rate", SETS(rate, "arm.hub_joint=rigid"), "settling_time_s");
+        assert_int_equal(isnan(on_spring), i == 0 || (i >= 2 && i <= 4));
+        assert_int_equal(isnan(rigid), i == 0);
+    }
+    page_says("agrees on a hub spring, 55 to 160 Hz fail; on a rigid hub 30 Hz do");
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_of_the_first_chapters),
+        cmocka_unit_test(the_table_of_the_single_run),
+        cmocka_unit_test(errors_of_the_tables),
+        cmocka_unit_test(what_was_tried_on_the_delays),
+        cmocka_unit_test(figures_of_the_hybrid_controller),
+        cmocka_unit_test(numbers_of_the_control_laws),
+    };
+    size_t size = 0;
+    FILE *stream = argc > 1 ? fopen(argv[1], "r") : NULL;
+    if (stream == NULL || getdelim(&page, &size, '\0', stream) < 0) {
+        fputs("docs/thesis.md cannot be read\n", stderr);
+        return 1;
+    }
+    fclose(stream);
+    const int failed =
+        cmocka_run_group_tests_name("numbers of the thesis's page", tests, NULL, NULL);
+    free(page);
+    return failed != 0;
+}
