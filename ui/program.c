@@ -108,8 +108,8 @@ static int dispatch(int argc, char **argv, const rank_group *ranks)
     return found != NULL ? run_command(found, argc - 1, argv + 1, ranks) : complain_command(word);
 }
 
-// What was printed must be whole and have arrived, unless its reader went away first (impactlab list
-// | head).
+// What was printed must be whole and have arrived, unless its reader went away first (impactlab
+// list | head).
 static int close_output(int result)
 {
     int reason = stream_failure(stdout);

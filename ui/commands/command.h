@@ -191,9 +191,9 @@ void write_fish_completion(FILE *stream);
 // Returns EXIT_DONE, or the exit status to end with; in that case nothing has to be freed.
 int open_scenario(scenario *s, const char *name_or_file, const arguments *a);
 
-// Opens a scenario of the list. One with faults is no failure and none is told: *faulty says so, and
-// then nothing has to be freed. Returns EXIT_DONE, or the exit status if it could not be read, which
-// has been reported.
+// Opens a scenario of the list. One with faults is no failure and none is told: *faulty says so,
+// and then nothing has to be freed. Returns EXIT_DONE, or the exit status if it could not be read,
+// which has been reported.
 int open_listed(scenario *s, const char *name, bool *faulty) __attribute__((warn_unused_result));
 
 // Opens the scenario, calls `use` with it and closes it. Returns the exit status.
