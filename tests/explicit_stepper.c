@@ -190,11 +190,12 @@ static double most_bend(const arm *a, const motion *m)
 // rotation, which stretches the chain. A chain that hangs in the field of its own rotation at rate
 // w vibrates in the plane at w sqrt(n (2 n - 1) - 1), n = 1..N, its springs apart; squares of
 // frequencies add. Velocities are taken as they are and as accelerations make them within a stride.
-static double rate_of_change(const arm *a, const motion *m)
+// `slowest` is the rate of an arm that does not turn.
+static double rate_of_change(const arm *a, const motion *m, double slowest)
 {
     const double *w = state_velocities(m, m->state), *al = state_accelerations(m, m->state);
     const double n = a->links, stretched = n * (2 * n - 1);
-    double fastest = 0, own = fmax(a->fastest_rate, 1e-3);
+    double fastest = 0, own = fmax(slowest, 1e-3);
     own *= sqrt(1 + 3 * a->stiffening * most_bend(a, m)); // slope of b + stiffening b^3
     for (int i = 0; i < a->dof; i++) {
         double gained = fabs(al[i]) * LONG_RESOLUTION / own;
@@ -257,11 +258,12 @@ static double graded_current(const arm *a, const motion *m, double rate, double 
     return fmin(longest, fmax(GRADING * to_limit, SHORTEST_RESOLUTION / rate));
 }
 
-// How long the next step may be, and by which form of the method.
-static double begin(const arm *a, motion *m, double remaining, double step_length)
+// How long the next step may be of an arm that changes at least at a rate [1/s].
+static double longest_step(const arm *a, motion *m, double rate, double remaining,
+                           double step_length)
 {
     const bool pressed = !motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0;
-    double rate = rate_of_change(a, m);
+    rate = rate_of_change(a, m, rate);
     rate = pressed ? rate_within_wall(a, m, rate) : rate;
     double steps = floor(LONG_RESOLUTION / (step_length * rate));
     double longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step_length
@@ -273,6 +275,18 @@ static double begin(const arm *a, motion *m, double remaining, double step_lengt
     return remaining < longest * (1 + 1e-9) ? remaining : longest;
 }
 
+static double begin(const arm *a, motion *m, double remaining, double step_length)
+{
+    return longest_step(a, m, a->fastest_rate, remaining, step_length);
+}
+
+// Steps that follow decays, too, and half as long.
+static double begin_fine(const arm *a, motion *m, double remaining, double step_length)
+{
+    const double rate = 2 * fmax(a->fastest_rate, a->fastest_decay);
+    return longest_step(a, m, rate, remaining, step_length);
+}
+
 // The stages' derivatives of the state's smooth part.
 static size_t memory_for(const arm *a)
 {
@@ -281,3 +295,5 @@ static size_t memory_for(const arm *a)
 
 const engine explicit_engine = {
     .name = "Runge-Kutta 8", .begin = begin, .state_at = step, .memory_for = memory_for};
+const engine explicit_fine_engine = {
+    .name = "Runge-Kutta 8, fine", .begin = begin_fine, .state_at = step, .memory_for = memory_for};

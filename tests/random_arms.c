@@ -302,8 +302,9 @@ static chain_outcome by_reference(const random_arm *r, const options *o, double 
 {
     parameters p = r->parameters;
     p.arm.mass *= 1 + heavier;
-    const chain_start start = {
-        &p, r->angle, r->velocity, DURATION, AFTER_CONTACT, &explicit_engine, OUTCOME_CONTACTS};
+    const engine *formula = finer > 1 ? &explicit_fine_engine : &explicit_engine;
+    const chain_start start = {&p,      r->angle,        r->velocity, DURATION, AFTER_CONTACT,
+                               formula, OUTCOME_CONTACTS};
     if (strcmp(o->by, "explicit") == 0) {
         arm a;
         arm_init(&a, &p);
@@ -493,7 +494,7 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         describe(r, number, status_text(mine.status));
         return;
     }
-    const distances d = distances_of(&truth, &mine);
+    distances d = distances_of(&truth, &mine);
     const distances none = {0};
     double worst = worst_of(&d, &none, &may);
     char what[300];
@@ -501,7 +502,10 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         const chain_outcome again = by_reference(r, o, 0, 2);
         const chain_outcome heavier = by_reference(r, o, NEXT_TO_NONE, 1);
         const distances own = distances_of(&truth, &again);
-        distances change = distances_of(&truth, &heavier);
+        const distances change = distances_of(&truth, &heavier);
+
+        // judged by the finer one
+        d = distances_of(&again, &mine);
         worst = worst_of(&d, &change, &may);
         const bool sure = own.same && change.same && worst_of(&own, &change, &may) < 0.3;
         if (!d.same || worst > 1 || !closes) {
