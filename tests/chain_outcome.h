@@ -3,7 +3,7 @@
 #pragma once
 
 #include "src/base/status.h"
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "src/solve/engine.h"
 #include "tests/reference/reference_arm.h"
 

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "tests/check.h"
 
 // The defaults of a model, not resolved.

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "src/rig/controller_values.h"
-#include "src/rig/process_lines.h"
+#include "src/rig/external/process_lines.h"
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 

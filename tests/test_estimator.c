@@ -1,5 +1,5 @@
 // The Kalman filter that controllers use.
-#include "src/rig/estimator.h"
+#include "src/rig/estimation/estimator.h"
 #include "src/base/random.h"
 #include "tests/rig_fixture.h"
 

@@ -1,5 +1,5 @@
 // The table of stiffness by force: reading, interpolation and refusals.
-#include "src/quantities/k2_table.h"
+#include "src/tables/k2_table.h"
 
 #include <string.h>
 

@@ -3,12 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/arm_observer.h"
+#include "src/rig/estimation/arm_observer.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/laws/hybrid_modes.h"
 #include "src/rig/laws/observer_arms.h"
-#include "src/rig/reduced_arm.h"
-#include "src/rig/riccati.h"
+#include "src/rig/estimation/reduced_arm.h"
+#include "src/rig/estimation/riccati.h"
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 

@@ -3,7 +3,7 @@
 // controllers answer or the run says why not, and what measures says that it cannot.
 #include "src/base/shared_array.h"
 #include "src/base/whole_file.h"
-#include "src/rig/keeper.h"
+#include "src/rig/external/supervisor.h"
 #include "src/session/session.h"
 #include "src/study/bench.h"
 #include "tests/refused_calls.h"
@@ -102,9 +102,9 @@ static status share_rows(const char *ignored, FILE *out)
 // A program that reads a line, answers it and ends with a given status.
 static status ask_once(const char *command, FILE *out)
 {
-    kept_program p;
+    supervised_program p;
     char answer[16] = "";
-    const int reason = kept_program_start(&p, command);
+    const int reason = supervised_program_start(&p, command);
     if (reason != 0) {
         return STATUS_NO_MEMORY;
     }
@@ -112,7 +112,7 @@ static status ask_once(const char *command, FILE *out)
     struct pollfd watched = {.fd = p.output, .events = POLLIN};
     assert_int_equal(__real_poll(&watched, 1, 60000), 1);
     const ssize_t length = __real_read(p.output, answer, sizeof answer - 1);
-    const int ended = kept_program_end(&p);
+    const int ended = supervised_program_end(&p);
     fprintf(out, "%s%d\n", answer, ended);
 
     // one that never came to its work shows that in its answer or in how it ended
@@ -153,7 +153,7 @@ static status ask_a_program(scenario *s, FILE *out)
     }
     session_finish(&t);
 
-    // without a tape the program cannot go on from the past
+    // without a transcript the program cannot go on from the past
     return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
 }
 

@@ -1,5 +1,5 @@
 // Panes and lessons of scenario files: the place and sentence of everything that is none.
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 #include "tests/scenario_fixture.h"
 
 static void faults_of_panes(void **state)

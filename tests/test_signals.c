@@ -1,5 +1,5 @@
 // The table of recorded signals: one order for rows and table, so that a field gives its index.
-#include "src/quantities/signals.h"
+#include "src/tables/signals.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // The table of a run's results: its keys end in their units, and every number is found.
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 
 #include <math.h>
 #include <stdio.h>

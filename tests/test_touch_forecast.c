@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "src/predict/predict.h"
-#include "src/rig/touch_forecast.h"
+#include "src/rig/estimation/touch_forecast.h"
 #include "tests/rig_fixture.h"
 
 // The predictor's answer for the true state of a row.

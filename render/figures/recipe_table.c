@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "render/page/text.h"
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 
 const char *recipe_label(recipe_figure *fig, const recipe_source *s)
 {

@@ -4,7 +4,7 @@
 #include <cairo.h>
 
 #include "render/page/page.h"
-#include "src/quantities/signals.h"
+#include "src/tables/signals.h"
 
 typedef struct colour {
     double red, green, blue;

@@ -12,7 +12,7 @@
 #include "render/page/page.h"
 #include "render/plot/scale.h"
 #include "src/base/fault.h"
-#include "src/quantities/signals.h"
+#include "src/tables/signals.h"
 
 enum { PANEL_SERIES = 36 }; // most series of a panel
 

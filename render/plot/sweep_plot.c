@@ -9,7 +9,7 @@
 #include "render/page/picture_file.h"
 #include "src/base/numbers.h"
 #include "src/base/version.h"
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 
 #define PANEL_WEIGHT 2.4  // of its height
 #define DOTS_ROOM    0.03 // of an axis, free at both ends

@@ -3,7 +3,7 @@
 
 #include "src/api/handles.h"
 #include "src/base/version.h"
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 
 enum { PARAMETERS_AT_MOST = sizeof((parameters *)0)->set };
 

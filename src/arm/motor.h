@@ -27,7 +27,7 @@
 
 #include <math.h>
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 
 typedef struct motor_model {
     double voltage_limit;   // largest command, of converter and current limit [V]

@@ -49,7 +49,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "src/base/plain_math.h"
 
 typedef struct wall_model {

@@ -8,7 +8,7 @@
 // which is linear: at 0.1 rad the force of the arm itself is some 2 % less.
 #pragma once
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "src/predict/predict.h"
 
 // The arm on the wall.

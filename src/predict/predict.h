@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "src/base/fault.h"
 
 // The state a prediction starts from: three bodies for the thesis's predictors.

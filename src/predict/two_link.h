@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "src/predict/predict.h"
 
 // Which of the thesis's simplifications the terms carry.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/base/fault.h"
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "src/rig/controller.h"
 
 // What is known of parameter `index` of a controller. One of which the controller gives the name

@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "src/arm/arm.h"
-#include "src/quantities/k2_table.h"
+#include "src/tables/k2_table.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/laws/laws.h"
-#include "src/rig/reduced_arm.h"
+#include "src/rig/estimation/reduced_arm.h"
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
 
@@ -170,7 +170,7 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
         r->law = r->plugin.law;
         return s;
     }
-    r->process = process_create(c, o->tape, o->ends);
+    r->process = process_create(c, o->transcript, o->ends);
     r->law = &process_law;
     return r->process != NULL ? STATUS_OK : fault_no_memory(f);
 }

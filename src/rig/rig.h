@@ -7,10 +7,10 @@
 #pragma once
 
 #include "src/rig/controller.h"
-#include "src/rig/plugin.h"
-#include "src/rig/process.h"
+#include "src/rig/external/plugin.h"
+#include "src/rig/external/process.h"
 #include "src/rig/sensors.h"
-#include "src/rig/touch_forecast.h"
+#include "src/rig/estimation/touch_forecast.h"
 #include "src/base/fault.h"
 
 // A controller that a program gives in the place of control.law. The rig leaves `context` at the
@@ -22,9 +22,9 @@ typedef struct given_law {
 
 // What a run gives its rig besides parameters; all zero for none.
 typedef struct rig_options {
-    const given_law *law; // in the place of control.law
-    process_tape *tape;   // of a process, which must outlive the rig
-    process_ends ends;    // of the run: a process is not waited for after that
+    const given_law *law;           // in the place of control.law
+    process_transcript *transcript; // of a process, which must outlive the rig
+    process_ends ends;              // of the run: a process is not waited for after that
 } rig_options;
 
 typedef struct rig {

@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 #include "src/base/random.h"
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 
 // What the sensors are fixed to, at one instant.
 typedef struct sensed_motion {

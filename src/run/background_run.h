@@ -7,10 +7,10 @@ typedef struct background_run background_run;
 
 typedef struct background_options {
     size_t rows_expected;
-    const run_result *other;   // rows at the beginning that are its own are kept once in the end;
-                               // NULL: of no other run
-    struct process_tape *tape; // of a process that is the controller, NULL: none
-    bool at_once;              // the run is over when background_run_start returns
+    const run_result *other; // rows at the beginning that are its own are kept once in the end;
+                             // NULL: of no other run
+    struct process_transcript *transcript; // of a process that is the controller, NULL: none
+    bool at_once;                          // the run is over when background_run_start returns
 } background_options;
 
 // Starts the run of a scenario, whose actions and texts must outlive it; its rows never move in

@@ -84,10 +84,10 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
     l->volts = s->parameters.control.law == LAW_NONE ? s->parameters.motor.voltage : 0;
     l->law = options->commanded ? (given_law){&commanded_law, &l->volts} : options->law;
     const bool asks = l->law.law == NULL && s->parameters.control.law == LAW_PROCESS;
-    l->tape = asks ? process_tape_create() : NULL;
+    l->transcript = asks ? process_transcript_create() : NULL;
     l->options = (run_options){.keep_trace = options->keep_trace,
                                .law = l->law.law != NULL ? &l->law : NULL,
-                               .tape = l->tape};
+                               .transcript = l->transcript};
 
     // the run at its start
     l->run.model = stepped_model_of(&s->parameters);
@@ -112,7 +112,7 @@ void loop_destroy(run_loop *l)
             l->run.model->close(&l->run, STATUS_STOPPED);
         }
         recording_end(&l->recording, STATUS_STOPPED, &l->fault, (time_used){0});
-        process_tape_destroy(l->tape);
+        process_transcript_destroy(l->transcript);
         run_finish(&l->result);
         scenario_finish(&l->scenario);
         free(l);

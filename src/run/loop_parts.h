@@ -7,7 +7,7 @@ struct run_loop {
     scenario scenario; // a copy of one's own
     run_options options;
     given_law law;
-    process_tape *tape; // NULL unless control.law is a process
+    process_transcript *transcript; // NULL unless control.law is a process
     run_result result;
     recording recording;
     stepped_run run;

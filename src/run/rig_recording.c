@@ -27,7 +27,7 @@ status recording_start_rig(recording *r, fault *f)
     const run_options *o = r->options;
     const rig_options given = {
         .law = o->law,
-        .tape = o->tape,
+        .transcript = o->transcript,
         .ends = {o->monitor != NULL ? &o->monitor->stop : NULL, o->abandon},
     };
     status s = rig_create(&r->rig, p, &given, f);

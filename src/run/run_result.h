@@ -4,7 +4,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 #include "src/run/force_history.h"
 #include "src/run/trace.h"
 
@@ -59,8 +59,9 @@ typedef struct run_options {
     size_t rows_expected; // if not 0, rows and events stay where they are and can be shared, and
                           // the result has a history; needs keep_trace
     const struct given_law *law; // that a program gives in the place of control.law; NULL: none
-    struct process_tape *tape;   // of a process that is the controller; NULL: none is kept
-    bool resume;                 // *result was prepared by run_resume: go on from there
+    struct process_transcript
+        *transcript; // of a process that is the controller; NULL: none is kept
+    bool resume;     // *result was prepared by run_resume: go on from there
 } run_options;
 
 // Frees what the result holds; one of zeroes is allowed.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/base/shared_array.h"
-#include "src/quantities/signals.h"
+#include "src/tables/signals.h"
 #include "src/base/status.h"
 
 typedef enum event_kind {

@@ -5,7 +5,7 @@
 
 #include "src/base/fault.h"
 #include "src/base/sha256.h"
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 
 typedef enum outside_kind {
     OUTSIDE_LIBRARY, // the path of a shared object, with a slash

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 
 // Index in the summary of a quantity that two machines agree about; -1 after a fault.
 static int parse_quantity(reader *r, const tree_node *key)

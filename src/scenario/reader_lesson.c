@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 
 #define NEAR_ENOUGH 0.001 // share of a value that a parameter may be off
 

@@ -1,7 +1,7 @@
 // The signals that a scenario is to be looked at by.
 #include "src/scenario/reader.h"
 
-#include "src/quantities/signals.h"
+#include "src/tables/signals.h"
 
 void reader_panes(reader *r, const tree_node *list)
 {

@@ -1,7 +1,7 @@
 // A scenario: parameters, scripted actions and expected results, read from a YAML file.
 #pragma once
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "src/rig/controller.h"
 #include "src/scenario/lesson.h"
 

@@ -2,8 +2,8 @@
 #include <assert.h>
 #include <string.h>
 
-#include "src/quantities/signals.h"
-#include "src/quantities/summary.h"
+#include "src/tables/signals.h"
+#include "src/tables/summary.h"
 #include "src/scenario/scenario.h"
 #include "src/base/numbers.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/process_tape.h"
+#include "src/rig/external/transcript.h"
 
 status session_open(session *s, scenario *base, double patience, fault *f)
 {
@@ -27,7 +27,7 @@ void session_finish(session *s)
     session_forget_other(s);
     session_forget_ghost(s);
     run_finish(&s->run);
-    process_tape_destroy(s->tape);
+    process_transcript_destroy(s->transcript);
     free(s->effective.actions);
     free(s->inputs);
     scenario_finish(&s->base);

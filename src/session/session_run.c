@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/process_tape.h"
+#include "src/rig/external/transcript.h"
 #include "src/base/loss.h"
 #include "src/run/background_run.h"
 #include "src/run/resume.h"
@@ -121,8 +121,8 @@ static bool outside_is_same(session *s, const parameters *p)
         return true;
     }
     memcpy(s->outside, stamp, sizeof stamp);
-    process_tape_destroy(s->tape);
-    s->tape = NULL;
+    process_transcript_destroy(s->transcript);
+    s->transcript = NULL;
     return false;
 }
 
@@ -134,12 +134,12 @@ static status start_run(session *s, const scenario *effective, fault *f)
     size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
     bool resume = outside_is_same(s, &effective->parameters) &&
                   run_resume(&s->run, &s->effective, effective, rows, &run);
-    if (s->tape == NULL && effective->parameters.control.law == LAW_PROCESS) {
-        s->tape = process_tape_create(); // without memory the program is always asked
+    if (s->transcript == NULL && effective->parameters.control.law == LAW_PROCESS) {
+        s->transcript = process_transcript_create(); // without memory the program is always asked
     }
     const background_options how = {.rows_expected = rows,
                                     .other = s->has_other ? &s->other : NULL,
-                                    .tape = s->tape,
+                                    .transcript = s->transcript,
                                     .at_once = isinf(s->patience)};
     background_run *c = background_run_start(effective, &how, resume ? &run : NULL);
     if (c == NULL) {
@@ -303,7 +303,7 @@ process_replay session_take_replay(session *s)
 {
     assert(s != NULL);
     return s->computing != NULL ? (process_replay){.restarted = false}
-                                : process_tape_take_replay(s->tape);
+                                : process_transcript_take_replay(s->transcript);
 }
 
 void session_forget_other(session *s)

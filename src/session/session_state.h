@@ -5,7 +5,7 @@
 #include "src/scenario/outside.h"
 
 struct background_run;
-struct process_tape;
+struct process_transcript;
 
 enum { SESSION_INPUT_TEXT = 160 };
 
@@ -43,7 +43,8 @@ typedef struct session {
     unsigned version; // counts the computed runs
     struct background_run *computing; // the run, if it is not complete
     double patience;                  // for how long a change waits for its run [s]
-    struct process_tape *tape;        // what a process was asked in all runs, NULL if there is none
-    char outside[SHA256_TEXT];        // stamp of what the runs could read from outside
-    size_t surveyed;                  // rows whose force is in the summary of an incomplete run
+    struct process_transcript
+        *transcript;           // what a process was asked in all runs, NULL if there is none
+    char outside[SHA256_TEXT]; // stamp of what the runs could read from outside
+    size_t surveyed;           // rows whose force is in the summary of an incomplete run
 } session;

@@ -7,7 +7,7 @@
 
 #include <jansson.h>
 
-#include "src/quantities/k2_table.h"
+#include "src/tables/k2_table.h"
 #include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
 

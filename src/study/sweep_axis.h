@@ -1,7 +1,7 @@
 // One parameter that a sweep varies, and the grammar of --vary that says over which values.
 #pragma once
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 
 enum { SWEEP_MOST_RUNS = 10000000, SWEEP_VALUE_TEXT = 128, SWEEP_NAME = 64 };
 

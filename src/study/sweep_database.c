@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 
 // Marks a database as ours (PRAGMA application_id): "ILSw". The layout's version is user_version.
 #define APPLICATION_ID "1229738871"

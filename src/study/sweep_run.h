@@ -3,7 +3,7 @@
 
 #include <stdatomic.h>
 
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 #include "src/study/pool.h"
 #include "src/study/ranks.h"
 #include "src/study/sweep.h"

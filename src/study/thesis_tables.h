@@ -1,7 +1,7 @@
 // Tables 4.1-4.3 of the thesis: printed value, computed value, difference.
 #pragma once
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "src/base/fault.h"
 
 enum { TABLE_VOLTAGES = 4 };

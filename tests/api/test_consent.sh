@@ -90,7 +90,7 @@ echo 'no library' >x.so
 visit plugin.yaml ''
 shows "y lets it load './x.so'"
 
-# the same questions are answered from the tape: looking back, changing and undoing
+# the same questions are answered from the transcript: looking back, changing and undoing
 visit scenario.yaml ':seek 0.3<Enter>:push 0.01<Enter>'
 [ "$(times starts)" = 2 ] || fail "a push: started $(times starts) times, not 2"
 shows 'the program was started anew and went through its'

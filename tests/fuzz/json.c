@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/rig/process_lines.h"
+#include "src/rig/external/process_lines.h"
 #include "src/study/bench.h"
 
 static void try_answer(const uint8_t *data, size_t size)

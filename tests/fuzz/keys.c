@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "src/base/words.h"
-#include "src/quantities/signals.h"
-#include "src/quantities/summary.h"
+#include "src/tables/signals.h"
+#include "src/tables/summary.h"
 #include "ui/explorer/commands.h"
 #include "ui/explorer/keys.h"
 #include "ui/explorer/state/command_list.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "src/base/words.h"
-#include "src/quantities/summary.h"
+#include "src/tables/summary.h"
 #include "ui/explorer/commands.h"
 #include "ui/explorer/keys.h"
 

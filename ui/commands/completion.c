@@ -5,7 +5,7 @@
 #include <assert.h>
 #include <string.h>
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 
 #define SCENARIO_NAMES "impactlab list 2>/dev/null | cut -d' ' -f1"
 

@@ -7,7 +7,7 @@
 
 #include "src/arm/arm.h"
 #include "src/base/words.h"
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/run_progress.h"
 #include "ui/commands/scene_request.h"

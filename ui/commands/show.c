@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "src/quantities/summary.h"
-#include "src/quantities/parameters.h"
+#include "src/tables/summary.h"
+#include "src/tables/parameters.h"
 #include "src/base/json.h"
 #include "src/run/export.h"
 

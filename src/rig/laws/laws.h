@@ -2,7 +2,7 @@
 // rig; docs/control.md says where each comes from.
 #pragma once
 
-#include "src/quantities/control_laws.h"
+#include "src/tables/control_laws.h"
 #include "src/rig/controller.h"
 
 // A controller: its word, names of modes, table of parameters, type of memory, and its functions

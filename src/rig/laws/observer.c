@@ -1,5 +1,6 @@
-// A law that needs no tuning: an observer of arm, wall and unknown torque (src/rig/arm_observer.h),
-// and feedback of its estimate with gains from Riccati equations. docs/control.md derives it.
+// A law that needs no tuning: an observer of arm, wall and unknown torque
+// (src/rig/estimation/arm_observer.h), and feedback of its estimate with gains from Riccati
+// equations. docs/control.md derives it.
 //
 // TRAVEL brings the arm to the wall without vibration, from the guarded distance on no faster than
 // what the commanded force stops; where the wall is not in doubt, in the least time that ends so.

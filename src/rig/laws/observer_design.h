@@ -2,7 +2,7 @@
 // Riccati equations, and the speeds of its approach. docs/control.md derives them.
 #pragma once
 
-#include "src/rig/arm_observer.h"
+#include "src/rig/estimation/arm_observer.h"
 
 // Share of the wanted force below which the law lets it fall at no time.
 #define OBSERVER_LEAST_FORCE 0.1

@@ -1,6 +1,6 @@
 #include "src/rig/laws/state_feedback.h"
 #include "src/base/plain_math.h"
-#include "src/rig/riccati.h"
+#include "src/rig/estimation/riccati.h"
 
 #include <assert.h>
 #include <math.h>

@@ -16,7 +16,7 @@
 // optimal comes in with the constant command; predictive as fast as a limit on the force allows.
 #pragma once
 
-#include "src/rig/estimator.h"
+#include "src/rig/estimation/estimator.h"
 #include "src/rig/laws/laws.h"
 
 enum { APPROACH, PRESS, HOLD };

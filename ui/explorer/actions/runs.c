@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <string.h>
 
-#include "src/rig/process_tape.h"
+#include "src/rig/external/transcript.h"
 #include "ui/explorer/state/consent.h"
 
 // Keeps the first fault of a scenario that does not open.

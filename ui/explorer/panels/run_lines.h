@@ -1,7 +1,7 @@
 // Dash patterns of curves, so that signals and runs can be distinguished without colours.
 #pragma once
 
-#include "src/quantities/signals.h"
+#include "src/tables/signals.h"
 #include "ui/terminal/screen.h"
 
 // Sixteen dots, repeated: bit i is dot i.

@@ -2,7 +2,7 @@
 // found without reading every row.
 #pragma once
 
-#include "src/quantities/signals.h"
+#include "src/tables/signals.h"
 #include "src/run/trace.h"
 
 enum { EXTREMES_BLOCK = 64, EXTREMES_SIGNALS = 64 };

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <strings.h>
 
-#include "src/quantities/parameters.h"
-#include "src/quantities/signals.h"
+#include "src/tables/parameters.h"
+#include "src/tables/signals.h"
 #include "ui/explorer/state/command_list.h"
 #include "ui/explorer/state/filters.h"
 

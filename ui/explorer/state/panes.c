@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/quantities/signals.h"
+#include "src/tables/signals.h"
 
 // Panes of an arm under a script, and of one with sensors and a controller.
 static const char *const scripted_panes[PANES][PANE_SIGNALS] = {

@@ -1,7 +1,7 @@
 // The displayed list of parameters, in groups that can be folded, and filtered.
 #pragma once
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 
 enum { PARAMETER_GROUPS = 16, PARAMETER_LINES = 256, PARAMETER_NAME = 80 };
 

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 #include "src/run/trace.h"
 
 #define PULL_STIFFNESS 10.0  // of the spring [N/m]

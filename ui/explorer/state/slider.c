@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "src/quantities/parameters.h"
+#include "src/tables/parameters.h"
 
 #define FEWEST_DECADES 3    // from this many on a range is logarithmic
 #define MOST_DECADES   6    // a wider range shows those near the default

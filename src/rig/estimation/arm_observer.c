@@ -1,0 +1,427 @@
+#include "src/rig/estimation/arm_observer.h"
+#include "src/base/plain_math.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum { N = ESTIMATOR_STATES };
+_Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all modes have room");
+
+// What readings and models are worth: standard deviations.
+#define ANGLE_NOISE  4.5e-4 // of the encoder, and of angles that no mode shows [rad]
+#define RATE_NOISE   0.014  // of the tachometer [rad/s]
+#define RATE_RIPPLE  0.01   // of the tachometer, as a share of the reading
+#define FORCE_NOISE  0.02   // of the force sensor [N]
+#define FORCE_SHARE  0.02   // of the force sensor, as a share of the reading
+#define FILM_NOISE   0.01   // of the film [rad]
+#define FILM_LEAK    0.1    // that its charge loses [rad/s]
+#define ACCELERATION 1.0    // of the accelerometer [rad/s2]
+#define TORQUE_DRIFT 0.1    // of the unknown torque, in a second [N m]
+#define WALL_DRIFT   1e-3   // of the wall, in a second [rad]
+#define STIFFNESS    0.25   // share by which the stiffness may be wrong
+#define MOVES        0.05   // a slower hub tells nothing of what arm it is [rad/s]
+#define TAILS        4.0    // degrees of freedom of the distribution that misses of readings have
+#define STIFF_MEMORY                                                                               \
+    0.5 // over which readings count for the stiffness, and as what the belief does [s]
+#define LEAST_STIFF 0.2  // share of it that the arm has at least
+#define OUTLIER     4.0  // readings further off, in standard deviations, are worth less
+#define REST        0.01 // a slower hub counts as at rest [rad/s]
+
+// The modes of the present state.
+static const mode_set *modes_of(const arm_observer *o)
+{
+    return o->touches ? &o->arm.contact : &o->arm.free;
+}
+
+static int count_of(const arm_observer *o)
+{
+    return modes_of(o)->count;
+}
+
+int arm_observer_torque_index(const arm_observer *o)
+{
+    return 2 * count_of(o) + o->touches;
+}
+
+static int wall_index(const arm_observer *o)
+{
+    return 2 * o->arm.contact.count;
+}
+
+static int state_count(const arm_observer *o)
+{
+    return arm_observer_torque_index(o) + 1;
+}
+
+double arm_observer_square(const arm_observer *o, int i)
+{
+    return modes_of(o)->square[i] * (o->touches && i == 0 ? o->stiffness : 1);
+}
+
+// --- the model --------------------------------------------------------------------------------
+
+// a_i'' = -w_i^2 a_i - c_i a_i' + h_i (drive + unknown torque - damping hub rate), over h.
+static void sample_model(const arm_observer *o, const mode_set *set, int torque, double h,
+                         sampled_model *model)
+{
+    const int n = set->count;
+    double rate[N][N] = {{0}}, input[N] = {0};
+
+    // modes act on one another only through the damping of the hub
+    for (int i = 0; i < n; i++) {
+        rate[i][n + i] = 1;
+        rate[n + i][i] = -set->square[i];
+        rate[n + i][n + i] = -set->damping[i];
+        for (int j = 0; j < n; j++) {
+            rate[n + i][n + j] -= o->hub_damping * set->hub[i] * set->hub[j];
+        }
+
+        // an unknown torque drives them as the known one does
+        rate[n + i][torque] = input[n + i] = set->hub[i];
+    }
+    sampled_model_init(model, torque + 1, rate, input, h);
+}
+
+const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force)
+{
+    assert(o != NULL && setup != NULL);
+    memset(o, 0, sizeof *o);
+    const char *refusal = reduced_arm_init(&o->arm, setup);
+    if (refusal != NULL) {
+        return refusal;
+    }
+
+    // what the states obey, in each piece of a period
+    o->torque_per_volt = setup->torque_per_volt;
+    o->hub_damping = setup->hub_damping;
+    o->stiction = setup->stiction;
+    o->period = setup->period;
+    o->delay = fmin(setup->delay, setup->period);
+    o->stiff_belief = STIFF_MEMORY * force * force;
+    for (int k = 0; k < 2; k++) {
+        double h = k == 0 ? o->delay : o->period - o->delay;
+        sample_model(o, &o->arm.free, 2 * o->arm.free.count, h, &o->free_model[k]);
+        sample_model(o, &o->arm.contact, 2 * o->arm.contact.count + 1, h, &o->contact_model[k]);
+    }
+    return NULL;
+}
+
+void arm_observer_start(arm_observer *o, const controller_input *in)
+{
+    // rotation of all bodies: a_i = p_i angle
+    const mode_set *set = &o->arm.free;
+    memset(&o->e, 0, sizeof o->e);
+    for (int i = 0; i < set->count; i++) {
+        o->e.z[i] = set->momentum[i] * in->encoder;
+        o->e.p[i][i] = ANGLE_NOISE * ANGLE_NOISE * o->arm.inertia;
+        o->e.p[set->count + i][set->count + i] = 1e-6;
+    }
+
+    // what it knows of the rest: friction's share, and nothing of the wall
+    int torque = 2 * set->count;
+    o->e.p[torque][torque] = o->stiction * o->stiction;
+    o->touches = false;
+    o->since = in->time;
+    o->wall_variance = HUGE_VAL;
+    o->missed = 0;
+    o->stiffness = 1;
+    o->stiff_force = o->stiff_bend = 0;
+    o->last_voltage = in->voltage;
+    o->tip_before = o->tip_now = in->encoder;
+}
+
+void arm_observer_know_wall(arm_observer *o, double angle)
+{
+    assert(o != NULL && !o->touches && isfinite(angle));
+    o->wall = angle;
+    o->wall_variance = 0;
+}
+
+// --- what an estimate says --------------------------------------------------------------------
+
+// The hub's angle [rad].
+static double hub_angle(const arm_observer *o, const estimator *e)
+{
+    const mode_set *set = modes_of(o);
+    double angle = o->touches ? e->z[wall_index(o)] : 0;
+    for (int i = 0; i < set->count; i++) {
+        angle += set->hub[i] * e->z[i];
+    }
+    return angle;
+}
+
+double arm_observer_tip(const arm_observer *o, const estimator *e)
+{
+    const mode_set *set = modes_of(o);
+    double angle = o->touches ? e->z[wall_index(o)] : 0;
+    for (int i = 0; i < set->count; i++) {
+        angle += set->tip[i] * e->z[i];
+    }
+    return angle;
+}
+
+double arm_observer_rate(const arm_observer *o, const estimator *e)
+{
+    const mode_set *set = modes_of(o);
+    double rate = 0;
+    for (int i = 0; i < set->count; i++) {
+        rate += set->hub[i] * e->z[set->count + i];
+    }
+    return rate;
+}
+
+// Inverse of the hub's inertia as the modes show it, sum h_i^2 [1/(kg m2)].
+static double hub_mobility(const mode_set *set)
+{
+    double sum = 0;
+    for (int i = 0; i < set->count; i++) {
+        sum += set->hub[i] * set->hub[i];
+    }
+    return sum;
+}
+
+// Torque on the hub under which it keeps its velocity [N m].
+static double balancing_torque(const arm_observer *o, const estimator *e)
+{
+    const mode_set *set = modes_of(o);
+    double sum = 0;
+    for (int i = 0; i < set->count; i++) {
+        sum += set->hub[i] *
+               (arm_observer_square(o, i) * e->z[i] + set->damping[i] * e->z[set->count + i]);
+    }
+    return sum / hub_mobility(set);
+}
+
+double arm_observer_holding_torque(const arm_observer *o, const estimator *e)
+{
+    return balancing_torque(o, e) - e->z[arm_observer_torque_index(o)];
+}
+
+// Friction on the hub under a motor torque [N m], against the motion, or what holds at rest.
+static double friction_under(const arm_observer *o, const estimator *e, double drive)
+{
+    double rate = arm_observer_rate(o, e), limit = o->stiction;
+    if (fabs(rate) > REST) {
+        return rate > 0 ? limit : -limit;
+    }
+    // what brings it to rest and holds it there
+    double net =
+        drive + e->z[arm_observer_torque_index(o)] - o->hub_damping * rate - balancing_torque(o, e);
+    double stop = rate / (hub_mobility(modes_of(o)) * o->period);
+    return fmax(-limit, fmin(net + stop, limit));
+}
+
+double arm_observer_force_per_torque(const arm_observer *o)
+{
+    const mode_set *set = &o->arm.contact;
+    double share = 1;
+    for (int i = 0; i < set->count; i++) {
+        share -= set->momentum[i] * set->hub[i];
+    }
+    return share / o->arm.length;
+}
+
+// The force is row times state plus that of drive and friction.
+static void force_row(const arm_observer *o, double *row)
+{
+    const mode_set *set = &o->arm.contact;
+    const int n = set->count;
+    double at_once = arm_observer_force_per_torque(o), length = o->arm.length;
+    memset(row, 0, N * sizeof *row);
+    for (int i = 0; i < n; i++) {
+        row[i] = set->momentum[i] * arm_observer_square(o, i) / length;
+        row[n + i] =
+            set->momentum[i] * set->damping[i] / length - at_once * o->hub_damping * set->hub[i];
+    }
+    row[arm_observer_torque_index(o)] = at_once;
+}
+
+double arm_observer_force(const arm_observer *o, const estimator *e, double drive)
+{
+    double row[N];
+    force_row(o, row);
+    double force = arm_observer_force_per_torque(o) * (drive - friction_under(o, e, drive));
+    for (int i = 0; i < state_count(o); i++) {
+        force += row[i] * e->z[i];
+    }
+    return force;
+}
+
+// --- one sample -------------------------------------------------------------------------------
+
+static void predict(const arm_observer *o, estimator *e, const sampled_model *model, double h,
+                    double voltage)
+{
+    const mode_set *set = modes_of(o);
+    const int n = set->count;
+    double noise[N] = {0}, drive = o->torque_per_volt * voltage, share = h / o->period;
+    for (int i = 0; i < n; i++) {
+        double kick = set->hub[i] * ARM_OBSERVER_TORQUE_NOISE * o->period;
+        noise[n + i] = share * kick * kick;
+    }
+
+    // process noise of the states that drift
+    noise[arm_observer_torque_index(o)] = TORQUE_DRIFT * TORQUE_DRIFT * h;
+    if (o->touches) {
+        // a stiffness believed wrongly shows as a wall that moves with the hub
+        double bend = hub_angle(o, e) - e->z[wall_index(o)];
+        double wandering = 2 * STIFFNESS * STIFFNESS * fabs(bend * arm_observer_rate(o, e));
+        noise[wall_index(o)] = (WALL_DRIFT * WALL_DRIFT + wandering) * h;
+    }
+
+    double net = drive - friction_under(o, e, drive);
+    if (!o->touches) {
+        estimator_predict(e, model, net, noise);
+        return;
+    }
+
+    // stiffer than believed: the difference as a force held over h
+    sampled_model now = *model;
+    double more = (o->stiffness - 1) * o->arm.contact.square[0] * h;
+    now.a[n][0] -= more;
+    now.a[0][0] -= more * h / 2;
+    estimator_predict(e, &now, net, noise);
+}
+
+// Down-weights a reading that is far from its expectation, as an impact is no noise. Returns its
+// weight, at most 1.
+static double take_reading(arm_observer *o, const double *row, double offset, double reading,
+                           double deviation)
+{
+    const int n = state_count(o);
+    double expected = offset, variance = deviation * deviation;
+
+    // what the estimate expects, and how far off that may be
+    for (int i = 0; i < n; i++) {
+        expected += row[i] * o->e.z[i];
+        for (int j = 0; j < n; j++) {
+            variance += row[i] * o->e.p[i][j] * row[j];
+        }
+    }
+
+    // beyond the limit the weight falls with the distance
+    double off = fabs(reading - expected) / sqrt(variance);
+    double doubt = off > OUTLIER ? off / OUTLIER : 1;
+
+    // the estimate's own variance is left out: a model is no better for claiming less of it
+    if (o->moves) {
+        double miss = (reading - expected) / deviation;
+        o->missed += (TAILS + 1) * plain_log(1 + miss * miss / TAILS);
+    }
+    estimator_correct(&o->e, n, row, offset, reading, deviation * deviation * doubt * doubt);
+    return 1 / doubt;
+}
+
+// Hub and beam: encoder, tachometer, and film and accelerometer where they are fitted.
+static void take_motion(arm_observer *o, const controller_input *in)
+{
+    const mode_set *set = modes_of(o);
+    const int n = set->count;
+    double angle[N] = {0}, rate[N] = {0}, bending[N] = {0};
+    for (int i = 0; i < n; i++) {
+        angle[i] = rate[n + i] = set->hub[i];
+        bending[i] = set->bending[i];
+    }
+    angle[wall_index(o)] += o->touches;
+    double ripple = RATE_RIPPLE * in->tachometer;
+    take_reading(o, angle, 0, in->encoder, ANGLE_NOISE);
+    take_reading(o, rate, 0, in->tachometer, sqrt(RATE_NOISE * RATE_NOISE + ripple * ripple));
+
+    if (!isnan(in->film)) {
+        double leaked = FILM_LEAK * (in->time - o->since);
+        take_reading(o, bending, 0, in->film, FILM_NOISE + fmin(leaked, 1));
+    }
+    if (!isnan(in->accelerometer)) {
+        // a'' at the hub: row times state, and what drive and friction give
+        double row[N] = {0}, mobility = hub_mobility(set);
+        double drive = o->torque_per_volt * in->voltage;
+        for (int i = 0; i < n; i++) {
+            row[i] = -set->hub[i] * arm_observer_square(o, i);
+            row[n + i] = -set->hub[i] * set->damping[i] - mobility * o->hub_damping * set->hub[i];
+        }
+        row[arm_observer_torque_index(o)] = mobility;
+        double offset = mobility * (drive - friction_under(o, &o->e, drive));
+        take_reading(o, row, offset, in->accelerometer, ACCELERATION);
+    }
+}
+
+double arm_observer_force_noise(double force)
+{
+    return FORCE_NOISE + FORCE_SHARE * fabs(force);
+}
+
+static double take_force(arm_observer *o, const controller_input *in)
+{
+    double row[N], linear = 0, drive = o->torque_per_volt * in->voltage;
+    force_row(o, row);
+    for (int i = 0; i < state_count(o); i++) {
+        linear += row[i] * o->e.z[i];
+    }
+    double offset = arm_observer_force(o, &o->e, drive) - linear;
+    return take_reading(o, row, offset, in->force, arm_observer_force_noise(in->force));
+}
+
+// How stiff the arm is in contact: the force over the way of the hub since the touch, both less
+// what the other modes and the motion make of them, by least squares. The belief counts as
+// STIFF_TIME of pressing with the wanted force, long enough for vibrations that the model does not
+// show to cancel.
+static void learn_stiffness(arm_observer *o, const controller_input *in, double worth)
+{
+    const mode_set *set = &o->arm.contact;
+    const double per_mode = set->momentum[0] * set->square[0] / o->arm.length;
+    double drive = o->torque_per_volt * in->voltage, bend = in->encoder - o->met;
+    for (int i = 1; i < set->count; i++) {
+        bend -= set->hub[i] * o->e.z[i];
+    }
+
+    // the force of the first mode, as believed and as read
+    double believed = per_mode * bend / set->hub[0];
+    double others = arm_observer_force(o, &o->e, drive) - per_mode * o->stiffness * o->e.z[0];
+    double read = in->force - others;
+
+    double kept = 1 - fmin(1, o->period / STIFF_MEMORY), weight = o->period * worth * worth;
+    o->stiff_force = kept * o->stiff_force + weight * believed * read;
+    o->stiff_bend = kept * o->stiff_bend + weight * believed * believed;
+    double stiffness =
+        (o->stiff_force + o->stiff_belief) / fmax(o->stiff_bend + o->stiff_belief, 1e-12);
+    o->stiffness = fmax(LEAST_STIFF, stiffness);
+}
+
+void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes_force)
+{
+    // the motion since the sample before, the old command first
+    const sampled_model *models = o->touches ? o->contact_model : o->free_model;
+    if (o->delay > 0) {
+        predict(o, &o->e, &models[0], o->delay, o->last_voltage);
+    }
+    if (o->delay < o->period) {
+        predict(o, &o->e, &models[1], o->period - o->delay, in->voltage);
+    }
+    o->last_voltage = in->voltage;
+
+    // what the sensors say
+    o->moves = fabs(in->tachometer) > MOVES;
+    take_motion(o, in);
+    if (o->touches && takes_force) {
+        learn_stiffness(o, in, take_force(o, in));
+    }
+
+    // what a touch will need to know
+    if (o->touches) {
+        o->wall = o->e.z[wall_index(o)];
+        o->wall_variance = o->e.p[wall_index(o)][wall_index(o)];
+    }
+    o->tip_before = o->tip_now;
+    o->tip_now = arm_observer_tip(o, &o->e);
+}
+
+estimator arm_observer_ahead(const arm_observer *o, double voltage)
+{
+    estimator ahead = o->e;
+    if (o->delay > 0) {
+        predict(o, &ahead, o->touches ? &o->contact_model[0] : &o->free_model[0], o->delay,
+                voltage);
+    }
+    return ahead;
+}

@@ -1,0 +1,83 @@
+// An observer of the arm for controllers: a Kalman filter on the reduced arm, free or with its tip
+// at the wall, with a constant torque and the wall's angle among its states, and the estimate
+// carried over where contact begins and ends.
+#pragma once
+
+#include "src/rig/estimation/estimator.h"
+#include "src/rig/estimation/reduced_arm.h"
+
+// Standard deviation that the torque is taken to have from sample to sample [N m].
+#define ARM_OBSERVER_TORQUE_NOISE 0.1
+
+// States: modal coordinates, their rates, in contact the wall's angle, and last the torque that the
+// model does not know of.
+typedef struct arm_observer {
+    reduced_arm arm;
+    double torque_per_volt; // [N m/V]
+    double hub_damping;     // [N m s/rad]
+    double stiction;        // [N m]
+    double period, delay;   // [s]
+    // either state over the delay of a command, with the one before in effect, and over the rest
+    sampled_model free_model[2], contact_model[2];
+    bool touches;
+    estimator e;
+    double last_voltage;        // in effect at the sample before [V]
+    double since;               // when the contact or the flight began [s]
+    double wall, wall_variance; // as last known [rad], [rad2]
+    double tip_before, tip_now; // tip angle in flight at the last two samples [rad]
+    double met;                 // wall's angle at the touch [rad]
+    // stiffness of the first mode in contact over what it is believed to be, the sums that it is
+    // the quotient of, and what the belief adds to both [N2 s]
+    double stiffness, stiff_force, stiff_bend, stiff_belief;
+    // misfit of its predictions to the readings while the hub moved: -2 log likelihood of the
+    // readings, each with its own noise and Student's tails; its difference from another model's
+    // misfit is the evidence for this one
+    double missed;
+    bool moves; // the hub, at the present sample
+} arm_observer;
+
+// Models the arm that the setup describes, at rest at an angle still to be read, which is to press
+// with about `force` [N]. NULL, or a sentence that says why it cannot.
+const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force);
+
+// Starts at rest where the encoder is.
+void arm_observer_start(arm_observer *o, const controller_input *in);
+
+// Tells the observer, before the first touch, the wall's exact angle [rad].
+void arm_observer_know_wall(arm_observer *o, double angle);
+
+// One sample: the estimate follows the arm over the period before it and takes in all readings.
+// takes_force: the force reading too, which shows more than the force just after an impact.
+void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes_force);
+
+// The tip met the wall, plastically, or left it, after the last sample and before now.
+void arm_observer_touch(arm_observer *o, double time);
+void arm_observer_leave(arm_observer *o, double time);
+
+// The estimate when a command given now takes effect.
+estimator arm_observer_ahead(const arm_observer *o, double voltage);
+
+// The index of the torque among the states.
+int arm_observer_torque_index(const arm_observer *o);
+
+// Square of the frequency of mode i of the present state [1/s2], of the first in contact with the
+// stiffness that the readings have shown: what a wrong k2, a spring at the hub or more links than
+// believed come to at rest.
+double arm_observer_square(const arm_observer *o, int i);
+
+// Of an estimate: tip angle [rad], hub velocity [rad/s].
+double arm_observer_tip(const arm_observer *o, const estimator *e);
+double arm_observer_rate(const arm_observer *o, const estimator *e);
+
+// Torque that holds the hub where the estimate has it, without friction, that of the unknown torque
+// included [N m].
+double arm_observer_holding_torque(const arm_observer *o, const estimator *e);
+
+// Contact force of an estimate in contact under a motor torque on the hub [N].
+double arm_observer_force(const arm_observer *o, const estimator *e, double drive);
+
+// Standard deviation that a reading of the force sensor is taken to have at a force [N].
+double arm_observer_force_noise(double force);
+
+// Change of that force with the torque, at once [1/m].
+double arm_observer_force_per_torque(const arm_observer *o);

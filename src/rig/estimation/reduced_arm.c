@@ -1,0 +1,159 @@
+#include "src/rig/estimation/reduced_arm.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/arm/modes.h"
+
+#define PI 3.14159265358979323846
+
+// Modes above half the Nyquist frequency, of which a sample follows a quarter of a period late at
+// least, are left out.
+#define MODES_BELOW 0.5
+
+// The chain that the setup describes, without motor and wall.
+static void believed_arm(arm *a, const controller_setup *setup)
+{
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    p.arm.links = setup->links;
+    p.arm.mass = 2 * setup->link_mass;
+    p.arm.length = 2 * setup->link_length;
+    p.arm.hub_inertia = setup->hub_inertia;
+    p.arm.k2 = setup->k2;
+    p.arm.damping_ratio = setup->damping_ratio;
+    p.arm.hub_joint = isfinite(setup->hub_spring) ? HUB_SPRING : HUB_RIGID;
+    p.arm.k1 = isfinite(setup->hub_spring) ? setup->hub_spring : p.arm.k1;
+
+    // bodies of two links have the inertia they are told, of more that of rods
+    double m = p.arm.mass / p.arm.links, l = p.arm.length / p.arm.links;
+    p.arm.link_inertia = setup->links == 2 ? setup->link_inertia : m * l * l / 12;
+    arm_init(a, &p);
+}
+
+// The modes of one state with the quantities of mode_set; shapes come with any scale and leave
+// normalised by M.
+static void take_modes(mode_set *set, const arm *a, const double *mass, double highest, int found,
+                       const double *frequencies, double *shapes)
+{
+    const int n = a->dof;
+    double per_stiffness = a->joint_stiffness > 0 ? a->joint_damping / a->joint_stiffness : 0;
+    set->count = 0;
+    for (int k = 0; k < found && set->count < REDUCED_MODES; k++) {
+        bool bends_already = set->count > 0 && set->square[set->count - 1] > 0;
+        if (frequencies[k] > highest && bends_already) {
+            break;
+        }
+
+        // x'M x and M's momentum of the rotation r
+        double *x = &shapes[k * n], norm = 0, momentum = 0, tip = 0;
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) {
+                norm += x[i] * mass[i * n + j] * x[j];
+                momentum += x[i] * mass[i * n + j];
+            }
+            tip += i >= a->first ? x[i] / a->links : 0;
+        }
+        double scale = 1 / sqrt(norm);
+        for (int i = 0; i < n; i++) {
+            x[i] *= scale;
+        }
+        int at = set->count++;
+        set->square[at] = frequencies[k] * frequencies[k];
+        set->damping[at] = per_stiffness * set->square[at];
+        set->hub[at] = x[0];
+        set->tip[at] = tip * scale;
+        set->bending[at] = x[n - 1] - x[a->first];
+        set->momentum[at] = momentum * scale;
+    }
+}
+
+// Matrices and shapes of the whole chain, while it is reduced.
+typedef struct chain_modes {
+    double *mass, *stiffness, *frequencies, *free, *contact;
+} chain_modes;
+
+const char reduced_arm_no_memory[] = "there is no memory for its model";
+
+// Why there are no modes.
+static const char *refusal_of(status code)
+{
+    return code == STATUS_NO_MEMORY ? reduced_arm_no_memory
+                                    : "the modes of the arm it believes in cannot be computed";
+}
+
+static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *setup,
+                          const chain_modes *work)
+{
+    const int n = a->dof;
+    const double highest = MODES_BELOW * PI / setup->period;
+    int free_count = 0, contact_count = 0;
+    modes_matrices(a, work->mass, work->stiffness);
+
+    // both sets of modes
+    status code = modes_compute(a, HUB_FREE, TIP_FREE, &free_count, work->frequencies, work->free);
+    if (code != STATUS_OK) {
+        return refusal_of(code);
+    }
+    take_modes(&r->free, a, work->mass, highest, free_count, work->frequencies, work->free);
+    code = modes_compute(a, HUB_FREE, TIP_PINNED, &contact_count, work->frequencies, work->contact);
+    if (code != STATUS_OK) {
+        return refusal_of(code);
+    }
+    take_modes(&r->contact, a, work->mass, highest, contact_count, work->frequencies,
+               work->contact);
+    if (r->contact.count == 0 || r->free.count < 2) {
+        return "the arm it believes in does not bend";
+    }
+
+    // the projection of a touch
+    r->inertia = 0;
+    for (int i = 0; i < n * n; i++) {
+        r->inertia += work->mass[i];
+    }
+    for (int c = 0; c < r->contact.count; c++) {
+        for (int f = 0; f < r->free.count; f++) {
+            r->touch[c][f] = 0;
+            for (int i = 0; i < n; i++) {
+                for (int j = 0; j < n; j++) {
+                    r->touch[c][f] +=
+                        work->contact[c * n + i] * work->mass[i * n + j] * work->free[f * n + j];
+                }
+            }
+        }
+    }
+    return NULL;
+}
+
+const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup)
+{
+    assert(r != NULL && setup != NULL);
+    arm a;
+    memset(r, 0, sizeof *r);
+    believed_arm(&a, setup);
+    r->length = 2 * setup->link_length;
+
+    // one block for the matrices and shapes of the whole chain
+    size_t square = (size_t)a.dof * (size_t)a.dof;
+    double *block = calloc(4 * square + (size_t)a.dof, sizeof *block);
+    if (block == NULL) {
+        return reduced_arm_no_memory;
+    }
+    chain_modes work = {block, block + square, block + 4 * square, block + 2 * square,
+                        block + 3 * square};
+    const char *refusal = reduce(r, &a, setup, &work);
+    free(block);
+    return refusal;
+}
+
+double reduced_arm_compliance(const reduced_arm *r)
+{
+    assert(r != NULL);
+    double sum = 0;
+    for (int i = 0; i < r->contact.count; i++) {
+        sum += r->contact.hub[i] * r->contact.hub[i] / r->contact.square[i];
+    }
+    return sum;
+}

@@ -1,0 +1,43 @@
+// A program in any language as a controller: control.law = process, control.command.
+//
+// The program is started by a shell and answers each line on its standard input by one line on its
+// standard output, both JSON objects, in lock step with simulated time (docs/library.md). No answer
+// is waited for longer than control.answer_time, nor after the run was asked to end, and no process
+// of the program outlives the rig.
+//
+// With a transcript of recorded answers, the program is started only at the first question that the
+// transcript does not hold, and all questions before it are repeated: the program must answer them
+// as recorded, or the run fails with a sentence.
+#pragma once
+
+#include <stdatomic.h>
+
+#include "src/tables/parameters.h"
+#include "src/rig/controller.h"
+#include "src/rig/external/transcript.h"
+
+typedef struct process process;
+
+// Flags by which the run of a process is asked to end: set from outside; each may be NULL.
+typedef struct process_ends {
+    const atomic_bool *stop, *abandon;
+} process_ends;
+
+// The controller that asks the program; it is given with a process as its context.
+extern const controller process_law;
+
+// A process that is yet to be started, with a transcript of somebody else's or NULL. NULL without
+// memory.
+process *process_create(const control_parameters *control, process_transcript *transcript,
+                        process_ends ends);
+
+// Ends the program and everything it started, however it goes about it; p may be NULL.
+void process_destroy(process *p);
+
+// What the program is told of control.* from the next sample on; `memory` is the controller's.
+void process_tell(void *memory, const control_parameters *control);
+
+// STATUS_OK as long as the program can be asked. STATUS_STOPPED where the run was asked to end
+// before the program answered. Else STATUS_CONTROLLER_FAILED, or STATUS_NO_MEMORY where that is not
+// the program's doing, and *why is a sentence that begins with "the process".
+status process_failure(const process *p, const char **why);

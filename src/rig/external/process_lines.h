@@ -1,0 +1,22 @@
+// The lines that a controller in a program of its own is asked by and answers with: JSON objects,
+// as docs/library.md has them.
+#pragma once
+
+#include <stddef.h>
+
+#include "src/tables/parameters.h"
+#include "src/rig/controller.h"
+
+// The line that asks for a command at a sample, with its end, to be freed; NULL without memory. The
+// first one tells the setup, control.* and control.settings, too; `setup` is NULL in the others.
+char *process_question(const controller_setup *setup, const control_parameters *control,
+                       const controller_input *in);
+
+typedef enum process_answer {
+    PROCESS_ANSWERED,  // with a command at least
+    PROCESS_BABBLED,   // something that is no answer
+    PROCESS_NO_MEMORY, // to read it
+} process_answer;
+
+// What a line of so many bytes, its end left out, answers; what it leaves out of *out is NaN.
+process_answer process_read_answer(const char *line, size_t length, controller_output *out);

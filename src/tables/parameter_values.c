@@ -1,0 +1,353 @@
+// Values of parameters: stored in and read from struct parameters, parsed and formatted.
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#include "src/base/numbers.h"
+#include "src/tables/parameters.h"
+
+#define LEAST 1e-100 // of what is not 0: squares and quotients of it are numbers, too
+
+// The row of an index that a look-up gave.
+static const parameter_info *row_of(int index)
+{
+    assert(index >= 0 && index < parameter_count);
+    return &parameter_table[index];
+}
+
+// Puts a number where the parameter lies; a text gets its default.
+static void store(parameters *p, const parameter_info *info, double value)
+{
+    char *at = (char *)p + info->offset;
+
+    // the field is copied, since the table alone knows its type
+    switch (info->type) {
+    case PARAMETER_REAL:
+        memcpy(at, &value, sizeof value);
+        break;
+    case PARAMETER_BOOLEAN: {
+        bool truth = value != 0;
+        memcpy(at, &truth, sizeof truth);
+        break;
+    }
+    case PARAMETER_INTEGER:
+    case PARAMETER_CHOICE: {
+        int whole = (int)value;
+        memcpy(at, &whole, sizeof whole);
+        break;
+    }
+    case PARAMETER_TEXT:
+    case PARAMETER_LIST:
+        memset(at, 0, PARAMETER_TEXT_SIZE);
+        if (info->choices != NULL) {
+            memcpy(at, info->choices, strnlen(info->choices, PARAMETER_TEXT_SIZE - 1));
+        }
+        break;
+    }
+}
+
+double parameter_get(const parameters *p, int index)
+{
+    assert(p != NULL);
+    const parameter_info *info = row_of(index);
+    const char *at = (const char *)p + info->offset;
+    double real;
+    bool truth;
+    int whole;
+
+    // copied, since the type of what lies there is known to the table only
+    switch (info->type) {
+    case PARAMETER_REAL:
+        memcpy(&real, at, sizeof real);
+        return real;
+    case PARAMETER_BOOLEAN:
+        memcpy(&truth, at, sizeof truth);
+        return truth;
+    case PARAMETER_INTEGER:
+    case PARAMETER_CHOICE:
+        memcpy(&whole, at, sizeof whole);
+        return whole;
+    case PARAMETER_TEXT:
+    case PARAMETER_LIST:
+        return 0;
+    }
+    return (double)NAN;
+}
+
+void parameters_restore_defaults(parameters *p)
+{
+    assert(p != NULL);
+    const bool printed = p->arm.model == ARM_PRINTED;
+    const int model = PARAMETER_INDEX(arm.model);
+
+    // most are real numbers, which need no look at their type
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        const double value = printed ? info->default_printed : info->default_corrected;
+        if (p->set[i] || i == model) {
+            continue;
+        }
+        if (info->type == PARAMETER_REAL) {
+            memcpy((char *)p + info->offset, &value, sizeof value);
+        } else {
+            store(p, info, value);
+        }
+    }
+}
+
+void parameters_defaults(parameters *p, arm_model_kind model)
+{
+    assert(p != NULL);
+    memset(p, 0, sizeof *p);
+    p->arm.model = (int)model;
+    parameters_restore_defaults(p);
+}
+
+// Whether a number may be the value of a parameter, or one of a list's.
+static status check_number(const parameter_info *info, double value, fault *f)
+{
+    const char *unit = info->unit, *space = unit[0] ? " " : "";
+    if (!isfinite(value)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s is not a finite number, expected %g to %g%s%s", info->path,
+                            info->minimum, info->maximum, space, unit);
+    }
+    if (info->type != PARAMETER_REAL && info->type != PARAMETER_LIST && value != floor(value)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s = %g is not a whole number",
+                            info->path, value);
+    }
+    if (value < info->minimum || value > info->maximum) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = %g is out of range, expected %g to %g%s%s", info->path, value,
+                            info->minimum, info->maximum, space, unit);
+    }
+    if (value != 0 && fabs(value) < LEAST) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, info->path,
+            "%s = %g is too small to be computed with, expected 0 or at least %g%s%s", info->path,
+            value, LEAST, space, unit);
+    }
+    return STATUS_OK;
+}
+
+status parameter_set_number(parameters *p, int index, double value, fault *f)
+{
+    assert(p != NULL);
+    const parameter_info *info = row_of(index);
+    if (parameter_is_text(info)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s is a %s and takes no number",
+                            info->path, info->type == PARAMETER_LIST ? "list" : "text");
+    }
+    status code = check_number(info, value, f);
+    if (code == STATUS_OK) {
+        store(p, info, value);
+        p->set[index] = 1;
+    }
+    return code;
+}
+
+// Position of text in "a|b|c", or -1.
+static int choice_index(const char *choices, const char *text, size_t length)
+{
+    int index = 0;
+    for (const char *c = choices; c != NULL; index++) {
+        const char *bar = strchr(c, '|');
+        size_t n = bar ? (size_t)(bar - c) : strlen(c);
+        if (n == length && strncmp(c, text, n) == 0) {
+            return index;
+        }
+        c = bar ? bar + 1 : NULL;
+    }
+    return -1;
+}
+
+// Reads "0.1" or "0.1 rad" into value; text holds no surrounding space.
+static status parse_quantity(const parameter_info *info, const char *text, double *value, fault *f)
+{
+    const char *unit, *digits = text + strspn(text, "+-.");
+    if (!decimal_read(text, value, &unit)) {
+        // strtod's own words for what is not finite, with or without YAML's dot
+        bool infinite = strncasecmp(digits, "inf", 3) == 0 || strncasecmp(digits, "nan", 3) == 0;
+        const char *type = info->type == PARAMETER_INTEGER ? "a whole number" : "a number";
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = '%.60s' is not %s, expected %g to %g%s%s", info->path, text,
+                            infinite ? "finite" : type, info->minimum, info->maximum,
+                            info->unit[0] ? " " : "", info->unit);
+    }
+
+    // a unit is no conversion: only the parameter's own may stand there
+    if (*unit != '\0' && strcmp(unit, info->unit) != 0) {
+        if (info->unit[0] == '\0') {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s = '%.60s' carries a unit, expected a pure number", info->path,
+                                text);
+        }
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = '%.60s' is in '%.20s', expected %s", info->path, text, unit,
+                            info->unit);
+    }
+    return STATUS_OK;
+}
+
+// A text of one line is stored as it is.
+static status store_text(parameters *p, int index, const char *text, size_t length, fault *f)
+{
+    const parameter_info *info = row_of(index);
+    for (size_t i = 0; i < length; i++) {
+        if (is_control(text[i])) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s holds a control character, expected one line of text",
+                                info->path);
+        }
+    }
+
+    // zeroes behind the text make equal parameters equal byte by byte
+    char *at = (char *)p + info->offset;
+    memset(at, 0, PARAMETER_TEXT_SIZE);
+    memcpy(at, text, length);
+    p->set[index] = 1;
+    return STATUS_OK;
+}
+
+// Reads "[10, 12 N m/rad, 9]" and stores it as "10, 12, 9".
+static status store_list(parameters *p, int index, const char *text, size_t length, fault *f)
+{
+    const parameter_info *info = row_of(index);
+    char list[PARAMETER_TEXT_SIZE] = "";
+    size_t used = 0;
+    const bool bracketed = length > 1 && text[0] == '[' && text[length - 1] == ']';
+    const char *end = text + length - bracketed;
+    text += bracketed;
+
+    for (int count = 0; text < end; count++) {
+        // what stands before the next comma, without blanks around it
+        char word[PARAMETER_TEXT_SIZE], number[NUMBER_TEXT];
+        const char *comma = memchr(text, ',', (size_t)(end - text));
+        const char *first = text, *last = comma != NULL ? comma : end;
+        while (first < last && is_blank(*first)) {
+            first++;
+        }
+        while (last > first && is_blank(last[-1])) {
+            last--;
+        }
+        snprintf(word, sizeof word, "%.*s", (int)(last - first), first);
+
+        // a number of the parameter's unit and range, and no comma too many
+        double value;
+        if (first == last) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s: number %d is missing, expected numbers with commas between "
+                                "them",
+                                info->path, count + 1);
+        }
+        status code = parse_quantity(info, word, &value, f);
+        code = code == STATUS_OK ? check_number(info, value, f) : code;
+        if (code != STATUS_OK) {
+            return code;
+        }
+
+        // in as few digits as give it back
+        number_format_short(number, value);
+        used +=
+            (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "", number);
+        if (count == PARAMETER_LIST_MOST || used >= sizeof list) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s is too long, expected at most %d numbers and 127 characters",
+                                info->path, PARAMETER_LIST_MOST);
+        }
+        text = comma != NULL && comma + 1 == end ? comma : comma != NULL ? comma + 1 : end;
+    }
+    memcpy((char *)p + info->offset, list, sizeof list);
+    p->set[index] = 1;
+    return STATUS_OK;
+}
+
+// Reads a word without surrounding space as the number of a parameter that is no text.
+static status parse_word(const parameter_info *info, const char *word, double *value, fault *f)
+{
+    size_t length = strlen(word);
+    if (info->type == PARAMETER_CHOICE) {
+        int choice = choice_index(info->choices, word, length);
+        *value = choice;
+        return choice >= 0 ? STATUS_OK
+                           : fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                          "%s = '%.60s' is not known, expected one of %s",
+                                          info->path, word, info->choices);
+    }
+
+    // of each pair of words the first is false
+    if (info->type == PARAMETER_BOOLEAN) {
+        int choice = choice_index("false|true|no|yes|off|on|0|1", word, length);
+        *value = choice % 2;
+        return choice >= 0
+                   ? STATUS_OK
+                   : fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                  "%s = '%.60s' is neither true nor false", info->path, word);
+    }
+    return parse_quantity(info, word, value, f);
+}
+
+status parameter_set_text(parameters *p, int index, const char *text, fault *f)
+{
+    assert(p != NULL && text != NULL);
+    const parameter_info *info = row_of(index);
+
+    // what counts is what stands between the blanks
+    text += strspn(text, " \t\n\v\f\r");
+    size_t length = strlen(text);
+    while (length > 0 && is_blank(text[length - 1])) {
+        length--;
+    }
+    if (info->type == PARAMETER_TEXT && length < PARAMETER_TEXT_SIZE) {
+        return store_text(p, index, text, length, f);
+    }
+    if (info->type == PARAMETER_LIST) {
+        return store_list(p, index, text, length, f);
+    }
+
+    char word[PARAMETER_TEXT_SIZE];
+    if (length == 0 || length >= sizeof word) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s has %s", info->path,
+                            length ? "a value of more than 127 characters" : "no value");
+    }
+    memcpy(word, text, length);
+    word[length] = '\0';
+
+    double value = 0;
+    status code = parse_word(info, word, &value, f);
+    return code == STATUS_OK ? parameter_set_number(p, index, value, f) : code;
+}
+
+void parameter_format(const parameters *p, int index, char *text, size_t size)
+{
+    assert(p != NULL && text != NULL && size > 0);
+    const parameter_info *info = row_of(index);
+    const double value = parameter_get(p, index);
+    const char *choice = info->choices;
+    char number[NUMBER_TEXT];
+
+    // as a scenario file would have it
+    switch (info->type) {
+    case PARAMETER_TEXT:
+    case PARAMETER_LIST:
+        snprintf(text, size, "%s", (const char *)p + info->offset);
+        break;
+    case PARAMETER_BOOLEAN:
+        snprintf(text, size, "%s", value != 0 ? "true" : "false");
+        break;
+    case PARAMETER_CHOICE:
+        for (int i = 0; i < (int)value; i++) {
+            choice = strchr(choice, '|') + 1;
+        }
+        snprintf(text, size, "%.*s", (int)strcspn(choice, "|"), choice);
+        break;
+    case PARAMETER_INTEGER:
+        snprintf(text, size, "%d", (int)value);
+        break;
+    case PARAMETER_REAL:
+        number_format_short(number, value);
+        snprintf(text, size, "%s", number);
+        break;
+    }
+}
