@@ -9,11 +9,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "render/page/picture_file.h"
+#include "render/page/text.h"
 #include "src/base/loss.h"
 #include "src/base/whole_file.h"
 #include "src/base/version.h"
 #include "ui/commands/command.h"
-#include "ui/rendering.h"
 #include "ui/terminal/terminal.h"
 
 // Without a command: what there is to run, and how.
@@ -64,9 +65,6 @@ static int run_command(const command *c, int argc, char **argv, const rank_group
     // of several ranks all run what they can share, and the first one the rest
     if (ranks != NULL && ranks->rank > 0 && !c->on_ranks) {
         return EXIT_DONE;
-    }
-    if (c->draws) {
-        rendering_needed();
     }
     if (!arguments_read(&a, c, argc, argv, &result)) {
         return result;
@@ -148,7 +146,7 @@ static void end_crashed(int number)
         "impactlab: a library that draws crashed, as it does where it finds no memory\n";
     static const char own[] = "impactlab: crashed, for want of memory in a library or by a "
                               "fault of its own; no half-written file is left\n";
-    const bool in_libraries = rendering_in_libraries();
+    const bool in_libraries = text_in_fonts() || picture_is_stroking();
     ssize_t ignored = in_libraries ? write(STDERR_FILENO, drawing, sizeof drawing - 1)
                                    : write(STDERR_FILENO, own, sizeof own - 1);
     (void)ignored;
@@ -206,6 +204,6 @@ int program_run(int argc, char **argv, const rank_group *ranks)
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     catch_endings();
-    rendering_begin(argv, end_without_picture);
+    text_when_giving_up(end_without_picture);
     return close_output(dispatch(argc, argv, ranks));
 }

@@ -12,15 +12,11 @@
 
 static const struct {
     const char *in_tree, *in_prefix, *configured;
-    const char *beside; // its name beside the program, where it may lie, too; NULL if it may not
 } places[] = {
     [SHIPPED_SCENARIOS] = {IMPACTLAB_SOURCE_SCENARIOS, IMPACTLAB_SCENARIOS_IN_PREFIX,
                            IMPACTLAB_SCENARIOS},
     [SHIPPED_PROGRAM] = {IMPACTLAB_BUILD_FOLDER "/impactlab", IMPACTLAB_PROGRAM_IN_PREFIX,
                          IMPACTLAB_PROGRAM},
-    [SHIPPED_DRAWING_PROGRAM] = {IMPACTLAB_BUILD_FOLDER "/impactlab-draw",
-                                 IMPACTLAB_DRAWING_PROGRAM_IN_PREFIX, IMPACTLAB_DRAWING_PROGRAM,
-                                 "impactlab-draw"},
 };
 
 // The file that this very code was loaded from: the program, or the shared library in another one.
@@ -62,17 +58,8 @@ char *shipped_path(shipped_part part)
         return strdup(places[part].in_tree);
     }
 
-    // a build folder that was moved, or programs that were copied together
-    char *end = known ? strrchr(own, '/') : NULL;
-    if (end != NULL && end != own && places[part].beside != NULL) {
-        *end = '\0';
-        if (!path_in(own, places[part].beside, &path) || path != NULL) {
-            return path;
-        }
-        *end = '/';
-    }
-
     // PREFIX/bin/impactlab, PREFIX/lib/x86_64-linux-gnu/libimpactlab.so.1
+    char *end = known ? strrchr(own, '/') : NULL;
     for (int above = 0; above < 4 && end != NULL && end != own; above++) {
         *end = '\0';
         if (!path_in(own, places[part].in_prefix, &path) || path != NULL) {

@@ -3,13 +3,11 @@
 #pragma once
 
 typedef enum shipped_part {
-    SHIPPED_SCENARIOS,       // the folder of the scenarios that ship
-    SHIPPED_PROGRAM,         // impactlab
-    SHIPPED_DRAWING_PROGRAM, // the same with the rendering libraries
+    SHIPPED_SCENARIOS, // the folder of the scenarios that ship
+    SHIPPED_PROGRAM,   // impactlab
 } shipped_part;
 
 // The part's path, to be freed, whether it is there or not; NULL without memory. What was built in
-// a tree has the tree's; else the drawing program may lie beside the file that this code was loaded
-// from; else the prefix is looked for above that file, and where no prefix has the part it is the
-// place that the build was set up for.
+// a tree has the tree's; else the prefix is looked for above the file that this code was loaded
+// from, and where no prefix has the part it is the place that the build was set up for.
 char *shipped_path(shipped_part part);

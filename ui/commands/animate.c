@@ -229,6 +229,5 @@ const command animate_command = {
     .most = FILM_RUNS,
     .takes_scenarios = true,
     .options = {&set_options, &options, &quiet_options, &view_options},
-    .draws = true,
     .run = animate,
 };

@@ -99,7 +99,6 @@ struct command {
     const char *(*operand_word)(int i);
     const option_table *options[COMMAND_TABLES]; // ends with NULL; --help is every command's
     bool on_ranks;                  // every MPI rank runs it (a.ranks), not only rank 0
-    bool draws;                     // always, not only where --plot or --scene asks
     int (*run)(const arguments *a); // returns the exit status
 };
 

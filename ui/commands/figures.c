@@ -234,6 +234,5 @@ const command figures_command = {
     .most = 1 << 20,
     .operand_word = figure_word,
     .options = {&json_options, &options, &quiet_options, &page_options},
-    .draws = true,
     .run = figures,
 };

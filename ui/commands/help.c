@@ -220,6 +220,5 @@ const command help_command = {
     .most = 1,
     .operand_word = command_word,
     .options = {&options},
-    .draws = true,
     .run = help,
 };

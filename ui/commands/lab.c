@@ -1,5 +1,301 @@
+// The lab on the terminal, or its screen printed as text.
 #include "ui/commands/command.h"
-#include "ui/commands/explore.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <wchar.h>
+
+#include "src/base/clock.h"
+#include "src/base/loss.h"
+#include "ui/explorer/commands.h"
+#include "ui/explorer/keys.h"
+#include "ui/explorer/mouse.h"
+#include "ui/explorer/settings.h"
+#include "ui/terminal/pictures.h"
+#include "ui/terminal/terminal.h"
+
+#define FRAME         (1.0 / 60) // shortest time between two pictures [s]
+#define LONGEST_PAUSE 0.1        // between two pictures while something moves [s]
+#define PATIENCE      0.01       // a run that takes longer is computed meanwhile [s]
+#define LONGEST_FRAME 0.25       // a longer pause (suspended, dragged about) counts as this [s]
+
+enum { INPUTS_AT_ONCE = 32 }; // between two pictures, at most
+
+static const char first_scenario[] = "corrected/first-impact";
+
+// --- without a terminal -----------------------------------------------------------------------
+
+// Carries out a file of commands, one a line. Stops at the first that fails.
+static int run_script(explorer *ex, const char *path)
+{
+    char line[LINE_TEXT];
+
+    bool is_stdin = strcmp(path, "-") == 0;
+    FILE *stream = is_stdin ? stdin : fopen(path, "r");
+    if (stream == NULL) {
+        return complain("%s cannot be read: %s", path, strerror(errno));
+    }
+
+    // line by line until one fails or quits
+    int code = EXIT_DONE;
+    for (int number = 1; code == EXIT_DONE && !ex->state.quit && fgets(line, sizeof line, stream);
+         number++) {
+        if (strchr(line, '\n') == NULL && !feof(stream)) {
+            code =
+                complain("%s:%d: no command, expected a text of less than %d bytes and the end of "
+                         "the line",
+                         path, number, LINE_TEXT);
+            break;
+        }
+        line[strcspn(line, "\r\n")] = '\0';
+        if (!explorer_carry_out(ex, line)) {
+            complain("%s:%d: %s", path, number, ex->state.message.text);
+            code = EXIT_FAILED;
+        }
+    }
+    if (ferror(stream)) {
+        code = complain("%s cannot be read: %s", path, strerror(errno));
+    }
+
+    if (!is_stdin) {
+        fclose(stream);
+    }
+    return code;
+}
+
+static int print_screen(explorer *ex, int width, int height)
+{
+    screen s = {0};
+    if (!screen_resize(&s, width, height)) {
+        complain("%s", status_text(STATUS_NO_MEMORY));
+        return EXIT_FAILED;
+    }
+    explorer_draw(ex, &s);
+    screen_dump(&s, ex->state.looks.glyphs, stdout);
+    screen_finish(&s);
+    return EXIT_DONE;
+}
+
+static int run_off_screen(explorer *ex, const arguments *a)
+{
+    int width = 120, height = 40;
+    fault f = {0};
+
+    if (a->size.width > 0) {
+        width = a->size.width;
+        height = a->size.height;
+    }
+
+    ex->state.size = (screen_size){width, height};
+    int code = a->script != NULL ? run_script(ex, a->script) : EXIT_DONE;
+
+    if (code == EXIT_DONE && a->keys != NULL && !explorer_keys(ex, a->keys, &f)) {
+        code = complain_fault(&f);
+    }
+
+    if (code == EXIT_DONE && !a->quiet) {
+        code = print_screen(ex, width, height);
+    }
+
+    // the keys went on, but what they were to do is not done
+    if (code == EXIT_DONE && ex->first_failure[0] != '\0') {
+        complain("--keys: %s", ex->first_failure);
+        code = EXIT_FAILED;
+    }
+    return code;
+}
+
+// --- on a terminal ----------------------------------------------------------------------------
+
+static void take_input(explorer *ex, terminal_input in)
+{
+    if (in.kind == TERMINAL_KEY) {
+        explorer_key(ex, in.code);
+    } else if (in.kind == TERMINAL_POINTER) {
+        explorer_point(ex, in.pointer);
+    } else if (in.kind == TERMINAL_RESIZE) {
+        ex->state.looks.redraw = true;
+    }
+}
+
+// Gives the screen pictures if the terminal draws them and they are wanted.
+static void fit_pictures(const explorer *ex, screen *s, picture_layer *layer)
+{
+    const looks *l = &ex->state.looks;
+    const terminal_pixels t = terminal_pixels_known();
+    s->pictures = l->pixels && t.there ? layer : NULL;
+    layer->cell_width = t.cell_width;
+    layer->cell_height = t.cell_height;
+    layer->ground = t.has_ground ? t.ground : theme_grounds(l->theme)[0];
+}
+
+// Fits the grid to the terminal and shows it.
+static void show(explorer *ex, screen *s, picture_layer *layer)
+{
+    int width, height;
+    terminal_size(&width, &height);
+    fit_pictures(ex, s, layer);
+    if ((width != s->width || height != s->height) && !screen_resize(s, width, height)) {
+        return;
+    }
+    terminal_mouse(ex->state.looks.mouse);
+    const colour_depth depth = ex->state.looks.depth;
+    ex->state.looks.shown_depth = depth == DEPTH_AUTO ? terminal_depth() : depth;
+    explorer_draw(ex, s);
+    terminal_show(s, ex->state.looks.glyphs, ex->state.looks.theme, ex->state.looks.depth,
+                  ex->state.looks.redraw);
+    ex->state.looks.redraw = false;
+    loss_forget(); // the next picture shows what this one lacks
+}
+
+// How long to wait from one picture to the next, after one that took some seconds of the processor:
+// half of it is left to others, but ten pictures a second are shown.
+static double pause_after(double spent)
+{
+    return fmin(fmax(FRAME, 2 * spent), LONGEST_PAUSE);
+}
+
+static void run_on_terminal(explorer *ex)
+{
+    screen s = {0};
+    picture_layer layer = {0};
+    bool dirty = true, leave = false;
+    double drawn = 0, pause = FRAME, last = clock_seconds(CLOCK_MONOTONIC);
+
+    while (!ex->state.quit && !leave) {
+        // draw, though not more often than frames
+        double now = clock_seconds(CLOCK_MONOTONIC);
+        if (dirty && now - drawn >= pause) {
+            const double spent = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+            show(ex, &s, &layer);
+            drawn = now;
+            dirty = false;
+            pause = pause_after(clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - spent);
+        }
+
+        bool waits = dirty || explorer_is_busy(ex);
+        // a picture that took longer than a frame leaves nothing to wait for
+        double left = fmax(0, dirty ? pause - (clock_seconds(CLOCK_MONOTONIC) - drawn) : pause);
+        terminal_input in = terminal_wait(waits ? left : -1);
+        now = clock_seconds(CLOCK_MONOTONIC);
+
+        // what was computed, and time going on
+        dirty |= explorer_follow(ex);
+        if (ex->state.playback.playing) {
+            explorer_advance(ex, now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
+            dirty = true;
+        }
+
+        // all input that has arrived, so that keys never wait for pictures that are out of date
+        last = now;
+        for (int taken = 0; in.kind != TERMINAL_NONE && !ex->state.quit && !leave; taken++) {
+            dirty = true;
+            leave = in.kind == TERMINAL_LEAVE;
+            take_input(ex, in);
+            in.kind = TERMINAL_NONE;
+            if (taken < INPUTS_AT_ONCE && !leave) {
+                in = terminal_wait(0);
+            }
+        }
+    }
+
+    screen_finish(&s);
+    pictures_finish(&layer);
+}
+
+// What is left on the terminal when the explorer is gone.
+static void say_goodbye(const explorer *ex)
+{
+    const session *e = &ex->state.session;
+    say("%s, %d change%s, peak force %.4g N\n", e->base.name, e->input_count,
+        e->input_count == 1 ? "" : "s", e->run.summary.peak_force_N);
+}
+
+// What the terminal can be expected to show: the console of Linux has no braille in its fonts.
+static glyph_set usual_glyphs(void)
+{
+    const char *name = getenv("TERM");
+    if (!terminal_has_utf8()) {
+        return GLYPHS_ASCII;
+    }
+    return name != NULL && strcmp(name, "linux") == 0 ? GLYPHS_BLOCKS : GLYPHS_BRAILLE;
+}
+
+static int open_explorer(explorer *ex, const arguments *a)
+{
+    scenario s;
+    fault f = {0};
+    int code = open_scenario(&s, a->operand_count > 0 ? a->operands[0] : first_scenario, a);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+
+    bool live = a->keys == NULL && a->script == NULL && a->size.width == 0;
+    if (explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+
+    // the terminal's own looks, then those that were kept
+    char line[LINE_TEXT];
+    ex->state.looks.glyphs = usual_glyphs();
+    if (live) {
+        ex->state.looks.theme = terminal_is_light() ? COLOURS_LIGHT : COLOURS_DARK;
+        explorer_load_settings(ex);
+        const bool wide = wcwidth(L'\u28ff') == 1; // the locale is there and knows braille
+        ex->state.looks.glyphs = wide ? ex->state.looks.glyphs : GLYPHS_ASCII;
+    }
+
+    // what the command line says comes last
+    const char *const settings[3][2] = {
+        {"glyphs", a->glyphs}, {"theme", a->theme}, {"colours", a->colours}};
+    for (int i = 0; i < 3; i++) {
+        snprintf(line, sizeof line, "%s %s", settings[i][0], settings[i][1] ? settings[i][1] : "");
+        if (settings[i][1] != NULL && !explorer_carry_out(ex, line)) {
+            code = complain("--%s: %s", settings[i][0], ex->state.message.text);
+        }
+    }
+
+    if (code != EXIT_DONE) {
+        explorer_finish(ex);
+    }
+    return code;
+}
+
+// Opens the lab with the named scenario and runs it until the user leaves; with --keys, --script or
+// --size it prints the screen instead. Returns the exit status.
+static int explore(const arguments *a)
+{
+    explorer ex;
+    fault f = {0};
+
+    bool off_screen = a->keys != NULL || a->script != NULL || a->size.width > 0;
+    if (!off_screen && !terminal_usable(&f)) {
+        return complain_fault(&f);
+    }
+
+    int code = open_explorer(&ex, a);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+
+    if (off_screen) {
+        code = run_off_screen(&ex, a);
+    } else if (terminal_open(&f) != STATUS_OK) {
+        code = complain_fault(&f);
+    } else {
+        ex.state.playback.playing = true;
+        run_on_terminal(&ex);
+        terminal_close();
+        say_goodbye(&ex);
+    }
+
+    explorer_finish(&ex);
+    return code;
+}
+
+// --- the command
 
 static const option_row rows[] = {
     {.name = "keys",
@@ -49,6 +345,5 @@ const command lab_command = {
     .most = 1,
     .takes_scenarios = true,
     .options = {&set_options, &lab_options, &quiet_options},
-    .draws = true,
     .run = explore,
 };

@@ -110,6 +110,5 @@ const command lesson_command = {
             "there.\n",
     .most = 1,
     .options = {&set_options, &json_options, &lab_options, &quiet_options},
-    .draws = true,
     .run = run_lesson,
 };

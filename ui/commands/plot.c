@@ -80,6 +80,5 @@ const command plot_command = {
     .least = 1,
     .most = 1,
     .options = {&options, &quiet_options, &page_options},
-    .draws = true,
     .run = plot,
 };

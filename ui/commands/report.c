@@ -50,6 +50,5 @@ const command report_command = {
     .most = 64,
     .takes_scenarios = true,
     .options = {&options, &quiet_options},
-    .draws = true,
     .run = report,
 };
