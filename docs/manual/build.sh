@@ -4,7 +4,7 @@
 #   build.sh SOURCE_ROOT PROGRAM OUTPUT.html
 #
 # Each page of docs becomes a chapter whose identifiers begin with the page's name, so that links
-# from page to page stay links; the commands' help is the last chapter.
+# from page to page stay links; the program's tables and the commands' help are the last chapters.
 set -euo pipefail
 if ! command -v pandoc >/dev/null; then
     echo "the manual is not built: pandoc is missing (Debian: pandoc)"
@@ -16,19 +16,16 @@ output=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-pages=(terminal scenarios physics methods validity control what-a-sensor-sees sweeps figures scenes
-    gallery add-a-controller library speed reliability thesis architecture)
-
-# all pages of docs, those that nobody has put into the order last
-for file in "$source"/docs/*.md; do
-    page=$(basename "$file" .md)
-    [[ " ${pages[*]} " == *" $page "* ]] || pages+=("$page")
-done
+# one reader's way: first steps, tasks, what is what, why, and how it is made; then what is left
+mapfile -t pages < <(cd "$source/docs" &&
+    { ls start.md howto/*.md faq.md glossary.md reference/*.md explanation/*.md contributors/*.md
+      find . -name '*.md' ! -path './matplotlib/*' | sed 's|^\./||' | sort; } 2>/dev/null |
+    awk '!met[$0]++' || :)
 
 # links to other pages and to files of the tree, as they are within the one page
 one_page() {
-    sed -E -e 's|href="(\./)?(docs/)?([a-z-]+)\.md#([^"]*)"|href="#\3-\4"|g' \
-        -e 's|href="(\./)?(docs/)?([a-z-]+)\.md"|href="#\3"|g' \
+    sed -E -e 's|href="([a-z./]*/)?([a-z-]+)\.md#([^"]*)"|href="#\2-\3"|g' \
+        -e 's|href="([a-z./]*/)?([a-z-]+)\.md"|href="#\2"|g' \
         -e 's|<a href="[^#:"][^:"]*">([^<]*)</a>|\1|g'
 }
 
@@ -42,6 +39,22 @@ chapter() {
 
 escaped() {
     sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g'
+}
+
+# chapters from the program's tables and the library's headers; results, where they have been made
+tables() {
+    for page in parameters signals quantities laws events; do
+        "$program" help --reference "$page" >"$work/table-of-$page.md"
+    done
+    bash "$source/docs/manual/api.sh" markdown "" "$source"/src/api/impactlab/impactlab.h \
+        "$source"/src/rig/controller.h >"$work/table-of-functions.md"
+    for page in parameters signals quantities laws events functions; do
+        chapter "table-of-$page" "$work/table-of-$page.md"
+    done
+    results=$(dirname "$output")/results.md
+    if [ -e "$results" ]; then
+        chapter results "$results"
+    fi
 }
 
 commands() {
@@ -59,8 +72,9 @@ commands() {
 {
     chapter readme "$source/README.md"
     for page in "${pages[@]}"; do
-        chapter "$page" "$source/docs/$page.md"
+        chapter "$(basename "$page" .md)" "$source/docs/$page"
     done
+    tables
     commands
 } >"$work/body.html"
 contents() {
@@ -93,7 +107,7 @@ END
     contents
     echo '</ul></nav><main>'
     (cd "$source/docs" && perl -MMIME::Base64 -0pe '
-        s{src="(?:docs/)?(pictures/[^"]+\.png)"}{
+        s{src="(?:docs/|(?:\.\./)+)?(pictures/[^"]+\.png)"}{
             my $path = $1; local $/; open my $f, "<", $path or die "$path: $!";
             "src=\"data:image/png;base64," . encode_base64(<$f>, "") . "\""}ge' "$work/body.html")
     echo '</main><script>'

@@ -4,11 +4,23 @@
 #include <math.h>
 #include <string.h>
 
+#define EVENT_WORD(name, word, description) word,
+static const char *const event_words[] = {EVENT_KINDS(EVENT_WORD)};
+#undef EVENT_WORD
+
+#define EVENT_DESCRIPTION(name, word, description) description,
+static const char *const event_descriptions[] = {EVENT_KINDS(EVENT_DESCRIPTION)};
+#undef EVENT_DESCRIPTION
+
 const char *event_name(event_kind kind)
 {
-    static const char *const names[] = {"impact", "contact", "release", "stick",  "reversal",
-                                        "slip",   "change",  "push",    "chatter"};
-    return names[kind];
+    return event_words[kind];
+}
+
+const char *event_description(int kind)
+{
+    const int count = (int)(sizeof event_descriptions / sizeof event_descriptions[0]);
+    return kind >= 0 && kind < count ? event_descriptions[kind] : NULL;
 }
 
 static size_t angles_size(int angle_count)

@@ -5,16 +5,23 @@
 #include "src/tables/signals.h"
 #include "src/base/status.h"
 
+// The kinds of events: name in the enumeration, word in JSON and on screens, what happens.
+#define EVENT_KINDS(KIND)                                                                          \
+    KIND(IMPACT, "impact", "the gap closes with an approach speed: an impulse acts")               \
+    KIND(CONTACT, "contact", "contact goes on after an impact, or begins without one")             \
+    KIND(RELEASE, "release", "the contact force reaches zero")                                     \
+    KIND(STICK, "stick", "the hub comes to rest and friction holds it")                            \
+    KIND(REVERSAL, "reversal", "the hub comes to rest and turns back at once")                     \
+    KIND(SLIP, "slip", "the hub breaks away")                                                      \
+    KIND(CHANGE, "change", "a scripted change of a parameter")                                     \
+    KIND(PUSH, "push", "a scripted push")                                                          \
+    KIND(CHATTER, "chatter",                                                                       \
+         "too many short flights in a row: the impact took all the approach speed")
+
 typedef enum event_kind {
-    EVENT_IMPACT,   // gap closes with an approach velocity: an impulse acts
-    EVENT_CONTACT,  // contact goes on after an impact, or begins without one
-    EVENT_RELEASE,  // the contact force reaches zero
-    EVENT_STICK,    // the hub comes to rest and friction holds it
-    EVENT_REVERSAL, // the hub comes to rest and turns back at once
-    EVENT_SLIP,     // the hub breaks away
-    EVENT_CHANGE,   // a scripted change of a parameter
-    EVENT_PUSH,     // a scripted push
-    EVENT_CHATTER,  // too many short flights in a row: the impact took all the approach speed
+#define EVENT_KIND(name, word, description) EVENT_##name,
+    EVENT_KINDS(EVENT_KIND)
+#undef EVENT_KIND
 } event_kind;
 
 typedef struct event {
@@ -29,6 +36,8 @@ typedef struct event {
 
 // "impact", "contact", ...
 const char *event_name(event_kind kind);
+// What happens at such an event, without a full stop; NULL past the last kind.
+const char *event_description(int kind);
 
 typedef struct trace {
     sample *rows;

@@ -32,6 +32,7 @@ library=$(dirname -- "$(find "$prefix" -name libimpactlab.so.1)")
 for file in include/impactlab/impactlab.h include/impactlab/controller.h \
     share/impactlab/scenarios/corrected/first-impact.yaml share/impactlab/examples/peak.c \
     share/man/man1/impactlab.1 share/man/man1/impactlab-run.1 \
+    share/man/man5/impactlab-scenario.5 share/man/man3/libimpactlab.3 \
     share/bash-completion/completions/impactlab.bash share/zsh/site-functions/_impactlab \
     share/fish/vendor_completions.d/impactlab.fish; do
     [ -e "$prefix/$file" ] || fail "$file is not installed"

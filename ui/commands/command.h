@@ -67,6 +67,7 @@ typedef struct arguments {
     const char *completion; // the shell
     bool man;
     const char *man_pages; // folder
+    const char *reference; // one of REFERENCE_PAGES
 } arguments;
 
 // The parts of `impactlab --help`, in its order.
@@ -180,6 +181,11 @@ void print_help(FILE *stream, const command *self);
 
 // Writes the man page of a command, of impactlab itself if c is NULL.
 void write_man_page(FILE *stream, const command *c);
+
+// Writes a chapter of the manual from the tables of parameters, signals, quantities, laws or
+// events, in Markdown, or the man page of scenario files.
+#define REFERENCE_PAGES "parameters|signals|quantities|laws|events|scenario.5"
+void write_reference(FILE *stream, const char *page);
 
 // Writes what the shell (bash, zsh or fish) needs to complete impactlab's command line.
 void write_bash_completion(FILE *stream);

@@ -177,6 +177,10 @@ static int help(const arguments *a)
     if (a->man_pages != NULL) {
         return write_pages(a->man_pages);
     }
+    if (a->reference != NULL) {
+        write_reference(stdout, a->reference);
+        return EXIT_DONE;
+    }
 
     if (a->man) {
         write_man_page(stdout, about);
@@ -208,6 +212,11 @@ static const option_row rows[] = {
      .value = "bash|zsh|fish",
      .help = "write what this shell needs to complete commands and options",
      PLACE(completion)},
+    {.name = "reference",
+     .type = OPTION_CHOICE,
+     .value = REFERENCE_PAGES,
+     .help = "write a chapter of the manual from the program's tables, the last as a man page",
+     PLACE(reference)},
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 
