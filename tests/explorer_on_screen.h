@@ -9,7 +9,7 @@
 #include "ui/explorer/commands.h"
 #include "ui/explorer/keys.h"
 #include "ui/explorer/mouse.h"
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 
 static inline void open_explorer(explorer *ex, const char *name)
 {

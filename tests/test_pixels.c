@@ -7,8 +7,7 @@
 #include <zlib.h>
 
 #include "ui/terminal/pictures.h"
-#include "ui/terminal/pixel_answers.h"
-#include "ui/terminal/pixel_code.h"
+#include "ui/terminal/pixels.h"
 
 // Pixels as a terminal has them, 0xRRGGBB.
 typedef struct decoded {

@@ -8,7 +8,7 @@
 
 #include "ui/explorer/panels/layout.h"
 #include "ui/explorer/panels/panel.h"
-#include "ui/terminal/pointer.h"
+#include "ui/terminal/keys.h"
 
 // The part of the screen that the mouse holds since its button was pressed.
 typedef struct pointer_grip {

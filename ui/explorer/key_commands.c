@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "ui/explorer/commands.h"
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 
 // Reads the key that begins an argument, and where the rest of it does.
 static action_result read_key(const char *argument, int *key, const char **rest)

@@ -5,7 +5,7 @@
 
 #include "ui/explorer/commands.h"
 #include "ui/explorer/completion.h"
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 
 bool explorer_keys(explorer *ex, const char *text, fault *f)
 {

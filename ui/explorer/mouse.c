@@ -3,7 +3,7 @@
 #include <assert.h>
 
 #include "ui/explorer/keys.h"
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 
 // Passes a gesture to the panel of its hit area; false if it has no effect.
 static bool give(explorer *ex, const panel_gesture *g)

@@ -4,7 +4,7 @@
 // pieces is continued when the next piece is there.
 #pragma once
 
-#include "ui/terminal/pointer.h"
+#include "ui/terminal/keys.h"
 
 typedef enum sequence_state {
     SEQUENCE_NONE,

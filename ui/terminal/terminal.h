@@ -5,7 +5,7 @@
 #include "src/base/fault.h"
 #include "ui/terminal/escape_sequence.h"
 #include "ui/terminal/ink_colours.h"
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
 
 typedef enum terminal_input_kind {

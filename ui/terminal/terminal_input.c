@@ -4,12 +4,12 @@
 
 #include <errno.h>
 #include <poll.h>
+#include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <wchar.h>
 
 #include "src/base/clock.h"
-#include "ui/terminal/escape_sequence.h"
 
 #define SEQUENCE_TIME 0.25 // after such a pause what is missing of a sequence does not come [s]
 
@@ -44,6 +44,35 @@ static int key_of_curses(int key)
     return 0;
 }
 
+// Reads an answer of the terminal; true if the screen should be redrawn.
+static bool take_answer(void)
+{
+    const terminal_pixels before = terminal_pixels_known();
+    const bool asking = tty.pixels.stage != PIXELS_ANSWERED;
+    const char *next = pixel_answers_take(&tty.pixels, &tty.sequence);
+    terminal_send(next, strlen(next));
+    tty.sequence.awaits = tty.pixels.stage != PIXELS_ANSWERED;
+
+    // when all is said: what the questions may have left on the screen goes
+    const terminal_pixels now = terminal_pixels_known();
+    if (asking && tty.pixels.stage == PIXELS_ANSWERED) {
+        if (tty.pixels.kitty) {
+            terminal_prepare_crash("\033_Ga=d,d=A,q=2\033\\");
+        }
+        return true;
+    }
+    return before.cell_width != now.cell_width || before.cell_height != now.cell_height;
+}
+
+// Asks for the size of a cell again, which a change of size may change, if it was known.
+static void ask_cell(void)
+{
+    if (tty.pixels.stage == PIXELS_ANSWERED && tty.pixels.cell_width > 0) {
+        tty.sequence.awaits = true;
+        terminal_send(pixel_ask_cell, strlen(pixel_ask_cell));
+    }
+}
+
 // Goes on with a sequence by the next character. False if that is a key of its own; *in is then the
 // escape before it, if that stood alone.
 static bool take_sequence(wint_t key, int kind, terminal_input *in)
@@ -67,7 +96,7 @@ static bool take_sequence(wint_t key, int kind, terminal_input *in)
 
     // an answer that changes what can be shown has all drawn anew
     if (result == SEQUENCE_ANSWER) {
-        in->kind = terminal_take_answer() ? TERMINAL_RESIZE : TERMINAL_NONE;
+        in->kind = take_answer() ? TERMINAL_RESIZE : TERMINAL_NONE;
         return true;
     }
     in->kind = result == SEQUENCE_MOUSE ? TERMINAL_POINTER : TERMINAL_NONE;
@@ -166,7 +195,7 @@ static terminal_input after_signal(void)
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
         resizeterm(size.ws_row, size.ws_col);
     }
-    terminal_ask_cell();
+    ask_cell();
     return (terminal_input){.kind = TERMINAL_RESIZE};
 }
 

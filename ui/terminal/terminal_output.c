@@ -1,16 +1,280 @@
-// What the terminal shows.
+// What the terminal shows: cells through ncurses or, in colours that it cannot address, by escape
+// sequences; pictures.
 #include "ui/terminal/terminal.h"
 #include "ui/terminal/terminal_state.h"
 
 #include <assert.h>
+#include <errno.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 #include <wchar.h>
 
 #include <term.h>
 
+#include "src/base/text_stream.h"
 #include "ui/terminal/ink_colours.h"
-#include "ui/terminal/paint.h"
+#include "ui/terminal/pictures.h"
+#include "ui/terminal/pixels.h"
+
+// --- bytes and cells past ncurses -------------------------------------------------------------
+
+// Bytes on their way to the terminal.
+typedef struct outlet {
+    char bytes[8192];
+    size_t used;
+} outlet;
+
+void terminal_send(const char *bytes, size_t count)
+{
+    assert(bytes != NULL);
+    for (size_t sent = 0; sent < count;) {
+        ssize_t taken = write(STDOUT_FILENO, bytes + sent, count - sent);
+        if (taken > 0) {
+            sent += (size_t)taken;
+        } else if (taken < 0 && errno == EAGAIN) {
+            struct pollfd room = {STDOUT_FILENO, POLLOUT, 0};
+            poll(&room, 1, 1000);
+        } else if (taken == 0 || errno != EINTR) {
+            break; // the terminal is gone, which reading will find out
+        }
+    }
+}
+
+static void send(outlet *o)
+{
+    terminal_send(o->bytes, o->used);
+    o->used = 0;
+}
+
+static void put(outlet *o, const char *text)
+{
+    size_t length = strlen(text);
+    if (o->used + length > sizeof o->bytes) {
+        send(o);
+    }
+    memcpy(o->bytes + o->used, text, length);
+    o->used += length;
+}
+
+// The sequence that selects an ink.
+static void put_ink(outlet *o, ink i, colour_theme theme, colour_depth depth)
+{
+    char text[64] = "";
+    rgb c;
+
+    // which colour, if any, and whether it is bold
+    int index = depth == DEPTH_256 ? ink_256(theme, i) : depth == DEPTH_16 ? ink_16(theme, i) : -1;
+    bool coloured = ink_rgb(theme, i, &c) && depth != DEPTH_MONO;
+    // many terminals show bold dark colours as bright ones, which are not readable on a light
+    // background
+    bool faint = theme == COLOURS_LIGHT && depth == DEPTH_16 && coloured;
+    bool bold = (i == INK_TITLE || i == INK_EVENT || i == INK_WARNING) && !faint;
+
+    // the colour in the terminal's own units
+    if (coloured && depth == DEPTH_TRUE) {
+        snprintf(text, sizeof text, ";38;2;%d;%d;%d", c.red, c.green, c.blue);
+    } else if (coloured && depth == DEPTH_256 && index >= 0) {
+        snprintf(text, sizeof text, ";38;5;%d", index);
+    } else if (coloured && depth == DEPTH_16 && index >= 0) {
+        snprintf(text, sizeof text, ";%d", index < 8 ? 30 + index : 90 + index - 8);
+    }
+    put(o, "\033[0");
+    put(o, bold ? ";1" : i == INK_SELECTED ? ";7" : "");
+    put(o, text);
+    put(o, "m");
+}
+
+// Writes the cells that have changed (all of them if `whole`; the terminal is empty then).
+static void paint_cells(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
+                        bool whole)
+{
+    static outlet o;
+    int at_x = -1, at_y = -1, colour = -1;
+    for (int y = 0; y < s->height; y++) {
+        for (int x = 0; x < s->width; x++) {
+            long i = (long)y * s->width + x;
+            cell c = s->cells[i], *old = &tty.shown.cells[i];
+            bool blank = (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;
+            bool same = whole ? blank : c.glyph == old->glyph && c.ink == old->ink;
+            *old = c;
+
+            // the last cell may scroll the screen; it is worth nothing
+            if (same || (x == s->width - 1 && y == s->height - 1)) {
+                continue;
+            }
+
+            // the cursor and the ink follow where they are not there yet
+            char text[32];
+            if (at_x != x || at_y != y) {
+                snprintf(text, sizeof text, "\033[%d;%dH", y + 1, x + 1);
+                put(&o, text);
+            }
+            if (colour != (int)c.ink) {
+                put_ink(&o, c.ink, theme, depth);
+                colour = (int)c.ink;
+            }
+
+            // what takes no cell or two would break the grid
+            uint32_t glyph = glyph_in_set(c.glyph, glyphs);
+            glyph_encode(wcwidth((wchar_t)glyph) == 1 ? glyph : '?', text);
+            put(&o, text);
+            at_x = x + 1;
+            at_y = y;
+        }
+    }
+    put(&o, "\033[0m");
+    send(&o);
+}
+
+// --- pictures ---------------------------------------------------------------------------------
+
+enum { USUAL_REGISTERS = SIXEL_COLOURS, LARGEST = 1 << 16 };
+
+// A region on the terminal.
+typedef struct shown_region {
+    picture_region place;
+    uint64_t hash; // of its pixels
+} shown_region;
+
+typedef struct shown_pictures {
+    shown_region regions[PICTURE_REGIONS];
+    int count;
+} shown_pictures;
+
+static shown_pictures shown;
+
+terminal_pixels terminal_pixels_known(void)
+{
+    const pixel_answers *a = &tty.pixels;
+    struct winsize size;
+    terminal_pixels known = {.cell_width = a->cell_width,
+                             .cell_height = a->cell_height,
+                             .has_ground = a->has_ground,
+                             .ground = a->ground};
+
+    // a terminal may say its size in pixels with that in cells only
+    if (known.cell_width == 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 &&
+        size.ws_row > 0) {
+        known.cell_width = size.ws_xpixel / size.ws_col;
+        known.cell_height = size.ws_ypixel / size.ws_row;
+    }
+    known.there =
+        pixel_answers_protocol(a) != PIXELS_NONE && known.cell_width > 1 && known.cell_height > 1;
+    return known;
+}
+
+// The part of a picture that a region shows.
+static pixel_block block_of(const screen *s, const picture_region *r)
+{
+    const screen_picture *p = &s->pictures->items[r->picture];
+    const int cell_width = s->pictures->cell_width, cell_height = s->pictures->cell_height;
+    const int stride = cairo_image_surface_get_stride(p->surface) / 4;
+    const long offset =
+        (long)(r->y - p->y) * cell_height * stride + (long)(r->x - p->x) * cell_width;
+    const void *pixels = cairo_image_surface_get_data(p->surface);
+    return (pixel_block){(const uint32_t *)pixels + offset, r->width * cell_width,
+                         r->height * cell_height, stride};
+}
+
+// Fowler, Noll and Vo's hash, of pixels instead of bytes.
+static uint64_t hash_of(const pixel_block *b)
+{
+    uint64_t hash = 14695981039346656037u;
+    for (int y = 0; y < b->height; y++) {
+        for (int x = 0; x < b->width; x++) {
+            hash = (hash ^ (b->pixels[(long)y * b->stride + x] & 0xffffff)) * 1099511628211u;
+        }
+    }
+    return hash;
+}
+
+static bool same_place(const picture_region *a, const picture_region *b)
+{
+    return a->picture == b->picture && a->x == b->x && a->y == b->y && a->width == b->width &&
+           a->height == b->height;
+}
+
+// Shows the regions that are not on the terminal yet, and remembers them.
+static void write_regions(FILE *stream, const screen *s, const picture_region *regions, int count,
+                          bool whole)
+{
+    const bool kitty = tty.pixels.kitty;
+    int colours = tty.pixels.registers > 0 ? tty.pixels.registers : USUAL_REGISTERS;
+    colours = colours > SIXEL_COLOURS ? SIXEL_COLOURS : colours;
+    for (int i = 0; i < count; i++) {
+        const picture_region *r = &regions[i];
+        const pixel_block block = block_of(s, r);
+        const uint64_t hash = hash_of(&block);
+        if (!whole && i < shown.count && same_place(&shown.regions[i].place, r) &&
+            shown.regions[i].hash == hash) {
+            continue;
+        }
+
+        // the cursor is kept for other programs that write to the terminal
+        fprintf(stream, "\0337\033[%d;%dH", r->y + 1, r->x + 1);
+        if (kitty) {
+            kitty_write(stream, &block, i + 1, r->width, r->height);
+        } else {
+            sixel_write(stream, &block, colours);
+        }
+        fputs("\0338", stream);
+        shown.regions[i] = (shown_region){*r, hash};
+    }
+
+    // those that are no longer there: blanks have cleared sixels, others are told to go
+    for (int i = count; kitty && i < shown.count; i++) {
+        kitty_delete(stream, i + 1);
+    }
+    shown.count = count;
+}
+
+// Shows the pictures of a screen whose cells are shown: those that have changed, or all.
+static void show_pictures(const screen *s, bool whole)
+{
+    const pixel_answers *a = &tty.pixels;
+    picture_region regions[PICTURE_REGIONS];
+    if (pixel_answers_protocol(a) == PIXELS_NONE || (s->pictures == NULL && shown.count == 0)) {
+        return;
+    }
+
+    // in parts that the terminal takes
+    int width = LARGEST, height = LARGEST;
+    if (s->pictures != NULL && !a->kitty && a->most_width > 0 && a->most_height > 0) {
+        width = a->most_width / s->pictures->cell_width;
+        height = a->most_height / s->pictures->cell_height;
+    }
+    const bool fit = width > 0 && height > 0 && s->pictures != NULL;
+    const int count = fit ? pictures_regions(s, width, height, regions) : 0;
+
+    // all of them at once
+    const shown_pictures before = shown;
+    text_stream all;
+    if (text_stream_open(&all)) {
+        write_regions(all.stream, s, regions, count, whole);
+        size_t size;
+        char *bytes = text_stream_close(&all, &size);
+        if (bytes != NULL) {
+            terminal_send(bytes, size);
+        } else {
+            shown = before; // no memory: nothing was sent
+        }
+        free(bytes);
+    }
+}
+
+void terminal_remove_pictures(void)
+{
+    static const char all[] = "\033_Ga=d,d=A,q=2\033\\";
+    if (tty.pixels.kitty && shown.count > 0) {
+        terminal_send(all, sizeof all - 1);
+    }
+    shown.count = 0;
+}
+
+// --- the screen -------------------------------------------------------------------------------
 
 colour_depth terminal_depth(void)
 {
@@ -152,12 +416,12 @@ void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour
     if (tty.painted) {
         // so that it finds nothing to do by itself later
         refresh();
-        paint_cells(s, &tty.shown, glyphs, theme, depth, whole);
+        paint_cells(s, glyphs, theme, depth, whole);
     } else {
         show_by_curses(s, glyphs, coloured, whole);
     }
 
     // ncurses takes a picture's cells for blanks, and may have cleared them
-    terminal_show_pictures(s, whole || !tty.painted);
+    show_pictures(s, whole || !tty.painted);
     terminal_send("\033[?2026l", 8);
 }

@@ -8,7 +8,7 @@
 #define NCURSES_WIDECHAR 1
 #include <curses.h>
 
-#include "ui/terminal/pixel_answers.h"
+#include "ui/terminal/pixels.h"
 #include "ui/terminal/screen.h"
 
 typedef struct terminal_state {
@@ -33,21 +33,12 @@ extern terminal_state tty;
 extern volatile sig_atomic_t terminal_leaving;    // the signal that asks to leave
 extern volatile sig_atomic_t terminal_suspending; // ^Z was pressed
 
-// Installs and removes the handlers of signals that ask to leave, stop the program or end it.
-void terminal_take_signals(void);
-void terminal_give_signals_back(void);
-
 // Appends to the sequence by which a crash restores the terminal, without padding marks; NULL and
 // ncurses' value for a missing capability are ignored.
 void terminal_prepare_crash(const char *text);
 
-// Reads an answer of the terminal; true if the screen should be redrawn.
-bool terminal_take_answer(void);
+// Sends all bytes to the terminal, however slowly it accepts them.
+void terminal_send(const char *bytes, size_t count);
 
-// Queries the size of a cell again, for instance after a change of size, if it was known.
-void terminal_ask_cell(void);
-
-// Shows the pictures of a screen whose cells are shown: those that have changed, or all.
-void terminal_show_pictures(const screen *s, bool whole);
 // Removes all pictures from the terminal.
 void terminal_remove_pictures(void);

@@ -1,6 +1,6 @@
 // The page of changes: what was done to the run, in the order it was done, with its instant.
 #include "ui/explorer/panels/page.h"
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 
 static void draw_change(const explorer_state *st, screen *s, area a, int index)
 {

@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <limits.h>
 
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 
 action_result page_key(explorer_state *st, int key)
 {

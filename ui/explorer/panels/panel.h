@@ -4,7 +4,7 @@
 
 #include "ui/explorer/actions/actions.h"
 #include "ui/explorer/panels/layout.h"
-#include "ui/terminal/pointer.h"
+#include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
 
 enum { WHEEL_LINES = 3 }; // scrolled by one step of the wheel

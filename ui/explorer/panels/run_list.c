@@ -1,7 +1,7 @@
 // The page of pinned runs: what differs, and what can be done with them.
 #include "ui/explorer/panels/page.h"
 #include "ui/explorer/panels/run_lines.h"
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 
 enum { WIDE = 100, SAMPLE = 4, NAME = 30, NUMBER = 10 };
 

@@ -1,6 +1,6 @@
 // The page that lists the scenarios, with a filter.
 #include "ui/explorer/panels/page.h"
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 
 enum { PREVIEW = 6, TALL_SCREEN = 22 }; // rows of the preview, and of a screen that has room for it
 

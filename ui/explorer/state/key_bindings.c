@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
 
 typedef struct binding {

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "ui/terminal/key_codes.h"
+#include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
 
 void prompt_open(prompt *p, const char *format, ...)

@@ -1,5 +1,7 @@
-// Codes of keys.
+// Keys and the mouse.
 #pragma once
+
+#include <stdbool.h>
 
 // Keys that are not characters; the code of a character is its Unicode number.
 enum key_code {
@@ -23,3 +25,18 @@ enum key_code {
     KEY_CODE_ESCAPE = 27,
     KEY_CODE_TAB = '\t'
 };
+
+typedef enum pointer_kind {
+    POINTER_PRESS,
+    POINTER_DRAG,
+    POINTER_RELEASE,
+    POINTER_WHEEL_UP,
+    POINTER_WHEEL_DOWN
+} pointer_kind;
+
+// An event of the mouse and its cell, counted from 0.
+typedef struct pointer_event {
+    pointer_kind kind;
+    int x, y;            // column and row [cells]
+    bool shift, control; // keys held
+} pointer_event;
