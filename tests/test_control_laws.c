@@ -198,19 +198,19 @@ static void answers_are_numbers(void **state)
     (void)state;
     static const struct {
         const char *line;
-        process_answer answer;
+        status answer;
     } cases[] = {
-        {"{\"command\": 1.5}", PROCESS_ANSWERED},
-        {"{\"command\": 1.5, \"desired_angle\": 2, \"calculated_force\": null}", PROCESS_ANSWERED},
-        {"{\"command\": \"1.5\"}", PROCESS_BABBLED},
-        {"{\"command\": null}", PROCESS_BABBLED},
-        {"{}", PROCESS_BABBLED},
-        {"[1.5]", PROCESS_BABBLED},
-        {"1.5", PROCESS_BABBLED},
-        {"{\"command\": 1.5", PROCESS_BABBLED},
-        {"{\"command\": 1.5, \"desired_angle\": true}", PROCESS_BABBLED},
-        {"{\"command\": 1.5, \"desired_velocity\": []}", PROCESS_BABBLED},
-        {"{\"command\": 1.5, \"calculated_force\": \"2\"}", PROCESS_BABBLED},
+        {"{\"command\": 1.5}", STATUS_OK},
+        {"{\"command\": 1.5, \"desired_angle\": 2, \"calculated_force\": null}", STATUS_OK},
+        {"{\"command\": \"1.5\"}", STATUS_CONTROLLER_FAILED},
+        {"{\"command\": null}", STATUS_CONTROLLER_FAILED},
+        {"{}", STATUS_CONTROLLER_FAILED},
+        {"[1.5]", STATUS_CONTROLLER_FAILED},
+        {"1.5", STATUS_CONTROLLER_FAILED},
+        {"{\"command\": 1.5", STATUS_CONTROLLER_FAILED},
+        {"{\"command\": 1.5, \"desired_angle\": true}", STATUS_CONTROLLER_FAILED},
+        {"{\"command\": 1.5, \"desired_velocity\": []}", STATUS_CONTROLLER_FAILED},
+        {"{\"command\": 1.5, \"calculated_force\": \"2\"}", STATUS_CONTROLLER_FAILED},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         controller_output out = {0};
@@ -218,7 +218,7 @@ static void answers_are_numbers(void **state)
         if (process_read_answer(line, strlen(line), &out) != cases[i].answer) {
             fail_msg("%s", line);
         }
-        if (cases[i].answer == PROCESS_ANSWERED) {
+        if (cases[i].answer == STATUS_OK) {
             check_close(out.command, 1.5, 0);
             assert_true(isnan(out.desired_velocity) && isnan(out.calculated_force));
             assert_true(i == 0 ? isnan(out.desired_angle) : out.desired_angle == 2);

@@ -302,8 +302,12 @@ status session_allow_code(session *s, fault *f)
 process_replay session_take_replay(session *s)
 {
     assert(s != NULL);
-    return s->computing != NULL ? (process_replay){.restarted = false}
-                                : process_transcript_take_replay(s->transcript);
+    process_replay taken = {.restarted = false};
+    if (s->computing == NULL && s->transcript != NULL) {
+        taken = s->transcript->replay;
+        s->transcript->replay = (process_replay){.restarted = false};
+    }
+    return taken;
 }
 
 void session_forget_other(session *s)

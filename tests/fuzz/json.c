@@ -13,13 +13,13 @@ static void try_answer(const uint8_t *data, size_t size)
     char *line = fuzz_text(data, size);
     controller_output out = {.command = -7};
     switch (process_read_answer(line, size, &out)) {
-    case PROCESS_ANSWERED:
+    case STATUS_OK:
         // JSON has no other numbers
         FUZZ_CHECK(isfinite(out.command) && !isinf(out.desired_angle));
         FUZZ_CHECK(!isinf(out.desired_velocity) && !isinf(out.calculated_force));
         FUZZ_CHECK(memchr(line, '{', size) != NULL && strstr(line, "\"") != NULL);
         break;
-    case PROCESS_BABBLED:
+    case STATUS_CONTROLLER_FAILED:
         break;
     default:
         FUZZ_CHECK(!"there was memory");

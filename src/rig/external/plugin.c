@@ -14,31 +14,6 @@ static const controller *exported_controller(void *library)
     return entry != NULL ? entry() : NULL;
 }
 
-// Whether the rig can run what the object exports.
-static status check_controller(const controller *law, const char *file, fault *f)
-{
-    if (law == NULL) {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "control.plugin = %s has no function %s that returns a controller", file,
-                         CONTROLLER_ENTRY);
-    }
-
-    // nothing behind `interface` can be read before the version is known
-    if (law->interface != CONTROLLER_INTERFACE) {
-        return fault_set(
-            f, STATUS_BAD_SCENARIO,
-            "control.plugin = %s was made for version %d of the interface, expected %d; "
-            "compile it again",
-            file, law->interface, CONTROLLER_INTERFACE);
-    }
-
-    if (law->sample == NULL) {
-        return fault_set(f, STATUS_BAD_SCENARIO, "control.plugin = %s has no function `sample`",
-                         file);
-    }
-    return STATUS_OK;
-}
-
 status plugin_open(plugin *p, const char *file, fault *f)
 {
     assert(p != NULL && file != NULL);
@@ -48,9 +23,24 @@ status plugin_open(plugin *p, const char *file, fault *f)
                          file, dlerror());
     }
 
+    // nothing behind `interface` can be read before the version is known
+    status s = STATUS_OK;
+    const controller *law = exported_controller(p->library);
+    if (law == NULL) {
+        s = fault_set(f, STATUS_BAD_SCENARIO,
+                      "control.plugin = %s has no function %s that returns a controller", file,
+                      CONTROLLER_ENTRY);
+    } else if (law->interface != CONTROLLER_INTERFACE) {
+        s = fault_set(f, STATUS_BAD_SCENARIO,
+                      "control.plugin = %s was made for version %d of the interface, expected %d; "
+                      "compile it again",
+                      file, law->interface, CONTROLLER_INTERFACE);
+    } else if (law->sample == NULL) {
+        s = fault_set(f, STATUS_BAD_SCENARIO, "control.plugin = %s has no function `sample`", file);
+    }
+
     // an object that cannot be run is closed again
-    p->law = exported_controller(p->library);
-    status s = check_controller(p->law, file, f);
+    p->law = law;
     if (s != STATUS_OK) {
         plugin_close(p);
     }

@@ -29,7 +29,7 @@ struct process {
     supervised_program program;
     process_transcript *transcript; // of the questions, NULL for none; somebody else's
     process_ends ends;              // of the run
-    int at;                         // the place on it that the running program has come to
+    const transcript_node *at;      // the place that the running program has come to
     long asked;                     // questions it has been asked
     int started;                    // how many times it was started
     control_parameters begun;       // with, as the run does
@@ -44,11 +44,11 @@ struct process {
 // The controller's memory: what a run remembers of its process. Another run, or this one taken back
 // to an earlier state, may have asked the program something else since.
 typedef struct process_memory {
-    process *process; // as the rig left it there
-    int at;           // this run's place on the transcript
-    long asked;       // questions so far
-    int started;      // the start of the program that was asked last
-    bool tells_setup; // the next line carries it
+    process *process;    // as the rig left it there
+    transcript_node *at; // this run's place on the transcript, NULL where it has none
+    long asked;          // questions so far
+    int started;         // the start of the program that was asked last
+    bool tells_setup;    // the next line carries it
     controller_setup setup;
     control_parameters control;
 } process_memory;
@@ -89,43 +89,32 @@ status process_failure(const process *p, const char **why)
 
 // --- what goes wrong --------------------------------------------------------------------------
 
-// Keeps the end of what came on the standard error.
-static void keep_errors(process *p, const char *text, size_t count)
-{
-    size_t kept = strlen(p->errors);
-
-    // of more than fits only the end matters
-    if (count >= LAST_ERRORS) {
-        text += count - LAST_ERRORS;
-        count = LAST_ERRORS;
-    }
-
-    // the oldest make room
-    size_t dropped = kept + count > LAST_ERRORS ? kept + count - LAST_ERRORS : 0;
-    memmove(p->errors, p->errors + dropped, kept - dropped);
-    memcpy(p->errors + kept - dropped, text, count);
-    p->errors[kept - dropped + count] = '\0';
-
-    // they may be shown on a terminal
-    for (char *c = p->errors; *c != '\0'; c++) {
-        *c = is_control(*c) ? ' ' : *c;
-    }
-}
-
-// Takes in what is waiting on the standard error. True unless its end was seen.
+// Takes in what is waiting on the standard error, of which the end is kept. True unless the
+// stream's own end was seen.
 static bool drain_errors(process *p)
 {
-    char text[READ_AT_ONCE];
-    ssize_t count = read(p->program.errors, text, sizeof text);
-    if (count > 0) {
-        keep_errors(p, text, (size_t)count);
+    char text[LAST_ERRORS + READ_AT_ONCE];
+    const size_t kept = strlen(p->errors);
+    const ssize_t count = read(p->program.errors, text + kept, READ_AT_ONCE);
+    if (count <= 0) {
+        return count < 0 && (errno == EAGAIN || errno == EINTR);
     }
-    return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
+    memcpy(text, p->errors, kept);
+
+    // they may be shown on a terminal
+    const size_t length = kept + (size_t)count;
+    const size_t dropped = length > LAST_ERRORS ? length - LAST_ERRORS : 0;
+    for (size_t i = dropped; i < length; i++) {
+        p->errors[i - dropped] = is_control(text[i]) ? ' ' : text[i];
+    }
+    p->errors[length - dropped] = '\0';
+    return true;
 }
 
 // Ends the program and says why. Always false.
-static bool fail(process *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static bool fail(process *p, const char *format, ...)
+static bool fail(process *p, status code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static bool fail(process *p, status code, const char *format, ...)
 {
     char why[512];
     va_list values;
@@ -146,32 +135,31 @@ static bool fail(process *p, const char *format, ...)
     snprintf(p->failure, sizeof p->failure, "the process '%.200s' %s%s%s%s", p->begun.command, why,
              ended, errors[0] != '\0' ? "; it said last: " : "", errors);
     make_printable(p->failure);
-    p->code = STATUS_CONTROLLER_FAILED;
+    p->code = code;
     return false;
 }
 
-// The same where it is not the program's doing.
+// The same for what the program does, and for what is not its doing.
+#define FAIL(p, ...) fail(p, STATUS_CONTROLLER_FAILED, __VA_ARGS__)
+
 static bool fail_without_memory(process *p)
 {
-    fail(p, "could not be asked: %s", status_text(STATUS_NO_MEMORY));
-    p->code = STATUS_NO_MEMORY;
-    return false;
+    return fail(p, STATUS_NO_MEMORY, "could not be asked: %s", status_text(STATUS_NO_MEMORY));
 }
 
-// Ends the program where the run does. Always false.
-static bool stop_waiting(process *p)
-{
-    supervised_program_end(&p->program);
-    p->failure[0] = '\0';
-    p->code = STATUS_STOPPED;
-    return false;
-}
-
-static bool run_is_to_end(const process *p)
+// Whether the run was asked to end: the program, too, is ended then.
+static bool run_ends(process *p)
 {
     const process_ends *e = &p->ends;
-    return (e->stop != NULL && atomic_load_explicit(e->stop, memory_order_relaxed)) ||
-           (e->abandon != NULL && atomic_load_explicit(e->abandon, memory_order_relaxed));
+    const bool ends =
+        (e->stop != NULL && atomic_load_explicit(e->stop, memory_order_relaxed)) ||
+        (e->abandon != NULL && atomic_load_explicit(e->abandon, memory_order_relaxed));
+    if (ends) {
+        supervised_program_end(&p->program);
+        p->failure[0] = '\0';
+        p->code = STATUS_STOPPED;
+    }
+    return ends;
 }
 
 // --- an answer --------------------------------------------------------------------------------
@@ -196,19 +184,19 @@ static bool take_in(process *p)
         return true;
     }
     if (count < 0) {
-        return fail(p, "gave an answer that cannot be read: %s", strerror(errno));
+        return FAIL(p, "gave an answer that cannot be read: %s", strerror(errno));
     }
 
     // at its end it can say no more
     if (count == 0) {
-        return fail(p, "ended without an answer");
+        return FAIL(p, "ended without an answer");
     }
 
     // a full buffer without a whole line will never hold one
     p->length += (size_t)count;
     p->line[p->length] = '\0';
     if (p->length == MOST_LINE && memchr(p->line, '\n', p->length) == NULL) {
-        return fail(p, "answered %d bytes without the end of a line", (int)MOST_LINE);
+        return FAIL(p, "answered %d bytes without the end of a line", (int)MOST_LINE);
     }
     return true;
 }
@@ -233,10 +221,10 @@ static bool exchange(process *p, const char *text)
         // a stream may be ready, but after the deadline
         int ready = poll(ends, 3, left_until(deadline));
         if (now() >= deadline) {
-            return fail(p, "gave no answer within control.answer_time = %g s", p->answer_time);
+            return FAIL(p, "gave no answer within control.answer_time = %g s", p->answer_time);
         }
-        if (run_is_to_end(p)) {
-            return stop_waiting(p);
+        if (run_ends(p)) {
+            return false;
         }
         if (ready <= 0) {
             continue;
@@ -270,15 +258,13 @@ static bool understand(process *p, controller_output *out)
     // lock step: one line for one line
     const bool more = length + 1 < p->length;
     p->length = 0;
-    switch (process_read_answer(p->line, length, out)) {
-    case PROCESS_ANSWERED:
-        return more ? fail(p, "answered more than one line to one sample") : true;
-    case PROCESS_NO_MEMORY:
-        return fail_without_memory(p);
-    default:
-        return fail(p, "answered '%.*s', expected one line such as {\"command\": 1.5}",
-                    SHOWN_OF_LINE, p->line);
-    }
+    const status read = process_read_answer(p->line, length, out);
+    return read == STATUS_NO_MEMORY ? fail_without_memory(p)
+           : read != STATUS_OK
+               ? FAIL(p, "answered '%.*s', expected one line such as {\"command\": 1.5}",
+                      SHOWN_OF_LINE, p->line)
+           : more ? FAIL(p, "answered more than one line to one sample")
+                  : true;
 }
 
 // Asks the running program one thing. False, with a failure, if that gives no answer.
@@ -294,7 +280,7 @@ static bool ask(process *p, const char *question, controller_output *answer)
 static bool start_program(process *p)
 {
     supervised_program_end(&p->program);
-    p->at = p->transcript != NULL ? TRANSCRIPT_BEGIN : TRANSCRIPT_NONE;
+    p->at = p->transcript != NULL ? p->transcript->begin : NULL;
     p->asked = 0;
     p->started++;
     p->length = 0;
@@ -308,58 +294,52 @@ static bool start_program(process *p)
     return reason == 0;
 }
 
-// Whether two answers are the same to the last bit; NaN is what was not answered.
-static bool same_answer(const controller_output *a, const controller_output *b)
-{
-    const double x[] = {a->command, a->desired_angle, a->desired_velocity, a->calculated_force};
-    const double y[] = {b->command, b->desired_angle, b->desired_velocity, b->calculated_force};
-    return memcmp(x, y, sizeof x) == 0;
-}
-
 // Brings the program to the run's place on the transcript: it is started if it does not run or is
 // at another place, and all questions that lead there are repeated. False, with a failure, if it
 // answers otherwise than then, or the way there is not known.
 static bool catch_up(process *p, const process_memory *m, double time)
 {
     const bool runs = p->program.supervisor != 0;
-    const bool off_transcript = m->at == TRANSCRIPT_NONE && m->asked > 0;
+    const bool unrecorded = m->at == NULL && m->asked > 0;
     if (runs && p->at == m->at && p->asked == m->asked &&
-        !(off_transcript && p->started != m->started)) {
+        !(unrecorded && p->started != m->started)) {
         return true;
     }
-    if (off_transcript) {
-        return fail(p, "would have to go on from the past, which is not recorded any more");
+    if (unrecorded) {
+        return FAIL(p, "would have to go on from the past, which is not recorded any more");
     }
 
     // the way back to the beginning, or to where the program is
-    int *way = calloc((size_t)m->asked + 1, sizeof *way);
+    const transcript_node **way = calloc((size_t)m->asked + 1, sizeof(transcript_node *));
+    const transcript_node *node = m->at;
     int length = 0;
-    int place = m->at;
-    for (; way != NULL && place > TRANSCRIPT_BEGIN && !(runs && place == p->at); length++) {
-        way[length] = place;
-        place = process_transcript_before(p->transcript, place);
+    for (; way != NULL && node != NULL && node->before != NULL && !(runs && node == p->at);
+         length++) {
+        way[length] = node;
+        node = node->before;
     }
     if (way == NULL) {
         return fail_without_memory(p);
     }
 
     // and forth again
-    const bool anew = !runs || place != p->at;
+    const bool anew = !runs || node != p->at;
     bool same = !anew || start_program(p);
     for (int i = length - 1; same && i >= 0; i--) {
         controller_output answer = {.mode = 0};
-        const controller_output then = process_transcript_answer(p->transcript, way[i]);
-        same = ask(p, process_transcript_question(p->transcript, way[i]), &answer);
-        if (same && !same_answer(&answer, &then)) {
-            same = fail(p,
+        const controller_output *then = &way[i]->answer;
+        same = ask(p, way[i]->question, &answer);
+        if (same && !process_same_answer(&answer, then)) {
+            same = FAIL(p,
                         "would have to go on from the past: asked once more, it answered "
                         "sample %d of %d with %.9g V, not %.9g V as before",
-                        length - i, length, answer.command, then.command);
+                        length - i, length, answer.command, then->command);
         }
         p->at = way[i];
     }
     if (same && anew && length > 0) {
-        process_transcript_note(p->transcript, length, time);
+        p->transcript->replay =
+            (process_replay){.restarted = true, .samples = length, .time = time};
     }
     free(way);
     return same;
@@ -379,7 +359,7 @@ static const char *start(void *memory, const controller_setup *setup)
 {
     // the program is started by the first question that the transcript does not know
     process_memory *m = memory;
-    m->at = m->process->transcript != NULL ? TRANSCRIPT_BEGIN : TRANSCRIPT_NONE;
+    m->at = m->process->transcript != NULL ? m->process->transcript->begin : NULL;
     m->control = m->process->begun;
     return take_setup(memory, setup);
 }
@@ -399,16 +379,17 @@ static void sample(void *memory, const controller_input *in, controller_output *
     p->answer_time = m->control.answer_time;
 
     // what was asked before has its answer
-    const int known = process_transcript_find(p->transcript, m->at, question);
-    if (known != TRANSCRIPT_NONE) {
-        *out = process_transcript_answer(p->transcript, known);
+    transcript_node *known = process_transcript_find(m->at, question);
+    const bool answered = known != NULL || (catch_up(p, m, in->time) && ask(p, question, out));
+    if (known != NULL) {
+        *out = known->answer;
         m->at = known;
-        m->asked++;
-    } else if (catch_up(p, m, in->time) && ask(p, question, out)) {
-        m->at = p->at = process_transcript_add(p->transcript, m->at, question, out);
+    } else if (answered) {
+        m->at = process_transcript_add(p->transcript, m->at, question, out);
+        p->at = m->at;
         m->started = p->started;
-        m->asked++;
     }
+    m->asked += answered;
     free(question);
 }
 

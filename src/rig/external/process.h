@@ -3,7 +3,7 @@
 // The program is started by a shell and answers each line on its standard input by one line on its
 // standard output, both JSON objects, in lock step with simulated time (docs/library.md). No answer
 // is waited for longer than control.answer_time, nor after the run was asked to end, and no process
-// of the program outlives the rig.
+// of the program's group outlives the rig.
 //
 // With a transcript of recorded answers, the program is started only at the first question that the
 // transcript does not hold, and all questions before it are repeated: the program must answer them
@@ -31,7 +31,7 @@ extern const controller process_law;
 process *process_create(const control_parameters *control, process_transcript *transcript,
                         process_ends ends);
 
-// Ends the program and everything it started, however it goes about it; p may be NULL.
+// Ends the program and everything it started that stays in its process group; p may be NULL.
 void process_destroy(process *p);
 
 // What the program is told of control.* from the next sample on; `memory` is the controller's.

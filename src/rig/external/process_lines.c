@@ -21,29 +21,39 @@ static void set_number(json_t *object, const char *name, double value)
     json_put(object, name, json_number(value));
 }
 
-// What the program is told about the rig, under the names of controller_setup.
+// A number of a struct under its own name.
+typedef struct named_number {
+    const char *name;
+    size_t offset;
+} named_number;
+#define NUMBER(type, field)                                                                        \
+    {                                                                                              \
+#field, offsetof(type, field)                                                              \
+    }
+
+// Puts numbers of a struct into an object.
+static void set_numbers(json_t *object, const void *from, const named_number *numbers, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const double *value = (const double *)((const char *)from + numbers[i].offset);
+        set_number(object, numbers[i].name, *value);
+    }
+}
+
+// What the program is told about the rig.
 static json_t *setup_object(const controller_setup *s)
 {
+#define TOLD(field) NUMBER(controller_setup, field)
+    static const named_number numbers[] = {
+        TOLD(period),          TOLD(delay),        TOLD(voltage_limit),
+        TOLD(torque_per_volt), TOLD(hub_damping),  TOLD(stiction),
+        TOLD(hub_inertia),     TOLD(link_mass),    TOLD(link_length),
+        TOLD(link_inertia),    TOLD(k2),           TOLD(wall_angle),
+        TOLD(hub_spring),      TOLD(damping_ratio)};
+#undef TOLD
     json_t *object = json_object();
-
-    // the sampling and the drive
-    set_number(object, "period", s->period);
-    set_number(object, "delay", s->delay);
-    set_number(object, "voltage_limit", s->voltage_limit);
-    set_number(object, "torque_per_volt", s->torque_per_volt);
-    set_number(object, "hub_damping", s->hub_damping);
-    set_number(object, "stiction", s->stiction);
-
-    // the arm and the wall
-    set_number(object, "hub_inertia", s->hub_inertia);
-    set_number(object, "link_mass", s->link_mass);
-    set_number(object, "link_length", s->link_length);
-    set_number(object, "link_inertia", s->link_inertia);
-    set_number(object, "k2", s->k2);
-    set_number(object, "wall_angle", s->wall_angle);
+    set_numbers(object, s, numbers, sizeof numbers / sizeof numbers[0]);
     set_number(object, "links", s->links);
-    set_number(object, "hub_spring", s->hub_spring);
-    set_number(object, "damping_ratio", s->damping_ratio);
     return object;
 }
 
@@ -97,42 +107,35 @@ char *process_question(const controller_setup *setup, const control_parameters *
     }
 
     // what a controller within the program would see
-    set_number(object, "time", in->time);
-    set_number(object, "encoder", in->encoder);
-    set_number(object, "tachometer", in->tachometer);
-    set_number(object, "force", in->force);
-    set_number(object, "voltage", in->voltage);
-    set_number(object, "piezo_force", in->piezo_force);
-    set_number(object, "film", in->film);
-    set_number(object, "accelerometer", in->accelerometer);
-    set_number(object, "predicted_force", in->predicted_force);
+#define SEEN(field) NUMBER(controller_input, field)
+    static const named_number seen[] = {SEEN(time),  SEEN(encoder),       SEEN(tachometer),
+                                        SEEN(force), SEEN(voltage),       SEEN(piezo_force),
+                                        SEEN(film),  SEEN(accelerometer), SEEN(predicted_force)};
+#undef SEEN
+    set_numbers(object, in, seen, sizeof seen / sizeof seen[0]);
 
     // enough digits for every bit
-    char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    char *line = NULL, *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(object);
     const bool whole = !loss_noted() && text != NULL;
     loss_unless(!lost_before);
-    const size_t length = whole ? strlen(text) : 0;
-    char *line = whole ? realloc(text, length + 2) : NULL;
-    if (line == NULL) {
-        free(text);
-        return NULL;
+    if (!whole || asprintf(&line, "%s\n", text) < 0) {
+        line = NULL;
     }
-    memcpy(line + length, "\n", 2);
+    free(text);
     return line;
 }
 
 // --- an answer --------------------------------------------------------------------------------
 
-// A number of the answer: `missing` where there is none. False if it is no number.
-static bool answered(const json_t *object, const char *name, double missing, double *value)
-{
-    const json_t *member = json_object_get(object, name);
-    *value = json_is_number(member) ? json_number_value(member) : missing;
-    return member == NULL || json_is_null(member) || json_is_number(member);
-}
+// The numbers of an answer.
+#define ANSWERED(field) NUMBER(controller_output, field)
+static const named_number answers[] = {ANSWERED(command), ANSWERED(desired_angle),
+                                       ANSWERED(desired_velocity), ANSWERED(calculated_force)};
+#undef ANSWERED
+enum { ANSWERS = sizeof answers / sizeof answers[0] };
 
-process_answer process_read_answer(const char *line, size_t length, controller_output *out)
+status process_read_answer(const char *line, size_t length, controller_output *out)
 {
     assert(line != NULL && out != NULL);
     json_error_t ignored;
@@ -141,13 +144,27 @@ process_answer process_read_answer(const char *line, size_t length, controller_o
 
     // jansson says of a line that it had no memory for what it says of a wrong one
     if (object == NULL && errno == ENOMEM) {
-        return PROCESS_NO_MEMORY;
+        return STATUS_NO_MEMORY;
     }
-    bool whole = json_is_object(object) && answered(object, "command", (double)NAN, &out->command);
-    whole = whole && answered(object, "desired_angle", (double)NAN, &out->desired_angle) &&
-            answered(object, "desired_velocity", (double)NAN, &out->desired_velocity) &&
-            answered(object, "calculated_force", (double)NAN, &out->calculated_force) &&
-            !isnan(out->command);
+
+    // what is there must be a number
+    bool whole = json_is_object(object);
+    for (int i = 0; i < ANSWERS && whole; i++) {
+        const json_t *member = json_object_get(object, answers[i].name);
+        double *value = (double *)((char *)out + answers[i].offset);
+        *value = json_is_number(member) ? json_number_value(member) : (double)NAN;
+        whole = member == NULL || json_is_null(member) || json_is_number(member);
+    }
     json_decref(object);
-    return whole ? PROCESS_ANSWERED : PROCESS_BABBLED;
+    return whole && !isnan(out->command) ? STATUS_OK : STATUS_CONTROLLER_FAILED;
+}
+
+bool process_same_answer(const controller_output *a, const controller_output *b)
+{
+    bool same = true;
+    for (int i = 0; i < ANSWERS; i++) {
+        const size_t at = answers[i].offset;
+        same = same && memcmp((const char *)a + at, (const char *)b + at, sizeof(double)) == 0;
+    }
+    return same;
 }

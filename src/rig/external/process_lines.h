@@ -12,11 +12,10 @@
 char *process_question(const controller_setup *setup, const control_parameters *control,
                        const controller_input *in);
 
-typedef enum process_answer {
-    PROCESS_ANSWERED,  // with a command at least
-    PROCESS_BABBLED,   // something that is no answer
-    PROCESS_NO_MEMORY, // to read it
-} process_answer;
-
 // What a line of so many bytes, its end left out, answers; what it leaves out of *out is NaN.
-process_answer process_read_answer(const char *line, size_t length, controller_output *out);
+// STATUS_CONTROLLER_FAILED if it is no answer with a command, STATUS_NO_MEMORY if that cannot be
+// known.
+status process_read_answer(const char *line, size_t length, controller_output *out);
+
+// Whether two answers are the same to the last bit; NaN is what was not answered.
+bool process_same_answer(const controller_output *a, const controller_output *b);

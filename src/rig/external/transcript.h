@@ -1,39 +1,21 @@
 // What a process was asked and what it answered: a run that asks the same again needs no process.
 //
-// The transcript is a tree, because runs branch: each node (place) is a question with its answer,
-// and a child of the question before it. A session or a loop keeps one for all runs of a scenario;
-// it is used by one run at a time.
+// The transcript is a tree, because runs branch: each node is a question with its answer, and a
+// child of the question before it. A session or a loop keeps one for all runs of a scenario; it is
+// used by one run at a time.
 #pragma once
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "src/rig/controller.h"
 
-enum {
-    TRANSCRIPT_BEGIN = 0, // the place before the first question
-    TRANSCRIPT_NONE = -1  // no place on a transcript
-};
-
-typedef struct process_transcript process_transcript;
-
-// An empty transcript; NULL without memory. t may be NULL for process_transcript_destroy.
-process_transcript *process_transcript_create(void);
-void process_transcript_destroy(process_transcript *t);
-
-// The place of a question that was asked right after `place`, TRANSCRIPT_NONE if it was not; t may
-// be NULL.
-int process_transcript_find(const process_transcript *t, int place, const char *question);
-
-// Adds a question after `place` with its answer. Returns its place, TRANSCRIPT_NONE where there is
-// none (`place` is none, t is NULL, no memory, or the transcript holds its most: 64 MiB of
-// questions).
-int process_transcript_add(process_transcript *t, int place, const char *question,
-                           const controller_output *answer);
-
-// The question and the answer of a place other than TRANSCRIPT_BEGIN, and the place before it.
-const char *process_transcript_question(const process_transcript *t, int place);
-controller_output process_transcript_answer(const process_transcript *t, int place);
-int process_transcript_before(const process_transcript *t, int place);
+typedef struct transcript_node {
+    struct transcript_node *before, *first_after, *next_beside; // NULL where there is none
+    struct transcript_node *made_before; // of all nodes the one that was added before this one
+    controller_output answer;
+    char question[];
+} transcript_node;
 
 // What became of the programs of the last runs.
 typedef struct process_replay {
@@ -42,6 +24,22 @@ typedef struct process_replay {
     double time;    // from where on it was then asked what is new [s]
 } process_replay;
 
-// Notes that; process_transcript_take_replay gives it away, once (nothing where t is NULL).
-void process_transcript_note(process_transcript *t, int samples, double time);
-process_replay process_transcript_take_replay(process_transcript *t);
+typedef struct process_transcript {
+    transcript_node *begin; // before the first question
+    transcript_node *last;  // that was added
+    size_t size;            // of all questions [bytes]
+    process_replay replay;  // until somebody takes it
+} process_transcript;
+
+// An empty transcript; NULL without memory. t may be NULL for process_transcript_destroy.
+process_transcript *process_transcript_create(void);
+void process_transcript_destroy(process_transcript *t);
+
+// The node of a question that was asked right after another one; NULL if it was not, or without one
+// before.
+transcript_node *process_transcript_find(const transcript_node *before, const char *question);
+
+// Adds a question after another one with its answer. NULL where it has no place: `before` is NULL,
+// no memory, or the transcript holds its most, 64 MiB of questions.
+transcript_node *process_transcript_add(process_transcript *t, transcript_node *before,
+                                        const char *question, const controller_output *answer);
