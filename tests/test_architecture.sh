@@ -12,7 +12,7 @@ cd "$1"
 rooms="src/base src/tables src/arm src/solve src/predict src/rig/controller src/rig/external
     src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/api/impactlab src/api
     render/page render/plot render/scene render/figures
-    ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/commands ui"
+    ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/manual ui/commands ui"
 
 # the room of a file; what a controller is stands below all that the rig is made of
 room_of() {
@@ -84,7 +84,7 @@ while IFS=: read -r page place; do
         lost=1
     fi
 done < <(grep -oHE '`(src|render|ui|tests|scenarios|docs)/[A-Za-z0-9_./*-]*[A-Za-z0-9_*]`?' \
-    CONTRIBUTING.md README.md docs/*.md | tr -d '`' | sort -u)
+    CONTRIBUTING.md README.md $(find docs -name '*.md') | tr -d '`' | sort -u)
 [ "$lost" = 0 ]
 
 echo "$arrows includes, all of them downward, no circle"

@@ -188,6 +188,7 @@ static const struct {
     {"bench", "--only tables_s", TIMED},
     {"help", "", USUAL},
     {"help", "run --man", USUAL},
+    {"help", "settling time", USUAL},
     {"help", "--completion zsh", USUAL},
     {"help", "--man-pages results/man", USUAL},
 };

@@ -4,6 +4,7 @@
 
 typedef enum shipped_part {
     SHIPPED_SCENARIOS, // the folder of the scenarios that ship
+    SHIPPED_MANUAL,    // the folder with README.md and docs
     SHIPPED_PROGRAM,   // impactlab
 } shipped_part;
 

@@ -31,7 +31,7 @@ cd "$work"
 library=$(dirname -- "$(find "$prefix" -name libimpactlab.so.1)")
 for file in include/impactlab/impactlab.h include/impactlab/controller.h \
     share/impactlab/scenarios/corrected/first-impact.yaml share/impactlab/examples/peak.c \
-    share/man/man1/impactlab.1 share/man/man1/impactlab-run.1 \
+    share/doc/impactlab/README.md share/man/man1/impactlab.1 share/man/man1/impactlab-run.1 \
     share/man/man5/impactlab-scenario.5 share/man/man3/libimpactlab.3 \
     share/bash-completion/completions/impactlab.bash share/zsh/site-functions/_impactlab \
     share/fish/vendor_completions.d/impactlab.fish; do
@@ -51,6 +51,13 @@ IMPACTLAB_SCENARIOS=$work/nonesuch-is-skipped:$work/own "$lab" list >/dev/null 2
 IMPACTLAB_SCENARIOS=$work/own "$lab" list | grep -q '^mine .*my own' || fail "own scenarios are not added"
 IMPACTLAB_SCENARIOS=$work/own "$lab" list | grep -q 'corrected/first-impact' ||
     fail "own scenarios take the place of those that ship"
+
+# it says where its manual lies, and every page that it names is there
+"$lab" help settling time >answer || fail "a moved program answers no question"
+grep -qxF "The pages are in $prefix/share/doc/impactlab" answer || fail "a moved program does not find its manual"
+while read -r page; do
+    [ -e "$prefix/share/doc/impactlab/$page" ] || fail "$page is not installed"
+done < <(sed -n 's/^\(README.md\|docs[^,]*\), ".*/\1/p' answer)
 
 # it draws
 "$lab" run corrected/first-impact --quiet --plot moved.svg && [ -s moved.svg ] || fail "a moved program does not draw"

@@ -1,4 +1,5 @@
 // What --help prints, and the command `help`.
+#include "ui/commands/answers.h"
 #include "ui/commands/command.h"
 
 #include <assert.h>
@@ -106,7 +107,8 @@ void print_commands(FILE *stream)
 
     fprintf(
         stream,
-        "\nimpactlab COMMAND --help tells more about a command.\n"
+        "\nimpactlab COMMAND --help tells more about a command, impactlab help QUESTION searches\n"
+        "the manual.\n"
         "Exit status: 0 done; 1 the run failed or is inaccurate, or a file could not be written;\n"
         "2 bad arguments or a bad scenario; 130 ended by ^C.\n");
 }
@@ -163,12 +165,30 @@ static int write_pages(const char *folder)
     return result;
 }
 
+// Answers a question, given as one word or several.
+static int answer(const arguments *a)
+{
+    char question[512] = "";
+    size_t length = 0;
+    for (int i = 0; i < a->operand_count && length < sizeof question; i++) {
+        length +=
+            (size_t)snprintf(question + length, sizeof question - length, "%s ", a->operands[i]);
+    }
+    if (print_answers(stdout, question) > 0) {
+        return EXIT_DONE;
+    }
+    return a->operand_count == 1 && strchr(a->operands[0], ' ') == NULL
+               ? complain_command(a->operands[0])
+               : complain("nothing is known of these words, expected some that the manual, a "
+                          "parameter, a quantity or a command has");
+}
+
 static int help(const arguments *a)
 {
-    const command *about = a->operand_count > 0 ? command_find(a->operands[0]) : NULL;
+    const command *about = a->operand_count == 1 ? command_find(a->operands[0]) : NULL;
 
     if (a->operand_count > 0 && about == NULL) {
-        return complain_command(a->operands[0]);
+        return a->man ? complain_command(a->operands[0]) : answer(a);
     }
 
     if (a->completion != NULL) {
@@ -223,10 +243,13 @@ static const option_table options = OPTION_TABLE("Options", rows);
 const command help_command = {
     .name = "help",
     .group = GROUP_PROGRAM,
-    .summary = "The commands, or how to call one of them",
-    .help = "",
-    .operands = "[COMMAND]",
-    .most = 1,
+    .summary = "The commands, how to call one, or an answer to a question",
+    .help = "A QUESTION is some words, as in: impactlab help settling time. It is looked up in the "
+            "pages of the\nmanual, the parameters, the quantities and signals of a run, and the "
+            "commands; the best hits are\nprinted with the passage that fits and where to read "
+            "on.\n",
+    .operands = "[COMMAND|QUESTION...]",
+    .most = 32,
     .operand_word = command_word,
     .options = {&options},
     .run = help,

@@ -1,3 +1,4 @@
+#include "ui/commands/answers.h"
 #include "ui/commands/command.h"
 
 #include <string.h>
@@ -110,7 +111,13 @@ static int print_scenario(const arguments *a, scenario *s)
 
 static int show(const arguments *a)
 {
-    return with_scenario(a->operands[0], a, print_scenario);
+    const int result = with_scenario(a->operands[0], a, print_scenario);
+
+    // "show k2" asks for something that has no file
+    if (result == EXIT_BAD_ARGUMENTS && strpbrk(a->operands[0], "/ ") == NULL) {
+        print_meanings(stderr, a->operands[0]);
+    }
+    return result;
 }
 
 const command show_command = {

@@ -17,11 +17,11 @@ static int text_width(const char *text)
     return width;
 }
 
-void print_wrapped(FILE *stream, const char *text, int bytes, int width)
+void print_indented(FILE *stream, const char *text, int bytes, int width, int indent)
 {
     const char *end = text + bytes;
     int column = 0;
-    assert(bytes >= 0 && width > 0);
+    assert(bytes >= 0 && indent >= 0 && width > indent);
     while ((text += strspn(text, " \n")) < end) {
         char word[256];
         int length = (int)strcspn(text, " \n");
@@ -30,12 +30,20 @@ void print_wrapped(FILE *stream, const char *text, int bytes, int width)
 
         // a word goes to the next line if this one has no room for it
         int wide = text_width(word);
-        const char *gap = column == 0 ? "" : column + 1 + wide > width ? "\n" : " ";
-        column = gap[0] == ' ' ? column + 1 + wide : wide;
-        print_printable(stream, "%s%.*s", gap, length, text);
+        const bool fits = column > 0 && column + 1 + wide <= width;
+        if (!fits) {
+            fprintf(stream, "%s%*s", column > 0 ? "\n" : "", indent, "");
+        }
+        print_printable(stream, "%s%.*s", fits ? " " : "", length, text);
+        column = fits ? column + 1 + wide : indent + wide;
         text += length;
     }
     fprintf(stream, "%s", column > 0 ? "\n" : "");
+}
+
+void print_wrapped(FILE *stream, const char *text, int bytes, int width)
+{
+    print_indented(stream, text, bytes, width, 0);
 }
 
 bool next_paragraph(const char **text, paragraph *p)

@@ -1,0 +1,203 @@
+#include "ui/commands/answers.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/shipped.h"
+#include "src/tables/parameters.h"
+#include "src/tables/signals.h"
+#include "src/tables/summary.h"
+#include "ui/commands/command.h"
+#include "ui/manual/passages.h"
+#include "ui/manual/search.h"
+
+enum { HITS = 6, PASSAGE = 330, LINE = 100, INDENT = 4, MEANINGS = 8, TEXTS = COMMAND_OPTIONS + 2 };
+
+// --- what there is to be found ------------------------------------------------------------------
+
+static search_entry section_entry(int i)
+{
+    const manual_section s = manual_section_at(i);
+    return (search_entry){s.heading, s.title, s.texts, s.text_count};
+}
+
+static search_entry parameter_entry(int i)
+{
+    static const char *texts[2];
+    texts[0] = parameter_table[i].description;
+    texts[1] = parameter_table[i].choices;
+    return (search_entry){parameter_table[i].path, "parameter", texts, texts[1] != NULL ? 2 : 1};
+}
+
+static search_entry quantity_entry(int i)
+{
+    static const char *texts[1];
+    texts[0] = summary_table[i].description;
+    return (search_entry){summary_table[i].key, "quantity", texts, 1};
+}
+
+static search_entry signal_entry(int i)
+{
+    static const char *texts[1];
+    texts[0] = signal_table[i].description;
+    return (search_entry){signal_table[i].name, "signal", texts, 1};
+}
+
+// A command with its summary, its help and what its own options do.
+static search_entry command_entry(int i)
+{
+    static const char *texts[TEXTS];
+    const command *c = command_table[i];
+    int count = 0;
+    texts[count++] = c->summary;
+    texts[count++] = c->help;
+    for (int t = 0; c->options[t] != NULL; t++) {
+        const option_table *o = c->options[t];
+        const bool shared = o == &page_options || o == &view_options;
+        for (int k = 0; k < o->count && !shared && count < TEXTS; k++) {
+            texts[count++] = o->rows[k].help;
+        }
+    }
+    return (search_entry){c->name, "command", texts, count};
+}
+
+enum { SECTIONS, PARAMETERS, QUANTITIES, SIGNALS, COMMANDS, SOURCES };
+
+static void list_sources(search_source sources[SOURCES])
+{
+    sources[SECTIONS] = (search_source){manual_sections(), section_entry};
+    sources[PARAMETERS] = (search_source){parameter_count, parameter_entry};
+    sources[QUANTITIES] = (search_source){summary_count, quantity_entry};
+    sources[SIGNALS] = (search_source){signal_count, signal_entry};
+    sources[COMMANDS] = (search_source){command_count, command_entry};
+}
+
+// --- how it is shown ----------------------------------------------------------------------------
+
+static void print_named(FILE *stream, const char *kind, const char *name, const char *unit)
+{
+    fprintf(stream, "%s %s%s%s%s", kind, name, unit[0] != '\0' ? " [" : "", unit,
+            unit[0] != '\0' ? "]" : "");
+}
+
+// Name of a thing, without its explanation.
+static void print_name(FILE *stream, int source, int index)
+{
+    const manual_section s = manual_section_at(source == SECTIONS ? index : 0);
+    switch (source) {
+    case SECTIONS:
+        fprintf(stream, "%s, \"%s\"", s.page, s.heading);
+        break;
+    case PARAMETERS:
+        print_named(stream, "parameter", parameter_table[index].path, parameter_table[index].unit);
+        break;
+    case QUANTITIES:
+        print_named(stream, "quantity", summary_table[index].key, summary_table[index].unit);
+        break;
+    case SIGNALS:
+        print_named(stream, "signal", signal_table[index].name, signal_table[index].unit);
+        break;
+    default:
+        fprintf(stream, "impactlab %s", command_table[index]->name);
+        break;
+    }
+}
+
+// A line that says how to go on from there; nothing for a page.
+static void print_way_on(FILE *stream, int source, int index)
+{
+    switch (source) {
+    case PARAMETERS:
+        fprintf(stream, "    impactlab show SCENARIO lists it, --set %s=VALUE changes it\n",
+                parameter_table[index].path);
+        break;
+    case QUANTITIES:
+        fprintf(stream,
+                "    impactlab run SCENARIO --json - has it, sweep --quantity %s draws it\n",
+                summary_table[index].key);
+        break;
+    case SIGNALS:
+        fprintf(stream,
+                "    impactlab run SCENARIO --csv FILE has it, --plot FILE --signals %s "
+                "draws it\n",
+                signal_table[index].name);
+        break;
+    case COMMANDS:
+        fprintf(stream, "    impactlab %s --help\n", command_table[index]->name);
+        break;
+    default:
+        break;
+    }
+}
+
+// Bytes of a text up to `most`, whole words.
+static int cut_length(const char *text, int most)
+{
+    int length = (int)strlen(text);
+    if (length <= most) {
+        return length;
+    }
+    for (length = most; length > 0 && text[length] != ' ';) {
+        length--;
+    }
+    return length;
+}
+
+static void print_hit(FILE *stream, const search_source *sources, const search_hit *hit)
+{
+    const search_entry e = sources[hit->source].entry(hit->index);
+    const char *text = hit->text >= 0 ? e.texts[hit->text] : "";
+
+    fprintf(stream, "\n");
+    print_name(stream, hit->source, hit->index);
+    fprintf(stream, "\n");
+    const int length = cut_length(text, PASSAGE);
+    print_indented(stream, text, length, LINE, INDENT);
+    if (text[length] != '\0') {
+        fprintf(stream, "    ...\n");
+    }
+    print_way_on(stream, hit->source, hit->index);
+}
+
+int print_answers(FILE *stream, const char *question)
+{
+    assert(stream != NULL && question != NULL);
+    search_source sources[SOURCES];
+    search_hit hits[HITS];
+    list_sources(sources);
+    const int count = search_find(sources, SOURCES, question, hits, HITS);
+    for (int i = 0; i < count; i++) {
+        print_hit(stream, sources, &hits[i]);
+    }
+
+    // where the pages are; without memory for the path the answer is no less right
+    char *folder = count > 0 ? shipped_path(SHIPPED_MANUAL) : NULL;
+    if (folder != NULL) {
+        fprintf(stream, "\nThe pages are in %s\n", folder);
+    }
+    free(folder);
+    return count;
+}
+
+int print_meanings(FILE *stream, const char *words)
+{
+    assert(stream != NULL && words != NULL);
+    search_source sources[SOURCES];
+    int count = 0;
+    list_sources(sources);
+    for (int s = 0; s < SOURCES; s++) {
+        for (int i = 0; i < sources[s].count && count < MEANINGS; i++) {
+            const search_entry e = sources[s].entry(i);
+            if (!search_names(e.title, words)) {
+                continue;
+            }
+            fprintf(stream, "%s", count++ == 0 ? "it may mean\n" : "");
+            fprintf(stream, "  ");
+            print_name(stream, s, i);
+            fprintf(stream, "\n");
+            print_indented(stream, e.texts[0], cut_length(e.texts[0], PASSAGE), LINE, INDENT);
+        }
+    }
+    return count;
+}

@@ -1,0 +1,24 @@
+#include "ui/manual/passages.h"
+
+#include <assert.h>
+#include <stddef.h>
+
+// A row of the generated table; its texts are `count` from `first` on.
+struct section {
+    const char *page, *title, *heading;
+    int first, count;
+};
+
+#include "ui/manual/passages.inc"
+
+int manual_sections(void)
+{
+    return (int)(sizeof sections / sizeof sections[0]);
+}
+
+manual_section manual_section_at(int index)
+{
+    assert(index >= 0 && index < manual_sections());
+    const struct section *s = &sections[index];
+    return (manual_section){s->page, s->title, s->heading, texts + s->first, s->count};
+}

@@ -1,0 +1,36 @@
+// Search by words over things with a title and some paragraphs: sections of the manual,
+// parameters, quantities, commands.
+#pragma once
+
+#include <stdbool.h>
+
+// Something that can be found. Texts last until the next one is asked for.
+typedef struct search_entry {
+    const char *title;        // words in it count most
+    const char *above;        // title of what it is part of, "" if of nothing
+    const char *const *texts; // paragraphs
+    int text_count;
+} search_entry;
+
+// Things of one kind: how many there are, and what the i-th of them is.
+typedef struct search_source {
+    int count;
+    search_entry (*entry)(int index);
+} search_source;
+
+// A thing that was found.
+typedef struct search_hit {
+    int source, index; // which it is
+    int text;          // the paragraph that fits best, -1 if there is none
+    double score;      // how well it fits; only comparisons within one search mean something
+} search_hit;
+
+// Finds what fits a question, the best first: at most `most` hits; returns how many. Words are
+// compared without their usual endings; words such as "how" and "the" do not count beside others.
+// The score is that of Okapi BM25 (Robertson and Zaragoza, 2009) with the title as a field of more
+// weight, times the share of the question that is met.
+int search_find(const search_source *sources, int source_count, const char *question,
+                search_hit *hits, int most);
+
+// Whether all words of the question stand in the title.
+bool search_names(const char *title, const char *question);
