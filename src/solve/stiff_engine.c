@@ -16,21 +16,23 @@
 #include "src/solve/stiff_stride.h"
 #include "src/solve/taylor_lanes.h"
 
-#define NEWTON_SHARE  3e-4  // of the tolerance, what the iteration leaves
-#define FAST_DECAY    3e4   // beyond it, where vibrations are slower, the tolerance is larger [1/s]
-#define DECAYING      100   // so many times
-#define BOUNCING      1e-2  // and of an arm that bounces undamped, which amplifies errors
-#define TINY_ENERGY   1e-30 // [J]
-#define LONGEST_TURN  0.25  // in a step, of the way to a fold
-#define FIRST_STEP    1e-6  // of a motion, after an event what was learned from it [s]
-#define LEARNED_SHARE 1     // of what the error of the first step after an event allows
-#define SHORTEST      1e-15 // step that can be made [s]
-#define MOST_GROWTH   10
-#define LEAST_TURN    1e-2  // what the motor does in this turn is the least energy of a scale [rad]
-#define LEAST_LEFT    1e-13 // share of a step that is gone on with
-#define AT_EVENT      1e-6  // share of a step by which it may miss its event
-#define SAME_INSTANT  1e-14 // [s]
-#define FACE_PHASE    1.5   // of a face that swings, in a step
+#define NEWTON_SHARE 3e-3  // of the tolerance, what the iteration leaves
+#define FAST_DECAY   3e4   // beyond it, where nothing else is faster, the tolerance is larger [1/s]
+#define DECAYING     10    // so many times
+#define BOUNCING     0.1   // and of an arm that bounces undamped, which amplifies errors
+#define TINY_ENERGY  1e-30 // [J]
+#define LONGEST_TURN 0.25  // in a step, of the way to a fold
+#define FIRST_PHASE  0.1   // of the fastest change, in the first step of a motion
+#define LEAST_FIRST  1e-6  // length of that [s]
+#define MOST_FIRST   1e-3
+#define SAFETY       0.85  // share that is taken of what the error allows
+#define SHORTEST     1e-15 // step that can be made [s]
+#define MOST_GROWTH  10
+#define LEAST_TURN   1e-2  // what the motor does in this turn is the least energy of a scale [rad]
+#define LEAST_LEFT   1e-13 // share of a step that is gone on with
+#define AT_EVENT     1e-6  // share of a step by which it may miss its event
+#define SAME_INSTANT 1e-14 // [s]
+#define FACE_PHASE   1.5   // of a face that swings, in a step
 
 enum { MOST_ATTEMPTS = 100, MOST_ENDS = 10 };
 
@@ -277,9 +279,12 @@ static bool end_at_event(stiff_stride *s, const arm *a, motion *m, watch w, doub
 static double first_try(const stiff_stride *s, const arm *a, motion *m, bool fresh)
 {
     const double *kept = state_kept(m, m->state);
-    double h = !fresh                    ? kept[STIFF_NEXT]
-               : kept[STIFF_LEARNED] > 0 ? kept[STIFF_LEARNED]
-                                         : FIRST_STEP;
+    double h = kept[STIFF_NEXT];
+    if (fresh) { // as long as the last one after an event could be, or slow arms have it
+        const double rate = larger(a->fastest_decay, motion_vibration(a, m, m->state));
+        const double slow = smaller(larger(FIRST_PHASE / rate, LEAST_FIRST), MOST_FIRST);
+        h = larger(kept[STIFF_LEARNED], slow);
+    }
 
     // not beyond where the next change is due, and no scraps before it
     const double due = kept[KEPT_CHANGED] + kept[KEPT_INTERVAL] - m->state[SLOT_TIME];
@@ -338,7 +343,9 @@ static void change_drive(stiff_stride *s, const arm *a, motion *m)
 // The error that a step of this arm may have, as a share of the momentum.
 static double tolerance_of(const arm *a, const motion *m)
 {
-    const bool decays = a->fastest_decay > fmax(FAST_DECAY, a->highest_frequency);
+    const double current = a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
+    const double others = fmax(fmax(FAST_DECAY, a->highest_frequency), current);
+    const bool decays = a->fastest_decay > others;
     const bool bounces = a->wall.restitution > 0 && a->fastest_decay <= a->highest_frequency;
     return m->tolerance * (decays ? DECAYING : bounces ? BOUNCING : 1);
 }
@@ -402,11 +409,11 @@ static bool make_step(stiff_stride *s, const arm *a, motion *m)
             continue;
         }
         const double error = stiff_error(s) / (s->tolerance * scale);
-        const double grow = 0.9 * plain_pow(error + 1e-30, -1.0 / (RADAU_STAGES + 1));
+        const double grow = SAFETY * plain_pow(error + 1e-30, -1.0 / (RADAU_STAGES + 1));
         if (error <= 1) {
             s->kept[STIFF_NEXT] = h * smaller(again ? 1 : MOST_GROWTH, grow);
             if (began) {
-                s->kept[STIFF_LEARNED] = LEARNED_SHARE * s->kept[STIFF_NEXT];
+                s->kept[STIFF_LEARNED] = s->kept[STIFF_NEXT];
             }
             break;
         }

@@ -150,6 +150,20 @@ static double current_error(const stiff_step *s, double gamma)
     return m->torque_constant * filtered / (ANGLE_RATE * sqrt(inertia));
 }
 
+// The same of what the wall gives the arm, as the force's polynomial has it.
+static double impulse_error(const stiff_step *s)
+{
+    double sum = radau_start * s->force0, inertia = s->hub_inertia, reach = 0;
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        sum += radau_difference[i] * s->force.at[i];
+    }
+    for (int k = 0; k < s->links; k++) {
+        reach += s->link[k].length;
+        inertia += s->link[k].mass * reach * reach;
+    }
+    return s->length * sum * reach / sqrt(inertia);
+}
+
 double stiff_error(stiff_stride *stride)
 {
     // what the embedded formula adds to angles (x) and, as an acceleration, to velocities (v)
@@ -184,5 +198,6 @@ double stiff_error(stiff_stride *stride)
     }
     const double of_w = stiff_momentum(stride, x), of_q = stiff_momentum(stride, v);
     const double of_i = s->drive == STIFF_FLOWS ? current_error(s, gamma) : 0;
-    return sqrt(of_w * of_w + of_q * of_q + of_i * of_i);
+    const double of_p = s->contact == STIFF_GIVES ? impulse_error(s) : 0;
+    return sqrt(of_w * of_w + of_q * of_q + of_i * of_i + of_p * of_p);
 }

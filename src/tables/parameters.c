@@ -142,9 +142,9 @@ const parameter_info parameter_table[] = {
     {PATH(method.engine), CHOICE(3, "auto|pair|stiff|series"), DEFAULT(ENGINE_AUTO),
      MEANING("what the event method integrates with: the arm decides, power series of two equal "
              "links on a rigid wall, a stiff formula of order 13, power series of any chain")},
-    {PATH(method.tolerance), REAL("", 1e-12, 1e-3), DEFAULT(1e-9),
+    {PATH(method.tolerance), REAL("", 1e-13, 1e-3), DEFAULT(1e-10),
      MEANING("error of the stiff engine's steps as its embedded formula of order 7 sees it, as a "
-             "share of the largest momentum; a hundred times that where decays are faster than "
+             "share of the largest momentum; ten times that where decays are faster than "
              "vibrations and 3e4 1/s")},
 
     {PATH(printed.spring_counted_twice), BOOLEAN, DEFAULT(true),
