@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "render/plot/figure_file.h"
+#include "render/plot/plot.h"
 #include "render/page/text.h"
 #include "render/plot/trace_plot.h"
 

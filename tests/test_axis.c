@@ -1,6 +1,6 @@
 // Figures over logarithmic axes, judged by the pixels of an image.
 #include "render/plot/axis.h"
-#include "render/plot/figure_file.h"
+#include "render/plot/plot.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // Contour lines over a grid, and the colour scale of maps.
-#include "render/plot/contour.h"
+#include "render/plot/drawing.h"
 
 #include "render/page/palette.h"
 #include "tests/check.h"
@@ -9,11 +9,11 @@ static void contours_lie_where_a_plane_has_the_level(void **state)
     (void)state;
     contour_piece pieces[2];
     // z = 1 + 2 x + 4 y at the corners
-    const double plane[4] = {1, 3, 5, 7};
-    assert_int_equal(contour_square(plane, 0, pieces), 0);
-    assert_int_equal(contour_square(plane, 8, pieces), 0);
+    const double tilted[4] = {1, 3, 5, 7};
+    assert_int_equal(contour_square(tilted, 0, pieces), 0);
+    assert_int_equal(contour_square(tilted, 8, pieces), 0);
     for (double level = 1.5; level < 7; level += 1) {
-        assert_int_equal(contour_square(plane, level, pieces), 1);
+        assert_int_equal(contour_square(tilted, level, pieces), 1);
         check_close(1 + 2 * pieces[0].x0 + 4 * pieces[0].y0, level, 1e-14);
         check_close(1 + 2 * pieces[0].x1 + 4 * pieces[0].y1, level, 1e-14);
     }

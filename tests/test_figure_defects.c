@@ -3,7 +3,7 @@
 
 #include "render/page/palette.h"
 #include "render/plot/curve.h"
-#include "render/plot/sweep_plot.h"
+#include "render/plot/study_plot.h"
 
 // fontconfig keeps its cache until the process ends
 const char *__lsan_default_suppressions(void);

@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "render/page/text.h"
-#include "render/plot/figure_file.h"
-#include "render/plot/sweep_plot.h"
+#include "render/plot/plot.h"
+#include "render/plot/study_plot.h"
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 
 #include "render/page/text.h"
-#include "render/plot/figure_file.h"
+#include "render/plot/plot.h"
 #include "src/base/version.h"
 
 status make_folder(const char *folder, fault *f)

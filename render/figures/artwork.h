@@ -10,7 +10,7 @@
 // Options that apply to all pictures.
 typedef struct figure_options {
     page_look look;
-    const char *overlay; // data over recorded signals (render/plot/overlay.h), NULL for none
+    const char *overlay; // data over recorded signals (overlay_read), NULL for none
     const char *signals; // recorded signals to show instead of the usual ones, NULL for those
     double from, to;     // ends of the horizontal axis; from >= to: automatic
     const char *latex;   // file for the figure environment, NULL for none

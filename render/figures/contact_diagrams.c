@@ -4,7 +4,7 @@
 #include "render/figures/diagram.h"
 #include "render/figures/figures.h"
 #include "render/page/text.h"
-#include "render/plot/opened_run.h"
+#include "render/figures/run_figure.h"
 #include "src/base/numbers.h"
 
 #define CONTACT_ACROSS 6.0  // enlargement of what lies across the reference line, 3.1

@@ -4,7 +4,7 @@
 #include <glib.h>
 #include <math.h>
 
-#include "render/plot/opened_run.h"
+#include "render/figures/run_figure.h"
 #include "src/base/csv.h"
 #include "src/base/whole_file.h"
 

@@ -8,7 +8,6 @@
 #include "render/figures/publication.h"
 #include "render/figures/run_figure.h"
 #include "render/page/text.h"
-#include "render/plot/opened_run.h"
 #include "src/study/thesis_tables.h"
 
 // Panels that several figures have.

@@ -8,8 +8,8 @@
 #include "render/page/sketch.h"
 #include "render/page/text.h"
 #include "render/plot/curve.h"
-#include "render/plot/figure_file.h"
-#include "render/plot/opened_run.h"
+#include "render/plot/plot.h"
+#include "render/figures/run_figure.h"
 #include "src/base/numbers.h"
 #include "src/base/version.h"
 

@@ -6,8 +6,8 @@
 #include "render/figures/publication.h"
 #include "render/figures/recipe_figure.h"
 #include "render/figures/recipe_parts.h"
-#include "render/plot/opened_run.h"
-#include "render/plot/overlay.h"
+#include "render/figures/run_figure.h"
+#include "render/plot/trace_plot.h"
 #include "src/base/version.h"
 
 void *recipe_own(recipe_figure *fig, void *block)

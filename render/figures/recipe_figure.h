@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/figures/recipe_model.h"
-#include "render/plot/opened_run.h"
+#include "render/figures/run_figure.h"
 #include "src/study/sweep_table.h"
 
 // A source with its run or data.

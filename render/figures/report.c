@@ -9,7 +9,6 @@
 #include "render/figures/report_parts.h"
 #include "render/figures/run_figure.h"
 #include "render/page/text.h"
-#include "render/plot/opened_run.h"
 #include "src/base/version.h"
 
 report_item *report_item_at(const report *r, guint index)

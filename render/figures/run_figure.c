@@ -4,8 +4,63 @@
 #include <string.h>
 
 #include "render/figures/publication.h"
-#include "render/plot/overlay.h"
+#include "render/plot/trace_plot.h"
 #include "src/base/words.h"
+
+// ---- scenarios run for figures
+
+// Keeps the first of a scenario's faults.
+static void keep_first(void *context, const char *sentence)
+{
+    fault *f = context;
+    if (f->code == STATUS_OK) {
+        fault_set(f, STATUS_BAD_SCENARIO, "%s", sentence);
+    }
+}
+
+void run_end(opened_run *r)
+{
+    run_finish(&r->result);
+    scenario_finish(&r->scenario);
+}
+
+status run_begin(opened_run *r, const char *name, const char *change, fault *f)
+{
+    return run_begin_changed(r, name, &change, change != NULL ? 1 : 0, NULL, f);
+}
+
+status run_begin_changed(opened_run *r, const char *name, const char *const *changes, int count,
+                         run_monitor *monitor, fault *f)
+{
+    assert(r != NULL && name != NULL);
+    const run_options options = {.keep_trace = true, .monitor = monitor};
+    fault first = {STATUS_OK, ""};
+    status code = scenario_open(&r->scenario, name, keep_first, &first);
+    if (code != STATUS_OK) {
+        return fault_set(f, code, "%s", first.text);
+    }
+
+    // changes lie above what the file says
+    if (count > 0) {
+        code =
+            scenario_override_all(&r->scenario, (char *const *)changes, count, keep_first, &first);
+        fault_set(f, code, "%s", first.text);
+    }
+
+    // a run that fails takes its rows with it
+    if (code == STATUS_OK) {
+        code = run_scenario_with(&r->scenario, &options, &r->result);
+        if (code == STATUS_OK) {
+            return code;
+        }
+        fault_set(f, code, "%s: %s", name, r->result.summary.message);
+        run_finish(&r->result);
+    }
+
+    // after any fault the caller has nothing to finish
+    scenario_finish(&r->scenario);
+    return code;
+}
 
 // ---- the signals asked for
 

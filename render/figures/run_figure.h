@@ -1,8 +1,29 @@
-// Figures of runs with options: signals, range of time, measured data.
+// Scenarios run for figures, and figures of runs with options: signals, range of time, measured
+// data.
 #pragma once
 
 #include "render/figures/artwork.h"
 #include "render/plot/trace_plot.h"
+
+// --- scenarios run for figures
+
+// A run with its scenario, finished by run_end.
+typedef struct opened_run {
+    scenario scenario;
+    run_result result; // with its trace
+} opened_run;
+
+// Opens and runs a scenario, with one parameter changed if `change` ("arm.model=corrected") is not
+// NULL. On failure nothing has to be finished.
+status run_begin(opened_run *r, const char *name, const char *change, fault *f);
+void run_end(opened_run *r);
+
+// The same with several changes, each "PATH=VALUE". STATUS_STOPPED if `monitor` (may be NULL)
+// requested it.
+status run_begin_changed(opened_run *r, const char *name, const char *const *changes, int count,
+                         run_monitor *monitor, fault *f);
+
+// --- their figures
 
 // A figure of runs with what it owns. The runs are borrowed.
 typedef struct run_figure {

@@ -8,7 +8,7 @@
 
 #include "render/figures/newmark_map.h"
 #include "render/page/text.h"
-#include "render/plot/opened_run.h"
+#include "render/figures/run_figure.h"
 
 #define MAP_SCENARIO     "corrected/first-impact"
 #define PRINTED_SCENARIO "thesis/fig-3-4"

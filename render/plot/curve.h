@@ -1,7 +1,7 @@
 // From a series' numbers to lines: gaps, decimation and clipping.
 #pragma once
 
-#include "render/plot/plot.h"
+#include "render/plot/axis.h"
 
 // A rectangle on the page and the values at its edges.
 typedef struct plane {

@@ -1,3 +1,4 @@
+// What all layers of a figure use: text, strokes and axes.
 #include "render/plot/drawing.h"
 
 #include <assert.h>
@@ -83,4 +84,164 @@ void fill_box(cairo_t *cr, const figure_rect *box, colour c)
     set_colour(cr, c);
     cairo_rectangle(cr, box->x, box->y, box->width, box->height);
     cairo_fill(cr);
+}
+
+// ==== axes: grid, spines, ticks, labels and titles
+
+double widest_tick(const drawing *d, const axis *a, double size)
+{
+    double widest = 0;
+    for (int i = 0; i < a->count; i++) {
+        widest = fmax(widest, width_of(d, a->text[i], size));
+    }
+    return widest;
+}
+
+// The axis' title as it fits beside an axis of the given length: with the label, or with its symbol
+// alone where the label would need two lines. Give it to g_free.
+static char *fitting_title(const drawing *d, const axis *a, double length)
+{
+    char *title = axis_title(a);
+    if (a->from->symbol != NULL && width_of(d, title, d->style.label) > length) {
+        g_free(title);
+        title = axis_label(a->from->symbol, a->from->unit, a->even.exponent);
+    }
+    return title;
+}
+
+double axis_title_height(const drawing *d, const axis *a, double length)
+{
+    char *title = fitting_title(d, a, length);
+    text_block t = figure_text_of(d, title, d->style.label);
+    t.width = length;
+    double height = title[0] == '\0' ? 0 : height_of(d, t);
+    g_free(title);
+    return height;
+}
+
+void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y)
+{
+    const figure_rect *box = &p->box;
+    set_plain_line(d->cr, d->style.colours->grid, GRID_WIDTH);
+    for (int i = 0; i < y->count; i++) {
+        double at = plane_y(p, y->at[i]);
+        draw_line(d->cr, box->x, at, box->x + box->width, at);
+    }
+    // where steps are not even the eye needs help across, too
+    for (int i = 0; x->even.count == 0 && i < x->count; i++) {
+        double at = plane_x(p, x->at[i]);
+        draw_line(d->cr, at, box->y, at, box->y + box->height);
+    }
+}
+
+static void draw_minor_ticks(const drawing *d, const plane *p, const axis *x, const axis *y)
+{
+    double at[AXIS_MINOR], bottom = p->box.y + p->box.height;
+    int count = axis_minor_ticks(x, p->box.width, at);
+    for (int i = 0; i < count; i++) {
+        double place = plane_x(p, at[i]);
+        draw_line(d->cr, place, bottom, place, bottom + MINOR_LENGTH);
+    }
+
+    count = axis_minor_ticks(y, p->box.height, at);
+    for (int i = 0; i < count; i++) {
+        double place = plane_y(p, at[i]);
+        draw_line(d->cr, p->box.x, place, p->box.x - MINOR_LENGTH, place);
+    }
+}
+
+static void draw_major_ticks(const drawing *d, const plane *p, const axis *x, const axis *y)
+{
+    const figure_rect *box = &p->box;
+    double bottom = box->y + box->height;
+    for (int i = 0; i < x->count; i++) {
+        double at = plane_x(p, x->at[i]);
+        draw_line(d->cr, at, bottom, at, bottom + TICK_LENGTH);
+    }
+    for (int i = 0; i < y->count; i++) {
+        double at = plane_y(p, y->at[i]);
+        draw_line(d->cr, box->x, at, box->x - TICK_LENGTH, at);
+    }
+}
+
+static void draw_spines(const drawing *d, const figure_rect *box, bool framed)
+{
+    double bottom = box->y + box->height, right = box->x + box->width;
+    cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_SQUARE);
+    draw_line(d->cr, box->x, box->y, box->x, bottom);
+    draw_line(d->cr, box->x, bottom, right, bottom);
+    if (framed) {
+        draw_line(d->cr, box->x, box->y, right, box->y);
+        draw_line(d->cr, right, box->y, right, bottom);
+    }
+}
+
+// A label that would touch the one before it is left out, unless ticks are even.
+static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const axis *y,
+                             const axes_look *look)
+{
+    double bottom = p->box.y + p->box.height, taken = -(double)INFINITY;
+
+    // below
+    for (int i = 0; look->x_labels && i < x->count; i++) {
+        double at = plane_x(p, x->at[i]), half = width_of(d, x->text[i], look->size) / 2;
+        if (x->even.count > 0 || at - half > taken + LABEL_GAP) {
+            draw_text(d, figure_text_of(d, x->text[i], look->size), at,
+                      bottom + TICK_LENGTH + TICK_SPACE - 1, (anchor){0.5, 0},
+                      d->style.colours->text);
+            taken = at + half;
+        }
+    }
+
+    // at the left
+    taken = (double)INFINITY;
+    for (int i = 0; look->y_labels && i < y->count; i++) {
+        double at = plane_y(p, y->at[i]);
+        if (y->even.count > 0 || at < taken - look->size) {
+            draw_text(d, figure_text_of(d, y->text[i], look->size),
+                      p->box.x - TICK_LENGTH - TICK_SPACE, at, (anchor){1, 0.5},
+                      d->style.colours->text);
+            taken = at;
+        }
+    }
+}
+
+void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_look look)
+{
+    set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
+    draw_minor_ticks(d, p, x, y);
+    draw_major_ticks(d, p, x, y);
+    draw_spines(d, &p->box, look.framed);
+    draw_tick_labels(d, p, x, y, &look);
+}
+
+bool has_y_labels(const drawing *d, const panel_layout *l)
+{
+    return !d->fig->shared_y || l->column == 0;
+}
+
+void draw_y_title(drawing *d, const panel_layout *l)
+{
+    const figure_rect *box = &l->plane.box;
+    char *title = fitting_title(d, &l->y, box->height + PANEL_SPACE);
+    text_block t = figure_text_of(d, title, d->style.label);
+    t.align = TEXT_CENTRE;
+    t.width = box->height + PANEL_SPACE;
+    if (title[0] != '\0' && has_y_labels(d, l)) {
+        draw_rotated(d, t, d->column[l->column].edge, box->y + box->height / 2,
+                     d->style.colours->text);
+    }
+    g_free(title);
+}
+
+void draw_x_titles(drawing *d)
+{
+    char *title = axis_title(&d->x);
+    // once below all columns
+    if (d->fig->x.label != NULL) {
+        draw_text(d, figure_text_of(d, title, d->style.label),
+                  (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
+                  (anchor){0.5, 0}, d->style.colours->text);
+    }
+    g_free(title);
 }

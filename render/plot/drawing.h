@@ -5,12 +5,43 @@
 #include "render/page/text.h"
 #include "render/plot/axis.h"
 #include "render/plot/curve.h"
-#include "render/plot/placement.h"
+#include "render/plot/plot.h"
+
+// --- free places in a panel, by a grid of cells with the ink in each: placement.c
+
+enum { PLACEMENT_COLUMNS = 160, PLACEMENT_ROWS = 96 };
+
+// The cost of covering a cell.
+enum { INK_FAINT = 1, INK_CURVE = 1000 };
+
+typedef struct placement {
+    figure_rect box; // the area divided into cells [pt]
+    // ink[r + 1][c + 1] belongs to cell (r, c)
+    double ink[PLACEMENT_ROWS + 1][PLACEMENT_COLUMNS + 1];
+} placement;
+
+void placement_init(placement *g, figure_rect box);
+
+// Adds the ink of a line, or of a filled rectangle.
+void placement_line(placement *g, double x0, double y0, double x1, double y1, int weight);
+void placement_block(placement *g, figure_rect r, int weight);
+
+// The ink under a rectangle.
+double placement_ink(const placement *g, figure_rect r);
+
+// The place of a width x height rectangle, `margin` from the box's edges, with the least ink under
+// it; among equal ones the nearest to a corner, preferring the right to the left and the top to the
+// bottom. Returns the ink under it (INFINITY if the box is too small).
+double placement_find(const placement *g, double width, double height, double margin,
+                      figure_rect *found);
+
+// --- the layout
 
 enum { MARKS_LABELLED = 64, MARK_ROWS = 4, LEVELS_LABELLED = 8 };
 
 // Lengths [pt].
 #define POINTS_PER_MM (72 / 25.4)
+#define DEFAULT_WIDTH 170.0                 // of a page [mm]
 #define NARROW_PAGE   (100 * POINTS_PER_MM) // below it legends have only symbols
 #define PAGE_MARGIN   6.0
 #define TICK_LENGTH   3.0
@@ -124,7 +155,7 @@ void set_plain_line(cairo_t *cr, colour c, double width);
 void clip_to(cairo_t *cr, const figure_rect *box, double space);
 void fill_box(cairo_t *cr, const figure_rect *box, colour c);
 
-// --- axes: axes.c
+// --- axes: drawing.c
 
 double widest_tick(const drawing *d, const axis *a, double size);
 // Height of that title, wrapped beside the axis; 0 without a title.
@@ -205,3 +236,16 @@ void draw_end_labels(drawing *d, const panel_layout *l);
 
 void place_inset(const drawing *d, panel_layout *l, placement *grid);
 void draw_inset(drawing *d, const panel_layout *l);
+
+// --- contour lines of values over a grid: map.c
+
+// A piece of a contour line. Coordinates count grid points: x from 0 to columns - 1.
+typedef struct contour_piece {
+    double x0, y0, x1, y1;
+} contour_piece;
+
+// The contour of z = level within the square of four neighbouring grid points, by marching squares
+// with straight lines: z[0] at (0, 0), z[1] at (1, 0), z[2] at (0, 1), z[3] at (1, 1). A saddle is
+// decided by the mean of the four. Returns the number of pieces, 0 to 2; 0 if a corner is not
+// finite.
+int contour_square(const double z[4], double level, contour_piece pieces[2]);

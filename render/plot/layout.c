@@ -14,6 +14,7 @@
 #define RIGHT_SPACE    10.0 // of a panel without labels next to it
 #define SHARED_SPACE   6.0  // of a panel whose vertical axis is labelled in the first column
 #define BAR_TICK       16.0 // of a colour bar to a tick
+#define COLUMN_WIDTH   42.0 // least width of a column of panels [mm]
 #define FIRST_LEFT     40.0 // where the panels begin before anything is known
 
 // ---- ranges
@@ -115,9 +116,11 @@ static void share_y_ranges(drawing *d)
 
 // ---- columns
 
-bool has_y_labels(const drawing *d, const panel_layout *l)
+int figure_columns(const figure *fig)
 {
-    return !d->fig->shared_y || l->column == 0;
+    double width = fig->width > 0 ? fig->width : DEFAULT_WIDTH;
+    int columns = fig->columns > 0 ? fig->columns : 1, most = (int)(width / COLUMN_WIDTH);
+    return columns <= most || most < 1 ? columns : most == 2 && columns == 3 ? 1 : most;
 }
 
 static double left_space(const drawing *d, const panel_layout *l)

@@ -1,4 +1,4 @@
-#include "render/plot/overlay.h"
+#include "render/plot/trace_plot.h"
 #include "src/base/numbers.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-#include "render/plot/placement.h"
+#include "render/plot/drawing.h"
 
 #include <assert.h>
 #include <math.h>

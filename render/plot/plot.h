@@ -1,7 +1,7 @@
 // Figures: panels of axes with layers of data.
 //
 // A figure is a description in plain data that borrows everything it points to; it is not changed
-// or freed here. figure_paint draws it, figure_write (render/plot/figure_file.h) writes files.
+// or freed here. figure_paint draws it, figure_write writes files.
 // Panels are arranged in rows of `columns`; all share the horizontal axis. Traces, studies, sweeps
 // and maps are all described in this way, so that their axes, ticks, legends and colours have the
 // same style. Unless stated otherwise a text is Pango markup, and NULL means none.
@@ -10,9 +10,10 @@
 #include <cairo.h>
 
 #include "render/page/page.h"
-#include "render/plot/scale.h"
 #include "src/base/fault.h"
 #include "src/tables/signals.h"
+
+typedef enum scale_kind { SCALE_LINEAR, SCALE_LOGARITHMIC } scale_kind;
 
 enum { PANEL_SERIES = 36 }; // most series of a panel
 
@@ -176,3 +177,18 @@ void figure_size(const figure *fig, double *width, double *height);
 // be NULL) is filled. STATUS_BAD_ARGUMENT for a page that is too small or an invalid description,
 // such as a logarithmic axis without a value above zero, STATUS_CANNOT_READ if the font is missing.
 status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault *f);
+
+// --- files
+
+// Draws the figure into a file as picture_write does. Title, software and parameters go into the
+// file's metadata.
+status figure_write(const figure *fig, const char *path, fault *f);
+
+// Writes what the figure shows as CSV in long form: the panel with its unit (its heading where all
+// panels show one quantity), the series, and two
+// columns headed by the axes' names and units ("time[s]", "force[N]"; "value" where the panels show
+// different quantities, whose units stand beside the panels' names). Every point of every curve (y
+// empty where the curve has a gap), cells of maps as the series "map", impulses as the series
+// impulse[unit], then marks and shaded intervals with an empty y. Where there is a colour scale its
+// value stands in a last column.
+status figure_write_csv(const figure *fig, const char *path, fault *f);

@@ -1,6 +1,7 @@
 // What is written on figures of recorded runs: symbols, labels and captions.
 #include "render/plot/trace_parts.h"
 
+#include <assert.h>
 #include <glib.h>
 #include <string.h>
 
@@ -207,5 +208,33 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     }
 
     g_free(step);
+    return g_string_free(out, FALSE);
+}
+
+// ---- of the scenario
+
+char *scenario_title(const scenario *s)
+{
+    assert(s != NULL && s->title != NULL);
+    char changes[SCENARIO_CHANGES];
+    GString *out = g_string_new(s->title);
+
+    // lines break between changes, not within one
+    for (const char *c = scenario_changes(s, changes); *c != '\0'; c++) {
+        g_string_append(out, *c == ' ' && c[-1] != ',' ? "\u00a0" : (char[]){*c, '\0'});
+    }
+    return g_string_free(out, FALSE);
+}
+
+char *parameters_line(const scenario *s)
+{
+    assert(s != NULL);
+    GString *out = g_string_new(NULL);
+    g_string_printf(out, "scenario=%s", s->name);
+    for (int i = 0; i < parameter_count; i++) {
+        char value[128];
+        parameter_format(&s->parameters, i, value, sizeof value);
+        g_string_append_printf(out, " %s=%s", parameter_table[i].path, value);
+    }
     return g_string_free(out, FALSE);
 }

@@ -1,7 +1,7 @@
 // Internal to figures of recorded runs: labels, marks and events.
 #pragma once
 
-#include "render/plot/trace_figure.h"
+#include "render/plot/trace_plot.h"
 
 enum { TRACE_ACTIONS = 16, TRACE_MARKS = 3 + TRACE_ACTIONS };
 
@@ -32,7 +32,7 @@ char *trace_axis_label(const scenario *s, const signal_info *signal);
 // shading and the marks belong to.
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 
-// --- runs side by side: trace_key.c
+// --- runs side by side: trace_figure.c
 
 // Whether a run has a signal of a panel to show: not the first link's where it equals the hub's,
 // and of data only what was measured.
@@ -49,7 +49,7 @@ void trace_make_key(trace_figure *t, const trace_panel *panels, const trace_run 
 // The line of a signal by that key, solid of one that it does not have.
 line_style trace_line(const trace_figure *t, int index);
 
-// --- what happened: trace_events.c
+// --- what happened: trace_series.c
 
 // Marks contact, peak, release and changes by the script; on the rig changes of mode.
 void trace_mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts);

@@ -1,7 +1,75 @@
 // Figures of recorded runs.
 #pragma once
 
-#include "render/plot/trace_figure.h"
+#include <glib.h>
+
+#include "render/plot/plot.h"
+#include "src/base/fault.h"
+#include "src/run/run.h"
+
+enum { TRACE_SIGNALS = 4, TRACE_RUNS = 8 };
+
+// A panel: signals of one unit over time.
+typedef struct trace_panel {
+    const char *label;                  // of the axis, markup; NULL: the first signal's own
+    const char *signals[TRACE_SIGNALS]; // names in the signal table, unused ones NULL
+    double weight;                      // share of the height, 0 counts as 1
+    bool with_zero;                     // the axis includes 0
+    bool impulses;                      // impulses of impacts in a strip above the panel
+    bool inset;                         // the first pulse enlarged, if it is short
+    bool wall;                          // the wall's angle as a line
+    bool modes;                         // shade the controller's second mode instead of contact
+} trace_panel;
+
+// A run to draw. The first one gives marks, shading, impulses and caption; further ones are thin
+// dashed lines in the same panels.
+typedef struct trace_run {
+    const scenario *scenario;
+    const run_result *result; // with its trace
+    const char *name;         // "corrected"; shown only if there are several runs
+    bool brief;               // further runs only: the first signal of each panel, in grey
+    bool steps;               // a small point at every row: the steps of the method
+    bool points;              // further runs only: reference data, points where it has a number
+    int rank; // 0: as above; otherwise a colour of its own, 1 to 8, and lines tell signals
+} trace_run;
+
+enum { TRACE_KEY = TRACE_RUNS + FIGURE_PANELS * TRACE_SIGNALS };
+
+// A figure with everything it borrows, except for the runs.
+typedef struct trace_figure {
+    figure figure;
+    figure_panel panels[FIGURE_PANELS];
+    figure_series series[FIGURE_PANELS][TRACE_SIGNALS * TRACE_RUNS];
+    figure_series residual; // in an additional last panel, if there are reference data
+    figure_panel key;       // of runs side by side: their colours, then lines, then data
+    figure_series key_series[TRACE_KEY];
+    int key_signals[TRACE_KEY]; // what the entry is a line of, see trace_figure.c; 0: no signal
+    figure_level wall;
+    GPtrArray *owned; // blocks
+    figure_mark *marks;
+    figure_interval *intervals;
+    figure_impulse *impulses;
+} trace_figure;
+
+// The scenario's title, and what was changed of what it speaks of. Free with g_free.
+char *scenario_title(const scenario *s);
+
+// The scenario's name and every parameter in one line, for a file's metadata. Free with g_free.
+char *parameters_line(const scenario *s);
+
+// A signal's symbol as markup, with the index of its body in the scenario. To be freed with g_free.
+char *trace_symbol(const scenario *s, int index);
+
+// A signal of a run over time; for the force the peaks are added to the rows. Storage made for it
+// is added to `owned`.
+figure_series trace_series(const trace_run *run, int index, GPtrArray *owned);
+
+// The value of a signal at an instant of a run, interpolated linearly between rows; NaN outside the
+// run.
+double trace_value_at(const trace *t, int index, double time);
+
+// The intervals of contact; the array is added to `owned`.
+figure_interval *trace_contact(const trace *rows, int *count, GPtrArray *owned);
 
 // Describes the panels (at most FIGURE_PANELS) of the runs (at most TRACE_RUNS). `title` is plain,
 // NULL for the first scenario's. The runs must outlive the figure. STATUS_BAD_ARGUMENT for an
@@ -19,3 +87,19 @@ extern const trace_panel usual_panels[USUAL_PANELS];
 // path by figure_write.
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
                 const char *path, fault *f);
+
+// --- reference data: overlay.c
+
+// Reads measured data, FILE.csv[:COLUMN][@SHIFT]. The file's first line names its columns, with or
+// without unit ("time[s],force[N]"): "time" and at least one more. A column with the name of a
+// recorded signal is drawn over that signal. COLUMN selects a single column; if its name is not a
+// signal, it is drawn over the first signal of the panels with its unit. SHIFT [s] is added to
+// every time. Empty cells are not drawn, columns with other names are ignored. Fills an empty
+// trace, to be freed with trace_finish also on failure, and a name for the legend, to be freed with
+// g_free. STATUS_CANNOT_READ for the file, STATUS_BAD_ARGUMENT with path and line for its contents.
+status overlay_read(trace *t, const char *spec, const trace_panel *panels, int panel_count,
+                    char **name, fault *f);
+
+// The same with separate path, column (NULL: all that are signals) and shift.
+status overlay_read_column(trace *t, const char *path, const char *column, double shift,
+                           const trace_panel *panels, int panel_count, char **name, fault *f);

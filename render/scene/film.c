@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "render/plot/opened_run.h"
+#include "render/plot/trace_plot.h"
 #include "render/scene/film_file.h"
 #include "render/scene/film_frame.h"
 #include "src/base/version.h"

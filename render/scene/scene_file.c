@@ -3,7 +3,7 @@
 
 #include "render/page/picture_file.h"
 #include "render/page/png_file.h"
-#include "render/plot/opened_run.h"
+#include "render/plot/trace_plot.h"
 #include "render/scene/scene_parts.h"
 #include "src/base/instant.h"
 #include "src/base/version.h"

@@ -6,7 +6,7 @@
 
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
-#include "render/plot/opened_run.h"
+#include "render/plot/trace_plot.h"
 #include "render/scene/labels.h"
 #include "render/scene/scene_parts.h"
 #include "src/base/numbers.h"

@@ -4,7 +4,7 @@
 #include <glib.h>
 #include <math.h>
 
-#include "render/plot/overlay.h"
+#include "render/plot/trace_plot.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {

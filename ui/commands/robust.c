@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/plot/robust_plot.h"
+#include "render/plot/study_plot.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
 #include "src/study/robust.h"

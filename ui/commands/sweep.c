@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/plot/sweep_plot.h"
+#include "render/plot/study_plot.h"
 #include "ui/commands/many_runs.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/sweep_report.h"

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "render/plot/sweep_plot.h"
+#include "render/plot/study_plot.h"
 #include "ui/commands/many_runs.h"
 #include "ui/commands/pictures.h"
 #include "src/study/sweep_rows.h"

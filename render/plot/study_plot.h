@@ -1,0 +1,56 @@
+// Pictures of studies: of a sweep, and of the result of impactlab robust.
+#pragma once
+
+#include <glib.h>
+
+#include "render/plot/plot.h"
+#include "src/study/robust.h"
+#include "src/study/sweep.h"
+
+// --- a figure with everything it borrows
+
+typedef struct owned_figure {
+    figure figure;
+    figure_panel panel;                 // the figure's only one
+    figure_series series[PANEL_SERIES]; // the panel's
+    GPtrArray *kept;                    // blocks
+} owned_figure;
+
+// An empty figure with its panel, which has no series yet, and the program's name and version. To
+// be freed with owned_figure_destroy, which accepts NULL.
+owned_figure *owned_figure_create(void);
+void owned_figure_destroy(owned_figure *o);
+
+// Gives a block from g_malloc to the figure, and returns it.
+void *owned_figure_keep(owned_figure *o, void *block);
+
+// --- robust: the distribution of the overshoot, a curve for each law
+
+// The largest number of laws in a picture.
+enum { ROBUST_MOST_CURVES = 8 };
+
+// Describes the picture: the share of runs (upwards) whose overshoot is at most x. Its title
+// ends with what was changed of the scenario. The table is borrowed; at most ROBUST_MOST_CURVES
+// laws. To be freed with owned_figure_destroy.
+owned_figure *robust_figure_create(const robust_table *t, const char *changes);
+
+// --- Pictures of a sweep: one quantity over one or two varied parameters.
+//
+// One parameter: a line with markers (dots alone if the values were drawn at random or are words).
+// Two: a map with contour lines and a colour bar (coloured dots if the values were drawn at
+// random). A logarithmic range has a logarithmic axis.
+
+typedef struct sweep_picture {
+    const sweep *sweep;
+    const char *key;      // of the summary, "peak_force_N"
+    const double *values; // of each run, NaN where there is none
+} sweep_picture;
+
+// Checks in advance whether a picture of the sweep can be written to path: STATUS_BAD_ARGUMENT if
+// more than two parameters are varied or for an unknown extension, STATUS_CANNOT_WRITE if the path
+// cannot be written, STATUS_CANNOT_READ if the font is missing.
+status sweep_plot_check(const sweep *s, const char *path, fault *f);
+
+// Describes the picture, to be freed with owned_figure_destroy. The sweep and the values are
+// borrowed.
+owned_figure *sweep_figure_create(const sweep_picture *p);
