@@ -9,7 +9,8 @@
 // both sides of the wall. By default each number is a wide or near run, in turns, and a whole one.
 //
 // Of a whole run is looked at besides: that it is refused where it starts behind the wall, and only
-// there; that the limit it fails by stands in docs/validity.md; that no arm is inside a rigid wall.
+// there; that the limit it fails by stands in docs/explanation/trust.md; that no arm is inside a
+// rigid wall.
 #include <inttypes.h>
 #include <math.h>
 #include <signal.h>

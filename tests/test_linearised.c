@@ -61,7 +61,7 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Percentages of the errors, as docs/physics.md has them.
+// Percentages of the errors, as docs/explanation/model.md has them.
 typedef struct told_errors {
     double peak, worst_peak, delay, worst_delay;
 } told_errors;

@@ -149,7 +149,7 @@ static void two_links_read_as_one_impulse(void **state)
         check_relative(view.sensed[i], view.impulse / sensor_constants[i], 1e-12);
         check_close(view.delay[i], 0, 0);
     }
-    check_close(view.impulse, 0.15583707, 1e-6); // docs/what-a-sensor-sees.md
+    check_close(view.impulse, 0.15583707, 1e-6); // docs/explanation/trust.md
 }
 
 // The limit against the transform it comes from: y(t) of K / sqrt(t) by the substitution u =

@@ -74,8 +74,8 @@ static void printed_delays_are_of_the_right_size(void **state)
     check_below(tables_mean_error(&tables, "printed", "delay_simulation"), 0.30);
 }
 
-// What docs/thesis.md says of the delays: one set fits forces and delays of all cells, and the
-// impact dynamics are late by one factor.
+// What docs/explanation/thesis.md says of the delays: one set fits forces and delays of all cells,
+// and the impact dynamics are late by one factor.
 static void one_set_of_numbers_fits_the_delays(void **state)
 {
     (void)state;

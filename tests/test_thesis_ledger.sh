@@ -1,5 +1,5 @@
 #!/bin/bash
-# Every place that the tables of docs/thesis.md name is there, and every command in them runs.
+# Every place that docs/explanation/claims.tsv names is there, and every command in it runs.
 #
 #   test_thesis_ledger.sh PROGRAM SOURCE_ROOT [places]
 #
@@ -13,9 +13,10 @@ wrong=0
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# rows of the chapters have five columns: thesis, what, place, command, verdict
-awk '/^## / { chapter = /^## Chapter/ } chapter && /^\| / && !/^\| thesis/' "$root/docs/thesis.md" |
-    awk -F ' \\| ' 'NF == 5' >"$work/rows"
+# a row is a claim: chapter, thesis, what it says, place, command, verdict
+claims=docs/explanation/claims.tsv
+awk -F '\t' 'NR > 1 && NF != 6 { print FILENAME ":" NR ": expected six columns"; exit 1 }' "$root/$claims"
+tail -n +2 "$root/$claims" >"$work/rows"
 rows=$(wc -l <"$work/rows")
 if [ "$rows" -lt 90 ]; then
     echo "only $rows rows were found, so this test sees nothing"
@@ -23,14 +24,14 @@ if [ "$rows" -lt 90 ]; then
 fi
 
 # places: `file`, or `file`: `identifier`
-awk -F ' \\| ' '{ print $3 }' "$work/rows" | tr ';' '\n' | sed 's/^ *//' | sort -u |
+awk -F '\t' '{ print $4 }' "$work/rows" | tr ';' '\n' | sed 's/^ *//' | sort -u |
     while read -r place; do
         file=$(sed -n 's/^`\([^`]*\)`.*/\1/p' <<<"$place")
         name=$(sed -n 's/^`[^`]*`: `\([^`]*\)`$/\1/p' <<<"$place")
         if [ -z "$file" ] || [ ! -e "$root/$file" ]; then
-            echo "docs/thesis.md names a place that is not there: $place"
+            echo "$claims names a place that is not there: $place"
         elif [ -n "$name" ] && ! grep -qw -- "$name" "$root/$file"; then
-            echo "docs/thesis.md names $name, which is not in $file"
+            echo "$claims names $name, which is not in $file"
         fi
     done >"$work/missing"
 if [ -s "$work/missing" ]; then
@@ -39,10 +40,10 @@ if [ -s "$work/missing" ]; then
 fi
 
 # commands, each once
-awk -F ' \\| ' '{ print $4 }' "$work/rows" | sed -n 's/^`impactlab \(.*\)`$/\1/p' | sort -u >"$work/commands"
+awk -F '\t' '{ print $5 }' "$work/rows" | sed -n 's/^`impactlab \(.*\)`$/\1/p' | sort -u >"$work/commands"
 commands=$(wc -l <"$work/commands")
 if [ "$commands" -lt 50 ]; then
-    echo "only $commands commands were found in docs/thesis.md"
+    echo "only $commands commands were found in $claims"
     wrong=1
 fi
 if [ "$only" = places ]; then
@@ -52,7 +53,7 @@ cd "$work"
 while read -r command; do
     # shellcheck disable=SC2086
     if ! "$program" $command </dev/null >output 2>&1; then
-        echo "docs/thesis.md: impactlab $command ends with an error:"
+        echo "$claims: impactlab $command ends with an error:"
         tail -n 3 output
         wrong=1
     fi

@@ -46,9 +46,14 @@ tables() {
     for page in parameters signals quantities laws events; do
         "$program" help --reference "$page" >"$work/table-of-$page.md"
     done
+    awk -F '\t' 'NR == 1 { print "# The claims of the thesis"; next }
+        $1 != chapter { print "\n## Claims of chapter " $1 "\n\n| thesis | what it says | place | command | verdict |"
+                        print "|---|---|---|---|---|"; chapter = $1 }
+        { print "| " $2 " | " $3 " | " $4 " | " $5 " | " $6 " |" }' \
+        "$source/docs/explanation/claims.tsv" >"$work/table-of-claims.md"
     bash "$source/docs/manual/api.sh" markdown "" "$source"/src/api/impactlab/impactlab.h \
         "$source"/src/rig/controller.h >"$work/table-of-functions.md"
-    for page in parameters signals quantities laws events functions; do
+    for page in parameters signals quantities laws events functions claims; do
         chapter "table-of-$page" "$work/table-of-$page.md"
     done
     results=$(dirname "$output")/results.md

@@ -19,7 +19,7 @@ complain() {
 while read -r file; do
     grep -q "<section id=\"$(basename "$file" .md)\">" "$page" || complain "$file is no chapter"
 done < <(find "$source/docs" -name '*.md' ! -path '*/matplotlib/*')
-for name in parameters signals quantities laws events functions; do
+for name in parameters signals quantities laws events functions claims; do
     grep -q "<section id=\"table-of-$name\">" "$page" || complain "the table of $name is no chapter"
 done
 grep -o ' id="[^"]*"' "$page" | sed 's/.*="//; s/"//' | sort >"$work/ids"

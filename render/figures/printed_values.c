@@ -156,7 +156,7 @@ static status open_values(const printed_kind *kind, const char *title, const fig
     v->software = g_strconcat("impactlab ", lab_version(), NULL);
     v->caption = text_printf(
         "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, whose constants were "
-        "inferred from these tables (docs/physics.md, section 1). Residual: what the model gives "
+        "inferred from these tables (docs/explanation/model.md). Residual: what the model gives "
         "beyond what is printed, in per cent of that. %s.",
         v->software);
     v->figure = (figure){.title = v->title,

@@ -216,8 +216,7 @@ status table_algorithm(const char *title, const figure_options *o, artwork *out,
 
     t->caption = g_strdup("Numbered as in the thesis, told as the lab runs it for the printed "
                           "model. The corrected model locates "
-                          "contact and release in time instead; docs/physics.md, sections 4 and "
-                          "7.");
+                          "contact and release in time instead (docs/explanation/model.md).");
 
     *out = artwork_of_table(t);
     return STATUS_OK;
@@ -306,7 +305,7 @@ static status open_predictions(const char *table, const char *title, const figur
     t->caption = text_printf(
         "<i>k</i><sub>2</sub> = %g\u2009N·m/rad, wall at 0.1\u2009rad. Differences are from what "
         "the thesis prints. The printed model has the constants inferred from these tables "
-        "(docs/physics.md, section 1); the corrected one has the mechanics derived anew and is not "
+        "(docs/explanation/model.md); the corrected one has the mechanics derived anew and is not "
         "meant to agree. –: the arm swings away as it touches, there is no pulse.",
         4.92 * computed_row(all, table, "printed", "max_force_energy")->k2_factor);
 

@@ -17,7 +17,7 @@
 //
 // gives alpha_k and, eliminated, P_{k-1} and Q_{k-1}. A second sweep from the hub to the tip then
 // yields all accelerations. With N = 2, I1 added to the first link and f at the contact point these
-// are the corrected forms of (2.15)-(2.17); see docs/physics.md.
+// are the corrected forms of (2.15)-(2.17); see docs/explanation/model.md.
 #pragma once
 
 #include "src/arm/chain_link.h"

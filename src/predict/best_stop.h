@@ -1,7 +1,8 @@
 // Bounds for every controller: the least peak and the least settling time after an impact, for a
 // controller that knows the whole state at every instant and commands without delay.
 //
-// In contact the two-link arm has one degree of freedom, x = theta2 - theta_imp (docs/control.md):
+// In contact the two-link arm has one degree of freedom, x = theta2 - theta_imp
+// (docs/explanation/control-design.md):
 //
 //     M x'' = T - D x' - friction - 4 k2 x,     f = (2 k2/l) x - mu x'',    |T| <= Kt times limit
 //

@@ -26,10 +26,10 @@ typedef struct thesis_tables {
 status tables_compute(thesis_tables *t, fault *f);
 
 // The closest reproduction of the delays in the tables, three rows of the model "fitted" for each
-// of them (docs/thesis.md): force and delay of the simulation with seven numbers and switches of
-// the printed model fitted to its 24 cells, the delay counted from the step before contact; and the
-// printed model's delay of the impact dynamics times sqrt(3)/2, which takes its bias away and is
-// not explained.
+// of them (docs/explanation/thesis.md): force and delay of the simulation with seven numbers and
+// switches of the printed model fitted to its 24 cells, the delay counted from the step before
+// contact; and the printed model's delay of the impact dynamics times sqrt(3)/2, which takes its
+// bias away and is not explained.
 void tables_compute_fitted(thesis_tables *t);
 
 // What the thesis prints at the four voltages, 1, 2, 5 and 10 V: values[TABLE_VOLTAGES] of a

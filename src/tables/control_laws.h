@@ -1,6 +1,6 @@
 // The built-in control laws, in one list: a law is added here and as a file in src/rig/laws, and
 // nowhere else. It makes the choices of control.law, the declarations of src/rig/laws/laws.h, the
-// rig's table of controllers and the table in docs/control.md.
+// rig's table of controllers and the manual.
 #pragma once
 
 // Each law: name in the enumeration below, prefix of the controller (hybrid: hybrid_law), word in

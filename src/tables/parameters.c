@@ -25,7 +25,7 @@
 
 // k1 with which the printed model reproduces the thesis's tables. The thesis prints
 // 169 468 N m/rad, with which its own algorithm at h = 1 ms chatters; 90 lies in the range
-// 85-100 that matches Tables 4.1-4.3 best (docs/physics.md, hidden constants).
+// 85-100 that matches Tables 4.1-4.3 best (docs/explanation/model.md).
 #define K1_PRINTED_TABLES 90.0
 #define K1_THESIS         169468.0882
 

@@ -49,7 +49,7 @@ static status resolve_motor(parameters *p, fault *f)
 
 #define LEAST_FACE 1e-9 // mass of a wall's face that is not none [kg]
 
-// Walls nobody has measured: docs/physics.md says where these come from.
+// Walls nobody has measured: docs/explanation/model.md says where these come from.
 #define SOFT_STIFFNESS  75e3 // Kelvin-Voigt [N/m]
 #define SOFT_DAMPING    20.0 // [N s/m]
 #define HERTZ_STIFFNESS 1e6  // Hunt-Crossley [N/m^1.5]

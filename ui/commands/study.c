@@ -64,7 +64,8 @@ const command study_command = {
             "steps from 1e-2\ndown to 1e-6 s, with the error of first contact, first pulse's peak "
             "and steady force.\nsensor: the scenario (corrected/plane-wall-fast) with 2 to 32 "
             "links; the force itself has no limit,\nwhat a first-order sensor of 0.5, 1 or 2 ms "
-            "reads has one. See docs/methods.md and\ndocs/what-a-sensor-sees.md. ^C ends either "
+            "reads has one. See docs/explanation/methods.md and\ndocs/explanation/trust.md. ^C "
+            "ends either "
             "with what it "
             "has until then (exit status 130).\n",
     .least = 1,

@@ -139,7 +139,7 @@ static void print_tables(const thesis_tables *t)
                100 * tables_mean_error(t, "corrected", labels[i].quantity));
     }
 
-    printf("\nInferred, since the thesis does not print them (docs/physics.md):\n");
+    printf("\nInferred, since the thesis does not print them (docs/explanation/model.md):\n");
     for (int i = 0; i < INFERRED; i++) {
         printf("  %s\n", inferred[i]);
     }
@@ -185,7 +185,7 @@ const command tables_command = {
     .help = "Each row is computed with the equations as the thesis prints them and with the "
             "corrected ones. --fitted shows the delays of the simulation with seven numbers and "
             "switches of the printed\nmodel fitted to them, and those of the impact dynamics by "
-            "the integral that belongs to (4.19)\n(docs/thesis.md).\n",
+            "the integral that belongs to (4.19)\n(docs/explanation/thesis.md).\n",
     .options = {&json_options, &options, &quiet_options},
     .run = tables,
 };

@@ -3,7 +3,7 @@
 // (reverse-torque), and the controller that 5.4 calls ideal (recovering).
 //
 // In contact the arm has one degree of freedom, theta, with the wall at theta_imp
-// (docs/control.md):
+// (docs/explanation/control-design.md):
 //
 //     M theta'' = K u - D theta' - k_st sign(theta') + 4 k2 (theta_imp - theta)       (5.13)
 //     M = I1 + 2 I + m l^2/2                                                         (5.21)

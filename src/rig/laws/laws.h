@@ -1,5 +1,5 @@
 // The built-in control laws. Each is written against src/rig/controller.h and nothing else of the
-// rig; docs/control.md says where each comes from.
+// rig; docs/explanation/control-design.md says where each comes from.
 #pragma once
 
 #include "src/tables/control_laws.h"

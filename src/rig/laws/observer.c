@@ -1,6 +1,6 @@
 // A law that needs no tuning: an observer of arm, wall and unknown torque
 // (src/rig/estimation/arm_observer.h), and feedback of its estimate with gains from Riccati
-// equations. docs/control.md derives it.
+// equations. docs/explanation/control-design.md derives it.
 //
 // TRAVEL brings the arm to the wall without vibration, from the guarded distance on no faster than
 // what the commanded force stops; where the wall is not in doubt, in the least time that ends so.
@@ -33,7 +33,7 @@ static const controller_parameter table[PARAMETERS] = {
      .description = "by which the wall may be nearer than believed; 0 comes in the least time"},
 };
 
-// The numbers of the law, derived in docs/control.md.
+// The numbers of the law, derived in docs/explanation/control-design.md.
 #define BIAS_TIME       0.1   // over which the error of the estimated force is averaged [s]
 #define MOST_CORRECTION 0.3   // that it may add to the force aimed at, a share
 #define LOST_AFTER      2     // readings without force that mean lost contact

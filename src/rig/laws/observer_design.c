@@ -9,7 +9,7 @@
 
 #define PI 3.14159265358979323846
 
-// The numbers of the design, derived in docs/control.md.
+// The numbers of the design, derived in docs/explanation/control-design.md.
 #define TRAVEL_TIME  0.05 // in which the arm takes up a wanted speed [s]
 #define LEAST_MARGIN 0.05 // of p h over 1, below which the force does not run away with the motion
 

@@ -1,5 +1,6 @@
 // What the law `observer` makes of one arm that it may be on: the observer of that arm, gains from
-// Riccati equations, and the speeds of its approach. docs/control.md derives them.
+// Riccati equations, and the speeds of its approach. docs/explanation/control-design.md derives
+// them.
 #pragma once
 
 #include "src/rig/estimation/arm_observer.h"

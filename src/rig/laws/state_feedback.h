@@ -3,7 +3,7 @@
 // In contact the two-link arm has one degree of freedom, x = theta2 - theta_imp:
 //
 //     M x'' = Kt u - D x' - friction - 4 k2 x,      f = 4 k2 x - mu x'',
-//     M = I1 + 2 I + m l^2/2,     mu = (m l^2/4 - I)/l  (l = 1/2 of the beam; see docs/control.md)
+//     M = I1 + 2 I + m l^2/2,     mu = (m l^2/4 - I)/l  (l = 1/2 of the beam)
 //
 // so braking presses, and with f as the input x'' = s^2 (x - f/(4 k2)), s^2 = 4 k2/mu, is unstable.
 // The feedback that makes the sum of (f - command)^2 + effort u^2 least comes from the discrete
