@@ -1,7 +1,7 @@
 // Shared by tests of sweeps: a folder of their own, and sweeps of one scenario.
 #pragma once
 
-#include "src/study/sweep_rows.h"
+#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
 
 // The scenario that is swept: two links at 1 V for 0.6 s.

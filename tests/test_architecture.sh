@@ -10,7 +10,8 @@ set -euo pipefail
 cd "$1"
 
 rooms="src/base src/tables src/arm src/solve src/predict src/rig/controller src/rig/external
-    src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/api/impactlab src/api
+    src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/study/store
+    src/api/impactlab src/api
     render/page render/plot render/scene render/figures
     ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/manual ui/commands ui"
 

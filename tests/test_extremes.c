@@ -6,7 +6,7 @@
 
 #include "src/run/run.h"
 #include "src/run/together.h"
-#include "src/study/sweep_run.h"
+#include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 
 static void print_sentence(void *context, const char *sentence)

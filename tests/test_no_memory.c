@@ -9,7 +9,7 @@
 #include "src/study/batch.h"
 #include "src/study/compare.h"
 #include "src/study/robust.h"
-#include "src/study/sweep_rows.h"
+#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
 #include "tests/refused_requests.h"
 

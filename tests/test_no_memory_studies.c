@@ -7,10 +7,8 @@
 #include "src/study/convergence.h"
 #include "src/study/robust.h"
 #include "src/study/sensor_view.h"
-#include "src/study/sweep_merge.h"
-#include "src/study/sweep_rows.h"
+#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
-#include "src/study/sweep_table.h"
 #include "src/study/thesis_tables.h"
 #include "tests/refused_requests.h"
 

@@ -10,7 +10,7 @@
 
 #include "src/scenario/outside.h"
 #include "src/session/session.h"
-#include "src/study/sweep_merge.h"
+#include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/study/sweep_run.h"
+#include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 
 // A file with the text; the name is in `path`.

@@ -7,7 +7,7 @@
 
 #include "src/run/run.h"
 #include "src/solve/taylor_lanes.h"
-#include "src/study/sweep_rows.h"
+#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"

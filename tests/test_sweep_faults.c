@@ -6,9 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/study/sweep_merge.h"
-#include "src/study/sweep_rows.h"
-#include "src/study/sweep_table.h"
+#include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 
 enum { RUNS = 60, COMMIT_EVERY = 25 };

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 

@@ -4,8 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/study/sweep_merge.h"
-#include "src/study/sweep_rows.h"
+#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
 #include "tests/check.h"
 

@@ -3,7 +3,7 @@
 
 #include "render/figures/recipe_model.h"
 #include "render/figures/run_figure.h"
-#include "src/study/sweep_table.h"
+#include "src/study/store/sweep_store.h"
 
 // A source with its run or data.
 typedef struct opened_source {

@@ -14,7 +14,6 @@
 #include "src/solve/contact_machine.h"
 #include "src/solve/taylor_lanes.h"
 #include "src/study/batch.h"
-#include "src/study/sweep_run.h"
 #include "src/study/thesis_tables.h"
 
 #define CHAIN_STEP 1e-3 // [s]
@@ -399,38 +398,6 @@ static status measure_csv(double *value, fault *f)
                              : fault_set(f, code, "rows cannot be written: %s", status_text(code));
 }
 
-// A run of a sweep of voltages, on one thread into a database that is removed afterwards.
-static status measure_sweep(double *value, fault *f)
-{
-    char vary[] = "motor.voltage=0.5:1.5:2000", *varied[] = {vary};
-    char path[] = "/tmp/impactlab-bench-XXXXXX";
-    static const char *const settings[][2] = {{NULL, NULL}};
-    scenario s = timed_scenario(settings);
-    const sweep_request request = {.vary = varied, .vary_count = 1};
-    const sweep_options options = {.jobs = 1};
-    const int file = mkstemp(path);
-    if (file < 0) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "no database can be made as '%s'", path);
-    }
-
-    // from the request to the last commit
-    const double start = bench_computing_time();
-    sweep of;
-    sweep_store *store = NULL;
-    sweep_progress progress = {0};
-    status code = sweep_init(&of, &s, &request, f);
-    if (code == STATUS_OK) {
-        code = sweep_store_open(&store, path, &of, f);
-        code = code == STATUS_OK ? sweep_run(&of, store, &options, &progress, f) : code;
-        sweep_store_close(store);
-        sweep_finish(&of);
-        *value = 1e6 * (bench_computing_time() - start) / (double)progress.total;
-    }
-    close(file);
-    unlink(path);
-    return code;
-}
-
 static status measure_tables(double *value, fault *f)
 {
     thesis_tables t;
@@ -463,7 +430,6 @@ const benchmark bench_table[] = {
     {"batch_width_2_us_per_run", "us", false, measure_batch_2},
     {"batch_width_4_us_per_run", "us", false, measure_batch_4},
     {"batch_width_8_us_per_run", "us", false, measure_batch_8},
-    {"sweep_us_per_run", "us", false, measure_sweep},
 
     // what is made of runs
     {"predict_us", "us", false, measure_predict},

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "src/study/sweep_rows.h"
-
 static const double robust_levels[ROBUST_QUANTILES] = {
     [ROBUST_MEDIAN] = 0.5, [ROBUST_NINE_TENTHS] = 0.9, [ROBUST_WORST] = 1};
 
@@ -131,8 +129,7 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sto
     out->overshoots = calloc(s->run_count, sizeof *out->overshoots);
     status code = values != NULL && out->overshoots != NULL ? STATUS_OK : fault_no_memory(f);
     for (int q = 0; q < QUANTITIES && code == STATUS_OK; q++) {
-        code = sweep_store_quantity(store, keys[q], values + (size_t)q * s->run_count, &out->failed,
-                                    f);
+        code = store->quantity(store, keys[q], values + (size_t)q * s->run_count, &out->failed, f);
     }
 
     if (code == STATUS_OK) {

@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "src/study/robust_set.h"
-#include "src/study/sweep_store.h"
+#include "src/study/sweep_run.h"
 
 // The quantiles that tables show: half of all runs, nine tenths, and the worst.
 enum { ROBUST_MEDIAN, ROBUST_NINE_TENTHS, ROBUST_WORST, ROBUST_QUANTILES };

@@ -12,8 +12,6 @@
 #include "src/base/version.h"
 #include "src/scenario/outside.h"
 
-enum { MOST_LINES = sizeof((definition *)0)->lines / sizeof(definition_line) };
-
 // What comes before the path of a parameter in the key of what it names outside.
 static const char content_of[] = "content of ";
 static const char untold[] = "cannot be told"; // in place of a digest
@@ -23,7 +21,7 @@ __attribute__((format(printf, 3, 4))) static void define(definition *d, const ch
                                                          const char *format, ...)
 {
     va_list list;
-    assert(d->count < MOST_LINES);
+    assert(d->count < DEFINITION_LINES);
     definition_line *line = &d->lines[d->count];
 
     // a value may be long: it has memory of its own
@@ -36,6 +34,12 @@ __attribute__((format(printf, 3, 4))) static void define(definition *d, const ch
         d->count++;
     }
     va_end(list);
+}
+
+void definition_add(definition *d, const char *key, const char *value)
+{
+    assert(d != NULL && key != NULL && value != NULL);
+    define(d, key, "%s", value);
 }
 
 static bool is_varied(const sweep *s, int parameter)
@@ -193,48 +197,6 @@ const char *definition_value(const definition *d, const char *key)
     return NULL;
 }
 
-// Adds the line that a statement stands on.
-static status read_line(definition *d, const char *path, sqlite3_stmt *row, fault *f)
-{
-    const char *key = (const char *)sqlite3_column_text(row, 0);
-    const char *value = (const char *)sqlite3_column_text(row, 1);
-    if (sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM) {
-        return fault_no_memory(f);
-    }
-    if (key == NULL || value == NULL || strlen(key) >= sizeof d->lines[0].key ||
-        strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
-        strlen(value) != (size_t)sqlite3_column_bytes(row, 1)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%s' has a line without text in what defines its sweep", path);
-    }
-    if (d->count == MOST_LINES || definition_value(d, key) != NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%s' has more lines in what defines its sweep than this program writes",
-                         path);
-    }
-    define(d, key, "%s", value);
-    return d->code == STATUS_OK ? STATUS_OK : fault_no_memory(f);
-}
-
-status definition_read(sweep_store *store, definition *d, fault *f)
-{
-    assert(store != NULL && d != NULL);
-    sqlite3_stmt *rows;
-    memset(d, 0, sizeof *d);
-
-    // as it was written, line by line
-    d->code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
-    while (d->code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
-        d->code = read_line(d, store->path, rows, f);
-    }
-
-    // a damaged file shows at the end
-    if (sqlite3_finalize(rows) != SQLITE_OK && d->code == STATUS_OK) {
-        d->code = database_fault(store, f);
-    }
-    return d->code;
-}
-
 // The whole number that a line holds. False if it is none, or too large.
 static bool read_number(const definition *d, const char *key, unsigned long long *number)
 {
@@ -291,28 +253,6 @@ status definition_plan(const definition *d, const char *path, sweep *plan, fault
                                                   "'%.200s' holds no sweep that this "
                                                   "version can make: %.700s",
                                                   path, why.text);
-}
-
-status definition_write(sweep_store *store, const definition *d, fault *f)
-{
-    assert(store != NULL && d != NULL);
-    sqlite3_stmt *insert;
-
-    // in the order in which they were defined
-    status code =
-        database_prepare(store, &insert, "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
-
-    for (int i = 0; i < d->count && code == STATUS_OK; i++) {
-        sqlite3_bind_text(insert, 1, d->lines[i].key, -1, SQLITE_STATIC);
-        sqlite3_bind_text(insert, 2, d->lines[i].value, -1, SQLITE_STATIC);
-
-        if (sqlite3_step(insert) != SQLITE_DONE) {
-            code = database_fault(store, f);
-        }
-        sqlite3_reset(insert);
-    }
-    sqlite3_finalize(insert);
-    return code;
 }
 
 // Adds one difference to the sentence; beyond the first few they are only counted.

@@ -3,15 +3,17 @@
 #pragma once
 
 #include "src/base/sha256.h"
-#include "src/study/sweep_database.h"
+#include "src/study/sweep.h"
 
 typedef struct definition_line {
     char key[64];
     char *value;
 } definition_line;
 
+enum { DEFINITION_LINES = 256 };
+
 typedef struct definition {
-    definition_line lines[256];
+    definition_line lines[DEFINITION_LINES];
     int count;
     status code; // STATUS_OK, or why it is incomplete
 } definition;
@@ -28,9 +30,8 @@ void definition_stamp(const sweep *s, char stamp[SHA256_TEXT]);
 // A text that two definitions share only if they are equal (SHA-256 of their lines).
 void definition_digest(const definition *d, char digest[SHA256_TEXT]);
 
-// Reads the definition that the database holds, with the same remarks; STATUS_BAD_ARGUMENT if this
-// program never writes such a one.
-status definition_read(sweep_store *store, definition *d, fault *f);
+// Adds a line with a copy of the value; without memory d->code says so.
+void definition_add(definition *d, const char *key, const char *value);
 
 // The plan of the sweep that the definition in the database at `path` is of: which values each run
 // has. STATUS_BAD_ARGUMENT if it is of none; else sweep_finish.
@@ -38,9 +39,6 @@ status definition_plan(const definition *d, const char *path, sweep *plan, fault
 
 // The value of a key, NULL if the definition has none.
 const char *definition_value(const definition *d, const char *key);
-
-// Writes the definition into the table `sweep`.
-status definition_write(sweep_store *store, const definition *d, fault *f);
 
 // STATUS_BAD_ARGUMENT if the definition in the database at `path` is not that of now, or it cannot
 // be told whether the runs read the same from outside; f says in what they differ.

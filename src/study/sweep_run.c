@@ -10,7 +10,6 @@
 #include "src/run/together.h"
 #include "src/study/pool_ranks.h"
 #include "src/study/sweep_definition.h"
-#include "src/study/sweep_rows.h"
 
 #define COMMIT_INTERVAL 0.5 // [s]
 
@@ -119,7 +118,7 @@ static status store_run(sweep_execution *e, size_t run, const summary *s, fault 
     }
 
     // stored, and counted once it is
-    status code = sweep_store_put(e->store, run, s, f);
+    status code = e->store->put(e->store, run, s, f);
     if (code == STATUS_OK) {
         e->progress->done++;
         e->progress->done_now++;
@@ -157,7 +156,7 @@ static status commit_and_report(void *context, bool over, fault *f)
     sweep_execution *e = context;
     status code = STATUS_OK;
     if (over || clock_seconds(CLOCK_MONOTONIC) - e->committed >= COMMIT_INTERVAL) {
-        code = sweep_store_commit(e->store, f);
+        code = e->store->commit(e->store, f);
         e->committed = clock_seconds(CLOCK_MONOTONIC);
     }
     if (!over) {
@@ -295,7 +294,7 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
 
     // the rest is computed
     size_t stored;
-    status code = sweep_store_present(store, present, &stored, f);
+    status code = store->present(store, present, &stored, f);
     if (code == STATUS_OK) {
         keep_to_share(&e, present);
         code = run_missing(&e, present, f);

@@ -7,9 +7,25 @@
 #include "src/study/pool.h"
 #include "src/study/ranks.h"
 #include "src/study/sweep.h"
-#include "src/study/sweep_store.h"
 
 enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };
+
+// Where the rows of a sweep are kept, one for each run that was computed: what a store can do. Its
+// functions are given itself; their faults are sentences.
+typedef struct sweep_store {
+    // Marks present[run] = 1 for every run the store has, 0 for the others (run_count of them), and
+    // counts them.
+    status (*present)(struct sweep_store *store, unsigned char *present, size_t *count, fault *f);
+
+    // Adds the result of run `run`; `commit` makes permanent what was put since the last one.
+    status (*put)(struct sweep_store *store, size_t run, const summary *result, fault *f);
+    status (*commit)(struct sweep_store *store, fault *f);
+
+    // One quantity of every run, in order: run_count numbers, NaN where a run failed, is missing,
+    // or the quantity did not occur. `failed` (may be NULL) receives the number of failed runs.
+    status (*quantity)(struct sweep_store *store, const char *key, double *values, size_t *failed,
+                       fault *f);
+} sweep_store;
 
 // How far a sweep has come.
 typedef struct sweep_progress {

@@ -5,9 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/study/sweep_merge.h"
-#include "src/study/sweep_rows.h"
-#include "src/study/sweep_table.h"
+#include "src/study/store/sweep_store.h"
 
 static void ignore(void *context, const char *sentence)
 {

@@ -9,10 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/study/sweep_merge.h"
-#include "src/study/sweep_rows.h"
+#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
-#include "src/study/sweep_table.h"
 
 enum { RUNS = 6, MOST_STEPS = 20000 };
 

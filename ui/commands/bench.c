@@ -9,6 +9,7 @@
 
 #include "src/base/shipped.h"
 #include "src/study/bench.h"
+#include "src/study/store/sweep_store.h"
 #include "src/base/words.h"
 #include "src/base/version.h"
 #include "ui/commands/pictures.h"
@@ -87,7 +88,42 @@ static status measure_start(double *value, fault *f)
     return code;
 }
 
+// A run of a sweep of voltages, on one thread into a database that is removed afterwards.
+static status measure_sweep(double *value, fault *f)
+{
+    char vary[] = "motor.voltage=0.5:1.5:2000", *varied[] = {vary};
+    char path[] = "/tmp/impactlab-bench-XXXXXX";
+    static char name[] = "bench", none[] = "";
+    scenario s = {.name = name, .file = none, .title = none, .description = none};
+    const sweep_request request = {.vary = varied, .vary_count = 1};
+    const sweep_options options = {.jobs = 1};
+    const int file = mkstemp(path);
+    parameters_defaults(&s.parameters, ARM_CORRECTED);
+    parameters_resolve(&s.parameters, NULL); // defaults go together
+    if (file < 0) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "no database can be made as '%s'", path);
+    }
+
+    // from the request to the last commit
+    const double start = bench_computing_time();
+    sweep of;
+    sweep_store *store = NULL;
+    sweep_progress progress = {0};
+    status code = sweep_init(&of, &s, &request, f);
+    if (code == STATUS_OK) {
+        code = sweep_store_open(&store, path, &of, f);
+        code = code == STATUS_OK ? sweep_run(&of, store, &options, &progress, f) : code;
+        sweep_store_close(store);
+        sweep_finish(&of);
+        *value = 1e6 * (bench_computing_time() - start) / (double)progress.total;
+    }
+    close(file);
+    unlink(path);
+    return code;
+}
+
 static const benchmark own_table[] = {
+    {"sweep_us_per_run", "us", false, measure_sweep},
     {"start_ms", "ms", false, measure_start},
     {"figures_s", "s", false, measure_figures},
 };

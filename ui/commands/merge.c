@@ -2,7 +2,7 @@
 #include "ui/commands/command.h"
 
 #include "src/base/json.h"
-#include "src/study/sweep_merge.h"
+#include "src/study/store/sweep_store.h"
 
 static json_t *merged_object(const char *path, const sweep_merged *merged)
 {

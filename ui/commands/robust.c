@@ -7,6 +7,7 @@
 #include "render/plot/study_plot.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
+#include "src/study/store/sweep_store.h"
 #include "src/study/robust.h"
 #include "ui/commands/many_runs.h"
 #include "ui/commands/pictures.h"

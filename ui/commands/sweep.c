@@ -1,4 +1,5 @@
 // impactlab sweep: a run for each of many parameter values.
+#include "src/study/store/sweep_store.h"
 #include "ui/commands/command.h"
 
 #include <math.h>

@@ -7,7 +7,7 @@
 #include "render/plot/study_plot.h"
 #include "ui/commands/many_runs.h"
 #include "ui/commands/pictures.h"
-#include "src/study/sweep_rows.h"
+#include "src/study/store/sweep_store.h"
 
 enum { ROWS_SHOWN = 40 };
 

@@ -1,4 +1,4 @@
-#include "src/study/sweep_database.h"
+#include "src/study/store/sweep_database.h"
 
 #include <assert.h>
 #include <math.h>
@@ -15,7 +15,7 @@
 // Of a value or a row: what is stored is shorter, what a file may make up on reading need not be.
 enum { MOST_BYTES = 16 << 20 };
 
-status database_fault(const sweep_store *store, fault *f)
+status database_fault(const sweep_database *store, fault *f)
 {
     int code = sqlite3_errcode(store->database) & 0xFF;
     const char *why = sqlite3_errmsg(store->database);
@@ -45,7 +45,7 @@ status database_fault(const sweep_store *store, fault *f)
     return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path, why);
 }
 
-status database_moved_fault(const sweep_store *store, fault *f)
+status database_moved_fault(const sweep_database *store, fault *f)
 {
     return fault_set(f, STATUS_CANNOT_WRITE,
                      "'%s' was deleted, moved or replaced while runs were added to it; those since "
@@ -53,14 +53,14 @@ status database_moved_fault(const sweep_store *store, fault *f)
                      store->path);
 }
 
-status database_execute(sweep_store *store, const char *sql, fault *f)
+status database_execute(sweep_database *store, const char *sql, fault *f)
 {
     return sqlite3_exec(store->database, sql, NULL, NULL, NULL) == SQLITE_OK
                ? STATUS_OK
                : database_fault(store, f);
 }
 
-status database_prepare(sweep_store *store, sqlite3_stmt **statement, const char *sql, fault *f)
+status database_prepare(sweep_database *store, sqlite3_stmt **statement, const char *sql, fault *f)
 {
     return sqlite3_prepare_v2(store->database, sql, -1, statement, NULL) == SQLITE_OK
                ? STATUS_OK
@@ -68,7 +68,7 @@ status database_prepare(sweep_store *store, sqlite3_stmt **statement, const char
 }
 
 // The first number that a query gives, 0 if it gives none.
-static status database_query_number(sweep_store *store, const char *sql, long long *number,
+static status database_query_number(sweep_database *store, const char *sql, long long *number,
                                     fault *f)
 {
     sqlite3_stmt *statement;
@@ -83,7 +83,7 @@ static status database_query_number(sweep_store *store, const char *sql, long lo
     return code;
 }
 
-status database_recognise(sweep_store *store, bool *empty, fault *f)
+status database_recognise(sweep_database *store, bool *empty, fault *f)
 {
     assert(store != NULL && empty != NULL);
     long long tables, mark = 0, layout = 0;
@@ -110,7 +110,7 @@ static bool has_words(const parameter_info *info)
 }
 
 // A row a run: its number, the values of the axes, how it ended, the summary.
-static status create_run_table(sweep_store *store, fault *f)
+static status create_run_table(sweep_database *store, fault *f)
 {
     const sweep *s = store->sweep;
     sqlite3_str *sql = sqlite3_str_new(store->database);
@@ -139,7 +139,7 @@ static status create_run_table(sweep_store *store, fault *f)
     return code;
 }
 
-status database_create_tables(sweep_store *store, fault *f)
+status database_create_tables(sweep_database *store, fault *f)
 {
     assert(store != NULL && store->sweep != NULL);
     status code =
@@ -151,7 +151,7 @@ status database_create_tables(sweep_store *store, fault *f)
     return code == STATUS_OK ? create_run_table(store, f) : code;
 }
 
-status database_prepare_insert(sweep_store *store, sqlite3_stmt **insert, fault *f)
+status database_prepare_insert(sweep_database *store, sqlite3_stmt **insert, fault *f)
 {
     assert(store != NULL && store->sweep != NULL && insert != NULL);
     sqlite3_str *sql = sqlite3_str_new(store->database);
@@ -231,7 +231,8 @@ static bool is_outcome(int word, bool failed, sqlite3_stmt *row, int column)
 }
 
 // Checks the row that a statement stands on: SQLite lets others write anything into any column.
-static status check_row(const sweep_store *store, sqlite3_stmt *row, unsigned char *seen, fault *f)
+static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned char *seen,
+                        fault *f)
 {
     const sweep *s = store->sweep;
     const long long run = sqlite3_column_int64(row, 0);
@@ -272,7 +273,7 @@ static status check_row(const sweep_store *store, sqlite3_stmt *row, unsigned ch
 }
 
 // The same of all rows.
-static status check_rows(sweep_store *store, fault *f)
+static status check_rows(sweep_database *store, fault *f)
 {
     sqlite3_stmt *rows = NULL;
     unsigned char *seen = calloc(store->sweep->run_count, 1);
@@ -291,7 +292,7 @@ static status check_rows(sweep_store *store, fault *f)
     return code;
 }
 
-status database_check_runs(sweep_store *store, fault *f)
+status database_check_runs(sweep_database *store, fault *f)
 {
     assert(store != NULL && store->sweep != NULL);
     const sweep *s = store->sweep;
@@ -320,9 +321,77 @@ status database_check_runs(sweep_store *store, fault *f)
     return code == STATUS_OK ? check_rows(store, f) : code;
 }
 
+// --- the definition of the sweep ---
+
+// Adds the line that a statement stands on.
+static status read_line(definition *d, const char *path, sqlite3_stmt *row, fault *f)
+{
+    const char *key = (const char *)sqlite3_column_text(row, 0);
+    const char *value = (const char *)sqlite3_column_text(row, 1);
+    if (sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM) {
+        return fault_no_memory(f);
+    }
+    if (key == NULL || value == NULL || strlen(key) >= sizeof d->lines[0].key ||
+        strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
+        strlen(value) != (size_t)sqlite3_column_bytes(row, 1)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' has a line without text in what defines its sweep", path);
+    }
+    if (d->count == DEFINITION_LINES || definition_value(d, key) != NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' has more lines in what defines its sweep than this program writes",
+                         path);
+    }
+    definition_add(d, key, value);
+    return d->code == STATUS_OK ? STATUS_OK : fault_no_memory(f);
+}
+
+status definition_read(sweep_database *store, definition *d, fault *f)
+{
+    assert(store != NULL && d != NULL);
+    sqlite3_stmt *rows;
+    memset(d, 0, sizeof *d);
+
+    // as it was written, line by line
+    d->code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
+    while (d->code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
+        d->code = read_line(d, store->path, rows, f);
+    }
+
+    // a damaged file shows at the end
+    if (sqlite3_finalize(rows) != SQLITE_OK && d->code == STATUS_OK) {
+        d->code = database_fault(store, f);
+    }
+    return d->code;
+}
+
+status definition_write(sweep_database *store, const definition *d, fault *f)
+{
+    assert(store != NULL && d != NULL);
+    sqlite3_stmt *insert;
+
+    // in the order in which they were defined
+    status code =
+        database_prepare(store, &insert, "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
+
+    for (int i = 0; i < d->count && code == STATUS_OK; i++) {
+        sqlite3_bind_text(insert, 1, d->lines[i].key, -1, SQLITE_STATIC);
+        sqlite3_bind_text(insert, 2, d->lines[i].value, -1, SQLITE_STATIC);
+
+        if (sqlite3_step(insert) != SQLITE_DONE) {
+            code = database_fault(store, f);
+        }
+        sqlite3_reset(insert);
+    }
+    sqlite3_finalize(insert);
+    return code;
+}
+
+// --- opening ---
+
 // A journal that an interrupted sweep left is rolled back, and one of a transaction over several
 // databases then has SQLite delete the file it names at its end. This program makes no such one.
-static status check_journal(const sweep_store *store, fault *f)
+static status check_journal(const sweep_database *store, fault *f)
 {
     static const unsigned char mark[] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
     unsigned char end[sizeof mark];
@@ -345,7 +414,7 @@ static status check_journal(const sweep_store *store, fault *f)
                : STATUS_OK;
 }
 
-status database_open(sweep_store *store, int flags, fault *f)
+status database_open(sweep_database *store, int flags, fault *f)
 {
     assert(store != NULL);
     // a store is one thread's at a time: no locks round every value

@@ -1,26 +1,26 @@
-#include "src/study/sweep_merge.h"
-
+// Brings the parts of one sweep, computed apart, together in one database.
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/base/whole_file.h"
-#include "src/study/sweep_definition.h"
+#include "src/study/store/sweep_database.h"
+#include "src/study/store/sweep_store.h"
 
 // The merged sweep while it grows, in memory.
 typedef struct merging {
     sweep plan;            // which values each run has
     definition definition; // of the first part; all others are compared with it
-    sweep_store store;     // in memory
+    sweep_database store;  // in memory
     sweep_merged *merged;
 } merging;
 
 // Opens a part for reading and reads what defines it.
-static status open_part(sweep_store *part, char *path, definition *d, fault *f)
+static status open_part(sweep_database *part, char *path, definition *d, fault *f)
 {
     bool empty;
-    *part = (sweep_store){.path = path, .lock = -1};
+    *part = (sweep_database){.path = path, .lock = -1};
     status code = database_open(part, SQLITE_OPEN_READONLY, f);
     code = code == STATUS_OK ? database_execute(part, "BEGIN", f) : code; // as it is now
     code = code == STATUS_OK ? database_recognise(part, &empty, f) : code;
@@ -35,7 +35,7 @@ static status begin(merging *m, const char *path, fault *f)
 {
     status code = definition_plan(&m->definition, path, &m->plan, f);
     m->merged->total = m->plan.run_count;
-    m->store = (sweep_store){.sweep = &m->plan, .lock = -1};
+    m->store = (sweep_database){.sweep = &m->plan, .lock = -1};
     code = code == STATUS_OK
                ? database_open(&m->store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f)
                : code;
@@ -65,7 +65,7 @@ static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
 }
 
 // Adds all rows of a part.
-static status add_rows(merging *m, sweep_store *part, fault *f)
+static status add_rows(merging *m, sweep_database *part, fault *f)
 {
     sqlite3_stmt *rows;
     part->sweep = &m->plan;
@@ -91,7 +91,7 @@ static status add_rows(merging *m, sweep_store *part, fault *f)
 static status add_part(merging *m, char *path, bool first, fault *f)
 {
     definition own = {.count = 0};
-    sweep_store part;
+    sweep_database part;
     definition *d = first ? &m->definition : &own;
 
     // its definition, then its rows

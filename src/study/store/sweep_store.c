@@ -1,4 +1,4 @@
-#include "src/study/sweep_store.h"
+#include "src/study/store/sweep_store.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -9,10 +9,10 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "src/study/sweep_definition.h"
+#include "src/study/store/sweep_database.h"
 
 // Creates the tables and writes the definition, all in one transaction.
-static status create_tables(sweep_store *store, const definition *d, fault *f)
+static status create_tables(sweep_database *store, const definition *d, fault *f)
 {
     status code = database_execute(store, "BEGIN IMMEDIATE", f);
     code = code == STATUS_OK ? database_create_tables(store, f) : code;
@@ -26,7 +26,7 @@ static status create_tables(sweep_store *store, const definition *d, fault *f)
 }
 
 // STATUS_OK if the definition that the database holds is the sweep's.
-static status check_definition(sweep_store *store, const definition *now, fault *f)
+static status check_definition(sweep_database *store, const definition *now, fault *f)
 {
     definition was;
     status code = definition_read(store, &was, f);
@@ -36,7 +36,7 @@ static status check_definition(sweep_store *store, const definition *now, fault 
 }
 
 // Continues the sweep in the database or starts it.
-static status adopt(sweep_store *store, fault *f)
+static status adopt(sweep_database *store, fault *f)
 {
     definition now;
     bool empty;
@@ -61,7 +61,7 @@ static status adopt(sweep_store *store, fault *f)
 }
 
 // STATUS_OK if what the runs read from outside is what it was when the store was opened.
-static status check_outside(sweep_store *store, fault *f)
+static status check_outside(sweep_database *store, fault *f)
 {
     char stamp[SHA256_TEXT];
     if (store->path == NULL) {
@@ -85,7 +85,7 @@ static status check_outside(sweep_store *store, fault *f)
 
 // Keeps a second sweep from writing to the same file. The descriptor stays open as long as the
 // database: closing it earlier would drop the database's own locks on the file.
-static status lock_file(sweep_store *store, fault *f)
+static status lock_file(sweep_database *store, fault *f)
 {
     store->lock = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (store->lock < 0) {
@@ -101,7 +101,7 @@ static status lock_file(sweep_store *store, fault *f)
 }
 
 // Opens the file, or memory, and what the sweep needs of it.
-static status open_database(sweep_store *store, fault *f)
+static status open_database(sweep_database *store, fault *f)
 {
     if (store->path != NULL) {
         status code = lock_file(store, f);
@@ -124,12 +124,16 @@ static status open_database(sweep_store *store, fault *f)
 status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, fault *f)
 {
     assert(opened != NULL && s != NULL);
-    sweep_store *store = calloc(1, sizeof *store);
+    sweep_database *store = calloc(1, sizeof *store);
     *opened = NULL;
     if (store == NULL) {
         return fault_no_memory(f);
     }
 
+    store->store = (sweep_store){.present = sweep_store_present,
+                                 .put = sweep_store_put,
+                                 .commit = sweep_store_commit,
+                                 .quantity = sweep_store_quantity};
     store->sweep = s;
     store->lock = -1;
     status code = STATUS_OK;
@@ -142,20 +146,21 @@ status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, 
 
     code = code == STATUS_OK ? open_database(store, f) : code;
     if (code != STATUS_OK) {
-        sweep_store_close(store);
+        sweep_store_close(&store->store);
         return code;
     }
-    *opened = store;
+    *opened = &store->store;
     return STATUS_OK;
 }
 
-void sweep_store_close(sweep_store *store)
+void sweep_store_close(sweep_store *closed)
 {
-    if (store == NULL) {
+    if (closed == NULL) {
         return;
     }
+    sweep_database *store = database_of(closed);
     if (store->in_transaction) {
-        sweep_store_commit(store, NULL);
+        sweep_store_commit(closed, NULL);
     }
 
     // the database before the lock that guards it
@@ -168,9 +173,9 @@ void sweep_store_close(sweep_store *store)
     free(store);
 }
 
-status sweep_store_commit(sweep_store *store, fault *f)
+status sweep_store_commit(sweep_store *of, fault *f)
 {
-    assert(store != NULL);
+    sweep_database *store = database_of(of);
     if (!store->in_transaction) {
         return STATUS_OK;
     }

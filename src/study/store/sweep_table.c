@@ -1,13 +1,13 @@
-#include "src/study/sweep_table.h"
-
+// Columns of a sweep's database, for whoever draws them.
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
-#include "src/study/sweep_database.h"
+#include "src/study/store/sweep_database.h"
+#include "src/study/store/sweep_store.h"
 
 // All rows of a statement with a number in each of its columns.
-static status read_rows(const sweep_store *store, sqlite3_stmt *rows, int key_count,
+static status read_rows(const sweep_database *store, sqlite3_stmt *rows, int key_count,
                         double **columns, size_t *count, fault *f)
 {
     size_t room = 0;
@@ -40,7 +40,7 @@ static status read_rows(const sweep_store *store, sqlite3_stmt *rows, int key_co
 }
 
 // Looks for a column in the runs' table: sqlite would take an unknown name for a text.
-static status find_column(sweep_store *store, const char *key, fault *f)
+static status find_column(sweep_database *store, const char *key, fault *f)
 {
     sqlite3_stmt *found;
     status code = database_prepare(store, &found,
@@ -60,8 +60,8 @@ static status find_column(sweep_store *store, const char *key, fault *f)
 }
 
 // Opens the rows of runs that have a number in every column.
-static status query(sweep_store *store, const char *const *keys, int key_count, sqlite3_stmt **rows,
-                    fault *f)
+static status query(sweep_database *store, const char *const *keys, int key_count,
+                    sqlite3_stmt **rows, fault *f)
 {
     sqlite3_str *sql = sqlite3_str_new(store->database);
 
@@ -92,7 +92,7 @@ status sweep_table_read(const char *path, const char *const *keys, int key_count
 {
     assert(path != NULL && keys != NULL && columns != NULL && count != NULL);
     assert(key_count >= 1 && key_count <= SWEEP_TABLE_COLUMNS);
-    sweep_store store = {.path = (char *)path, .lock = -1};
+    sweep_database store = {.path = (char *)path, .lock = -1};
     sqlite3_stmt *rows = NULL;
     *count = 0;
     for (int k = 0; k < key_count; k++) {

@@ -1,16 +1,17 @@
-#include "src/study/sweep_rows.h"
-
+// The rows of a sweep's store: one for each run that was computed.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "src/base/csv.h"
 #include "src/base/json.h"
-#include "src/study/sweep_database.h"
+#include "src/study/store/sweep_database.h"
+#include "src/study/store/sweep_store.h"
 
-status sweep_store_present(sweep_store *store, unsigned char *present, size_t *count, fault *f)
+status sweep_store_present(sweep_store *of, unsigned char *present, size_t *count, fault *f)
 {
-    assert(store != NULL && present != NULL && count != NULL);
+    assert(present != NULL && count != NULL);
+    sweep_database *store = database_of(of);
     sqlite3_stmt *rows;
     size_t total = store->sweep->run_count;
     memset(present, 0, total);
@@ -44,7 +45,7 @@ static void bind_number(sqlite3_stmt *statement, int column, double value)
     }
 }
 
-static void bind_row(sweep_store *store, size_t run, const summary *result)
+static void bind_row(sweep_database *store, size_t run, const summary *result)
 {
     const sweep *s = store->sweep;
     sqlite3_stmt *row = store->insert;
@@ -71,9 +72,10 @@ static void bind_row(sweep_store *store, size_t run, const summary *result)
     }
 }
 
-status sweep_store_put(sweep_store *store, size_t run, const summary *result, fault *f)
+status sweep_store_put(sweep_store *of, size_t run, const summary *result, fault *f)
 {
-    assert(store != NULL && result != NULL && run < store->sweep->run_count);
+    sweep_database *store = database_of(of);
+    assert(result != NULL && run < store->sweep->run_count);
     if (!store->in_transaction) {
         status code = database_execute(store, "BEGIN IMMEDIATE", f);
         if (code != STATUS_OK) {
@@ -90,10 +92,11 @@ status sweep_store_put(sweep_store *store, size_t run, const summary *result, fa
     return code;
 }
 
-status sweep_store_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
+status sweep_store_quantity(sweep_store *of, const char *key, double *values, size_t *failed,
                             fault *f)
 {
-    assert(store != NULL && key != NULL && values != NULL);
+    assert(key != NULL && values != NULL);
+    sweep_database *store = database_of(of);
     size_t total = store->sweep->run_count, failures = 0;
     sqlite3_stmt *rows = NULL;
 
@@ -162,9 +165,10 @@ static void write_field(csv_writer *csv, sqlite3_stmt *row, int column)
     }
 }
 
-status sweep_store_csv(sweep_store *store, FILE *stream, fault *f)
+status sweep_store_csv(sweep_store *of, FILE *stream, fault *f)
 {
-    assert(store != NULL && stream != NULL);
+    assert(stream != NULL);
+    sweep_database *store = database_of(of);
     sqlite3_stmt *rows;
     int first_quantity = RUN_FIRST_VALUE + store->sweep->axis_count + RUN_OUTCOME_COLUMNS;
     status code = database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f);
@@ -217,9 +221,10 @@ static json_t *row_object(const sweep *s, sqlite3_stmt *row)
     return object;
 }
 
-status sweep_store_json(sweep_store *store, FILE *stream, fault *f)
+status sweep_store_json(sweep_store *of, FILE *stream, fault *f)
 {
-    assert(store != NULL && stream != NULL);
+    assert(stream != NULL);
+    sweep_database *store = database_of(of);
     const sweep *s = store->sweep;
     sqlite3_stmt *rows;
     status code = database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f);

@@ -1,0 +1,65 @@
+// The results of a sweep, in an SQLite database: one row a run.
+//
+// Table `sweep` (key, value) holds what defines the sweep: version, scenario, sampling, seed, what
+// is varied, every other parameter and the script. Table `run` has the number of the run from 1 as
+// its primary key, the varied values under their paths, status ('ok', 'inaccurate' or 'failed'),
+// message and all quantities of the summary (NULL: did not occur). Rows come in transactions: a
+// program that is killed leaves the rows of the last commit, each of them once.
+#pragma once
+
+#include <stdio.h>
+
+#include "src/study/sweep_run.h"
+
+// Opens the database of the sweep, or creates it. path NULL keeps everything in memory.
+// STATUS_BAD_ARGUMENT if the file is something else or holds a sweep that is defined otherwise (f
+// says in what they differ), STATUS_CANNOT_WRITE if it cannot be written or another sweep writes to
+// it. `s` is borrowed and has to live as long as the store.
+status sweep_store_open(sweep_store **store, const char *path, const sweep *s, fault *f);
+
+// Commits what is not committed and closes; NULL is nothing. Errors are lost here: commit first.
+void sweep_store_close(sweep_store *store);
+
+// Makes what was put permanent. STATUS_CANNOT_WRITE also where the file was deleted or moved since.
+status sweep_store_commit(sweep_store *store, fault *f);
+
+// What the store of a sweep does (sweep_run.h): of the rows that are there, of one more in the
+// transaction, and of a quantity of all.
+status sweep_store_present(sweep_store *store, unsigned char *present, size_t *count, fault *f);
+status sweep_store_put(sweep_store *store, size_t run, const summary *result, fault *f);
+status sweep_store_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
+                            fault *f);
+
+// Writes all rows in the order of the runs as CSV: run, varied values, status, message, then the
+// quantities that do not depend on the machine; the header is name[unit]. Errors of the stream stay
+// in it (ferror).
+status sweep_store_csv(sweep_store *store, FILE *stream, fault *f);
+
+// The same as JSON: scenario, sampling, and in `runs` an object for each row under the keys of
+// `impactlab run --json`, the varied values under their paths. STATUS_NO_MEMORY.
+status sweep_store_json(sweep_store *store, FILE *stream, fault *f);
+
+// --- databases of others ---
+
+// What a merged sweep holds.
+typedef struct sweep_merged {
+    size_t runs;  // that are there
+    size_t total; // of the sweep
+} sweep_merged;
+
+// Merges the databases of `count` > 0 parts into a new one at `output`, whole or not at all: the
+// rows of all of them under their common definition, in any order. STATUS_BAD_ARGUMENT if a file is
+// no sweep of this program, holds another sweep than the first, or a run that another part holds
+// too; f says which.
+status sweep_merge(char *const *files, int count, const char *output, sweep_merged *merged,
+                   fault *f);
+
+enum { SWEEP_TABLE_COLUMNS = 3 };
+
+// Reads columns of the runs, by the keys of their headings (a parameter's path, "peak_force_N"), 1
+// to SWEEP_TABLE_COLUMNS of them, in ascending order of the first and then of the second. Runs
+// without a number in one of them are left out. columns[0 ... key_count - 1] are to be freed; on
+// failure they are NULL. STATUS_CANNOT_READ or STATUS_BAD_ARGUMENT with the path if the file is no
+// sweep's database, has no such column, or something infinite in it.
+status sweep_table_read(const char *path, const char *const *keys, int key_count, double **columns,
+                        size_t *count, fault *f);

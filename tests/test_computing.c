@@ -1,0 +1,103 @@
+// What computes is whole without SQLite: this program holds all of it and nothing that stores. A
+// sweep is kept in an array here.
+#include <math.h>
+#include <string.h>
+
+#include "src/study/robust.h"
+#include "src/study/sweep_run.h"
+#include "tests/check.h"
+
+enum { RUNS = 3 };
+
+// Rows in memory; counted are those that were put, and of them those that are committed.
+typedef struct rows {
+    sweep_store store;
+    summary results[RUNS];
+    unsigned char present[RUNS];
+    size_t put, committed;
+} rows;
+
+static status tell_present(sweep_store *store, unsigned char *present, size_t *count, fault *f)
+{
+    const rows *r = (rows *)store;
+    (void)f;
+    memcpy(present, r->present, sizeof r->present);
+    *count = r->put;
+    return STATUS_OK;
+}
+
+static status put_row(sweep_store *store, size_t run, const summary *result, fault *f)
+{
+    rows *r = (rows *)store;
+    (void)f;
+    assert_int_equal(r->present[run], 0);
+    r->results[run] = *result;
+    r->present[run] = 1;
+    r->put++;
+    return STATUS_OK;
+}
+
+static status commit_rows(sweep_store *store, fault *f)
+{
+    rows *r = (rows *)store;
+    (void)f;
+    r->committed = r->put;
+    return STATUS_OK;
+}
+
+static status tell_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
+                            fault *f)
+{
+    const rows *r = (rows *)store;
+    (void)f;
+    for (int q = 0; q < summary_count; q++) {
+        for (int i = 0; i < RUNS && strcmp(summary_table[q].key, key) == 0; i++) {
+            values[i] = summary_value(&r->results[i], q);
+        }
+    }
+    *failed = 0;
+    return STATUS_OK;
+}
+
+static void a_sweep_is_computed_into_rows_of_any_kind(void **state)
+{
+    (void)state;
+    static char name[] = "test", vary[] = "motor.voltage=0.5,1,2";
+    char *varied[] = {vary};
+    const sweep_request request = {.vary = varied, .vary_count = 1};
+    const sweep_options options = {.jobs = 2};
+    scenario base = {.name = name};
+    parameters_defaults(&base.parameters, ARM_CORRECTED);
+    base.parameters.control.law = LAW_HYBRID;
+    base.parameters.set[PARAMETER_INDEX(control.law)] = 1;
+    assert_int_equal(parameters_resolve(&base.parameters, NULL), STATUS_OK);
+    rows r = {.store = {tell_present, put_row, commit_rows, tell_quantity}};
+
+    // all runs, and then none
+    sweep s;
+    sweep_progress progress;
+    fault f = {.text = ""};
+    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(sweep_run(&s, &r.store, &options, &progress, &f), STATUS_OK);
+        assert_int_equal(progress.done, RUNS);
+        assert_int_equal(progress.done_now, i == 0 ? RUNS : 0);
+        assert_int_equal(r.committed, RUNS);
+    }
+
+    // which can be judged
+    robust_law law;
+    assert_int_equal(robust_law_of(&law, "hybrid", &s, &r.store, &f), STATUS_OK);
+    assert_int_equal(law.runs, RUNS);
+    assert_true(isfinite(law.raw[ROBUST_MEDIAN]));
+    robust_law_finish(&law);
+    sweep_finish(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sweep_is_computed_into_rows_of_any_kind),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
