@@ -6,9 +6,9 @@
 #include "src/solve/contact_machine.h"
 #include "tests/check.h"
 
-#define SENSOR 1e-3 // time constant [s]
-#define FLIGHT 1e-9 // one that is shorter [s], and comes back slower [m/s], is rounding
-#define SPEED  1e-8
+#define SENSOR  1e-3  // time constant [s]
+#define LOWEST  1e-11 // flight, its time by its speed at the end [m]
+#define NOTHING 1e-12 // momentum of a wall that is not pressed on [N s]
 
 enum { MOST_EVENTS = 200000 };
 
@@ -26,6 +26,29 @@ static void take_samples(const arm *a, motion *m, double before, double impulses
     }
 }
 
+void chain_outcome_note(chain_outcome *o, double time, double speed, double parted)
+{
+    const bool flew = speed * (time - parted) > LOWEST;
+    if (isnan(o->first_contact)) {
+        o->first_contact = flew ? time : 0;
+    }
+    if (flew) {
+        if (o->contacts < OUTCOME_CONTACTS) {
+            o->contact_times[o->contacts] = time;
+            o->contact_speeds[o->contacts] = speed;
+        }
+        o->contacts++;
+    }
+}
+
+void chain_outcome_forget(chain_outcome *o, double momentum)
+{
+    if (o->first_contact == 0 && o->contacts == 0 && momentum < NOTHING) {
+        o->first_contact = (double)NAN;
+        o->samples = 0;
+    }
+}
+
 chain_outcome chain_outcome_of(const chain_start *start)
 {
     const parameters *p = start->parameters;
@@ -36,9 +59,10 @@ chain_outcome chain_outcome_of(const chain_start *start)
     motion_start(&a, m, start->angle, start->velocity);
     chain_outcome o = {.first_contact = (double)NAN};
     double impulses = 0, end = start->duration, parted = 0;
-    if (motion_starts_in_contact(m)) {
+    if (m->state[SLOT_CONTACT] != 0) {
         o.first_contact = 0;
         o.momentum[o.samples++] = 0;
+        end = fmin(end, start->after_contact);
     }
     for (int events = 0; m->state[SLOT_TIME] < end; events++) {
         motion_report r;
@@ -57,35 +81,29 @@ chain_outcome chain_outcome_of(const chain_start *start)
         if (r.event != MOTION_REACHED) {
             motion_apply(&a, m, &r);
         }
-        const bool begins = r.event == MOTION_TOUCH && isnan(o.first_contact);
+        const double now = m->state[SLOT_TIME];
         const double speed = r.event == MOTION_IMPACT ? r.speed : -m->state[SLOT_GAP_VELOCITY];
-        const bool flew = speed > SPEED || m->state[SLOT_TIME] - parted > FLIGHT;
-        if (flew &&
-            (r.event == MOTION_IMPACT || (r.event == MOTION_TOUCH && before_contact == 0))) {
-            if (o.contacts < OUTCOME_CONTACTS) {
-                o.contact_times[o.contacts] = m->state[SLOT_TIME];
-                o.contact_speeds[o.contacts] = speed;
-            }
-            o.contacts++;
-        }
-        if (before_contact != 0 && m->state[SLOT_CONTACT] == 0) {
-            parted = m->state[SLOT_TIME];
-        }
-        if (start->most_contacts > 0 && o.contacts >= start->most_contacts) {
-            end = m->state[SLOT_TIME];
-        }
-        if (r.event != MOTION_IMPACT && !begins) {
-            continue;
-        }
-
-        // an impact, the first one perhaps
+        const bool waited = isnan(o.first_contact);
         impulses += r.impulse;
         o.impacts += r.event == MOTION_IMPACT;
-        if (isnan(o.first_contact)) {
-            o.first_contact = m->state[SLOT_TIME];
+        if (r.event == MOTION_IMPACT || (r.event == MOTION_TOUCH && before_contact == 0)) {
+            chain_outcome_note(&o, now, speed, parted);
+        }
+
+        // where contacts end, and the run
+        if (m->state[SLOT_CONTACT] == 0 && (before_contact != 0 || r.event == MOTION_IMPACT)) {
+            parted = now;
+            chain_outcome_forget(&o, impulses + state_quadratures(m, m->state)[QUADRATURE_FORCE]);
+        }
+        if (waited && !isnan(o.first_contact)) {
             o.first_impulse = r.impulse;
             o.momentum[o.samples++] = impulses;
-            end = fmin(end, o.first_contact + start->after_contact);
+        }
+        end = isnan(o.first_contact)
+                  ? start->duration
+                  : fmin(start->duration, o.first_contact + start->after_contact);
+        if (start->most_contacts > 0 && o.contacts >= start->most_contacts) {
+            end = now;
         }
     }
     o.ended = m->state[SLOT_TIME];

@@ -19,8 +19,8 @@ typedef struct chain_outcome {
     double peak, peak_time;  // of the force in contact; when, of an arm that it does not hold still
                              // [N], [s]
     double lost[5]; // to friction, impacts, viscous friction, structural damping, the wall [J]
-    int impacts, samples; // samples: of momentum
-    int contacts;         // that began in flight, by an impact or on a wall that gives
+    int impacts, samples;                    // samples: of momentum
+    int contacts;                            // that began in flight (chain_outcome_note)
     double contact_times[OUTCOME_CONTACTS];  // [s]
     double contact_speeds[OUTCOME_CONTACTS]; // of approach [m/s]
     double ended;                            // [s]
@@ -37,6 +37,15 @@ typedef struct chain_start {
     const engine *by;       // that moves it; NULL: the one of its own method
     int most_contacts;      // after which it ends, 0: whatever there are
 } chain_start;
+
+// Notes a contact that begins at `time` [s], met at `speed` [m/s] after a flight since `parted`
+// [s]. A flight lower than 1e-11 m is rounding and counts as none: so an arm that starts on its
+// wall and goes into it has its first contact at the start.
+void chain_outcome_note(chain_outcome *o, double time, double speed, double parted);
+
+// To be called where it leaves its wall, which has taken a momentum [N s]: an arm that started on
+// it and never pressed on it has not touched it.
+void chain_outcome_forget(chain_outcome *o, double momentum);
 
 // Moves it with the time step of its parameters. A step that fails, or events without end, end it
 // with that status.

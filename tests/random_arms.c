@@ -40,6 +40,8 @@
 #define LOSSES        1e-5  // what may be of each loss, as a share of what was put in
 #define NEXT_TO_NONE  1e-12 // share of the mass
 #define IMPLICIT_MOST 24    // links
+#define LEAST_FORCE   1e-6  // of which shares are taken [N]
+#define LEAST_WORK    1e-9  // the same of what was put in [J]
 
 enum { MOST_SETTINGS = 24, LONGEST = 2400, LONGEST_LIST = 20 };
 
@@ -374,7 +376,16 @@ typedef struct distances {
     bool same;    // as many contacts
 } distances;
 
-static distances distances_of(const chain_outcome *a, const chain_outcome *b)
+// Width of the interval in which the model determines the force on a wall that holds the whole arm
+// together with stiction [N].
+static double undetermined_force(const parameters *p)
+{
+    const bool held =
+        p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID && p->wall.contact == WALL_RIGID;
+    return held ? 2 * p->motor.stiction / p->arm.length : 0;
+}
+
+static distances distances_of(const random_arm *r, const chain_outcome *a, const chain_outcome *b)
 {
     distances d = {.same = a->contacts == b->contacts};
     d.contacts = a->contacts < b->contacts ? a->contacts : b->contacts;
@@ -386,17 +397,20 @@ static distances distances_of(const chain_outcome *a, const chain_outcome *b)
     }
     const int samples = a->samples < b->samples ? a->samples : b->samples;
     for (int i = 0; i < samples; i++) {
-        d.momentum = fmax(d.momentum, fabs(a->momentum[i] - b->momentum[i]));
+        const double apart = fabs(a->momentum[i] - b->momentum[i]);
+        d.momentum =
+            fmax(d.momentum, apart - i * REFERENCE_INTERVAL * undetermined_force(&r->parameters));
     }
     if (samples > 0) {
         d.momentum /= fmax(fabs(a->momentum[samples - 1]), 1e-6);
     }
     if (a->peak > 0) {
-        d.peak = fabs(a->peak - b->peak) / a->peak;
+        d.peak = fabs(a->peak - fmax(b->peak, 0)) / fmax(a->peak, LEAST_FORCE);
     }
-    d.lost = fabs(a->motor_work - b->motor_work) / fmax(a->put_in, b->put_in);
+    const double put_in = fmax(fmax(a->put_in, b->put_in), LEAST_WORK);
+    d.lost = fabs(a->motor_work - b->motor_work) / put_in;
     for (size_t i = 0; i < sizeof a->lost / sizeof *a->lost; i++) {
-        d.lost = fmax(d.lost, fabs(a->lost[i] - b->lost[i]) / fmax(a->put_in, b->put_in));
+        d.lost = fmax(d.lost, fabs(a->lost[i] - b->lost[i]) / put_in);
     }
     return d;
 }
@@ -487,25 +501,26 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
 
     // failed or open: said
     t->compared++;
-    const bool closes = mine.residual <= (o->strict ? 1e-9 : 1e-7) * fmax(mine.put_in, 1e-9);
+    const bool closes = mine.residual <= (o->strict ? 1e-9 : 1e-7) * fmax(mine.put_in, LEAST_WORK);
     if (mine.status != STATUS_OK ||
-        mine.residual > r->parameters.method.residual_bound * mine.put_in) {
+        mine.residual > r->parameters.method.residual_bound * fmax(mine.put_in, LEAST_WORK)) {
         t->said++;
+        t->wrong += mine.status == STATUS_NO_PROGRESS; // which is no limit of these arms
         describe(r, number, status_text(mine.status));
         return;
     }
-    distances d = distances_of(&truth, &mine);
+    distances d = distances_of(r, &truth, &mine);
     const distances none = {0};
     double worst = worst_of(&d, &none, &may);
     char what[300];
     if (!d.same || worst > 1 || !closes) {
         const chain_outcome again = by_reference(r, o, 0, 2);
         const chain_outcome heavier = by_reference(r, o, NEXT_TO_NONE, 1);
-        const distances own = distances_of(&truth, &again);
-        const distances change = distances_of(&truth, &heavier);
+        const distances own = distances_of(r, &truth, &again);
+        const distances change = distances_of(r, &truth, &heavier);
 
         // judged by the finer one
-        d = distances_of(&again, &mine);
+        d = distances_of(r, &again, &mine);
         worst = worst_of(&d, &change, &may);
         const bool sure = own.same && change.same && worst_of(&own, &change, &may) < 0.3;
         if (!d.same || worst > 1 || !closes) {

@@ -54,6 +54,7 @@
 
 #include "src/arm/impact.h"
 #include "src/base/extremes.h"
+#include "src/solve/edge_limits.h"
 #include "src/solve/locate.h"
 
 #define SHORT_FLIGHT 0.01  // of the arm's shortest period, a flight that says nothing by itself
@@ -106,6 +107,12 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     return worst;
 }
 
+// What the force on a face with a mass errs by [N]: its spring times the rounding of its place.
+static double face_rounding(const arm *a, const motion *m)
+{
+    return m->wall_has_face ? EDGE_PLACE * a->wall.stiffness : 0;
+}
+
 // Ends a motion that is only rounding, which would say that contact or friction end.
 static void end_rounding(motion *m)
 {
@@ -155,7 +162,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
                                                                            : 0;
     const double more = event == MOTION_RELEASE ? larger(m->engine->left_out, 1) : 1;
     const double beyond = accelerates ? more * (motion_rounding(a, m) - 1) : 0;
-    const double rounding = FORCE_TOLERANCE * (1 + beyond);
+    const double rounding = FORCE_TOLERANCE * (1 + beyond) + face_rounding(a, m);
     double least = 0;
     contact_state best = {false, sliding}, tried = best;
 

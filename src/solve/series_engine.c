@@ -157,7 +157,8 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m, dou
     }
 
     // just after an event they may begin at zero, as the gap does after a bounce cut short
-    const double stiffness = m->wall_gives ? a->wall.stiffness * EDGE_GAP : 0;
+    const double place = m->wall_gives ? EDGE_GAP : m->wall_has_face ? EDGE_PLACE : 0;
+    const double stiffness = a->wall.stiffness * place;
     const double reaction[] = {EDGE_VALUE + stiffness, EDGE_RATE + stiffness, EDGE_MORE};
     if (wall_at_edge && now.contact) {
         leave_edge(&s->watched[WATCH_FORCE], reaction, c->length);

@@ -44,12 +44,15 @@ typedef struct simulation {
     double y[MOST], t, h;
     phase now;
     double sums[SUMS];
-    double largest_rate, largest_angle; // scales of errors
+    double largest_rate, largest_angle;            // scales of what an iteration changes
+    double start;                                  // angle of all bodies at the start [rad]
+    double turned[MOST_BODIES], rate[MOST_BODIES]; // scales of errors, each body's largest
     double tolerance;
     double stage[STAGES][MOST]; // of the step tried: state at the stages
     double end[MOST];           // and at its end
     double added[SUMS];
     double impulses, impact_loss;
+    double left; // the wall, at last [s]
     chain_outcome *o;
 } simulation;
 
@@ -490,6 +493,20 @@ static void find_jacobian(const simulation *s, double jacobian[][MOST])
     }
 }
 
+// Of an error: a body on a stiff wall moves far less than the hub.
+static double error_of(const simulation *s, const double *y)
+{
+    double most = 0;
+    for (int i = 0; i < s->n; i++) {
+        most = fmax(most, fabs(y[i]) / s->turned[i]);
+        most = fmax(most, fabs(y[s->n + i]) / s->rate[i]);
+    }
+    for (int i = 2 * s->n; i < 2 * s->n + 3; i++) {
+        most = fmax(most, fabs(y[i]) / fmax(fabs(s->y[i]), 1e-4));
+    }
+    return most;
+}
+
 static double size_of(const simulation *s, const double *y)
 {
     double most = 0;
@@ -608,7 +625,7 @@ static double try_step(simulation *s, linear_systems *l, double h)
     for (int k = 0; k < d; k++) {
         error[k] = creal(right[k]);
     }
-    return size_of(s, error) / s->tolerance;
+    return error_of(s, error) / s->tolerance;
 }
 
 // The collocation polynomial through start and stages at x of the step.
@@ -767,8 +784,8 @@ static event first_event(simulation *s, linear_systems *l, double h, double *at,
     return found;
 }
 
-// The one combination of contact and friction that violates nothing; `left` was just left and is
-// no candidate.
+// The one combination of contact and friction that violates nothing, of two the one in contact;
+// `left` was just left and is no candidate.
 static void resolve(simulation *s, bool touching, event left)
 {
     const arm *a = s->a;
@@ -778,7 +795,7 @@ static void resolve(simulation *s, bool touching, event left)
     const double hub = s->y[s->n], stiction = a->motor.stiction;
     const bool rests = hub == 0 && stiction > 0,
                choice = touching && (!wall_gives(&a->wall) || wall_has_face(&a->wall));
-    for (int contact = 0; contact < 2; contact++) {
+    for (int contact = 1; contact >= 0; contact--) {
         for (int friction = -1; friction <= 1; friction++) {
             phase p = s->now;
             if ((!choice && contact != p.contact) || (choice && left == RELEASES && contact) ||
@@ -845,16 +862,10 @@ static double impact(simulation *s)
 
 static void note_contact(simulation *s, double speed, double impulse)
 {
-    chain_outcome *o = s->o;
-    if (isnan(o->first_contact)) {
-        o->first_contact = s->t;
-        o->first_impulse = impulse;
+    if (isnan(s->o->first_contact)) {
+        s->o->first_impulse = impulse;
     }
-    if (o->contacts < OUTCOME_CONTACTS) {
-        o->contact_times[o->contacts] = s->t;
-        o->contact_speeds[o->contacts] = speed;
-    }
-    o->contacts++;
+    chain_outcome_note(s->o, s->t, speed, s->left);
 }
 
 static void happen(simulation *s, event e)
@@ -1003,6 +1014,8 @@ static void follow_scales(simulation *s)
     for (int i = 0; i < s->n; i++) {
         s->largest_angle = fmax(s->largest_angle, fabs(s->y[i]));
         s->largest_rate = fmax(s->largest_rate, fabs(s->y[s->n + i]));
+        s->turned[i] = fmax(s->turned[i], fabs(s->y[i] - s->start));
+        s->rate[i] = fmax(s->rate[i], fabs(s->y[s->n + i]));
     }
 }
 
@@ -1027,6 +1040,11 @@ static void begin(simulation *s, const chain_start *start)
         s->y[i] = start->angle;
         s->y[s->n + i] = start->velocity;
     }
+    s->start = start->angle;
+    for (int i = 0; i < s->n; i++) {
+        s->turned[i] = 1e-6;
+        s->rate[i] = 1e-4;
+    }
     s->largest_angle = 1e-3;
     s->largest_rate = 1e-3;
     follow_scales(s);
@@ -1037,7 +1055,14 @@ static void begin(simulation *s, const chain_start *start)
         s->now.limited =
             fabs(r.free_current) > a->motor.current_limit ? (r.free_current > 0 ? 1 : -1) : 0;
     }
-    resolve(s, false, EVENTS);
+
+    // at rest on the wall
+    const touch t = touch_at(s, s->y, s->y + s->n);
+    resolve(s, t.g >= -TINY_GAP && t.rate == 0, EVENTS);
+    if (s->now.contact) {
+        s->o->first_contact = 0;
+        s->o->momentum[s->o->samples++] = 0;
+    }
 }
 
 chain_outcome implicit_outcome_of(const chain_start *start, double tolerance)
@@ -1050,7 +1075,7 @@ chain_outcome implicit_outcome_of(const chain_start *start, double tolerance)
     find_coefficients();
     find_eigenvalues();
     begin(&s, start);
-    double end = start->duration, next = 1e-6;
+    double end = isnan(o.first_contact) ? start->duration : start->after_contact, next = 1e-6;
     bool know = false;
     for (long steps = 0; s.t < end; steps++) {
         if (steps > MOST_STEPS || next < SHORTEST) {
@@ -1091,12 +1116,19 @@ chain_outcome implicit_outcome_of(const chain_start *start, double tolerance)
         next = h * fmin(3, 0.8 * pow(fmax(error, 1e-8), -0.25));
         if (e != EVENTS) {
             const bool had = !isnan(o.first_contact);
+            const bool touched = s.now.contact || e == TOUCHES;
             happen(&s, e);
+            if (touched && !s.now.contact) {
+                s.left = s.t;
+                chain_outcome_forget(&o, s.impulses + s.sums[SUM_FORCE]);
+            }
             next = fmin(h, 1e-6);
             if (!had && !isnan(o.first_contact)) {
                 o.momentum[o.samples++] = s.impulses;
-                end = fmin(end, o.first_contact + start->after_contact);
             }
+            end = isnan(o.first_contact)
+                      ? start->duration
+                      : fmin(start->duration, o.first_contact + start->after_contact);
         }
         if (start->most_contacts > 0 && o.contacts >= start->most_contacts) {
             break;
