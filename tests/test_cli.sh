@@ -34,7 +34,7 @@ says out corrected/first-impact
 expect 0 --version
 says out "impactlab "
 expect 0 --help
-for command in list show check run tables figures animate predict modes sweep compare calibrate robust bench converge study; do
+for command in list show check run tables figures animate predict modes sweep compare calibrate robust bench converge solve study; do
     grep -q "^  $command " out || fail "--help does not name $command"
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
@@ -441,7 +441,7 @@ expect 0 lesson --json -
 says out '"scenario": "lessons/hybrid-law"'
 expect 0 figures 2.4 --format svg -o drawn --json -
 says out '"file": "fig-2-4"'
-for command in list show run predict modes sweep merge compare converge study calibrate robust \
+for command in list show run predict modes sweep merge compare converge solve study calibrate robust \
     tables bench check lesson figures; do
     expect 0 $command --help
     says out '--json FILE|-'
@@ -456,6 +456,21 @@ says out "first contact"
 grep -q '"order": 2' converge.json || grep -q '"order": 1.9' converge.json ||
     fail "converge finds no second order"
 [ -s converge.svg ] || fail "converge draws nothing"
+
+# --- the limit of a parameter for a condition
+expect 0 solve hit.yaml motor.voltage=0.5:5 'peak_force_N<2' --json solved.json
+says out "up to motor.voltage = "
+grep -q '"path": "motor.voltage"' solved.json && grep -q '"quantity": "peak_force_N"' solved.json ||
+    fail "solve --json has not the keys of a limit"
+expect 1 solve hit.yaml motor.voltage=0.5:5 'peak_force_N<1e9' --json -
+says out '"solve": []'
+expect 2 solve hit.yaml motor.volage 'peak_force_N<2'
+says err "did you mean 'motor.voltage'?"
+expect 2 solve hit.yaml motor.voltage=3 'peak_force_N<2'
+says err "expected a range, motor.voltage=a:b"
+expect 2 solve hit.yaml motor.voltage peak_force_N
+says err "KEY<VALUE"
+
 expect 0 study sensor --plot sensor.pdf
 says out "beam"
 [ -s sensor.pdf ] && [ -s sensor.csv ] || fail "study draws nothing"

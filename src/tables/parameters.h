@@ -271,6 +271,12 @@ bool parameters_even_links(const arm_parameters *a);
 // How far behind the wall an arm may start, by rounding, as a share of its length.
 #define START_ROUNDING 1e-15
 
+// The range in which a value of a parameter is usually tried [its unit], that of a slider: all that
+// it may be, or where that is much wider than its default what lies about the default and the
+// value; logarithmic where it spans decades. False if the parameter is not a number.
+bool parameter_usual_range(int parameter, double value, double *low, double *high,
+                           bool *logarithmic);
+
 // Index of a path in the table, or -1.
 int parameter_find(const char *path);
 

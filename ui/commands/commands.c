@@ -20,6 +20,7 @@
     X(merge)                                                                                       \
     X(compare)                                                                                     \
     X(converge)                                                                                    \
+    X(solve)                                                                                       \
     X(study)                                                                                       \
     X(calibrate)                                                                                   \
     X(robust)                                                                                      \

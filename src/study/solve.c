@@ -1,0 +1,326 @@
+#include "src/study/solve.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+#include "src/run/run.h"
+#include "src/study/pool.h"
+
+// --- the condition --------------------------------------------------------------------------
+
+// The part of a text between two places without blanks at its ends, as a text of its own.
+static void copy_trimmed(const char *start, const char *end, char *copy, size_t size)
+{
+    while (start < end && is_blank(*start)) {
+        start++;
+    }
+    while (end > start && is_blank(end[-1])) {
+        end--;
+    }
+    snprintf(copy, size, "%.*s", (int)(end - start), start);
+}
+
+status solve_condition_read(const char *text, solve_condition *c, fault *f)
+{
+    assert(text != NULL && c != NULL);
+    const char *sign = strpbrk(text, "<>"), *rest;
+    char key[128];
+    if (sign == NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%.100s' is no condition, expected KEY<VALUE or KEY>VALUE, such as "
+                         "'peak_force_N<2'",
+                         text);
+    }
+
+    // the quantity
+    copy_trimmed(text, sign, key, sizeof key);
+    *c = (solve_condition){.quantity = summary_find(key), .below = *sign == '<'};
+    if (c->quantity < 0) {
+        const char *near = summary_suggest(key);
+        return fault_set(f, STATUS_BAD_ARGUMENT, "there is no quantity '%s'%s%s%s", key,
+                         near ? ", did you mean '" : "; expected a key of run --json",
+                         near ? near : "", near ? "'?" : "");
+    }
+    if (summary_table[c->quantity].timing) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%s depends on the machine, not on the scenario: no parameter has a limit "
+                         "for it",
+                         key);
+    }
+
+    // and its bound
+    c->equal = sign[1] == '=';
+    char bound[128];
+    copy_trimmed(sign + 1 + c->equal, text + strlen(text), bound, sizeof bound);
+    if (!decimal_read(bound, &c->bound, &rest) || *rest != '\0') {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%.100s' is no bound of %s, expected a number%s%s", sign + 1 + c->equal,
+                         key, summary_table[c->quantity].unit[0] ? " in " : "",
+                         summary_table[c->quantity].unit);
+    }
+    return STATUS_OK;
+}
+
+bool solve_condition_holds(const solve_condition *c, double value)
+{
+    assert(c != NULL && !isnan(value));
+    return c->equal && value == c->bound ? true : c->below ? value < c->bound : value > c->bound;
+}
+
+status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f)
+{
+    assert(axis != NULL && s != NULL);
+    double value = parameter_get(&s->parameters, axis->parameter);
+    if (axis->element > 0 || !parameter_usual_range(axis->parameter, value, &axis->low, &axis->high,
+                                                    &axis->logarithmic)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "%s needs a range, %s=a:b", axis->name,
+                         axis->name);
+    }
+    axis->is_range = true;
+    return STATUS_OK;
+}
+
+// --- one run --------------------------------------------------------------------------------
+
+// What one value of the parameter gives.
+typedef struct trial {
+    double value;
+    double quantity; // NaN: missing, or unknown
+    bool known;      // the run came to its end and is to be relied on
+} trial;
+
+typedef struct search {
+    const scenario *base;
+    const sweep_axis *axis;
+    const solve_condition *condition;
+    run_monitor *monitor;
+    solution *found;
+    trial *trials; // of the range
+} search;
+
+typedef struct trial_result {
+    trial trial;
+    status status;
+    char reason[512];
+} trial_result;
+
+// Runs the scenario with one value of the parameter.
+static void run_trial(const search *s, double value, trial_result *r)
+{
+    scenario derived = *s->base;
+    parameters p = s->base->parameters;
+    fault f = {0};
+    *r = (trial_result){.trial = {.value = value, .quantity = NAN}};
+
+    // values that do not go with the others of the scenario are as good as a run that fails
+    status code = sweep_axis_apply(s->axis, value, &p, &f);
+    code = code == STATUS_OK ? scenario_take_parameters(&derived, &p, &f) : code;
+    if (code != STATUS_OK) {
+        r->status = code == STATUS_NO_MEMORY ? code : STATUS_OK;
+        snprintf(r->reason, sizeof r->reason, "%.500s", f.text);
+        return;
+    }
+
+    run_result result;
+    const run_options options = {.monitor = s->monitor};
+    code = run_scenario_with(&derived, &options, &result);
+    if (code == STATUS_OK && !result.summary.inaccurate) {
+        r->trial.known = true;
+        r->trial.quantity = summary_value(&result.summary, s->condition->quantity);
+    } else {
+        snprintf(r->reason, sizeof r->reason, "%.500s", result.summary.message);
+    }
+    r->status = code == STATUS_STOPPED || code == STATUS_NO_MEMORY ? code : STATUS_OK;
+    run_finish(&result);
+}
+
+static bool holds(const search *s, const trial *t)
+{
+    return solve_condition_holds(s->condition, t->quantity);
+}
+
+// --- the range ------------------------------------------------------------------------------
+
+static bool is_whole(const search *s)
+{
+    return sweep_axis_parameter(s->axis)->type == PARAMETER_INTEGER && s->axis->element == 0;
+}
+
+// Value i of the range, from its low to its high end, both included; whole numbers are each other's
+// neighbours where there are enough points.
+static double point_of(const search *s, size_t i)
+{
+    const double low = fmin(s->axis->low, s->axis->high), high = fmax(s->axis->low, s->axis->high);
+    const double last = (double)(s->found->points - 1), share = (double)i / last;
+    if (i == 0 || i == (size_t)s->found->points - 1) {
+        return i == 0 ? low : high;
+    }
+    double value = s->axis->logarithmic ? low * pow(high / low, share)
+                                        : (low * (last - (double)i) + high * (double)i) / last;
+    return is_whole(s) ? round(value) : value;
+}
+
+static void compute_point(void *context, size_t i, void *scratch, void *result)
+{
+    const search *s = context;
+    (void)scratch;
+    run_trial(s, point_of(s, i), result);
+}
+
+static status collect_point(void *context, size_t i, const void *result, fault *f)
+{
+    search *s = context;
+    const trial_result *r = result;
+    if (r->status != STATUS_OK) {
+        return r->status == STATUS_NO_MEMORY
+                   ? fault_no_memory(f)
+                   : fault_set(f, r->status, "%s", status_text(r->status));
+    }
+
+    s->trials[i] = r->trial;
+    run_monitor_count(s->monitor);
+    return STATUS_OK;
+}
+
+// --- between two values ---------------------------------------------------------------------
+
+// Whether no value lies between two, or none that matters.
+static bool neighbours(const search *s, double a, double b)
+{
+    const double width = fabs(s->axis->high - s->axis->low);
+    return fabs(a - b) <= (is_whole(s) ? 1 : 1e-13 * width) || nextafter(a, b) == b;
+}
+
+// The next value to try between `in`, where the condition holds, and `out`: by the secant, kept a
+// thousandth of the interval off its ends so that both come near the limit, or in the middle.
+static double next_value(const search *s, const trial *in, const trial *out, bool secant)
+{
+    const double width = out->value - in->value;
+    double share = 0.5;
+    if (secant && !isnan(out->quantity)) {
+        share = (s->condition->bound - in->quantity) / (out->quantity - in->quantity);
+        share = fmin(fmax(share, 1e-3), 1 - 1e-3);
+    }
+
+    // one of the whole numbers within
+    const double value = in->value + share * width;
+    return is_whole(s)
+               ? in->value +
+                     copysign(fmin(fmax(round(fabs(value - in->value)), 1), fabs(width) - 1), width)
+               : value;
+}
+
+// Locates the limit between two trials, of which one holds. Leaves the innermost two of them.
+static status locate(const search *s, trial *in, trial *out, fault *f)
+{
+    // a jump is halved down to a part in 1e13, forty times; the secant takes fewer
+    enum { MOST_RUNS = 200 };
+    bool secant = true;
+    for (int i = 0; i < MOST_RUNS && !neighbours(s, in->value, out->value); i++) {
+        trial_result r;
+        const double width = fabs(in->value - out->value);
+        run_trial(s, next_value(s, in, out, secant), &r);
+        if (r.status != STATUS_OK) {
+            return fault_set(f, r.status, "%s", status_text(r.status));
+        }
+        if (!isnan(r.trial.quantity) && holds(s, &r.trial)) {
+            *in = r.trial;
+        } else {
+            *out = r.trial;
+        }
+        secant = fabs(in->value - out->value) <= width / 2 || !secant;
+    }
+    return STATUS_OK;
+}
+
+// Whether the quantity is continuous at the limit, as far as its values at both sides tell.
+static bool jumps_between(const search *s, const trial *in, const trial *out)
+{
+    const double size = fmax(fabs(s->condition->bound), fabs(in->quantity));
+    return is_whole(s) || fabs(in->quantity - out->quantity) > 1e-6 * size;
+}
+
+static status locate_limits(search *s, fault *f)
+{
+    solution *found = s->found;
+    for (int i = 0; i + 1 < found->points; i++) {
+        trial a = s->trials[i], b = s->trials[i + 1];
+        const bool first = !isnan(a.quantity) && holds(s, &a),
+                   second = !isnan(b.quantity) && holds(s, &b);
+        if (first == second) {
+            found->ends += isnan(a.quantity) != isnan(b.quantity);
+            continue;
+        }
+
+        // where the quantity ceases to be there between them, that is no limit of its value
+        trial *in = first ? &a : &b, *out = first ? &b : &a;
+        status code = locate(s, in, out, f);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        if (isnan(out->quantity)) {
+            found->ends++;
+        } else if (found->count == SOLVE_MOST_LIMITS) {
+            found->more = true;
+        } else {
+            found->limits[found->count++] = (solve_limit){.value = in->value,
+                                                          .reached = in->quantity,
+                                                          .holds_below = first,
+                                                          .jumps = jumps_between(s, in, out)};
+        }
+    }
+    return STATUS_OK;
+}
+
+// Counts what became of the values of the range, and why the first unknown one is.
+static void count_points(search *s)
+{
+    solution *found = s->found;
+    for (int i = 0; i < found->points; i++) {
+        const trial *t = &s->trials[i];
+        if (!t->known && found->unknown++ == 0) {
+            trial_result r;
+            run_trial(s, t->value, &r);
+            snprintf(found->reason, sizeof found->reason, "%s", r.reason);
+        } else if (t->known) {
+            found->missing += isnan(t->quantity);
+            found->holding += !isnan(t->quantity) && holds(s, t);
+            found->failing += !isnan(t->quantity) && !holds(s, t);
+        }
+    }
+}
+
+status solve(const scenario *s, const sweep_axis *axis, const solve_condition *condition,
+             int points, int jobs, run_monitor *monitor, solution *found, fault *f)
+{
+    assert(s != NULL && axis != NULL && axis->is_range && condition != NULL && found != NULL);
+    assert(points >= 2 && points <= SOLVE_MOST_POINTS);
+    search here = {
+        .base = s, .axis = axis, .condition = condition, .monitor = monitor, .found = found};
+
+    // no whole number twice
+    *found = (solution){.points = points};
+    if (is_whole(&here)) {
+        found->points = (int)fmin(points, fabs(axis->high - axis->low) + 1);
+    }
+    here.trials = calloc((size_t)found->points, sizeof *here.trials);
+    if (here.trials == NULL) {
+        return fault_no_memory(f);
+    }
+
+    const pool_work work = {.context = &here,
+                            .count = (size_t)found->points,
+                            .result_size = sizeof(trial_result),
+                            .compute = compute_point,
+                            .collect = collect_point};
+    status code = pool_run(&work, jobs < 1 ? 1 : fmin(jobs, POOL_MOST_THREADS), f);
+    if (code == STATUS_OK) {
+        count_points(&here);
+        code = locate_limits(&here, f);
+    }
+    free(here.trials);
+    return code;
+}

@@ -1,0 +1,67 @@
+#include "src/tables/parameters.h"
+
+#include <assert.h>
+#include <math.h>
+
+#define FEWEST_DECADES 3    // from this many on a range is logarithmic
+#define MOST_DECADES   6    // a wider range shows those near the default
+#define WIDE           40.0 // times its default a range is shown in part
+
+static double default_of(int parameter)
+{
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    double value = parameter_get(&p, parameter);
+    return isfinite(value) ? value : 0;
+}
+
+// The smallest of 1, 2, 5, 10, 20... that is not below a positive number.
+static double round_up(double x)
+{
+    double decade = pow(10, floor(log10(x)));
+    static const double steps[] = {1, 2, 5, 10};
+    for (int i = 0; i < 4; i++) {
+        if (steps[i] * decade >= x * (1 - 1e-9)) {
+            return steps[i] * decade;
+        }
+    }
+    return 10 * decade;
+}
+
+bool parameter_usual_range(int parameter, double value, double *range_low, double *range_high,
+                           bool *logarithmic)
+{
+    assert(parameter >= 0 && parameter < parameter_count);
+    assert(range_low != NULL && range_high != NULL && logarithmic != NULL);
+    const parameter_info *info = &parameter_table[parameter];
+    if ((info->type != PARAMETER_REAL && info->type != PARAMETER_INTEGER) || !isfinite(value)) {
+        return false;
+    }
+    double usual = fabs(default_of(parameter)), low = info->minimum, high = info->maximum;
+
+    // decades: all of them, or some near the default up to the value
+    if (low > 0 && log10(high / low) >= FEWEST_DECADES) {
+        if (log10(high / low) > MOST_DECADES && usual > 0) {
+            low = fmax(low, fmin(value, pow(10, floor(log10(usual)) - 2)));
+            high = fmin(high, fmax(value, pow(10, ceil(log10(usual)) + 2)));
+        }
+        *range_low = low;
+        *range_high = high;
+        *logarithmic = true;
+        return true;
+    }
+
+    // a range much wider than the default is shown in part
+    double size = fmax(usual, fabs(value));
+    if (high - low > WIDE * fmax(size, 1e-12)) {
+        // a range that suits the default, or the value once that is far from it
+        double reach = round_up(usual > 0 ? 4 * usual : info->type == PARAMETER_REAL ? 0.1 : 10);
+        reach = fabs(value) > reach ? round_up(fabs(value)) : reach;
+        high = fmin(high, reach);
+        low = fmax(low, -reach);
+    }
+    *range_low = low;
+    *range_high = high;
+    *logarithmic = false;
+    return true;
+}

@@ -1,0 +1,238 @@
+// Limits of a parameter for a condition on a result.
+#include "src/study/solve.h"
+
+#include <string.h>
+
+#include "src/run/run.h"
+#include "tests/check.h"
+
+// A shipped scenario with changes; ends with NULL.
+static scenario opened(const char *name, char *const *changes, int count)
+{
+    scenario s;
+    assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
+    assert_int_equal(scenario_override_all(&s, changes, count, NULL, NULL), STATUS_OK);
+    return s;
+}
+
+static sweep_axis axis_of(const char *path, double low, double high)
+{
+    fault f;
+    sweep_axis axis = {.low = low, .high = high, .is_range = true};
+    assert_int_equal(sweep_axis_find(&axis, path, &f), STATUS_OK);
+    return axis;
+}
+
+static solve_condition condition_of(const char *text)
+{
+    fault f;
+    solve_condition c;
+    if (solve_condition_read(text, &c, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return c;
+}
+
+static solution solved(const scenario *s, const sweep_axis *axis, const char *text, int points,
+                       int jobs)
+{
+    fault f;
+    solution found;
+    const solve_condition c = condition_of(text);
+    assert_int_equal(solve(s, axis, &c, points, jobs, NULL, &found, &f), STATUS_OK);
+    return found;
+}
+
+// The quantity of a run of its own with another value of the parameter.
+static double quantity_at(const scenario *s, const char *path, double value, const char *key)
+{
+    scenario changed = *s;
+    run_result result;
+    parameters p = s->parameters;
+    assert_int_equal(parameter_set_number(&p, parameter_find(path), value, NULL), STATUS_OK);
+    assert_int_equal(scenario_take_parameters(&changed, &p, NULL), STATUS_OK);
+    assert_int_equal(run_scenario(&changed, false, &result), STATUS_OK);
+    const double quantity = summary_value(&result.summary, summary_find(key));
+    run_finish(&result);
+    return quantity;
+}
+
+// One link at rest on the wall presses with the hub's torque, which is proportional to the voltage
+// where there is no friction: twice the force takes twice the voltage.
+static void statics_have_the_limit_of_statics(void **state)
+{
+    (void)state;
+    char *changes[] = {"motor.stiction=0", "arm.links=1", "initial.angle=0", "wall.angle=0",
+                       "run.duration=0.2"};
+    scenario s = opened("corrected/first-impact", changes, 5);
+    sweep_axis axis = axis_of("motor.voltage", 0.1, 4);
+    const double at_one = quantity_at(&s, "motor.voltage", 1, "steady_force_N");
+    char text[64];
+    snprintf(text, sizeof text, "steady_force_N <= %.17g", 2 * at_one);
+
+    const solution found = solved(&s, &axis, text, 9, 1);
+    assert_int_equal(found.count, 1);
+    check_close(found.limits[0].value, 2, 1e-12);
+    check_relative(found.limits[0].reached, 2 * at_one, 1e-12);
+    assert_true(found.limits[0].holds_below);
+    scenario_finish(&s);
+}
+
+// The condition holds at the limit and no longer a little beyond it, and neither the number of
+// values nor that of threads has a say in where it is.
+static void limits_are_where_the_condition_ceases_to_hold(void **state)
+{
+    (void)state;
+    scenario s = opened("corrected/first-impact", NULL, 0);
+    sweep_axis axis = axis_of("motor.voltage", 0.5, 5);
+    const solution few = solved(&s, &axis, "peak_force_N<2", 5, 1),
+                   many = solved(&s, &axis, "peak_force_N<2", 40, 3);
+    assert_int_equal(few.count, 1);
+    assert_int_equal(many.count, 1);
+    check_close(few.limits[0].value, many.limits[0].value, 1e-11);
+
+    const double limit = few.limits[0].value;
+    check_close(few.limits[0].reached, quantity_at(&s, "motor.voltage", limit, "peak_force_N"), 0);
+    check_below(few.limits[0].reached, 2.0);
+    check_below(2.0, quantity_at(&s, "motor.voltage", limit + 1e-11, "peak_force_N"));
+    assert_false(few.limits[0].jumps);
+
+    // the other way round it holds from there on
+    const solution above = solved(&s, &axis, "peak_force_N >= 2", 5, 1);
+    assert_int_equal(above.count, 1);
+    assert_false(above.limits[0].holds_below);
+    check_close(above.limits[0].value, limit, 1e-11);
+    scenario_finish(&s);
+}
+
+// A count jumps; its limits come in the order of the range, each with a value that holds beside
+// those that do not. Within 1e-9 V of a grazing impact rounding decides whether it is one.
+static void jumps_are_located_and_told(void **state)
+{
+    (void)state;
+    scenario s = opened("corrected/first-impact", NULL, 0);
+    sweep_axis axis = axis_of("motor.voltage", 5, 0.5);
+    const solution found = solved(&s, &axis, "impacts<3", 65, 1);
+    assert_true(found.count >= 2);
+    for (int i = 0; i < found.count; i++) {
+        const solve_limit *limit = &found.limits[i];
+        const double beyond = limit->value + (limit->holds_below ? 1e-7 : -1e-7);
+        assert_true(limit->jumps);
+        assert_true(limit->reached < 3);
+        assert_true(quantity_at(&s, "motor.voltage", beyond, "impacts") >= 3);
+        assert_true(i == 0 || limit->value > found.limits[i - 1].value);
+        assert_true(i == 0 || limit->holds_below != found.limits[i - 1].holds_below);
+    }
+    scenario_finish(&s);
+}
+
+static void whole_numbers_have_a_last_one(void **state)
+{
+    (void)state;
+    scenario s = opened("corrected/first-impact", NULL, 0);
+    sweep_axis axis = axis_of("arm.links", 2, 20);
+
+    // run one by one, and with most of them left out
+    const solution all = solved(&s, &axis, "peak_force_N<6", 65, 1),
+                   some = solved(&s, &axis, "peak_force_N<6", 3, 1);
+    assert_int_equal(all.points, 19);
+    assert_int_equal(all.count, 1);
+    assert_int_equal(some.count, 1);
+    const double last = all.limits[0].value;
+    check_close(some.limits[0].value, last, 0);
+    assert_true(quantity_at(&s, "arm.links", last, "peak_force_N") < 6);
+    assert_true(quantity_at(&s, "arm.links", last + 1, "peak_force_N") >= 6);
+    scenario_finish(&s);
+}
+
+// Where the quantity is missing or the run fails, there is no limit of its value.
+static void what_is_not_there_has_no_limit(void **state)
+{
+    (void)state;
+    scenario s = opened("corrected/first-impact", NULL, 0);
+
+    // a voltage too small to reach the wall
+    sweep_axis axis = axis_of("motor.voltage", 0, 1);
+    const solution found = solved(&s, &axis, "peak_force_N<100", 21, 1);
+    assert_int_equal(found.count, 0);
+    assert_true(found.missing > 0 && found.holding > 0);
+    assert_int_equal(found.missing + found.holding, 21);
+    assert_int_equal(found.ends, 1);
+
+    // starts behind the wall are refused
+    sweep_axis start = axis_of("initial.angle", -0.1, 0.3);
+    const solution behind = solved(&s, &start, "peak_force_N<100", 5, 1);
+    assert_int_equal(behind.unknown, 2);
+    assert_non_null(strstr(behind.reason, "wall"));
+    scenario_finish(&s);
+}
+
+static void conditions_say_what_they_lack(void **state)
+{
+    (void)state;
+    const struct {
+        const char *text, *expected;
+    } wrong[] = {
+        {"peak_force_N", "KEY<VALUE"},
+        {"peak_forc_N<2", "did you mean 'peak_force_N'?"},
+        {"peak_force_N<", "a number in N"},
+        {"peak_force_N<2N", "a number in N"},
+        {"peak_force_N<nan", "a number in N"},
+        {"<2", "no quantity ''"},
+        {"cpu_time_s<1", "depends on the machine"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        solve_condition c;
+        fault f;
+        assert_int_equal(solve_condition_read(wrong[i].text, &c, &f), STATUS_BAD_ARGUMENT);
+        if (strstr(f.text, wrong[i].expected) == NULL) {
+            fail_msg("%s: %s", wrong[i].text, f.text);
+        }
+    }
+
+    const solve_condition c = condition_of("  impacts >= 3 ");
+    assert_true(c.equal && !c.below && c.bound == 3);
+    assert_true(solve_condition_holds(&c, 3) && !solve_condition_holds(&c, 2));
+}
+
+static void parameters_that_are_no_numbers_have_no_range(void **state)
+{
+    (void)state;
+    fault f;
+    scenario s = opened("corrected/first-impact", NULL, 0);
+    sweep_axis axis = axis_of("method.name", 0, 1);
+    assert_int_equal(solve_usual_range(&axis, &s, &f), STATUS_BAD_ARGUMENT);
+    axis = axis_of("motor.voltage", 0, 0);
+    assert_int_equal(solve_usual_range(&axis, &s, &f), STATUS_OK);
+    assert_true(axis.low < 1 && axis.high > 1);
+    scenario_finish(&s);
+}
+
+static void one_can_be_stopped(void **state)
+{
+    (void)state;
+    fault f;
+    solution found;
+    run_monitor monitor = {0};
+    scenario s = opened("corrected/first-impact", NULL, 0);
+    sweep_axis axis = axis_of("motor.voltage", 0, 5);
+    const solve_condition c = condition_of("peak_force_N<2");
+    atomic_store(&monitor.stop, true);
+    assert_int_equal(solve(&s, &axis, &c, 5, 1, &monitor, &found, &f), STATUS_STOPPED);
+    scenario_finish(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(statics_have_the_limit_of_statics),
+        cmocka_unit_test(limits_are_where_the_condition_ceases_to_hold),
+        cmocka_unit_test(jumps_are_located_and_told),
+        cmocka_unit_test(whole_numbers_have_a_last_one),
+        cmocka_unit_test(what_is_not_there_has_no_limit),
+        cmocka_unit_test(conditions_say_what_they_lack),
+        cmocka_unit_test(parameters_that_are_no_numbers_have_no_range),
+        cmocka_unit_test(one_can_be_stopped),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

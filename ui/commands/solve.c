@@ -1,0 +1,188 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/json.h"
+#include "src/base/numbers.h"
+#include "src/study/solve.h"
+#include "ui/commands/many_runs.h"
+#include "ui/commands/run_progress.h"
+
+#define PIECES "runs"
+
+// What is asked for: SCENARIO, PATH[=a:b], 'KEY<VALUE'.
+typedef struct question {
+    sweep_axis axis;
+    solve_condition condition;
+    int points;
+} question;
+
+// Reads PATH or PATH=a:b[:n][:log]. To be ended with sweep_axis_finish in either case.
+static status read_axis(question *q, const arguments *a, const scenario *s, fault *f)
+{
+    char name[SWEEP_VALUE_TEXT];
+    char *range = strchr(a->operands[1], '=');
+    snprintf(name, sizeof name, "%.*s",
+             (int)(range != NULL ? range - a->operands[1] : (long)strlen(a->operands[1])),
+             a->operands[1]);
+    status code = sweep_axis_find(&q->axis, name, f);
+    if (code != STATUS_OK || range == NULL) {
+        return code == STATUS_OK ? solve_usual_range(&q->axis, s, f) : code;
+    }
+
+    // a range of its own; the axis' parser takes the text apart
+    char *text = strdup(range + 1);
+    if (text == NULL) {
+        return fault_no_memory(f);
+    }
+    code = sweep_axis_parse(&q->axis, text, true, f);
+    free(text);
+    if (code == STATUS_OK && !q->axis.is_range) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT, "expected a range, %s=a:b", name);
+    }
+    return code;
+}
+
+static const char *sign_of(const solve_condition *c)
+{
+    return c->below ? c->equal ? "<=" : "<" : c->equal ? ">=" : ">";
+}
+
+static json_t *answer(const scenario *s, const question *q, const solution *found)
+{
+    json_t *object = json_object(), *limits = json_array();
+    json_put(object, "scenario", json_text(s->name));
+    for (int i = 0; i < found->count; i++) {
+        const solve_limit *limit = &found->limits[i];
+        json_t *line = json_object();
+        json_put(line, "path", json_text(q->axis.name));
+        json_put(line, "value", json_number(limit->value));
+        json_put(line, "quantity", json_text(summary_table[q->condition.quantity].key));
+        json_put(line, "reached", json_number(limit->reached));
+        json_put(line, "holds", json_text(limit->holds_below ? "below" : "above"));
+        json_put(line, "jumps", json_boolean(limit->jumps));
+        json_add(limits, line);
+    }
+    json_put(object, "solve", limits);
+    return object;
+}
+
+// How many values of the range say nothing, and why.
+static void say_what_is_unknown(const question *q, const solution *found)
+{
+    if (found->missing > 0) {
+        say("  in %d of %d runs there is no %s\n", found->missing, found->points,
+            summary_table[q->condition.quantity].label);
+    }
+    if (found->unknown > 0) {
+        say("  %d of %d runs say nothing; the first: %s\n", found->unknown, found->points,
+            found->reason);
+    }
+    if (found->more) {
+        say("  there are more limits than %d\n", SOLVE_MOST_LIMITS);
+    }
+}
+
+static void print_answer(const scenario *s, const question *q, const solution *found)
+{
+    const solve_condition *c = &q->condition;
+    const summary_info *quantity = &summary_table[c->quantity];
+    const parameter_info *parameter = sweep_axis_parameter(&q->axis);
+    char bound[NUMBER_TEXT], low[NUMBER_TEXT], high[NUMBER_TEXT];
+    number_format_short(bound, c->bound);
+    number_format_short(low, fmin(q->axis.low, q->axis.high));
+    number_format_short(high, fmax(q->axis.low, q->axis.high));
+
+    // the question, with the range that was looked at
+    say_title(s);
+    say("%s %s %s%s%s for %s from %s to %s%s%s, %d runs\n", quantity->label, sign_of(c), bound,
+        quantity->unit[0] ? " " : "", quantity->unit, q->axis.name, low, high,
+        parameter->unit[0] ? " " : "", parameter->unit, found->points);
+
+    for (int i = 0; i < found->count; i++) {
+        const solve_limit *limit = &found->limits[i];
+        char value[64], reached[64];
+        decimal_print(value, sizeof value, "%.7g", limit->value);
+        decimal_print(reached, sizeof reached, "%.7g", limit->reached);
+        say("\n  %s %s = %s%s%s, where the %s is %s%s%s%s", limit->holds_below ? "up to" : "from",
+            q->axis.name, value, parameter->unit[0] ? " " : "", parameter->unit, quantity->label,
+            reached, quantity->unit[0] ? " " : "", quantity->unit,
+            limit->jumps ? " and jumps" : "");
+    }
+    if (found->count == 0) {
+        say("\n  no limit: it holds in %d of these runs and does not in %d", found->holding,
+            found->failing);
+    }
+    say("\n");
+    say_what_is_unknown(q, found);
+}
+
+static int find_and_report(const arguments *a, const scenario *s, const question *q)
+{
+    fault f = {0};
+    solution found;
+    run_monitor *monitor = work_begin(a, PIECES, q->points);
+    status code =
+        solve(s, &q->axis, &q->condition, q->points, many_runs_jobs(a), monitor, &found, &f);
+    work_end();
+    if (code == STATUS_STOPPED) {
+        leave_interrupted();
+    }
+    if (code != STATUS_OK) {
+        return complain_fault(&f);
+    }
+
+    int result = found.count > 0 ? EXIT_DONE : EXIT_FAILED;
+    if (a->json != NULL) {
+        result = worse(result, write_json(a->json, answer(s, q, &found)));
+    }
+    if (summary_wanted(a)) {
+        print_answer(s, q, &found);
+    }
+    return result;
+}
+
+static int read_and_find(const arguments *a, scenario *s)
+{
+    question q = {.points = a->runs > 0 ? (int)a->runs : SOLVE_POINTS};
+    fault f = {0};
+    status code = solve_condition_read(a->operands[2], &q.condition, &f);
+    code = code == STATUS_OK ? read_axis(&q, a, s, &f) : code;
+    int result = code == STATUS_OK ? find_and_report(a, s, &q) : complain_fault(&f);
+    sweep_axis_finish(&q.axis);
+    return result;
+}
+
+static int solve_command_run(const arguments *a)
+{
+    return with_scenario(a->operands[0], a, read_and_find);
+}
+
+static const option_row rows[] = {
+    {.name = "runs",
+     .type = OPTION_WHOLE,
+     .value = "N",
+     .help = "values of the range that are run before limits are located (65)",
+     PLACE(runs),
+     .low = 2,
+     .high = SOLVE_MOST_POINTS},
+    JOBS_OPTION,
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
+const command solve_command = {
+    .name = "solve",
+    .group = GROUP_MANY_RUNS,
+    .operands = "SCENARIO PATH[=a:b] 'KEY<VALUE'",
+    .summary = "Find the limit of a parameter for a condition on a result",
+    .help =
+        "Up to which voltage does the peak stay below 2 N? solve corrected/first-impact\n"
+        "motor.voltage 'peak_force_N<2' runs the range, that of the parameter's slider unless "
+        "a:b is\ngiven, and locates each limit within it. KEY is one of run --json; the condition "
+        "may be\n<, <=, > or >=. A limit is the last value at which the condition holds. Where "
+        "there is\nnone the exit status is 1.\n",
+    .least = 3,
+    .most = 3,
+    .takes_scenarios = true,
+    .options = {&set_options, &json_options, &options, &quiet_options},
+    .run = solve_command_run,
+};
