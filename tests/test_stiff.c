@@ -217,6 +217,42 @@ static void a_chain_that_bounces_keeps_its_impacts(void **state)
     check_close(o[0].momentum[last], o[1].momentum[last], 1e-4 * o[1].momentum[last]);
 }
 
+// Decays of 1e10 to 1e19 1/s, after an impact and where the hub sticks and slips: what is over
+// within a step takes no steps of its own, and rounding that such rates amplify makes no event.
+static void decays_of_any_rate_are_passed_over(void **state)
+{
+    (void)state;
+    static const char *const fast[][6] = {
+        {"arm.links=64", "arm.EI=1e6", "arm.damping_ratio=1"},
+        {"arm.links=8", "arm.hub_joint=spring", "arm.k1=1e8", "arm.hub_inertia=1e-12",
+         "arm.damping_ratio=1"},
+        {"arm.links=128", "arm.damping_ratio=0.1", "motor.inductance=1e-4"},
+        {"arm.links=3", "arm.hub_joint=rigid", "motor.inductance=1e-12", "arm.tip_mass=0.01"},
+        {"arm.links=6", "wall.contact=hunt-crossley", "wall.stiffness=1e8", "wall.damping=1e15"},
+    };
+    for (size_t i = 0; i < sizeof fast / sizeof *fast; i++) {
+        const parameters p = fixture_parameters(fast[i]);
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create_by(&a, &p.method, &stiff_engine);
+        assert_non_null(m);
+        motion_start(&a, m, 0, 0);
+        int steps = 0;
+        bool touched = false;
+        for (; m->state[SLOT_TIME] < 0.36 && steps < 20000; steps++) {
+            motion_report r;
+            assert_int_equal(motion_step(&a, m, 0.36, 1e-3, &r), STATUS_OK);
+            motion_apply(&a, m, &r);
+            touched = touched || m->state[SLOT_CONTACT] != 0;
+        }
+        assert_true(steps < 20000);
+        assert_true(touched);
+        const double put_in = motion_motor_work(m, m->state);
+        check_below(fabs(motion_energy_residual(&a, m, m->state)), 1e-9 * put_in);
+        motion_destroy(m);
+    }
+}
+
 static bool is_refused(const char *const *settings)
 {
     parameters p;
@@ -250,6 +286,7 @@ int main(void)
         cmocka_unit_test(starts_on_the_wall_are_told_from_rounding),
         cmocka_unit_test(steps_keep_clear_of_a_fold),
         cmocka_unit_test(a_chain_that_bounces_keeps_its_impacts),
+        cmocka_unit_test(decays_of_any_rate_are_passed_over),
         cmocka_unit_test(stops_change_no_bit),
         cmocka_unit_test(a_copy_of_the_state_goes_on_with_the_same_bits),
         cmocka_unit_test(an_engine_that_cannot_take_the_arm_is_refused),

@@ -135,15 +135,19 @@ static void end_rounding(motion *m)
 static void resolve(const arm *a, motion *m, bool touching, motion_event event)
 {
     static const hub_friction sticking_first[] = {HUB_STICK, HUB_FORWARD, HUB_BACKWARD};
-    static const hub_friction sliding_first[] = {HUB_FORWARD, HUB_BACKWARD, HUB_STICK};
+    static const hub_friction sliding_first[][3] = {{HUB_FORWARD, HUB_BACKWARD, HUB_STICK},
+                                                    {HUB_BACKWARD, HUB_FORWARD, HUB_STICK}};
     double *state = m->state;
     end_rounding(m);
 
-    // a hub that breaks away goes on doing so where the contact changes at that instant
+    // a hub that breaks away goes on doing so where the contact changes at that instant; it gives
+    // way to what friction has held
     const bool breaks_away =
         (event == MOTION_RELEASE || event == MOTION_TOUCH) && state[SLOT_FRICTION] != HUB_STICK;
     const bool slides = event == MOTION_SLIP || breaks_away;
-    const hub_friction *at_rest = slides ? sliding_first : sticking_first;
+    const bool backwards =
+        breaks_away ? state[SLOT_FRICTION] == HUB_BACKWARD : state[SLOT_FRICTION_TORQUE] > 0;
+    const hub_friction *at_rest = slides ? sliding_first[backwards] : sticking_first;
     if (touching && m->dof == 1 && motion_wall_is_rigid(m)) {
         state_velocities(m, state)[0] = 0; // but for rounding it is
     }

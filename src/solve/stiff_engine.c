@@ -408,7 +408,10 @@ static bool make_step(stiff_stride *s, const arm *a, motion *m)
             h *= larger(0.1, 0.9 / far);
             continue;
         }
-        const double error = stiff_error(s) / (s->tolerance * scale);
+        double error = stiff_error(s, false) / (s->tolerance * scale);
+        if (error > 1 && (began || again)) { // a decay that is over within the step is no error
+            error = stiff_error(s, true) / (s->tolerance * scale);
+        }
         const double grow = SAFETY * plain_pow(error + 1e-30, -1.0 / (RADAU_STAGES + 1));
         if (error <= 1) {
             s->kept[STIFF_NEXT] = h * smaller(again ? 1 : MOST_GROWTH, grow);

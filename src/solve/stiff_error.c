@@ -133,7 +133,7 @@ static void solve(const stiff_step *s, double target, double *y)
 
 // The same of a current that flows through an inductance, as the momentum that its torque gives the
 // arm while an angle's error counts as one of velocity.
-static double current_error(const stiff_step *s, double gamma)
+static double current_error(const stiff_step *s, double gamma, bool twice)
 {
     const motor_model *m = s->motor;
     const double volts = m->gain * m->voltage - m->back_emf * s->w0[0];
@@ -146,7 +146,8 @@ static double current_error(const stiff_step *s, double gamma)
         reach += s->link[k].length;
         inertia += s->link[k].mass * reach * reach;
     }
-    const double filtered = s->length * sum / (1 + m->resistance / (m->inductance * gamma));
+    const double filter = 1 + m->resistance / (m->inductance * gamma);
+    const double filtered = s->length * sum / (twice ? filter * filter : filter);
     return m->torque_constant * filtered / (ANGLE_RATE * sqrt(inertia));
 }
 
@@ -164,40 +165,57 @@ static double impulse_error(const stiff_step *s)
     return s->length * sum * reach / sqrt(inertia);
 }
 
-double stiff_error(stiff_stride *stride)
+// Filters errors of angles and velocities by the real system, in place: e - g J e is what they are.
+static void filter(stiff_stride *stride, double gamma, double *x, double *w)
 {
-    // what the embedded formula adds to angles (x) and, as an acceleration, to velocities (v)
     stiff_step *s = &stride->step;
-    const double h = s->length, gamma = 1 / (h * radau_start);
-    double *x = stride->scratch[0], *v = stride->scratch[1], *y = stride->scratch[2];
-    stride->loops->differences(s, x, v);
+    double *y = stride->scratch[2];
     for (int k = 0; k < s->dof; k++) {
-        x[k] *= h;
-        v[k] = gamma * (h * v[k] + gamma * x[k]);
+        w[k] = gamma * (w[k] + gamma * x[k]);
     }
-    inertia_and_damping(s, gamma, v, x, y, stride->scratch[3], stride->scratch[3] + s->links);
+    inertia_and_damping(s, gamma, w, x, y, stride->scratch[3], stride->scratch[3] + s->links);
 
-    // the filter, with the wall
+    // with the wall
     double target = 0;
     if (s->contact != STIFF_FREE) {
-        double along_x = 0, along_v = 0;
+        double along_x = 0, along_w = 0;
         for (int k = 0; k < s->dof; k++) {
             along_x += s->jacobian[k] * x[k];
-            along_v += s->jacobian[k] * v[k];
+            along_w += s->jacobian[k] * w[k];
         }
         target = s->contact == STIFF_RIGID
                      ? gamma * gamma * along_x
-                     : -gamma * s->wall_damping * along_x - s->wall->face_mass * along_v;
+                     : -gamma * s->wall_damping * along_x - s->wall->face_mass * along_w;
     }
     solve(s, target, y);
+    for (int k = 0; k < s->dof; k++) {
+        w[k] = y[k] / gamma - gamma * x[k];
+        x[k] = y[k] / (gamma * gamma);
+    }
+}
+
+double stiff_error(stiff_stride *stride, bool twice)
+{
+    // what the embedded formula adds to angles (x) and velocities (w)
+    stiff_step *s = &stride->step;
+    const double h = s->length, gamma = 1 / (h * radau_start);
+    double *x = stride->scratch[0], *w = stride->scratch[1];
+    stride->loops->differences(s, x, w);
+    for (int k = 0; k < s->dof; k++) {
+        x[k] *= h;
+        w[k] *= h;
+    }
+    filter(stride, gamma, x, w);
+    if (twice) {
+        filter(stride, gamma, x, w);
+    }
 
     // as velocities
     for (int k = 0; k < s->dof; k++) {
-        v[k] = ANGLE_RATE * y[k] / (gamma * gamma);
-        x[k] = y[k] / gamma - gamma * x[k];
+        x[k] *= ANGLE_RATE;
     }
-    const double of_w = stiff_momentum(stride, x), of_q = stiff_momentum(stride, v);
-    const double of_i = s->drive == STIFF_FLOWS ? current_error(s, gamma) : 0;
+    const double of_w = stiff_momentum(stride, w), of_q = stiff_momentum(stride, x);
+    const double of_i = s->drive == STIFF_FLOWS ? current_error(s, gamma, twice) : 0;
     const double of_p = s->contact == STIFF_GIVES ? impulse_error(s) : 0;
     return sqrt(of_w * of_w + of_q * of_q + of_i * of_i + of_p * of_p);
 }

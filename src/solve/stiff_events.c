@@ -120,10 +120,11 @@ static void watch_hub(stiff_stride *s, const arm *a, const motion *m, contact_st
         for (int i = 0; i < RADAU_LANES; i++) {
             rate[i] = now.friction * s->step.stage[0].w[i / 4][i % 4];
         }
-        function_through_rising(&s->watched[WATCH_HUB], rate,
-                                now.friction * s->step.length * s->step.a0[0]);
-        const double limits[] = {0, jumped ? EDGE_RATE * motion_rounding(a, m) : 0, EDGE_MORE};
-        if (jumped) {
+        function_through(&s->watched[WATCH_HUB], rate);
+        if (jumped) { // it may start at zero
+            const double limits[] = {0, EDGE_RATE * motion_rounding(a, m), EDGE_MORE};
+            function_through_rising(&s->watched[WATCH_HUB], rate,
+                                    now.friction * s->step.length * s->step.a0[0]);
             leave_edge(s, WATCH_HUB, limits);
         }
         return;

@@ -5,6 +5,10 @@
 
 #include "src/base/extremes.h"
 
+// A slope that differs from the polynomial's by more than so many times what the function changes
+// in the step is that of a transient which is over before the first stage, or rounding.
+#define STEEP 10
+
 void function_through(stiff_function *f, const double *nodes)
 {
     f->degree = RADAU_LANES - 1;
@@ -25,7 +29,12 @@ void function_through_rising(stiff_function *f, const double *nodes, double slop
     stiff_function through;
     function_through(&through, nodes);
     const int n = through.degree;
-    const double more = slope - n * (through.b[1] - through.b[0]);
+    double rise = 0;
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        rise = larger(fabs(nodes[i] - nodes[RADAU_LANES - 1]), rise);
+    }
+    double more = slope - n * (through.b[1] - through.b[0]);
+    more = fabs(more) <= STEEP * rise ? more : 0;
     f->degree = n + 1;
     for (int i = 0; i <= n + 1; i++) {
         const double share = (double)i / (n + 1);

@@ -19,7 +19,7 @@ typedef struct stiff_function {
 
 // Through values at the stages and at the start.
 void function_through(stiff_function *f, const double *nodes);
-// The same with a derivative by x at the start, too.
+// The same with a derivative by x at the start, too, if the stages resolve it; of one degree more.
 void function_through_rising(stiff_function *f, const double *nodes, double slope);
 // The integral from 0, from a value on.
 void function_integrate(stiff_function *f, double start, double factor);

@@ -513,6 +513,7 @@ static void factor(stiff_step *s)
                 depth > 0 ? s->wall->exponent * power / depth * (stiffness + damping * rate) : 0;
             damping *= power;
         }
+        s->wall_damping = damping;
         s->press =
             plus(plus(scaled(stiffness, g2), scaled(damping, g)), number(s->wall->face_mass));
     }

@@ -85,7 +85,7 @@ void stiff_keep_stages(stiff_stride *s);
 
 // Error of the step, as the embedded formula of order 7 shows it, filtered by the real system; a
 // momentum as STIFF_SCALE is.
-double stiff_error(stiff_stride *s);
+double stiff_error(stiff_stride *s, bool twice);
 
 // Momentum of velocities of the arm stretched out [kg^(1/2) m/s].
 double stiff_momentum(const stiff_stride *s, const double *w);
