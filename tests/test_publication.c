@@ -2,7 +2,7 @@
 #include "tests/plot_fixture.h"
 
 #include "render/figures/figures.h"
-#include "render/figures/publication.h"
+#include "render/figures/artwork.h"
 #include "render/figures/recipe.h"
 #include "render/figures/run_figure.h"
 

@@ -9,6 +9,7 @@
 #include "render/page/text.h"
 #include "render/plot/plot.h"
 #include "src/base/version.h"
+#include "src/base/whole_file.h"
 
 status make_folder(const char *folder, fault *f)
 {
@@ -191,4 +192,265 @@ artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *
     a.alternative = describe_figure(fig);
     figure_size(fig, &a.width, &a.height);
     return a;
+}
+
+// ==== publications
+
+// ---- LaTeX
+
+typedef struct replacement {
+    const char *from, *to;
+} replacement;
+
+// What is written otherwise in LaTeX; longer beginnings come first.
+static const replacement replacements[] = {
+    {"<i>", "\\textit{"},
+    {"</i>", "}"},
+    {"<b>", "\\textbf{"},
+    {"</b>", "}"},
+    {"<sub>", "\\textsubscript{"},
+    {"</sub>", "}"},
+    {"<sup>", "\\textsuperscript{"},
+    {"</sup>", "}"},
+    {"&amp;", "\\&"},
+    {"&lt;", "$<$"},
+    {"&gt;", "$>$"},
+    {"&quot;", "\""},
+    {"&apos;", "'"},
+    {"&#39;", "'"},
+    {"\u03b8\u0307", "$\\dot\\theta$"},
+    {"\u03b8\u0308", "$\\ddot\\theta$"},
+    {"F\u0302", "$\\hat F$"},
+    {"X\u0302", "$\\hat X$"},
+    {"\u0176", "$\\hat Y$"},
+    {"\u0394", "$\\Delta$"},
+    {"\u03b1", "$\\alpha$"},
+    {"\u03b2", "$\\beta$"},
+    {"\u03b3", "$\\gamma$"},
+    {"\u03b4", "$\\delta$"},
+    {"\u03b5", "$\\varepsilon$"},
+    {"\u03b8", "$\\theta$"},
+    {"\u03bc", "$\\mu$"},
+    {"\u00b5", "$\\mu$"},
+    {"\u03c1", "$\\rho$"},
+    {"\u03c4", "$\\tau$"},
+    {"\u03c9", "$\\omega$"},
+    {"\u03a9", "$\\Omega$"},
+    {"\u2126", "$\\Omega$"},
+    {"\u2212", "$-$"},
+    {"\u00b7", "$\\cdot$"},
+    {"\u00d7", "$\\times$"},
+    {"\u2265", "$\\geq$"},
+    {"\u2264", "$\\leq$"},
+    {"\u221e", "$\\infty$"},
+    {"\u222b", "$\\int$"},
+    {"\u2009", "\\,"},
+    {"\u202f", "\\,"},
+    {"\u00a0", "~"},
+    {"\u2060", ""},
+    {"\u00bd", "$\\frac12$"},
+    {"\u00bc", "$\\frac14$"},
+    {"\u00b2", "\\textsuperscript{2}"},
+    {"\u00b3", "\\textsuperscript{3}"},
+    {"\u207b", "\\textsuperscript{$-$}"},
+    {"\u00b9", "\\textsuperscript{1}"},
+    {"\u2019", "'"},
+    {"\\", "\\textbackslash{}"},
+    {"#", "\\#"},
+    {"$", "\\$"},
+    {"%", "\\%"},
+    {"_", "\\_"},
+    {"{", "\\{"},
+    {"}", "\\}"},
+    {"~", "\\textasciitilde{}"},
+    {"^", "\\textasciicircum{}"},
+};
+
+// Pango markup as LaTeX: italics, indices, Greek letters and signs. Free the result with g_free.
+static char *latex_of_markup(const char *markup)
+{
+    assert(markup != NULL);
+    GString *out = g_string_new(NULL);
+
+    while (*markup != '\0') {
+        // what LaTeX writes otherwise, else the character itself
+        const replacement *found = NULL;
+        for (size_t i = 0; i < G_N_ELEMENTS(replacements) && found == NULL; i++) {
+            size_t length = strlen(replacements[i].from);
+            found = strncmp(markup, replacements[i].from, length) == 0 ? &replacements[i] : NULL;
+        }
+
+        if (found != NULL) {
+            g_string_append(out, found->to);
+            markup += strlen(found->from);
+        } else if (strncmp(markup, "<span", 5) == 0 || strncmp(markup, "</span", 6) == 0) {
+            // what only sizes letters has no meaning in a caption
+            markup += strcspn(markup, ">");
+            markup += *markup == '>';
+        } else {
+            g_string_append_c(out, *markup++);
+        }
+    }
+    return g_string_free(out, FALSE);
+}
+
+// Plain text with LaTeX's own signs escaped and all others as they are: what a reader is told
+// aloud.
+static char *latex_escape(const char *plain)
+{
+    GString *out = g_string_new(NULL);
+    for (; *plain != '\0'; plain++) {
+        if (strchr("#$%&_{}", *plain) != NULL) {
+            g_string_append_c(out, '\\');
+        }
+        g_string_append_c(out, strchr("\\~^", *plain) != NULL ? ' ' : *plain);
+    }
+    return g_string_free(out, FALSE);
+}
+
+// The file's name without folder and ending.
+static char *stem_of(const char *path)
+{
+    char *name = g_path_get_basename(path), *dot = strrchr(name, '.');
+    if (dot != NULL && dot != name) {
+        *dot = '\0';
+    }
+    return name;
+}
+
+// A picture's path as the .tex file would name it: alone if both stand in one folder.
+static char *path_from(const char *tex, const char *file)
+{
+    char *tex_folder = g_path_get_dirname(tex), *folder = g_path_get_dirname(file);
+    bool same = strcmp(tex_folder, folder) == 0;
+    g_free(tex_folder);
+    g_free(folder);
+    return same ? g_path_get_basename(file) : g_strdup(file);
+}
+
+void latex_print(FILE *stream, const artwork *a, const char *tex, const char *file)
+{
+    assert(stream != NULL && a != NULL && tex != NULL && file != NULL);
+    char *path = path_from(tex, file), *stem = stem_of(file);
+    char *title = text_escape(a->title != NULL ? a->title : ""), *heading = latex_of_markup(title);
+    char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
+    char *alt = latex_escape(a->alternative != NULL ? a->alternative : a->title);
+
+    GString *out = g_string_new(NULL);
+    text_append(out,
+                "\\begin{figure}\n"
+                "  \\centering\n"
+                "  \\includegraphics[width=%.4gmm,alt={%s}]{%s}\n"
+                "  \\caption{%s%s%s}\n"
+                "  \\label{fig:%s}\n"
+                "\\end{figure}\n",
+                a->width * 25.4 / 72, alt, path, heading, caption[0] != '\0' ? ". " : "", caption,
+                stem);
+    fputs(out->str, stream);
+
+    g_string_free(out, TRUE);
+    g_free(path);
+    g_free(stem);
+    g_free(title);
+    g_free(heading);
+    g_free(caption);
+    g_free(alt);
+}
+
+static status write_text(const char *path, const char *text, fault *f)
+{
+    whole_file out;
+    status code = whole_file_open(&out, path, f);
+    if (code == STATUS_OK) {
+        fputs(text, out.stream);
+        code = whole_file_commit(&out, f);
+    }
+    return code;
+}
+
+// ---- what stands beside a picture
+
+// The picture's path with another ending.
+static char *beside(const char *file, const char *ending)
+{
+    const char *slash = strrchr(file, '/'), *dot = strrchr(slash ? slash : file, '.');
+    size_t length = dot != NULL ? (size_t)(dot - file) : strlen(file);
+    return g_strdup_printf("%.*s%s", (int)length, file, ending);
+}
+
+status caption_write(const artwork *a, const char *file, fault *f)
+{
+    assert(a != NULL && file != NULL);
+    char *caption = text_plain(a->caption != NULL ? a->caption : ""), *path = beside(file, ".txt");
+    char *text = g_strdup_printf("%s%s%s\n", a->title != NULL ? a->title : "",
+                                 caption[0] != '\0' ? "\n\n" : "", caption);
+    status code = write_text(path, text, f);
+    g_free(text);
+    g_free(path);
+    g_free(caption);
+    return code;
+}
+
+status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
+                       fault *f)
+{
+    assert(a != NULL && o != NULL && path != NULL);
+    picture p = artwork_picture(a, o);
+
+    status code = picture_write(&p, path, f);
+    if (code == STATUS_OK && with_csv) {
+        char *csv = beside(path, ".csv");
+        code = a->write_csv(a->what, csv, f);
+        g_free(csv);
+    }
+
+    // text of a picture that has none of its own
+    if (code == STATUS_OK && o->look.bare) {
+        code = caption_write(a, path, f);
+    }
+
+    if (code == STATUS_OK && o->latex != NULL) {
+        whole_file tex;
+        code = whole_file_open(&tex, o->latex, f);
+        if (code == STATUS_OK) {
+            latex_print(tex.stream, a, o->latex, path);
+            code = whole_file_commit(&tex, f);
+        }
+    }
+    return code;
+}
+
+void figure_take_range(figure *fig, const figure_options *o)
+{
+    if (o->from < o->to) {
+        fig->x.low = o->from;
+        fig->x.high = o->to;
+    }
+}
+
+static void borrow_nothing(void *owner)
+{
+    (void)owner;
+}
+
+status figure_publish(const figure *fig, const figure_options *o, const char *path, bool with_csv,
+                      fault *f)
+{
+    assert(fig != NULL && o != NULL && path != NULL);
+    if (o->overlay != NULL || o->signals != NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%s: the picture shows no recorded signals that %s could choose or lie "
+                         "over",
+                         path, o->overlay != NULL ? "--overlay" : "--signals");
+    }
+
+    // a copy with the look and the range asked for
+    figure shown = *fig;
+    figure_take_look(&shown, &o->look);
+    figure_take_range(&shown, o);
+
+    artwork a = artwork_of_figure(&shown, NULL, borrow_nothing);
+    status code = artwork_publish(&a, o, path, with_csv, f);
+    artwork_finish(&a);
+    return code;
 }

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/figures/publication.h"
+#include "render/figures/artwork.h"
 #include "render/figures/run_figure.h"
 #include "render/page/text.h"
 #include "src/study/thesis_tables.h"

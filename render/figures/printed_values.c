@@ -5,7 +5,7 @@
 #include <glib.h>
 #include <string.h>
 
-#include "render/figures/computed_tables.h"
+#include "render/figures/thesis_tables.h"
 #include "render/page/text.h"
 #include "render/plot/drawing.h"
 #include "src/base/version.h"

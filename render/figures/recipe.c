@@ -3,18 +3,11 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "render/figures/publication.h"
-#include "render/figures/recipe_figure.h"
+#include "render/figures/artwork.h"
 #include "render/figures/recipe_parts.h"
 #include "render/figures/run_figure.h"
 #include "render/plot/trace_plot.h"
 #include "src/base/version.h"
-
-void *recipe_own(recipe_figure *fig, void *block)
-{
-    g_ptr_array_add(fig->owned, block);
-    return block;
-}
 
 static void release(void *owner)
 {
@@ -107,168 +100,7 @@ static status open_source(recipe_figure *fig, int index, fault *f)
     return code == STATUS_OK ? code : at_source(fig, s, code, &why, f);
 }
 
-// ---- curves
-
-static const trace *trace_of(const recipe_figure *fig, int source)
-{
-    const opened_source *s = &fig->sources[source];
-    return fig->recipe.sources[source].kind == SOURCE_RUN ? &s->run.result.trace : &s->data.trace;
-}
-
-static void add_signal(recipe_figure *fig, int panel, int source, int signal, int signals)
-{
-    const recipe_source *from = &fig->recipe.sources[source];
-    figure_panel *p = &fig->panels[panel];
-    bool data = from->kind == SOURCE_DATA;
-    int index = signal_index(fig->recipe.panels[panel].signals[signal]);
-
-    // no room, or nothing measured
-    if (p->series_count == PANEL_SERIES || (data && !trace_has(trace_of(fig, source), index))) {
-        return;
-    }
-
-    const opened_source *s = &fig->sources[source];
-    const trace_run run = {
-        .scenario = &s->run.scenario, .result = data ? &s->data : &s->run.result, .points = data};
-    figure_series *out = &fig->series[panel][p->series_count];
-    *out = trace_series(&run, index, fig->owned);
-
-    // several signals of one run are told by their symbols, several runs by their labels
-    const char *label = recipe_label(fig, from);
-    if (signals > 1) {
-        const opened_source *first = &fig->sources[0];
-        char *symbol = trace_symbol(data ? &first->run.scenario : run.scenario, index);
-        label =
-            recipe_own(fig, fig->recipe.source_count > 1 ? g_strdup_printf("%s %s", label, symbol)
-                                                         : g_strdup(symbol));
-        g_free(symbol);
-    }
-
-    // measured data are points without a line
-    out->label = label;
-    out->name = recipe_own(fig, g_strdup_printf("%s %s", from->name, signal_table[index].name));
-    out->style = LINE_SOLID;
-    out->colour = data ? 6 : recipe_colour(p->series_count);
-    out->no_line = data;
-    out->marker = data ? MARKER_CIRCLE : MARKER_NONE;
-    p->series_count++;
-}
-
-// One signal of one source less that of another, at the instants of the first.
-static void add_difference(recipe_figure *fig, int panel)
-{
-    const recipe_panel *from = &fig->recipe.panels[panel];
-    const trace *of = trace_of(fig, from->of), *less = trace_of(fig, from->less);
-    int index = signal_index(from->signals[0]);
-    double *x = recipe_own(fig, g_new(double, of->row_count + 1));
-    double *y = recipe_own(fig, g_new(double, of->row_count + 1));
-
-    for (size_t i = 0; i < of->row_count; i++) {
-        x[i] = of->rows[i].time;
-        y[i] = signal_value(&of->rows[i], index) - trace_value_at(less, index, x[i]);
-    }
-
-    // points where data are compared, else a line
-    bool data = fig->recipe.sources[from->of].kind == SOURCE_DATA;
-    fig->series[panel][0] = (figure_series){.name = "difference",
-                                            .x = x,
-                                            .y = y,
-                                            .count = of->row_count,
-                                            .colour = data ? 6 : 7,
-                                            .no_line = data,
-                                            .marker = data ? MARKER_CIRCLE : MARKER_NONE};
-    fig->panels[panel].series_count = 1;
-}
-
-// ---- panels
-
-// "Contact force f (N)" of a signal, or the names of a table's columns.
-static void describe_axis(recipe_figure *fig, int panel)
-{
-    const recipe_panel *from = &fig->recipe.panels[panel];
-    figure_axis *y = &fig->panels[panel].y;
-    *y = (figure_axis){.with_zero = from->zero,
-                       .low = from->low,
-                       .high = from->high,
-                       .scale = from->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR};
-
-    // a signal, or a column of a table
-    if (from->signal_count > 0) {
-        const signal_info *signal = &signal_table[signal_index(from->signals[0])];
-        char *symbol = trace_symbol(&fig->sources[0].run.scenario, signal_index(signal->name));
-
-        y->name = signal->name;
-        y->unit = signal->unit;
-        y->symbol = from->signal_count == 1
-                        ? recipe_own(fig, g_strconcat(from->of >= 0 ? "Δ" : "", symbol, NULL))
-                        : NULL;
-        y->label = recipe_own(fig, from->of >= 0 ? g_strdup_printf("Difference of %s", symbol)
-                                   : from->signal_count == 1
-                                       ? g_strdup_printf("%s %s", signal->quantity, symbol)
-                                       : g_strdup(signal->quantity));
-        g_free(symbol);
-    } else if (from->source_count > 0) {
-        const recipe_source *table = &fig->recipe.sources[from->sources[0]];
-        figure_axis column = recipe_column_axis(fig, table->y);
-        column.with_zero = from->zero;
-        column.low = from->low;
-        column.high = from->high;
-        column.scale = y->scale;
-        column.room = table->z != NULL ? 0 : 0.05;
-        *y = column;
-    }
-
-    // the recipe's own word
-    if (from->label != NULL) {
-        y->label = from->label;
-    }
-}
-
-static void describe_panel(recipe_figure *fig, int panel)
-{
-    const recipe_panel *from = &fig->recipe.panels[panel];
-    figure_panel *p = &fig->panels[panel];
-    describe_axis(fig, panel);
-
-    p->heading = from->heading;
-    p->weight = from->weight;
-    p->series = fig->series[panel];
-    p->notes = fig->notes[panel];
-    p->note_count = from->note_count;
-
-    for (int i = 0; i < from->note_count; i++) {
-        const recipe_note *n = &from->notes[i];
-        fig->notes[panel][i] = (figure_note){n->x, n->y, n->text};
-    }
-
-    // curves
-    if (from->of >= 0) {
-        add_difference(fig, panel);
-    }
-    for (int i = 0; i < from->source_count; i++) {
-        if (fig->recipe.sources[from->sources[i]].kind == SOURCE_TABLE) {
-            recipe_add_table(fig, panel, from->sources[i]);
-            continue;
-        }
-        for (int k = 0; k < from->signal_count; k++) {
-            add_signal(fig, panel, from->sources[i], k, from->signal_count);
-        }
-    }
-}
-
-// A panel with the first one's curves needs no legend of its own.
-static void share_legend(recipe_figure *fig, int panel)
-{
-    const figure_panel *first = &fig->panels[0], *p = &fig->panels[panel];
-    bool same = panel > 0 && p->series_count == first->series_count;
-    for (int i = 0; i < p->series_count && same; i++) {
-        same = g_strcmp0(p->series[i].label, first->series[i].label) == 0 &&
-               p->series[i].colour == first->series[i].colour;
-    }
-    if (same) {
-        fig->panels[panel].legend = LEGEND_NONE;
-    }
-}
+// ---- the page
 
 // The axis below all panels: time, or the first column of the first table.
 static figure_axis horizontal_axis(recipe_figure *fig)
@@ -309,12 +141,7 @@ static void describe(recipe_figure *fig, const figure_options *o)
 {
     const recipe *r = &fig->recipe;
     for (int i = 0; i < r->panel_count; i++) {
-        describe_panel(fig, i);
-        share_legend(fig, i);
-    }
-
-    for (int i = 0; i < r->mark_count; i++) {
-        fig->marks[i] = (figure_mark){r->marks[i].x, r->marks[i].label};
+        recipe_describe_panel(fig, i);
     }
 
     fig->figure =
@@ -325,7 +152,7 @@ static void describe(recipe_figure *fig, const figure_options *o)
                  .panel_count = r->panel_count,
                  .columns = r->columns,
                  .shared_y = r->shared,
-                 .marks = fig->marks,
+                 .marks = r->marks,
                  .mark_count = r->mark_count,
                  .software = recipe_own(fig, g_strconcat("impactlab ", lab_version(), NULL)),
                  .parameters = recipe_own(fig, parameters_of(fig))};

@@ -1,7 +1,72 @@
-// Internal to the reading of recipes: values, maps and lists, used by every section.
+// Internal to recipes: what a recipe says, how its text is read, and the figure made of it.
 #pragma once
 
-#include "render/figures/recipe_model.h"
+#include <glib.h>
+
+#include "render/figures/run_figure.h"
+#include "render/plot/trace_plot.h"
+#include "src/scenario/reader.h"
+#include "src/study/store/sweep_store.h"
+
+// --- a recipe after reading
+
+enum { RECIPE_SOURCES = 16, RECIPE_CHANGES = 16, RECIPE_NOTES = 8, RECIPE_MARKS = 16 };
+
+// A source of curves: a run, measured data, or a table with a column for each axis.
+typedef enum source_kind { SOURCE_RUN, SOURCE_DATA, SOURCE_TABLE } source_kind;
+
+typedef struct recipe_source {
+    source_kind kind;
+    const char *name, *label;           // label NULL: the name
+    const char *scenario;               // of a run
+    const char *change[RECIPE_CHANGES]; // of a run, "arm.k2=3"
+    int change_count;
+    const char *file;   // of data (CSV), of a table (a sweep's database)
+    const char *column; // of data; NULL: all columns that are signals
+    const char *x, *y;  // of a table: columns
+    const char *z;      // of a table: the column of a map's colours; NULL: a curve
+    double shift;       // of data [s]
+    place at;           // its place in the recipe
+} recipe_source;
+
+typedef struct recipe_panel {
+    const char *signals[TRACE_SIGNALS];
+    int signal_count;
+    int sources[RECIPE_SOURCES]; // indices, in the order of the recipe
+    int source_count;
+    int of, less; // indices of a difference; -1: none
+    const char *heading, *label;
+    double weight, low, high; // 0; low >= high: from the data
+    bool zero, logarithmic;
+    figure_note notes[RECIPE_NOTES];
+    int note_count;
+    place at;
+} recipe_panel;
+
+typedef struct recipe {
+    const char *title, *caption;
+    recipe_source sources[RECIPE_SOURCES];
+    int source_count;
+    recipe_panel panels[FIGURE_PANELS];
+    int panel_count;
+    figure_mark marks[RECIPE_MARKS];
+    int mark_count;
+    const char *x_label, *x_unit;
+    double from, to; // of the horizontal axis; from >= to: from the data
+    bool logarithmic;
+    int columns;
+    bool shared;      // all panels have one vertical axis
+    bool contact;     // the first run's contact is shaded
+    GPtrArray *owned; // texts
+} recipe;
+
+// Reads a recipe's text. Every fault is reported with file:line:column; false if there is one.
+// recipe_finish in both cases.
+bool recipe_read(recipe *r, const char *path, const char *text, size_t length, fault_handler report,
+                 void *context);
+void recipe_finish(recipe *r);
+
+// --- reading: values, maps and lists, used by every section: recipe_sources.c
 
 typedef struct recipe_context {
     reader reader;
@@ -80,7 +145,37 @@ void recipe_take_sources(recipe_context *c, const tree_node *root);
 // The index of a source that a panel names, or -1 after a fault.
 int recipe_find_source(recipe_context *c, const tree_node *node);
 
-// --- small multiples: recipe_multiples.c
+// --- drawing: a figure with everything it borrows
 
-// Reads `multiples` and repeats runs and panels for each of its values, after both are read.
-void recipe_take_multiples(recipe_context *c, const tree_node *node);
+// A source with its run or data.
+typedef struct opened_source {
+    opened_run run;                       // of a run
+    bool ran;                             // the run must be finished
+    run_result data;                      // of data: its trace alone
+    double *columns[SWEEP_TABLE_COLUMNS]; // of a table: x, y and z
+    size_t count;                         // of their values
+} opened_source;
+
+typedef struct recipe_figure {
+    recipe recipe;
+    char *path;
+    opened_source sources[RECIPE_SOURCES];
+    figure figure;
+    figure_panel panels[FIGURE_PANELS];
+    figure_series series[FIGURE_PANELS][PANEL_SERIES];
+    figure_map maps[FIGURE_PANELS];
+    figure_colours colours[FIGURE_PANELS];
+    GPtrArray *owned;
+} recipe_figure;
+
+// --- panels: recipe_panels.c
+
+// Adds a block to those that are freed with the figure.
+void *recipe_own(recipe_figure *fig, void *block);
+
+// The axis of a table's column: label and unit of a parameter or summary quantity, otherwise the
+// key itself.
+figure_axis recipe_column_axis(recipe_figure *fig, const char *key);
+
+// Describes a panel with its curves.
+void recipe_describe_panel(recipe_figure *fig, int panel);

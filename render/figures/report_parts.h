@@ -1,4 +1,4 @@
-// Internal to the report: its items, and the two formats in which they are written.
+// Internal to the report: its items, and its web page: report_html.c.
 #pragma once
 
 #include <glib.h>
@@ -21,12 +21,13 @@ typedef struct report {
     run_monitor *monitor; // NULL: nobody looks on
 } report;
 
-report_item *report_item_at(const report *r, guint index);
+static inline report_item *report_item_at(const report *r, guint index)
+{
+    return &g_array_index(r->items, report_item, index);
+}
 
 // Counts a finished item; STATUS_STOPPED if the report is to end here.
 status report_item_done(const report *r, fault *f);
 
-// FOLDER/report.html: report_html.c. FOLDER/report.pdf: report_pdf.c. Both return the status of
-// painting and writing.
+// Writes FOLDER/report.html. Returns the status of painting and writing.
 status report_write_html(const report *r, const char *path, fault *f);
-status report_write_pdf(const report *r, const char *path, fault *f);

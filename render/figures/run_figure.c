@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <string.h>
 
-#include "render/figures/publication.h"
+#include "render/figures/artwork.h"
 #include "render/plot/trace_plot.h"
 #include "src/base/words.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "render/figures/recipe.h"
-#include "render/figures/recipe_model.h"
+#include "render/figures/recipe_parts.h"
 
 enum { DRAWN_OF = 4 };
 

@@ -1,7 +1,7 @@
 // Pictures made by commands, with one set of options for all of them.
 #pragma once
 
-#include "render/figures/publication.h"
+#include "render/figures/artwork.h"
 #include "render/figures/run_figure.h"
 #include "ui/commands/command.h"
 
