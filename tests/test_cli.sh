@@ -193,6 +193,7 @@ says out "thesis/fig-3-4"
 expect 0 list --json -
 says out '"name": "thesis/fig-3-4"'
 expect 0 show hit.yaml --set arm.k2=6 --json -
+grep -q "\"title\": \".*, with arm.k2 = 6 N m/rad\"" out || fail "show --json gives a title without what was set"
 says out '"arm.k2": 6'
 expect 0 show hit.yaml --set arm.k2=6
 grep -q '^arm.k2 *= *6 N m/rad' out || fail "show does not mark what was set"

@@ -8,6 +8,7 @@
 
 struct impactlab_scenario {
     scenario scenario;
+    char title[SCENARIO_TITLED]; // with what was changed since it was read
 };
 
 struct impactlab_run {

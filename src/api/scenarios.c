@@ -40,11 +40,18 @@ static impactlab_scenario *new_handle(impactlab_scenario **handle, impactlab_err
     return *handle;
 }
 
+// Tells in the title what a scenario has become. Returns IMPACTLAB_OK.
+static int retitle(impactlab_scenario *handle, impactlab_error *error)
+{
+    scenario_titled(&handle->scenario, handle->title);
+    return api_done(error);
+}
+
 // What reading came to: nothing is left of a handle that could not be filled.
 static int finish_reading(impactlab_scenario **handle, status code, impactlab_error *error)
 {
     if (code == STATUS_OK) {
-        return api_done(error);
+        return retitle(*handle, error);
     }
     const fault_place at = (*handle)->scenario.refused;
     free(*handle);
@@ -110,7 +117,7 @@ int impactlab_scenario_copy(impactlab_scenario **handle, const impactlab_scenari
         *handle = NULL;
         return api_fail(error, STATUS_NO_MEMORY, "no memory for a scenario");
     }
-    return api_done(error);
+    return retitle(*handle, error);
 }
 
 void impactlab_scenario_destroy(impactlab_scenario *handle)
@@ -137,7 +144,7 @@ const char *impactlab_scenario_name(const impactlab_scenario *handle)
 
 const char *impactlab_scenario_title(const impactlab_scenario *handle)
 {
-    return handle != NULL ? handle->scenario.title : "";
+    return handle != NULL ? handle->title : "";
 }
 
 const char *impactlab_scenario_description(const impactlab_scenario *handle)
@@ -229,7 +236,7 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
               : STATUS_BAD_ARGUMENT;
     free(given);
     if (code == STATUS_OK) {
-        return api_done(error);
+        return retitle(handle, error);
     }
     handle->scenario.parameters = before;
     if (!whole) {
@@ -257,7 +264,7 @@ static int set_one(impactlab_scenario *handle, const char *path, const char *tex
     if (code == STATUS_OK) {
         code = scenario_take_parameters(&handle->scenario, &p, &f);
     }
-    return code == STATUS_OK ? api_done(error) : api_error(error, &f);
+    return code == STATUS_OK ? retitle(handle, error) : api_error(error, &f);
 }
 
 int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const char *text,
@@ -329,7 +336,7 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
     }
     scenario_insert_action(s, a);
-    return api_done(error);
+    return retitle(handle, error);
 }
 
 int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double impulse,
@@ -355,5 +362,5 @@ int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double 
     }
     scenario_insert_action(
         s, (action){.time = time, .kind = ACTION_PUSH, .value = impulse, .added = true});
-    return api_done(error);
+    return retitle(handle, error);
 }

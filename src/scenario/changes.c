@@ -78,3 +78,10 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
     }
     return text;
 }
+
+const char *scenario_titled(const scenario *s, char text[SCENARIO_TITLED])
+{
+    char changes[SCENARIO_CHANGES];
+    snprintf(text, SCENARIO_TITLED, "%s%s", s->title, scenario_changes(s, changes));
+    return text;
+}

@@ -34,11 +34,10 @@ __attribute__((format(printf, 1, 2))) static char *text_of(const char *format, .
     return length < 0 ? NULL : text;
 }
 
-// Whether a call that failed says that there is nothing of that name, or nothing to be had.
+// Whether a call that failed says that there is nothing of that name.
 static bool is_missing(int reason)
 {
-    return reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG || reason == ELOOP ||
-           reason == EACCES;
+    return reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG || reason == ELOOP;
 }
 
 static bool is_folder(const char *path)
@@ -253,12 +252,14 @@ static status add_entry(name_list *list, const char *folder, const char *prefix,
     return code;
 }
 
-// Adds the scenarios in and below a folder; one that is not the user's to read counts as empty.
+// Adds the scenarios in and below a folder; one below that is not the user's to read counts as
+// empty.
 static status walk(name_list *list, const char *folder, const char *prefix, int depth, fault *f)
 {
     DIR *directory = opendir(folder);
     if (directory == NULL) {
-        return errno == EACCES || errno == ENOENT ? STATUS_OK : cannot_list(folder, f);
+        const bool hidden = errno == EACCES && depth > 0;
+        return hidden || errno == ENOENT ? STATUS_OK : cannot_list(folder, f);
     }
 
     // every entry that may be a scenario or a folder of them

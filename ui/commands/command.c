@@ -221,8 +221,8 @@ void say(const char *format, ...)
 void say_title(const scenario *s)
 {
     assert(s != NULL);
-    char changes[SCENARIO_CHANGES];
-    say("%s: %s%s\n", s->name, s->title, scenario_changes(s, changes));
+    char title[SCENARIO_TITLED];
+    say("%s: %s\n", s->name, scenario_titled(s, title));
 }
 
 bool terminal_has_utf8(void)

@@ -65,6 +65,7 @@ static void print_expectations(const scenario *s)
 static json_t *show_object(const scenario *s)
 {
     json_t *object = json_object(), *given = json_array();
+    char title[SCENARIO_TITLED];
 
     // defaults are not named
     for (int i = 0; i < parameter_count; i++) {
@@ -75,7 +76,7 @@ static json_t *show_object(const scenario *s)
 
     // what describes it, and all values whether given or not
     json_put(object, "scenario", json_text(s->name));
-    json_put(object, "title", json_text(s->title));
+    json_put(object, "title", json_text(scenario_titled(s, title)));
     json_put(object, "description", json_text(s->description));
     json_put(object, "parameters", export_parameters(&s->parameters));
     json_put(object, "given", given);

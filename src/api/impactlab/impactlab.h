@@ -129,7 +129,8 @@ IMPACTLAB_EXPORT int impactlab_scenario_copy(impactlab_scenario **scenario,
                                              impactlab_error *error);
 IMPACTLAB_EXPORT void impactlab_scenario_destroy(impactlab_scenario *scenario);
 
-// Name, title and description, valid until the scenario is destroyed.
+// Name, title and description, valid until the scenario is destroyed; the title tells what was
+// changed, and does until the next change.
 IMPACTLAB_EXPORT const char *impactlab_scenario_name(const impactlab_scenario *scenario);
 IMPACTLAB_EXPORT const char *impactlab_scenario_title(const impactlab_scenario *scenario);
 IMPACTLAB_EXPORT const char *impactlab_scenario_description(const impactlab_scenario *scenario);
