@@ -6,9 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ui/explorer/commands.h"
-#include "ui/explorer/keys.h"
-#include "ui/explorer/mouse.h"
+#include "ui/explorer/explorer.h"
 #include "ui/terminal/keys.h"
 
 static inline void open_explorer(explorer *ex, const char *name)

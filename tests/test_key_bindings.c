@@ -4,8 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "ui/explorer/panels/help_text.h"
-#include "ui/explorer/settings.h"
+#include "ui/explorer/panels/panel.h"
+#include "ui/explorer/explorer.h"
 
 static void test_a_key_gets_another_command(void **state)
 {
@@ -58,8 +58,8 @@ static void test_wrong_keys_are_told(void **state)
         {"kex x play", "did you mean key?", 0},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        action_result result = explorer_execute(&ex.state, wrong[i].line);
-        assert_false(result_ok(&result));
+        assert_false(explorer_execute(&ex.state, wrong[i].line));
+        const message_line result = ex.state.message;
         if (strstr(result.text, wrong[i].why) == NULL || result.at != wrong[i].at) {
             fail_msg("'%s' at %d: %s", wrong[i].line, result.at, result.text);
         }

@@ -11,8 +11,7 @@
 #include "src/base/words.h"
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"
-#include "ui/explorer/commands.h"
-#include "ui/explorer/keys.h"
+#include "ui/explorer/explorer.h"
 #include "ui/explorer/state/command_list.h"
 
 enum { MOST_PIECES = 24, PIECE = 200 };

@@ -8,8 +8,7 @@
 
 #include "src/base/words.h"
 #include "src/tables/summary.h"
-#include "ui/explorer/commands.h"
-#include "ui/explorer/keys.h"
+#include "ui/explorer/explorer.h"
 
 enum { PLAYED_OF = 8, MOST_STEPS = 12 };
 

@@ -7,9 +7,7 @@
 #include <string.h>
 
 #include "src/base/words.h"
-#include "ui/explorer/commands.h"
-#include "ui/explorer/keys.h"
-#include "ui/explorer/mouse.h"
+#include "ui/explorer/explorer.h"
 #include "ui/terminal/escape_sequence.h"
 
 enum { MOST_STEPS = 60 };

@@ -9,10 +9,7 @@
 
 #include "src/base/clock.h"
 #include "src/base/loss.h"
-#include "ui/explorer/commands.h"
-#include "ui/explorer/keys.h"
-#include "ui/explorer/mouse.h"
-#include "ui/explorer/settings.h"
+#include "ui/explorer/explorer.h"
 #include "ui/terminal/pictures.h"
 #include "ui/terminal/terminal.h"
 

@@ -1,8 +1,17 @@
-#include "ui/explorer/commands.h"
+// Lines that are carried out: typed after `:`, of scripts, of keys, of the settings. And the
+// commands that give keys another meaning.
+#include "ui/explorer/explorer.h"
 
 #include <assert.h>
 #include <ctype.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "src/base/whole_file.h"
+#include "ui/explorer/state/user_files.h"
+#include "ui/terminal/keys.h"
+
+// --- lines ------------------------------------------------------------------------------------
 
 static action_function *const functions[] = {
 #define COMMAND_FUNCTION(group, name, argument, help, function) function,
@@ -11,34 +20,27 @@ static action_function *const functions[] = {
 };
 
 // The command of a line's first word.
-static action_result find_command(const char *line, int *index)
+static bool find_command(explorer_state *st, const char *line, int *index)
 {
     char name[32];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(line, " \t"), line);
     *index = explorer_command_find(name);
     if (*index >= 0) {
-        return result_done();
+        return true;
     }
     const char *near = explorer_command_suggest(name);
-    return result_refused("there is no command '%s'%s%s%s", name, near ? ", did you mean " : "",
-                          near ? near : "", near ? "?" : " (? lists them)");
+    return act_refuse(st, "there is no command '%s'%s%s%s", name, near ? ", did you mean " : "",
+                      near ? near : "", near ? "?" : " (? lists them)");
 }
 
-action_result explorer_check_command(const char *line)
-{
-    assert(line != NULL);
-    int index;
-    return find_command(line, &index);
-}
-
-action_result explorer_execute(explorer_state *st, const char *line)
+bool explorer_execute(explorer_state *st, const char *line)
 {
     assert(st != NULL && line != NULL);
     char text[LINE_TEXT];
     int begin = (int)strspn(line, " \t:"), index;
     line += begin;
     if (*line == '\0' || *line == '#') {
-        return result_done();
+        return true;
     }
 
     // without the blanks at its end
@@ -47,23 +49,263 @@ action_result explorer_execute(explorer_state *st, const char *line)
         text[n - 1] = '\0';
     }
 
-    action_result result = find_command(text, &index);
-    if (result_ok(&result)) {
-        size_t length = strcspn(text, " \t");
-        length += strspn(text + length, " \t");
-        result = functions[index](st, text + length);
-        result.at += (int)length;
+    size_t length = strcspn(text, " \t");
+    length += strspn(text + length, " \t");
+    if (!find_command(st, text, &index)) {
+        st->message.at = begin;
+        return false;
     }
-    result.at += begin;
-    return result;
+    st->message.at = 0;
+    const bool done = functions[index](st, text + length);
+    st->message.at += begin + (int)length;
+    return done;
 }
 
 bool explorer_carry_out(explorer *ex, const char *line)
 {
     assert(ex != NULL);
-    action_result result = explorer_execute(&ex->state, line);
+    const bool done = explorer_execute(&ex->state, line);
     act_follow_lesson(&ex->state);
-    result_show(&result, &ex->state.message);
-    explorer_tell_replay(ex);
-    return result_ok(&result);
+    act_tell_replay(&ex->state);
+    return done;
+}
+
+// --- keys -------------------------------------------------------------------------------------
+
+// Reads the key that begins an argument, and where the rest of it does.
+static bool read_key(explorer_state *st, const char *argument, int *key, const char **rest)
+{
+    int length = (int)strcspn(argument, " \t");
+    *key = key_of_name(argument, (size_t)length);
+    *rest = argument + length + strspn(argument + length, " \t");
+
+    // what cannot be bound
+    if (length == 0) {
+        return act_refuse(st, "a key is a character or a name such as Space, PgUp, F1, S-Left "
+                              "or C-r");
+    }
+    if (*key == 0) {
+        return act_refuse(st, "there is no key '%.*s'", length, argument);
+    }
+    if (*key == ':' || *key == KEY_CODE_ESCAPE || *key == ('c' & 0x1f)) {
+        return act_refuse(st, "%.*s keeps its meaning: the way to the prompt, back or out", length,
+                          argument);
+    }
+    return true;
+}
+
+static bool no_room(explorer_state *st)
+{
+    return act_refuse(st, "there are %d keys of your own already, no more fit", USER_KEYS);
+}
+
+bool act_bind_key(explorer_state *st, const char *argument)
+{
+    const char *line;
+    char name[KEY_NAME], before[LINE_TEXT] = "";
+    int key;
+    if (!read_key(st, argument, &key, &line)) {
+        return false;
+    }
+
+    // without a command it is asked what the key does
+    key_name(key, name, sizeof name);
+    const char *old = key_line(&st->keys, key);
+    if (line[0] == '\0') {
+        return old ? act_tell(st, "%s does '%s'", name, old)
+                   : act_tell(st, "%s does nothing", name);
+    }
+
+    // a copy of the old meaning: its place gets the new one
+    int index;
+    snprintf(before, sizeof before, "%s", old ? old : "");
+    user_key *own = find_command(st, line, &index) ? key_add_own(&st->keys, key) : NULL;
+    if (own == NULL) {
+        st->message.at = (int)(line - argument);
+        return index >= 0 && no_room(st);
+    }
+    snprintf(own->line, sizeof own->line, "%s", line);
+    if (before[0] != '\0' && strcmp(before, line) != 0) {
+        return act_tell(st, "%s does '%s' now, no longer '%s'", name, line, before);
+    }
+    return act_tell(st, "%s does '%s' now", name, line);
+}
+
+bool act_unbind_key(explorer_state *st, const char *argument)
+{
+    const char *rest;
+    char name[KEY_NAME];
+    int key;
+    if (!read_key(st, argument, &key, &rest)) {
+        return false;
+    }
+    if (rest[0] != '\0') {
+        st->message.at = (int)(rest - argument);
+        return act_refuse(st, "unkey takes one key, what is '%s' for?", rest);
+    }
+
+    // the user's key goes, the explorer's own comes back
+    key_name(key, name, sizeof name);
+    const char *built_in = key_built_in_line(key);
+    user_key *own = key_find_own(&st->keys, key);
+    if (own != NULL) {
+        key_remove_own(&st->keys, own);
+        return built_in ? act_tell(st, "%s does '%s' again", name, built_in)
+                        : act_tell(st, "%s does nothing now", name);
+    }
+
+    // one of the explorer's own does nothing then
+    if (built_in == NULL) {
+        return act_refuse(st, "%s does nothing as it is", name);
+    }
+    own = key_add_own(&st->keys, key);
+    if (own == NULL) {
+        return no_room(st);
+    }
+    own->line[0] = '\0';
+    return act_tell(st, "%s does nothing now, no longer '%s' (unkey it again to have that back)",
+                    name, built_in);
+}
+
+// --- settings ---------------------------------------------------------------------------------
+
+static const char *const remembered[] = {"theme", "glyphs",  "colours", "pixels", "closeup",
+                                         "mouse", "bending", "lanes",   "slow",   "speed",
+                                         "panes", "axis",    "key",     "unkey"};
+
+static bool is_remembered(const char *line)
+{
+    size_t length = strcspn(line, " \t");
+    for (size_t i = 0; i < sizeof remembered / sizeof remembered[0]; i++) {
+        if (strlen(remembered[i]) == length && strncmp(line, remembered[i], length) == 0) {
+            return true;
+        }
+    }
+    return length == 0 || line[0] == '#';
+}
+
+// Where the file is; false if there is no folder for it.
+static bool settings_path(char *path, size_t size, bool make)
+{
+    if (!settings_folder(path, size - 8, make)) {
+        return false;
+    }
+    strcat(path, "/lab");
+    return true;
+}
+
+// Executes a line of the file; errors are reported with line and column.
+static bool execute_line(explorer_state *st, const char *path, int number, const char *line)
+{
+    const int begin = (int)strspn(line, " \t");
+
+    // only what :remember writes is taken from a file
+    st->message.at = begin;
+    const bool done = !is_remembered(line + begin) ? act_refuse(st, "this is no setting")
+                      : strlen(line) >= LINE_TEXT  ? act_refuse(st, "the line is too long")
+                                                   : explorer_execute(st, line);
+
+    // the place in the file comes before what is wrong
+    return done || act_refuse(st, "%s:%d:%d is ignored: %.200s", path, number, st->message.at + 1,
+                              st->message.text);
+}
+
+void explorer_load_settings(explorer *ex)
+{
+    assert(ex != NULL);
+    explorer_state *st = &ex->state;
+    char path[1024], *line = NULL;
+    message_line first = {.text = ""};
+    size_t room = 0;
+    int faults = 0;
+    if (!settings_path(path, sizeof path, false)) {
+        return;
+    }
+
+    // every line that can be carried out is
+    FILE *stream = fopen(path, "r");
+    for (int number = 1; stream != NULL && getline(&line, &room, stream) >= 0; number++) {
+        line[strcspn(line, "\r\n")] = '\0';
+        if (!execute_line(st, path, number, line) && faults++ == 0) {
+            first = st->message;
+        }
+    }
+    free(line);
+    if (stream != NULL) {
+        fclose(stream);
+    }
+
+    // the first fault, and the number of further ones
+    st->settings_broken = faults > 0;
+    st->message = first;
+    if (faults > 1) {
+        act_warn(st, "%.900s (and %d more)", first.text, faults - 1);
+    }
+}
+
+// The axes that are not as they are at first, and the user's keys.
+static void write_axes_and_keys(const explorer_state *st, FILE *stream)
+{
+
+    // every pane but the user's own
+    for (int i = 0; i < PANES - 1; i++) {
+        const pane *p = &st->panes.pane[i];
+        if (p->scaling == AXIS_GROW) {
+            fprintf(stream, "axis grow %d\n", i + 1);
+        } else if (p->scaling == AXIS_FIXED) {
+            fprintf(stream, "axis %.10g %.10g %d\n", p->fixed.low, p->fixed.high, i + 1);
+        }
+    }
+
+    // a key without a line is one that was taken away
+    for (int i = 0; i < st->keys.count; i++) {
+        const user_key *own = &st->keys.own[i];
+        char name[KEY_NAME];
+        key_name(own->key, name, sizeof name);
+        fprintf(stream, own->line[0] ? "key %s %s\n" : "unkey %s\n", name, own->line);
+    }
+}
+
+static void write_settings(const explorer_state *st, FILE *stream)
+{
+    const looks *l = &st->looks;
+    fprintf(stream, "# settings of the terminal lab, written by :remember\n");
+    fprintf(stream, "theme %s\nglyphs %s\ncolours %s\n", colour_theme_words[l->theme],
+            glyph_set_words[l->glyphs], colour_depth_words[l->depth]);
+    fprintf(stream, "pixels %s\ncloseup %s\nbending %g\n", pixel_words[l->pixels],
+            close_up_words[l->close_up], l->bending);
+    fprintf(stream, "mouse %s\nlanes %s\nspeed %g\nslow %g\n", mouse_words[l->mouse],
+            lane_choice_words[l->lanes], st->playback.speed, st->playback.slow);
+
+    // panes that the user did not choose are those that suit the scenario
+    fputs(st->panes.chosen ? "panes " : "", stream);
+    for (int i = 0; i < PANES - 1; i++) {
+        if (st->panes.chosen && st->panes.pane[i].shown) {
+            fprintf(stream, "%d", i + 1);
+        }
+    }
+    fputs(st->panes.chosen ? "\n" : "", stream);
+    write_axes_and_keys(st, stream);
+}
+
+bool act_remember(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    char path[1024];
+    whole_file file;
+    fault f = {0};
+    if (!settings_path(path, sizeof path, true)) {
+        return act_refuse(st, "there is no folder for settings (XDG_CONFIG_HOME or HOME)");
+    }
+    if (st->settings_broken) {
+        return act_refuse(st, "%s has faults and is left alone: mend or remove it", path);
+    }
+
+    // whole or not at all
+    status code = whole_file_open(&file, path, &f);
+    if (code == STATUS_OK) {
+        write_settings(st, file.stream);
+        code = whole_file_commit(&file, &f);
+    }
+    return code == STATUS_OK ? act_tell(st, "settings kept in %s", path) : act_worked(st, code, &f);
 }

@@ -1,4 +1,4 @@
-#include "ui/explorer/completion.h"
+#include "ui/explorer/explorer.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -167,7 +167,7 @@ static void put_word(prompt *p, const char *word, const char *after)
 }
 
 // As far as all candidates agree, and what they are.
-static action_result complete_common(explorer_state *st, const place *where, int count)
+static bool complete_common(explorer_state *st, const place *where, int count)
 {
     prompt *p = &st->prompt;
     char common[CANDIDATE] = "", name[CANDIDATE], listed[512] = "";
@@ -187,10 +187,10 @@ static action_result complete_common(explorer_state *st, const place *where, int
     if (strlen(common) >= strlen(p->stem)) {
         put_word(p, common, count == 1 ? " " : "");
     }
-    return result_news("%s", count > 1 ? listed : "");
+    return act_tell(st, "%s", count > 1 ? listed : "");
 }
 
-action_result complete_prompt(explorer_state *st)
+bool complete_prompt(explorer_state *st)
 {
     assert(st != NULL);
     prompt *p = &st->prompt;
@@ -206,7 +206,7 @@ action_result complete_prompt(explorer_state *st)
     const place where = place_in(p->text, p->text + p->stem_at);
     const int count = count_fitting(st, &where, p->stem, -1, NULL);
     if (count == 0) {
-        return result_done();
+        return true;
     }
     if (!p->cycling) {
         p->cycling = count > 1;
@@ -215,5 +215,5 @@ action_result complete_prompt(explorer_state *st)
     p->cycle = (p->cycle + 1) % count;
     count_fitting(st, &where, p->stem, p->cycle, name);
     put_word(p, name, "");
-    return result_done();
+    return true;
 }

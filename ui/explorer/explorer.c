@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "ui/explorer/panels/compose.h"
-#include "ui/explorer/state/consent.h"
+#include "ui/explorer/state/user_files.h"
 
 status explorer_init(explorer *ex, scenario *s, double patience, fault *f)
 {
@@ -15,8 +15,7 @@ status explorer_init(explorer *ex, scenario *s, double patience, fault *f)
     }
     status code = state_init(&ex->state, s, patience, f);
     if (code == STATUS_OK) {
-        action_result news = act_tell_failed_run(&ex->state);
-        result_show(&news, &ex->state.message);
+        act_tell_failed_run(&ex->state);
     }
     return code;
 }
@@ -36,8 +35,7 @@ bool explorer_follow(explorer *ex)
 
     // a run of a sweep, or more of the present one
     if (!lab_sweep_is_done(&ex->state.sweep)) {
-        const action_result next = act_continue_sweep(&ex->state);
-        result_show(&next, &ex->state.message);
+        act_continue_sweep(&ex->state);
         session_follow(s);
         return true;
     }
@@ -45,31 +43,16 @@ bool explorer_follow(explorer *ex)
         return false;
     }
     if (s->computing == NULL) {
-        action_result news = act_tell_failed_run(&ex->state);
-        result_show(&news, &ex->state.message);
-        explorer_tell_replay(ex);
+        act_tell_failed_run(&ex->state);
+        act_tell_replay(&ex->state);
     }
     return true;
-}
-
-void explorer_tell_replay(explorer *ex)
-{
-    assert(ex != NULL);
-    message_line *m = &ex->state.message;
-    const action_result again = act_tell_replay(&ex->state);
-    if (again.speaks && m->text[0] != '\0') {
-        const message_line before = *m;
-        message_say(m, m->warning, "%.600s; %s", before.text, again.text);
-    } else {
-        result_show(&again, m);
-    }
 }
 
 void explorer_advance(explorer *ex, double seconds)
 {
     assert(ex != NULL);
-    action_result news = act_advance(&ex->state, seconds);
-    result_show(&news, &ex->state.message);
+    act_advance(&ex->state, seconds);
 }
 
 bool explorer_is_busy(const explorer *ex)
@@ -88,8 +71,7 @@ void explorer_draw(explorer *ex, screen *s)
 
     // the state first, so that drawing only reads it; what the picture decided comes back
     if (compose_fits(size)) {
-        action_result news = act_follow_slider(st);
-        result_show(&news, &st->message);
+        act_follow_slider(st);
         act_follow_lesson(st);
         state_update(st);
     }

@@ -6,7 +6,6 @@
 // and write a layout), and in this folder keys, mouse, the table of commands and the settings.
 #pragma once
 
-#include "ui/explorer/panels/layout.h"
 #include "ui/explorer/panels/panel.h"
 #include "ui/terminal/keys.h"
 
@@ -33,10 +32,6 @@ void explorer_finish(explorer *ex);
 // Takes in the rows computed since the last call. True if there is something new to draw.
 bool explorer_follow(explorer *ex);
 
-// Adds to the message line that an external program had to repeat its earlier samples, if it had
-// to.
-void explorer_tell_replay(explorer *ex);
-
 // Advances by wall-clock time [s]: moves the cursor during playback.
 void explorer_advance(explorer *ex, double seconds);
 
@@ -45,3 +40,41 @@ bool explorer_is_busy(const explorer *ex);
 
 // Draws everything; the layout depends on the screen's size.
 void explorer_draw(explorer *ex, screen *s);
+
+// --- lines ------------------------------------------------------------------------------------
+
+// Executes a line; an empty one or a comment does nothing. The result's `at` counts from the
+// beginning of the line.
+bool explorer_execute(explorer_state *st, const char *line);
+
+// The same, with the result's message shown on the message line. False if it failed.
+bool explorer_carry_out(explorer *ex, const char *line);
+
+// --- keys -------------------------------------------------------------------------------------
+
+// A key was pressed.
+void explorer_key(explorer *ex, int key);
+
+// Executes the entry of the palette that was chosen with the mouse, if any.
+void explorer_take_picked(explorer *ex);
+
+// Presses the keys of a text: characters, and names in angle brackets ("<Space>", "<Right>",
+// "<C-l>"). False, with the reason in f, at an unknown name.
+bool explorer_keys(explorer *ex, const char *text, fault *f);
+
+// --- the mouse --------------------------------------------------------------------------------
+
+// Handles an event of the mouse.
+void explorer_point(explorer *ex, pointer_event e);
+
+// --- completion -------------------------------------------------------------------------------
+
+// Completes the prompt's last word as far as all candidates agree and lists them if there are
+// several; called again it cycles through them.
+bool complete_prompt(explorer_state *st);
+
+// --- settings ---------------------------------------------------------------------------------
+
+// Executes the commands of the settings file, if there is one. Faulty lines are reported on the
+// message line and ignored.
+void explorer_load_settings(explorer *ex);

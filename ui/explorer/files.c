@@ -79,23 +79,23 @@ static void whole_path(const char *name, char *path, size_t size)
     free(found);
 }
 
-static action_result tell_saved(const char *name)
+static bool tell_saved(explorer_state *st, const char *name)
 {
     char path[MESSAGE_TEXT / 2];
     whole_path(name, path, sizeof path);
-    return result_news("saved %s", path);
+    return act_tell(st, "saved %s", path);
 }
 
 // Refused where something would be lost.
-static action_result need_new_file(const char *name, const char *command)
+static bool need_new_file(explorer_state *st, const char *name, const char *command)
 {
     char path[MESSAGE_TEXT / 2];
     if (!exists(name)) {
-        return result_done();
+        return true;
     }
     whole_path(name, path, sizeof path);
-    return result_refused("%s is there already: another name, or :%s! %.100s replaces it", path,
-                          command, name);
+    return act_refuse(st, "%s is there already: another name, or :%s! %.100s replaces it", path,
+                      command, name);
 }
 
 // Appends a word to a file's name, letters, digits and a few marks only.
@@ -138,20 +138,19 @@ static void propose_name(const explorer_state *st, const char *ending, char *nam
 // --- the commands -----------------------------------------------------------------------------
 
 // Writes what the name's ending asks for; a file that is there is replaced.
-static action_result save_over(explorer_state *st, const char *name)
+static bool save_over(explorer_state *st, const char *name)
 {
     int kind = 0;
     while (kind < KINDS && !ends_with(name, kinds[kind].ending)) {
         kind++;
     }
     if (kind == KINDS || kinds[kind].needs_whole_run) {
-        action_result whole = act_need_whole_run(st);
-        if (!result_ok(&whole)) {
-            return whole;
+        if (!act_need_whole_run(st)) {
+            return false;
         }
     }
     if (kind == KINDS) {
-        return result_refused("the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt");
+        return act_refuse(st, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt");
     }
 
     fault f = {0};
@@ -166,31 +165,30 @@ static action_result save_over(explorer_state *st, const char *name)
     if (code == STATUS_OK && ends_with(name, ".yaml")) {
         st->saved_version = state_run_id(st);
     }
-    return code == STATUS_OK ? tell_saved(name) : result_of(code, &f);
+    return code == STATUS_OK ? tell_saved(st, name) : act_worked(st, code, &f);
 }
 
-action_result act_save(explorer_state *st, const char *argument)
+bool act_save(explorer_state *st, const char *argument)
 {
     // without a name the prompt proposes one
     if (argument[0] == '\0') {
         char name[LINE_TEXT / 2];
         propose_name(st, ".png", name, sizeof name);
         prompt_open_value(&st->prompt, "save ", name);
-        return result_news(".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
-                           "gives this run; .txt: the screen");
+        return act_tell(st, ".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
+                            "gives this run; .txt: the screen");
     }
-    action_result fresh = need_new_file(argument, "save");
-    return result_ok(&fresh) ? save_over(st, argument) : fresh;
+    return need_new_file(st, argument, "save") && save_over(st, argument);
 }
 
-action_result act_save_over(explorer_state *st, const char *argument)
+bool act_save_over(explorer_state *st, const char *argument)
 {
-    return argument[0] == '\0' ? result_refused("save! takes the file that it is to replace")
+    return argument[0] == '\0' ? act_refuse(st, "save! takes the file that it is to replace")
                                : save_over(st, argument);
 }
 
 // The arm in space at the cursor's instant.
-action_result act_save_scene(explorer_state *st, const char *argument)
+bool act_save_scene(explorer_state *st, const char *argument)
 {
     const session *s = &st->session;
     const scene_options options = {0};
@@ -201,16 +199,15 @@ action_result act_save_scene(explorer_state *st, const char *argument)
         char name[LINE_TEXT / 2];
         propose_name(st, "-arm.png", name, sizeof name);
         prompt_open_value(&st->prompt, "scene ", name);
-        return result_done();
+        return true;
     }
 
     // nothing is replaced, and nothing incomplete is drawn
     if (exists(argument)) {
-        return result_refused("%.200s is there already: give the scene another name", argument);
+        return act_refuse(st, "%.200s is there already: give the scene another name", argument);
     }
-    action_result whole = act_need_whole_run(st);
-    if (!result_ok(&whole)) {
-        return whole;
+    if (!act_need_whole_run(st)) {
+        return false;
     }
 
     // the cursor's instant
@@ -219,6 +216,5 @@ action_result act_save_scene(explorer_state *st, const char *argument)
                                    .options = options,
                                    .times = &s->now,
                                    .count = 1};
-    status code = scene_write(&picture, argument, &f);
-    return code == STATUS_OK ? tell_saved(argument) : result_of(code, &f);
+    return act_worked(st, scene_write(&picture, argument, &f), &f) && tell_saved(st, argument);
 }

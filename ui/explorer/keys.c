@@ -1,11 +1,13 @@
-#include "ui/explorer/keys.h"
+// What keys and the mouse do: in the prompt, in a page, by the table of keys; the panel under the
+// mouse.
+#include "ui/explorer/explorer.h"
 
 #include <assert.h>
 #include <string.h>
 
-#include "ui/explorer/commands.h"
-#include "ui/explorer/completion.h"
 #include "ui/terminal/keys.h"
+
+// --- keys -------------------------------------------------------------------------------------
 
 bool explorer_keys(explorer *ex, const char *text, fault *f)
 {
@@ -45,7 +47,7 @@ static void enter_prompt(explorer *ex)
         snprintf(line, sizeof line, "%s", p->text);
     }
     p->open = false;
-    message_clear(&st->message);
+    act_hush(st);
     if (goes_on) {
         prompt_open(p, "%s", line);
         return;
@@ -74,7 +76,6 @@ static bool key_in_palette(explorer_state *st, int key)
 static void key_in_prompt(explorer *ex, int key)
 {
     prompt *p = &ex->state.prompt;
-    message_line *message = &ex->state.message;
 
     // only Tab after Tab goes through what fits; words are not completed
     p->cycling = p->cycling && key == KEY_CODE_TAB;
@@ -85,7 +86,7 @@ static void key_in_prompt(explorer *ex, int key)
     case KEY_CODE_ESCAPE:
     case 'c' & 0x1f:
         p->open = false;
-        message_clear(message);
+        act_hush(&ex->state);
         break;
     case KEY_CODE_ENTER:
     case '\n':
@@ -95,15 +96,12 @@ static void key_in_prompt(explorer *ex, int key)
         // what was typed so far is searched for everywhere
         char words[LINE_TEXT];
         snprintf(words, sizeof words, "%s", p->text);
-        const action_result opened = act_open_palette(&ex->state, words);
-        result_show(&opened, message);
+        act_open_palette(&ex->state, words);
         break;
     }
-    case KEY_CODE_TAB: {
-        action_result completed = complete_prompt(&ex->state);
-        result_show(&completed, message);
+    case KEY_CODE_TAB:
+        complete_prompt(&ex->state);
         break;
-    }
     case KEY_CODE_UP:
         prompt_open(p, "%s", p->history);
         break;
@@ -177,7 +175,7 @@ static void escape(explorer *ex)
 
     // what was only shown for a moment goes with it
     session_forget_ghost(&st->session);
-    message_clear(&st->message);
+    act_hush(st);
 }
 
 static void key_by_table(explorer *ex, int key)
@@ -193,14 +191,14 @@ static void key_by_table(explorer *ex, int key)
         // a copy: the command may be one that binds keys
         char line[LINE_TEXT];
         snprintf(line, sizeof line, "%s", bound);
-        message_clear(&st->message);
+        act_hush(st);
         explorer_carry_out(ex, line);
     } else if (key == KEY_CODE_ESCAPE) {
         escape(ex);
     } else if (key > ' ' && key < KEY_CODE_FIRST && key != 127) {
         char name[8];
         glyph_encode((uint32_t)key, name);
-        message_say(&st->message, true, "'%s' does nothing here, ? lists the keys", name);
+        act_warn(st, "'%s' does nothing here, ? lists the keys", name);
     }
 
     // the answer is the very next key
@@ -222,11 +220,112 @@ void explorer_key(explorer *ex, int key)
     } else if (key == ':') {
         prompt_open(&st->prompt, "%s", "");
         st->palette.selected = -1;
-        message_clear(&st->message);
+        act_hush(st);
     } else if (st->page.panel != PANEL_NONE && !leaves) {
-        action_result result = panel_of(st->page.panel)->key(st, key);
-        result_show(&result, &st->message);
+        panel_of(st->page.panel)->key(st, key);
     } else {
         key_by_table(ex, key);
+    }
+}
+
+// --- the mouse --------------------------------------------------------------------------------
+
+// Passes a gesture to the panel of its hit area; false if it has no effect.
+static bool give(explorer *ex, const panel_gesture *g)
+{
+    if (g->hit.panel == PANEL_NONE || panel_of(g->hit.panel)->point == NULL) {
+        return false;
+    }
+    bool taken = panel_of(g->hit.panel)->point(&ex->state, g);
+    explorer_take_picked(ex);
+    return taken;
+}
+
+// Whether a page is open and a part is not of it.
+static bool is_behind_page(const explorer_state *st, panel_id id)
+{
+    return st->page.panel != PANEL_NONE && (id == PANEL_NONE || panel_place_of(id) < PLACE_PAGE);
+}
+
+static void press(explorer *ex, pointer_event e)
+{
+    explorer_state *st = &ex->state;
+    hit_area hit = layout_hit(&ex->layout, e.x, e.y);
+    ex->grip = (pointer_grip){.holding = true, .hit = hit, .x = e.x, .y = e.y};
+
+    // outside a page: it closes, and the drag does not apply to the panel behind it
+    if (is_behind_page(st, hit.panel)) {
+        ex->grip.hit = (hit_area){.panel = st->page.panel};
+        st->page.panel = PANEL_NONE;
+        st->scenarios.filtering = false;
+        return;
+    }
+    e.kind = POINTER_PRESS;
+    give(ex, &(panel_gesture){.event = e, .hit = hit});
+}
+
+static void drag(explorer *ex, pointer_event e)
+{
+    // a terminal may leave the press out
+    if (!ex->grip.holding) {
+        press(ex, e);
+    }
+    pointer_grip *grip = &ex->grip;
+    panel_gesture g = {.event = e, .hit = grip->hit, .across = e.x - grip->x, .up = grip->y - e.y};
+    grip->dragged |= g.across != 0 || g.up != 0;
+    g.dragged = grip->dragged;
+    grip->x = e.x;
+    grip->y = e.y;
+
+    // what began on nothing counts for the plot as soon as it is over the curves
+    bool over_curves = area_holds(ex->layout.plot, e.x, e.y);
+    if (grip->hit.panel == PANEL_NONE && ex->state.page.panel == PANEL_NONE && over_curves) {
+        g.hit = (hit_area){PANEL_CURVES, PART_BODY, 0, ex->layout.plot};
+    }
+    give(ex, &g);
+}
+
+static void release(explorer *ex, pointer_event e)
+{
+    // a quick click may come without its press
+    if (!ex->grip.holding) {
+        press(ex, e);
+    }
+    give(ex, &(panel_gesture){.event = e, .hit = ex->grip.hit, .dragged = ex->grip.dragged});
+    ex->grip = (pointer_grip){0};
+}
+
+static void turn_wheel(explorer *ex, pointer_event e)
+{
+    const explorer_state *st = &ex->state;
+    hit_area hit = layout_hit(&ex->layout, e.x, e.y);
+    const bool typing = st->prompt.open && hit.panel != PANEL_PALETTE;
+    if (typing || is_behind_page(st, hit.panel)) {
+        return;
+    }
+
+    // where no panel takes it, it presses the keys for up and down
+    if (!give(ex, &(panel_gesture){.event = e, .hit = hit})) {
+        explorer_key(ex, pointer_wheel(e) < 0 ? KEY_CODE_UP : KEY_CODE_DOWN);
+    }
+}
+
+void explorer_point(explorer *ex, pointer_event e)
+{
+    assert(ex != NULL);
+
+    // a gesture is a press, its drags and its release; what is left is the wheel
+    switch (e.kind) {
+    case POINTER_PRESS:
+        press(ex, e);
+        break;
+    case POINTER_DRAG:
+        drag(ex, e);
+        break;
+    case POINTER_RELEASE:
+        release(ex, e);
+        break;
+    default:
+        turn_wheel(ex, e);
     }
 }

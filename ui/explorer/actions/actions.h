@@ -1,12 +1,13 @@
-// The actions of the commands. They call the session, change the state and return a result.
+// The actions of the commands. They call the session, change the state and put what there is to say
+// on the message line. Each returns false if it was refused or failed, which the message then says.
 #pragma once
 
-#include "ui/explorer/actions/result.h"
+#include "src/base/fault.h"
 #include "ui/explorer/state/command_list.h"
 #include "ui/explorer/state/state.h"
 
 // A command's function: takes its argument as text, "" if there is none.
-typedef action_result action_function(explorer_state *st, const char *argument);
+typedef bool action_function(explorer_state *st, const char *argument);
 
 // One for each command. Those that need the table of commands or the whole screen (keys, settings,
 // files) are in the folder above, all others in this one.
@@ -14,34 +15,48 @@ typedef action_result action_function(explorer_state *st, const char *argument);
 COMMAND_LIST(ACTION_FUNCTION)
 #undef ACTION_FUNCTION
 
+// --- what is said -----------------------------------------------------------------------------
+
+// Done: with a message, with a warning, without any (the message line is cleared).
+bool act_tell(explorer_state *st, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool act_warn(explorer_state *st, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool act_hush(explorer_state *st);
+// Not done: the argument is not what the action expects.
+bool act_refuse(explorer_state *st, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// Whether a call that returned `code` worked; if not, its fault is the message.
+bool act_worked(explorer_state *st, status code, const fault *f);
+
+// --- what is read -----------------------------------------------------------------------------
+
 // Reads a finite number.
-action_result act_read_number(const char *text, double *value);
+bool act_read_number(explorer_state *st, const char *text, double *value);
 
 // The same for an argument that may be omitted: then the value stays.
-action_result act_read_optional(const char *text, double *value);
+bool act_read_optional(explorer_state *st, const char *text, double *value);
 
 // --- the run ----------------------------------------------------------------------------------
 
 // Replaces the session by one of another scenario and plays it; if that fails the old one stays.
-action_result act_open_scenario(explorer_state *st, const char *name);
+bool act_open_scenario(explorer_state *st, const char *name);
 
 // Gives a parameter another value, from the cursor on or from the start.
-action_result act_change(explorer_state *st, int parameter, const char *text);
+bool act_change(explorer_state *st, int parameter, const char *text);
 
-// A warning if the present run failed, or the question whether its program may run; otherwise no
-// message.
-action_result act_tell_failed_run(const explorer_state *st);
+// Warns if the present run failed, or asks whether its program may run. True if there was something
+// to say.
+bool act_tell_failed_run(explorer_state *st);
 
-// A message, once, if an external program had to repeat its earlier samples for the present run.
-action_result act_tell_replay(explorer_state *st);
+// Adds to the message, once, that an external program had to repeat its earlier samples for the
+// present run, if it had to.
+void act_tell_replay(explorer_state *st);
 
 // Refused while the run is being computed, for actions that need the complete run.
-action_result act_need_whole_run(const explorer_state *st);
+bool act_need_whole_run(explorer_state *st);
 
 // --- time -------------------------------------------------------------------------------------
 
 // Advances by wall-clock time [s]: moves the cursor during playback.
-action_result act_advance(explorer_state *st, double seconds);
+bool act_advance(explorer_state *st, double seconds);
 
 // Stops playing and moves the cursor to an instant [s].
 void act_scrub(explorer_state *st, double time);
@@ -54,11 +69,11 @@ void act_pan_by(explorer_state *st, double seconds);
 // --- pulling the tip --------------------------------------------------------------------------
 
 // Grasps the tip with the pointer at a place [m], moves the pointer, and releases the tip.
-action_result act_hold_tip(explorer_state *st, plane_vector place);
+bool act_hold_tip(explorer_state *st, plane_vector place);
 void act_move_pull(explorer_state *st, plane_vector place);
-action_result act_drop_pull(explorer_state *st);
+bool act_drop_pull(explorer_state *st);
 // Gives the run the pushes that are due until an instant [s], if the tip is held.
-action_result act_pull_until(explorer_state *st, double time);
+bool act_pull_until(explorer_state *st, double time);
 
 // --- filters ----------------------------------------------------------------------------------
 
@@ -69,18 +84,18 @@ void act_settle_filter(explorer_state *st, panel_id panel);
 // --- sweeps -----------------------------------------------------------------------------------
 
 // Computes the next run of a sweep that is not complete.
-action_result act_continue_sweep(explorer_state *st);
+bool act_continue_sweep(explorer_state *st);
 
 // Moves the selection among a sweep's runs.
 void act_select_swept(explorer_state *st, int direction);
 
 // Makes the run of the selected value the present run, by a change from the start.
-action_result act_take_swept(explorer_state *st);
+bool act_take_swept(explorer_state *st);
 
 // --- lessons ----------------------------------------------------------------------------------
 
 // Records that the present step of the lesson is done, if it is.
-action_result act_follow_lesson(explorer_state *st);
+void act_follow_lesson(explorer_state *st);
 
 // --- the palette -------------------------------------------------------------------------------
 
@@ -112,6 +127,6 @@ typedef struct slider_drag {
 void act_hold_slider(explorer_state *st, slider_drag d);
 // Sets the parameter to the value of the slider; called once for each picture, however often the
 // mouse has moved.
-action_result act_follow_slider(explorer_state *st);
+bool act_follow_slider(explorer_state *st);
 // Ends dragging, with the last value set.
-action_result act_drop_slider(explorer_state *st);
+bool act_drop_slider(explorer_state *st);

@@ -24,7 +24,7 @@ void act_pan_by(explorer_state *st, double seconds)
     }
 }
 
-action_result act_zoom(explorer_state *st, const char *argument)
+bool act_zoom(explorer_state *st, const char *argument)
 {
     double from, to;
     char rest;
@@ -42,13 +42,13 @@ action_result act_zoom(explorer_state *st, const char *argument)
         st->window.adrift = true;
         state_show_part(st, from, to);
     } else {
-        return result_refused(
-            "zoom takes in, out, all or two instants in seconds, such as 0.2 0.4");
+        return act_refuse(st,
+                          "zoom takes in, out, all or two instants in seconds, such as 0.2 0.4");
     }
-    return result_done();
+    return true;
 }
 
-action_result act_pan(explorer_state *st, const char *argument)
+bool act_pan(explorer_state *st, const char *argument)
 {
     double from, to, seconds;
     state_window(st, &from, &to);
@@ -57,24 +57,23 @@ action_result act_pan(explorer_state *st, const char *argument)
     if (strcmp(argument, "left") == 0 || strcmp(argument, "right") == 0) {
         seconds = (argument[0] == 'l' ? -0.25 : 0.25) * (to - from);
     } else {
-        action_result read = act_read_number(argument, &seconds);
-        if (!result_ok(&read)) {
-            return read;
+        if (!act_read_number(st, argument, &seconds)) {
+            return false;
         }
     }
     if (st->window.to <= st->window.from) {
-        return result_refused("the whole run is visible, z zooms in");
+        return act_refuse(st, "the whole run is visible, z zooms in");
     }
     act_pan_by(st, seconds);
     state_window(st, &from, &to);
-    return result_news("%.4g to %.4g s, f follows the cursor again", from, to);
+    return act_tell(st, "%.4g to %.4g s, f follows the cursor again", from, to);
 }
 
-action_result act_follow(explorer_state *st, const char *argument)
+bool act_follow(explorer_state *st, const char *argument)
 {
     (void)argument;
     st->window.adrift = false;
-    return result_news("the curves follow the cursor");
+    return act_tell(st, "the curves follow the cursor");
 }
 
 // --- values -----------------------------------------------------------------------------------
@@ -111,16 +110,16 @@ static void set_scaling(explorer_state *st, int index, axis_scaling scaling)
     }
 }
 
-static action_result tell_axis(const explorer_state *st, int index)
+static bool tell_axis(explorer_state *st, int index)
 {
     const pane *p = &st->panes.pane[index];
     int number = (index + 1) % 10;
     if (p->scaling == AXIS_FIXED) {
-        return result_news("pane %d: from %.4g to %.4g", number, p->fixed.low, p->fixed.high);
+        return act_tell(st, "pane %d: from %.4g to %.4g", number, p->fixed.low, p->fixed.high);
     }
-    return result_news("pane %d: %s", number,
-                       p->scaling == AXIS_AUTO ? "the range of what is visible"
-                                               : "the range of all that was seen, it only grows");
+    return act_tell(st, "pane %d: %s", number,
+                    p->scaling == AXIS_AUTO ? "the range of what is visible"
+                                            : "the range of all that was seen, it only grows");
 }
 
 // The words of an argument; returns how many there are.
@@ -136,28 +135,24 @@ static int split(char *text, char *words[4])
 }
 
 // Fixes a pane's axis to two limits given as text.
-static action_result set_limits(explorer_state *st, int index, const char *from, const char *to)
+static bool set_limits(explorer_state *st, int index, const char *from, const char *to)
 {
     value_range limits;
-    action_result read = act_read_number(from, &limits.low);
-    if (result_ok(&read)) {
-        read = act_read_number(to, &limits.high);
-    }
-    if (!result_ok(&read)) {
-        return read;
+    if (!act_read_number(st, from, &limits.low) || !act_read_number(st, to, &limits.high)) {
+        return false;
     }
 
     // limits the wrong way round, or none at all: NAN is not below anything
     if (!(limits.low < limits.high)) {
-        return result_refused("an axis goes from a lower to a higher value, not from %g to %g",
-                              limits.low, limits.high);
+        return act_refuse(st, "an axis goes from a lower to a higher value, not from %g to %g",
+                          limits.low, limits.high);
     }
     pane_fix_axis(&st->panes.pane[index], limits);
-    return result_done();
+    return true;
 }
 
 // Gives a pane's axis what the first `count` words say, one or two.
-static action_result apply(explorer_state *st, int index, char *const words[4], int count)
+static bool apply(explorer_state *st, int index, char *const words[4], int count)
 {
     const char *word = words[0];
     if (count == 2) {
@@ -168,13 +163,13 @@ static action_result apply(explorer_state *st, int index, char *const words[4], 
     for (int i = 0; i < AXIS_SCALINGS; i++) {
         if (strcmp(word, axis_scaling_words[i]) == 0) {
             set_scaling(st, index, (axis_scaling)i);
-            return result_done();
+            return true;
         }
     }
     if (strcmp(word, "next") == 0) {
         int next = (int)(st->panes.pane[index].scaling + 1) % AXIS_SCALINGS;
         set_scaling(st, index, (axis_scaling)next);
-        return result_done();
+        return true;
     }
 
     // the axis as it is now, changed
@@ -183,14 +178,14 @@ static action_result apply(explorer_state *st, int index, char *const words[4], 
     } else if (strcmp(word, "up") == 0 || strcmp(word, "down") == 0) {
         act_shift_axis(st, index, word[0] == 'u' ? 0.25 : -0.25);
     } else {
-        return result_refused("axis takes auto, grow, fixed, in, out, up, down or two limits, "
+        return act_refuse(st, "axis takes auto, grow, fixed, in, out, up, down or two limits, "
                               "then a pane (1 to 9, all)");
     }
-    return result_done();
+    return true;
 }
 
 // Reads the pane of a word, -1 for all of them.
-static action_result read_pane(const explorer_state *st, const char *word, int *index)
+static bool read_pane(explorer_state *st, const char *word, int *index)
 {
     char *end;
     long number = strtol(word, &end, 10);
@@ -198,23 +193,23 @@ static action_result read_pane(const explorer_state *st, const char *word, int *
 
     // all panes need no number
     if (strcmp(word, "all") == 0) {
-        return result_done();
+        return true;
     }
 
     // numbered as the keys are: 0 comes last and is the user's own
     if (*end != '\0' || end == word || number < 0 || number > PANES) {
-        return result_refused("'%s' is no pane: 1 to 9, 0 for your own, or all", word);
+        return act_refuse(st, "'%s' is no pane: 1 to 9, 0 for your own, or all", word);
     }
     *index = (int)(number + PANES - 1) % PANES;
 
     // an empty pane has no axis
     if (st->panes.pane[*index].count == 0) {
-        return result_refused("pane %s is empty, :trace SIGNAL... fills it", word);
+        return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", word);
     }
-    return result_done();
+    return true;
 }
 
-action_result act_axis(explorer_state *st, const char *argument)
+bool act_axis(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT], *words[4], *end;
     snprintf(text, sizeof text, "%s", argument);
@@ -228,27 +223,25 @@ action_result act_axis(explorer_state *st, const char *argument)
     bool limits = (strtod(words[0], &end), end != words[0]);
     int used = limits ? 2 : 1;
     if (count < used) {
-        return result_refused("an axis has two limits, such as 0 2, and then a pane");
+        return act_refuse(st, "an axis has two limits, such as 0 2, and then a pane");
     }
     if (count > used + 1) {
-        return result_refused("what is '%s' for?", words[2]);
+        return act_refuse(st, "what is '%s' for?", words[2]);
     }
     if (count == used && index < 0) {
-        return result_refused("no pane of curves is shown");
+        return act_refuse(st, "no pane of curves is shown");
     }
     if (count > used) {
-        action_result read = read_pane(st, words[used], &index);
-        if (!result_ok(&read)) {
-            return read;
+        if (!read_pane(st, words[used], &index)) {
+            return false;
         }
     }
 
     // that pane, or all of them
     for (int i = 0; i < PANES; i++) {
         if ((i == index || index < 0) && st->panes.pane[i].count > 0) {
-            action_result applied = apply(st, i, words, used);
-            if (!result_ok(&applied)) {
-                return applied;
+            if (!apply(st, i, words, used)) {
+                return false;
             }
         }
     }
@@ -257,21 +250,21 @@ action_result act_axis(explorer_state *st, const char *argument)
 
 // --- panes ------------------------------------------------------------------------------------
 
-action_result act_focus(explorer_state *st, const char *argument)
+bool act_focus(explorer_state *st, const char *argument)
 {
     (void)argument;
     int focused = panes_focused(&st->panes);
     if (focused < 0) {
-        return result_refused("no pane of curves is shown, 1 to 9 show them");
+        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
     }
     st->panes.focus = (focused + 1) % PANES;
     st->panes.focus = panes_focused(&st->panes);
-    return result_done();
+    return true;
 }
 
-action_result act_alone(explorer_state *st, const char *argument)
+bool act_alone(explorer_state *st, const char *argument)
 {
     (void)argument;
     st->panes.alone = !st->panes.alone;
-    return result_done();
+    return true;
 }

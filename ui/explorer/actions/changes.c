@@ -1,4 +1,4 @@
-// Actions that change the run: values, pushes, branches, undo, sliders.
+// Actions that change the run: values, pushes, branches, undo, sliders, the list of changes.
 #include "ui/explorer/actions/actions.h"
 
 #include <assert.h>
@@ -9,14 +9,14 @@
 #include "src/base/numbers.h"
 
 // What the last input came to: that the run stops with it, that it has no effect, or its news.
-static action_result tell_change(const explorer_state *st)
+static bool tell_change(explorer_state *st)
 {
     const session *s = &st->session;
     const session_input *in = &s->inputs[s->input_count - 1];
     const parameter_info *info = &parameter_table[in->parameter];
     char when[48] = "from the start";
-    if (s->run.summary.status != STATUS_OK || s->run.summary.inaccurate) {
-        return act_tell_failed_run(st);
+    if (act_tell_failed_run(st)) {
+        return true;
     }
     if (in->kind == SESSION_INPUT_TIMED) {
         snprintf(when, sizeof when, "from %.4f s on", in->time);
@@ -27,30 +27,30 @@ static action_result tell_change(const explorer_state *st)
     const char *inert = state_inert_reason(st, in->parameter);
     const char *blank = info->unit[0] ? " " : "";
     if (inert != NULL) {
-        return result_warning("%s = %s%s%s %s, without effect: %s", info->path, in->text, blank,
-                              info->unit, when, inert);
+        return act_warn(st, "%s = %s%s%s %s, without effect: %s", info->path, in->text, blank,
+                        info->unit, when, inert);
     }
     if (in->parameter == PARAMETER_INDEX(motor.voltage) &&
         fabs(p.motor.voltage) > p.motor.voltage_limit) {
-        return result_warning("%s = %s V %s, more than motor.voltage_limit: the command saturates "
-                              "at %g V",
-                              info->path, in->text, when, p.motor.voltage_limit);
+        return act_warn(st,
+                        "%s = %s V %s, more than motor.voltage_limit: the command saturates "
+                        "at %g V",
+                        info->path, in->text, when, p.motor.voltage_limit);
     }
-    return result_news("%s = %s%s%s %s", info->path, in->text, blank, info->unit, when);
+    return act_tell(st, "%s = %s%s%s %s", info->path, in->text, blank, info->unit, when);
 }
 
-action_result act_change(explorer_state *st, int parameter, const char *text)
+bool act_change(explorer_state *st, int parameter, const char *text)
 {
     assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
     session_forget_ghost(&st->session);
     fault f = {0};
-    status code = session_change(&st->session, parameter, text, &f);
-    return code != STATUS_OK ? result_of(code, &f) : tell_change(st);
+    return act_worked(st, session_change(&st->session, parameter, text, &f), &f) && tell_change(st);
 }
 
 // act_change with a number, in small steps: several at one instant are one change, and none at all
 // once the value is what it was.
-static action_result act_adjust(explorer_state *st, int parameter, double value)
+static bool act_adjust(explorer_state *st, int parameter, double value)
 {
     assert(st != NULL && parameter >= 0 && parameter < parameter_count);
     session *s = &st->session;
@@ -59,53 +59,50 @@ static action_result act_adjust(explorer_state *st, int parameter, double value)
     fault f = {0};
 
     // checked and rounded as the table has it
-    status code = parameter_set_number(&p, parameter, value, &f);
-    if (code != STATUS_OK) {
-        return result_of(code, &f);
+    if (!act_worked(st, parameter_set_number(&p, parameter, value, &f), &f)) {
+        return false;
     }
     parameter_format(&p, parameter, text, sizeof text);
 
     // a value that is as it was leaves no change
     const int changes = s->input_count;
-    code = session_adjust(s, parameter, text, &f);
-    if (code != STATUS_OK) {
-        return result_of(code, &f);
+    if (!act_worked(st, session_adjust(s, parameter, text, &f), &f)) {
+        return false;
     }
     if (s->input_count < changes) {
-        return result_news("%s is %s %s again", parameter_table[parameter].path, text,
-                           parameter_table[parameter].unit);
+        return act_tell(st, "%s is %s %s again", parameter_table[parameter].path, text,
+                        parameter_table[parameter].unit);
     }
     return tell_change(st);
 }
 
 // The parameter of a path, of its last part or of a beginning of either.
-static action_result find_parameter(const char *name, int *parameter)
+static bool find_parameter(explorer_state *st, const char *name, int *parameter)
 {
     fault f = {0};
     *parameter = parameter_of_name(name);
     if (*parameter == -2) {
-        return result_refused("several parameters begin with '%s' (Tab lists them)", name);
+        return act_refuse(st, "several parameters begin with '%s' (Tab lists them)", name);
     }
     if (*parameter < 0 && parameter_look_up(name, &f) < 0) {
-        return result_of(STATUS_BAD_ARGUMENT, &f);
+        return act_worked(st, STATUS_BAD_ARGUMENT, &f);
     }
-    return result_done();
+    return true;
 }
 
-action_result act_set(explorer_state *st, const char *argument)
+bool act_set(explorer_state *st, const char *argument)
 {
     // the path, and the value after blanks or an equals sign
     char path[LINE_TEXT];
     int parameter;
     size_t length = strcspn(argument, " =");
     if (length == 0) {
-        return result_refused("set takes a parameter and a value, such as arm.k2 10");
+        return act_refuse(st, "set takes a parameter and a value, such as arm.k2 10");
     }
     snprintf(path, sizeof path, "%.*s", (int)length, argument);
     const char *value = argument + length + strspn(argument + length, " =");
-    const action_result found = find_parameter(path, &parameter);
-    if (!result_ok(&found)) {
-        return found;
+    if (!find_parameter(st, path, &parameter)) {
+        return false;
     }
 
     // without a value it is only selected
@@ -113,8 +110,8 @@ action_result act_set(explorer_state *st, const char *argument)
     if (value[0] == '\0') {
         const parameter_info *info = &parameter_table[parameter];
         const char *inert = state_inert_reason(st, parameter);
-        return result_news("%s: %s%s%s", info->path, info->description,
-                           inert != NULL ? "; without effect, " : "", inert != NULL ? inert : "");
+        return act_tell(st, "%s: %s%s%s", info->path, info->description,
+                        inert != NULL ? "; without effect, " : "", inert != NULL ? inert : "");
     }
     return act_change(st, parameter, value);
 }
@@ -151,12 +148,12 @@ static double nudged(int parameter, double value, int direction)
 }
 
 // The next or the previous value of the selected parameter: a step more or less, another choice.
-action_result act_nudge(explorer_state *st, const char *argument)
+bool act_nudge(explorer_state *st, const char *argument)
 {
     int direction = argument[0] == '-' ? -1 : 1, index = st->parameters.parameter;
     const parameter_info *info = &parameter_table[index];
     if (st->parameters.on_heading) {
-        return result_refused("no parameter is selected (arrows up and down select one)");
+        return act_refuse(st, "no parameter is selected (arrows up and down select one)");
     }
     parameters p = state_parameters(st);
     double value = parameter_get(&p, index);
@@ -164,8 +161,8 @@ action_result act_nudge(explorer_state *st, const char *argument)
         return act_lock(st, direction > 0 ? "next" : "previous");
     }
     if (parameter_is_text(info)) {
-        return result_refused("%s is a %s: Enter edits it", info->path,
-                              info->type == PARAMETER_LIST ? "list" : "text");
+        return act_refuse(st, "%s is a %s: Enter edits it", info->path,
+                          info->type == PARAMETER_LIST ? "list" : "text");
     }
 
     // a number by a step, anything else to its neighbour
@@ -173,14 +170,13 @@ action_result act_nudge(explorer_state *st, const char *argument)
     return act_adjust(st, index, fmax(info->minimum, fmin(info->maximum, value)));
 }
 
-action_result act_edit(explorer_state *st, const char *argument)
+bool act_edit(explorer_state *st, const char *argument)
 {
     // a parameter by name is selected first
     if (argument[0] != '\0') {
         int parameter;
-        const action_result found = find_parameter(argument, &parameter);
-        if (!result_ok(&found)) {
-            return found;
+        if (!find_parameter(st, argument, &parameter)) {
+            return false;
         }
         parameter_list_select(&st->parameters, (parameter_line){parameter, false});
     } else if (st->side.panel == PANEL_SWEEP) {
@@ -188,7 +184,7 @@ action_result act_edit(explorer_state *st, const char *argument)
     }
     if (st->parameters.on_heading) {
         parameter_list_fold(&st->parameters, st->parameters.parameter);
-        return result_done();
+        return true;
     }
     char value[LINE_TEXT];
     parameters p = state_parameters(st);
@@ -201,78 +197,73 @@ action_result act_edit(explorer_state *st, const char *argument)
     // what can be typed, or why it makes no difference
     const char *inert = state_inert_reason(st, st->parameters.parameter);
     if (inert != NULL) {
-        return result_warning("%s has no effect: %s", info->path, inert);
+        return act_warn(st, "%s has no effect: %s", info->path, inert);
     }
     if (info->choices != NULL && info->type == PARAMETER_CHOICE) {
-        return result_news("%s: %s", info->description, info->choices);
+        return act_tell(st, "%s: %s", info->description, info->choices);
     }
     if (info->type != PARAMETER_TEXT && info->type != PARAMETER_BOOLEAN) {
-        return result_news("%s: %g to %g %s", info->description, info->minimum, info->maximum,
-                           info->unit);
+        return act_tell(st, "%s: %g to %g %s", info->description, info->minimum, info->maximum,
+                        info->unit);
     }
-    return result_news("%s", info->description);
+    return act_tell(st, "%s", info->description);
 }
 
-action_result act_push(explorer_state *st, const char *argument)
+bool act_push(explorer_state *st, const char *argument)
 {
     session_forget_ghost(&st->session);
     double impulse = 0.01;
     fault f = {0};
-    action_result read = act_read_optional(argument, &impulse);
-    if (!result_ok(&read)) {
-        return read;
+    if (!act_read_optional(st, argument, &impulse)) {
+        return false;
     }
-    status code = session_push(&st->session, impulse, &f);
-    if (code != STATUS_OK) {
-        return result_of(code, &f);
+    if (!act_worked(st, session_push(&st->session, impulse, &f), &f)) {
+        return false;
     }
-    const action_result stopped = act_tell_failed_run(st);
-    return stopped.speaks ? stopped
-                          : result_news("pushed with %g N s at %.4f s", impulse, st->session.now);
+    return act_tell_failed_run(st) ||
+           act_tell(st, "pushed with %g N s at %.4f s", impulse, st->session.now);
 }
 
-action_result act_undo(explorer_state *st, const char *argument)
+bool act_undo(explorer_state *st, const char *argument)
 {
     session_forget_ghost(&st->session);
     (void)argument;
     fault f = {0};
-    status code = session_undo(&st->session, &f);
-    return code != STATUS_OK ? result_of(code, &f) : result_news("undone, U puts it in again");
+    return act_worked(st, session_undo(&st->session, &f), &f) &&
+           act_tell(st, "undone, U puts it in again");
 }
 
-action_result act_redo(explorer_state *st, const char *argument)
+bool act_redo(explorer_state *st, const char *argument)
 {
     session_forget_ghost(&st->session);
     (void)argument;
     fault f = {0};
-    status code = session_redo(&st->session, &f);
-    return code != STATUS_OK ? result_of(code, &f) : result_news("put in again");
+    return act_worked(st, session_redo(&st->session, &f), &f) && act_tell(st, "put in again");
 }
 
-action_result act_exchange_model(explorer_state *st, const char *argument)
+bool act_exchange_model(explorer_state *st, const char *argument)
 {
     (void)argument;
     bool printed = st->session.effective.parameters.arm.model == ARM_PRINTED;
     return act_change(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
 }
 
-action_result act_extend(explorer_state *st, const char *argument)
+bool act_extend(explorer_state *st, const char *argument)
 {
     char text[NUMBER_TEXT];
     double duration = st->session.effective.parameters.run.duration, more = duration;
-    action_result read = act_read_optional(argument, &more);
-    if (!result_ok(&read)) {
-        return read;
+    if (!act_read_optional(st, argument, &more)) {
+        return false;
     }
 
     // what has been seen stays seen: only rows are added
     double seen = st->session.seen;
     number_format(text, duration + more);
-    action_result changed = act_change(st, PARAMETER_INDEX(run.duration), text);
-    if (result_ok(&changed)) {
-        st->session.seen = seen;
+    if (!act_change(st, PARAMETER_INDEX(run.duration), text)) {
+        return false;
     }
-    return changed;
+    st->session.seen = seen;
+    return true;
 }
 
 // --- sliders ----------------------------------------------------------------------------------
@@ -294,21 +285,103 @@ void act_hold_slider(explorer_state *st, slider_drag d)
     grip->value = slider_value(&grip->scale, d.parameter, d.share, d.cells);
 }
 
-action_result act_follow_slider(explorer_state *st)
+bool act_follow_slider(explorer_state *st)
 {
     assert(st != NULL);
     const slider_grip *grip = &st->slider;
     const parameters p = state_parameters(st);
     if (!grip->held || parameter_get(&p, grip->parameter) == grip->value) {
-        return result_done();
+        return true;
     }
     return act_adjust(st, grip->parameter, grip->value);
 }
 
-action_result act_drop_slider(explorer_state *st)
+bool act_drop_slider(explorer_state *st)
 {
     assert(st != NULL);
-    const action_result followed = act_follow_slider(st);
+    const bool followed = act_follow_slider(st);
     st->slider.held = false;
     return followed;
+}
+
+// --- the list of changes ----------------------------------------------------------------------
+
+// Reads the number of a change, from 1, at the beginning of a text; *rest is what follows it.
+static bool read_change(explorer_state *st, const char *text, int *index, const char **rest)
+{
+    const session *s = &st->session;
+    char *end;
+    const long number = strtol(text, &end, 10);
+
+    // a number from 1 on, and blanks behind it
+    if (s->input_count == 0) {
+        return act_refuse(st, "there are no changes");
+    }
+    if (end == text || (*end != '\0' && *end != ' ') || number < 1 || number > s->input_count) {
+        return act_refuse(st, "changes are numbered from 1 to %d (:changes lists them)",
+                          s->input_count);
+    }
+
+    // what follows the blanks is the rest
+    while (*end == ' ') {
+        end++;
+    }
+    *index = (int)number - 1;
+    *rest = end;
+    return true;
+}
+
+bool act_show_changes(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    st->page.panel = st->page.panel == PANEL_CHANGES ? PANEL_NONE : PANEL_CHANGES;
+    st->change = st->session.input_count > 0 ? st->session.input_count - 1 : 0;
+    return true;
+}
+
+bool act_edit_change(explorer_state *st, const char *argument)
+{
+    const char *value = "";
+    int index = 0;
+    if (!read_change(st, argument, &index, &value)) {
+        return false;
+    }
+    char text[LINE_TEXT];
+    const session_input *in = &st->session.inputs[index];
+
+    // without a value it is asked for
+    if (value[0] == '\0' && in->kind != SESSION_INPUT_PUSH) {
+        snprintf(text, sizeof text, "change %d ", index + 1);
+        prompt_open_value(&st->prompt, text, in->text);
+        return act_tell(st, "%s", parameter_table[in->parameter].description);
+    }
+    fault f = {0};
+    if (!act_worked(st, session_change_input(&st->session, index, value, &f), &f)) {
+        return false;
+    }
+    st->change = st->session.input_count - 1;
+    state_change_text(st, st->change, text, sizeof text);
+    return act_tell(st, "%s at the same instant, u takes it back", text);
+}
+
+bool act_drop_change(explorer_state *st, const char *argument)
+{
+    const char *rest;
+    int index = 0;
+    char text[LINE_TEXT];
+    if (!read_change(st, argument, &index, &rest)) {
+        return false;
+    }
+
+    // the text first: the change is gone afterwards
+    fault f = {0};
+    state_change_text(st, index, text, sizeof text);
+    if (!act_worked(st, session_drop_input(&st->session, index, &f), &f)) {
+        return false;
+    }
+
+    // the selection stays within the list
+    const int last = st->session.input_count - 1;
+    st->change = st->change > last ? (last < 0 ? 0 : last) : st->change;
+    return act_tell(st, "without %s; U puts it in again", text);
 }

@@ -23,16 +23,14 @@ static bool lock_prevents(const session *s, const char *name)
 }
 
 // Changes the control law; if the lock on a mode prevents it, the message says what to do.
-static action_result change_law(explorer_state *st, const char *name)
+static bool change_law(explorer_state *st, const char *name)
 {
-    action_result changed = act_change(st, PARAMETER_INDEX(control.law), name);
-    if (result_ok(&changed) || !lock_prevents(&st->session, name)) {
-        return changed;
-    }
-    return result_refused("%.200s; undo the lock first", changed.text);
+    return act_change(st, PARAMETER_INDEX(control.law), name) ||
+           (lock_prevents(&st->session, name) &&
+            act_refuse(st, "%.200s; undo the lock first", st->message.text));
 }
 
-action_result act_law(explorer_state *st, const char *argument)
+bool act_law(explorer_state *st, const char *argument)
 {
     char present[LINE_TEXT];
     const parameters *p = &st->session.effective.parameters;
@@ -91,7 +89,7 @@ static bool locked_just_now(const session *s)
            last->parameter == PARAMETER_INDEX(control.lock);
 }
 
-static action_result tell_modes(explorer_state *st)
+static bool tell_modes(explorer_state *st)
 {
     const law_modes *m = state_law_modes(st);
     char text[LINE_TEXT] = "";
@@ -99,10 +97,10 @@ static action_result tell_modes(explorer_state *st)
         size_t used = strlen(text);
         snprintf(text + used, sizeof text - used, "%s%s", i > 0 ? ", " : "", m->names[i]);
     }
-    return result_news("lock takes off, next or a mode of this law: %s", text);
+    return act_tell(st, "lock takes off, next or a mode of this law: %s", text);
 }
 
-static action_result lock(explorer_state *st, const char *wanted)
+static bool lock(explorer_state *st, const char *wanted)
 {
     session *s = &st->session;
     fault f = {0};
@@ -111,34 +109,34 @@ static action_result lock(explorer_state *st, const char *wanted)
     const bool replaces = locked_just_now(s);
     status undone = replaces ? session_undo(s, &f) : STATUS_OK;
     if (undone != STATUS_OK) {
-        return result_of(undone, &f);
+        return act_worked(st, undone, &f);
     }
 
     // a lock that is refused leaves the one before in effect
-    action_result changed = result_done();
     parameters p = state_parameters(st);
-    if (strcmp(p.control.lock, wanted) != 0) {
-        changed = act_change(st, PARAMETER_INDEX(control.lock), wanted);
+    const bool other = strcmp(p.control.lock, wanted) != 0;
+    if (other && !act_change(st, PARAMETER_INDEX(control.lock), wanted)) {
+        if (replaces) {
+            session_redo(s, &f);
+        }
+        return false;
     }
-    if (!result_ok(&changed) && replaces) {
-        session_redo(s, &f);
-    }
-    if (!result_ok(&changed) || changed.warning) {
-        return changed;
+    if (other && st->message.warning) {
+        return true;
     }
     if (strcmp(wanted, "none") == 0) {
-        return result_news("the law chooses its mode itself from %.4f s on", s->now);
+        return act_tell(st, "the law chooses its mode itself from %.4f s on", s->now);
     }
-    return result_news("held in '%s' from %.4f s on", wanted, s->now);
+    return act_tell(st, "held in '%s' from %.4f s on", wanted, s->now);
 }
 
-action_result act_lock(explorer_state *st, const char *argument)
+bool act_lock(explorer_state *st, const char *argument)
 {
     if (!state_has_law(st)) {
-        return result_refused("no law is on that could be held in a mode (:law NAME)");
+        return act_refuse(st, "no law is on that could be held in a mode (:law NAME)");
     }
     if (!state_law_modes(st)->lockable) {
-        return result_refused("this law cannot be held in a mode");
+        return act_refuse(st, "this law cannot be held in a mode");
     }
     if (argument[0] == '\0') {
         return tell_modes(st);

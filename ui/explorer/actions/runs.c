@@ -1,158 +1,351 @@
-// Actions on whole runs: opening one, and runs that are computed in the background.
+// Actions on several runs: pinning and taking them, what they are compared with, sweeps.
 #include "ui/explorer/actions/actions.h"
 
 #include <assert.h>
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/external/transcript.h"
-#include "ui/explorer/state/consent.h"
+#define LONGEST_SWEPT_RUN 0.3 // that is computed between two pictures [s]
 
-// Keeps the first fault of a scenario that does not open.
-static void keep_first_fault(void *context, const char *sentence)
-{
-    fault *f = context;
-    if (f->code == STATUS_OK) {
-        fault_set(f, STATUS_BAD_SCENARIO, "%s", sentence);
-    }
-}
+// --- pinned runs ------------------------------------------------------------------------------
 
-action_result act_open_scenario(explorer_state *st, const char *name)
+// Makes the baseline the run for comparison with the present one.
+static bool settle_baseline(explorer_state *st)
 {
-    assert(st != NULL && name != NULL);
-    scenario s;
-    session fresh;
     fault f = {0};
-    status code = scenario_open(&s, name, keep_first_fault, &f);
-    if (code == STATUS_OK) {
-        s.parameters.code_allowed = consent_needed(&s) && consent_remembered(&s);
-        code = session_open(&fresh, &s, st->session.patience, &f);
+    const run_list *list = &st->pinned;
+    if (list->baseline < 0) {
+        session_forget_other(&st->session);
+        return true;
     }
-    if (code != STATUS_OK) {
-        return result_of(code, &f);
-    }
-
-    // from here on nothing fails: the new session takes the old one's place
-    state_take_session(st, &fresh);
-    st->playback.playing = true;
-    if (st->session.run.summary.status != STATUS_OK || st->session.run.summary.inaccurate) {
-        return act_tell_failed_run(st);
-    }
-    return result_news("%s", st->session.base.title ? st->session.base.title : "");
+    return act_worked(st, session_keep_beside(&st->session, &list->runs[list->baseline].run, &f),
+                      &f);
 }
 
-// The list of scenarios with the present one selected.
-static void open_list(explorer_state *st)
+// Pins the present run and makes it the baseline.
+static bool pin(explorer_state *st, const char *name)
 {
-    scenario_menu *menu = &st->scenarios;
-    int at = scenario_menu_find(menu, st->session.base.name);
-    st->page.panel = PANEL_SCENARIOS;
-    menu->selected = at < 0 ? 0 : at;
-    menu->first = -1;
-    menu->filter[0] = '\0';
-    scenario_menu_read_titles(menu);
+    fault f = {0};
+    session_forget_ghost(&st->session);
+    if (!act_need_whole_run(st)) {
+        return false;
+    }
+    return act_worked(st, run_list_pin(&st->pinned, &st->session, name, &f), &f) &&
+           settle_baseline(st);
 }
 
-action_result act_open_scenario_by(explorer_state *st, const char *argument)
+bool act_branch(explorer_state *st, const char *argument)
 {
-    const scenario_menu *menu = &st->scenarios;
+    (void)argument;
+    if (!pin(st, "")) {
+        return false;
+    }
+    return act_tell(st,
+                    "branched at %.4f s: change something, the old run stays beside it "
+                    "(c compares, R lists all, B forgets it)",
+                    st->session.now);
+}
+
+bool act_pin(explorer_state *st, const char *argument)
+{
+    const run_list *list = &st->pinned;
+    return pin(st, argument) && act_tell(st, "pinned as '%s': the present run is compared with it",
+                                         list->runs[list->baseline].name);
+}
+
+bool act_forget(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    session_forget_ghost(&st->session);
+    if (st->pinned.baseline >= 0) {
+        run_list_drop(&st->pinned, st->pinned.baseline);
+    }
+    return settle_baseline(st);
+}
+
+bool act_show_runs(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    st->page.panel = st->page.panel == PANEL_RUN_LIST ? PANEL_NONE : PANEL_RUN_LIST;
+    return true;
+}
+
+// Reads the number of a pinned run, from 1; *rest is what follows it.
+static bool read_run(explorer_state *st, const char *text, int *index, const char **rest)
+{
+    char *end;
+    const long number = strtol(text, &end, 10);
+
+    // without a pinned run no number is right
+    if (st->pinned.count == 0) {
+        return act_refuse(st, "no run is pinned (b pins this one)");
+    }
+
+    // a number of the list, alone or before a blank
+    if (end == text || (*end != '\0' && *end != ' ') || number < 1 || number > st->pinned.count) {
+        return act_refuse(st, "pinned runs are numbered from 1 to %d (R lists them)",
+                          st->pinned.count);
+    }
+
+    // the rest begins with a word
+    while (*end == ' ') {
+        end++;
+    }
+    *index = (int)number - 1;
+    *rest = end;
+    return true;
+}
+
+bool act_take_run(explorer_state *st, const char *argument)
+{
+    int index = 0;
+    const char *rest = "";
+    if (!read_run(st, argument, &index, &rest)) {
+        return false;
+    }
+    run_list *list = &st->pinned;
+    if (run_list_is_present(&list->runs[index], &st->session)) {
+        return act_tell(st, "this is that run");
+    }
+
+    // the present one must not be lost; pinning it moves none of the others
+    if (!pin(st, "")) {
+        return false;
+    }
+    fault f = {0};
+    const pinned_run *taken = &list->runs[index];
+    const status code = session_take_inputs(&st->session, taken->inputs, taken->input_count, &f);
+    return code == STATUS_OK
+               ? act_tell(st, "'%s' goes on; the run before is compared with it", taken->name)
+               : act_worked(st, code, &f);
+}
+
+bool act_hide_run(explorer_state *st, const char *argument)
+{
+    int index = 0;
+    const char *rest = "";
+    if (!read_run(st, argument, &index, &rest)) {
+        return false;
+    }
+    st->pinned.runs[index].hidden = !st->pinned.runs[index].hidden;
+    return true;
+}
+
+bool act_set_baseline(explorer_state *st, const char *argument)
+{
+    int index = 0;
+    const char *rest = "";
+    if (!read_run(st, argument, &index, &rest)) {
+        return false;
+    }
+    st->pinned.baseline = index;
+    return settle_baseline(st) &&
+           act_tell(st, "compared with '%s' from now on", st->pinned.runs[index].name);
+}
+
+bool act_rename_run(explorer_state *st, const char *argument)
+{
+    int index = 0;
+    const char *name = "";
+    if (!read_run(st, argument, &index, &name)) {
+        return false;
+    }
+    pinned_run *p = &st->pinned.runs[index];
+
+    // without a name it is asked for
+    if (name[0] == '\0') {
+        char line[32];
+        snprintf(line, sizeof line, "rename %d ", index + 1);
+        prompt_open_value(&st->prompt, line, p->name);
+        return true;
+    }
+    snprintf(p->name, sizeof p->name, "%s", name);
+    return true;
+}
+
+bool act_unpin(explorer_state *st, const char *argument)
+{
+    int index = 0;
+    const char *rest = "";
+    if (!read_run(st, argument, &index, &rest)) {
+        return false;
+    }
+    run_list_drop(&st->pinned, index);
+    return settle_baseline(st);
+}
+
+bool act_show_difference(explorer_state *st, const char *argument)
+{
+    run_difference *d = &st->difference;
+    double tolerance = 0;
+    const bool off = strcmp(argument, "off") == 0 || (argument[0] == '\0' && d->on);
+    if (off) {
+        d->on = false;
+        return act_tell(st, "the runs themselves");
+    }
+    if (!act_read_optional(st, argument, &tolerance)) {
+        return false;
+    }
+    if (!st->session.has_other) {
+        return act_refuse(st, "there is nothing to subtract: b pins this run first");
+    }
+    if (tolerance < 0) {
+        return act_refuse(st, "a tolerance is not negative");
+    }
+    d->on = true;
+    d->tolerance = tolerance;
+    difference_update(d, state_run_id(st), &st->session);
+
+    // where the first signal of the pane in focus leaves the tolerance
+    const char *name = st->pinned.runs[st->pinned.baseline].name;
+    const int focused = panes_focused(&st->panes);
+    if (focused < 0) {
+        return act_tell(st, "minus '%s'; D shows the runs again", name);
+    }
+    const int signal = st->panes.pane[focused].signals[0];
+    if (signal_is_state(signal)) {
+        return act_tell(st, "minus '%s', but states such as %s are this run's; D shows the runs",
+                        name, signal_table[signal].name);
+    }
+    const double first = difference_first_beyond(d, signal, tolerance);
+    if (first < 0) {
+        return act_tell(st, "minus '%s': %s never differs by more than %g %s", name,
+                        signal_table[signal].name, tolerance, signal_table[signal].unit);
+    }
+    return act_tell(st,
+                    "minus '%s': %s differs by more than %g %s from %.5f s on; D shows the runs",
+                    name, signal_table[signal].name, tolerance, signal_table[signal].unit, first);
+}
+
+// --- sweeps -----------------------------------------------------------------------------------
+
+bool act_continue_sweep(explorer_state *st)
+{
+    assert(st != NULL);
+    fault f = {0};
+    lab_sweep *sweep = &st->sweep;
+
+    // asked again and again: a finished sweep stays as it is
+    if (lab_sweep_is_done(sweep)) {
+        return true;
+    }
+
+    // one run a call, so that keys are read in between
+    if (!act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective, &f), &f)) {
+        return false;
+    }
+
+    // only the last one is news
+    if (!lab_sweep_is_done(sweep)) {
+        return true;
+    }
+    return act_tell(st, "%d runs: arrows choose one, Enter opens it, M another metric, Esc ends it",
+                    sweep->count);
+}
+
+bool act_sweep(explorer_state *st, const char *argument)
+{
+    lab_sweep *sweep = &st->sweep;
+    fault f = {0};
+    if (strcmp(argument, "off") == 0) {
+        lab_sweep_end(sweep);
+        st->side.panel = st->side.panel == PANEL_SWEEP ? panel_first_on_side() : st->side.panel;
+        return true;
+    }
+
+    // without an argument the selected parameter's is begun
     if (argument[0] == '\0') {
-        open_list(st);
-        return result_done();
+        char line[LINE_TEXT];
+        slider_scale scale = {0};
+        const int parameter = st->parameters.parameter;
+        const parameters p = state_parameters(st);
+        const double value = parameter_get(&p, parameter);
+        snprintf(line, sizeof line, "sweep %s=", parameter_table[parameter].path);
+        if (slider_scale_of(parameter, value, &scale) && scale.logarithmic) {
+            prompt_open(&st->prompt, "%s%g:%g:8:log", line, fmax(scale.low, value / 4),
+                        fmin(scale.high, value * 4));
+        } else if (slider_scale_of(parameter, value, &scale)) {
+            prompt_open(&st->prompt, "%s%g:%g:8", line, scale.low, scale.high);
+        } else {
+            prompt_open(&st->prompt, "%s", line);
+        }
+        return act_tell(st, "first value, last value, number of runs; or values with commas");
     }
 
-    // the neighbour in the list, or one by name
-    bool next = strcmp(argument, "+1") == 0;
-    if ((next || strcmp(argument, "-1") == 0) && menu->count > 0) {
-        int at = scenario_menu_find(menu, st->session.base.name);
-        at = (at + (next ? 1 : menu->count - 1) + menu->count) % menu->count;
-        return act_open_scenario(st, menu->names[at]);
+    // each run is computed while the lab waits, so they must be short
+    if (!act_need_whole_run(st)) {
+        return false;
     }
-    return act_open_scenario(st, argument);
+    if (isfinite(st->session.patience) && st->session.run.summary.wall_time_s > LONGEST_SWEPT_RUN) {
+        return act_refuse(st, "a run takes %.1f s here: 'impactlab sweep' computes them beside",
+                          st->session.run.summary.wall_time_s);
+    }
+    if (!act_worked(st, lab_sweep_begin(sweep, argument, &f), &f)) {
+        return false;
+    }
+    st->side.panel = PANEL_SWEEP;
+    st->difference.on = false;
+
+    // with each picture a run, without pictures all
+    bool done = act_continue_sweep(st);
+    while (done && isinf(st->session.patience) && !lab_sweep_is_done(sweep)) {
+        done = act_continue_sweep(st);
+    }
+    return done;
 }
 
-action_result act_find_scenario(explorer_state *st, const char *argument)
+bool act_set_metric(explorer_state *st, const char *argument)
 {
-    open_list(st);
-    snprintf(st->scenarios.filter, sizeof st->scenarios.filter, "%s", argument);
-    st->scenarios.filtering = true;
-    return result_done();
+    lab_sweep *sweep = &st->sweep;
+    int metric = summary_find(argument);
+    if (argument[0] != '\0' && metric < 0) {
+        const char *near = summary_suggest(argument);
+        return act_refuse(st, "there is no number '%.60s' of a run's summary%s%s%s", argument,
+                          near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
+    }
+
+    // the next one that any of the runs has
+    for (int step = 1; argument[0] == '\0' && metric < 0 && step <= summary_count; step++) {
+        const int next = (sweep->metric + step) % summary_count;
+        bool known = sweep->count == 0;
+        for (int i = 0; i < sweep->count; i++) {
+            known = known || isfinite(summary_value(&sweep->runs[i].run.summary, next));
+        }
+        metric = known && !summary_table[next].timing ? next : -1;
+    }
+    sweep->metric = metric < 0 ? sweep->metric : metric;
+    return act_tell(st, "%s: %s", summary_table[sweep->metric].label,
+                    summary_table[sweep->metric].description);
 }
 
-action_result act_tell_failed_run(const explorer_state *st)
+void act_select_swept(explorer_state *st, int direction)
 {
     assert(st != NULL);
-    const summary *m = &st->session.run.summary;
-    const control_parameters *c = &st->session.effective.parameters.control;
-    if (m->status == STATUS_NOT_ALLOWED) {
-        const bool program = c->law == LAW_PROCESS;
-        return result_warning("y lets it %s '%.200s', which can do whatever you can; all else "
-                              "works without (:allow later)",
-                              program ? "start" : "load", program ? c->command : c->plugin);
-    }
-    return m->status != STATUS_OK ? result_warning("the run stops: %s", m->message)
-           : m->inaccurate        ? result_warning("the run is inaccurate: %s", m->message)
-                                  : result_done();
+    lab_sweep *sweep = &st->sweep;
+    const int last = sweep->count - 1;
+    int at = sweep->selected + direction;
+    at = at > last ? last : at;
+    sweep->selected = at < 0 ? 0 : at;
 }
 
-action_result act_need_whole_run(const explorer_state *st)
+bool act_take_swept(explorer_state *st)
 {
     assert(st != NULL);
-    const session *s = &st->session;
-    if (s->computing == NULL) {
-        return result_done();
-    }
-    return result_refused("the run is at %.3g of %g s: wait for its end, or stop it with Esc",
-                          session_end(s), s->effective.parameters.run.duration);
-}
-
-action_result act_stop(explorer_state *st, const char *argument)
-{
-    (void)argument;
+    const lab_sweep *sweep = &st->sweep;
     session *s = &st->session;
-    if (s->computing == NULL) {
-        return result_refused("nothing is being computed");
-    }
-    if (!session_stop(s)) {
-        return result_done();
-    }
-    return result_news("stopped at %.4g s: Space at its end goes on, u takes the last change back",
-                       session_end(s));
-}
-
-action_result act_allow(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    session *s = &st->session;
-    fault f = {0};
-    bool kept;
-    if (s->run.summary.status != STATUS_NOT_ALLOWED) {
-        return result_refused("the run asks for no permission");
+    char value[SWEEP_VALUE_TEXT];
+    if (sweep->selected >= sweep->count) {
+        return act_refuse(st, "the sweep has no run yet");
     }
 
-    // a visit's changes are the user's own: what is remembered is the scenario as it was opened
-    status code = session_allow_code(s, &f);
-    if (code != STATUS_OK) {
-        return result_of(code, &f);
-    }
-    code = consent_remember(&s->base, &kept, &f);
-    st->playback.playing = true;
-    const action_result told = act_tell_failed_run(st);
-    if (told.speaks) {
-        return told;
-    }
-    return code != STATUS_OK ? result_of(code, &f)
-           : kept ? result_news("allowed, and remembered for just this scenario and program")
-                  : result_news("allowed for this visit");
-}
-
-action_result act_tell_replay(explorer_state *st)
-{
-    assert(st != NULL);
-    const process_replay again = session_take_replay(&st->session);
-    if (!again.restarted) {
-        return result_done();
-    }
-    return result_news("the program was started anew and went through its %d samples up to %.4g s "
-                       "once more",
-                       again.samples, again.time);
+    // a change from the start, whatever is looked at
+    const double now = s->now;
+    sweep_axis_format(&sweep->axis, sweep->runs[sweep->selected].value, value, sizeof value);
+    session_seek(s, 0);
+    const bool changed = act_change(st, sweep->axis.parameter, value);
+    const double seen = s->seen;
+    session_seek(s, now);
+    s->seen = fmax(seen, s->now);
+    return changed;
 }

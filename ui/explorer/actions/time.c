@@ -1,4 +1,4 @@
-// Actions on time: running, stepping, seeking.
+// Actions on time: running, stepping, seeking, and the tip that is pulled meanwhile.
 #include "ui/explorer/actions/actions.h"
 
 #include <assert.h>
@@ -8,24 +8,91 @@
 
 #include "src/base/instant.h"
 
-enum { MOST_SLOW = 100 }; // how much slower impacts can be shown
+// --- pulling the tip --------------------------------------------------------------------------
 
-action_result act_read_number(const char *text, double *value)
+// Brings the spring's force up to date with the tip at the cursor.
+static void follow_tip(explorer_state *st)
 {
-    assert(text != NULL && value != NULL);
-    char *end;
-    *value = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(*value)) {
-        return result_refused("'%s' is no number", text);
+    const session *s = &st->session;
+    plane_vector tip, across;
+    recorded_tip(&s->run.trace, &s->effective.parameters.arm, s->row, &tip, &across);
+    st->pull.force = pull_force(&st->pull, tip, across);
+}
+
+bool act_hold_tip(explorer_state *st, plane_vector place)
+{
+    assert(st != NULL);
+    const session *s = &st->session;
+    tip_pull *p = &st->pull;
+    if (s->effective.parameters.arm.model == ARM_PRINTED) {
+        return act_refuse(st, "the printed model knows no pushes: nothing pulls its tip");
     }
-    return result_done();
+    if (s->computing != NULL) {
+        return act_refuse(st, "the run is still being computed");
+    }
+
+    // the run plays as long as the tip is held
+    session_forget_ghost(&st->session);
+    *p = (tip_pull){.held = true,
+                    .x = place.x,
+                    .y = place.y,
+                    .next = s->now,
+                    .was_playing = st->playback.playing,
+                    .gesture = session_new_gesture(s)};
+    st->playback.playing = true;
+    follow_tip(st);
+    return act_tell(st,
+                    "a spring of %g N/m from the tip to the pointer: the run plays while it is "
+                    "held",
+                    PULL_STIFFNESS);
 }
 
-action_result act_read_optional(const char *text, double *value)
+void act_move_pull(explorer_state *st, plane_vector place)
 {
-    assert(text != NULL && value != NULL);
-    return text[0] == '\0' ? result_done() : act_read_number(text, value);
+    assert(st != NULL);
+    st->pull.x = place.x;
+    st->pull.y = place.y;
+    follow_tip(st);
 }
+
+bool act_pull_until(explorer_state *st, double time)
+{
+    assert(st != NULL);
+    session *s = &st->session;
+    tip_pull *p = &st->pull;
+    const double end = s->effective.parameters.run.duration;
+
+    // a push for each step of the run, as large as the spring's force over it
+    while (p->held && p->next <= time && p->next < end && s->computing == NULL) {
+        fault f = {0};
+        session_seek(s, p->next);
+        follow_tip(st);
+        const status code = session_pull(s, p->force * PULL_STEP, p->gesture, &f);
+        if (code != STATUS_OK) {
+            p->held = false;
+            return act_worked(st, code, &f);
+        }
+        p->next += PULL_STEP;
+    }
+    follow_tip(st);
+    return true;
+}
+
+bool act_drop_pull(explorer_state *st)
+{
+    assert(st != NULL);
+    tip_pull *p = &st->pull;
+    if (!p->held) {
+        return true;
+    }
+    p->held = false;
+    st->playback.playing = p->was_playing;
+    return act_tell(st, "pulled until %.4f s, u takes it back", st->session.now);
+}
+
+// --- time -------------------------------------------------------------------------------------
+
+enum { MOST_SLOW = 100 }; // how much slower impacts can be shown
 
 void act_scrub(explorer_state *st, double time)
 {
@@ -35,82 +102,78 @@ void act_scrub(explorer_state *st, double time)
     session_seek(&st->session, time);
 }
 
-action_result act_advance(explorer_state *st, double seconds)
+bool act_advance(explorer_state *st, double seconds)
 {
     assert(st != NULL);
     session *s = &st->session;
     playback *play = &st->playback;
     if (!play->playing || !(seconds > 0)) {
         play->measured = 0;
-        return result_done();
+        return true;
     }
 
     // slower near impacts; a held tip is pulled meanwhile
     const double before = s->now, duration = s->effective.parameters.run.duration;
     play->slowed = playback_slowness(play, &s->run.trace, duration, before);
     const double next = before + seconds * play->speed / play->slowed;
-    const action_result pulled = act_pull_until(st, next);
-    if (!result_ok(&pulled)) {
-        return pulled;
+    if (!act_pull_until(st, next)) {
+        return false;
     }
 
     // the cursor waits at the end of what has been computed
     session_seek(s, next);
     playback_measure(play, s->now - before, seconds);
     if (s->now < session_end(s) || s->computing != NULL) {
-        return result_done();
+        return true;
     }
     act_drop_pull(st);
     play->playing = false;
-    if (s->run.summary.status != STATUS_OK || s->run.summary.inaccurate) {
-        return act_tell_failed_run(st);
-    }
-    return result_news("end of the run: Space plays it again, x makes it longer, "
-                       "n and N visit its events");
+    return act_tell_failed_run(st) ||
+           act_tell(st, "end of the run: Space plays it again, x makes it longer, "
+                        "n and N visit its events");
 }
 
-action_result act_play(explorer_state *st, const char *argument)
+bool act_play(explorer_state *st, const char *argument)
 {
     (void)argument;
     session *s = &st->session;
     session_forget_ghost(s);
     st->playback.playing = !st->playback.playing;
     if (!st->playback.playing || s->now < session_end(s)) {
-        return result_quiet();
+        return act_hush(st);
     }
 
     // a run that was stopped there is computed on, a complete one begins again
     if (session_go_on(s, NULL) != STATUS_OK && s->computing == NULL) {
         session_seek(s, 0);
     }
-    return result_quiet();
+    return act_hush(st);
 }
 
-action_result act_step(explorer_state *st, const char *argument)
+bool act_step(explorer_state *st, const char *argument)
 {
     double rows = 1;
-    action_result read = act_read_optional(argument, &rows);
-    if (!result_ok(&read)) {
-        return read;
+    if (!act_read_optional(st, argument, &rows)) {
+        return false;
     }
     st->playback.playing = false;
     session_step(&st->session, (long)fmax(-1e9, fmin(1e9, rows)));
-    return result_done();
+    return true;
 }
 
 // What happens at the cursor: an event of the run, else the controller's change of mode.
-static action_result tell_event(explorer_state *st)
+static bool tell_event(explorer_state *st)
 {
     const run_log *log = state_run_log(st);
     const event *e = session_event(&st->session);
 
     // an event with its numbers
     if (e != NULL && e->kind == EVENT_IMPACT) {
-        return result_news("impact at %.6f s: %.4g N s at %.4g m/s, %.4g J lost", e->time,
-                           e->impulse, e->speed, e->loss);
+        return act_tell(st, "impact at %.6f s: %.4g N s at %.4g m/s, %.4g J lost", e->time,
+                        e->impulse, e->speed, e->loss);
     }
     if (e != NULL) {
-        return result_news("%s at %.6f s", event_name(e->kind), e->time);
+        return act_tell(st, "%s at %.6f s", event_name(e->kind), e->time);
     }
 
     // else it may be the instant of another mode
@@ -119,27 +182,27 @@ static action_result tell_event(explorer_state *st)
         if (entry->event < 0 && entry->time == st->session.now) {
             char name[MODE_NAME_SIZE];
             law_mode_name(state_law_modes(st), entry->mode, name, sizeof name);
-            return result_news("the controller goes into its mode '%s' at %.6f s", name,
-                               entry->time);
+            return act_tell(st, "the controller goes into its mode '%s' at %.6f s", name,
+                            entry->time);
         }
     }
-    return result_done();
+    return true;
 }
 
-action_result act_step_event(explorer_state *st, const char *argument)
+bool act_step_event(explorer_state *st, const char *argument)
 {
     bool back = argument[0] == '-';
     double time = run_log_next(state_run_log(st), st->session.now, back ? -1 : 1);
     st->playback.playing = false;
     if (time < 0) {
-        return result_refused("no %s event", back ? "earlier" : "later");
+        return act_refuse(st, "no %s event", back ? "earlier" : "later");
     }
     session_seek(&st->session, time);
     return tell_event(st);
 }
 
 // To the last row before a touch, where a prediction can be compared with what comes.
-action_result act_step_touch(explorer_state *st, const char *argument)
+bool act_step_touch(explorer_state *st, const char *argument)
 {
     bool back = argument[0] == '-';
     const session *s = &st->session;
@@ -166,26 +229,25 @@ action_result act_step_touch(explorer_state *st, const char *argument)
         }
     }
     if (found == row) {
-        return result_refused("no %s touch", back ? "earlier" : "later");
+        return act_refuse(st, "no %s touch", back ? "earlier" : "later");
     }
     session_step(&st->session, (long)found - (long)row);
-    return result_news("just before a touch: what would come of it is predicted beside what came");
+    return act_tell(st, "just before a touch: what would come of it is predicted beside what came");
 }
 
-action_result act_seek(explorer_state *st, const char *argument)
+bool act_seek(explorer_state *st, const char *argument)
 {
     double time = session_end(&st->session);
     if (strcmp(argument, "end") != 0) {
-        action_result read = act_read_number(argument, &time);
-        if (!result_ok(&read)) {
-            return read;
+        if (!act_read_number(st, argument, &time)) {
+            return false;
         }
     }
     act_scrub(st, time);
-    return result_done();
+    return true;
 }
 
-action_result act_set_speed(explorer_state *st, const char *argument)
+bool act_set_speed(explorer_state *st, const char *argument)
 {
     double wanted = st->playback.speed;
 
@@ -193,49 +255,46 @@ action_result act_set_speed(explorer_state *st, const char *argument)
     if (strcmp(argument, "up") == 0 || strcmp(argument, "down") == 0) {
         wanted = playback_next_speed(&st->playback, argument[0] == 'u' ? 1 : -1);
     } else {
-        action_result read = act_read_number(argument, &wanted);
-        if (!result_ok(&read)) {
-            return read;
+        if (!act_read_number(st, argument, &wanted)) {
+            return false;
         }
     }
 
     // written so that NAN is refused too
     if (!(wanted >= 1e-3 && wanted <= 1e4)) {
-        return result_refused("the speed is a number from 0.001 to 10000, 1 is real time");
+        return act_refuse(st, "the speed is a number from 0.001 to 10000, 1 is real time");
     }
     st->playback.speed = wanted;
-    return result_done();
+    return true;
 }
 
-action_result act_set_slow(explorer_state *st, const char *argument)
+bool act_set_slow(explorer_state *st, const char *argument)
 {
     double factor = 1;
     if (strcmp(argument, "off") != 0) {
-        action_result read = act_read_number(argument, &factor);
-        if (!result_ok(&read)) {
-            return read;
+        if (!act_read_number(st, argument, &factor)) {
+            return false;
         }
     }
     if (!(factor >= 1 && factor <= MOST_SLOW)) {
-        return result_refused("impacts are shown 1 to %d times slower", MOST_SLOW);
+        return act_refuse(st, "impacts are shown 1 to %d times slower", MOST_SLOW);
     }
     st->playback.slow = factor;
-    return factor > 1 ? result_news("impacts are shown %g times slower", factor)
-                      : result_news("impacts are shown at the speed of the rest");
+    return factor > 1 ? act_tell(st, "impacts are shown %g times slower", factor)
+                      : act_tell(st, "impacts are shown at the speed of the rest");
 }
 
-action_result act_restart(explorer_state *st, const char *argument)
+bool act_restart(explorer_state *st, const char *argument)
 {
     (void)argument;
     session_seek(&st->session, 0);
     st->session.seen = 0;
     st->playback.playing = true;
-    return result_quiet();
+    return act_hush(st);
 }
 
-action_result act_wait_for(explorer_state *st, const char *argument)
+bool act_wait_for(explorer_state *st, const char *argument)
 {
     double seconds;
-    action_result read = act_read_number(argument, &seconds);
-    return result_ok(&read) ? act_advance(st, fmax(0, fmin(3600, seconds))) : read;
+    return act_read_number(st, argument, &seconds) && act_advance(st, fmax(0, fmin(3600, seconds)));
 }

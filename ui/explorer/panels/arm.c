@@ -373,11 +373,10 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 // --- the mouse --------------------------------------------------------------------------------
 
 // A press near the tip takes hold of it.
-static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+static bool point(explorer_state *st, const panel_gesture *g)
 {
     enum { NEAR_ACROSS = 4, NEAR_DOWN = 2 }; // [cells]
     int x, y;
-    *result = result_done();
     if (st->stage.width < 1 || st->stage.height < 1) {
         return false;
     }
@@ -387,7 +386,7 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
     case POINTER_PRESS:
         stage_cell(&st->stage, tip_of(st), &x, &y);
         if (abs(x - g->event.x) <= NEAR_ACROSS && abs(y - g->event.y) <= NEAR_DOWN) {
-            *result = act_hold_tip(st, place);
+            act_hold_tip(st, place);
         }
         return true;
     case POINTER_DRAG:
@@ -396,7 +395,7 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
         }
         return true;
     case POINTER_RELEASE:
-        *result = act_drop_pull(st);
+        act_drop_pull(st);
         return true;
     default:
         return false;

@@ -1,5 +1,5 @@
 // The page of changes: what was done to the run, in the order it was done, with its instant.
-#include "ui/explorer/panels/page.h"
+#include "ui/explorer/panels/panel.h"
 #include "ui/terminal/keys.h"
 
 static void draw_change(const explorer_state *st, screen *s, area a, int index)
@@ -47,7 +47,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     }
 }
 
-static action_result list_key(explorer_state *st, int key)
+static bool list_key(explorer_state *st, int key)
 {
     const session *s = &st->session;
     char number[16];
@@ -76,15 +76,14 @@ static action_result list_key(explorer_state *st, int key)
     // the selection stays within the list
     const int last = s->input_count > 0 ? s->input_count - 1 : 0;
     st->change = st->change > last ? last : st->change;
-    return result_done();
+    return true;
 }
 
-static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+static bool point(explorer_state *st, const panel_gesture *g)
 {
-    *result = result_done();
     const int index = g->hit.index + g->event.y - g->hit.area.y;
     if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
-        return page_point(st, g, result);
+        return page_point(st, g);
     }
     if (index < st->session.input_count) {
         st->change = index;

@@ -1,10 +1,311 @@
 #include "ui/explorer/panels/compose.h"
 
 #include <assert.h>
+#include <string.h>
 
-#include "ui/explorer/panels/bars.h"
-#include "ui/explorer/panels/panel.h"
 #include "ui/terminal/pictures.h"
+
+// --- the lines above and below the panels -----------------------------------------------------
+
+static void draw_title(const explorer_state *st, screen *s)
+{
+    const session *e = &st->session;
+    char changes[64] = "";
+
+    // how many changes, and those that are to come
+    if (e->input_count > 0) {
+        const int later = state_later_changes(st);
+        int used = snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
+                            e->input_count == 1 ? "" : "s");
+        if (later > 0) {
+            snprintf(changes + used, sizeof changes - (size_t)used, ", \u25cb %d later", later);
+        }
+    }
+
+    // the name and the changes go before the title
+    char title[LINE_TEXT + SCENARIO_CHANGES], given[SCENARIO_CHANGES];
+    snprintf(title, sizeof title, "%s%s", e->base.title ? e->base.title : "",
+             scenario_changes(&e->base, given));
+    int room = s->width - 2 - (changes[0] ? text_cells(changes) + 2 : 0), x = 1;
+    if (12 + text_cells(e->base.name) <= room) {
+        x += screen_text(s, x, 0, room, INK_TITLE, "impactlab  ");
+    }
+    x += screen_text(s, x, 0, room - x + 1, INK_TITLE, e->base.name);
+    if (x + 2 + text_cells(title) <= room + 1) {
+        x += 2 + screen_text(s, x + 2, 0, room - x, INK_TEXT, title);
+    }
+    screen_text(s, x + 2, 0, s->width - x - 3, INK_EVENT, changes);
+}
+
+// --- status -----------------------------------------------------------------------------------
+
+enum { STATUS_ITEMS = 9 };
+
+typedef struct status_item {
+    char text[96];
+    int rank; // the lower ones stay where not all fit
+} status_item;
+
+// Fills the items from left to right; returns how many.
+static int write_status(const explorer_state *st, status_item items[STATUS_ITEMS])
+{
+    const session *e = &st->session;
+    const sample *row = session_sample(e);
+    const parameters *p = &e->effective.parameters;
+    const status ended = e->run.summary.status;
+    bool failed = ended != STATUS_OK, old = e->now < e->seen;
+    const char *how = ended == STATUS_STOPPED             ? "stopped"
+                      : ended == STATUS_NOT_ALLOWED       ? "not allowed"
+                      : ended == STATUS_CONTROLLER_FAILED ? "controller failed"
+                                                          : "diverged";
+    const char *state = st->playback.playing                 ? (old ? "replaying" : "playing")
+                        : failed && e->now >= session_end(e) ? how
+                                                             : "paused";
+    char model[64], law[64] = "", speed[32] = "";
+    int n = 0;
+
+    // words for the parts that may be missing
+    parameter_format(p, PARAMETER_INDEX(arm.model), model, sizeof model);
+    if (p->control.law != LAW_NONE) {
+        char name[40];
+        parameter_format(p, PARAMETER_INDEX(control.law), name, sizeof name);
+        snprintf(law, sizeof law, ", %s", name);
+    }
+    if (st->playback.playing) {
+        const bool slowed = st->playback.slowed > 1.05;
+        snprintf(speed, sizeof speed, slowed ? " slow motion (%.2g)" : " (%.3g)",
+                 st->playback.measured);
+    }
+
+    // each part with what it is worth where not all fit
+#define ITEM(importance, ...)                                                                      \
+    do {                                                                                           \
+        items[n].rank = importance;                                                                \
+        snprintf(items[n].text, sizeof items[n].text, __VA_ARGS__);                                \
+        n++;                                                                                       \
+    } while (0)
+    ITEM(0, "%s %-9s", st->playback.playing ? "\u25b6" : "\u2016", state);
+    if (e->computing != NULL) {
+        ITEM(2, "computing %.1f of %g s (Esc stops)", session_end(e), p->run.duration);
+    }
+    if (e->run.summary.inaccurate) {
+        ITEM(1, "inaccurate");
+    }
+    ITEM(1, "t %.5f s", e->now);
+    ITEM(5, "row %zu/%zu", e->row + 1, e->run.trace.row_count);
+    ITEM(3, "\u00d7%g%s", st->playback.speed, speed);
+    ITEM(4, "%.40s%.50s", model, law);
+    ITEM(2, "%s%s", row->contact != 0 ? "in contact" : "free flight",
+         row->sticking != 0 ? ", hub sticks" : "");
+    if (st->mark.set) {
+        ITEM(3, "from mark %.5g s", e->now - st->mark.time);
+    }
+#undef ITEM
+    return n;
+}
+
+static void draw_status(const explorer_state *st, screen *s, int y)
+{
+    status_item items[STATUS_ITEMS];
+    int count = write_status(st, items), x = 1;
+    bool shown[STATUS_ITEMS] = {false};
+
+    // the most important ones first, as long as there is room
+    for (int rank = 0, used = 1; rank < 8; rank++) {
+        for (int i = 0; i < count; i++) {
+            int length = text_cells(items[i].text);
+            if (items[i].rank == rank && (rank < 2 || used + length <= s->width)) {
+                shown[i] = true;
+                used += length + 2;
+            }
+        }
+    }
+
+    // a bar across the screen with what is shown
+    for (int i = 0; i < s->width; i++) {
+        screen_put(s, i, y, ' ', INK_TEXT);
+    }
+    for (int i = 0; i < count; i++) {
+        if (shown[i]) {
+            x += 2 + screen_text(s, x, y, s->width - x, INK_TEXT, items[i].text);
+        }
+    }
+
+    // what went wrong colours the bar
+    const summary *m = &st->session.run.summary;
+    bool failed = m->status != STATUS_OK || m->inaccurate;
+    screen_tint(s, 0, y, s->width, 1, failed && !st->playback.playing ? INK_WARNING : INK_SELECTED);
+}
+
+// --- the bottom -------------------------------------------------------------------------------
+
+static void blank_row(screen *s, int y)
+{
+    for (int x = 0; x < s->width; x++) {
+        screen_put(s, x, y, ' ', INK_TEXT);
+    }
+}
+
+// The end of the prompt if it is wider than the screen, and what was said about it.
+static int draw_prompt(const explorer_state *st, screen *s)
+{
+    int y = s->height - 1, room = s->width - 2, over = text_cells(st->prompt.text) - (room - 1);
+    const char *text = st->prompt.text;
+    int rows = 1;
+    for (int i = 0; i < over; i++) {
+        glyph_decode(&text);
+    }
+    blank_row(s, y);
+    int x =
+        screen_print(s, 0, y, room, INK_TITLE, "%s%s", st->prompt.searches ? "find " : ":", text);
+    screen_put(s, x, y, ' ', INK_SELECTED);
+
+    // a value that typing replaces looks selected
+    if (st->prompt.replaces) {
+        int value = text_cells(st->prompt.text + st->prompt.fixed);
+        screen_tint(s, x - value, y, value, 1, INK_SELECTED);
+    }
+    if (st->message.text[0] != '\0' && x + 4 + text_cells(st->message.text) <= s->width) {
+        screen_text(s, x + 3, y, s->width - x - 3, INK_DIM, st->message.text);
+    } else if (st->message.text[0] != '\0') {
+        // above the prompt
+        text_line lines[3];
+        int count = text_wrap(st->message.text, s->width - 2, lines, 3, NULL);
+        for (int i = 0; i < count; i++) {
+            blank_row(s, y - count + i);
+            screen_print(s, 1, y - count + i, s->width - 2, INK_DIM, "%.*s", lines[i].bytes,
+                         lines[i].start);
+        }
+        rows += count;
+    }
+    return rows;
+}
+
+// What the most wanted keys do, as many as there is room for; the last two always.
+static void draw_hints(const explorer_state *st, screen *s)
+{
+    static const struct {
+        const char *command, *does;
+        int rank;
+    } hints[] = {{"play", "run/pause", 0},  {"step", "step", 3},         {"event", "event", 4},
+                 {"speed", "speed", 7},     {"edit", "change value", 5}, {"branch", "branch", 6},
+                 {"compare", "compare", 8}, {"open", "open", 9},         {"save", "save", 10},
+                 {"help", "help", 1},       {"quit", "quit", 2}};
+    enum { HINTS = sizeof hints / sizeof hints[0] };
+    char texts[HINTS][64];
+    bool shown[HINTS] = {false};
+    int x = 1;
+
+    // the first key of each, and what it does
+    for (int i = 0; i < HINTS; i++) {
+        char keys[64];
+        key_names_of(&st->keys, hints[i].command, keys, sizeof keys);
+        // as long as the key is the explorer's own there is a shorter way to say it
+        const char *brief = strncmp(keys, "Right l Left", 12) == 0 ? "\u25c0 \u25b6"
+                            : strcmp(keys, "n N") == 0             ? "n/N"
+                            : strncmp(keys, "+ = -", 5) == 0       ? "+/-"
+                                                                   : NULL;
+        keys[strcspn(keys, " ")] = '\0';
+        snprintf(texts[i], sizeof texts[i], "%.20s %s", brief ? brief : keys, hints[i].does);
+        if (keys[0] == '\0') {
+            texts[i][0] = '\0';
+        }
+    }
+
+    // the most wanted ones first
+    for (int rank = 0, used = 1; rank < HINTS; rank++) {
+        for (int i = 0; i < HINTS; i++) {
+            int length = text_cells(texts[i]);
+            if (hints[i].rank == rank && length > 0 && used + length < s->width) {
+                shown[i] = true;
+                used += length + 2;
+            }
+        }
+    }
+
+    // from left to right
+    for (int i = 0; i < HINTS; i++) {
+        if (shown[i]) {
+            x += 2 + screen_text(s, x, s->height - 1, s->width - x, INK_DIM, texts[i]);
+        }
+    }
+}
+
+// Draws the prompt, the message or hints in the last rows and returns how many it took.
+static int draw_bottom(const explorer_state *st, screen *s)
+{
+    enum { MOST = 3 };
+
+    // what is being typed comes first
+    if (st->prompt.open) {
+        return draw_prompt(st, s);
+    }
+    if (st->filters.typing != PANEL_NONE) {
+        blank_row(s, s->height - 1);
+        int x = screen_print(s, 0, s->height - 1, s->width - 2, INK_TITLE, "/%s",
+                             st->filters.text[st->filters.typing]);
+        screen_put(s, x, s->height - 1, ' ', INK_SELECTED);
+        screen_text(s, x + 3, s->height - 1, s->width - x - 3, INK_DIM,
+                    "filters by words and their parts; Enter takes, Esc shows all");
+        return 1;
+    }
+
+    // without a message there are hints
+    if (st->message.text[0] == '\0') {
+        blank_row(s, s->height - 1);
+        draw_hints(st, s);
+        return 1;
+    }
+
+    // a long message covers some of the panels until the next key
+    text_line lines[MOST];
+    int count = text_wrap(st->message.text, s->width - 2, lines, MOST, NULL);
+    count = count < 1 ? 1 : count;
+    for (int i = 0; i < count; i++) {
+        blank_row(s, s->height - count + i);
+        screen_print(s, 1, s->height - count + i, s->width - 2,
+                     st->message.warning ? INK_WARNING : INK_TEXT, "%.*s", lines[i].bytes,
+                     lines[i].start);
+    }
+    return count;
+}
+
+// --- too small --------------------------------------------------------------------------------
+
+// That the screen is too small, in the longest text that fits.
+static void draw_too_small(screen *s)
+{
+    // the longest one that fits without a broken word
+    char texts[6][96];
+    text_line lines[24];
+    int w = s->width, h = s->height;
+
+    // from a sentence down to a sign
+    snprintf(texts[0], sizeof texts[0],
+             "The lab needs %d x %d characters, here are %d x %d. q quits.", LEAST_WIDTH,
+             LEAST_HEIGHT, w, h);
+    snprintf(texts[1], sizeof texts[1], "%d x %d: the lab needs %d x %d (q quits)", w, h,
+             LEAST_WIDTH, LEAST_HEIGHT);
+    snprintf(texts[2], sizeof texts[2], "%dx%d < %dx%d", w, h, LEAST_WIDTH, LEAST_HEIGHT);
+    snprintf(texts[3], sizeof texts[3], "< %dx%d", LEAST_WIDTH, LEAST_HEIGHT);
+    snprintf(texts[4], sizeof texts[4], "small");
+    snprintf(texts[5], sizeof texts[5], "<");
+
+    // the first whose words all fit
+    for (int i = 0; i < 6; i++) {
+        bool split;
+        int count = text_wrap(texts[i], w, lines, h < 24 ? h : 24, &split);
+        if (split && i < 5) {
+            continue;
+        }
+        for (int k = 0; k < count; k++) {
+            screen_print(s, 0, k, w, INK_WARNING, "%.*s", lines[k].bytes, lines[k].start);
+        }
+        return;
+    }
+}
+
+// --- the whole screen -------------------------------------------------------------------------
 
 // The width of the stack on the right; from 120 on there is room for sliders next to the values.
 static int side_width(int screen_width)

@@ -1,7 +1,7 @@
 // The whole screen of the explorer: title, panels, page, status and prompt.
 #pragma once
 
-#include "ui/explorer/panels/layout.h"
+#include "ui/explorer/panels/panel.h"
 #include "ui/terminal/screen.h"
 
 // Whether a screen has room for the explorer; on a smaller one only a message is drawn.

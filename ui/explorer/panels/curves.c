@@ -1,15 +1,264 @@
 // The panes of curves over time.
-#include "ui/explorer/panels/panel.h"
+#include "ui/explorer/panels/plot.h"
 
+#include <math.h>
 #include <string.h>
 
-#include "ui/explorer/panels/curves_mouse.h"
-#include "ui/explorer/panels/lanes.h"
-#include "ui/explorer/panels/pane_title.h"
-#include "ui/explorer/panels/pane_views.h"
-#include "ui/explorer/panels/plot_axes.h"
-#include "ui/explorer/panels/plot_frame.h"
-#include "ui/explorer/panels/run_lines.h"
+#include "src/rig/controller.h"
+#include "ui/terminal/ink_colours.h"
+
+// --- titles -----------------------------------------------------------------------------------
+
+// The lines and colours of a pane's signals: those of the signal table, but no two the same.
+typedef struct pane_look {
+    ink colour[PANE_SIGNALS];
+    line_style style[PANE_SIGNALS];
+} pane_look;
+
+// Whether a slot's colour is that of one of the first curves of a pane, as the terminal shows them.
+static bool colour_is_taken(const explorer_state *st, const pane_look *look, int curves, int slot)
+{
+    const ink wanted = (ink)(INK_SERIES_0 + slot);
+    for (int k = 0; k < curves; k++) {
+        if (inks_look_alike(st->looks.theme, st->looks.shown_depth, look->colour[k], wanted)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static pane_look pane_look_of(const explorer_state *st, const pane *p)
+{
+    enum { COLOURS = 8, STYLES = 4 };
+    static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT};
+    bool style_taken[STYLES] = {false};
+    pane_look look;
+
+    // the table's colour and line unless an earlier signal of the pane has them
+    for (int k = 0; k < p->count; k++) {
+        const signal_info *info = &signal_table[p->signals[k]];
+        int slot = info->colour, style = (int)info->style;
+        for (int i = 0; i < COLOURS && colour_is_taken(st, &look, k, slot); i++) {
+            slot = (info->colour + 1 + i) % COLOURS;
+        }
+        for (int i = 0; i < STYLES && style_taken[style]; i++) {
+            style = (int)plain_first[i];
+        }
+        style_taken[style] = true;
+        look.colour[k] = (ink)(INK_SERIES_0 + slot);
+        look.style[k] = (line_style)style;
+    }
+    return look;
+}
+
+// How a legend says what its curves are, most words first.
+typedef enum legend { LEGEND_NAMES, LEGEND_SYMBOLS, LEGEND_TIGHT, LEGEND_BARE } legend;
+
+// A curve's line in one character.
+static uint32_t line_glyph(line_style style)
+{
+    static const uint32_t glyphs[] = {0x2500, 0x254c, 0x2508, 0x2574};
+    return glyphs[style];
+}
+
+// What a legend says of a signal's value: a mode by its name where the law is one of ours, else a
+// number; short ones have up to three digits.
+static void format_value(const explorer_state *st, int signal, bool briefly, char *text,
+                         size_t size)
+{
+    const trace *t = state_run(st, 0).trace;
+    double value = signal_value(&t->rows[trace_row_at(t, st->session.now)], signal);
+    const controller *law = controller_of(st->session.effective.parameters.control.law);
+    bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
+
+    // fewer digits where room is short
+    draw_number(text, size, value);
+    if (briefly && fabs(value) > 1e-12) {
+        for (int digits = 3, length = 9; digits > 1 && length > 6; digits--) {
+            length = snprintf(text, size, "%.*g", digits, value);
+        }
+    }
+
+    // a mode by its name
+    for (int i = 0; is_mode && law != NULL && law->modes != NULL && law->modes[i] != NULL; i++) {
+        if (value == i) {
+            snprintf(text, size, "%s", law->modes[i]);
+        }
+    }
+}
+
+// The unit of all signals of a pane, "" if they have several.
+static const char *unit_of(const pane *p)
+{
+    const char *unit = signal_table[p->signals[0]].unit;
+    for (int k = 1; k < p->count; k++) {
+        unit = strcmp(signal_table[p->signals[k]].unit, unit) == 0 ? unit : "";
+    }
+    return unit;
+}
+
+// Writes a legend and returns the cells it takes; values are padded so that it stands still.
+static int draw_legend(const explorer_state *st, screen *s, const pane *p, legend how, int x, int y,
+                       int room)
+{
+    int start = x, end = x + room;
+    const pane_look look = pane_look_of(st, p);
+
+    // each signal: its line, its name, its value at the cursor
+    for (int k = 0; k < p->count; k++) {
+        const signal_info *info = &signal_table[p->signals[k]];
+        char value[48], text[128];
+        format_value(st, p->signals[k], how == LEGEND_TIGHT, value, sizeof value);
+        if (unit_of(p)[0] == '\0' && info->unit[0] != '\0' && how < LEGEND_TIGHT) {
+            size_t used = strlen(value);
+            snprintf(value + used, sizeof value - used, " %s", info->unit);
+        }
+        int width = how == LEGEND_TIGHT ? 6 : how == LEGEND_BARE ? 0 : 8;
+        int length =
+            snprintf(text, sizeof text, "%s %-*s", how == LEGEND_NAMES ? info->name : info->ascii,
+                     width, how == LEGEND_BARE ? "" : value);
+        if (room > 0) {
+            screen_put(s, x, y, x < end ? line_glyph(look.style[k]) : ' ', look.colour[k]);
+            screen_text(s, x + 2, y, end - x - 2, look.colour[k], text);
+        }
+        x += 2 + length + 1;
+    }
+    return x - start - 1;
+}
+
+// The pane's number, its unit, its signals with their values at the cursor as far as there is room,
+// and the mode of its axis, in the first row of the pane's area.
+static void draw_pane_title(const explorer_state *st, screen *s, int index, area a)
+{
+    const pane *p = &st->panes.pane[index];
+    static const char *const axes[] = {"", "grows", "fixed"};
+    const bool difference = state_run(st, 0).kind == SHOWN_DIFFERENCE && pane_has_amounts(p);
+    bool focused = index == panes_focused(&st->panes);
+    int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
+
+    // number, unit, and what the axis does
+    screen_print(s, a.x, a.y, 2, focused ? INK_TITLE : INK_DIM, "%s%d", focused ? "\u25b8" : " ",
+                 (index + 1) % 10);
+    screen_print(s, a.x + 2, a.y, LABEL_WIDTH - 2, INK_DIM, "%*s", LABEL_WIDTH - 2, unit_of(p));
+    if (p->scaling != AXIS_AUTO && room > 30) {
+        room -= 6;
+        screen_text(s, x + room + 1, a.y, 5, INK_DIM, axes[p->scaling]);
+    }
+    if (difference && room > 40) {
+        room -= 15;
+        screen_text(s, x + room + 1, a.y, 14, INK_EVENT, "minus baseline");
+    }
+
+    // what is not over time has no values at the cursor
+    if (p->view == VIEW_PHASE) {
+        screen_print(s, x, a.y, room, INK_SERIES_0, "%s over %s", signal_table[p->signals[0]].name,
+                     signal_table[p->signals[1]].name);
+        return;
+    }
+    if (p->view == VIEW_SPECTRUM) {
+        screen_print(s, x, a.y, room, INK_SERIES_0, "amplitudes of %s",
+                     signal_table[p->signals[0]].name);
+        return;
+    }
+
+    // as many words as fit
+    legend how = LEGEND_NAMES;
+    while (how < LEGEND_BARE && draw_legend(st, s, p, how, x, a.y, 0) > room) {
+        how++;
+    }
+    draw_legend(st, s, p, how, x, a.y, room);
+}
+
+// --- the mouse --------------------------------------------------------------------------------
+
+// The instant at a column of the plot, kept within what is visible [s].
+static double time_at(const explorer_state *st, area plot, int x)
+{
+    double from, to;
+    state_window(st, &from, &to);
+    double share = (x - plot.x + 0.5) / (plot.width > 0 ? plot.width : 1);
+    return from + (to - from) * fmax(0, fmin(1, share));
+}
+
+// A turn of the wheel over the plot or the time axis zooms there or pans.
+static void turn_wheel(explorer_state *st, const panel_gesture *g, bool pans)
+{
+    double from, to;
+    int direction = pointer_wheel(g->event);
+    state_window(st, &from, &to);
+    if (pans) {
+        act_pan_by(st, 0.1 * direction * (to - from));
+    } else {
+        act_zoom_at(st, direction < 0 ? 0.8 : 1.25, time_at(st, g->hit.area, g->event.x));
+    }
+}
+
+// The cursor goes where the mouse is.
+static bool point_at_plot(explorer_state *st, const panel_gesture *g)
+{
+    switch (g->event.kind) {
+    case POINTER_PRESS:
+    case POINTER_DRAG:
+        act_scrub(st, time_at(st, g->hit.area, g->event.x));
+        return true;
+    case POINTER_RELEASE:
+        return false;
+    default:
+        turn_wheel(st, g, g->event.shift);
+        return true;
+    }
+}
+
+// The axis is dragged; a click without a drag moves the cursor.
+static bool point_at_time_axis(explorer_state *st, const panel_gesture *g)
+{
+    const area a = g->hit.area;
+
+    double from, to;
+    switch (g->event.kind) {
+    case POINTER_PRESS:
+        return true;
+    case POINTER_DRAG:
+        state_window(st, &from, &to);
+        act_pan_by(st, a.width > 0 ? -g->across * (to - from) / a.width : 0);
+        return true;
+    case POINTER_RELEASE:
+        if (!g->dragged) {
+            act_scrub(st, time_at(st, a, g->event.x));
+        }
+        return true;
+    default:
+        turn_wheel(st, g, !g->event.control);
+        return true;
+    }
+}
+
+// A click puts the pane in focus, a drag moves its axis, the wheel zooms it.
+static bool point_at_labels(explorer_state *st, const panel_gesture *g)
+{
+    const hit_area *h = &g->hit;
+    const int rows = h->area.height > 0 ? h->area.height : 1;
+
+    switch (g->event.kind) {
+    case POINTER_PRESS:
+        st->panes.focus = h->index;
+        return true;
+    case POINTER_DRAG:
+        if (g->up != 0) {
+            act_shift_axis(st, h->index, -(double)g->up / rows);
+        }
+        return true;
+    case POINTER_RELEASE:
+        return false;
+    default:
+        act_scale_axis(st, h->index, pointer_wheel(g->event) < 0 ? 0.8 : 1.25,
+                       (g->event.y - h->area.y + 0.5) / rows);
+        return true;
+    }
+}
+
+// --- the panes --------------------------------------------------------------------------------
+// The panes of curves over time.
 
 // How a run's curves differ from those of others: the present one has the signals' colours and
 // lines, a single pinned one their lines in one colour, several have their own lines.
@@ -178,23 +427,22 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     draw_lanes(st, lay, s, beneath);
 }
 
-static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+static bool point(explorer_state *st, const panel_gesture *g)
 {
-    *result = result_done();
 
     // each part takes the mouse in its own way
     switch (g->hit.part) {
     case PART_BODY:
-        return curves_point_at_plot(st, g);
+        return point_at_plot(st, g);
     case PART_TIME_AXIS:
-        return curves_point_at_time_axis(st, g);
+        return point_at_time_axis(st, g);
     case PART_VIEW:
         return true;
     case PART_LANES:
     case PART_MAP:
         return lanes_point(st, g);
     default:
-        return curves_point_at_labels(st, g);
+        return point_at_labels(st, g);
     }
 }
 

@@ -102,11 +102,10 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 }
 
 // A click goes to the instant of a line, the wheel scrolls.
-static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+static bool point(explorer_state *st, const panel_gesture *g)
 {
     const run_log *log = state_run_log(st);
     size_t index = (size_t)(g->hit.index + g->event.y - g->hit.area.y);
-    *result = result_done();
 
     switch (g->event.kind) {
     case POINTER_PRESS:

@@ -64,9 +64,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 }
 
 // A click takes an entry, the wheel moves the selection.
-static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+static bool point(explorer_state *st, const panel_gesture *g)
 {
-    *result = result_done();
     if (g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES) {
         st->palette.selected = g->hit.index + g->event.y - g->hit.area.y;
         st->palette.picked = true;

@@ -1,6 +1,11 @@
 #include "ui/explorer/panels/panel.h"
 
 #include <assert.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "ui/terminal/keys.h"
 
 static const panel *const panels[PANEL_IDS] = {
 #define PANEL_POINTER(id, place, description) [id] = &description,
@@ -23,4 +28,171 @@ bool panel_fits(const panel *p, screen_size body)
 int pointer_wheel(pointer_event e)
 {
     return e.kind == POINTER_WHEEL_UP ? -1 : 1;
+}
+
+// --- lines ------------------------------------------------------------------------------------
+
+enum { PERIOD = 16 }; // dots of a pattern
+
+unsigned style_pattern(line_style style)
+{
+    static const unsigned patterns[] = {[LINE_SOLID] = 0xffff,
+                                        [LINE_DASHED] = 0x1f1f,
+                                        [LINE_DOTTED] = 0x3333,
+                                        [LINE_DASH_DOT] = 0xefef};
+    return patterns[style];
+}
+
+unsigned run_pattern(int index)
+{
+    static const unsigned patterns[] = {0x1f1f, 0x3333, 0x0fff, 0x1111, 0x33ff, 0x0333, 0x0101};
+    enum { PATTERNS = sizeof patterns / sizeof patterns[0] };
+    assert(index >= 0);
+    return patterns[index % PATTERNS];
+}
+
+bool line_has_dot(unsigned pattern, long across)
+{
+    return (pattern >> (unsigned)((across % PERIOD + PERIOD) % PERIOD) & 1u) != 0;
+}
+
+void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink colour)
+{
+    assert(s != NULL);
+    const canvas line = {s, x, y, cells, 1};
+    for (int i = 0; i < 2 * cells; i++) {
+        if (line_has_dot(pattern, i)) {
+            canvas_dot(&line, i, 2, colour);
+        }
+    }
+}
+
+// --- the layout -------------------------------------------------------------------------------
+
+#define NOTHING 1e-12 // a smaller value is rounding, and shown as 0
+
+void draw_number(char *text, size_t size, double value)
+{
+    assert(text != NULL);
+    if (!isfinite(value)) {
+        snprintf(text, size, "-");
+    } else if (fabs(value) < NOTHING) {
+        snprintf(text, size, "0");
+    } else if (fabs(value) < 1e-3 || fabs(value) >= 1e5) {
+        snprintf(text, size, "%.2e", value);
+    } else {
+        snprintf(text, size, "%.4g", value);
+    }
+}
+
+int draw_first_line(int selected, int count, int height)
+{
+    int first = selected - height / 2;
+    first = first > count - height ? count - height : first;
+    return first < 0 ? 0 : first;
+}
+
+area page_area(area body, int width, int height)
+{
+    width = width > body.width - 2 ? body.width - 2 : width;
+    height = height > body.height ? body.height : height;
+    return (area){body.x + (body.width - width) / 2, body.y + (body.height - height) / 2, width,
+                  height};
+}
+
+void layout_begin(layout *lay, const explorer_state *st)
+{
+    assert(lay != NULL && st != NULL);
+    lay->hit_count = 0;
+    lay->plot = (area){0};
+    lay->stage = (arm_stage){0};
+    lay->page_lines = st->page.lines;
+    lay->first_scenario = st->scenarios.first;
+    memcpy(lay->scroll, st->scroll, sizeof lay->scroll);
+}
+
+void layout_add_hit(layout *lay, hit_area hit)
+{
+    assert(lay != NULL);
+    if (lay->hit_count < HIT_AREAS) {
+        lay->hits[lay->hit_count++] = hit;
+    }
+}
+
+bool area_holds(area a, int x, int y)
+{
+    return x >= a.x && x < a.x + a.width && y >= a.y && y < a.y + a.height;
+}
+
+hit_area layout_hit(const layout *lay, int x, int y)
+{
+    assert(lay != NULL);
+    for (int i = lay->hit_count; i-- > 0;) {
+        if (area_holds(lay->hits[i].area, x, y)) {
+            return lay->hits[i];
+        }
+    }
+    return (hit_area){.panel = PANEL_NONE};
+}
+
+int layout_keep_scroll(layout *lay, panel_id id, int last)
+{
+    assert(lay != NULL && id > PANEL_NONE && id < PANEL_IDS);
+    int *scroll = &lay->scroll[id];
+    *scroll = *scroll > last ? last : *scroll;
+    *scroll = *scroll < 0 ? 0 : *scroll;
+    return *scroll;
+}
+
+void layout_settle(const layout *lay, explorer_state *st)
+{
+    assert(lay != NULL && st != NULL);
+    st->page.lines = lay->page_lines;
+    st->scenarios.first = lay->first_scenario;
+    memcpy(st->scroll, lay->scroll, sizeof st->scroll);
+    st->stage = lay->stage;
+}
+
+// --- pages ------------------------------------------------------------------------------------
+
+bool page_key(explorer_state *st, int key)
+{
+    assert(st != NULL && st->page.panel != PANEL_NONE);
+    int *scroll = &st->scroll[st->page.panel];
+    const int lines = st->page.lines;
+
+    // drawing keeps it within the page
+    if (key == KEY_CODE_DOWN || key == 'j') {
+        *scroll += 1;
+    } else if (key == KEY_CODE_UP || key == 'k') {
+        *scroll -= *scroll > 0;
+    } else if (key == KEY_CODE_PAGE_DOWN || key == ' ') {
+        *scroll += lines;
+    } else if (key == KEY_CODE_PAGE_UP) {
+        *scroll = *scroll > lines ? *scroll - lines : 0;
+    } else if (key == KEY_CODE_END || key == 'G') {
+        *scroll = INT_MAX / 2;
+    } else if (key == KEY_CODE_HOME || key == 'g') {
+        *scroll = 0;
+    } else if (key == '/' && st->page.panel == PANEL_HELP) {
+        return act_filter(st, "");
+    } else if (key == KEY_CODE_ESCAPE && st->filters.text[st->page.panel][0] != '\0') {
+        st->filters.text[st->page.panel][0] = '\0';
+    } else {
+        st->page.panel = PANEL_NONE;
+    }
+    return true;
+}
+
+bool page_point(explorer_state *st, const panel_gesture *g)
+{
+    assert(st != NULL && g != NULL);
+    if (g->event.kind != POINTER_WHEEL_UP && g->event.kind != POINTER_WHEEL_DOWN) {
+        return false;
+    }
+    for (int i = 0; i < WHEEL_LINES && st->page.panel != PANEL_NONE; i++) {
+        int key = pointer_wheel(g->event) < 0 ? KEY_CODE_UP : KEY_CODE_DOWN;
+        panel_of(st->page.panel)->key(st, key);
+    }
+    return true;
 }

@@ -2,10 +2,122 @@
 // it is a page. Each has a file of its own; panel_list.h lists them all.
 #pragma once
 
+#include "src/predict/predictors.h"
 #include "ui/explorer/actions/actions.h"
-#include "ui/explorer/panels/layout.h"
+#include "ui/explorer/state/command_list.h"
+#include "ui/explorer/state/state.h"
 #include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
+
+// --- lines ------------------------------------------------------------------------------------
+// Dash patterns of curves, so that signals and runs can be distinguished without colours.
+
+// Sixteen dots, repeated: bit i is dot i.
+unsigned style_pattern(line_style style);
+// The line of a pinned run, different for each.
+unsigned run_pattern(int index);
+
+// Whether a line has a dot at a column of dots.
+bool line_has_dot(unsigned pattern, long across);
+
+// A short piece of a line for a legend, `cells` wide.
+void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink colour);
+
+// --- the layout -------------------------------------------------------------------------------
+// What drawing stores besides the screen: the positions of parts, for the mouse; how far panels can
+// be scrolled; and what is kept from one picture to the next. Drawing does not change the state.
+
+enum { LABEL_WIDTH = 9 };                     // of an axis of values [cells]
+enum { LEAST_WIDTH = 40, LEAST_HEIGHT = 12 }; // of a screen that shows the explorer [cells]
+enum { HIT_AREAS = 160 };
+
+typedef struct area {
+    int x, y, width, height; // [cells]
+} area;
+
+// The kinds of parts of a panel that the mouse distinguishes.
+typedef enum hit_part {
+    PART_BODY,      // the panel itself, or its plot
+    PART_LINES,     // its lines; index: the first one shown, or the line's own
+    PART_HEADING,   // of a group of lines; index: its first parameter
+    PART_SLIDER,    // index: the parameter
+    PART_LABELS,    // an axis of values; index: the pane
+    PART_TIME_AXIS, // below curves
+    PART_VIEW,      // a pane that is not over time; index: the pane
+    PART_LANES,     // bands below that
+    PART_MAP        // of the whole run
+} hit_part;
+
+// A part of the screen that the mouse can point at.
+typedef struct hit_area {
+    panel_id panel; // its panel, or PANEL_NONE
+    hit_part part;
+    int index; // its meaning depends on the part
+    area area;
+} hit_area;
+
+// The region that the arm covers in a run.
+typedef struct arm_extent {
+    unsigned opened;        // of the state
+    unsigned long run;      // 0: nothing is known
+    size_t rows;            // looked at
+    bool whole;             // of a complete run
+    double lowest, highest; // of all points of the arm over the run [m]
+    double most_angle;      // [rad]
+} arm_extent;
+
+// The linearised predictor's answer for a touch at a row.
+typedef struct linearised_answer {
+    unsigned long run; // 0: not computed
+    size_t row;
+    prediction_answer answer;
+} linearised_answer;
+
+// What a run contains for the lanes below its curves.
+typedef struct lane_survey {
+    unsigned long run; // 0: nothing is known
+    size_t rows;       // looked at
+    bool sticks, saturates;
+} lane_survey;
+
+typedef struct layout {
+    hit_area hits[HIT_AREAS]; // later ones are on top
+    int hit_count;
+    area plot;                    // where the curves were drawn, no width if nowhere
+    value_range axes[PANES];      // of the panes as they were drawn last
+    int scroll[PANEL_IDS];        // by panel: the state's, limited to the existing lines
+    int page_lines;               // lines of the page that are shown at once
+    int first_scenario;           // line of the list of scenarios that is shown first
+    arm_stage stage;              // where the arm was drawn
+    arm_extent extent;            // remembered
+    linearised_answer linearised; // remembered
+    lane_survey lanes;            // remembered
+} layout;
+
+// Begins a picture: no parts yet, scrolling as in the state.
+void layout_begin(layout *lay, const explorer_state *st);
+
+// Stores the position of a part. Parts beyond the capacity are not found by the mouse.
+void layout_add_hit(layout *lay, hit_area hit);
+// The uppermost part at a cell; one of PANEL_NONE if there is none.
+hit_area layout_hit(const layout *lay, int x, int y);
+
+bool area_holds(area a, int x, int y);
+
+// Keeps a panel's scrolling from 0 to `last` lines; returns it.
+int layout_keep_scroll(layout *lay, panel_id id, int last);
+
+// Copies to the state what drawing has decided: how far panels are scrolled.
+void layout_settle(const layout *lay, explorer_state *st);
+
+// A number in at most nine cells; values that are only rounding are shown as 0, NaN as "-".
+void draw_number(char *text, size_t size, double value);
+
+// The first line to show so that the selected one is visible.
+int draw_first_line(int selected, int count, int height);
+
+// The area of a page of at most this size, centred in the area of the panels.
+area page_area(area body, int width, int height);
 
 enum { WHEEL_LINES = 3 }; // scrolled by one step of the wheel
 
@@ -32,10 +144,10 @@ typedef struct panel {
     void (*draw)(const explorer_state *st, layout *lay, screen *s, area a);
 
     // Handles the mouse; false if the gesture does nothing. May be NULL.
-    bool (*point)(explorer_state *st, const panel_gesture *g, action_result *result);
+    bool (*point)(explorer_state *st, const panel_gesture *g);
 
     // Handles a key while the page is open. Pages only.
-    action_result (*key)(explorer_state *st, int key);
+    bool (*key)(explorer_state *st, int key);
 } panel;
 
 #define PANEL_DECLARATION(id, place, description) extern const panel description;
@@ -47,3 +159,49 @@ const panel *panel_of(panel_id id);
 
 // Whether a panel has room on a screen whose panels have the area `body`.
 bool panel_fits(const panel *p, screen_size body);
+
+// --- pages ------------------------------------------------------------------------------------
+// Keys and mouse in pages that are scrolled line by line.
+
+// Scrolls the page that is open; any other key closes it.
+bool page_key(explorer_state *st, int key);
+
+// The wheel presses a page's keys for up and down.
+bool page_point(explorer_state *st, const panel_gesture *g);
+
+// --- the help ---------------------------------------------------------------------------------
+// The text of the help page, made from the tables of keys and commands.
+
+typedef struct help_line {
+    char text[LINE_TEXT];
+    int keys; // cells at its beginning that are keys
+    bool heading;
+} help_line;
+
+// Writes the help page, wrapped to a width; returns how many lines it has, not more than `most`.
+int help_write(const key_bindings *b, int width, help_line *lines, int most);
+
+// --- views ------------------------------------------------------------------------------------
+// Panes whose axis is not time: one signal over another, and the spectrum of a signal.
+
+// Draws a pane's inside; its signals are those of a view that is not over time. *axis is the range
+// of its axis of values. False, with nothing drawn, if there are no values.
+bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a, value_range *axis);
+
+// --- lanes ------------------------------------------------------------------------------------
+// The lanes below the curves, on the same time axis: contact of each run, the controller's mode,
+// intervals in which the hub sticks or the command exceeds its limit, locks and changes. Above
+// them, if the curves show only a part of the run, a map of the whole run.
+
+// Examines the rows that a run has gained since the last picture, so that empty lanes are omitted.
+void lanes_survey(const explorer_state *st, lane_survey *known);
+
+// The number of rows of the lanes below curves of a given height.
+int lanes_rows(const explorer_state *st, const lane_survey *known, int height);
+
+// Draws the lanes in the number of rows given by lanes_rows; the area has the same columns as the
+// curves and their labels.
+void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a);
+
+// The mouse on a lane moves the cursor, on the map it moves the visible part.
+bool lanes_point(explorer_state *st, const panel_gesture *g);

@@ -194,7 +194,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 }
 
 // The mouse on a slider: takes hold, drags, nudges with the wheel.
-static bool point_at_slider(explorer_state *st, const panel_gesture *g, action_result *result)
+static bool point_at_slider(explorer_state *st, const panel_gesture *g)
 {
     const hit_area *h = &g->hit;
     int cells = h->area.width;
@@ -206,21 +206,20 @@ static bool point_at_slider(explorer_state *st, const panel_gesture *g, action_r
         act_hold_slider(st, (slider_drag){h->index, share, cells});
         return true;
     case POINTER_RELEASE:
-        *result = act_drop_slider(st);
+        act_drop_slider(st);
         return true;
     default:
         parameter_list_select(&st->parameters, (parameter_line){h->index, false});
-        *result = act_nudge(st, g->event.kind == POINTER_WHEEL_UP ? "" : "-1");
+        act_nudge(st, g->event.kind == POINTER_WHEEL_UP ? "" : "-1");
         return true;
     }
 }
 
 // A click selects a line; a slider takes the mouse in its own way.
-static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+static bool point(explorer_state *st, const panel_gesture *g)
 {
-    *result = result_done();
     if (g->hit.part == PART_SLIDER) {
-        return point_at_slider(st, g, result);
+        return point_at_slider(st, g);
     }
 
     // a press folds the group of a heading and selects any other line

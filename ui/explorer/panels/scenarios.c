@@ -1,5 +1,5 @@
 // The page that lists the scenarios, with a filter.
-#include "ui/explorer/panels/page.h"
+#include "ui/explorer/panels/panel.h"
 #include "ui/terminal/keys.h"
 
 enum { PREVIEW = 6, TALL_SCREEN = 22 }; // rows of the preview, and of a screen that has room for it
@@ -90,18 +90,18 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     }
 }
 
-static action_result open_selected(explorer_state *st)
+static bool open_selected(explorer_state *st)
 {
     const scenario_menu *menu = &st->scenarios;
     st->page.panel = PANEL_NONE;
     if (menu->selected < menu->count && scenario_menu_shows(menu, menu->selected)) {
         return act_open_scenario(st, menu->names[menu->selected]);
     }
-    return result_done();
+    return true;
 }
 
 // Keys go to the filter until it is closed; Enter opens what is selected.
-static action_result filter_key(explorer_state *st, int key)
+static bool filter_key(explorer_state *st, int key)
 {
     scenario_menu *menu = &st->scenarios;
     const bool opens = key == KEY_CODE_ENTER || key == '\n';
@@ -113,10 +113,10 @@ static action_result filter_key(explorer_state *st, int key)
         text_type(menu->filter, key);
     }
     scenario_menu_keep_selection_shown(menu);
-    return opens ? open_selected(st) : result_done();
+    return opens ? open_selected(st) : true;
 }
 
-static action_result list_key(explorer_state *st, int key)
+static bool list_key(explorer_state *st, int key)
 {
     scenario_menu *menu = &st->scenarios;
 
@@ -139,25 +139,24 @@ static action_result list_key(explorer_state *st, int key)
     } else if (key == KEY_CODE_ESCAPE || key == 'q' || key == 'o') {
         st->page.panel = PANEL_NONE;
     }
-    return result_done();
+    return true;
 }
 
 // The first click selects a line, another one on it opens it.
-static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+static bool point(explorer_state *st, const panel_gesture *g)
 {
     scenario_menu *menu = &st->scenarios;
-    *result = result_done();
 
     // all else is the page's own
     if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
-        return page_point(st, g, result);
+        return page_point(st, g);
     }
 
     // in a line without a scenario nothing happens
     int index = scenario_menu_in_line(menu, g->hit.index + g->event.y - g->hit.area.y);
     if (index >= 0 && index == menu->selected) {
         menu->filtering = false;
-        *result = open_selected(st);
+        open_selected(st);
     } else if (index >= 0) {
         menu->selected = index;
     }

@@ -1,8 +1,13 @@
-// The panel of all recorded values at the cursor.
+// The panels of values at the cursor and of statistics.
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "src/run/statistics.h"
+
+// --- values -----------------------------------------------------------------------------------
+// The panel of all recorded values at the cursor.
 
 enum { NAME = 19, NUMBER = 10, UNIT = 6 }; // columns [cells]
 
@@ -82,9 +87,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     }
 }
 
-static bool point(explorer_state *st, const panel_gesture *g, action_result *result)
+static bool point(explorer_state *st, const panel_gesture *g)
 {
-    *result = result_done();
     if (g->event.kind != POINTER_WHEEL_UP && g->event.kind != POINTER_WHEEL_DOWN) {
         return false;
     }
@@ -93,3 +97,113 @@ static bool point(explorer_state *st, const panel_gesture *g, action_result *res
 }
 
 const panel values_panel = {.name = "values", .draw = draw, .point = point};
+
+// --- statistics -------------------------------------------------------------------------------
+// The panel of statistics: what the signals of the panes come to between the mark and the cursor,
+// or in the visible part of the run.
+
+enum { LINES = 3 }; // of a signal
+
+// The signals of the panes that are shown, those of the pane in focus first, each once.
+static int find_signals(const explorer_state *st, int signals[PANES * PANE_SIGNALS])
+{
+    int count = 0;
+    const int focused = panes_focused(&st->panes);
+
+    // from the pane in focus on and around, a signal of several panes once
+    for (int i = 0; i < PANES && focused >= 0; i++) {
+        const pane *p = &st->panes.pane[(focused + i) % PANES];
+        for (int k = 0; p->shown && k < p->count; k++) {
+            bool there = false;
+            for (int j = 0; j < count; j++) {
+                there = there || signals[j] == p->signals[k];
+            }
+            if (!there) {
+                signals[count++] = p->signals[k];
+            }
+        }
+    }
+    return count;
+}
+
+// The unit of a signal's integral over time: "N s", of "rad/s" it is "rad".
+static void integral_unit(const char *unit, char *text, size_t size)
+{
+    const size_t length = strlen(unit);
+    if (length > 3 && strcmp(unit + length - 3, "/s2") == 0) {
+        snprintf(text, size, "%.*s", (int)length - 1, unit);
+    } else if (length > 2 && strcmp(unit + length - 2, "/s") == 0) {
+        snprintf(text, size, "%.*s", (int)length - 2, unit);
+    } else {
+        snprintf(text, size, "%s%ss", unit, length > 0 ? " " : "");
+    }
+}
+
+// The three lines of a signal, as far as they are in the area's rows.
+static void draw_signal(screen *s, area a, int signal, const signal_statistics *x)
+{
+    const signal_info *info = &signal_table[signal];
+    char low[32], high[32], mean[32], rms[32], integral[32], unit[32];
+    draw_number(low, sizeof low, x->minimum);
+    draw_number(high, sizeof high, x->maximum);
+    draw_number(mean, sizeof mean, x->mean);
+    draw_number(rms, sizeof rms, x->rms);
+    draw_number(integral, sizeof integral, x->integral);
+    integral_unit(info->unit, unit, sizeof unit);
+
+    // name, then two rows of numbers
+    screen_print(s, a.x, a.y, a.width, INK_TITLE, "%s", info->name);
+    if (info->unit[0] != '\0') {
+        screen_print(s, a.x + a.width - 8, a.y, 8, INK_DIM, "%8s", info->unit);
+    }
+    if (a.height > 1) {
+        screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, " min %-9s max %s", low, high);
+    }
+    if (a.height > 1 && a.width >= 40) {
+        screen_print(s, a.x + 28, a.y + 1, a.width - 28, INK_TEXT, "mean %s", mean);
+        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " rms %-9s integral %s %s", rms, integral,
+                     unit);
+    } else if (a.height > 2) {
+        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " mean %-8s \u222b %s %s", mean, integral,
+                     unit);
+    }
+}
+
+static void draw_statistics(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    int signals[PANES * PANE_SIGNALS];
+    const trace *t = state_run(st, 0).trace;
+    const int count = find_signals(st, signals), fit = (a.height - 3) / LINES;
+    const int first = layout_keep_scroll(lay, PANEL_STATISTICS, count > fit ? count - fit : 0);
+    double from, to;
+
+    // between both cursors, else what is visible
+    state_window(st, &from, &to);
+    if (st->mark.set) {
+        from = fmin(st->mark.time, st->session.now);
+        to = fmax(st->mark.time, st->session.now);
+    }
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "statistics (m sets the mark)");
+    layout_add_hit(lay, (hit_area){.panel = PANEL_STATISTICS, .area = a});
+    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s%s %.5g to %.5g s",
+                 state_run(st, 0).kind == SHOWN_DIFFERENCE ? "minus baseline, " : "",
+                 st->mark.set ? "mark and cursor," : "visible part,", from, to);
+    for (int i = first; i < count && i - first < fit; i++) {
+        const signal_statistics x = trace_statistics(t, signals[i], from, to);
+        const area lines = {a.x + 2, a.y + 2 + LINES * (i - first), a.width - 4, LINES};
+        draw_signal(s, lines, signals[i], &x);
+    }
+}
+
+// The wheel scrolls.
+static bool point_at_statistics(explorer_state *st, const panel_gesture *g)
+{
+    if (g->event.kind != POINTER_WHEEL_UP && g->event.kind != POINTER_WHEEL_DOWN) {
+        return false;
+    }
+    st->scroll[PANEL_STATISTICS] += pointer_wheel(g->event);
+    return true;
+}
+
+const panel statistics_panel = {
+    .name = "statistics", .draw = draw_statistics, .point = point_at_statistics};

@@ -1,7 +1,11 @@
-// The panes of curves: their signals, which ones are shown, and how their axes are scaled.
+// The panes of curves: their signals, which ones are shown, how their axes are scaled, and which
+// part of the run is visible.
 #pragma once
 
 #include <stdbool.h>
+
+#include "src/tables/signals.h"
+#include "src/run/trace.h"
 
 enum { PANES = 10, PANE_SIGNALS = 4 };
 
@@ -76,3 +80,45 @@ void pane_fix_axis(pane *p, value_range limits);
 
 // Discards the range shown so far; the axis grows anew.
 void pane_grow_axis(pane *p);
+
+// --- the visible part -------------------------------------------------------------------------
+
+typedef struct time_window {
+    double from, to; // [s]; to <= from: the whole run
+    bool adrift;     // it was shifted by the user and does not follow the cursor
+} time_window;
+
+// The visible part of a run of the given duration [s].
+void time_window_range(const time_window *w, double duration, double *from, double *to);
+
+// Makes a part visible, limited to the run and not too short [s].
+void time_window_show(time_window *w, double duration, double from, double to);
+
+// Makes the whole run visible.
+void time_window_show_all(time_window *w);
+
+// Moves the window so that the cursor (at `now` [s]) is in it, unless it is adrift.
+void time_window_follow(time_window *w, double duration, double now);
+
+// --- extremes ---------------------------------------------------------------------------------
+// Smallest and largest values of blocks of rows, so that long runs can be drawn and their ranges
+// found without reading every row.
+
+enum { EXTREMES_BLOCK = 64, EXTREMES_SIGNALS = 64 };
+
+typedef struct extremes {
+    unsigned long run; // the run of the rows; 0: none
+    size_t blocks;     // number of blocks of EXTREMES_BLOCK rows, the last one perhaps incomplete
+    double *pairs[EXTREMES_SIGNALS]; // by signal: low, high of each block; NULL if not computed yet
+    size_t rows[EXTREMES_SIGNALS];   // by signal: number of rows included
+} extremes;
+
+// Extends the blocks of a signal to all rows of a trace, including those that a growing run has
+// gained. `run` identifies the trace and is not 0. Without memory the signal has no blocks.
+void extremes_update(extremes *e, unsigned long run, const trace *t, int signal);
+
+// Low and high of each block, low above high in a block without a finite value; NULL if they do not
+// cover all rows of the trace.
+const double *extremes_pairs(const extremes *e, unsigned long run, const trace *t, int signal);
+
+void extremes_forget(extremes *e);

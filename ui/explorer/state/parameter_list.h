@@ -1,5 +1,8 @@
-// The displayed list of parameters, in groups that can be folded, and filtered.
+// The displayed list of parameters, in groups that can be folded, and filtered; their sliders;
+// which of them have no effect.
 #pragma once
+
+#include <stdbool.h>
 
 #include "src/tables/parameters.h"
 
@@ -41,3 +44,36 @@ void parameter_list_fold(parameter_list *list, int parameter);
 // The parameter of a path, of its last part or of a beginning of either, if only one has it; -1 if
 // none has, -2 if several have.
 int parameter_of_name(const char *name);
+
+// --- sliders ----------------------------------------------------------------------------------
+// Their ranges, and the one that is being dragged. A dragged value takes
+// effect with the next picture.
+
+// The range of a slider.
+typedef struct slider_scale {
+    double low, high; // in the parameter's unit
+    bool logarithmic;
+} slider_scale;
+
+// The slider that is being dragged.
+typedef struct slider_grip {
+    bool held;
+    int parameter;
+    double value;
+    slider_scale scale;
+} slider_grip;
+
+// The range of a parameter's slider about a value; false if the parameter is not a number.
+bool slider_scale_of(int parameter, double value, slider_scale *scale);
+
+// The position of a value on a scale, 0 to 1.
+double slider_share(const slider_scale *scale, double value);
+
+// The value at a share of a scale, rounded to the resolution of a scale of `cells` cells and
+// limited to the parameter's range.
+double slider_value(const slider_scale *scale, int parameter, double share, int cells);
+
+// --- parameters without effect ----------------------------------------------------------------
+
+// Why a parameter has no effect on a run of these parameters: half a sentence; NULL if it has one.
+const char *inert_reason(const parameters *p, int parameter);

@@ -4,8 +4,13 @@
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
+#include "src/tables/parameters.h"
+#include "src/tables/signals.h"
+#include "ui/explorer/state/view.h"
 #include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
 
@@ -76,4 +81,148 @@ bool text_type(char *text, int key)
     }
     glyph_encode((uint32_t)key, text + length);
     return true;
+}
+
+// --- the palette ------------------------------------------------------------------------------
+
+const char *palette_kind_name(palette_kind kind)
+{
+    static const char *const names[PALETTE_KINDS] = {"command", "parameter", "signal", "scenario",
+                                                     "lesson"};
+    assert(kind < PALETTE_KINDS);
+    return names[kind];
+}
+
+// How many things of a kind there are.
+static int count_of(const scenario_menu *menu, palette_kind kind)
+{
+    switch (kind) {
+    case PALETTE_COMMAND:
+        return explorer_command_count;
+    case PALETTE_PARAMETER:
+        return parameter_count;
+    case PALETTE_SIGNAL:
+        return signal_count;
+    default:
+        return menu->count;
+    }
+}
+
+palette_text palette_describe(const scenario_menu *menu, const key_bindings *keys,
+                              palette_entry entry)
+{
+    assert(menu != NULL && keys != NULL);
+    palette_text text = {0};
+    const char *name, *about;
+
+    // what each kind is called and about; only commands have keys
+    switch (entry.kind) {
+    case PALETTE_COMMAND:
+        name = explorer_command_table[entry.index].name;
+        about = explorer_command_table[entry.index].help;
+        key_names_of(keys, name, text.keys, sizeof text.keys);
+        break;
+    case PALETTE_PARAMETER:
+        name = parameter_table[entry.index].path;
+        about = parameter_table[entry.index].description;
+        break;
+    case PALETTE_SIGNAL:
+        name = signal_table[entry.index].name;
+        about = signal_table[entry.index].description;
+        break;
+    default:
+        name = menu->names[entry.index];
+        about = scenario_menu_title(menu, entry.index);
+    }
+
+    // as much as an entry holds
+    snprintf(text.name, sizeof text.name, "%s", name);
+    snprintf(text.about, sizeof text.about, "%s", about);
+    return text;
+}
+
+// How well a thing fits: its name is that, its name or a part of it begins so, its name has it,
+// what is said of it has it; -1 if it does not fit.
+static int rank_of(const palette_text *text, const char *words)
+{
+    enum { IS_NAME, BEGINS, IN_NAME, SAID };
+    char all[2 * LINE_TEXT];
+    const size_t length = strlen(words);
+    const char *part = strpbrk(text->name, "./_");
+    if (length == 0) {
+        return IN_NAME;
+    }
+
+    // the best one first
+    snprintf(all, sizeof all, "%s %s %s", text->name, text->keys, text->about);
+    if (strcasecmp(text->name, words) == 0) {
+        return IS_NAME;
+    }
+    if (strncasecmp(text->name, words, length) == 0 ||
+        (part != NULL && strncasecmp(part + 1, words, length) == 0)) {
+        return BEGINS;
+    }
+    return filter_passes(words, text->name) ? IN_NAME : filter_passes(words, all) ? SAID : -1;
+}
+
+static int compare_entries(const void *a, const void *b)
+{
+    const palette_entry *one = a, *other = b;
+    const int kinds = (int)one->kind - (int)other->kind;
+    return one->rank != other->rank ? one->rank - other->rank
+           : kinds != 0             ? kinds
+                                    : one->index - other->index;
+}
+
+int palette_find(const scenario_menu *menu, const key_bindings *keys, const char *words,
+                 palette_entry entries[PALETTE_ENTRIES])
+{
+    assert(menu != NULL && keys != NULL && words != NULL && entries != NULL);
+    int count = 0;
+    for (int kind = 0; kind < PALETTE_KINDS; kind++) {
+        for (int i = 0; i < count_of(menu, (palette_kind)kind) && count < PALETTE_ENTRIES; i++) {
+            palette_entry entry = {(palette_kind)kind, i, 0};
+
+            // the list of scenarios has the lessons too
+            if (kind >= PALETTE_SCENARIO &&
+                scenario_menu_is_lesson(menu, i) != (kind == PALETTE_LESSON)) {
+                continue;
+            }
+            const palette_text text = palette_describe(menu, keys, entry);
+            entry.rank = rank_of(&text, words);
+            if (entry.rank >= 0) {
+                entries[count++] = entry;
+            }
+        }
+    }
+    qsort(entries, (size_t)count, sizeof *entries, compare_entries);
+    return count;
+}
+
+void palette_line(const scenario_menu *menu, palette_entry entry, char *line, size_t size,
+                  bool *goes_on)
+{
+    assert(menu != NULL && line != NULL && goes_on != NULL);
+    *goes_on = false;
+
+    // what is chosen becomes the command that deals with it
+    if (entry.kind == PALETTE_COMMAND) {
+        // what is in brackets need not be there
+        const explorer_command *c = &explorer_command_table[entry.index];
+        *goes_on = c->argument[0] != '\0' && c->argument[0] != '[';
+        snprintf(line, size, "%s%s", c->name, *goes_on ? " " : "");
+    } else if (entry.kind == PALETTE_PARAMETER) {
+        snprintf(line, size, "edit %s", parameter_table[entry.index].path);
+    } else if (entry.kind == PALETTE_SIGNAL) {
+        snprintf(line, size, "trace %s", signal_table[entry.index].name);
+    } else {
+        snprintf(line, size, "open %s", menu->names[entry.index]);
+    }
+}
+
+bool palette_shows(const prompt *p)
+{
+    assert(p != NULL);
+    return p->open &&
+           (p->searches || (p->fixed == 0 && p->text[0] != '\0' && strchr(p->text, ' ') == NULL));
 }

@@ -3,7 +3,8 @@
 
 #include <stdbool.h>
 
-enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
+#include "ui/explorer/state/command_list.h"
+#include "ui/explorer/state/scenario_menu.h"
 
 typedef struct prompt {
     bool open; // it receives the keys
@@ -30,3 +31,55 @@ bool prompt_type(prompt *p, int key);
 // Appends a key's character to a text of LINE_TEXT bytes, or deletes the last one. False if the key
 // does neither.
 bool text_type(char *text, int key);
+
+// --- the palette ------------------------------------------------------------------------------
+// The palette: one searchable list of commands with their keys, parameters, signals, scenarios and
+// lessons.
+
+enum { PALETTE_ENTRIES = 768, PALETTE_NAME = 96 };
+
+typedef enum palette_kind {
+    PALETTE_COMMAND,
+    PALETTE_PARAMETER,
+    PALETTE_SIGNAL,
+    PALETTE_SCENARIO,
+    PALETTE_LESSON,
+    PALETTE_KINDS
+} palette_kind;
+
+typedef struct palette_entry {
+    palette_kind kind;
+    int index; // index in the table or list of its kind
+    int rank;  // how well it matches; 0 is best
+} palette_entry;
+
+// Which entry of those shown is selected.
+typedef struct palette_view {
+    int selected; // -1: none, and Enter executes the line as typed
+    bool picked;  // the selected entry was chosen with the mouse
+} palette_view;
+
+// Name and description of an entry.
+typedef struct palette_text {
+    char name[PALETTE_NAME];
+    char keys[32]; // keys of a command, "" for none
+    char about[LINE_TEXT];
+} palette_text;
+
+// "command", "parameter", ...
+const char *palette_kind_name(palette_kind kind);
+
+// The entries whose names or descriptions contain all the words, best matches first; returns how
+// many. Without words all entries.
+int palette_find(const scenario_menu *menu, const key_bindings *keys, const char *words,
+                 palette_entry entries[PALETTE_ENTRIES]);
+
+palette_text palette_describe(const scenario_menu *menu, const key_bindings *keys,
+                              palette_entry entry);
+
+// The command line of an entry; *goes_on: it still needs an argument.
+void palette_line(const scenario_menu *menu, palette_entry entry, char *line, size_t size,
+                  bool *goes_on);
+
+// Whether an open prompt shows the palette: it searches, or its first word is being typed.
+bool palette_shows(const prompt *p);

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "src/base/loss.h"
@@ -76,4 +77,25 @@ void run_log_forget(run_log *log)
     assert(log != NULL);
     free(log->entries);
     *log = (run_log){0};
+}
+
+// --- modes of the control law -----------------------------------------------------------------
+
+void law_modes_update(law_modes *m, unsigned long run, const parameters *p)
+{
+    assert(m != NULL && p != NULL && run != 0);
+    if (m->run != run) {
+        m->run = run;
+        m->count = rig_mode_names(p, m->names, LAW_MODES, &m->lockable);
+    }
+}
+
+void law_mode_name(const law_modes *m, double mode, char *text, size_t size)
+{
+    assert(m != NULL && text != NULL);
+    if (mode >= 0 && mode < m->count) {
+        snprintf(text, size, "%s", m->names[(int)mode]);
+    } else {
+        snprintf(text, size, "mode %g", mode);
+    }
 }

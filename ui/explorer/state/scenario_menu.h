@@ -1,9 +1,10 @@
-// The list of scenarios: names, titles, filter and selection.
+// The list of scenarios: names, titles, filter and selection. And the progress in a lesson.
 #pragma once
 
 #include <stdbool.h>
 
-#include "ui/explorer/state/prompt.h"
+#include "src/session/session.h"
+#include "ui/explorer/state/runs.h"
 
 typedef struct scenario_menu {
     char **names;  // of all scenarios
@@ -40,3 +41,17 @@ int scenario_menu_in_line(const scenario_menu *menu, int line);
 void scenario_menu_move(scenario_menu *menu, int direction);
 // Moves the selection to the first scenario shown if the filter hides the selected one.
 void scenario_menu_keep_selection_shown(scenario_menu *menu);
+
+// --- lessons ----------------------------------------------------------------------------------
+
+typedef struct lesson_progress {
+    bool on;
+    int step;
+    bool passed;   // the step is done, and its concluding text is shown
+    bool answered; // an answer was given to this step
+    double answer; // a number, or the number of a choice, from 1
+} lesson_progress;
+
+// Whether answers and actions meet the step's conditions.
+bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, const session *s,
+                         const run_list *pinned);

@@ -6,7 +6,6 @@
 
 #include "src/rig/controller.h"
 #include "src/rig/rig.h"
-#include "ui/explorer/state/inert.h"
 
 #define ROUNDING 1e-12 // a smaller range is rounding, and shown as a flat line
 

@@ -2,28 +2,15 @@
 // it without changing it. It does not depend on a terminal or on positions on the screen.
 #pragma once
 
-#include "src/session/session.h"
-#include "ui/explorer/state/extremes.h"
-#include "ui/explorer/state/filters.h"
-#include "ui/explorer/state/key_bindings.h"
-#include "ui/explorer/state/difference.h"
-#include "ui/explorer/state/lab_sweep.h"
-#include "ui/explorer/state/law_modes.h"
-#include "ui/explorer/state/lesson_progress.h"
-#include "ui/explorer/state/looks.h"
-#include "ui/explorer/state/message.h"
-#include "ui/explorer/state/palette.h"
-#include "ui/explorer/state/panel_list.h"
+#include "ui/explorer/state/command_list.h"
 #include "ui/explorer/state/panes.h"
 #include "ui/explorer/state/parameter_list.h"
 #include "ui/explorer/state/playback.h"
 #include "ui/explorer/state/prompt.h"
-#include "ui/explorer/state/pull.h"
-#include "ui/explorer/state/run_list.h"
 #include "ui/explorer/state/run_log.h"
+#include "ui/explorer/state/runs.h"
 #include "ui/explorer/state/scenario_menu.h"
-#include "ui/explorer/state/slider.h"
-#include "ui/explorer/state/time_window.h"
+#include "ui/explorer/state/view.h"
 
 enum { SIDE_WIDTH = 72 }; // least width of a screen with the side panels next to the curves [cells]
 // The present run, pinned runs, runs of a sweep, and the run before the adjustment of a value.

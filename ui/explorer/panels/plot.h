@@ -1,9 +1,14 @@
-// The area of a pane over time, with its window and range, in cells or in pixels.
+// Drawing in the panes of curves: lines and their patterns, the frame of a pane, axes; panes that
+// are not over time; the lanes below.
 #pragma once
 
 #include "render/plot/pane_curve.h"
-#include "ui/explorer/panels/layout.h"
+#include "src/tables/signals.h"
+#include "ui/explorer/panels/panel.h"
 #include "ui/terminal/screen.h"
+
+// --- the frame --------------------------------------------------------------------------------
+// The area of a pane over time, with its window and range, in cells or in pixels.
 
 // A pane's place, time window and range.
 typedef struct plot_frame {
@@ -33,3 +38,13 @@ void plot_frame_cursor(const plot_frame *f, screen *s, double time);
 
 // A setpoint or limit across the pane, with its name, behind everything already drawn.
 void plot_frame_level(const plot_frame *f, screen *s, double value, const char *name);
+
+// --- axes -------------------------------------------------------------------------------------
+// The axes of the curves: values on the left of each pane, time below all of them.
+
+// An axis of values in its column, its line at the right; the area's rows are the axis.
+void draw_value_axis(screen *s, area a, value_range axis);
+
+// The time axis below the curves: contact as a bar, impacts and changes as marks, seconds. Returns
+// the area of its line and numbers.
+area draw_time_axis(const explorer_state *st, screen *s, area a);

@@ -1,13 +1,23 @@
+// The user's files: the folder of the explorer's settings, and which programs may be run.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "src/base/fault.h"
+#include "src/scenario/scenario.h"
+
+// The folder's path ($XDG_CONFIG_HOME/impactlab or ~/.config/impactlab), created if `make`. False
+// if there is none or the path is too long.
+bool settings_folder(char *path, size_t size, bool make);
+
+// --- consent ----------------------------------------------------------------------------------
 // The user's consent to a scenario's program or plug-in, remembered for the content of both.
 //
 // The settings folder's file `allowed` has a line for each: a digest (SHA-256) of the scenario's
 // text and of the program, and the names they had. If either changes, the digest differs and the
 // user is asked again. What cannot be identified by its content is allowed for one session only: a
 // command with characters that are special to a shell, a plug-in without a path.
-#pragma once
-
-#include "src/base/fault.h"
-#include "src/scenario/scenario.h"
 
 // Whether the scenario as it was opened would run a program or plug-in that is not allowed.
 bool consent_needed(const scenario *s);

@@ -1,9 +1,15 @@
-// The panels of the explorer: one list that gives each an identity, a place on the screen and the
-// description in the panel's own file. A new panel needs one file, one line here and one in
-// meson.build.
+// How the explorer is looked at: panels, their filters, looks, the message line.
 #pragma once
 
 #include <stdbool.h>
+
+#include "ui/explorer/state/command_list.h"
+#include "ui/terminal/screen.h"
+
+// --- panels -----------------------------------------------------------------------------------
+// One list gives each an identity, a place on the screen and the
+// description in the panel's own file. A new panel needs one file, one line here and one in
+// meson.build.
 
 // The places of panels.
 typedef enum panel_place {
@@ -52,3 +58,68 @@ panel_place panel_place_of(panel_id id);
 // The first panel of the side, and the one after a panel of the side; PANEL_NONE after the last.
 panel_id panel_first_on_side(void);
 panel_id panel_next_on_side(panel_id id);
+
+// --- filters ----------------------------------------------------------------------------------
+// A line of words for each panel that is a list.
+
+typedef struct filters {
+    panel_id typing; // keys go to this panel's filter; PANEL_NONE for none
+    char text[PANEL_IDS][LINE_TEXT];
+} filters;
+
+// Whether a text passes a filter: every word of the filter is part of the text, whatever the case
+// of letters. Every text passes an empty filter.
+bool filter_passes(const char *filter, const char *text);
+
+// --- looks ------------------------------------------------------------------------------------
+// And the words for them in commands and settings.
+
+// Which lanes are shown below the curves.
+typedef enum lane_choice {
+    LANES_AUTO, // as many as there is room for
+    LANES_ALL,
+    LANES_OFF,
+    LANE_CHOICES
+} lane_choice;
+
+// Whether a close-up of the contact is shown.
+typedef enum close_up_choice {
+    CLOSE_UP_AUTO, // if the terminal has pixels
+    CLOSE_UP_ON,
+    CLOSE_UP_OFF,
+    CLOSE_UP_CHOICES
+} close_up_choice;
+
+// Choices are values of their enumerations.
+typedef struct looks {
+    int glyphs;      // glyph_set
+    int theme;       // colour_theme
+    int depth;       // colour_depth
+    int shown_depth; // the depth in use; DEPTH_AUTO without a terminal
+    int lanes;       // lane_choice
+    int pixels;      // not 0: pictures are drawn if the terminal has them
+    int close_up;    // close_up_choice
+    double bending;  // factor by which bending is enlarged
+    int mouse;       // not 0: mouse reports are on
+    bool redraw;     // the whole screen must be redrawn
+} looks;
+
+// The words for each value of the enumerations, in their order.
+extern const char *const glyph_set_words[GLYPH_SETS];
+extern const char *const colour_theme_words[COLOUR_THEMES];
+extern const char *const colour_depth_words[COLOUR_DEPTHS];
+extern const char *const lane_choice_words[LANE_CHOICES];
+extern const char *const close_up_words[CLOSE_UP_CHOICES];
+extern const char *const mouse_words[2];
+extern const char *const pixel_words[2];
+
+// --- messages ---------------------------------------------------------------------------------
+
+enum { MESSAGE_TEXT = 1024 };
+
+// What was said last.
+typedef struct message_line {
+    char text[MESSAGE_TEXT]; // "" for none
+    bool warning;
+    int at; // of a line that failed: its characters before the mistake
+} message_line;

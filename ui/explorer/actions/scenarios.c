@@ -1,0 +1,266 @@
+// Actions on scenarios and lessons: opening one, its run as it is computed, answers.
+#include "ui/explorer/actions/actions.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/rig/external/transcript.h"
+#include "ui/explorer/state/user_files.h"
+
+// --- scenarios --------------------------------------------------------------------------------
+
+// Keeps the first fault of a scenario that does not open.
+static void keep_first_fault(void *context, const char *sentence)
+{
+    fault *f = context;
+    if (f->code == STATUS_OK) {
+        fault_set(f, STATUS_BAD_SCENARIO, "%s", sentence);
+    }
+}
+
+bool act_open_scenario(explorer_state *st, const char *name)
+{
+    assert(st != NULL && name != NULL);
+    scenario s;
+    session fresh;
+    fault f = {0};
+    status code = scenario_open(&s, name, keep_first_fault, &f);
+    if (code == STATUS_OK) {
+        s.parameters.code_allowed = consent_needed(&s) && consent_remembered(&s);
+        code = session_open(&fresh, &s, st->session.patience, &f);
+    }
+    if (code != STATUS_OK) {
+        return act_worked(st, code, &f);
+    }
+
+    // from here on nothing fails: the new session takes the old one's place
+    state_take_session(st, &fresh);
+    st->playback.playing = true;
+    return act_tell_failed_run(st) ||
+           act_tell(st, "%s", st->session.base.title ? st->session.base.title : "");
+}
+
+// The list of scenarios with the present one selected.
+static void open_list(explorer_state *st)
+{
+    scenario_menu *menu = &st->scenarios;
+    int at = scenario_menu_find(menu, st->session.base.name);
+    st->page.panel = PANEL_SCENARIOS;
+    menu->selected = at < 0 ? 0 : at;
+    menu->first = -1;
+    menu->filter[0] = '\0';
+    scenario_menu_read_titles(menu);
+}
+
+bool act_open_scenario_by(explorer_state *st, const char *argument)
+{
+    const scenario_menu *menu = &st->scenarios;
+    if (argument[0] == '\0') {
+        open_list(st);
+        return true;
+    }
+
+    // the neighbour in the list, or one by name
+    bool next = strcmp(argument, "+1") == 0;
+    if ((next || strcmp(argument, "-1") == 0) && menu->count > 0) {
+        int at = scenario_menu_find(menu, st->session.base.name);
+        at = (at + (next ? 1 : menu->count - 1) + menu->count) % menu->count;
+        return act_open_scenario(st, menu->names[at]);
+    }
+    return act_open_scenario(st, argument);
+}
+
+bool act_find_scenario(explorer_state *st, const char *argument)
+{
+    open_list(st);
+    snprintf(st->scenarios.filter, sizeof st->scenarios.filter, "%s", argument);
+    st->scenarios.filtering = true;
+    return true;
+}
+
+bool act_tell_failed_run(explorer_state *st)
+{
+    assert(st != NULL);
+    const summary *m = &st->session.run.summary;
+    const control_parameters *c = &st->session.effective.parameters.control;
+    if (m->status == STATUS_NOT_ALLOWED) {
+        const bool program = c->law == LAW_PROCESS;
+        return act_warn(st,
+                        "y lets it %s '%.200s', which can do whatever you can; all else "
+                        "works without (:allow later)",
+                        program ? "start" : "load", program ? c->command : c->plugin);
+    }
+    return (m->status != STATUS_OK && act_warn(st, "the run stops: %s", m->message)) ||
+           (m->inaccurate && act_warn(st, "the run is inaccurate: %s", m->message));
+}
+
+bool act_need_whole_run(explorer_state *st)
+{
+    assert(st != NULL);
+    const session *s = &st->session;
+    if (s->computing == NULL) {
+        return true;
+    }
+    return act_refuse(st, "the run is at %.3g of %g s: wait for its end, or stop it with Esc",
+                      session_end(s), s->effective.parameters.run.duration);
+}
+
+bool act_stop(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    session *s = &st->session;
+    if (s->computing == NULL) {
+        return act_refuse(st, "nothing is being computed");
+    }
+    if (!session_stop(s)) {
+        return true;
+    }
+    return act_tell(st, "stopped at %.4g s: Space at its end goes on, u takes the last change back",
+                    session_end(s));
+}
+
+bool act_allow(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    session *s = &st->session;
+    fault f = {0};
+    bool kept;
+    if (s->run.summary.status != STATUS_NOT_ALLOWED) {
+        return act_refuse(st, "the run asks for no permission");
+    }
+
+    // a visit's changes are the user's own: what is remembered is the scenario as it was opened
+    if (!act_worked(st, session_allow_code(s, &f), &f)) {
+        return false;
+    }
+    const status code = consent_remember(&s->base, &kept, &f);
+    st->playback.playing = true;
+    if (act_tell_failed_run(st)) {
+        return true;
+    }
+    return act_worked(st, code, &f) &&
+           act_tell(st, kept ? "allowed, and remembered for just this scenario and program"
+                             : "allowed for this visit");
+}
+
+void act_tell_replay(explorer_state *st)
+{
+    assert(st != NULL);
+    const process_replay again = session_take_replay(&st->session);
+    const message_line before = st->message;
+    if (again.restarted) {
+        act_tell(st,
+                 "%.600s%sthe program was started anew and went through its %d samples up to "
+                 "%.4g s once more",
+                 before.text, before.text[0] ? "; " : "", again.samples, again.time);
+        st->message.warning = before.text[0] != '\0' && before.warning;
+    }
+}
+
+// --- lessons ----------------------------------------------------------------------------------
+
+// The present step; NULL without a lesson.
+static const lesson_step *present_step(const explorer_state *st)
+{
+    const lesson *l = &st->session.base.lesson;
+    return st->lesson.on && st->lesson.step < l->step_count ? &l->steps[st->lesson.step] : NULL;
+}
+
+// The scenario of a lesson's name: the full name, or an ending that only one lesson has.
+static const char *lesson_named(explorer_state *st, const char *name)
+{
+    const scenario_menu *menu = &st->scenarios;
+    const char *found = NULL;
+    scenario_menu_read_titles(&st->scenarios);
+    for (int i = 0; i < menu->count; i++) {
+        const char *slash = strrchr(menu->names[i], '/');
+        const char *leaf = slash != NULL ? slash + 1 : menu->names[i];
+        if (scenario_menu_is_lesson(menu, i) &&
+            (strcmp(menu->names[i], name) == 0 || strcmp(leaf, name) == 0)) {
+            found = menu->names[i];
+        }
+    }
+    return found;
+}
+
+bool act_open_lesson(explorer_state *st, const char *argument)
+{
+    // without a name the list of them
+    if (argument[0] == '\0') {
+        act_find_scenario(st, "lesson");
+        st->scenarios.filtering = false;
+        return true;
+    }
+
+    // the word that ends one
+    if (strcmp(argument, "off") == 0) {
+        st->lesson.on = false;
+        return true;
+    }
+
+    // its scenario brings the lesson along
+    const char *name = lesson_named(st, argument);
+    if (name == NULL) {
+        return act_refuse(st, "there is no lesson '%.60s' (:lesson lists them)", argument);
+    }
+    return act_open_scenario(st, name) && act_hush(st);
+}
+
+void act_follow_lesson(explorer_state *st)
+{
+    assert(st != NULL);
+    const lesson_step *step = present_step(st);
+    st->lesson.passed =
+        st->lesson.passed || (step != NULL && step->check != LESSON_READ &&
+                              lesson_step_is_done(step, &st->lesson, &st->session, &st->pinned));
+}
+
+bool act_answer(explorer_state *st, const char *argument)
+{
+    const lesson_step *step = present_step(st);
+    if (step == NULL) {
+        return act_refuse(st, "there is no lesson here (:lesson lists them)");
+    }
+    if (step->check != LESSON_NUMBER && step->check != LESSON_CHOICE) {
+        return act_refuse(st, "this step wants no answer: do what it says");
+    }
+    if (argument[0] == '\0') {
+        prompt_open(&st->prompt, "answer ");
+        return act_tell(st, "%s",
+                        step->check == LESSON_CHOICE ? "the number of an answer" : "a number");
+    }
+    double value;
+    if (!act_read_number(st, argument, &value)) {
+        return false;
+    }
+
+    // a wrong one may be followed by another
+    st->lesson.answered = true;
+    st->lesson.answer = value;
+    act_follow_lesson(st);
+    return st->lesson.passed ? act_hush(st) : act_warn(st, "not %g. %s", value, step->hint);
+}
+
+bool act_go_on(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    const lesson *l = &st->session.base.lesson;
+    const lesson_step *step = present_step(st);
+    if (step == NULL) {
+        return act_refuse(st, "there is no lesson here (:lesson lists them)");
+    }
+    act_follow_lesson(st);
+    if (step->check != LESSON_READ && !st->lesson.passed) {
+        return act_warn(st, "not yet. %s", step->hint);
+    }
+
+    // after the last one the lab is as it always is
+    if (st->lesson.step + 1 == l->step_count) {
+        st->lesson.on = false;
+        return act_tell(st, "that was the lesson '%s'; :lesson lists the others",
+                        st->session.base.title);
+    }
+    st->lesson = (lesson_progress){.on = true, .step = st->lesson.step + 1};
+    return act_hush(st);
+}

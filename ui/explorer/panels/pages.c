@@ -1,0 +1,323 @@
+// The pages that are read: help, the scenario, the comparison of two runs.
+#include "ui/explorer/panels/panel.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "ui/explorer/state/command_list.h"
+#include "ui/terminal/screen.h"
+
+// --- the text of the help ---------------------------------------------------------------------
+
+static const char first_visit[] =
+    "A first visit: o lists the scenarios. Watch the arm bounce, Space stops it. I goes back to "
+    "just "
+    "before it touched, PgUp further. b keeps this run, Enter types another voltage from here on, "
+    "Space plays on beside the old run, c compares their peaks, s saves a figure of both.";
+static const char everywhere[] = "Esc goes back one level. : takes a command, Tab completes it, "
+                                 "the beginning of a name will do.";
+static const char mouse[] =
+    "Mouse: click or drag in the curves to move the cursor, the wheel zooms there, Shift-wheel "
+    "pans. Drag the time axis or an axis of values to move it, turn the wheel on it too. Click an "
+    "event, a parameter or a scenario (once more opens it); drag a slider and let go. Shift-drag "
+    "selects text in most terminals.";
+
+// A page that is being written.
+typedef struct page {
+    help_line *lines;
+    int count, most, width;
+    int column; // where meanings begin, behind the keys
+} page;
+
+static help_line *new_line(page *p)
+{
+    static help_line beyond;
+    help_line *line = p->count < p->most ? &p->lines[p->count++] : &beyond;
+    *line = (help_line){0};
+    return line;
+}
+
+// A text in as many lines as it takes, from a column on; the first line may be begun already.
+static void add_text(page *p, int column, const char *text, help_line *begun)
+{
+    text_line parts[16];
+    int room = p->width - column;
+    int count = text_wrap(text, room < 1 ? 1 : room, parts, 16, NULL);
+
+    // the first part may go on in the begun line, the others have lines of their own
+    for (int i = 0; i < count; i++) {
+        help_line *line = i == 0 && begun != NULL ? begun : new_line(p);
+        size_t used = strlen(line->text);
+        int blanks = column > (int)used ? column - (int)used : 0;
+        int bytes = parts[i].bytes < LINE_TEXT / 2 ? parts[i].bytes : LINE_TEXT / 2;
+        if (used < LINE_TEXT / 2) {
+            snprintf(line->text + used, LINE_TEXT - used, "%*s%.*s", blanks, "", bytes,
+                     parts[i].start);
+        }
+    }
+}
+
+static void add_heading(page *p, const char *title)
+{
+    if (p->count > 0) {
+        new_line(p);
+    }
+    help_line *line = new_line(p);
+    snprintf(line->text, sizeof line->text, "%s", title);
+    line->heading = true;
+}
+
+// Keys in a column of their own, then what they do; many keys take a line for themselves.
+static void add_entry(page *p, const char *keys, const char *text)
+{
+    help_line *line = new_line(p);
+    snprintf(line->text, sizeof line->text, "%s", keys);
+    line->keys = (int)strlen(keys);
+    add_text(p, p->column, text, line->keys + 1 < p->column ? line : NULL);
+}
+
+// What the commands do, in groups, with the keys that carry each out.
+static void add_commands(page *p, const key_bindings *b)
+{
+    // wide enough: keys, call and meaning are three columns; else the call goes before the meaning
+    bool wide = p->width >= 96;
+
+    // a group's heading before its first command
+    for (int i = 0; i < explorer_command_count; i++) {
+        const explorer_command *c = &explorer_command_table[i];
+        char keys[64], call[64], text[LINE_TEXT];
+        if (c->group[0] != '\0') {
+            add_heading(p, c->group);
+        }
+        key_names_of(b, c->name, keys, sizeof keys);
+        snprintf(call, sizeof call, ":%s%s%s", c->name, c->argument[0] ? " " : "", c->argument);
+        snprintf(text, sizeof text, wide ? "%-32s %s" : "%s  %s", call, c->help);
+        add_entry(p, keys, text);
+    }
+}
+
+static void add_user_keys(page *p, const key_bindings *b)
+{
+    for (int i = 0; i < b->count; i++) {
+        const user_key *own = &b->own[i];
+        const char *before = key_built_in_line(own->key);
+        char key[KEY_NAME], text[2 * LINE_TEXT + 32];
+
+        // no heading without a key below it
+        if (i == 0) {
+            add_heading(p, "Keys of your own");
+        }
+
+        // what the key does now, and what it did before
+        key_name(own->key, key, sizeof key);
+        snprintf(text, sizeof text, "%s%s%s%s", own->line[0] ? own->line : "nothing",
+                 before ? " (the lab's: " : "", before ? before : "", before ? ")" : "");
+        add_entry(p, key, text);
+    }
+}
+
+int help_write(const key_bindings *b, int width, help_line *lines, int most)
+{
+    assert(b != NULL && lines != NULL && most > 0);
+    page p = {.lines = lines, .most = most, .width = width};
+    p.column = width >= 96 ? 26 : width >= 60 ? 20 : 12;
+    add_text(&p, 0, first_visit, NULL);
+    new_line(&p);
+    add_text(&p, 0, everywhere, NULL);
+    add_commands(&p, b);
+    add_user_keys(&p, b);
+    new_line(&p);
+    add_text(&p, 0, mouse, NULL);
+    return p.count;
+}
+
+// --- help -------------------------------------------------------------------------------------
+// The help page.
+
+// Keeps the lines that pass a filter; returns how many.
+static int keep_matching(help_line *lines, int count, const char *filter)
+{
+    int kept = 0;
+    for (int i = 0; i < count && filter[0] != '\0'; i++) {
+        if (lines[i].text[0] != '\0' && filter_passes(filter, lines[i].text)) {
+            lines[kept++] = lines[i];
+        }
+    }
+    return filter[0] != '\0' ? kept : count;
+}
+
+static void draw_help(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    enum { MOST = 500 };
+    static help_line lines[MOST];
+    const char *filter = st->filters.text[PANEL_HELP];
+
+    // as wide as it may be, then as high as its lines need
+    area a = page_area(body, 114, body.height);
+    int count = help_write(&st->keys, a.width - 4, lines, MOST);
+    count = keep_matching(lines, count, filter);
+    a = page_area(body, 114, count + 2);
+    int shown = a.height - 2, last = count > shown ? count - shown : 0;
+    int scroll = layout_keep_scroll(lay, PANEL_HELP, last);
+    lay->page_lines = shown > 1 ? shown - 1 : 1;
+    char title[LINE_TEXT];
+    snprintf(title, sizeof title,
+             last == 0      ? "keys and commands (/ filters, Esc closes)"
+             : a.width < 60 ? "%d of %d lines (Esc closes)"
+                            : "keys and commands, %d of %d lines (/ filters, Esc closes)",
+             scroll + shown, count);
+    if (filter[0] != '\0') {
+        snprintf(title, sizeof title, "keys and commands /%.200s", filter);
+    }
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
+    layout_add_hit(lay, (hit_area){.panel = PANEL_HELP, .area = a});
+    for (int i = 0; i < shown && scroll + i < count; i++) {
+        const help_line *line = &lines[scroll + i];
+        int x = a.x + 2, y = a.y + 1 + i, room = a.width - 4;
+        screen_text(s, x, y, room, line->heading ? INK_EVENT : INK_TEXT, line->text);
+        screen_tint(s, x, y, line->keys < room ? line->keys : room, 1, INK_TITLE);
+    }
+}
+
+const panel help_panel = {.name = "help", .draw = draw_help, .point = page_point, .key = page_key};
+
+// --- the scenario -----------------------------------------------------------------------------
+// The page that says what the scenario is about.
+
+enum { INFO_LINES = 48, INFO_WIDTH = 84 };
+
+// The title, the description and the script in lines; returns how many.
+static int write_lines(const explorer_state *st, int width, char lines[INFO_LINES][LINE_TEXT])
+{
+    const scenario *base = &st->session.base;
+    const char *parts[] = {base->title, base->description};
+    int count = 0;
+    for (int k = 0; k < 2; k++) {
+        text_line wrapped[INFO_LINES / 2];
+        const char *text = parts[k] != NULL ? parts[k] : "";
+        const int found = text_wrap(text, width, wrapped, INFO_LINES / 2, NULL);
+        for (int i = 0; i < found && count < INFO_LINES; i++) {
+            snprintf(lines[count++], LINE_TEXT, "%.*s", wrapped[i].bytes, wrapped[i].start);
+        }
+        if (found > 0 && count < INFO_LINES) {
+            lines[count++][0] = '\0';
+        }
+    }
+
+    // what its script does
+    for (int i = 0; i < base->action_count && count < INFO_LINES; i++) {
+        const action *a = &base->actions[i];
+        char value[PARAMETER_TEXT_SIZE];
+        if (a->kind == ACTION_PUSH) {
+            snprintf(lines[count++], LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
+        } else {
+            action_format_value(a, value, sizeof value);
+            snprintf(lines[count++], LINE_TEXT, "%9.5f s  %s = %s", a->time,
+                     parameter_table[a->parameter].path, value);
+        }
+    }
+    while (count > 0 && lines[count - 1][0] == '\0') {
+        count--;
+    }
+    return count;
+}
+
+static void draw_info(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    static char lines[INFO_LINES][LINE_TEXT];
+    area a = page_area(body, INFO_WIDTH, body.height);
+    const int count = write_lines(st, a.width - 4, lines);
+
+    // as high as the text, or scrolled
+    a = page_area(body, INFO_WIDTH, count + 2);
+    const int shown = a.height - 2, beyond = count - shown;
+    const int scroll = layout_keep_scroll(lay, PANEL_INFO, beyond > 0 ? beyond : 0);
+
+    // frame and lines
+    char title[LINE_TEXT];
+    snprintf(title, sizeof title, "%.180s (Esc closes)", st->session.base.name);
+    lay->page_lines = shown > 1 ? shown - 1 : 1;
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
+    layout_add_hit(lay, (hit_area){.panel = PANEL_INFO, .area = a});
+    for (int i = 0; i < shown && scroll + i < count; i++) {
+        screen_text(s, a.x + 2, a.y + 1 + i, a.width - 4, i == 0 ? INK_TITLE : INK_TEXT,
+                    lines[scroll + i]);
+    }
+}
+
+const panel info_panel = {.name = "info", .draw = draw_info, .point = page_point, .key = page_key};
+
+// --- the comparison ---------------------------------------------------------------------------
+// The page that compares the present run with the kept one in numbers.
+
+// A quantity of the comparison as a name and as columns; returns whether it means anything in
+// either run.
+static bool compare_quantity(const session *e, int index, int width, char *columns, size_t size,
+                             bool *differs)
+{
+    double value = summary_value(&e->run.summary, index), other = (double)NAN;
+    char one[32], two[32] = "", change[32] = "";
+    draw_number(one, sizeof one, value);
+
+    // a single run has no change
+    if (e->has_other) {
+        other = summary_value(&e->other.summary, index);
+        draw_number(two, sizeof two, other);
+        draw_number(change, sizeof change, value - other);
+    }
+
+    // two runs differ by more than rounding
+    *differs = e->has_other && !(isnan(value) && isnan(other)) &&
+               !(fabs(value - other) <= 1e-6 * fmax(fabs(value), fabs(other)));
+    snprintf(columns, size, "%*s%*s%*s", width, one, width, two, width, change);
+    return !summary_table[index].timing && !(isnan(value) && isnan(other));
+}
+
+static void draw_comparison(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    enum { NAMES = 28, WIDE = 12, NARROW = 11 };
+    const session *e = &st->session;
+    char columns[128];
+    bool differs;
+    int count = 0, line = 0;
+
+    // what means anything in either run
+    for (int i = 0; i < summary_count; i++) {
+        count += compare_quantity(e, i, WIDE, columns, sizeof columns, &differs);
+    }
+
+    // a narrow screen has the name and the numbers below each other
+    int rows = s->width - 6 < NAMES + 3 * WIDE ? 2 : 1, names = rows == 1 ? NAMES : 0;
+    int width = rows == 1 ? WIDE : NARROW;
+    area a = page_area(body, names + 3 * width + 4, rows * count + 3);
+    int room = a.width - 4, shown = a.height - 3;
+    int beyond = rows * count - shown;
+    int scroll = layout_keep_scroll(lay, PANEL_COMPARISON, beyond > 0 ? beyond : 0);
+    lay->page_lines = shown > 1 ? shown - 1 : 1;
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
+                 e->has_other ? "this run beside the old one (Esc closes)"
+                              : "this run (b branches, Esc closes)");
+    layout_add_hit(lay, (hit_area){.panel = PANEL_COMPARISON, .area = a});
+    screen_print(s, a.x + 2 + names, a.y + 1, room - names, INK_DIM, "%*s%*s%*s", width, "this run",
+                 width, e->has_other ? "old run" : "", width, e->has_other ? "change" : "");
+
+    // the lines that it is scrolled to
+    for (int i = 0; i < summary_count; i++) {
+        if (!compare_quantity(e, i, width, columns, sizeof columns, &differs)) {
+            continue;
+        }
+        ink colour = differs ? INK_WARNING : INK_TEXT;
+        int y = rows * line++ - scroll, below = y + rows - 1;
+        if (y >= 0 && y < shown) {
+            screen_text(s, a.x + 2, a.y + 2 + y, room, colour, summary_table[i].key);
+        }
+        if (below >= 0 && below < shown) {
+            screen_text(s, a.x + 2 + names, a.y + 2 + below, room - names, colour, columns);
+        }
+    }
+}
+
+const panel comparison_panel = {
+    .name = "comparison", .draw = draw_comparison, .point = page_point, .key = page_key};

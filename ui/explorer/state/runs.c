@@ -1,0 +1,373 @@
+#include "ui/explorer/state/runs.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/instant.h"
+#include "src/base/loss.h"
+#include "src/run/resume.h"
+#include "ui/explorer/state/parameter_list.h"
+
+// --- pinned runs ------------------------------------------------------------------------------
+
+static bool same_input(const session_input *a, const session_input *b)
+{
+    return a->kind == b->kind && a->parameter == b->parameter && a->value == b->value &&
+           (a->kind == SESSION_INPUT_START || a->time == b->time) && strcmp(a->text, b->text) == 0;
+}
+
+static bool has_input(const session_input *inputs, int count, const session_input *wanted)
+{
+    for (int i = 0; i < count; i++) {
+        if (same_input(&inputs[i], wanted)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool run_list_is_present(const pinned_run *p, const session *s)
+{
+    assert(p != NULL && s != NULL);
+    bool same = p->input_count == s->input_count;
+    for (int i = 0; same && i < p->input_count; i++) {
+        same = same_input(&p->inputs[i], &s->inputs[i]);
+    }
+    return same;
+}
+
+// A change as a line of text: what it gives what, and from when on.
+static void run_list_input_text(const session_input *in, char *text, size_t size)
+{
+    assert(in != NULL && text != NULL);
+    if (in->kind == SESSION_INPUT_PUSH) {
+        snprintf(text, size, "push %g at %.4g s", in->value, in->time);
+        return;
+    }
+    const char *name = strchr(parameter_table[in->parameter].path, '.') + 1;
+    if (in->kind == SESSION_INPUT_TIMED) {
+        snprintf(text, size, "%s %s from %.4g s", name, in->text, in->time);
+    } else {
+        snprintf(text, size, "%s %s", name, in->text);
+    }
+}
+
+// Appends the changes of one list that another one does not have.
+static void append_others(const session_input *of, int count, const session_input *other,
+                          int other_count, char *text, size_t size)
+{
+    bool first = true;
+    for (int i = 0; i < count; i++) {
+        char one[SESSION_INPUT_TEXT + 80];
+        const size_t used = strlen(text);
+        if (!has_input(other, other_count, &of[i]) && used < size) {
+            run_list_input_text(&of[i], one, sizeof one);
+            snprintf(text + used, size - used, "%s%s", first ? "" : ", ", one);
+            first = false;
+        }
+    }
+}
+
+void run_list_differences(const pinned_run *p, const session *s, char *text, size_t size)
+{
+    assert(p != NULL && s != NULL && text != NULL && size > 0);
+    char here[256] = "";
+    text[0] = '\0';
+    append_others(p->inputs, p->input_count, s->inputs, s->input_count, text, size);
+    append_others(s->inputs, s->input_count, p->inputs, p->input_count, here, sizeof here);
+    const size_t used = strlen(text);
+    if (here[0] != '\0' && used < size) {
+        snprintf(text + used, size - used, "%s(now: %s)", used > 0 ? " " : "", here);
+    } else if (used == 0) {
+        snprintf(text, size, "the same");
+    }
+}
+
+// A name for the present run that no other of the list has.
+static void propose_name(const run_list *list, const session *s, char name[RUN_NAME])
+{
+    char text[SESSION_INPUT_TEXT + 80] = "as opened";
+
+    // the last change describes best what is new
+    if (s->input_count > 0) {
+        run_list_input_text(&s->inputs[s->input_count - 1], text, sizeof text);
+    }
+
+    // a number follows where that name is taken
+    snprintf(name, RUN_NAME, "%s", text);
+    for (int n = 2; n < 100; n++) {
+        bool taken = false;
+        for (int i = 0; i < list->count; i++) {
+            taken = taken || strcmp(list->runs[i].name, name) == 0;
+        }
+        if (!taken) {
+            return;
+        }
+        snprintf(name, RUN_NAME, "%s (%d)", text, n);
+    }
+}
+
+status run_list_pin(run_list *list, const session *s, const char *name, fault *f)
+{
+    assert(list != NULL && s != NULL && name != NULL);
+    pinned_run p = {.id = list->pinned + 1};
+
+    // one of the same changes only becomes the baseline
+    for (int i = 0; i < list->count; i++) {
+        if (run_list_is_present(&list->runs[i], s)) {
+            list->baseline = list->selected = i;
+            list->runs[i].hidden = false;
+            return STATUS_OK;
+        }
+    }
+    if (list->count == PINNED_RUNS) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%d runs are pinned already: R lists them, d there drops one",
+                         PINNED_RUNS);
+    }
+
+    // the rows are shared, the changes are copied
+    if (name[0] != '\0') {
+        snprintf(p.name, sizeof p.name, "%s", name);
+    } else {
+        propose_name(list, s, p.name);
+    }
+    p.input_count = s->input_count;
+    p.inputs = calloc((size_t)s->input_count + 1, sizeof *p.inputs);
+    if (p.inputs == NULL || run_share(&s->run, s->run.trace.row_count, &p.run) != STATUS_OK) {
+        free(p.inputs);
+        return fault_no_memory(f);
+    }
+    if (s->input_count > 0) {
+        memcpy(p.inputs, s->inputs, (size_t)s->input_count * sizeof *p.inputs);
+    }
+    list->pinned++;
+    list->baseline = list->selected = list->count;
+    list->runs[list->count++] = p;
+    return STATUS_OK;
+}
+
+void run_list_drop(run_list *list, int index)
+{
+    assert(list != NULL && index >= 0 && index < list->count);
+    run_finish(&list->runs[index].run);
+    free(list->runs[index].inputs);
+    memmove(&list->runs[index], &list->runs[index + 1],
+            (size_t)(list->count - index - 1) * sizeof list->runs[0]);
+    list->count--;
+
+    // without the baseline the last one takes its place
+    if (list->baseline == index) {
+        list->baseline = list->count - 1;
+    } else if (list->baseline > index) {
+        list->baseline--;
+    }
+    list->selected = list->selected >= list->count ? list->count - 1 : list->selected;
+    list->selected = list->selected < 0 ? 0 : list->selected;
+}
+
+void run_list_clear(run_list *list)
+{
+    assert(list != NULL);
+    while (list->count > 0) {
+        run_list_drop(list, list->count - 1);
+    }
+    list->baseline = -1;
+}
+
+// --- a sweep ----------------------------------------------------------------------------------
+
+bool lab_sweep_is_on(const lab_sweep *sweep)
+{
+    assert(sweep != NULL);
+    return sweep->axis.text != NULL;
+}
+
+bool lab_sweep_is_done(const lab_sweep *sweep)
+{
+    return !lab_sweep_is_on(sweep) || (size_t)sweep->count == sweep->axis.count;
+}
+
+void lab_sweep_end(lab_sweep *sweep)
+{
+    assert(sweep != NULL);
+    for (int i = 0; i < sweep->count; i++) {
+        run_finish(&sweep->runs[i].run);
+    }
+    sweep_axis_finish(&sweep->axis);
+    sweep->axis = (sweep_axis){0};
+    sweep->count = sweep->selected = 0;
+}
+
+status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
+{
+    assert(sweep != NULL && definition != NULL);
+    char text[256];
+    sweep_axis axis = {0};
+    snprintf(text, sizeof text, "%s", definition);
+    char *values = strchr(text, '=');
+    if (values == NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as "
+                         "control.rate=50:400:8");
+    }
+
+    // the parameter, then its values as --vary has them
+    *values++ = '\0';
+    axis.parameter = parameter_of_name(text);
+    if (axis.parameter == -2) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "several parameters begin with '%s'", text);
+    }
+    if (axis.parameter < 0) {
+        parameter_look_up(text, f);
+        return STATUS_BAD_ARGUMENT;
+    }
+    status code = sweep_axis_parse(&axis, values, false, f);
+    if (code == STATUS_OK && axis.count > SWEPT_RUNS) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%zu runs are too many here, at most %d: 'impactlab sweep' takes any "
+                         "number",
+                         axis.count, SWEPT_RUNS);
+    }
+    if (code != STATUS_OK) {
+        sweep_axis_finish(&axis);
+        return code;
+    }
+
+    // it takes the place of the one before
+    lab_sweep_end(sweep);
+    sweep->axis = axis;
+    return STATUS_OK;
+}
+
+status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
+{
+    assert(sweep != NULL && base != NULL && !lab_sweep_is_done(sweep));
+    swept_run *next = &sweep->runs[sweep->count];
+    *next = (swept_run){.value = sweep->axis.values[sweep->count], .id = ++sweep->computed};
+
+    // everything but the parameters is the present run's
+    scenario s = *base;
+    status code = parameter_set_number(&s.parameters, sweep->axis.parameter, next->value, f);
+    if (code == STATUS_OK) {
+        code = parameters_resolve(&s.parameters, f);
+    }
+    if (code == STATUS_OK) {
+        run_scenario(&s, true, &next->run);
+        loss_unless(next->run.summary.status != STATUS_NO_MEMORY);
+        code = next->run.trace.row_count > 0 ? STATUS_OK : summary_fault(&next->run.summary, f);
+    }
+    if (code != STATUS_OK) {
+        run_finish(&next->run);
+        lab_sweep_end(sweep);
+        return code;
+    }
+    sweep->count++;
+    return STATUS_OK;
+}
+
+// --- the difference ---------------------------------------------------------------------------
+
+void difference_finish(run_difference *d)
+{
+    assert(d != NULL);
+    trace_finish(&d->trace);
+    *d = (run_difference){.built = d->built};
+}
+
+// The other run at an instant, between its rows. Of two rows at one instant, on both sides of an
+// event, the first one is meant if `before`.
+static sample sample_at(const trace *t, double time, bool before)
+{
+    size_t r = trace_row_at(t, time);
+    if (before && r > 0 && same_instant(t->rows[r].time, time) &&
+        same_instant(t->rows[r - 1].time, time)) {
+        r--;
+    }
+    const sample *a = &t->rows[r];
+    if (same_instant(a->time, time) || r + 1 >= t->row_count) {
+        return *a;
+    }
+
+    // straight from row to row
+    sample value = *a;
+    const sample *b = &t->rows[r + 1];
+    const double share = b->time > a->time ? (time - a->time) / (b->time - a->time) : 0;
+    for (int i = 0; i < SIGNALS_AT_MOST; i++) {
+        double from, to;
+        memcpy(&from, (const char *)a + (size_t)i * sizeof from, sizeof from);
+        memcpy(&to, (const char *)b + (size_t)i * sizeof to, sizeof to);
+        from += share * (to - from);
+        memcpy((char *)&value + (size_t)i * sizeof from, &from, sizeof from);
+    }
+    return value;
+}
+
+// Appends the difference of one row.
+static status add_row(run_difference *d, const trace *run, const trace *other, size_t row)
+{
+    const double none[1] = {0};
+
+    // of two rows at one instant the first belongs to what was before
+    const sample *now = &run->rows[row];
+    const bool before =
+        row + 1 < run->row_count && same_instant(run->rows[row + 1].time, now->time);
+    const sample beside = sample_at(other, now->time, before);
+
+    // signal by signal: a sample is a row of numbers; states stay this run's own
+    sample difference = *now;
+    for (int i = 0; i < SIGNALS_AT_MOST; i++) {
+        if (signal_is_state(i)) {
+            continue;
+        }
+        const size_t at = (size_t)i * sizeof(double);
+        double a, b;
+        memcpy(&a, (const char *)now + at, sizeof a);
+        memcpy(&b, (const char *)&beside + at, sizeof b);
+        a -= b;
+        memcpy((char *)&difference + at, &a, sizeof a);
+    }
+
+    // the time is no difference
+    difference.time = now->time;
+    return trace_add_row(&d->trace, &difference, none, none);
+}
+
+void difference_update(run_difference *d, unsigned long run, const session *s)
+{
+    assert(d != NULL && s != NULL);
+    if (!d->on || !s->has_other) {
+        return;
+    }
+
+    // of another run everything is computed anew, of one that grew the rest
+    const trace *t = &s->run.trace;
+    if (d->run != run || d->rows > t->row_count || d->trace.row_array.size == 0) {
+        trace_finish(&d->trace);
+        trace_init(&d->trace, 1);
+        d->built++;
+        d->run = run;
+        d->rows = 0;
+    }
+    const double end = s->other.trace.rows[s->other.trace.row_count - 1].time;
+    for (; d->rows < t->row_count; d->rows++) {
+        // beyond the other run's end there is nothing to compare
+        if (t->rows[d->rows].time > end || add_row(d, t, &s->other.trace, d->rows) != STATUS_OK) {
+            break;
+        }
+    }
+}
+
+double difference_first_beyond(const run_difference *d, int signal, double tolerance)
+{
+    assert(d != NULL && signal >= 0 && signal < signal_count);
+    for (size_t r = 0; r < d->trace.row_count; r++) {
+        if (fabs(signal_value(&d->trace.rows[r], signal)) > tolerance) {
+            return d->trace.rows[r].time;
+        }
+    }
+    return -1;
+}

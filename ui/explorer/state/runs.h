@@ -1,0 +1,103 @@
+// The runs beside the present one: pinned ones, those of a sweep, the difference to the baseline.
+#pragma once
+
+#include "src/run/run.h"
+#include "src/session/session.h"
+#include "src/study/sweep_axis.h"
+#include "ui/explorer/state/command_list.h"
+
+// --- pinned runs ------------------------------------------------------------------------------
+// Stored with names and changes, and shown together with the present run.
+
+enum { PINNED_RUNS = LESSON_PINNED_RUNS, RUN_NAME = LINE_TEXT };
+
+typedef struct pinned_run {
+    char name[RUN_NAME];
+    run_result run;        // its rows are shared with the session's
+    session_input *inputs; // the changes from the scenario to this run
+    int input_count;
+    unsigned long id; // unique among all runs ever pinned in the list
+    bool hidden;
+} pinned_run;
+
+typedef struct run_list {
+    pinned_run runs[PINNED_RUNS];
+    int count;
+    int baseline;         // the run with which the present one is compared; -1 for none
+    int selected;         // index in the list
+    unsigned long pinned; // number of runs ever pinned
+} run_list;
+
+// Pins the present run of a session under the given name, or one that describes the last change,
+// and makes it the baseline. A run of the same changes is not pinned twice. STATUS_BAD_ARGUMENT if
+// the list is full, STATUS_NO_MEMORY.
+status run_list_pin(run_list *list, const session *s, const char *name, fault *f);
+
+// Removes a run from the list.
+void run_list_drop(run_list *list, int index);
+void run_list_clear(run_list *list);
+
+// Whether two runs have the same changes.
+bool run_list_is_present(const pinned_run *p, const session *s);
+
+// The difference between a run of the list and the present one as a line of text: changes that only
+// the former has, then, in brackets, those that only the latter has.
+void run_list_differences(const pinned_run *p, const session *s, char *text, size_t size);
+
+// --- a sweep ----------------------------------------------------------------------------------
+// The present run with several values of one parameter from the start, each as
+// a run of its own.
+
+enum { SWEPT_RUNS = 32 };
+
+typedef struct swept_run {
+    double value; // of the parameter
+    run_result run;
+    unsigned long id;
+} swept_run;
+
+typedef struct lab_sweep {
+    sweep_axis axis; // axis.text NULL: no sweep
+    swept_run runs[SWEPT_RUNS];
+    int count;              // computed so far
+    int selected;           // index of the selected one
+    int metric;             // index in summary_table
+    unsigned long computed; // number of runs ever computed
+} lab_sweep;
+
+// Whether there is a sweep, and whether it is complete.
+bool lab_sweep_is_on(const lab_sweep *sweep);
+bool lab_sweep_is_done(const lab_sweep *sweep);
+
+// Begins a sweep given as "PATH=a:b:n", "PATH=a:b:n:log" or "PATH=v1,v2,..."; nothing is computed
+// yet. On STATUS_BAD_ARGUMENT, with the reason in f, the previous sweep is kept.
+status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f);
+
+// Computes the next run of a sweep from the scenario of the present run. A value that cannot be run
+// ends the sweep, with the reason in f.
+status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f);
+
+void lab_sweep_end(lab_sweep *sweep);
+
+// --- the difference ---------------------------------------------------------------------------
+// Between the present run and the one kept beside it, row by row of the present one.
+// Contact, sticking and the controller's mode are those of the present run.
+
+typedef struct run_difference {
+    bool on;             // panes show it in the place of the runs
+    double tolerance;    // of the first signal of the pane in focus, 0 for none
+    trace trace;         // the differences; empty if there is none
+    unsigned long built; // counts the traces begun
+    unsigned long run;   // what it was computed from
+    size_t rows;         // of that
+} run_difference;
+
+// Brings the differences up to the rows there are, if they are wanted. `run` identifies the present
+// run and the one beside it.
+void difference_update(run_difference *d, unsigned long run, const session *s);
+
+// The first instant at which a signal differs by more than a tolerance [s]; negative if it never
+// does.
+double difference_first_beyond(const run_difference *d, int signal, double tolerance);
+
+void difference_finish(run_difference *d);
