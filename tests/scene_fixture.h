@@ -59,8 +59,8 @@ static inline bool is_there(scene_renderer which)
     return true;
 }
 
-static inline cairo_surface_t *picture(const recorded *r, scene_options options,
-                                       const double *times, int count)
+static inline cairo_surface_t *scene_picture_of(const recorded *r, scene_options options,
+                                                const double *times, int count)
 {
     scene *sc;
     fault f = {0};

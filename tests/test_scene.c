@@ -137,9 +137,9 @@ static void test_content(void **state)
     recorded r = record("corrected/first-impact");
     const scene_options cairo = {.renderer = RENDER_CAIRO, .plain = true};
     double before = 0.1, peak = 0.3634, pair[] = {0, 0.3634};
-    cairo_surface_t *free_arm = picture(&r, cairo, &before, 1);
-    cairo_surface_t *pushed = picture(&r, cairo, &peak, 1);
-    cairo_surface_t *both = picture(&r, cairo, pair, 2);
+    cairo_surface_t *free_arm = scene_picture_of(&r, cairo, &before, 1);
+    cairo_surface_t *pushed = scene_picture_of(&r, cairo, &peak, 1);
+    cairo_surface_t *both = scene_picture_of(&r, cairo, pair, 2);
     assert_in_range(count_pixels(free_arm, count_beam), 500, 8000);
     assert_in_range(count_pixels(pushed, count_beam), 500, 8000);
     assert_int_equal(count_pixels(free_arm, count_arrow), 0);
@@ -178,11 +178,11 @@ static void test_exaggerated(void **state)
     recorded r = record("corrected/first-impact");
     const double peak = 0.3634;
     scene_options o = {.renderer = RENDER_CAIRO, .plain = true, .camera = {.kind = CAMERA_TOP}};
-    cairo_surface_t *as_it_is = picture(&r, o, &peak, 1);
+    cairo_surface_t *as_it_is = scene_picture_of(&r, o, &peak, 1);
     o.exaggerate = 1;
-    cairo_surface_t *once = picture(&r, o, &peak, 1);
+    cairo_surface_t *once = scene_picture_of(&r, o, &peak, 1);
     o.exaggerate = 5;
-    cairo_surface_t *larger = picture(&r, o, &peak, 1);
+    cairo_surface_t *larger = scene_picture_of(&r, o, &peak, 1);
     assert_int_equal(count_different(as_it_is, once, 0), 0);
     check_below(300, count_different(as_it_is, larger, 20));
     check_close(count_pixels(larger, count_arrow), count_pixels(as_it_is, count_arrow), 12);
@@ -199,9 +199,9 @@ static void test_samples(void **state)
     recorded r = record("corrected/first-impact");
     const double peak = 0.3634;
     scene_options o = {.renderer = RENDER_CAIRO, .plain = true, .samples = SAMPLES_QUICK};
-    cairo_surface_t *quick = picture(&r, o, &peak, 1);
+    cairo_surface_t *quick = scene_picture_of(&r, o, &peak, 1);
     o.samples = SAMPLES_FINE;
-    cairo_surface_t *fine = picture(&r, o, &peak, 1);
+    cairo_surface_t *fine = scene_picture_of(&r, o, &peak, 1);
     check_below(count_different(quick, fine, 40), WIDTH * HEIGHT / 200);
     check_below(0, count_different(quick, fine, 4));
     cairo_surface_destroy(quick);
@@ -217,7 +217,7 @@ static void test_no_bands(void **state)
     recorded r = record("corrected/first-impact");
     const double start = 0;
     int smooth = 0, mixed = 0;
-    cairo_surface_t *s = picture(
+    cairo_surface_t *s = scene_picture_of(
         &r, (scene_options){.renderer = RENDER_CAIRO, .plain = true, .width = 640, .height = 360},
         &start, 1);
     for (int y = 0; y + 8 <= 360; y += 8) {
@@ -255,7 +255,8 @@ static void compare_golden(size_t index, scene_renderer renderer, const char *na
     recorded r = record(goldens[index].scenario);
     const scene_options options = {
         .camera = {.kind = goldens[index].camera}, .renderer = renderer, .plain = true};
-    cairo_surface_t *drawn = picture(&r, options, goldens[index].times, goldens[index].count);
+    cairo_surface_t *drawn =
+        scene_picture_of(&r, options, goldens[index].times, goldens[index].count);
     snprintf(path, sizeof path, "%s/%s", getenv("IMPACTLAB_GOLDENS"), goldens[index].file);
     if (getenv("IMPACTLAB_WRITE_GOLDENS") != NULL && renderer == RENDER_CAIRO) {
         assert_int_equal(cairo_surface_write_to_png(drawn, path), CAIRO_STATUS_SUCCESS);

@@ -54,7 +54,7 @@ artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *
 // Creates a folder unless it exists. STATUS_CANNOT_WRITE with the reason.
 status make_folder(const char *folder, fault *f);
 
-// ==== publications: the file, a file with its caption if the picture has none, and LaTeX for both
+// --- publications: the file, a file with its caption if the picture has none, and LaTeX for both
 
 // Writes a plotted figure according to the options: the picture at path, with `with_csv` a CSV of
 // its numbers, with a bare look a .txt with its caption, and the figure environment at o->latex.

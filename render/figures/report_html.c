@@ -5,8 +5,7 @@
 
 #include "render/figures/report_parts.h"
 #include "render/page/palette.h"
-#include "render/page/svg_compact.h"
-#include "render/page/svg_ids.h"
+#include "render/page/svg.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 #include "src/base/whole_file.h"

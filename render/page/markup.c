@@ -1,4 +1,4 @@
-#include "render/page/markup.h"
+#include "render/page/text.h"
 
 #include <assert.h>
 #include <math.h>

@@ -7,7 +7,6 @@
 
 #include "render/plot/trace_plot.h"
 #include "render/scene/film_file.h"
-#include "render/scene/film_frame.h"
 #include "src/base/version.h"
 #include "src/base/worker_signals.h"
 

@@ -1,4 +1,4 @@
-#include "render/scene/gl_offscreen.h"
+#include "render/scene/samples.h"
 
 #include <assert.h>
 #include <dlfcn.h>

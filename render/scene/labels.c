@@ -1,4 +1,4 @@
-#include "render/scene/labels.h"
+#include "render/scene/scene_parts.h"
 
 #include <assert.h>
 #include <math.h>

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/scene/gl_offscreen.h"
 #include "render/scene/samples.h"
 
 struct scene_painter {

@@ -2,7 +2,7 @@
 // our own if OpenGL is missing.
 #pragma once
 
-#include "render/scene/camera.h"
+#include "render/scene/geometry.h"
 #include "src/base/fault.h"
 
 // The requested renderer.

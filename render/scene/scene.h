@@ -6,7 +6,7 @@
 // more than the links do.
 #pragma once
 
-#include "render/scene/camera.h"
+#include "render/scene/geometry.h"
 #include "render/scene/painter.h"
 #include "src/run/run.h"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "render/scene/film_clock.h"
+#include "render/scene/film.h"
 
 #define NEW_SHARE 0.1  // of the last measurement in the mean
 #define APART     0.05 // of the run, between impacts that are slowed down each for itself

@@ -1,4 +1,4 @@
-// Makes the ids of an SVG independent of what was drawn before it.
+// SVG text: ids that do not depend on what was drawn before, and pictures in fewer bytes.
 #pragma once
 
 #include <glib.h>
@@ -17,3 +17,8 @@ char *svg_prefix_ids(const char *svg, const char *prefix);
 // to those. `known` has outline to id, both owned by it; new ones are added. Free the result with
 // g_free.
 char *svg_share_symbols(const char *svg, GHashTable *known);
+
+// The same picture in fewer bytes: lengths to a hundredth of a point (those of lines to a tenth),
+// colours as #rrggbb, without metadata and default attributes, and with successive lines of one
+// style in one path. Texts between tags stay as they are. Free the result with g_free.
+char *svg_compact(const char *svg);
