@@ -2,7 +2,7 @@
 //
 // A controller sees what the sensors give it and what it was told at the start, nothing else. It
 // keeps what it remembers in `memory`, which the rig allocates, clears and frees: no allocation in
-// `sample`, no variables of its own outside. docs/add-a-controller.md has a complete example.
+// `sample`, no variables of its own outside. docs/examples/soft_push.c is a complete one.
 #pragma once
 
 #include <stdbool.h>

@@ -5,7 +5,7 @@
 #   tests/bench/ranks.sh [BUILD-FOLDER [RUNS]]
 #
 # BUILD-FOLDER (build) holds impactlab and impactlab-mpi; RUNS (10000) are of four links, some
-# milliseconds each. Prints a table as in docs/sweeps.md. Nothing of the test suite needs this.
+# milliseconds each. Nothing of the test suite needs this.
 set -euo pipefail
 root=$(readlink -f -- "$(dirname -- "${BASH_SOURCE[0]}")/../..")
 build=$(readlink -f -- "${1:-$root/build}")

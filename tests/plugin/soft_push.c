@@ -1,6 +1,6 @@
 // A controller of one's own, complete: after contact the command rises slowly from a part of the
-// static one to all of it, with damping from the tachometer. docs/add-a-controller.md walks through
-// it.
+// static one to all of it, with damping from the tachometer. docs/howto/controller.md is
+// about such.
 #include <math.h>
 
 #include "src/rig/controller.h"

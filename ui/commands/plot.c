@@ -76,7 +76,7 @@ const command plot_command = {
     .summary = "Draw a figure from a recipe: runs, data and tables in panels",
     .help = "A recipe names runs with changed parameters, measured data and the databases of "
             "sweeps, and the\npanels that show them. A CSV of what is drawn stands beside the "
-            "picture. Examples are in\nscenarios/recipes, all keys in docs/figures.md.\n",
+            "picture. Examples are in\nscenarios/recipes, all keys in docs/reference/recipes.md.\n",
     .least = 1,
     .most = 1,
     .options = {&options, &quiet_options, &page_options},

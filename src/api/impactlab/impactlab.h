@@ -17,7 +17,13 @@
 // threads may use the library at once, each with handles of its own, and several may read one
 // handle. A handle that was not created is NULL; destroying NULL does nothing.
 //
-// What may change and what may not: docs/library.md, "What stays".
+// What stays: a name that is once in impactlab.map keeps its meaning, under the version node
+// IMPACTLAB_1 and the soname libimpactlab.so.1; new functions get a new node. Structures that the
+// library hands out may grow at their end. Those that the caller owns (impactlab_error,
+// impactlab_reading, impactlab_prediction, impactlab_event) do not change, and codes of a status
+// keep their numbers. Anything else is a new soname. The header of controllers has a version of its
+// own, CONTROLLER_INTERFACE. In the program's version the second number grows when results differ
+// beyond rounding, the third otherwise.
 #ifndef IMPACTLAB_IMPACTLAB_H
 #define IMPACTLAB_IMPACTLAB_H
 

@@ -1,9 +1,9 @@
 // A program in any language as a controller: control.law = process, control.command.
 //
 // The program is started by a shell and answers each line on its standard input by one line on its
-// standard output, both JSON objects, in lock step with simulated time (docs/library.md). No answer
-// is waited for longer than control.answer_time, nor after the run was asked to end, and no process
-// of the program's group outlives the rig.
+// standard output, both JSON objects, in lock step with simulated time (docs/howto/controller.md).
+// No answer is waited for longer than control.answer_time, nor after the run was asked to end, and
+// no process of the program's group outlives the rig.
 //
 // With a transcript of recorded answers, the program is started only at the first question that the
 // transcript does not hold, and all questions before it are repeated: the program must answer them

@@ -1,5 +1,5 @@
 // The lines that a controller in a program of its own is asked by and answers with: JSON objects,
-// as docs/library.md has them.
+// as docs/howto/controller.md has them.
 #pragma once
 
 #include <stddef.h>
