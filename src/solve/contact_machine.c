@@ -366,7 +366,10 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
         break;
     }
 
-    // what holds after each of them
+    // what holds after each of them; a gap of rounding is no force that pulls
+    if (!motion_wall_is_rigid(m)) {
+        m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0);
+    }
     report->holds = m->state[SLOT_CONTACT] != 0;
     check_invariants(a, m);
 }

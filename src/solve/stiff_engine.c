@@ -217,7 +217,7 @@ static double miss_of(const stiff_stride *s, const arm *a, const motion *m, watc
         value = end[SLOT_FRICTION] * state_velocities(m, s->end)[0];
         slope = end[SLOT_FRICTION] * state_accelerations(m, s->end)[0];
     } else if (w == WATCH_STICTION) {
-        value = a->motor.stiction - fabs(end[SLOT_FRICTION_TORQUE]);
+        value = a->motor.stiction - fabs(end[SLOT_FRICTION_TORQUE]) + s->holds_more;
         const glance far = function_at(&s->far_limit, 1);
         slope = (far.value < g.value ? far.slope : g.slope) / h;
     }

@@ -42,13 +42,18 @@ static void set_force(stiff_stride *s)
 }
 
 // Of an arm in contact with a wall that gives: its depth, and of Hunt and Crossley's law, for the
-// force itself, the factor k + c v of the power.
-static void watch_within(stiff_stride *s, const arm *a)
+// force itself, the factor k + c v of the power. Of Kelvin and Voigt's the force with its own slope
+// at the start, which decides whether the arm stays.
+static void watch_within(stiff_stride *s, const arm *a, const motion *m)
 {
     double law[RADAU_LANES];
     s->watched[WATCH_GAP] = s->gap;
     function_scale(&s->watched[WATCH_GAP], -1, 0);
     if (a->wall.law == WALL_KELVIN_VOIGT) {
+        const double grows = -a->wall.stiffness * m->state[SLOT_GAP_VELOCITY] -
+                             a->wall.damping * m->state[SLOT_GAP_ACCELERATION];
+        function_through_rising(&s->watched[WATCH_FORCE], s->kept + STIFF_FORCE,
+                                s->step.length * grows);
         return;
     }
     for (int i = 0; i < RADAU_LANES; i++) {
@@ -86,7 +91,7 @@ static void watch_wall(stiff_stride *s, const arm *a, const motion *m, contact_s
     set_gap(s, a, m);
     s->watched[WATCH_FORCE] = s->force;
     if (m->wall_gives && now.contact) {
-        watch_within(s, a);
+        watch_within(s, a, m);
     } else if (!now.contact) {
         stiff_function *distance = &s->watched[WATCH_GAP];
         *distance = s->gap;
@@ -137,9 +142,8 @@ static void watch_hub(stiff_stride *s, const arm *a, const motion *m, contact_st
     s->far_limit = *near;
     function_scale(near, sign, a->motor.stiction);
     function_scale(&s->far_limit, -sign, a->motor.stiction);
-    if (jumped && fabs(near->b[0]) <= EDGE_VALUE) {
-        near->b[0] = EDGE_VALUE; // what holds it may hold as much more
-    }
+    s->holds_more = jumped && fabs(near->b[0]) <= EDGE_VALUE ? EDGE_VALUE - near->b[0] : 0;
+    function_scale(near, 1, s->holds_more);
 }
 
 static void watch_current(stiff_stride *s, const arm *a, const motion *m)

@@ -168,5 +168,8 @@ void stiff_keep_stages(stiff_stride *stride)
     for (int k = 0; k < s->dof; k++) {
         memcpy(a + (size_t)RADAU_LANES * (size_t)k, s->stage[k].a, sizeof s->stage[k].a);
     }
+    if (s->dof == 1 && s->contact == STIFF_RIGID) { // what holds one link holds it to the last bit
+        memset(a, 0, RADAU_LANES * sizeof *a);
+    }
     kept[STIFF_LENGTH] = s->length;
 }
