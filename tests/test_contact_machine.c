@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "tests/arm_fixture.h"
+#include "tests/motion_advance.h"
 #include "tests/explicit_stepper.h"
 
 #include "src/solve/contact_machine.h"
@@ -164,7 +165,7 @@ static void a_push_parts_arm_and_face(void **state)
         motion_push(&r.arm, r.motion, 1e-3, &report);
         assert_true(report.holds && touches(&r));
         assert_int_equal(report.event, MOTION_REACHED);
-        assert_int_equal(motion_step(&r.arm, r.motion, 1e-3, 1e-3, &report), STATUS_OK);
+        assert_int_equal(motion_advance(&r.arm, r.motion, 1e-3, 1e-3, &report), STATUS_OK);
         const double depth = -r.motion->state[SLOT_GAP];
         check_below(0, depth);
 
@@ -380,7 +381,7 @@ static void a_motion_can_be_started_again(void **state)
 {
     (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.voltage=3"));
-    double first[64];
+    double first[256];
     const size_t size = (size_t)r.motion->size;
     assert_true(size <= sizeof first / sizeof first[0]);
     for (int i = 0; i < 2; i++) {

@@ -80,7 +80,7 @@ static void low_bounces_are_those_of_the_series(void **state)
     const bounces series = bounces_of(&p, &series_engine, 1e-4, 0.65, 1.6e-4);
     assert_int_equal(series.impacts, 7);
     for (int i = 1; i <= 4; i++) {
-        const bounces modes = bounces_of(&p, &modal_engine, 1e-4, 0.65, 1.6e-4 * i * i);
+        const bounces modes = bounces_of(&p, &stiff_engine, 1e-4, 0.65, 1.6e-4 * i * i);
         assert_int_equal(modes.impacts, series.impacts);
         check_relative(modes.slowest, series.slowest, 1e-6);
         check_relative(modes.peak, series.peak, 1e-6);
@@ -106,7 +106,7 @@ static void flights_lower_than_any_rounding_are_those_of_the_series(void **state
         p.method.rest_speed = 1e-7;
         const double velocity = 3.6, gap = 1e-4 * velocity, until = 1.1e-4;
         const bounces series = bounces_of(&p, &series_engine, gap, velocity, until);
-        const bounces modes = bounces_of(&p, &modal_engine, gap, velocity, until);
+        const bounces modes = bounces_of(&p, &stiff_engine, gap, velocity, until);
         assert_in_range(series.impacts, 10, 20);
         assert_int_equal(modes.impacts, series.impacts);
         check_relative(modes.slowest, series.slowest, 1e-4);
@@ -127,7 +127,7 @@ static void a_slow_arm_meets_its_wall_in_time(void **state)
     for (int i = 1; i <= 10; i++) {
         const double gap = 5e-11 * i, velocity = 1.25e-7;
         const bounces series = bounces_of(&p, &series_engine, gap, velocity, 5e-3);
-        const bounces modes = bounces_of(&p, &modal_engine, gap, velocity, 5e-3);
+        const bounces modes = bounces_of(&p, &stiff_engine, gap, velocity, 5e-3);
         assert_true(series.impacts > 0 && modes.impacts > 0);
         check_close(modes.first, series.first, 1e-6);
     }
@@ -145,7 +145,7 @@ static void hub_events(double share, double instant[3])
     p.motor.stiction *= share;
     arm a;
     arm_init(&a, &p);
-    motion *m = motion_create_by(&a, &p.method, &modal_engine);
+    motion *m = motion_create_by(&a, &p.method, &stiff_engine);
     assert_non_null(m);
     motion_start(&a, m, 0, 0);
 
@@ -197,7 +197,7 @@ static void small_arms_close_the_ledger(void **state)
         parameters p = fixture_parameters(arms[i]);
         p.wall.angle = 1e-7;
         const passage all =
-            passage_by(&p, &modal_engine, i == 0 ? 9.43312e-8 : 9.22576e-8, 1e-6, 0.1, 100);
+            passage_by(&p, &stiff_engine, i == 0 ? 9.43312e-8 : 9.22576e-8, 1e-6, 0.1, 100);
         assert_int_equal(all.impacts, 1);
         check_below(all.open, 1e-7);
     }

@@ -34,8 +34,9 @@ static motion *fading_motion(arm *a, const char *links, const char *method, cons
     return motion_create(a, &p.method);
 }
 
-// Without Coulomb friction only back EMF and damping end the motion, exponentially.
-static void an_arm_that_coasts_comes_to_exact_rest(void **state)
+// Without Coulomb friction only back EMF and damping end the motion, exponentially: exactly by the
+// series, to what its tolerance leaves by the stiff engine.
+static void an_arm_that_coasts_comes_to_rest(void **state)
 {
     (void)state;
     static const char *const links[] = {"arm.links=1", "arm.links=2"};
@@ -47,9 +48,10 @@ static void an_arm_that_coasts_comes_to_exact_rest(void **state)
         assert_true(fabs(state_velocities(m, m->state)[0]) > 1e-70);
         go(&a, m, 400);
         double turned = state_angles(m, m->state)[0];
+        const double left = m->engine == &stiff_engine ? 1e-18 : 0;
         for (int i = 0; i < m->dof; i++) {
-            check_close(state_velocities(m, m->state)[i], 0, 0);
-            check_close(state_accelerations(m, m->state)[i], 0, 0);
+            check_close(state_velocities(m, m->state)[i], 0, left);
+            check_close(state_accelerations(m, m->state)[i], 0, left);
         }
         go(&a, m, 500);
         check_close(state_angles(m, m->state)[0], turned, 0);
@@ -97,7 +99,7 @@ static void the_implicit_methods_keep_nothing_that_faded(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_arm_that_coasts_comes_to_exact_rest),
+        cmocka_unit_test(an_arm_that_coasts_comes_to_rest),
         cmocka_unit_test(a_beam_that_vibrated_is_exactly_straight),
         cmocka_unit_test(the_implicit_methods_keep_nothing_that_faded),
     };

@@ -94,7 +94,7 @@ static void events_within_a_stride_are_the_formulas(void **state)
         arm a;
         arm_init(&a, &p);
         motion *m = motion_create(&a, &p.method);
-        assert_ptr_equal(m->engine, &modal_engine);
+        assert_ptr_equal(m->engine, &stiff_engine);
         motion_destroy(m);
 
         // by the modes, and by the formula
@@ -127,7 +127,7 @@ static void bounces_end_where_no_engine_tells_them(void **state)
                  "wall.restitution=0.2997", "wall.angle=1.2349084692906555e-7",
                  "motor.voltage=5.7081e-6", "arm.k2=4.64501", "arm.k1=211.051", "arm.mass=0.12368",
                  "arm.hub_inertia=0.050495", "motor.stiction=0", "method.rest_speed=8.56e-10"));
-    const meetings modes = meetings_by(&p, &modal_engine, 1.20397e-7, 1.24542e-6, 0.00753);
+    const meetings modes = meetings_by(&p, &stiff_engine, 1.20397e-7, 1.24542e-6, 0.00753);
     const meetings series = meetings_by(&p, &series_engine, 1.20397e-7, 1.24542e-6, 0.00753);
     assert_int_equal(modes.count, series.count);
     check_close(modes.peak, series.peak, 1e-4 * series.peak);
@@ -143,7 +143,7 @@ static void slow_impacts_are_in_time(void **state)
         "wall.restitution=0.600972", "wall.angle=1.0272161409848381e-7", "motor.voltage=2.00084e-6",
         "arm.k2=6.35355", "arm.mass=0.290645", "arm.k1=230.417", "arm.hub_inertia=2.04816e-4",
         "motor.stiction=8.7131e-9", "method.rest_speed=1e-13"));
-    const meetings modes = meetings_by(&p, &modal_engine, 1.02316e-7, 3.07823e-7, 0.003);
+    const meetings modes = meetings_by(&p, &stiff_engine, 1.02316e-7, 3.07823e-7, 0.003);
     const meetings series = meetings_by(&p, &series_engine, 1.02316e-7, 3.07823e-7, 0.003);
     assert_int_equal(modes.count, series.count);
     check_close(modes.peak, series.peak, 1e-5 * series.peak);
@@ -159,7 +159,7 @@ static void a_slow_arm_touches_in_time(void **state)
                  "wall.angle=7.8856745847127184e-7", "motor.voltage=1.605e-7", "arm.k2=2.07622",
                  "arm.mass=0.14437", "arm.hub_inertia=0.042581", "motor.stiction=5.1311e-8",
                  "method.rest_speed=1.66e-10"));
-    const meetings modes = meetings_by(&p, &modal_engine, 7.88542e-7, 6.75857e-9, 0.01);
+    const meetings modes = meetings_by(&p, &stiff_engine, 7.88542e-7, 6.75857e-9, 0.01);
     const meetings series = meetings_by(&p, &series_engine, 7.88542e-7, 6.75857e-9, 0.01);
     assert_true(modes.count > 0 && series.count > 0);
     assert_int_equal(modes.event[0], series.event[0]);
@@ -176,7 +176,7 @@ static void a_slow_arm_leaves_in_time(void **state)
                  "wall.angle=5.1124406976777767e-8", "motor.voltage=1.6161e-6", "arm.k2=3.51557",
                  "arm.k1=19.0639", "arm.mass=0.10088", "arm.hub_inertia=0.0012667",
                  "motor.stiction=4.1505e-8", "method.rest_speed=9.31e-10"));
-    const meetings modes = meetings_by(&p, &modal_engine, 5.1118e-8, 2.19239e-9, 0.0065);
+    const meetings modes = meetings_by(&p, &stiff_engine, 5.1118e-8, 2.19239e-9, 0.0065);
     const meetings series = meetings_by(&p, &series_engine, 5.1118e-8, 2.19239e-9, 0.0065);
     assert_int_equal(modes.count, series.count);
     assert_int_equal(modes.event[modes.count - 1], MOTION_RELEASE);
@@ -235,13 +235,13 @@ static void a_step_that_ends_in_a_flight_is_no_bounce(void **state)
         "arm.k2=1.95253", "arm.mass=0.583359", "arm.k1=136.203", "arm.hub_inertia=1.37267e-5",
         "motor.stiction=0", "motor.viscous_friction=0.00571998", "method.rest_speed=1e-8"));
     const double angle = 4.5e-6, velocity = 3.4e-6, until = 4e-3;
-    const meetings all = meetings_by(&p, &modal_engine, angle, velocity, until);
+    const meetings all = meetings_by(&p, &stiff_engine, angle, velocity, until);
     assert_true(all.count > 10);
 
     // the same with a step that ends early in each flight
     arm a;
     arm_init(&a, &p);
-    motion *m = motion_create_by(&a, &p.method, &modal_engine);
+    motion *m = motion_create_by(&a, &p.method, &stiff_engine);
     assert_non_null(m);
     motion_start(&a, m, angle, velocity);
     for (int k = 0; k < all.count; k++) {
@@ -279,7 +279,7 @@ static void a_graze_within_a_stride_is_found(void **state)
         arm a;
         arm_init(&a, &p);
         motion *m = motion_create(&a, &p.method);
-        assert_ptr_equal(m->engine, &modal_engine);
+        assert_ptr_equal(m->engine, &stiff_engine);
         motion_destroy(m);
 
         double touched = 0.005, missed = 0.5;

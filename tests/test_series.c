@@ -123,8 +123,7 @@ static void swing(const char *const *settings, double longest, double *q, int do
     parameters p = fixture_parameters(settings);
     arm a;
     arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
-    assert_ptr_equal(m->engine, &series_engine);
+    motion *m = motion_create_by(&a, &p.method, &series_engine);
     assert_int_equal(m->dof, dof);
     motion_start(&a, m, 0, 0.7);
     for (double until = 0; until < 0.02;) {

@@ -7,7 +7,6 @@
 #include "src/run/loop.h"
 #include "src/run/run.h"
 #include "src/solve/contact_machine.h"
-#include "src/solve/modal_basis.h"
 #include "src/solve/pace.h"
 #include "tests/explicit_stepper.h"
 #include "tests/passage.h"
@@ -26,18 +25,18 @@ static void a_stiff_hub_takes_few_strides(void **state)
     }
 }
 
-// The two-link arm of a stiffer hub by modes, and by the explicit formula.
+// The two-link arm of a stiffer hub, and by the explicit formula.
 static void a_stiff_pair_moves_as_by_the_formula(void **state)
 {
     (void)state;
     parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.hub_joint=spring",
                                                "arm.hub_inertia=2e-4", "arm.damping_ratio=0.02",
                                                "motor.voltage=1", "wall.restitution=0.5"));
-    passage modes = passage_of(&p, 0.09, 0.3, 0.1, 2000);
+    passage stiff = passage_of(&p, 0.09, 0.3, 0.1, 2000);
     passage formula = passage_by(&p, &explicit_engine, 0.09, 0.3, 0.1, 200000);
-    assert_true(modes.impacts > 2);
-    assert_int_equal(modes.impacts, formula.impacts);
-    check_relative(modes.momentum, formula.momentum, 1e-6);
+    assert_true(stiff.impacts > 2);
+    assert_int_equal(stiff.impacts, formula.impacts);
+    check_relative(stiff.momentum, formula.momentum, 1e-6);
 }
 
 // An edit in mid-run makes the arm stiff: the motion goes on by what is right for it then, as the
@@ -47,7 +46,7 @@ static void an_arm_made_stiff_changes_its_engine(void **state)
     (void)state;
     for (int links = 2; links <= 3; links++) {
         parameters p = fixture_parameters(SETTINGS("arm.hub_joint=spring", "arm.k1=500",
-                                                   "arm.damping_ratio=0.02", "motor.voltage=1"));
+                                                   "arm.damping_ratio=0", "motor.voltage=1"));
         p.arm.links = links;
         arm before, after;
         arm_init(&before, &p);
@@ -58,6 +57,7 @@ static void an_arm_made_stiff_changes_its_engine(void **state)
 
         // edited
         p.arm.k1 = 1e8;
+        p.arm.damping_ratio = 0.02;
         arm_init(&after, &p);
         assert_true(after.fastest_decay > 1e6);
         motion_rebind(&before, &after, m);
@@ -69,7 +69,8 @@ static void an_arm_made_stiff_changes_its_engine(void **state)
         passage on = move_on(&after, m, 0.35, 2000);
         move_on(&after, copy, 0.35, 2000);
         assert_true(on.impacts >= 1);
-        assert_memory_equal(copy->state, m->state, (size_t)(m->size - KEPT_COUNT) * sizeof(double));
+        assert_memory_equal(copy->state, m->state,
+                            (size_t)(m->head_size - KEPT_COUNT) * sizeof(double));
 
         // and back
         motion_rebind(&after, &before, m);
@@ -79,8 +80,8 @@ static void an_arm_made_stiff_changes_its_engine(void **state)
     }
 }
 
-// A stride of the modes begins with what its decays make of rounding, over at once: the force does
-// not leave its band for that, and has settled when its rows have.
+// A stride begins with what decays make of rounding, over at once: the force does not leave its
+// band for that, and has settled when its rows have.
 static void a_stride_that_begins_does_not_unsettle_the_force(void **state)
 {
     (void)state;
@@ -102,26 +103,44 @@ static void a_stride_that_begins_does_not_unsettle_the_force(void **state)
     run_finish(&r);
 }
 
-// The series have no way round such a decay: a run that could not end says so after a bounded
-// effort.
+// A damper so strong that the arm rests on it for ever: a run that could not end says so after a
+// bounded effort.
 static void a_run_that_could_not_end_says_so(void **state)
 {
     (void)state;
-    static const char *const arms[][7] = {
-        {"arm.links=3", "arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02",
-         "arm.tip_mass=0.01"},
-        {"wall.contact=kelvin-voigt", "wall.damping=1e7", "initial.angle=0.099",
-         "initial.velocity=0.7"},
-        {"wall.contact=kelvin-voigt", "wall.damping=1e6", "initial.angle=0.099",
-         "initial.velocity=0.7"},
-    };
-    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
-        scenario s = {.parameters = fixture_parameters(arms[i])};
+    static const char *const dampers[] = {"wall.damping=1e12", "wall.damping=1e15"};
+    for (size_t i = 0; i < sizeof dampers / sizeof dampers[0]; i++) {
+        scenario s = {.parameters = fixture_parameters(SETTINGS("wall.contact=kelvin-voigt",
+                                                                dampers[i], "initial.angle=0.099",
+                                                                "initial.velocity=0.7"))};
         run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
         assert_int_equal(r.summary.status, STATUS_NO_PROGRESS);
         assert_true(r.summary.message[0] != '\0');
         assert_true(r.summary.steps > 0);
+        run_finish(&r);
+    }
+}
+
+// Arms with decays, of a light hub, a wall's damper or a current, that are over at once and would
+// shorten the strides of a formula that is not stiff.
+static void decays_do_not_shorten_strides(void **state)
+{
+    (void)state;
+    static const char *const arms[][7] = {
+        {"arm.links=3", "arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02",
+         "arm.tip_mass=0.01"},
+        {"wall.contact=kelvin-voigt", "wall.damping=1e6", "initial.angle=0.099",
+         "initial.velocity=0.7"},
+        {"arm.links=128", "arm.damping_ratio=0.01", "motor.inductance=1e-3"},
+        {"motor.inductance=1e-12"},
+    };
+    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+        scenario s = {.parameters = fixture_parameters(arms[i])};
+        run_result r;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        assert_true(r.summary.steps < 2000);
+        check_below(r.summary.energy_residual_J, 1e-7 * r.summary.motor_work_J);
         run_finish(&r);
     }
 }
@@ -135,28 +154,15 @@ static void a_run_that_could_not_end_says_why(void **state)
         double angle, velocity;
         const char *cause;
     } cases[] = {
-        {{"arm.links=3"}, 0, 0, "fastest mode of the arm"},
+        {{"arm.links=3", "arm.damping_ratio=0.01"}, 0, 0, "fastest mode of the arm"},
         {{"arm.links=3"}, 0, -1e9, "too fast to follow"},
         {{"wall.contact=kelvin-voigt", "wall.stiffness=1e6", "wall.angle=0"},
          0,
          0.1,
          "wall.damping"},
         {{"wall.contact=kelvin-voigt", "wall.stiffness=1e6"}, 0, 0, "fastest mode of the arm"},
-        {{"motor.inductance=1e-12"}, 0, 0, "motor.inductance"},
         {{"motor.inductance=1"}, 0, 0, "fastest mode of the arm"},
-        {{"arm.links=3", "wall.restitution=0.5"}, 0, 0, "wall.restitution = 0"},
-        {{"arm.links=3", "arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02"},
-         0,
-         0,
-         "fewer links or less damping"},
-        {{"arm.links=40", "arm.damping_ratio=0.01", "motor.inductance=0.1"},
-         0,
-         0,
-         "only without motor.inductance"},
-        {{"arm.links=4", "arm.hub_joint=spring", "arm.k1=169468", "arm.hub_inertia=2.29663e-4"},
-         0,
-         0,
-         "fastest mode of the arm"},
+        {{"arm.links=3", "wall.restitution=0.5"}, 0, 0, "arm.damping_ratio"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         parameters p = fixture_parameters(cases[i].settings);
@@ -220,8 +226,7 @@ static void a_run_that_stands_still_at_a_wall_says_so(void **state)
     motion_destroy(m);
 }
 
-// Where strides are expensive, fewer of them are enough to give a run up: of many links, and in
-// contact with a wall that has a damper.
+// Where strides are expensive, with many links, fewer of them are enough to give a run up.
 static void expensive_strides_are_given_up_sooner(void **state)
 {
     (void)state;
@@ -229,8 +234,8 @@ static void expensive_strides_are_given_up_sooner(void **state)
         const char *settings[4];
         int most; // strides
     } cases[] = {
-        {{"arm.links=128", "arm.damping_ratio=0.01", "motor.inductance=1e-3"}, PACE_STRIDES / 8},
-        {{"wall.contact=kelvin-voigt", "wall.damping=1e15"}, PACE_STRIDES / 2},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e12"}, 3 * PACE_STRIDES},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e9", "arm.links=128"}, PACE_STRIDES / 4},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const parameters p = fixture_parameters(cases[i].settings);
@@ -250,34 +255,6 @@ static void expensive_strides_are_given_up_sooner(void **state)
             s = pace_keep(&kept, &a, m, 1, 1e-3, &f);
         }
         assert_int_equal(s, STATUS_NO_PROGRESS);
-        motion_destroy(m);
-    }
-}
-
-// Strides of a quarter of a microsecond: a run that a mode keeps so short goes on, one that follows
-// the motor's current, which has long settled, is given up.
-static void a_current_that_leads_is_given_up_sooner(void **state)
-{
-    (void)state;
-    static const struct {
-        const char *settings[3];
-        status expected;
-    } cases[] = {
-        {{"motor.inductance=1e-6"}, STATUS_NO_PROGRESS},
-        {{"motor.inductance=1"}, STATUS_OK},
-        {{"motor.inductance=1e-4", "arm.links=600"}, STATUS_OK},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        parameters p = fixture_parameters(cases[i].settings);
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create(&a, &p.method);
-        assert_non_null(m);
-        motion_start(&a, m, 0, 0);
-        pace looked = {.looked_from = 0};
-        m->state[SLOT_TIME] = 2.5e-7 * PACE_STRIDES;
-        fault f = {.text = ""};
-        assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), cases[i].expected);
         motion_destroy(m);
     }
 }
@@ -345,9 +322,8 @@ static void an_arm_that_starts_on_the_wall_strikes_it(void **state)
     }
 }
 
-// A heavy soft chain behind a light hub, whose decays of 3e7 1/s the modes follow only in part:
-// what they took for an impact 17 mm in front of the wall was none. The explicit formula needs a
-// million strides for this and has one impact; its answers are given.
+// A heavy soft chain behind a light hub, with decays of 3e7 1/s, that meets its wall once. The
+// explicit formula needs a million strides for this; its answers are given.
 static void an_impact_is_one_of_the_exact_gap(void **state)
 {
     (void)state;
@@ -360,10 +336,10 @@ static void an_impact_is_one_of_the_exact_gap(void **state)
                  "arm.length=0.450056287740594", "arm.mass=987.1087265748487",
                  "arm.hub_inertia=8.737877005452665e-06", "arm.k1=6.9454369649959515",
                  "arm.k2=0.017774528852759045", "arm.damping_ratio=0.4640065081757673"));
-    passage modes = passage_of(&p, 0.84478210510148122, 3.1260960827520616, 0.13, 5000);
-    assert_int_equal(modes.impacts, 1);
-    check_relative(modes.momentum, 129.426073814, 1e-9);
-    check_below(modes.open, 1e-7);
+    passage stiff = passage_of(&p, 0.84478210510148122, 3.1260960827520616, 0.13, 5000);
+    assert_int_equal(stiff.impacts, 1);
+    check_relative(stiff.momentum, 129.426073814, 1e-9);
+    check_below(stiff.open, 1e-7);
 }
 
 // A chain with decays of 8e6 1/s that bounces and then presses on the wall, bent and at rest: what
@@ -381,9 +357,9 @@ static void an_arm_at_rest_takes_few_strides(void **state)
         "arm.hub_inertia=0.021138195229693537", "arm.k1=94477.653277027581",
         "arm.k2=13673.25777524287", "arm.damping_ratio=0.040977110363111233",
         "initial.angle=-0.4"));
-    passage modes = passage_of(&p, -0.35592624390555305, 1.7913204322644631, 0.3, 3000);
-    assert_true(modes.impacts > 100);
-    check_below(modes.open, 1e-6);
+    passage stiff = passage_of(&p, -0.35592624390555305, 1.7913204322644631, 0.3, 3000);
+    assert_true(stiff.impacts > 100);
+    check_below(stiff.open, 1e-6);
 }
 
 // A light hub before a heavy beam: what the hub's own fast vibration loses to back EMF turns twice
@@ -400,40 +376,8 @@ static void what_a_fast_hub_loses_is_all_booked(void **state)
     }
 }
 
-// The squares of the rates of 256 links span ten decades: a last bit of the fastest is 1e-6 of the
-// slowest. In all contact states the slow modes have their own rates and no springs in common.
-static void slow_modes_of_many_links_keep_their_digits(void **state)
-{
-    (void)state;
-    parameters p = fixture_parameters(SETTINGS("arm.links=256", "arm.hub_joint=beam"));
-    arm a;
-    arm_init(&a, &p);
-    modal_basis b;
-    double *storage = malloc(modal_basis_size(a.dof) * sizeof(double));
-    double *scratch = malloc(modal_basis_scratch(a.dof) * sizeof(double));
-    assert_true(storage != NULL && scratch != NULL);
-    modal_basis_place(&b, a.dof, storage);
-    for (int i = 0; i < 4; i++) {
-        assert_int_equal(modal_basis_compute(&b, &a, (modal_ends){i & 1, 0, i & 2}, scratch),
-                         STATUS_OK);
-        const bool rigid = i == 0; // free in flight
-        assert_true(rigid ? b.rate[0] == 0 : b.rate[0] > 1);
-        for (int j = rigid; j < 12; j++) {
-            const double *mode = b.by_mode + (size_t)j * (size_t)a.dof;
-            check_relative(b.rate[j] * b.rate[j], bend_product(&a, mode, mode), 1e-11);
-            for (int k = rigid; k < j; k++) {
-                const double shared = bend_product(&a, mode, b.by_mode + (size_t)k * (size_t)a.dof);
-                check_close(shared / (b.rate[j] * b.rate[k]), 0, 1e-11);
-            }
-        }
-    }
-    free(storage);
-    free(scratch);
-}
-
-// Without damping, of the joints or of the motor, nothing is booked as lost to it, and in strides
-// of the modes the ledger closes as it does with both: in flight, on the wall, pressed to it and
-// bent.
+// Without damping, of the joints or of the motor, nothing is booked as lost to it, and the
+// ledger closes as it does with both: in flight, on the wall, pressed to it and bent.
 static void an_arm_without_damping_loses_nothing_to_it(void **state)
 {
     (void)state;
@@ -446,8 +390,7 @@ static void an_arm_without_damping_loses_nothing_to_it(void **state)
             "motor.voltage=0.5", stands ? "wall.kind=point" : "wall.kind=none"));
         arm a;
         arm_init(&a, &p);
-        motion *m = motion_create(&a, &p.method);
-        assert_ptr_equal(m->engine, &modal_engine);
+        motion *m = motion_create_by(&a, &p.method, &stiff_engine);
         motion_start(&a, m, 0.09, 0.3);
         const passage all = move_on(&a, m, 0.1, 5000);
         assert_int_equal(all.impacts > 0, stands);
@@ -467,16 +410,15 @@ int main(void)
         cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
         cmocka_unit_test(a_stride_that_begins_does_not_unsettle_the_force),
         cmocka_unit_test(a_run_that_could_not_end_says_so),
+        cmocka_unit_test(decays_do_not_shorten_strides),
         cmocka_unit_test(a_run_that_could_not_end_says_why),
         cmocka_unit_test(a_run_that_stands_still_at_a_wall_says_so),
         cmocka_unit_test(expensive_strides_are_given_up_sooner),
-        cmocka_unit_test(a_current_that_leads_is_given_up_sooner),
         cmocka_unit_test(an_arm_without_damping_loses_nothing_to_it),
         cmocka_unit_test(a_loop_makes_as_many_strides_as_are_asked_for),
         cmocka_unit_test(an_impact_is_one_of_the_exact_gap),
         cmocka_unit_test(an_arm_at_rest_takes_few_strides),
         cmocka_unit_test(what_a_fast_hub_loses_is_all_booked),
-        cmocka_unit_test(slow_modes_of_many_links_keep_their_digits),
         cmocka_unit_test(an_arm_that_starts_on_the_wall_strikes_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,7 +38,7 @@ status checkpoint_open_history(recording *r, const motion *m, fault *f)
     assert(r != NULL && m != NULL);
     run_history *h = &r->result->history;
     size_t expected = r->options->rows_expected;
-    size_t size = sizeof(checkpoint) + (size_t)m->size * sizeof(double);
+    size_t size = sizeof(checkpoint) + (size_t)m->most_size * sizeof(double);
 
     // shared, plain, or one that others can share
     if (h->forces.array.reserved > 0) {

@@ -16,7 +16,6 @@
 
 #define SMALL_FLIGHT   1e-10 // motions of this size are followed to 1e-5 of it [rad, m, N m]
 #define SMALL_CONTACT  1e-7  // the same of those that meet the wall
-#define SMALL_BY_MODES 1e-6  // and of those whose events the modes locate
 #define DEEPEST        1e-9  // that an arm may be in a rigid wall by rounding [m]
 #define ANGLE_ROUNDING 1e-16 // of an arm that something holds [rad]
 #define GRID_TOLERANCE 1e-9  // of a step: the end so near a row of the grid has that row
@@ -194,9 +193,7 @@ static void judge_size(const corrected_run *c, double energy)
     const double torque = turn > 0 ? energy / turn : fabs(a->motor.torque) - a->motor.stiction;
 
     const double size = turn > 0 ? smaller(smaller(turn, travel), torque) : torque;
-    const double least = isnan(s->first_contact_s)            ? SMALL_FLIGHT
-                         : c->motion->engine == &modal_engine ? SMALL_BY_MODES
-                                                              : SMALL_CONTACT;
+    const double least = isnan(s->first_contact_s) ? SMALL_FLIGHT : SMALL_CONTACT;
     if (size > 0 && size < least) {
         s->inaccurate = true;
         remark(s,

@@ -86,7 +86,7 @@ typedef struct saved_motion {
 
 static size_t corrected_saved_size(const stepped_run *run)
 {
-    return sizeof(saved_motion) + (size_t)run->corrected.motion->size * sizeof(double);
+    return sizeof(saved_motion) + (size_t)run->corrected.motion->most_size * sizeof(double);
 }
 
 static void corrected_save(const stepped_run *run, void *bytes)
@@ -106,7 +106,10 @@ static void corrected_save(const stepped_run *run, void *bytes)
     saved.pulse_peak_time = m->pulse_peak_time;
     saved.largest_penetration = m->largest_penetration;
     memcpy(bytes, &saved, sizeof saved);
-    memcpy((char *)bytes + sizeof saved, m->state, (size_t)m->size * sizeof(double));
+    char *state = (char *)bytes + sizeof saved;
+    const size_t size = (size_t)m->size * sizeof(double);
+    memcpy(state, m->state, size);
+    memset(state + size, 0, (size_t)m->most_size * sizeof(double) - size);
 }
 
 static void corrected_restore(stepped_run *run, const void *bytes)

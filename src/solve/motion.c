@@ -9,13 +9,9 @@
 #include "src/base/extremes.h"
 #include "src/solve/edge_limits.h"
 
-// The event method takes the modes of the straight chain where the arm's fastest rate or decay is
-// beyond this [1/s]: a stride of theirs then replaces dozens of the series.
-#define STIFF 3e4
-// The two-link series are so cheap (half a million strides in a third of a second) that the modes
-// pay only beyond this rate of decays, which alone can be so fast there; in fast rotation the modes
-// cost more.
-#define STIFF_PAIR 2e6
+// The fastest decay of the two-link series [1/s]: so cheap are they that half a million strides
+// take a third of a second.
+#define FASTEST_OF_PAIR 2e6
 
 // The remainders of decays change little within this share of the time since the event.
 #define GRADING    0.2
@@ -39,22 +35,29 @@ static const engine *named_engine(engine_kind name)
     return named[name];
 }
 
-// The event method's engine: series of the two-link arm, modes of stiff plain chains, series of all
-// others. It does not depend on the time step.
+// Whether vibrations of the arm, on its wall, go on for ever but for what the motor takes: nothing
+// else damps them. An engine that controls its error then has steps as short as the strides of the
+// series, which are exact and up to three times cheaper.
+static bool rings_on(const arm *a)
+{
+    bool damped = a->damped_modes > 0 || a->air_drag > 0 || a->fastest_decay > a->highest_frequency;
+    for (int k = 0; k < a->links && !damped; k++) {
+        damped = arm_joint_damping(a, k) > 0;
+    }
+    const wall_model *w = &a->wall;
+    const bool gives = wall_stands(w) && wall_gives(w);
+    const bool wall_damps = gives && (w->damping > 0 || w->law != WALL_KELVIN_VOIGT);
+    return !damped && !wall_damps && a->stiffening == 0 && a->motor.inductance == 0;
+}
+
+// The event method's engine: series of two equal links on a rigid wall, series of chains that ring
+// on, the stiff engine for all others. It does not depend on the time step.
 static const engine *event_engine(const arm *a)
 {
-    if (taylor_engine_suits(a) && a->fastest_decay <= STIFF_PAIR) {
+    if (taylor_engine_suits(a) && a->fastest_decay <= FASTEST_OF_PAIR) {
         return &taylor_engine;
     }
-    if (!arm_is_plain(a) || (wall_stands(&a->wall) && wall_gives(&a->wall)) || a->links < 2) {
-        return &series_engine;
-    }
-
-    // bounces amplify errors a thousandfold and more: unless decays make such an arm stiff, it uses
-    // an engine that is exact to rounding
-    const bool bounces = a->wall.restitution > 0 && a->fastest_decay <= a->highest_frequency;
-    const bool stiff = fmax(a->highest_frequency, a->fastest_decay) > STIFF;
-    return stiff && !bounces ? &modal_engine : &series_engine;
+    return rings_on(a) ? &series_engine : &stiff_engine;
 }
 
 static void choose_engine(const arm *a, motion *m, const method_parameters *method,
@@ -125,7 +128,7 @@ static void lay_out_engine(const arm *a, motion *m, layout *l)
 // Lays out everything else.
 static void lay_out_motion(const arm *a, motion *m, layout *l)
 {
-    const size_t state = (size_t)m->size * sizeof(double);
+    const size_t state = (size_t)m->most_size * sizeof(double);
     m->state = add_part(l, state);
     m->trial = add_part(l, state);
     m->scratch = add_part(l, 4 * (size_t)a->dof * sizeof(double));
@@ -149,6 +152,19 @@ static bool open_engine(const arm *a, motion *m)
     return true;
 }
 
+// Numbers in a state of an engine.
+static int size_of_states(const arm *a, const motion *m, const engine *e)
+{
+    return m->head_size + (e->kept_for != NULL ? (int)e->kept_for(a) : 0);
+}
+
+// The same of the engine that has the most of those that a changed arm may get.
+static int most_size(const arm *a, const motion *m)
+{
+    const bool stays = motion_is_implicit(m) || m->chosen;
+    return size_of_states(a, m, stays ? m->engine : &stiff_engine);
+}
+
 motion *motion_create(const arm *a, const method_parameters *method)
 {
     return motion_create_by(a, method, NULL);
@@ -165,9 +181,10 @@ motion *motion_create_by(const arm *a, const method_parameters *method, const en
     m->link_count = a->links;
     m->nominal_step = method->step;
     m->cut = HUGE_VAL;
-    m->size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT + KEPT_COUNT;
+    m->head_size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT + KEPT_COUNT;
     choose_engine(a, m, method, chosen);
-    m->size += m->engine->kept_for != NULL ? (int)m->engine->kept_for(a) : 0;
+    m->size = size_of_states(a, m, m->engine);
+    m->most_size = most_size(a, m);
 
     // its storage: all of it or none
     layout l = {0};
@@ -195,6 +212,7 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
     // storage of the same sizes can be reused as it is
     motion next = {.state = m->state,
                    .size = m->size,
+                   .head_size = m->head_size,
                    .dof = m->dof,
                    .link_count = m->link_count,
                    .nominal_step = method->step,
@@ -209,7 +227,9 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
                    .block = m->block,
                    .engine_block = m->engine_block};
     choose_engine(a, &next, method, NULL);
-    if (next.engine != m->engine || next.engine->memory_for != NULL) {
+    next.most_size = most_size(a, &next);
+    if (next.engine != m->engine || next.engine->memory_for != NULL ||
+        next.most_size > m->most_size) {
         motion_destroy(m);
         return motion_create(a, method);
     }
@@ -240,9 +260,13 @@ void motion_follow_arm(const arm *a, motion *m)
     free(m->engine_block);
     m->ahead.known = false;
     m->engine = wanted;
+    m->size = size_of_states(a, m, wanted);
     m->starved = !open_engine(a, m);
     m->state[SLOT_STRIDE] = 0;
     motion_end_stride(m);
+
+    // it knows nothing yet of the strides to come
+    memset(m->state + m->head_size, 0, (size_t)(m->size - m->head_size) * sizeof *m->state);
 }
 
 void motion_evaluate(const arm *a, motion *m, double *state)

@@ -83,7 +83,9 @@ struct motion {
     // slots, q[n], w[n], quadratures, accelerations a[n], algorithmic accelerations[n], what is
     // kept of the stride.
     double *state;
-    int size;
+    int size;      // of this engine's states
+    int most_size; // of the states of any engine that a changed arm may get
+    int head_size; // without what only some engines keep
     int dof;
     int link_count;
     double start_energy; // kinetic and strain energy at the start [J]

@@ -6,18 +6,16 @@
 #include "src/base/numbers.h"
 
 // A run is given up where its strides are shorter than this, as a share of its duration or of a
-// second, whichever is less: it would take ten million of them, hours with many links. Where the
-// motor's current is the fastest, and in contact with a wall whose damper shortens each of them, a
-// million are enough: such strides follow a decay that is long over. Steps requested by method.step
-// do not count.
+// second, whichever is less: it would take ten million of them, hours with many links. In contact
+// with a wall whose damper shortens each of them a million are enough: such strides follow a decay
+// that is long over. Steps requested by method.step do not count.
 #define SLOWEST_PACE 1e-7
 #define DAMPED_PACE  1e-6
 #define ASKED_FOR    1e-3 // share of method.step
 
-// Links up to which all chains have PACE_STRIDES between two checks, the least number of those of
-// more links, and what a wall with a damper divides it by: Hunt and Crossley's strides near the
-// touch are expensive.
-enum { FEW_LINKS = 8, LEAST_STRIDES = 1 << 12, DAMPED_SHARE = 4 };
+// Links up to which all chains have PACE_STRIDES between two checks, and the least number of those
+// of more links.
+enum { FEW_LINKS = 8, LEAST_STRIDES = 1 << 12 };
 
 // The wall makes strides short where more than one in so many ends in contact.
 enum { FEW_TOUCHING = 8 };
@@ -32,29 +30,6 @@ static bool is_within(const motion *m)
 static bool is_damped(const arm *a, const motion *m)
 {
     return is_within(m) && a->wall.damping > 0;
-}
-
-// How fast the motor's current follows its voltage [1/s], 0 where it does so at once.
-static double current_rate(const arm *a, const motion *m)
-{
-    return m->electric && a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
-}
-
-// Whether nothing of the arm changes as fast as the motor's current.
-static bool current_leads(const arm *a, const motion *m)
-{
-    const double rate = current_rate(a, m);
-    return rate > 0 && rate >= a->fastest_rate;
-}
-
-// Whether the damping makes strides short, and only the motor's current keeps the arm from the
-// modes, which pass over it.
-static bool waits_for_current(const arm *a, const motion *m)
-{
-    arm direct = *a;
-    direct.motor.electric = false;
-    return a->motor.electric && arm_is_plain(&direct) && motion_wall_is_rigid(m) &&
-           a->fastest_decay > a->highest_frequency;
 }
 
 // Whether an event is one of the wall.
@@ -89,29 +64,12 @@ void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *tex
         decimal_print(text, size,
                       "it bounces off the wall, which a smaller wall.restitution or a larger "
                       "method.rest_speed ends sooner");
-    } else if (current_leads(a, m)) {
-        decimal_print(text, size,
-                      "the motor's current follows at %.3g 1/s, and a larger motor.inductance, or "
-                      "none, has longer strides",
-                      current_rate(a, m));
-    } else if (m->engine == &series_engine && a->wall.restitution > 0 && arm_is_plain(a)) {
-        decimal_print(text, size,
-                      "an arm that bounces undamped is followed as fast as its fastest mode "
-                      "vibrates, %.3g rad/s; fewer links or softer joints have longer strides, and "
-                      "with wall.restitution = 0 the arm may have",
-                      a->highest_frequency);
-    } else if (m->engine == &modal_engine && a->fastest_decay > a->highest_frequency) {
-        decimal_print(text, size,
-                      "its modes decay at up to %.3g 1/s, which those of the straight arm show "
-                      "ever worse as it bends, and fewer links or less damping have longer strides",
-                      a->fastest_decay);
-    } else if (waits_for_current(a, m)) {
+    } else if (m->engine == &series_engine) {
         decimal_print(
             text, size,
-            "its modes decay at up to %.3g 1/s, which long strides pass over only without "
-            "motor.inductance and motor.current_limit; fewer links or less damping have "
-            "longer strides, too",
-            a->fastest_decay);
+            "an undamped arm is followed as fast as its fastest mode vibrates, %.3g "
+            "rad/s; fewer links, softer joints or an arm.damping_ratio have longer strides",
+            a->highest_frequency);
     } else {
         decimal_print(text, size,
                       "the fastest mode of the arm changes at %.3g 1/s, and softer or fewer "
@@ -133,7 +91,7 @@ long pace_strides(const arm *a)
         strides = strides * FEW_LINKS / a->dof;
         strides = strides > LEAST_STRIDES ? strides : LEAST_STRIDES;
     }
-    return wall_gives(&a->wall) && a->wall.damping > 0 ? strides / DAMPED_SHARE : strides;
+    return strides;
 }
 
 status pace_look(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f)
@@ -142,8 +100,7 @@ status pace_look(pace *p, const arm *a, const motion *m, double duration, double
     const double now = m->state[SLOT_TIME], from = p->looked_from;
 
     // the first stride only begins to count
-    const bool decays = is_damped(a, m) || current_leads(a, m);
-    const double slowest = decays ? DAMPED_PACE : SLOWEST_PACE;
+    const double slowest = is_damped(a, m) ? DAMPED_PACE : SLOWEST_PACE;
     const long strides = pace_strides(a);
     const double least = (double)strides * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
     const bool passes = from < 0 || now - from >= least;

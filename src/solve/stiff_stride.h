@@ -47,9 +47,9 @@ typedef struct stiff_stride {
     stiff_function watched[WATCHES], far_limit, far_current, force, gap;
     bool divided[WATCHES];
     double holds_more; // than stiction, just after an event [N m]
-    double *end; // state at the step's end, without what it keeps
-    bool ended;  // whether it is that
-    bool turned; // the step begins where the drive's equation changes
+    double *end;       // state at the step's end, without what it keeps
+    bool ended;        // whether it is that
+    bool turned;       // the step begins where the drive's equation changes
 
     double *scratch[4]; // [dof]
 } stiff_stride;
