@@ -2,7 +2,7 @@
 // simulation.
 #pragma once
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 #include "src/tables/parameters.h"
 #include "src/solve/engine.h"
 #include "tests/reference/reference_arm.h"

@@ -1,6 +1,5 @@
 // The parameters that a controller is told: the true ones, changed by belief.* of the scenario.
 #include "src/arm/motor.h"
-#include "src/rig/laws/hybrid_modes.h"
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 
@@ -14,7 +13,7 @@ static controller_setup told(const char *const *settings)
     if (rig_create(&r, &p, NULL, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
     }
-    controller_setup setup = ((const hybrid_memory *)r->memory)->rig;
+    controller_setup setup = *(const controller_setup *)r->memory; // it stands first
     rig_destroy(r);
     return setup;
 }

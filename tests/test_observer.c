@@ -5,7 +5,6 @@
 
 #include "src/rig/estimation/arm_observer.h"
 #include "src/rig/controller_values.h"
-#include "src/rig/laws/hybrid_modes.h"
 #include "src/rig/laws/observer_arms.h"
 #include "src/rig/estimation/reduced_arm.h"
 #include "src/rig/estimation/riccati.h"
@@ -311,7 +310,7 @@ static controller_setup setup_of(const parameters *p)
     parameters as_hybrid = *p;
     as_hybrid.control.law = LAW_HYBRID;
     assert_int_equal(rig_create(&r, &as_hybrid, NULL, &f), STATUS_OK);
-    controller_setup setup = ((const hybrid_memory *)r->memory)->rig;
+    controller_setup setup = *(const controller_setup *)r->memory; // it stands first
     rig_destroy(r);
     return setup;
 }

@@ -247,7 +247,7 @@ static status measure(const char *name, FILE *out)
     status code = STATUS_BAD_ARGUMENT;
     for (int i = 0; i < bench_count; i++) {
         if (strcmp(bench_table[i].name, name) == 0) {
-            code = bench_table[i].measure(&value, &f);
+            code = bench_table[i].measure(&bench_table[i], &value, &f);
         }
     }
     assert_true(code == STATUS_OK ? value > 0 && isfinite(value) : f.text[0] != '\0');

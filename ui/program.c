@@ -13,7 +13,7 @@
 #include "render/page/text.h"
 #include "src/base/loss.h"
 #include "src/base/whole_file.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "ui/commands/command.h"
 #include "ui/terminal/terminal.h"
 

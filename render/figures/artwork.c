@@ -8,7 +8,7 @@
 
 #include "render/page/text.h"
 #include "render/plot/plot.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/base/whole_file.h"
 
 status make_folder(const char *folder, fault *f)

@@ -11,7 +11,7 @@
 #include "render/plot/plot.h"
 #include "render/figures/run_figure.h"
 #include "src/base/numbers.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 
 #define IMPACT_SCENARIO "corrected/first-impact"
 

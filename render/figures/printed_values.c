@@ -8,7 +8,7 @@
 #include "render/figures/thesis_tables.h"
 #include "render/page/text.h"
 #include "render/plot/drawing.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 
 enum { TABLES = 3, QUANTITIES = 3, PANELS = 2 * TABLES, SERIES = 2 * QUANTITIES };
 

@@ -7,7 +7,7 @@
 #include "render/figures/recipe_parts.h"
 #include "render/figures/run_figure.h"
 #include "render/plot/trace_plot.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 
 static void release(void *owner)
 {

@@ -14,7 +14,7 @@
 #include "render/page/palette.h"
 #include "render/page/sketch.h"
 #include "render/page/text.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 
 // A4 [pt].
 #define PAGE_WIDTH  595.0

@@ -8,7 +8,7 @@
 #include "render/page/text.h"
 #include "render/plot/study_plot.h"
 #include "src/base/numbers.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/tables/summary.h"
 
 // ==== a figure with everything it borrows

@@ -10,7 +10,7 @@
 #include "render/page/text.h"
 #include "render/plot/plot.h"
 #include "render/plot/trace_parts.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 
 bool trace_shows(const trace_run *run, const trace_panel *panel, int index)
 {

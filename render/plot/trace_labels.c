@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "render/page/text.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/rig/rig.h"
 
 // A quantity's symbol is set italic, its index upright, and so is a word. The index of the last

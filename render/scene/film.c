@@ -7,7 +7,7 @@
 
 #include "render/plot/trace_plot.h"
 #include "render/scene/film_file.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/base/worker_signals.h"
 
 enum { MOST_THREADS = 2, BUFFERS = 2 };

@@ -10,7 +10,7 @@
 #include "render/scene/scene.h"
 #include "src/base/instant.h"
 #include "src/base/numbers.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/base/whole_file.h"
 
 enum {

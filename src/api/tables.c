@@ -2,7 +2,7 @@
 #include <pthread.h>
 
 #include "src/api/handles.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/tables/summary.h"
 
 enum { PARAMETERS_AT_MOST = sizeof((parameters *)0)->set };

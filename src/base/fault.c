@@ -6,6 +6,18 @@
 
 #include "src/base/numbers.h"
 
+const char *status_text(status code)
+{
+    switch (code) {
+#define STATUS_CASE(name, text)                                                                    \
+    case name:                                                                                     \
+        return text;
+        STATUS_LIST(STATUS_CASE)
+#undef STATUS_CASE
+    }
+    return "unknown status";
+}
+
 static void fill(fault *f, status code, const char *format, va_list args)
 {
     f->code = code;

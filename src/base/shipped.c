@@ -70,3 +70,8 @@ char *shipped_path(shipped_part part)
     }
     return strdup(places[part].configured);
 }
+
+const char *lab_version(void)
+{
+    return IMPACTLAB_VERSION;
+}

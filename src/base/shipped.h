@@ -12,3 +12,6 @@ typedef enum shipped_part {
 // a tree has the tree's; else the prefix is looked for above the file that this code was loaded
 // from, and where no prefix has the part it is the place that the build was set up for.
 char *shipped_path(shipped_part part);
+
+// The version of the program, "0.2.0".
+const char *lab_version(void);

@@ -2,7 +2,7 @@
 // state, what would the first pulse be?
 #pragma once
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 #include "src/predict/predict.h"
 
 // Every predictor with the key under which results name it, a label, and a label for narrow places.

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "src/arm/chain.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 #include "src/predict/predict.h"
 
 // A pulse that has not ended after this time is followed no further [s]; one whose force still

@@ -13,54 +13,7 @@
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
 
-const controller *controller_of(int law)
-{
-#define LAW(name, prefix, word, description) [LAW_##name] = &prefix##_law,
-    static const controller *const built_in[LAW_COUNT] = {CONTROL_LAWS(LAW)};
-#undef LAW
-    assert(law >= 0 && law < LAW_COUNT);
-    return built_in[law];
-}
-
 // --- starting -------------------------------------------------------------------------------
-
-controller_setup rig_believed_setup(const rig *r, const parameters *p)
-{
-    const belief_parameters *b = &p->belief;
-
-    // the beam in two links, whatever the arm is
-    double m = p->arm.mass / 2, l = p->arm.length / 2, k2 = p->arm.k2;
-    double link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12;
-    k2_table measured;
-    if (k2_table_read(&measured, p->control.k2_table, NULL) == STATUS_OK && measured.count > 0) {
-        k2 = k2_table_at(&measured, p->control.force);
-    }
-
-    // the motor with another kT and other friction
-    motor_parameters motor = p->motor;
-    motor.torque_constant *= b->torque_factor;
-    motor.viscous_friction *= b->friction_factor;
-    motor.stiction *= b->friction_factor;
-
-    return (controller_setup){
-        .period = r->period,
-        .delay = fmax(0, r->delay + b->delay_error),
-        .voltage_limit = r->voltage_limit,
-        .torque_per_volt = motor_torque_per_volt(&motor),
-        .hub_damping = motor_damping(&motor),
-        .stiction = motor.stiction,
-        .hub_inertia = p->arm.hub_inertia * b->inertia_factor,
-        .link_mass = m * b->mass_factor,
-        .link_length = l,
-        .link_inertia = link_inertia * b->mass_factor,
-        .k2 = k2 * b->k2_factor,
-        .wall_angle = p->wall.angle + b->wall_error,
-        .links = b->links,
-        .hub_spring = p->arm.hub_joint == HUB_SPRING ? p->arm.k1 * b->hub_spring_factor : HUGE_VAL,
-        .damping_ratio = p->arm.damping_ratio,
-        .parameters = r->values,
-    };
-}
 
 // Memory, values and the controller's own start, once it is known which controller it is.
 static status start_controller(rig *r, const parameters *p, const given_law *given, fault *f)
@@ -83,7 +36,7 @@ static status start_controller(rig *r, const parameters *p, const given_law *giv
         memcpy(r->memory, &given->context, sizeof given->context);
     }
 
-    controller_setup setup = rig_believed_setup(r, p);
+    controller_setup setup = rig_nominal_setup(r, p);
     if (p->control.force_limit > 0) {
         touch_forecast_tell(&r->forecast, p, &setup);
     }

@@ -4,7 +4,7 @@
 
 #include "src/base/csv.h"
 #include "src/base/json.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 
 static json_t *parameter_value(const parameters *p, int index)
 {

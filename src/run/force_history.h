@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/base/shared_array.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 #define SETTLED_BAND 0.05 // a force has settled within this share of its final value
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "src/base/instant.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/run/loop_parts.h"
 #include "src/run/recording_frame.h"
 

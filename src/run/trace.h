@@ -3,7 +3,7 @@
 
 #include "src/base/shared_array.h"
 #include "src/tables/signals.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 // The kinds of events: name in the enumeration, word in JSON and on screens, what happens.
 #define EVENT_KINDS(KIND)                                                                          \

@@ -1,4 +1,4 @@
-#include "src/scenario/lesson.h"
+#include "src/scenario/scenario.h"
 
 #include <assert.h>
 #include <stdlib.h>

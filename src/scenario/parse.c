@@ -1,11 +1,11 @@
 // A scenario file from its first key to its last: what each is, and in which order they are read.
-#include "src/scenario/reader.h"
-
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/scenario/reader.h"
 #include "src/base/words.h"
+#include "src/tables/signals.h"
 
 // Copies prose; only the description may have several lines. NULL after a fault.
 static char *parse_prose(reader *r, const tree_node *node, const char *what, bool many_lines)
@@ -89,6 +89,29 @@ static void report_unknown_top(reader *r, const tree_node *key)
         r, key,
         "unknown key '%.60s', expected title, description, panes%s, script, expect or lesson",
         key->text, groups);
+}
+
+// The signals that a scenario is to be looked at by.
+static void reader_panes(reader *r, const tree_node *list)
+{
+    if (list->kind != TREE_LIST) {
+        report_node(r, list, "panes is %s, expected a list of signals: [force, hub_angle]",
+                    node_kind_name(list));
+        return;
+    }
+
+    for (const tree_node *child = list->first; child != NULL; child = child->next) {
+        const int signal = node_is_scalar(child) ? signal_find(child->text) : -1;
+        if (signal < 0) {
+            report_node(r, child, "panes: there is no signal '%.60s'",
+                        node_is_scalar(child) ? child->text : node_kind_name(child));
+        } else if (r->s->pane_count == SCENARIO_PANES) {
+            report_node(r, child, "panes: more than %d signals", SCENARIO_PANES);
+            return;
+        } else {
+            r->s->panes[r->s->pane_count++] = signal;
+        }
+    }
 }
 
 // Reads everything; script, expect and lesson come after the parameters that they depend on.

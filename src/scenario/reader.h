@@ -87,9 +87,6 @@ void reader_check_lock(reader *r, const parameters *p, place at);
 // Parses the script's actions; the parameters must have been resolved.
 void reader_script(reader *r, const tree_node *list);
 
-// Parses the signals that the run is to be looked at by.
-void reader_panes(reader *r, const tree_node *list);
-
 // Parses the lesson; the parameters must have been resolved.
 void reader_lesson(reader *r, const tree_node *map);
 

@@ -1,5 +1,4 @@
-#include "src/session/inputs.h"
-
+// What the user does to a session: inputs, each with its instant, and their undoing.
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,8 +8,7 @@
 #include "src/base/instant.h"
 #include "src/rig/rig.h"
 #include "src/run/resume.h"
-#include "src/session/cursor.h"
-#include "src/session/session_run.h"
+#include "src/session/session.h"
 
 #define BEFORE_EVENT 1e-7 // how much before an event a change at the row before it takes effect [s]
 

@@ -2,10 +2,394 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/rig/external/transcript.h"
+#include "src/base/loss.h"
+#include "src/run/background_run.h"
+#include "src/run/resume.h"
+#include "src/base/instant.h"
+
+// --- the cursor ---
+
+// The cursor has been here.
+static void note_seen(session *s)
+{
+    s->seen = fmax(s->seen, s->now);
+}
+
+const sample *session_sample(const session *s)
+{
+    assert(s != NULL && s->row < s->run.trace.row_count);
+    return &s->run.trace.rows[s->row];
+}
+
+double session_end(const session *s)
+{
+    assert(s != NULL && s->run.trace.row_count > 0);
+    return s->run.trace.rows[s->run.trace.row_count - 1].time;
+}
+
+void session_seek(session *s, double time)
+{
+    double end = session_end(s);
+
+    // rows to come may be waited for at an instant the cursor is at already
+    end = s->computing != NULL && s->now > end ? s->now : end;
+    s->now = time > end ? end : time > 0 ? time : 0;
+    s->row = trace_row_at(&s->run.trace, s->now);
+
+    // an instant beside a row's by rounding is the row's: a change there cuts no step anew
+    double near = s->run.trace.rows[s->row + (s->row + 1 < s->run.trace.row_count)].time;
+    if (near > s->now && same_instant(near, s->now)) {
+        session_seek(s, near);
+    }
+    note_seen(s);
+}
+
+bool session_step(session *s, long rows)
+{
+    long last = (long)s->run.trace.row_count - 1, to = (long)s->row + rows;
+    to = to < 0 ? 0 : to > last ? last : to;
+    bool moved = to != (long)s->row;
+    s->row = (size_t)to;
+    s->now = session_sample(s)->time;
+    note_seen(s);
+    return moved;
+}
+
+const event *session_event(const session *s)
+{
+    assert(s != NULL);
+    for (size_t i = 0; i < s->run.trace.event_count; i++) {
+        if (s->run.trace.events[i].time == s->now) {
+            return &s->run.trace.events[i];
+        }
+    }
+    return NULL;
+}
+
+// --- the run ---
+
+#define MEMORY_BUDGET (512.0 * 1024 * 1024) // rows of one run [bytes]
+#define ROW_SPARE     1.5                   // rows of events beside those of the grid
+#define SHORT_WAIT    0.001                 // for the first row of a run that takes long [s]
+
+enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
+
+static int count_actions(const session *s)
+{
+    int count = s->base.action_count;
+    for (int i = 0; i < s->input_count; i++) {
+        count += s->inputs[i].kind != SESSION_INPUT_START;
+    }
+    return count;
+}
+
+// The scenario with the inputs in effect. Its actions are the only thing it owns.
+static status build_effective(const session *s, scenario *to, fault *f)
+{
+    // the base without its script
+    *to = s->base;
+    to->expectation_count = 0;
+    to->action_count = 0;
+    to->actions = calloc((size_t)count_actions(s) + 1, sizeof *to->actions);
+    if (to->actions == NULL) {
+        return fault_no_memory(f);
+    }
+
+    // the script's actions, then the inputs among them: an input comes after what is due with it
+    status code = STATUS_OK;
+    for (int i = 0; i < s->base.action_count; i++) {
+        scenario_insert_action(to, s->base.actions[i]);
+    }
+    for (int i = 0; i < s->input_count && code == STATUS_OK; i++) {
+        const session_input *in = &s->inputs[i];
+        if (in->kind == SESSION_INPUT_START) {
+            code = parameter_set_text(&to->parameters, in->parameter, in->text, f);
+        } else {
+            action a = {.time = in->time,
+                        .kind = in->kind == SESSION_INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
+                        .parameter = in->parameter,
+                        .value = in->value,
+                        .added = true};
+            snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
+            scenario_insert_action(to, a);
+        }
+    }
+
+    return code == STATUS_OK ? parameters_resolve(&to->parameters, f) : code;
+}
+
+static double expected_rows(const parameters *p)
+{
+    return p->run.duration / p->method.step * ROW_SPARE;
+}
+
+static status check_memory(const parameters *p, fault *f)
+{
+    const double rows = expected_rows(p);
+    const double bytes =
+        rows * (double)(sizeof(sample) + 2 * sizeof(double) * (size_t)(p->arm.links + 1));
+    if (bytes > MEMORY_BUDGET) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%g s in steps of %g s would keep %.0f MiB of rows, the lab keeps at most "
+                         "%.0f: shorten run.duration or lengthen method.step",
+                         p->run.duration, p->method.step, bytes / (1024 * 1024),
+                         MEMORY_BUDGET / (1024 * 1024));
+    }
+    return STATUS_OK;
+}
+
+// The largest force so far, which the run's summary has at the end only.
+static void survey_force(session *s)
+{
+    const trace *t = &s->run.trace;
+    size_t end = s->surveyed + ROWS_SURVEYED;
+    for (; s->surveyed < t->row_count && s->surveyed < end; s->surveyed++) {
+        s->run.summary.peak_force_N = fmax(s->run.summary.peak_force_N, t->rows[s->surveyed].force);
+    }
+}
+
+// Puts the run that was being computed in the place of the present one, as far as it went. The
+// cursor may be beyond its end.
+static void collect_run(session *s)
+{
+    s->run = background_run_finish(s->computing);
+    s->computing = NULL;
+}
+
+// Ends what is being computed; false if there is nothing, or it was just over.
+static bool end_computing(session *s)
+{
+    if (s->computing == NULL) {
+        return false;
+    }
+    background_run_stop(s->computing);
+    collect_run(s);
+    return s->run.summary.status == STATUS_STOPPED;
+}
+
+// Whether the files that parameters name are those of the runs before. If they are others, what a
+// program answered then says nothing of now.
+static bool outside_is_same(session *s, const parameters *p)
+{
+    char stamp[SHA256_TEXT];
+    outside_stamp(p->code_allowed ? ~0u : 0, p, stamp); // before a consent nothing is opened
+    if (strcmp(stamp, s->outside) == 0) {
+        return true;
+    }
+    memcpy(s->outside, stamp, sizeof stamp);
+    process_transcript_destroy(s->transcript);
+    s->transcript = NULL;
+    return false;
+}
+
+// Computes the run of a scenario, and resumes the present one where it can. A run that is not there
+// within the session's patience is left to its thread. On failure the present run stays.
+static status start_run(session *s, const scenario *effective, fault *f)
+{
+    run_result run = {.before_impact = NULL};
+    size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
+    bool resume = outside_is_same(s, &effective->parameters) &&
+                  run_resume(&s->run, &s->effective, effective, rows, &run);
+    if (s->transcript == NULL && effective->parameters.control.law == LAW_PROCESS) {
+        s->transcript = process_transcript_create(); // without memory the program is always asked
+    }
+    const background_options how = {.rows_expected = rows,
+                                    .other = s->has_other ? &s->other : NULL,
+                                    .transcript = s->transcript,
+                                    .at_once = isinf(s->patience)};
+    background_run *c = background_run_start(effective, &how, resume ? &run : NULL);
+    if (c == NULL) {
+        run_finish(&run);
+        return fault_no_memory(f);
+    }
+
+    // wait as long as the session does, and then for the first row
+    bool over = background_run_wait(c, fmin(s->patience, 1e6));
+    while (!over && background_run_look(c, &run) == 0) {
+        over = background_run_wait(c, SHORT_WAIT);
+    }
+    if (over) {
+        run = background_run_finish(c);
+        c = NULL;
+    } else {
+        run.before_impact = NULL; // the background run's
+        summary_init(&run.summary);
+        run.history = (run_history){0};
+    }
+
+    // a run that diverges is worth looking at; one without a single row is not, and one that had no
+    // memory is not whole
+    loss_unless(run.summary.status != STATUS_NO_MEMORY);
+    if (run.trace.row_count == 0) {
+        status code =
+            run.summary.status != STATUS_OK ? summary_fault(&run.summary, f) : fault_no_memory(f);
+        run_finish(&run);
+        return code;
+    }
+
+    run_finish(&s->run);
+    s->run = run;
+    s->computing = c;
+    s->surveyed = 0;
+    return STATUS_OK;
+}
+
+status session_compute(session *s, fault *f)
+{
+    assert(s != NULL);
+
+    // what it would be
+    scenario effective;
+    status code = build_effective(s, &effective, f);
+    if (code == STATUS_OK) {
+        code = check_memory(&effective.parameters, f);
+    }
+
+    // the machine is needed for the new run alone
+    bool unfinished = end_computing(s);
+    if (code == STATUS_OK) {
+        code = start_run(s, &effective, f);
+    }
+
+    // without a new run the present one goes on, if there is one
+    if (code != STATUS_OK) {
+        free(effective.actions);
+        if (s->run.trace.row_count == 0) {
+            return code;
+        }
+        if (unfinished && start_run(s, &s->effective, NULL) == STATUS_OK) {
+            s->version++;
+        }
+        session_follow(s);
+        session_seek(s, s->now);
+        return code;
+    }
+
+    free(s->effective.actions);
+    s->effective = effective;
+    s->version++;
+    session_follow(s);
+    session_seek(s, s->now);
+    s->seen = s->now;
+    return STATUS_OK;
+}
+
+bool session_follow(session *s)
+{
+    assert(s != NULL);
+    if (s->computing == NULL) {
+        return false;
+    }
+
+    // it is over
+    if (background_run_wait(s->computing, 0)) {
+        collect_run(s);
+        session_seek(s, s->now);
+        return true;
+    }
+
+    // or has more rows
+    size_t before = s->run.trace.row_count;
+    bool more = background_run_look(s->computing, &s->run) > before;
+    survey_force(s);
+    s->row = trace_row_at(&s->run.trace, s->now);
+    return more;
+}
+
+bool session_stop(session *s)
+{
+    assert(s != NULL);
+    bool stopped = end_computing(s);
+    if (s->run.trace.row_count > 0) {
+        session_seek(s, s->now);
+    }
+    return stopped;
+}
+
+status session_go_on(session *s, fault *f)
+{
+    assert(s != NULL);
+    if (s->computing != NULL || s->run.summary.status != STATUS_STOPPED) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "the run was not stopped");
+    }
+
+    // a cursor that has been further than the rows there are stays remembered
+    double seen = s->seen;
+    status code = start_run(s, &s->effective, f);
+    s->version += code == STATUS_OK;
+    session_follow(s);
+    session_seek(s, s->now);
+    s->seen = fmax(seen, s->now);
+    return code;
+}
+
+parameters session_parameters_at(const session *s, double time)
+{
+    assert(s != NULL);
+    return scenario_parameters_at(&s->effective, time);
+}
+
+status session_keep_beside(session *s, const run_result *run, fault *f)
+{
+    assert(s != NULL && run != NULL);
+    run_result kept;
+    if (run_share(run, run->trace.row_count, &kept) != STATUS_OK) {
+        return fault_no_memory(f);
+    }
+    session_forget_other(s);
+    s->other = kept;
+    s->has_other = true;
+    s->version++;
+    return STATUS_OK;
+}
+
+status session_allow_code(session *s, fault *f)
+{
+    assert(s != NULL);
+    const bool before = s->base.parameters.code_allowed;
+    s->base.parameters.code_allowed = true;
+    status code = session_compute(s, f);
+    if (code != STATUS_OK) {
+        s->base.parameters.code_allowed = before;
+    }
+    return code;
+}
+
+process_replay session_take_replay(session *s)
+{
+    assert(s != NULL);
+    process_replay taken = {.restarted = false};
+    if (s->computing == NULL && s->transcript != NULL) {
+        taken = s->transcript->replay;
+        s->transcript->replay = (process_replay){.restarted = false};
+    }
+    return taken;
+}
+
+void session_forget_other(session *s)
+{
+    assert(s != NULL);
+    if (s->has_other) {
+        run_finish(&s->other);
+        s->has_other = false;
+    }
+}
+
+void session_forget_ghost(session *s)
+{
+    if (s->has_ghost) {
+        run_finish(&s->ghost);
+        s->has_ghost = false;
+        s->version++;
+    }
+}
+
+// --- beginning and end ---
 
 status session_open(session *s, scenario *base, double patience, fault *f)
 {

@@ -32,7 +32,7 @@
 #include <stddef.h>
 
 #include "src/arm/arm.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 
 typedef struct motion motion;
 

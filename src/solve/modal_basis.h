@@ -16,7 +16,7 @@
 //     P = M0 sum_k V_k V_k' P + g lambda,    lambda = (e' P - sum_k (V_k' M0 e) V_k' P) / g' e.
 #pragma once
 
-#include "src/base/status.h"
+#include "src/base/fault.h"
 #include "src/solve/modal_shapes.h"
 
 typedef struct modal_basis {

@@ -9,7 +9,7 @@
 #include <math.h>
 
 #include "src/arm/chain.h"
-#include "src/base/status.h"
+#include "src/base/fault.h"
 #include "src/solve/engine.h"
 
 // Drift from the contact constraint beyond which a state is projected back onto it.

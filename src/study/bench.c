@@ -59,7 +59,7 @@ status bench_run(const benchmark *b, bench_result *result, fault *f)
 
     // as many times as patience allows
     for (int i = 0; count < BENCH_REPETITIONS; i++) {
-        status code = b->measure(&value, f);
+        status code = b->measure(b, &value, f);
         if (code != STATUS_OK) {
             return code;
         }

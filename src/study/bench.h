@@ -13,12 +13,15 @@
 enum { BENCH_REPETITIONS = 11, BENCH_NAME = 48, BENCH_UNIT = 16 };
 
 // Something that can be measured.
-typedef struct benchmark {
-    const char *name;                           // "arm_n2_us_per_ms"
-    const char *unit;                           // "us/ms"
-    bool more_is_better;                        // a rate instead of a time
-    status (*measure)(double *value, fault *f); // once, in `unit`
-} benchmark;
+typedef struct benchmark benchmark;
+struct benchmark {
+    const char *name;                                               // "arm_n2_us_per_ms"
+    const char *unit;                                               // "us/ms"
+    bool more_is_better;                                            // a rate instead of a time
+    status (*measure)(const benchmark *b, double *value, fault *f); // once, in `unit`
+    const char *settings; // what is measured: "PATH=VALUE PATH=VALUE ..."
+    int number;           // and a number that tells it from its like
+};
 
 // What came out of it.
 typedef struct bench_result {

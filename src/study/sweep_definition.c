@@ -9,7 +9,7 @@
 
 #include "src/base/numbers.h"
 #include "src/base/text_stream.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/scenario/outside.h"
 
 // What comes before the path of a parameter in the key of what it names outside.

@@ -5,7 +5,7 @@
 
 #include "src/tables/summary.h"
 #include "src/study/pool.h"
-#include "src/study/ranks.h"
+#include "src/study/pool_ranks.h"
 #include "src/study/sweep.h"
 
 enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };

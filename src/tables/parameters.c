@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/base/words.h"
+#include "src/tables/control_laws.h"
 
 // What a row of the table is written with; a range includes both its ends.
 #define PATH(field)              .path = #field, .offset = offsetof(parameters, field)
@@ -431,3 +432,12 @@ const char *parameter_suggest(const char *path)
     }
     return nearest.best;
 }
+
+const control_law_info control_law_table[LAW_COUNT] = {
+    [LAW_NONE] = {"none", "no rig: the bare arm under motor.voltage"},
+    [LAW_PLUGIN] = {"plugin", "a controller of one's own"},
+    [LAW_PROCESS] = {"process", "a program of one's own, in any language"},
+#define LAW(name, prefix, word, description) [LAW_##name] = {word, description},
+    CONTROL_LAWS(LAW)
+#undef LAW
+};

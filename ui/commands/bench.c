@@ -11,7 +11,6 @@
 #include "src/study/bench.h"
 #include "src/study/store/sweep_store.h"
 #include "src/base/words.h"
-#include "src/base/version.h"
 #include "ui/commands/pictures.h"
 
 // --- what the programs add to the library's benchmarks --------------------------------------
@@ -57,8 +56,9 @@ static status run_program(char *const *words, fault *f)
 }
 
 // All figures of the thesis as `impactlab figures` draws them, into a folder that is then removed.
-static status measure_figures(double *value, fault *f)
+static status measure_figures(const benchmark *b, double *value, fault *f)
 {
+    (void)b;
     const char *place = getenv("TMPDIR");
     char folder[4000];
     snprintf(folder, sizeof folder, "%s/impactlab-bench-XXXXXX",
@@ -76,8 +76,9 @@ static status measure_figures(double *value, fault *f)
 }
 
 // A start of the program that does nothing but say its version: computing time of the process [ms].
-static status measure_start(double *value, fault *f)
+static status measure_start(const benchmark *b, double *value, fault *f)
 {
+    (void)b;
     enum { STARTS = 40 };
     const double start = bench_computing_time();
     status code = STATUS_OK;
@@ -89,8 +90,9 @@ static status measure_start(double *value, fault *f)
 }
 
 // A run of a sweep of voltages, on one thread into a database that is removed afterwards.
-static status measure_sweep(double *value, fault *f)
+static status measure_sweep(const benchmark *b, double *value, fault *f)
 {
+    (void)b;
     char vary[] = "motor.voltage=0.5:1.5:2000", *varied[] = {vary};
     char path[] = "/tmp/impactlab-bench-XXXXXX";
     static char name[] = "bench", none[] = "";
@@ -123,9 +125,9 @@ static status measure_sweep(double *value, fault *f)
 }
 
 static const benchmark own_table[] = {
-    {"sweep_us_per_run", "us", false, measure_sweep},
-    {"start_ms", "ms", false, measure_start},
-    {"figures_s", "s", false, measure_figures},
+    {"sweep_us_per_run", "us", false, measure_sweep, "", 0},
+    {"start_ms", "ms", false, measure_start, "", 0},
+    {"figures_s", "s", false, measure_figures, "", 0},
 };
 enum { OWN = sizeof own_table / sizeof own_table[0], MOST = 32 };
 

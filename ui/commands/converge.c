@@ -5,7 +5,7 @@
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/study/convergence.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/run_progress.h"

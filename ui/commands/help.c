@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 
 enum { LINE = 100 };
 

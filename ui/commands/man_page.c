@@ -5,7 +5,7 @@
 #include <ctype.h>
 #include <string.h>
 
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 
 // Text in which troff finds no request and no escape of its own.
 static void put_text(FILE *stream, const char *text, int bytes)

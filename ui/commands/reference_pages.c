@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 #include "src/tables/parameters.h"
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"

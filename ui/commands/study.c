@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "src/base/version.h"
+#include "src/base/shipped.h"
 
 int publish_study(const arguments *a, figure *fig)
 {

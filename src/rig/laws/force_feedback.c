@@ -1,10 +1,31 @@
-#include "src/rig/laws/force_feedback.h"
-
+// What the laws share that close the loop over the force reading alone (force-pd, force-integral,
+// discontinuous), and the one that closes none (open-loop): modes, parameters and memory.
 #include <assert.h>
+#include <math.h>
 
-const char *const force_feedback_modes[] = {"approach", "contact", NULL};
+#include "src/rig/laws/laws.h"
 
-const controller_parameter force_feedback_parameters[PARAMETERS] = {
+enum { APPROACH, CONTACT }; // modes
+
+// Their parameters, by their names in control.*, in the order of the table.
+enum { FORCE_WANTED, APPROACH_VOLTAGE, KV, THRESHOLD, FORCE_GAIN, INTEGRAL_GAIN, PARAMETERS };
+
+typedef struct force_memory {
+    controller_setup rig;
+    double p[PARAMETERS]; // values of the parameters
+    int mode;
+    double integral; // force-integral's command [V]
+} force_memory;
+
+// A controller of this family: its word, whether it can be held in a mode, its sample function.
+#define FORCE_FEEDBACK_LAW(law, obeys, samples)                                                    \
+    CONTROLLER_LAW(law, force_feedback_modes, force_feedback_parameters, force_memory,             \
+                   .lockable = obeys, .start = force_feedback_start, .sample = samples,            \
+                   .tune = force_feedback_tune)
+
+static const char *const force_feedback_modes[] = {"approach", "contact", NULL};
+
+static const controller_parameter force_feedback_parameters[PARAMETERS] = {
     [FORCE_WANTED] = {.name = "force"},
     [APPROACH_VOLTAGE] = {.name = "approach_voltage"},
     [KV] = {.name = "kv"},
@@ -13,7 +34,8 @@ const controller_parameter force_feedback_parameters[PARAMETERS] = {
     [INTEGRAL_GAIN] = {.name = "integral_gain"},
 };
 
-const char *force_feedback_tune(void *memory, const controller_setup *setup)
+// Takes setup and parameters into a force_memory, at the start or later; never refuses.
+static const char *force_feedback_tune(void *memory, const controller_setup *setup)
 {
     assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     force_memory *m = memory;
@@ -24,7 +46,7 @@ const char *force_feedback_tune(void *memory, const controller_setup *setup)
     return NULL;
 }
 
-const char *force_feedback_start(void *memory, const controller_setup *setup)
+static const char *force_feedback_start(void *memory, const controller_setup *setup)
 {
     force_memory *m = memory;
     const char *refusal = force_feedback_tune(memory, setup);
@@ -32,14 +54,85 @@ const char *force_feedback_start(void *memory, const controller_setup *setup)
     return refusal;
 }
 
-void force_feedback_choose_mode(force_memory *m, const controller_input *in)
+// Contact once the reading was above the threshold, and from then on, unless the law is held in a
+// mode.
+static void force_feedback_choose_mode(force_memory *m, const controller_input *in)
 {
     bool contact = m->mode == CONTACT || in->force > m->p[THRESHOLD];
     m->mode = in->wanted_mode >= 0 ? in->wanted_mode : contact ? CONTACT : APPROACH;
 }
 
-double force_feedback_command(const force_memory *m, const controller_input *in)
+// Static torque of the wanted force f, 2 f l, damped by the hub's velocity, and feedback of the
+// force's error: ((2 f l - kv w)/K + force_gain (f - reading)) with K the torque per volt [V].
+static double force_feedback_command(const force_memory *m, const controller_input *in)
 {
     double torque = 2 * m->p[FORCE_WANTED] * m->rig.link_length - m->p[KV] * in->tachometer;
     return torque / m->rig.torque_per_volt + m->p[FORCE_GAIN] * (m->p[FORCE_WANTED] - in->force);
 }
+
+// --- open-loop ---
+
+// The constant command of the approach, whatever the sensors read: figures 2.4 to 2.6.
+static void open_loop_sample(void *memory, const controller_input *in, controller_output *out)
+{
+    force_memory *m = memory;
+    (void)in;
+    out->command = m->p[APPROACH_VOLTAGE];
+}
+
+const controller open_loop_law = FORCE_FEEDBACK_LAW("open-loop", false, open_loop_sample);
+
+// --- force-pd ---
+
+// Static torque of the wanted force with feedback of the force error and of the hub's velocity,
+// once contact was felt.
+static void force_pd_sample(void *memory, const controller_input *in, controller_output *out)
+{
+    force_memory *m = memory;
+    force_feedback_choose_mode(m, in);
+    out->mode = m->mode;
+    out->command = m->mode == CONTACT ? force_feedback_command(m, in) : m->p[APPROACH_VOLTAGE];
+}
+
+const controller force_pd_law = FORCE_FEEDBACK_LAW("force-pd", true, force_pd_sample);
+
+// --- discontinuous ---
+
+// One law while the sensor feels the wall and another while it does not, without memory (after
+// Mills): force feedback here, the plain approach there.
+static void discontinuous_sample(void *memory, const controller_input *in, controller_output *out)
+{
+    force_memory *m = memory;
+    bool contact = in->wanted_mode >= 0 ? in->wanted_mode == CONTACT : in->force > m->p[THRESHOLD];
+    out->mode = contact ? CONTACT : APPROACH;
+    out->command = contact ? force_feedback_command(m, in) : m->p[APPROACH_VOLTAGE];
+}
+
+const controller discontinuous_law =
+    FORCE_FEEDBACK_LAW("discontinuous", true, discontinuous_sample);
+
+// --- force-integral ---
+
+// Explicit integral force control (Youcef-Toumi and Gutz): from contact on the command is the
+// integral of the force's error, u' = integral_gain (f - reading), which filters the impact's
+// spikes.
+static void force_integral_sample(void *memory, const controller_input *in, controller_output *out)
+{
+    force_memory *m = memory;
+    force_feedback_choose_mode(m, in);
+
+    // the integral is the command itself, so that modes join without a jump
+    if (m->mode == APPROACH) {
+        // after a release the present command continues
+        m->integral = m->p[APPROACH_VOLTAGE];
+    } else {
+        double error = m->p[FORCE_WANTED] - in->force, limit = m->rig.voltage_limit;
+        m->integral += m->p[INTEGRAL_GAIN] * error * m->rig.period;
+        m->integral = fmax(-limit, fmin(m->integral, limit)); // no windup
+    }
+    out->mode = m->mode;
+    out->command = m->integral;
+}
+
+const controller force_integral_law =
+    FORCE_FEEDBACK_LAW("force-integral", true, force_integral_sample);

@@ -1,13 +1,472 @@
+// The modes of the thesis's hybrid impact and force controller, 5.2 to 5.4, for it and for the laws
+// that share them: another approach (speed-limit, bang-bang), another answer to the impact
+// (reverse-torque), and the controller that 5.4 calls ideal (recovering).
+//
+// In contact the arm has one degree of freedom, theta, with the wall at theta_imp
+// (docs/explanation/control-design.md):
+//
+//     M theta'' = K u - D theta' - k_st sign(theta') + 4 k2 (theta_imp - theta)       (5.13)
+//     M = I1 + 2 I + m l^2/2                                                         (5.21)
+//
+// APPROACH sends the constant command. IMPACT follows the quintic (5.15) from the state at contact
+// to rest at the angle at which the beam presses with the wanted force f,
+//
+//     theta_f = theta_imp + f l/(2 k2)                                                       (5.23)
+//
+// by the inverse of the model along it and feedback of both errors, (5.24). FORCE holds theta_f
+// with the static torque 2 f l in advance, (5.25). Printed coefficients have 6 k2, 3 f l and M = 2
+// m eps^2 instead (errata B2).
+//
+// theta_imp is what the law is told, or in IMPACT the mean of what a sensor says of it, as 5.2
+// suggests: of film, theta3 - theta2, by (5.8) theta2 + theta3 = 2 theta_imp, or of an
+// accelerometer by (5.13).
+#include <assert.h>
+#include <math.h>
+
+#include "src/rig/laws/laws.h"
+#include "src/base/extremes.h"
+
+enum { APPROACH, IMPACT, FORCE, RECOVER }; // modes; the last is recovering's alone
+
+// Values of control.gains.
+enum { GAINS_TORQUE, GAINS_VOLTS, GAINS_PRINTED };
+
+// Values of control.impact_angle.
+enum { ANGLE_TOLD, ANGLE_BY_FILM, ANGLE_BY_ACCELEROMETER };
+
+// Parameters that these laws share, in this order; OWN is the law's own behind them.
+enum {
+    FORCE_WANTED,
+    APPROACH_VOLTAGE,
+    KP,
+    KV,
+    GAINS,
+    COEFFICIENTS,
+    TRANSITION,
+    THRESHOLD,
+    IMPACT_ANGLE,
+    OWN
+};
+#define HYBRID_PARAMETERS                                                                          \
+    {.name = "force"}, {.name = "approach_voltage"}, {.name = "kp"}, {.name = "kv"},               \
+        {.name = "gains"}, {.name = "coefficients"}, {.name = "transition_time"},                  \
+        {.name = "contact_threshold"},                                                             \
+    {                                                                                              \
+        .name = "impact_angle"                                                                     \
+    }
+
+typedef struct hybrid_memory {
+    controller_setup rig;
+    double force, approach_voltage, kp, kv, transition, threshold, own;
+    int gains;
+    bool printed;        // coefficients
+    int source;          // of the impact angle
+    double impact_angle; // theta_imp, as told or as the sensors have shown [rad]
+    int readings;        // that it is the mean of; 0: as told
+    int mode;
+    double since;       // start of the present mode [s]
+    double a[6];        // quintic of the impact mode, (5.15)
+    double begun;       // when the quintic begins [s]
+    double length;      // and how long it is [s]
+    bool replans;       // force or t_f have changed since
+    double start_angle; // at the first sample [rad]
+    bool started, reversed;
+    int readings_without_contact;
+} hybrid_memory;
+
+// A controller of this family: word, modes, table of parameters, start and sample function.
+#define HYBRID_LAW(law, names, table, starts, samples)                                             \
+    CONTROLLER_LAW(law, names, table, hybrid_memory, .lockable = true, .start = starts,            \
+                   .sample = samples, .tune = starts)
+
+static const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
+
+// Takes setup and parameters into a hybrid_memory, at the start or later; never refuses. In the
+// impact mode the trajectory is then planned anew from where the arm is, for what is left of t_f.
+// The second is for laws with a parameter of their own behind the shared ones, memory->own.
+static const char *hybrid_start(void *memory, const controller_setup *setup)
+{
+    assert(memory != NULL && setup != NULL && setup->parameters != NULL);
+    hybrid_memory *m = memory;
+    const double *p = setup->parameters;
+
+    // a trajectory under way is planned anew if it leads elsewhere now
+    m->replans =
+        m->mode == IMPACT && (m->force != p[FORCE_WANTED] || m->transition != p[TRANSITION]);
+
+    m->rig = *setup;
+    m->force = p[FORCE_WANTED];
+    m->approach_voltage = p[APPROACH_VOLTAGE];
+    m->kp = p[KP];
+    m->kv = p[KV];
+    m->gains = (int)p[GAINS];
+    m->printed = p[COEFFICIENTS] != 0;
+    m->transition = p[TRANSITION];
+    m->threshold = p[THRESHOLD];
+    m->source = (int)p[IMPACT_ANGLE];
+    if (m->readings == 0) {
+        m->impact_angle = setup->wall_angle;
+    }
+    return NULL;
+}
+
+static const char *hybrid_start_with_own(void *memory, const controller_setup *setup)
+{
+    hybrid_memory *m = memory;
+    m->own = setup->parameters[OWN];
+    return hybrid_start(memory, setup);
+}
+
+static double sign(double x)
+{
+    return (x > 0) - (x < 0);
+}
+
+// Stiffness of the hub in contact: 6 k2 in (5.13) as printed, 4 k2 once the spring is counted right
+// (errata B2) [N m/rad].
+static double contact_stiffness(const hybrid_memory *m)
+{
+    return (m->printed ? 6 : 4) * m->rig.k2;
+}
+
+// Torque of the beam's spring on the hub at an angle.
+static double spring_torque(const hybrid_memory *m, double angle)
+{
+    return contact_stiffness(m) * (m->impact_angle - angle);
+}
+
+// Inertia of the arm in contact: 2 m eps^2 in (5.13) with eps = l/2; corrected, the bodies' own
+// moments of inertia are there too (errata B2).
+static double contact_inertia(const hybrid_memory *m)
+{
+    const controller_setup *r = &m->rig;
+    double own = m->printed ? 0 : r->hub_inertia + 2 * r->link_inertia;
+    return 2 * r->link_mass * r->link_length * r->link_length / 4 + own;
+}
+
+// Hub angle at which the beam presses with the wanted force, (5.23) [rad].
+static double hybrid_final_angle(const hybrid_memory *m)
+{
+    return m->impact_angle + m->force * m->rig.link_length / (2 * m->rig.k2);
+}
+
+// Hub acceleration in contact under the command u, (5.13), (5.21) [rad/s2].
+static double contact_acceleration(const hybrid_memory *m, double angle, double velocity, double u)
+{
+    const controller_setup *r = &m->rig;
+    double torque = r->torque_per_volt * u - r->hub_damping * velocity -
+                    r->stiction * sign(velocity) + spring_torque(m, angle);
+    return torque / contact_inertia(m);
+}
+
+// Tip force that (5.14) calculates from the hub's angle and acceleration [N].
+static double hybrid_calculated_force(const hybrid_memory *m, const controller_input *in)
+{
+    const controller_setup *r = &m->rig;
+    double eps2 = r->link_length * r->link_length / 4;
+    double mass_term = r->link_mass * eps2 + (m->printed ? 0 : r->link_inertia);
+    // corrected: link 3 turns back about a joint that moves on: (m l^2/2 - m l^2/4 - I3)
+    double coupling = m->printed ? mass_term : 2 * r->link_mass * eps2 - mass_term;
+    double acceleration = contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
+    return (2 * r->k2 * (in->encoder - r->wall_angle) - coupling * acceleration) / r->link_length;
+}
+
+// Volts of the feedback kp (angle error) + kv (velocity error), read as torque or as volts (B7).
+static double feedback(const hybrid_memory *m, double angle_error, double velocity_error)
+{
+    bool volts = m->gains == GAINS_VOLTS || (m->gains == GAINS_PRINTED && m->mode == FORCE);
+    double sum = m->kp * angle_error + m->kv * velocity_error;
+    return volts ? sum : sum / m->rig.torque_per_volt;
+}
+
+// The coefficients of the quintic (5.15) that lead it to rest at the final angle from what the
+// first three say of its start: the solution of (5.18)-(5.20).
+static void lead_to_end(hybrid_memory *m)
+{
+    const double T = m->length, way = hybrid_final_angle(m) - m->a[0];
+    const double velocity = m->a[1], acceleration = 2 * m->a[2];
+    m->a[3] = (20 * way - 12 * velocity * T - 3 * acceleration * T * T) / (2 * T * T * T);
+    m->a[4] = (-30 * way + 16 * velocity * T + 3 * acceleration * T * T) / (2 * T * T * T * T);
+    m->a[5] = (12 * way - 6 * velocity * T - acceleration * T * T) / (2 * T * T * T * T * T);
+}
+
+// Plans from the state at contact.
+static void plan(hybrid_memory *m, double angle, double velocity, double acceleration)
+{
+    m->a[0] = angle;
+    m->a[1] = velocity;
+    m->a[2] = acceleration / 2;
+    lead_to_end(m);
+}
+
+// The impact angle that a sample's readings show, NaN where the sensor is not fitted [rad].
+static double angle_shown(const hybrid_memory *m, const controller_input *in)
+{
+    if (m->source == ANGLE_BY_FILM) {
+        return in->encoder + in->film / 2;
+    }
+
+    // what of the measured acceleration the motor and friction do not account for is the beam's
+    double missing =
+        in->accelerometer - contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
+    return m->impact_angle + contact_inertia(m) * missing / contact_stiffness(m);
+}
+
+// Averages what the first readings of the impact mode show; the trajectory's end goes with it. The
+// accelerometer is off scale at the impact and lags behind it for a while, the film loses its
+// charge.
+static void follow_angle(hybrid_memory *m, const controller_input *in)
+{
+    const double lag = 0.01, window = 0.1; // [s]
+    double time = in->time - m->since, from = m->source == ANGLE_BY_ACCELEROMETER ? lag : 0;
+    bool tells = m->source != ANGLE_TOLD && time >= from && time <= window;
+    double shown = tells ? angle_shown(m, in) : (double)NAN;
+    if (!isnan(shown)) {
+        m->readings++;
+        m->impact_angle += (shown - m->impact_angle) / m->readings;
+        lead_to_end(m);
+    }
+}
+
+// Goes into a mode. Entering the impact mode plans the trajectory from the present state and
+// command on, so that the command goes on from where it is.
+static void hybrid_begin(hybrid_memory *m, int mode, const controller_input *in)
+{
+    m->mode = mode;
+    m->since = m->begun = in->time;
+    m->length = m->transition;
+    if (mode == IMPACT) {
+        m->readings = 0;
+        plan(m, in->encoder, in->tachometer,
+             contact_acceleration(m, in->encoder, in->tachometer, in->voltage));
+    }
+}
+
+// Plans anew for what is left of the transition, if that is more than a sample.
+static void plan_again(hybrid_memory *m, const controller_input *in)
+{
+    const double left = m->since + m->transition - in->time;
+    m->replans = false;
+    if (left > m->rig.period) {
+        m->begun = in->time;
+        m->length = left;
+        plan(m, in->encoder, in->tachometer,
+             contact_acceleration(m, in->encoder, in->tachometer, in->voltage));
+    }
+}
+
+// Goes into the mode the law is held in. False if it is not: then it chooses itself, beginning with
+// the mode that it is in.
+static bool hybrid_held(hybrid_memory *m, const controller_input *in)
+{
+    if (in->wanted_mode >= 0 && in->wanted_mode != m->mode) {
+        hybrid_begin(m, in->wanted_mode, in);
+    }
+    return in->wanted_mode >= 0;
+}
+
+// Impact mode: the quintic and the law (5.24).
+static double impact_command(const hybrid_memory *m, const controller_input *in,
+                             controller_output *out)
+{
+    // held in this mode beyond t_f it stays at the trajectory's end
+    const double *a = m->a, t = smaller(in->time - m->begun, m->length);
+    double angle = a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * (a[4] + t * a[5]))));
+    double velocity = a[1] + t * (2 * a[2] + t * (3 * a[3] + t * (4 * a[4] + t * 5 * a[5])));
+    double acceleration = 2 * a[2] + t * (6 * a[3] + t * (12 * a[4] + t * 20 * a[5]));
+
+    // the model's torque along the plan, (5.24)
+    double torque = m->rig.hub_damping * velocity + m->rig.stiction * sign(velocity) -
+                    spring_torque(m, angle) + contact_inertia(m) * acceleration;
+    out->desired_angle = angle;
+    out->desired_velocity = velocity;
+    return torque / m->rig.torque_per_volt +
+           feedback(m, angle - in->encoder, velocity - in->tachometer);
+}
+
+// Force mode: PD round the final angle with the static torque in advance, (5.25) [V].
+static double hybrid_force_command(const hybrid_memory *m, const controller_input *in,
+                                   controller_output *out)
+{
+    double torque = (m->printed ? 3 : 2) * m->force * m->rig.link_length;
+    out->desired_angle = hybrid_final_angle(m);
+    out->desired_velocity = 0;
+    return torque / m->rig.torque_per_volt +
+           feedback(m, hybrid_final_angle(m) - in->encoder, -in->tachometer);
+}
+
+// The three modes with their switching, contact and then t_f, behind an approach with the given
+// command [V]. Fills out but for the command, which it returns.
+static double hybrid_command(hybrid_memory *m, const controller_input *in, controller_output *out,
+                             double approach)
+{
+    // approach ends with contact, the impact mode with t_f
+    bool chooses = !hybrid_held(m, in);
+    if (chooses && (m->mode == APPROACH || m->mode == RECOVER) && in->force > m->threshold) {
+        hybrid_begin(m, IMPACT, in);
+    }
+    if (chooses && m->mode == IMPACT && in->time - m->since >= m->transition) {
+        hybrid_begin(m, FORCE, in);
+    }
+
+    if (m->replans && m->mode == IMPACT) {
+        plan_again(m, in);
+    }
+    if (m->mode == IMPACT) {
+        follow_angle(m, in);
+    }
+
+    out->mode = m->mode;
+    out->calculated_force = m->mode == APPROACH ? 0 : hybrid_calculated_force(m, in);
+    return m->mode == IMPACT  ? impact_command(m, in, out)
+           : m->mode == FORCE ? hybrid_force_command(m, in, out)
+                              : approach;
+}
+
+// Command that keeps the hub at a speed [rad/s], friction included, with a proportional
+// correction [V].
+static double hybrid_speed_command(const hybrid_memory *m, const controller_input *in, double speed)
+{
+    const double gain = 0.5; // [N m s/rad]
+    double torque = m->rig.hub_damping * speed + m->rig.stiction * sign(speed) +
+                    gain * (speed - in->tachometer);
+    return torque / m->rig.torque_per_volt;
+}
+
+// --- hybrid ---
+
 // The thesis's hybrid impact and force controller, 5.2 to 5.4: approach, impact mode, force mode.
-#include "src/rig/laws/hybrid_modes.h"
+static const controller_parameter hybrid_parameters[] = {HYBRID_PARAMETERS};
 
-static const controller_parameter parameters_of_law[] = {HYBRID_PARAMETERS};
-
-static void sample(void *memory, const controller_input *in, controller_output *out)
+static void hybrid_sample(void *memory, const controller_input *in, controller_output *out)
 {
     hybrid_memory *m = memory;
     out->command = hybrid_command(m, in, out, m->approach_voltage);
 }
 
 const controller hybrid_law =
-    HYBRID_LAW("hybrid", hybrid_modes, parameters_of_law, hybrid_start, sample);
+    HYBRID_LAW("hybrid", hybrid_modes, hybrid_parameters, hybrid_start, hybrid_sample);
+
+// --- recovering ---
+
+// The controller that 5.4 calls ideal: hybrid, but going back to position control where contact is
+// lost, and through the impact mode again when it returns.
+static const char *const recovering_modes[] = {"approach", "impact", "force", "recover", NULL};
+
+static void recovering_sample(void *memory, const controller_input *in, controller_output *out)
+{
+    hybrid_memory *m = memory;
+    const int lost = 2; // readings without contact in a row
+    m->readings_without_contact = in->force > m->threshold ? 0 : m->readings_without_contact + 1;
+    bool pressing = m->mode == IMPACT || m->mode == FORCE;
+    if (!hybrid_held(m, in) && pressing && m->readings_without_contact >= lost) {
+        hybrid_begin(m, RECOVER, in);
+    }
+    // a slow move towards the angle at which the beam would press
+    double speed = fmin(0.3, 5 * (hybrid_final_angle(m) - in->encoder));
+    double approach = m->mode == RECOVER ? hybrid_speed_command(m, in, speed) : m->approach_voltage;
+    out->command = hybrid_command(m, in, out, approach);
+}
+
+const controller recovering_law =
+    HYBRID_LAW("recovering", recovering_modes, hybrid_parameters, hybrid_start, recovering_sample);
+
+// --- reverse-torque ---
+
+// Until contact as the hybrid controller; then the largest command back for control.reverse_time;
+// then its force mode.
+static const controller_parameter reverse_torque_parameters[] = {HYBRID_PARAMETERS,
+                                                                 {.name = "reverse_time"}};
+
+static void reverse_torque_sample(void *memory, const controller_input *in, controller_output *out)
+{
+    hybrid_memory *m = memory;
+
+    // contact begins the pull back, its time ends it
+    bool chooses = !hybrid_held(m, in);
+    if (chooses && m->mode == APPROACH && in->force > m->threshold) {
+        hybrid_begin(m, IMPACT, in);
+    }
+    if (chooses && m->mode == IMPACT && in->time - m->since >= m->own) {
+        hybrid_begin(m, FORCE, in);
+    }
+
+    out->mode = m->mode;
+    out->calculated_force = m->mode == APPROACH ? 0 : hybrid_calculated_force(m, in);
+    out->command = m->mode == APPROACH ? m->approach_voltage
+                   : m->mode == IMPACT ? -m->rig.voltage_limit
+                                       : hybrid_force_command(m, in, out);
+}
+
+const controller reverse_torque_law =
+    HYBRID_LAW("reverse-torque", hybrid_modes, reverse_torque_parameters, hybrid_start_with_own,
+               reverse_torque_sample);
+
+// --- speed-limit ---
+
+// The hybrid controller with the hub kept below control.speed_limit on the way to the wall and,
+// where there is a control.force_limit, to speeds at which the impact that the rig predicts for a
+// touch at this instant (predicted_force, (4.20)-(4.22)) keeps to it.
+
+// Command for each newton that the predicted force is off its limit [V/N]. The prediction has the
+// command in it, by the torque at the hub over the arm's length: less than half a newton a volt.
+#define VOLTS_PER_NEWTON 1
+// Share of the limit that the predicted force is held to: it takes the command in effect to stay,
+// while the impact mode goes on along its plan and comes to press up to a fifth harder.
+#define SHARE 0.8
+// Speed at which a resting hub is taken, for the sign of its friction [rad/s].
+#define CREEP 1e-3
+
+enum { OWN_FORCE_LIMIT = OWN + 1 };
+static const controller_parameter speed_limit_parameters[] = {
+    HYBRID_PARAMETERS, {.name = "speed_limit"}, {.name = "force_limit"}};
+
+// Keeps the present speed up and adds what the predicted force leaves.
+static double force_limited_command(const hybrid_memory *m, const controller_input *in)
+{
+    const double left = SHARE * m->rig.parameters[OWN_FORCE_LIMIT] - in->predicted_force;
+    return hybrid_speed_command(m, in, fmax(in->tachometer, CREEP)) + VOLTS_PER_NEWTON * left;
+}
+
+static void speed_limit_sample(void *memory, const controller_input *in, controller_output *out)
+{
+    hybrid_memory *m = memory;
+    double limited = fmin(m->approach_voltage, hybrid_speed_command(m, in, m->own));
+    if (m->rig.parameters[OWN_FORCE_LIMIT] > 0 && isfinite(in->predicted_force)) {
+        limited = fmin(limited, force_limited_command(m, in));
+    }
+    out->command = hybrid_command(m, in, out, limited);
+}
+
+const controller speed_limit_law = HYBRID_LAW("speed-limit", hybrid_modes, speed_limit_parameters,
+                                              hybrid_start_with_own, speed_limit_sample);
+
+// --- bang-bang ---
+
+// Full command to control.switch_share of the way, full command back until the hub rests, then the
+// plain approach and the hybrid controller.
+static const controller_parameter bang_bang_parameters[] = {HYBRID_PARAMETERS,
+                                                            {.name = "switch_share"}};
+
+static void bang_bang_sample(void *memory, const controller_input *in, controller_output *out)
+{
+    hybrid_memory *m = memory;
+    double limit = m->rig.voltage_limit, approach = limit;
+
+    // the way is measured from where the run begins
+    if (!m->started) {
+        m->started = true;
+        m->start_angle = in->encoder;
+    }
+
+    // on the last part the command brakes until the arm stands, then it is the plain approach
+    double gone = in->encoder - m->start_angle, way = m->rig.wall_angle - m->start_angle;
+    if (gone >= m->own * way) {
+        m->reversed = m->reversed || in->tachometer <= 0;
+        approach = m->reversed ? m->approach_voltage : -limit;
+    }
+    out->command = hybrid_command(m, in, out, m->reversed ? m->approach_voltage : approach);
+}
+
+const controller bang_bang_law = HYBRID_LAW("bang-bang", hybrid_modes, bang_bang_parameters,
+                                            hybrid_start_with_own, bang_bang_sample);

@@ -1,7 +1,513 @@
-// State feedback with an observer on the linearised arm, behind the plain approach.
-#include "src/rig/laws/state_feedback.h"
+// State feedback with an observer on the linearised arm.
+//
+// In contact the two-link arm has one degree of freedom, x = theta2 - theta_imp:
+//
+//     M x'' = Kt u - D x' - friction - 4 k2 x,      f = 4 k2 x - mu x'',
+//     M = I1 + 2 I + m l^2/2,     mu = (m l^2/4 - I)/l  (l = 1/2 of the beam)
+//
+// so braking presses, and with f as the input x'' = s^2 (x - f/(4 k2)), s^2 = 4 k2/mu, is unstable.
+// The feedback that makes the sum of (f - command)^2 + effort u^2 least comes from the discrete
+// Riccati equation. What it asks for is limited to commands that keep the force positive.
+//
+// The observer is a Kalman filter: in free flight on both links, so that the wall is found where
+// the tip is when the force sensor first feels it; in contact on theta2, its velocity, the wall's
+// angle and a constant torque, from encoder, tachometer and force sensor.
+//
+// optimal comes in with the constant command; predictive as fast as a limit on the force allows.
+#include <assert.h>
+#include <math.h>
+#include <string.h>
 
-static const controller_parameter parameters_of_law[] = {STATE_FEEDBACK_PARAMETERS};
+#include "src/rig/estimation/estimator.h"
+#include "src/rig/laws/laws.h"
+#include "src/base/plain_math.h"
+#include "src/rig/estimation/riccati.h"
+
+enum { APPROACH, PRESS, HOLD };
+
+// Parameters that both laws have, in this order; OWN is predictive's limit behind them.
+enum { FORCE_WANTED, APPROACH_VOLTAGE, THRESHOLD, OWN };
+#define STATE_FEEDBACK_PARAMETERS                                                                  \
+    {.name = "force"}, {.name = "approach_voltage"},                                               \
+    {                                                                                              \
+        .name = "contact_threshold"                                                                \
+    }
+
+typedef struct optimal_memory {
+    controller_setup rig;
+    double force, approach_voltage, threshold;
+    double force_limit; // HUGE_VAL if there is none [N]
+    double jump[2];     // rate of x after an impact, of both links' velocities before it
+    int mode;
+    bool started;
+    bool flies;          // the estimate is of the free flight
+    double inertia;      // M [kg m2]
+    double stiffness;    // 4 k2 [N m/rad]
+    double spring_force; // of x: 2 k2/l [N/rad]
+    double mass_force;   // mu [N s2/rad]
+    double divergence;   // s [1/s]
+    double gain[2];      // of x and its rate [V/rad], [V s/rad]
+    sampled_model flight, contact, during_delay;
+    estimator e;         // of the flight or of the contact
+    double ceiling;      // largest force to brake with [N]
+    double hold_command; // [V]
+    double held_force;   // reading of the force sensor, smoothed [N]
+    int readings_without_force;
+} optimal_memory;
+
+// A controller of this family: word, table of parameters, start function.
+#define STATE_FEEDBACK_LAW(law, table, starts)                                                     \
+    CONTROLLER_LAW(law, state_feedback_modes, table, optimal_memory, .lockable = true,             \
+                   .start = starts, .sample = state_feedback_sample)
+
+static const char *const state_feedback_modes[] = {"approach", "press", "hold", NULL};
+
+enum { FREE_FIRST, FREE_LAST, FREE_FIRST_RATE, FREE_LAST_RATE };    // states in free flight
+enum { PRESSED_ANGLE, PRESSED_RATE, PRESSED_WALL, PRESSED_TORQUE }; // states in contact
+
+// Standard deviations of what the models leave out, a sample each, and of the readings.
+static const double flight_noise[4] = {1e-8, 1e-8, 1e-5, 1e-5};
+static const double contact_noise[4] = {1e-8, 2e-4, 1e-8, 1e-5};
+#define ANGLE_VARIANCE 2e-7   // [rad2]
+#define RATE_VARIANCE  2e-4   // [rad2/s2]
+#define K2_DOUBT       0.1    // share by which k2 may be wrong
+#define EFFORT         1e-3   // of a command in the cost [N2/V2]
+#define URGENCY        20.0   // errors die faster than exp(-URGENCY t) [1/s]
+#define SHORTFALL      0.0065 // of the aim, a share per newton, as the noise grows [1/N]
+#define MOST_SHORTFALL 0.05   // a share
+
+// Free flight of both links under a torque on the hub: M q'' = torque e1 - D q1' e1 - K q.
+static void model_flight(optimal_memory *m)
+{
+    const controller_setup *r = &m->rig;
+    double ml2 = r->link_mass * r->link_length * r->link_length;
+    double m11 = r->hub_inertia + r->link_inertia + 1.25 * ml2, m12 = 0.5 * ml2;
+    double m22 = r->link_inertia + 0.25 * ml2, det = m11 * m22 - m12 * m12;
+
+    // what the impact makes of both links' velocities, (4.10)-(4.17)
+    m->jump[0] = (m11 - m12) / m->inertia;
+    m->jump[1] = (m12 - m22) / m->inertia;
+
+    // accelerations M^-1 (torque e1 - D q1' e1 - K q)
+    double bend_first = r->k2 * (m22 + m12) / det, bend_last = -r->k2 * (m12 + m11) / det;
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {
+        [FREE_FIRST] = {[FREE_FIRST_RATE] = 1},
+        [FREE_LAST] = {[FREE_LAST_RATE] = 1},
+        [FREE_FIRST_RATE] = {-bend_first, bend_first, -m22 / det * r->hub_damping},
+        [FREE_LAST_RATE] = {-bend_last, bend_last, m12 / det * r->hub_damping},
+    };
+    double input[ESTIMATOR_STATES] = {0, 0, m22 / det, -m12 / det};
+    sampled_model_init(&m->flight, 4, rate, input, r->period);
+}
+
+// In contact, on x and its rate, the wall's angle and a constant torque T:
+// M x'' = torque + T - D x' - 4 k2 x, over a time h.
+static void model_contact(optimal_memory *m, double h, sampled_model *model)
+{
+    double k = m->stiffness / m->inertia, d = m->rig.hub_damping / m->inertia;
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {
+        [PRESSED_ANGLE] = {[PRESSED_RATE] = 1}, [PRESSED_RATE] = {-k, -d, k, 1 / m->inertia}};
+    double input[ESTIMATOR_STATES] = {[PRESSED_RATE] = 1 / m->inertia};
+    sampled_model_init(model, 4, rate, input, h);
+}
+
+// Takes setup and parameters, models the arm and finds the gains. Refuses an arm without a motor or
+// without inertia, and one whose Riccati equation has no stabilising solution. The second is for a
+// law with a limit on the force behind the shared parameters.
+static const char *state_feedback_start(void *memory, const controller_setup *setup)
+{
+    assert(memory != NULL && setup != NULL && setup->parameters != NULL);
+    optimal_memory *m = memory;
+    const double l = setup->link_length, quarter = setup->link_mass * l * l / 4;
+
+    m->rig = *setup;
+    m->force = setup->parameters[FORCE_WANTED];
+    m->approach_voltage = setup->parameters[APPROACH_VOLTAGE];
+    m->threshold = setup->parameters[THRESHOLD];
+    m->force_limit = HUGE_VAL;
+
+    // the one degree of freedom in contact
+    m->inertia = setup->hub_inertia + 2 * setup->link_inertia + 2 * quarter;
+    m->stiffness = 4 * setup->k2;
+    m->spring_force = 2 * setup->k2 / l;
+    m->mass_force = (quarter - setup->link_inertia) / l;
+    m->divergence = m->mass_force > 0 ? sqrt(m->spring_force / m->mass_force) : HUGE_VAL;
+    if (!(setup->torque_per_volt > 0) || !(m->inertia > 0)) {
+        return "it needs a motor that turns the hub and an arm with inertia";
+    }
+
+    model_flight(m);
+    model_contact(m, setup->period, &m->contact);
+    model_contact(m, setup->delay, &m->during_delay);
+
+    // force of deviations from rest: x and its rate, and a command's immediate effect
+    sampled_model plant = {.n = 2};
+    for (int i = 0; i < 2; i++) {
+        memcpy(plant.a[i], m->contact.a[i], 2 * sizeof(double));
+        plant.b[i] = m->contact.b[i] * setup->torque_per_volt;
+    }
+    double per_torque = m->mass_force / m->inertia;
+    double output[2] = {m->spring_force + per_torque * m->stiffness,
+                        per_torque * setup->hub_damping};
+    quadratic_cost cost = {.effort = EFFORT, .growth = plain_exp(URGENCY * setup->period)};
+    quadratic_cost_add(&cost, 2, output, -per_torque * setup->torque_per_volt, 1);
+    if (!quadratic_gain(&plant, &cost, m->gain)) {
+        return "the Riccati equation of its gains has no stabilising solution";
+    }
+    return NULL;
+}
+
+static const char *state_feedback_start_with_limit(void *memory, const controller_setup *setup)
+{
+    optimal_memory *m = memory;
+    const char *refusal = state_feedback_start(memory, setup);
+    m->force_limit = setup->parameters[OWN] > 0 ? setup->parameters[OWN] : HUGE_VAL;
+    return refusal;
+}
+
+// Coulomb friction at a velocity, taken as what holds where the hub is as good as at rest.
+static double friction(const optimal_memory *m, double velocity, double other_torque)
+{
+    const double rest = 0.01; // [rad/s]
+    double limit = m->rig.stiction;
+    if (fabs(velocity) > rest) {
+        return velocity > 0 ? limit : -limit;
+    }
+    return fmax(-limit, fmin(other_torque, limit));
+}
+
+static double motor_torque(const optimal_memory *m, double volts)
+{
+    return m->rig.torque_per_volt * volts;
+}
+
+// --- free flight ----------------------------------------------------------------------------
+
+static void observe_flight(optimal_memory *m, const controller_input *in)
+{
+    static const double angle_row[4] = {[FREE_FIRST] = 1}, rate_row[4] = {[FREE_FIRST_RATE] = 1};
+    estimator *e = &m->e;
+    estimator_correct(e, 4, angle_row, 0, in->encoder, ANGLE_VARIANCE);
+    estimator_correct(e, 4, rate_row, 0, in->tachometer, RATE_VARIANCE);
+}
+
+static void predict_flight(optimal_memory *m, const controller_input *in)
+{
+    double drive = motor_torque(m, in->voltage);
+    drive -= friction(m, m->e.z[FREE_FIRST_RATE], drive);
+    estimator_predict(&m->e, &m->flight, drive, flight_noise);
+}
+
+// The tip met the wall between the last sample and this one: there the wall is.
+static void enter_contact(optimal_memory *m, const controller_input *in)
+{
+    double before = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2;
+    predict_flight(m, in);
+    double after = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2, way = after - before;
+
+    // anywhere on the way between the two samples: variance way^2/12
+    estimator e = {.z = {in->encoder, in->tachometer, (before + after) / 2, 0}};
+    e.p[PRESSED_ANGLE][PRESSED_ANGLE] = ANGLE_VARIANCE;
+    e.p[PRESSED_RATE][PRESSED_RATE] = RATE_VARIANCE;
+    e.p[PRESSED_WALL][PRESSED_WALL] = way * way / 12 + 1e-6;
+    e.p[PRESSED_TORQUE][PRESSED_TORQUE] = 1e-4;
+    m->e = e;
+    m->ceiling = m->force;
+    m->flies = false;
+}
+
+// Force to brake with where stopping takes at least `stopping` [N].
+static double braking_force(const optimal_memory *m, double stopping)
+{
+    return stopping + 0.2 * fmax(0, stopping - m->force) + 0.01;
+}
+
+// Back to free flight where that is wanted: the tip is taken to be at the wall still, where both
+// links turn against each other.
+static void leave_contact(optimal_memory *m, const controller_input *in)
+{
+    double wall = m->e.z[PRESSED_WALL];
+    estimator e = {.z = {in->encoder, 2 * wall - in->encoder, in->tachometer, -in->tachometer}};
+    e.p[FREE_FIRST][FREE_FIRST] = ANGLE_VARIANCE;
+    e.p[FREE_FIRST_RATE][FREE_FIRST_RATE] = RATE_VARIANCE;
+    e.p[FREE_LAST][FREE_LAST] = 1e-4;
+    e.p[FREE_LAST_RATE][FREE_LAST_RATE] = 0.1;
+    m->e = e;
+    m->flies = true;
+}
+
+// If the tip touched the wall now: the impact throws the links' velocities onto x' as (4.10)-(4.17)
+// have it, and stopping from there takes at least 4 k2 (x + x'/s), which grows until the controller
+// has noticed. The phase of the vibration is in x and in both velocities.
+static double force_of_touch(const optimal_memory *m)
+{
+    const double *z = m->e.z;
+    double x = (z[FREE_FIRST] - z[FREE_LAST]) / 2;
+    double rate = m->jump[0] * z[FREE_FIRST_RATE] + m->jump[1] * z[FREE_LAST_RATE];
+    double noticed = plain_exp(m->divergence * (m->rig.period + m->rig.delay));
+    return braking_force(m, m->spring_force * (x + rate / m->divergence) * noticed);
+}
+
+// The command of the approach; with a limit on the force, as fast as it allows: the speed that
+// there is, kept up, and the rest in proportion to the remaining margin of force.
+static double approach(const optimal_memory *m)
+{
+    if (m->force_limit == HUGE_VAL) {
+        return m->approach_voltage;
+    }
+    const double gain = 3;      // [V/N]
+    const double margin = 0.94; // share of the limit that is used, less 0.035 N for the noise
+    double speed = m->e.z[FREE_FIRST_RATE];
+    double keep = m->rig.hub_damping * speed + m->rig.stiction;
+    double command = keep / m->rig.torque_per_volt +
+                     gain * (margin * m->force_limit - 0.035 - force_of_touch(m));
+    return fmin(command, m->approach_voltage);
+}
+
+// --- in contact -----------------------------------------------------------------------------
+
+// Hub acceleration of a state in contact under a torque on the hub [rad/s2].
+static double acceleration(const optimal_memory *m, const double *z, double drive)
+{
+    double x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
+    double torque =
+        drive + z[PRESSED_TORQUE] - m->rig.hub_damping * z[PRESSED_RATE] - m->stiffness * x;
+    return (torque - friction(m, z[PRESSED_RATE], torque)) / m->inertia;
+}
+
+static double contact_force(const optimal_memory *m, const double *z, double drive)
+{
+    return m->spring_force * (z[PRESSED_ANGLE] - z[PRESSED_WALL]) -
+           m->mass_force * acceleration(m, z, drive);
+}
+
+// The state after h: the sampled model, or rest where friction holds the hub.
+static void predict_contact(const optimal_memory *m, const sampled_model *model, estimator *e,
+                            double drive)
+{
+    double *z = e->z, x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
+    double torque = drive + z[PRESSED_TORQUE] - m->stiffness * x;
+    double rest_angle = z[PRESSED_ANGLE];
+    bool rests = fabs(z[PRESSED_RATE]) < 0.01 && fabs(torque) <= m->rig.stiction;
+    double held = friction(m, z[PRESSED_RATE], torque);
+
+    // a stiffness believed wrongly shows as a wall that moves with the hub
+    double noise[4], wandering = K2_DOUBT * z[PRESSED_RATE] * m->rig.period;
+    memcpy(noise, contact_noise, sizeof noise);
+    noise[PRESSED_WALL] += wandering * wandering;
+    estimator_predict(e, model, drive - held, noise);
+
+    if (rests) {
+        z[PRESSED_ANGLE] = rest_angle;
+        z[PRESSED_RATE] = 0;
+    }
+}
+
+static void observe_contact(optimal_memory *m, const controller_input *in)
+{
+    static const double angle_row[4] = {[PRESSED_ANGLE] = 1}, rate_row[4] = {[PRESSED_RATE] = 1};
+    estimator *e = &m->e;
+    double drive = motor_torque(m, in->voltage);
+    predict_contact(m, &m->contact, e, drive);
+    estimator_correct(e, 4, angle_row, 0, in->encoder, ANGLE_VARIANCE);
+    estimator_correct(e, 4, rate_row, 0, in->tachometer, RATE_VARIANCE);
+
+    // the force is linear in the state but for friction: row times state, plus what is left
+    double whole = m->spring_force + m->mass_force * m->stiffness / m->inertia;
+    double row[4] = {whole, m->mass_force * m->rig.hub_damping / m->inertia, -whole,
+                     -m->mass_force / m->inertia};
+    double linear = 0;
+    for (int i = 0; i < 4; i++) {
+        linear += row[i] * e->z[i];
+    }
+
+    // the sensor is less accurate the harder it is pressed
+    double deviation = 0.02 + 0.02 * in->force; // [N]
+    estimator_correct(e, 4, row, contact_force(m, e->z, drive) - linear, in->force,
+                      deviation * deviation);
+}
+
+// Limits a command so that the force it leaves at once stays positive, and does not brake harder
+// than stopping takes. x + x'/s grows as exp(s t) wherever it is above f/(4 k2): a force a little
+// above 4 k2 times it stops the hub, at ever faster a rate.
+static double limit_command(optimal_memory *m, const double *z, double command)
+{
+    double x = z[PRESSED_ANGLE] - z[PRESSED_WALL], limit = m->rig.voltage_limit;
+    double stopping = m->spring_force * (x + z[PRESSED_RATE] / m->divergence);
+    double excess = stopping - m->force, least = fmin(0.1 + 0.05 * m->force, 0.5 * m->force);
+    if (excess > 0) {
+        m->ceiling = fmax(m->ceiling, braking_force(m, stopping));
+    }
+
+    // the force at once falls by per_volt for each volt: braking presses
+    double per_volt = m->mass_force / m->inertia * m->rig.torque_per_volt;
+    double force = contact_force(m, z, motor_torque(m, command));
+    double wanted = fmax(least, fmin(force, m->ceiling));
+    if (per_volt > 0) {
+        command += (force - wanted) / per_volt;
+    }
+    return fmax(-limit, fmin(command, limit));
+}
+
+// Holds what the beam presses with now.
+static void begin_hold(optimal_memory *m, double x)
+{
+    m->mode = HOLD;
+    m->held_force = m->spring_force * x;
+    m->hold_command = m->stiffness * x / m->rig.torque_per_volt;
+}
+
+// Goes into the mode that is wanted, with the state in the model of that mode.
+static void change_mode(optimal_memory *m, const controller_input *in)
+{
+    const double *z = m->e.z;
+    m->mode = in->wanted_mode;
+    if (m->mode == APPROACH && !m->flies) {
+        leave_contact(m, in);
+    } else if (m->mode == PRESS && !m->flies) {
+        m->e.z[PRESSED_ANGLE] = in->encoder; // nothing was observed while it held
+        m->e.z[PRESSED_RATE] = in->tachometer;
+    } else if (m->mode == HOLD) {
+        begin_hold(m, m->flies ? (z[FREE_FIRST] - z[FREE_LAST]) / 2
+                               : z[PRESSED_ANGLE] - z[PRESSED_WALL]);
+    }
+}
+
+// Friction holds the hub best in the middle of its band; the beam does the rest.
+static double hold(optimal_memory *m, const controller_input *in)
+{
+    const double smoothing = 0.05;
+    m->held_force += smoothing * (in->force - m->held_force);
+
+    // the held force differs from the command: press again, with the wall's angle that this force
+    // implies
+    bool wanted = in->wanted_mode == HOLD;
+    if (!wanted && fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
+        m->mode = PRESS;
+        if (!m->flies) {
+            m->e.z[PRESSED_WALL] = in->encoder - m->held_force / m->spring_force;
+            m->e.p[PRESSED_WALL][PRESSED_WALL] = 1e-6;
+        }
+    }
+    return m->hold_command;
+}
+
+// Asked to press before there is contact: the feedback round the angle at which the beam would
+// press if the wall were where it is believed to be.
+static double seek_wall(const optimal_memory *m)
+{
+    const double *z = m->e.z;
+    double aim = m->force / m->spring_force, x = z[FREE_FIRST] - m->rig.wall_angle;
+    return m->stiffness * aim / m->rig.torque_per_volt + m->gain[0] * (aim - x) -
+           m->gain[1] * z[FREE_FIRST_RATE];
+}
+
+static double press(optimal_memory *m, const controller_input *in)
+{
+    // the state when the command takes effect
+    estimator ahead = m->e;
+    if (m->rig.delay > 0) {
+        predict_contact(m, &m->during_delay, &ahead, motor_torque(m, in->voltage));
+    }
+
+    // at rest within the tolerance the force is held
+    const double *z = ahead.z;
+    double shortfall = fmin(SHORTFALL * m->force, MOST_SHORTFALL);
+    double aim = m->force * (1 - shortfall) / m->spring_force,
+           x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
+    double error = aim - x, tolerance = 0.01 * m->force + 0.005; // [N]
+    double velocity = z[PRESSED_RATE];
+    bool rests = fabs(velocity) < 0.02;
+    bool wanted = in->wanted_mode == PRESS;
+    if (!wanted && rests && fabs(error) * m->spring_force < tolerance) {
+        begin_hold(m, x);
+        return m->hold_command;
+    }
+
+    // what keeps the aim, friction included, and the feedback round it
+    double against = rests ? copysign(m->rig.stiction, error) : friction(m, velocity, 0);
+    double steady = (m->stiffness * aim - z[PRESSED_TORQUE] + against) / m->rig.torque_per_volt;
+    return limit_command(m, z, steady + m->gain[0] * error - m->gain[1] * velocity);
+}
+
+// Contact is lost when the sensor has felt nothing for two samples.
+static bool contact_is_lost(optimal_memory *m, const controller_input *in)
+{
+    const int most = 2;
+    m->readings_without_force = in->force > m->threshold ? 0 : m->readings_without_force + 1;
+    if (m->readings_without_force < most) {
+        return false;
+    }
+    m->readings_without_force = 0;
+    return true;
+}
+
+// Updates the observer; the law itself decides where the flight ends.
+static void observe(optimal_memory *m, const controller_input *in)
+{
+    bool locked = in->wanted_mode >= 0;
+    if (!m->started) {
+        m->started = m->flies = true;
+        m->e = (estimator){.z = {in->encoder, in->encoder, 0, 0}};
+
+    } else if (m->flies && in->wanted_mode != APPROACH && in->force > m->threshold) {
+        enter_contact(m, in);
+        m->mode = locked ? m->mode : PRESS;
+    } else if (m->flies) {
+        predict_flight(m, in);
+        observe_flight(m, in);
+    } else if (!locked && contact_is_lost(m, in)) {
+        leave_contact(m, in);
+        m->mode = APPROACH;
+    } else if (m->mode == PRESS || locked) {
+        observe_contact(m, in);
+    }
+}
+
+// Observer, mode and command of one sample.
+static void state_feedback_sample(void *memory, const controller_input *in, controller_output *out)
+{
+    optimal_memory *m = memory;
+    observe(m, in);
+    if (in->wanted_mode >= 0 && in->wanted_mode != m->mode) {
+        change_mode(m, in);
+    }
+
+    // the command of the mode
+    out->command = m->mode == APPROACH ? approach(m)
+                   : m->mode == HOLD   ? hold(m, in)
+                   : m->flies          ? seek_wall(m)
+                                       : press(m, in);
+
+    out->mode = m->mode;
+    if (m->mode == APPROACH) {
+        out->calculated_force = m->force_limit == HUGE_VAL ? 0 : force_of_touch(m);
+        return;
+    }
+
+    // in contact: where the hub should be, and what the force is taken to be
+    double wall = m->flies ? m->rig.wall_angle : m->e.z[PRESSED_WALL];
+    out->desired_angle = wall + m->force / m->spring_force;
+    out->desired_velocity = 0;
+    out->calculated_force = m->mode == HOLD ? m->held_force
+                            : m->flies      ? 0
+                                       : contact_force(m, m->e.z, motor_torque(m, in->voltage));
+}
+
+// --- optimal ---
+
+// State feedback with an observer on the linearised arm, behind the plain approach.
+static const controller_parameter optimal_parameters[] = {STATE_FEEDBACK_PARAMETERS};
 
 const controller optimal_law =
-    STATE_FEEDBACK_LAW("optimal", parameters_of_law, state_feedback_start);
+    STATE_FEEDBACK_LAW("optimal", optimal_parameters, state_feedback_start);
+
+// --- predictive ---
+
+// The optimal law behind an approach that keeps to control.force_limit wherever the wall is: were
+// the tip to touch now, stopping would take at most that force.
+static const controller_parameter predictive_parameters[] = {STATE_FEEDBACK_PARAMETERS,
+                                                             {.name = "force_limit"}};
+
+const controller predictive_law =
+    STATE_FEEDBACK_LAW("predictive", predictive_parameters, state_feedback_start_with_limit);

@@ -1,13 +1,142 @@
-// Changes of the rig during a run: its clock, its sensors, and what its controller was told.
+// What the controller of a rig is and what it is told: the law, its modes, the nominal model,
+// changes on the way.
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "src/rig/rig.h"
 #include "src/arm/motor.h"
 #include "src/rig/controller_values.h"
-#include "src/rig/rig.h"
 #include "src/base/extremes.h"
 #include "src/base/sincos.h"
+#include "src/arm/arm.h"
+#include "src/tables/k2_table.h"
+#include "src/rig/laws/laws.h"
+
+const controller *controller_of(int law)
+{
+#define LAW(name, prefix, word, description) [LAW_##name] = &prefix##_law,
+    static const controller *const built_in[LAW_COUNT] = {CONTROL_LAWS(LAW)};
+#undef LAW
+    assert(law >= 0 && law < LAW_COUNT);
+    return built_in[law];
+}
+
+// --- modes ---
+
+// "approach, impact or force"
+static void list_modes(const controller *law, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; law->modes != NULL && law->modes[i] != NULL && used < size; i++) {
+        const char *before = i == 0 ? "" : law->modes[i + 1] == NULL ? " or " : ", ";
+        used += (size_t)snprintf(text + used, size - used, "%s%.40s", before, law->modes[i]);
+    }
+}
+
+status rig_find_mode(const controller *law, const char *lock, int *mode, fault *f)
+{
+    assert(law != NULL && lock != NULL && mode != NULL);
+    *mode = -1;
+    if (lock[0] == '\0' || strcmp(lock, "none") == 0) {
+        return STATUS_OK;
+    }
+    if (!law->lockable || law->modes == NULL) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, "control.lock",
+                            "control.lock = '%.60s', but the law '%s' cannot be held in a mode, "
+                            "expected none",
+                            lock, law->name);
+    }
+
+    // the mode of that name
+    for (int i = 0; law->modes[i] != NULL; i++) {
+        if (strcmp(law->modes[i], lock) == 0) {
+            *mode = i;
+            return STATUS_OK;
+        }
+    }
+
+    // none: say which there are
+    char modes[256];
+    list_modes(law, modes, sizeof modes);
+    return fault_set_at(f, STATUS_BAD_SCENARIO, "control.lock",
+                        "control.lock = '%.60s' is no mode of the law '%s', expected none, %s",
+                        lock, law->name, modes);
+}
+
+status rig_lock(rig *r, const char *lock, fault *f)
+{
+    assert(r != NULL);
+    int mode;
+    status s = rig_find_mode(r->law, lock, &mode, f);
+    r->lock = s == STATUS_OK ? mode : r->lock;
+    return s;
+}
+
+int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, bool *lockable)
+{
+    assert(p != NULL && names != NULL && lockable != NULL);
+    fault ignored;
+    plugin opened = {0};
+    const controller *law = controller_of(p->control.law);
+    if (p->control.law == LAW_PLUGIN && p->code_allowed &&
+        plugin_open(&opened, p->control.plugin, &ignored) == STATUS_OK) {
+        law = opened.law;
+    }
+
+    // copies, as a plug-in's own names go with it
+    int count = 0;
+    *lockable = law != NULL && law->lockable;
+    const char *const *modes = law != NULL ? law->modes : NULL;
+    for (; modes != NULL && modes[count] != NULL && count < most; count++) {
+        snprintf(names[count], MODE_NAME_SIZE, "%s", modes[count]);
+    }
+    plugin_close(&opened);
+    return count;
+}
+
+// --- the nominal model, and changes ---
+
+controller_setup rig_nominal_setup(const rig *r, const parameters *p)
+{
+    const belief_parameters *b = &p->belief;
+
+    // the beam in two links, whatever the arm is
+    double m = p->arm.mass / 2, l = p->arm.length / 2, k2 = p->arm.k2;
+    double link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12;
+    k2_table measured;
+    if (k2_table_read(&measured, p->control.k2_table, NULL) == STATUS_OK && measured.count > 0) {
+        k2 = k2_table_at(&measured, p->control.force);
+    }
+
+    // the motor with another kT and other friction
+    motor_parameters motor = p->motor;
+    motor.torque_constant *= b->torque_factor;
+    motor.viscous_friction *= b->friction_factor;
+    motor.stiction *= b->friction_factor;
+
+    return (controller_setup){
+        .period = r->period,
+        .delay = fmax(0, r->delay + b->delay_error),
+        .voltage_limit = r->voltage_limit,
+        .torque_per_volt = motor_torque_per_volt(&motor),
+        .hub_damping = motor_damping(&motor),
+        .stiction = motor.stiction,
+        .hub_inertia = p->arm.hub_inertia * b->inertia_factor,
+        .link_mass = m * b->mass_factor,
+        .link_length = l,
+        .link_inertia = link_inertia * b->mass_factor,
+        .k2 = k2 * b->k2_factor,
+        .wall_angle = p->wall.angle + b->wall_error,
+        .links = b->links,
+        .hub_spring = p->arm.hub_joint == HUB_SPRING ? p->arm.k1 * b->hub_spring_factor : HUGE_VAL,
+        .damping_ratio = p->arm.damping_ratio,
+        .parameters = r->values,
+    };
+}
 
 static const double turn = 2 * 3.14159265358979323846; // [rad]
 
@@ -56,7 +185,7 @@ static status tell_controller(rig *r, const parameters *p, fault *f)
     if (r->process != NULL) {
         process_tell(r->memory, &p->control);
     }
-    const controller_setup setup = rig_believed_setup(r, p);
+    const controller_setup setup = rig_nominal_setup(r, p);
     if (p->control.force_limit > 0) {
         touch_forecast_tell(&r->forecast, p, &setup);
     }
