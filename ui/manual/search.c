@@ -54,12 +54,13 @@ static void take_endings(char *word)
     if (!take_ending(word, "ing", "")) {
         take_ending(word, "ed", "");
     }
+    take_ending(word, "er", "");
     take_ending(word, "e", "");
 
-    // "fitting" and "fitted" as "fit"
+    // "fitting" and "fitted" as "fit", "controller" as "control"
     const size_t length = strlen(word);
     if (length > 3 && word[length - 1] == word[length - 2] &&
-        strchr("bdgmnprt", word[length - 1])) {
+        strchr("bdglmnprt", word[length - 1])) {
         word[length - 1] = '\0';
     }
 }
@@ -81,13 +82,15 @@ static bool next_word(const char **text, char word[WORD])
     return length > 0;
 }
 
+// Words of which questions are made, whatever they are about.
 static bool says_little(const char *word)
 {
     static const char *const little[] = {
-        "a",    "an",   "and", "are",  "be",   "by", "can", "do",     "doe",  "for",   "from",
-        "ha",   "have", "how", "i",    "if",   "in", "is",  "it",     "me",   "my",    "of",
-        "on",   "or",   "the", "ther", "this", "to", "wa",  "what",   "wher", "which", "why",
-        "will", "with", "you", "your", "that", "at", "get", "should", "thi",  "so",    "mean",
+        "a",    "an",   "and", "are",  "at",     "be",   "by",   "can",  "do",    "doe",  "for",
+        "get",  "from", "go",  "ha",   "have",   "how",  "i",    "if",   "in",    "is",   "it",
+        "mak",  "me",   "my",  "need", "of",     "on",   "or",   "so",   "that",  "the",  "ther",
+        "thi",  "to",   "use", "used", "wa",     "want", "what", "wher", "which", "why",  "will",
+        "with", "writ", "you", "your", "should", "take", "tak",  "mean", "one",   "when", "then",
     };
     for (size_t i = 0; i < sizeof little / sizeof little[0]; i++) {
         if (strcmp(little[i], word) == 0) {
@@ -129,21 +132,22 @@ static void count_words(occurrences *o, const question_words *q, const char *tex
     }
 }
 
-static double word_count(const char *text)
+// How many words a title has that say something, at least one.
+static double title_length(const char *title)
 {
     char word[WORD];
     int count = 0;
-    while (next_word(&text, word)) {
-        count++;
+    while (next_word(&title, word)) {
+        count += !says_little(word);
     }
-    return count;
+    return count > 0 ? count : 1;
 }
 
 // All that an entry says, its title and the page's as many times as they count.
 static occurrences entry_words(const question_words *q, const search_entry *e)
 {
     occurrences o = {.length = 0};
-    count_words(&o, q, e->title, TITLE_WEIGHT / sqrt(word_count(e->title)));
+    count_words(&o, q, e->title, TITLE_WEIGHT / sqrt(title_length(e->title)));
     count_words(&o, q, e->above, ABOVE_WEIGHT);
     for (int i = 0; i < e->text_count; i++) {
         count_words(&o, q, e->texts[i], 1);
