@@ -183,6 +183,27 @@ static void starts_on_the_wall_are_told_from_rounding(void **state)
     check_close(strikes.first_impulse, truth.first_impulse, 1e-10 * truth.first_impulse);
 }
 
+// A light face behind a strong damper is met at rest: the force rises faster than the first step
+// shows, which is no release.
+static void an_arm_that_rests_on_a_face_stays_on_it(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(SETTINGS(
+        "arm.links=1", "arm.hub_joint=spring", "wall.angle=2.1487444233014976", "wall.kind=plane",
+        "motor.voltage=5.25", "motor.stiction=0.09", "arm.mass=0.84", "arm.hub_inertia=3.5e-3",
+        "arm.k2=19", "motor.current_limit=3.65", "wall.contact=kelvin-voigt", "wall.stiffness=6.7",
+        "wall.damping=21860", "wall.mass=0.027"));
+    chain_outcome o[2];
+    for (int i = 0; i < 2; i++) {
+        const engine *by = i == 0 ? &stiff_engine : &series_engine;
+        o[i] = chain_outcome_of(&(chain_start){&p, p.wall.angle, 0, 0.02, 0.02, by});
+        assert_int_equal(o[i].status, STATUS_OK);
+    }
+    assert_int_equal(o[0].contacts, o[1].contacts);
+    check_close(o[0].peak, o[1].peak, 1e-8 * o[1].peak);
+    check_close(o[0].lost[4], o[1].lost[4], 1e-9 * o[1].put_in);
+}
+
 // Tip against a flat wall through the hub's axis, where the force has a pole.
 static void steps_keep_clear_of_a_fold(void **state)
 {
@@ -284,6 +305,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_series_give_the_same),
         cmocka_unit_test(starts_on_the_wall_are_told_from_rounding),
+        cmocka_unit_test(an_arm_that_rests_on_a_face_stays_on_it),
         cmocka_unit_test(steps_keep_clear_of_a_fold),
         cmocka_unit_test(a_chain_that_bounces_keeps_its_impacts),
         cmocka_unit_test(decays_of_any_rate_are_passed_over),

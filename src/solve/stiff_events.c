@@ -8,8 +8,10 @@
 
 // Of the current, as a share of its limit.
 #define EDGE_CURRENT 1e-10
-// Share of a function's largest coefficient.
-#define FLAT 1e-5
+// Shares of a function's largest coefficient: of what is rounding at a start, and of what a force
+// that presses at all stages may lack there, where it changes faster than the step shows.
+#define FLAT  1e-5
+#define LACKS 1e-3
 // A gap that nowhere in a step exceeds this is followed as it grows [m].
 #define LOW_FLIGHT 1e-9
 
@@ -26,7 +28,12 @@ static void leave_edge(stiff_stride *s, watch w, const double limits[3])
 
     // of one that starts flatter still, what is left at the start is rounding
     double *start = s->watched[w].b;
-    if (powers == 3 && *start < 0 && *start > -FLAT * function_greatest(&s->watched[w])) {
+    bool presses = w == WATCH_FORCE && powers > 0;
+    for (int i = 0; i < RADAU_STAGES && presses; i++) {
+        presses = s->step.force.at[i] > 0;
+    }
+    const double share = presses ? LACKS : powers == 3 ? FLAT : 0;
+    if (*start < 0 && *start > -share * function_greatest(&s->watched[w])) {
         *start = -*start;
     }
 }
