@@ -72,10 +72,8 @@ static void names_copies_and_defaults(void **state)
     assert_string_equal(impactlab_scenario_name(copy), "corrected/first-impact");
 
     // its title says where it differs
-    char title[256];
-    snprintf(title, sizeof title, "%s, with motor.voltage = 7 V",
-             impactlab_scenario_title(h->scenario));
-    assert_string_equal(impactlab_scenario_title(copy), title);
+    assert_non_null(strstr(impactlab_scenario_title(copy), ", with motor.voltage = 7 V"));
+    assert_null(strstr(impactlab_scenario_title(h->scenario), "motor.voltage"));
     assert_string_not_equal(impactlab_scenario_description(copy), "");
     check_done(impactlab_scenario_create(&made, &h->error), &h->error);
     assert_int_equal(impactlab_scenario_is_set(made, "motor.voltage"), 0);
