@@ -6,8 +6,10 @@
 #include "src/solve/contact_machine.h"
 #include "tests/check.h"
 
-#define SENSOR  1e-3  // time constant [s]
-#define LOWEST  1e-11 // flight, its time by its speed at the end [m]
+#define SENSOR 1e-3  // time constant [s]
+#define LOWEST 1e-11 // flight, its time by its speed at the end [m]
+#define SLOWEST                                                                                    \
+    1e-8 // and that speed: of an arm that friction held at the wall it is rounding [m/s]
 #define NOTHING 1e-12 // momentum of a wall that is not pressed on [N s]
 
 enum { MOST_EVENTS = 200000 };
@@ -28,7 +30,7 @@ static void take_samples(const arm *a, motion *m, double before, double impulses
 
 void chain_outcome_note(chain_outcome *o, double time, double speed, double parted)
 {
-    const bool flew = speed * (time - parted) > LOWEST;
+    const bool flew = speed > SLOWEST && speed * (time - parted) > LOWEST;
     if (isnan(o->first_contact)) {
         o->first_contact = flew ? time : 0;
     }
@@ -78,11 +80,10 @@ chain_outcome chain_outcome_of(const chain_start *start)
         take_samples(&a, m, before, impulses, &o);
         o.put_in += fabs(motion_motor_work(m, m->state) - work);
         o.residual = fmax(o.residual, fabs(motion_energy_residual(&a, m, m->state)));
+        const double now = m->state[SLOT_TIME], speed = -m->state[SLOT_GAP_VELOCITY];
         if (r.event != MOTION_REACHED) {
             motion_apply(&a, m, &r);
         }
-        const double now = m->state[SLOT_TIME];
-        const double speed = r.event == MOTION_IMPACT ? r.speed : -m->state[SLOT_GAP_VELOCITY];
         const bool waited = isnan(o.first_contact);
         impulses += r.impulse;
         o.impacts += r.event == MOTION_IMPACT;
