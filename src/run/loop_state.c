@@ -53,6 +53,16 @@ static uint64_t check_of(const char *bytes, size_t size)
     return check;
 }
 
+// Gives a rig the addresses of another.
+static void keep_places(rig *r, const rig *own)
+{
+    r->law = own->law;
+    r->plugin = own->plugin;
+    r->process = own->process;
+    r->memory = own->memory;
+    r->values = own->values;
+}
+
 void loop_save(const run_loop *l, void *bytes)
 {
     assert(l != NULL && bytes != NULL);
@@ -71,12 +81,14 @@ void loop_save(const run_loop *l, void *bytes)
     head.recording = r->state;
     head.command = r->command;
     head.summary = l->result.summary;
+    head.summary.path = NULL;
     head.now = r->now;
 
-    // the rig, whose addresses are its loop's own, and the run
+    // the rig and the run; where things lie is their loop's own, and no part of a state
     char *at = bytes;
     if (r->rig != NULL) {
         head.rig = *r->rig;
+        keep_places(&head.rig, &(rig){.law = NULL});
     }
     memcpy(at, &head, sizeof head);
     at += sizeof head;
@@ -84,6 +96,9 @@ void loop_save(const run_loop *l, void *bytes)
     at += l->run.model->saved_size(&l->run);
     if (r->rig != NULL) {
         memcpy(at, r->rig->memory, memory_size(r->rig));
+        if (l->law.law != NULL) { // which begins with its program's address
+            memset(at, 0, sizeof l->law.context);
+        }
         memcpy(at + memory_size(r->rig), r->rig->values, values_size(r->rig));
     }
     head.check = check_of(bytes, head.size);
@@ -99,11 +114,7 @@ static void restore_rig(run_loop *l, const rig *saved, const char *at)
 
     // all but where things lie
     *r = *saved;
-    r->law = own.law;
-    r->plugin = own.plugin;
-    r->process = own.process;
-    r->memory = own.memory;
-    r->values = own.values;
+    keep_places(r, &own);
 
     // the contents, which were saved one after the other
     memcpy(r->memory, at, memory_size(r));

@@ -227,7 +227,9 @@ static size_t printed_saved_size(const stepped_run *run)
 
 static void printed_save(const stepped_run *run, void *bytes)
 {
-    memcpy(bytes, &run->printed, sizeof run->printed);
+    printed_run saved = run->printed;
+    saved.recording = NULL;
+    memcpy(bytes, &saved, sizeof saved);
 }
 
 static void printed_restore(stepped_run *run, const void *bytes)
