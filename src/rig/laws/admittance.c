@@ -48,7 +48,7 @@ typedef struct admittance_memory {
 static const char *tune(void *memory, const controller_setup *setup)
 {
     admittance_memory *m = memory;
-    m->rig = *setup;
+    m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;
 }

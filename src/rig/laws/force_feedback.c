@@ -39,7 +39,7 @@ static const char *force_feedback_tune(void *memory, const controller_setup *set
 {
     assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     force_memory *m = memory;
-    m->rig = *setup;
+    m->rig = setup_kept(setup);
     for (int i = 0; i < PARAMETERS; i++) {
         m->p[i] = setup->parameters[i];
     }

@@ -58,6 +58,7 @@ enum {
 typedef struct hybrid_memory {
     controller_setup rig;
     double force, approach_voltage, kp, kv, transition, threshold, own;
+    double force_limit; // of the law speed-limit [N]
     int gains;
     bool printed;        // coefficients
     int source;          // of the impact angle
@@ -94,7 +95,7 @@ static const char *hybrid_start(void *memory, const controller_setup *setup)
     m->replans =
         m->mode == IMPACT && (m->force != p[FORCE_WANTED] || m->transition != p[TRANSITION]);
 
-    m->rig = *setup;
+    m->rig = setup_kept(setup);
     m->force = p[FORCE_WANTED];
     m->approach_voltage = p[APPROACH_VOLTAGE];
     m->kp = p[KP];
@@ -421,10 +422,17 @@ enum { OWN_FORCE_LIMIT = OWN + 1 };
 static const controller_parameter speed_limit_parameters[] = {
     HYBRID_PARAMETERS, {.name = "speed_limit"}, {.name = "force_limit"}};
 
+static const char *speed_limit_start(void *memory, const controller_setup *setup)
+{
+    hybrid_memory *m = memory;
+    m->force_limit = setup->parameters[OWN_FORCE_LIMIT];
+    return hybrid_start_with_own(memory, setup);
+}
+
 // Keeps the present speed up and adds what the predicted force leaves.
 static double force_limited_command(const hybrid_memory *m, const controller_input *in)
 {
-    const double left = SHARE * m->rig.parameters[OWN_FORCE_LIMIT] - in->predicted_force;
+    const double left = SHARE * m->force_limit - in->predicted_force;
     return hybrid_speed_command(m, in, fmax(in->tachometer, CREEP)) + VOLTS_PER_NEWTON * left;
 }
 
@@ -432,14 +440,14 @@ static void speed_limit_sample(void *memory, const controller_input *in, control
 {
     hybrid_memory *m = memory;
     double limited = fmin(m->approach_voltage, hybrid_speed_command(m, in, m->own));
-    if (m->rig.parameters[OWN_FORCE_LIMIT] > 0 && isfinite(in->predicted_force)) {
+    if (m->force_limit > 0 && isfinite(in->predicted_force)) {
         limited = fmin(limited, force_limited_command(m, in));
     }
     out->command = hybrid_command(m, in, out, limited);
 }
 
 const controller speed_limit_law = HYBRID_LAW("speed-limit", hybrid_modes, speed_limit_parameters,
-                                              hybrid_start_with_own, speed_limit_sample);
+                                              speed_limit_start, speed_limit_sample);
 
 // --- bang-bang ---
 

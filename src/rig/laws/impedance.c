@@ -46,7 +46,7 @@ typedef struct impedance_memory {
 static const char *tune(void *memory, const controller_setup *setup)
 {
     impedance_memory *m = memory;
-    m->rig = *setup;
+    m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
 
     // the approach's speed, and the damper

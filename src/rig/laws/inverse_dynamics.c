@@ -185,7 +185,7 @@ static const char *start(void *memory, const controller_setup *setup)
     }
 
     // the linear arm, (a) and the sum of both links' equations
-    m->rig = *setup;
+    m->rig = setup_kept(setup);
     m->force = p[FORCE_WANTED];
     m->threshold = p[THRESHOLD];
     m->zero = sqrt(2 * setup->k2 / (m12 - m22));

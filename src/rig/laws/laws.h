@@ -2,6 +2,8 @@
 // rig; docs/explanation/control-design.md says where each comes from.
 #pragma once
 
+#include <stddef.h>
+
 #include "src/tables/control_laws.h"
 #include "src/rig/controller.h"
 
@@ -13,6 +15,15 @@
         .parameter_count = (int)(sizeof table / sizeof table[0]), .memory_size = sizeof(memory),   \
         __VA_ARGS__                                                                                \
     }
+
+// What a law keeps of its setup: all but where the rig's values lie, because its memory may be put
+// into another loop's.
+static inline controller_setup setup_kept(const controller_setup *setup)
+{
+    controller_setup kept = *setup;
+    kept.parameters = NULL;
+    return kept;
+}
 
 // Coulomb friction of a hub that moves at a rate [rad/s] [N m].
 static inline double coulomb_friction(const controller_setup *setup, double rate)

@@ -79,7 +79,7 @@ static const arm_observer *observer_of(const observer_memory *m)
 static const char *start(void *memory, const controller_setup *setup)
 {
     observer_memory *m = memory;
-    m->rig = *setup;
+    m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     if (!(setup->torque_per_volt > 0)) {
         return "it needs a motor that turns the hub";

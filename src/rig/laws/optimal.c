@@ -120,7 +120,7 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
     optimal_memory *m = memory;
     const double l = setup->link_length, quarter = setup->link_mass * l * l / 4;
 
-    m->rig = *setup;
+    m->rig = setup_kept(setup);
     m->force = setup->parameters[FORCE_WANTED];
     m->approach_voltage = setup->parameters[APPROACH_VOLTAGE];
     m->threshold = setup->parameters[THRESHOLD];
