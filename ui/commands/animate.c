@@ -6,7 +6,7 @@
 
 #include "render/scene/film.h"
 #include "render/scene/film_file.h"
-#include "ui/commands/scene_request.h"
+#include "ui/commands/pictures.h"
 
 enum { BAR_LENGTH = 40 };
 
@@ -167,51 +167,19 @@ static int animate(const arguments *a)
 }
 
 static const option_row rows[] = {
-    {.name = "beside",
-     .type = OPTION_PARAMETERS,
-     .value = "PATH=VALUE",
-     .help = "the first scenario once more with this change, in a view of its own; up to 3 of them",
-     PLACE(besides)},
-    {.name = "output",
-     .letter = 'o',
-     .type = OPTION_PLACE,
-     .value = "PATH",
-     .help = "film or folder to write to",
-     PLACE(output)},
-    {.name = "fps",
-     .type = OPTION_NUMBER,
-     .value = "N",
-     .help = "frames per second of the film (30)",
-     PLACE(fps),
-     .low = 1,
-     .high = 120},
-    {.name = "seconds",
-     .type = OPTION_NUMBER,
-     .value = "S",
-     .help = "length of the film (10)",
-     PLACE(seconds),
-     .low = 0.1,
-     .high = 3600,
-     .unit = "s"},
-    {.name = "theme",
-     .type = OPTION_CHOICE,
-     .value = "light|dark",
-     .help = "on a light or a dark ground (light)",
-     PLACE(theme)},
-    {.name = "ghosts",
-     .type = OPTION_WHOLE,
-     .value = "N",
-     .help = "earlier arms behind the present one, 20 ms apart (0)",
-     PLACE(ghosts),
-     .low = 0,
-     .high = 31},
-    {.name = "slow",
-     .type = OPTION_NUMBER,
-     .value = "N",
-     .help = "how much impacts are slowed down (8)",
-     PLACE(slow),
-     .low = 1,
-     .high = 1000},
+    OPTION(PARAMETERS, "beside", "PATH=VALUE",
+           "the first scenario once more with this change, in a view of its own; up to 3 of them",
+           PLACE(besides)),
+    OPTION(PLACE, "output", "PATH", "film or folder to write to", PLACE(output), .letter = 'o'),
+    OPTION(NUMBER, "fps", "N", "frames per second of the film (30)", PLACE(fps), .low = 1,
+           .high = 120),
+    OPTION(NUMBER, "seconds", "S", "length of the film (10)", PLACE(seconds), .low = 0.1,
+           .high = 3600, .unit = "s"),
+    OPTION(CHOICE, "theme", "light|dark", "on a light or a dark ground (light)", PLACE(theme)),
+    OPTION(WHOLE, "ghosts", "N", "earlier arms behind the present one, 20 ms apart (0)",
+           PLACE(ghosts), .low = 0, .high = 31),
+    OPTION(NUMBER, "slow", "N", "how much impacts are slowed down (8)", PLACE(slow), .low = 1,
+           .high = 1000),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 

@@ -1,15 +1,271 @@
-// Reads the command line by the rows of a command's options.
+// Reads the command line by the rows of a command's options; the rows that several commands share.
 #include "ui/commands/command.h"
 
 #include <assert.h>
+#include <ctype.h>
+#include <errno.h>
 #include <getopt.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/page/picture_file.h"
+#include "src/base/numbers.h"
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
-#include "ui/commands/option_values.h"
+
+// --- shared options ---------------------------------------------------------------------------
+
+static const option_row set_rows[] = {
+    OPTION(PARAMETERS, "set", "PATH=VALUE", "give a parameter another value (may be repeated)",
+           PLACE(sets)),
+    OPTION(FLAG, "allow-code", NULL,
+           "let the scenario start the program or load the plug-in that it names",
+           PLACE(allow_code)),
+};
+const option_table set_options = OPTION_TABLE("Options", set_rows);
+
+static const option_row vary_rows[] = {
+    OPTION(PARAMETERS, "vary", "PATH=a:b:n",
+           "vary a parameter: n values from a to b (may be repeated)", PLACE(varies)),
+};
+const option_table vary_options = OPTION_TABLE("Options", vary_rows);
+
+static const option_row json_rows[] = {
+    OPTION(RESULT, "json", "FILE|-", "write the results as JSON; - is the standard output",
+           PLACE(json)),
+};
+const option_table json_options = OPTION_TABLE("Options", json_rows);
+
+static const option_row drawn_rows[] = {
+    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}",
+           "draw the study; a CSV of what is drawn beside it", PLACE(plot)),
+};
+const option_table drawn_options = OPTION_TABLE("Options", drawn_rows);
+
+static const option_row quiet_rows[] = {
+    OPTION(FLAG, "quiet", NULL, "print no summary", PLACE(quiet), .letter = 'q'),
+};
+const option_table quiet_options = OPTION_TABLE("Options", quiet_rows);
+
+// arguments_read prints the help itself
+static const option_row help_rows[] = {
+    OPTION(FLAG, "help", NULL, "print this help", .letter = 'h'),
+};
+const option_table help_options = OPTION_TABLE("Options", help_rows);
+
+static const option_row view_rows[] = {
+    OPTION(CHOICE, "gl", "osmesa|egl|cairo|auto",
+           "what draws the arm (auto: the first that is installed)", PLACE(gl)),
+    OPTION(WORD, "camera", "three-quarter|top|side|tip",
+           "where it is seen from (three-quarter); or two angles as -60,40: degrees from the arm's "
+           "heading and above the floor",
+           PLACE(camera)),
+    OPTION(NUMBER, "exaggerate", "X", "draw the arm's bending X times as large, and say so",
+           PLACE(exaggerate), .low = 1, .high = 1000),
+    OPTION(FLAG, "inset", NULL, "show the contact from near by in a corner, too", PLACE(inset)),
+    OPTION(SIZE, "size", "WIDTHxHEIGHT", "of the picture in pixels (1280x720)", PLACE(size),
+           .high = 100000, .unit = "pixels"),
+};
+const option_table view_options = OPTION_TABLE("The arm in space", view_rows);
+
+static const option_row page_rows[] = {
+    OPTION(LENGTH, "width", "85mm|180mm", "width of the page; everything is laid out anew",
+           PLACE(width), .low = 60, .high = 400),
+    OPTION(LENGTH, "height", "60mm", "height of a plot (as its panels want)", PLACE(height),
+           .low = 20, .high = 600),
+    OPTION(TEXT, "font", "serif|sans|NAME", "family of all letters (sans)", PLACE(font)),
+    OPTION(NUMBER, "font-size", "PT", "size of labels (8); others go with it, none below 6",
+           PLACE(font_size), .low = 6, .high = 24, .unit = "pt"),
+    OPTION(CHOICE, "theme", "light|dark|mono", "colours on white, on near black, or greys (light)",
+           PLACE(theme)),
+    OPTION(FLAG, "bare", NULL, "without title and caption, which go to a .txt beside", PLACE(bare)),
+    OPTION(FLAG, "transparent", NULL, "without a ground", PLACE(transparent)),
+    OPTION(NUMBER, "dpi", "N", "resolution of a PNG (200)", PLACE(dpi), .low = 30, .high = 1200),
+    OPTION(TEXT, "overlay", "FILE.csv[:COLUMN][@SHIFT]",
+           "points of measured data over recorded signals", PLACE(overlay)),
+    OPTION(TEXT, "signals", "A,B+C", "recorded signals to show: panels, joined by +",
+           PLACE(signals)),
+    OPTION(NUMBER, "from", "X", "where the horizontal axis begins", PLACE(from), .low = -1e9,
+           .high = 1e9, .initial = (double)NAN),
+    OPTION(NUMBER, "to", "X", "where it ends", PLACE(to), .low = -1e9, .high = 1e9,
+           .initial = (double)NAN),
+    OPTION(RESULT, "latex", "FILE.tex", "write the figure environment with caption and label",
+           PLACE(latex)),
+    OPTION(FLAG, "mono", NULL, "the same as --theme mono", PLACE(mono)),
+    OPTION(FLAG, "dark", NULL, "the same as --theme dark", PLACE(dark)),
+};
+const option_table page_options = OPTION_TABLE("Pictures", page_rows);
+
+// --- values -----------------------------------------------------------------------------------
+
+// The place of an option's value in the arguments.
+static void *option_place(const arguments *a, const option_row *o)
+{
+    return (char *)a + o->place;
+}
+
+static int read_number(const option_row *o, const char *text, double *value)
+{
+    const char *rest;
+    const char *space = o->unit != NULL ? " " : "", *unit = o->unit != NULL ? o->unit : "";
+    double number;
+
+    if (decimal_read(text, &number, &rest) && *rest == '\0' && number >= o->low &&
+        number <= o->high) {
+        *value = number;
+        return EXIT_DONE;
+    }
+
+    if (isinf(o->high)) {
+        return complain("--%s %s: expected a number from %g%s%s", o->name, text, o->low, space,
+                        unit);
+    }
+    return complain("--%s %s: expected a number from %g to %g%s%s", o->name, text, o->low, o->high,
+                    space, unit);
+}
+
+// A length in millimetres; without a unit it is one already.
+static int read_length(const option_row *o, const char *text, double *value)
+{
+    static const struct {
+        const char *unit;
+        double mm;
+    } units[] = {{"", 1}, {"mm", 1}, {"cm", 10}, {"in", 25.4}, {"pt", 25.4 / 72}};
+    const char *rest;
+    double number;
+
+    if (decimal_read(text, &number, &rest)) {
+        for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+            double mm = number * units[i].mm;
+            if (strcmp(rest, units[i].unit) == 0 && mm >= o->low && mm <= o->high) {
+                *value = mm;
+                return EXIT_DONE;
+            }
+        }
+    }
+
+    return complain("--%s %s: expected a length from %gmm to %gmm, such as 85mm, 8.5cm or 3.35in",
+                    o->name, text, o->low, o->high);
+}
+
+static int read_whole(const option_row *o, const char *text, uint64_t *value)
+{
+    // 2^64 and what lies beyond stand for the largest number there is
+    uint64_t low = (uint64_t)o->low, high = o->high < 0x1p64 ? (uint64_t)o->high : UINT64_MAX;
+
+    // signs and spaces, which strtoull would take, are refused by the first character
+    char *end;
+    errno = 0;
+    unsigned long long number = strtoull(text, &end, 10);
+    if (!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
+        number > high) {
+        return complain("--%s %s: expected a whole number from %llu to %llu", o->name, text,
+                        (unsigned long long)low, (unsigned long long)high);
+    }
+    *value = number;
+    return EXIT_DONE;
+}
+
+static int read_size(const option_row *o, const char *text, grid_size *size)
+{
+    char *rest = NULL;
+    long width = strtol(text, &rest, 10), height = 0;
+    if (*rest == 'x') {
+        height = strtol(rest + 1, &rest, 10);
+    }
+    if (*rest != '\0' || width < 1 || width > o->high || height < 1 || height > o->high) {
+        return complain("--%s %s: expected width x height in %s, like 120x40, at most %g", o->name,
+                        text, o->unit, o->high);
+    }
+    *size = (grid_size){(int)width, (int)height};
+    return EXIT_DONE;
+}
+
+// "a|b|c" as people write it: "a, b or c".
+static int complain_choice(const option_row *o, const char *text)
+{
+    char words[256] = "";
+    size_t length = 0;
+    for (const char *c = o->value; *c != '\0' && length + 5 < sizeof words; c++) {
+        const char *joint = strchr(c + 1, '|') != NULL ? ", " : " or ";
+        char single[2] = {*c, '\0'};
+        length += (size_t)snprintf(words + length, sizeof words - length, "%s",
+                                   *c == '|' ? joint : single);
+    }
+    return complain("--%s %s: expected %s", o->name, text, words);
+}
+
+static int check_choice(const option_row *o, const char *text)
+{
+    size_t length = strlen(text);
+    for (const char *word = o->value; word != NULL; word = strchr(word, '|')) {
+        word += *word == '|';
+        if (length > 0 && length == strcspn(word, "|") && strncmp(word, text, length) == 0) {
+            return EXIT_DONE;
+        }
+    }
+    return complain_choice(o, text);
+}
+
+static int check_quantity(const option_row *o, const char *key)
+{
+    const char *near = summary_suggest(key);
+    if (summary_find(key) >= 0) {
+        return EXIT_DONE;
+    }
+    if (near != NULL) {
+        return complain("--%s %s: there is no such quantity, did you mean %s?", o->name, key, near);
+    }
+    return complain("--%s %s: there is no such quantity (impactlab run --json lists them)", o->name,
+                    key);
+}
+
+// Checks a value by its row and stores it; lists have room for it. Returns the exit status.
+static int option_store(arguments *a, const option_row *o, char *text)
+{
+    void *place = option_place(a, o);
+    switch (o->type) {
+    case OPTION_FLAG:
+        *(bool *)place = true;
+        return EXIT_DONE;
+    case OPTION_NUMBER:
+        return read_number(o, text, place);
+    case OPTION_LENGTH:
+        return read_length(o, text, place);
+    case OPTION_WHOLE:
+        return read_whole(o, text, place);
+    case OPTION_SIZE:
+        return read_size(o, text, place);
+
+    // what may be given several times
+    case OPTION_NUMBERS: {
+        number_list *list = place;
+        return read_number(o, text, &list->items[list->count++]);
+    }
+    case OPTION_PARAMETERS: {
+        text_list *list = place;
+        list->items[list->count++] = text;
+        return EXIT_DONE;
+    }
+
+    // texts are kept as they are, and checked where only some are known
+    case OPTION_TEXT:
+    case OPTION_WORD:
+    case OPTION_CHOICE:
+    case OPTION_FILE:
+    case OPTION_RESULT:
+    case OPTION_PICTURE:
+    case OPTION_PLACE:
+    case OPTION_SCENARIO:
+    case OPTION_QUANTITY:
+        *(const char **)place = text;
+        return o->type == OPTION_CHOICE     ? check_choice(o, text)
+               : o->type == OPTION_QUANTITY ? check_quantity(o, text)
+                                            : EXIT_DONE;
+    }
+    return EXIT_DONE;
+}
 
 // getopt_long's value of the option in row i is ROW_VALUE + i, apart from all letters
 enum { ROW_VALUE = 256 };

@@ -336,16 +336,8 @@ static int bench(const arguments *a)
 }
 
 static const option_row rows[] = {
-    {.name = "only",
-     .type = OPTION_TEXT,
-     .value = "NAME",
-     .help = "measure this one alone",
-     PLACE(only)},
-    {.name = "baseline",
-     .type = OPTION_FILE,
-     .value = "FILE",
-     .help = "compare with what --json wrote before",
-     PLACE(baseline)},
+    OPTION(TEXT, "only", "NAME", "measure this one alone", PLACE(only)),
+    OPTION(FILE, "baseline", "FILE", "compare with what --json wrote before", PLACE(baseline)),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 

@@ -6,7 +6,7 @@
 #include "src/base/numbers.h"
 #include "src/study/calibrate.h"
 #include "src/study/sweep.h"
-#include "ui/commands/run_progress.h"
+#include "ui/commands/progress.h"
 
 #define VOLTAGE_PATH "control.approach_voltage"
 enum { DEFAULT_PRESSES = 8 };
@@ -75,32 +75,21 @@ static void print_points(const calibration *c, const scenario *s, const char *ta
     printf("\n  --set \"control.k2_table=%s\"\n", table);
 }
 
-static int write_table(const char *path, const calibration *c, const scenario *s)
+// A calibration and its scenario, which has the table in it.
+typedef struct calibrated {
+    const calibration *calibration;
+    const scenario *scenario;
+} calibrated;
+
+static void write_points(FILE *stream, const void *what)
 {
-    whole_file file;
-    fault f = {0};
-    status code = whole_file_open(&file, path, &f);
-    if (code == STATUS_OK) {
-        calibration_csv(file.stream, c, s);
-        code = whole_file_commit(&file, &f);
-    }
-    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    const calibrated *c = what;
+    calibration_csv(stream, c->calibration, c->scenario);
 }
 
-// The scenario as it was given, with the table in it.
-static int write_scenario(const char *path, const scenario *s, const char *table)
+static void write_scenario(FILE *stream, const void *what)
 {
-    whole_file file;
-    fault f = {0};
-    scenario calibrated = *s;
-    status code =
-        parameter_set_text(&calibrated.parameters, PARAMETER_INDEX(control.k2_table), table, &f);
-    code = code == STATUS_OK ? whole_file_open(&file, path, &f) : code;
-    if (code == STATUS_OK) {
-        scenario_write(file.stream, &calibrated);
-        code = whole_file_commit(&file, &f);
-    }
-    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    scenario_write(stream, ((const calibrated *)what)->scenario);
 }
 
 static int report(const arguments *a, const scenario *s, const calibration *c, bool whole)
@@ -122,10 +111,17 @@ static int report(const arguments *a, const scenario *s, const calibration *c, b
     if (a->json != NULL && write_json(a->json, calibration_json(c, s, table)) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
-    if (a->csv != NULL && write_table(a->csv, c, s) != EXIT_DONE) {
+    scenario with_table = *s;
+    const calibrated done = {c, &with_table};
+    if (write_file(a->csv, write_points, &done) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
-    if (a->output != NULL && whole && write_scenario(a->output, s, table) != EXIT_DONE) {
+    if (a->output != NULL && whole &&
+        parameter_set_text(&with_table.parameters, PARAMETER_INDEX(control.k2_table), table, &f) !=
+            STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (whole && write_file(a->output, write_scenario, &done) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
 
@@ -162,17 +158,9 @@ static int calibrate_command_run(const arguments *a)
 }
 
 static const option_row rows[] = {
-    {.name = "csv",
-     .type = OPTION_RESULT,
-     .value = "FILE|-",
-     .help = "write a row for each command",
-     PLACE(csv)},
-    {.name = "output",
-     .letter = 'o',
-     .type = OPTION_RESULT,
-     .value = "FILE|-",
-     .help = "write the scenario with the table in it",
-     PLACE(output)},
+    OPTION(RESULT, "csv", "FILE|-", "write a row for each command", PLACE(csv)),
+    OPTION(RESULT, "output", "FILE|-", "write the scenario with the table in it", PLACE(output),
+           .letter = 'o'),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 

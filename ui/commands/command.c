@@ -1,14 +1,86 @@
+// The commands there are, and what they share.
 #include "ui/commands/command.h"
-
-#include "src/base/json.h"
-#include "src/base/loss.h"
-#include "src/base/words.h"
 
 #include <assert.h>
 #include <langinfo.h>
 #include <stdarg.h>
 #include <string.h>
 #include <sys/stat.h>
+
+#include "src/base/json.h"
+#include "src/base/loss.h"
+#include "src/base/words.h"
+
+// One line a command: its name as a C word, in the order in which they are listed.
+#define COMMANDS(X)                                                                                \
+    X(lab)                                                                                         \
+    X(lesson)                                                                                      \
+    X(list)                                                                                        \
+    X(show)                                                                                        \
+    X(check)                                                                                       \
+    X(run)                                                                                         \
+    X(predict)                                                                                     \
+    X(modes)                                                                                       \
+    X(sweep)                                                                                       \
+    X(merge)                                                                                       \
+    X(compare)                                                                                     \
+    X(converge)                                                                                    \
+    X(solve)                                                                                       \
+    X(study)                                                                                       \
+    X(calibrate)                                                                                   \
+    X(robust)                                                                                      \
+    X(animate)                                                                                     \
+    X(plot)                                                                                        \
+    X(tables)                                                                                      \
+    X(figures)                                                                                     \
+    X(report)                                                                                      \
+    X(bench)                                                                                       \
+    X(help)
+
+#define COMMAND_DECLARED(name) extern const command name##_command;
+COMMANDS(COMMAND_DECLARED)
+#undef COMMAND_DECLARED
+
+const command *const command_table[] = {
+#define COMMAND_ADDRESS(name) &name##_command,
+    COMMANDS(COMMAND_ADDRESS)
+#undef COMMAND_ADDRESS
+};
+const int command_count = (int)(sizeof command_table / sizeof command_table[0]);
+
+const command *command_find(const char *name)
+{
+    assert(name != NULL);
+    for (int i = 0; i < command_count; i++) {
+        if (strcmp(command_table[i]->name, name) == 0) {
+            return command_table[i];
+        }
+    }
+    return NULL;
+}
+
+int complain_command(const char *name)
+{
+    assert(name != NULL);
+    nearest_word near = nearest_begin(name);
+    for (int i = 0; i < command_count; i++) {
+        nearest_try(&near, command_table[i]->name);
+    }
+    if (near.best != NULL) {
+        return complain("there is no command '%s', did you mean '%s'?", name, near.best);
+    }
+
+    // nothing is near: all there are
+    char known[256] = "";
+    size_t length = 0;
+    for (int i = 0; i < command_count && length < sizeof known; i++) {
+        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "",
+                                   command_table[i]->name);
+    }
+    return complain("there is no command '%s', only %s", name, known);
+}
+
+// --- what they share --------------------------------------------------------------------------
 
 int complain(const char *format, ...)
 {
@@ -183,7 +255,10 @@ int write_file(const char *path, void (*write)(FILE *stream, const void *what), 
 {
     whole_file file;
     fault f = {0};
-    assert(path != NULL && write != NULL);
+    assert(write != NULL);
+    if (path == NULL) {
+        return EXIT_DONE;
+    }
     status code = whole_file_open(&file, path, &f);
     if (code == STATUS_OK) {
         write(file.stream, what);
@@ -239,4 +314,64 @@ bool terminal_has_utf8(void)
     }
     return name != NULL &&
            (strcasestr(name, ".UTF-8") != NULL || strcasestr(name, ".utf8") != NULL);
+}
+
+// --- longer texts -----------------------------------------------------------------------------
+
+// Width of a UTF-8 text in characters.
+static int text_width(const char *text)
+{
+    assert(text != NULL);
+    int width = 0;
+    for (; *text != '\0'; text++) {
+        width += ((unsigned char)*text & 0xC0) != 0x80;
+    }
+    return width;
+}
+
+void print_indented(FILE *stream, const char *text, int bytes, int width, int indent)
+{
+    const char *end = text + bytes;
+    int column = 0;
+    assert(bytes >= 0 && indent >= 0 && width > indent);
+    while ((text += strspn(text, " \n")) < end) {
+        char word[256];
+        int length = (int)strcspn(text, " \n");
+        length = length < end - text ? length : (int)(end - text);
+        snprintf(word, sizeof word, "%.*s", length, text);
+
+        // a word goes to the next line if this one has no room for it
+        int wide = text_width(word);
+        const bool fits = column > 0 && column + 1 + wide <= width;
+        if (!fits) {
+            fprintf(stream, "%s%*s", column > 0 ? "\n" : "", indent, "");
+        }
+        print_printable(stream, "%s%.*s", fits ? " " : "", length, text);
+        column = fits ? column + 1 + wide : indent + wide;
+        text += length;
+    }
+    fprintf(stream, "%s", column > 0 ? "\n" : "");
+}
+
+void print_wrapped(FILE *stream, const char *text, int bytes, int width)
+{
+    print_indented(stream, text, bytes, width, 0);
+}
+
+bool next_paragraph(const char **text, paragraph *p)
+{
+    assert(text != NULL && *text != NULL && p != NULL);
+    *text += strspn(*text, "\n");
+    if (**text == '\0') {
+        return false;
+    }
+    *p = (paragraph){.start = *text, .literal = **text == ' '};
+
+    // lines are one paragraph until one that is empty or begins with a blank
+    do {
+        *text += strcspn(*text, "\n");
+        p->bytes = (int)(*text - p->start);
+        *text += **text == '\n';
+    } while (!p->literal && strchr("\n ", **text) == NULL);
+    return true;
 }

@@ -8,7 +8,7 @@
 
 #include "src/study/compare.h"
 #include "src/study/sweep.h"
-#include "ui/commands/run_progress.h"
+#include "ui/commands/progress.h"
 
 #define PIECES "runs"
 enum { MOST_SCENARIOS = 1000, MOST_ROWS = 100000 };
@@ -154,17 +154,14 @@ static bool run_all(comparison *c, run_monitor *monitor)
     return true;
 }
 
-static int write_table(const char *path, const compare_table *t,
-                       void (*write)(FILE *stream, const compare_table *t))
+static void write_csv(FILE *stream, const void *table)
 {
-    whole_file file;
-    fault f = {0};
-    status code = whole_file_open(&file, path, &f);
-    if (code == STATUS_OK) {
-        write(file.stream, t);
-        code = whole_file_commit(&file, &f);
-    }
-    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    compare_csv(stream, table);
+}
+
+static void write_markdown(FILE *stream, const void *table)
+{
+    compare_markdown(stream, table);
 }
 
 static int write_results(const arguments *a, const comparison *c, compare_table *t)
@@ -183,12 +180,9 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
     if (a->json != NULL && write_json(a->json, compare_json(t)) != EXIT_DONE) {
         result = EXIT_FAILED;
     }
-    if (a->csv != NULL && write_table(a->csv, t, compare_csv) != EXIT_DONE) {
-        result = EXIT_FAILED;
-    }
-    if (a->markdown != NULL && write_table(a->markdown, t, compare_markdown) != EXIT_DONE) {
-        result = EXIT_FAILED;
-    }
+    const int csv = write_file(a->csv, write_csv, t);
+    const int markdown = write_file(a->markdown, write_markdown, t);
+    result = csv != EXIT_DONE || markdown != EXIT_DONE ? EXIT_FAILED : result;
 
     // and for people
     if (summary_wanted(a) && t->count > 0) {
@@ -304,34 +298,14 @@ static int compare(const arguments *a)
 
 static const option_row rows[] = {
     PLOT_OPTION("draw the recorded signals of all scenarios"),
-    {.name = "csv",
-     .type = OPTION_RESULT,
-     .value = "FILE|-",
-     .help = "write a row for each run",
-     PLACE(csv)},
-    {.name = "against",
-     .type = OPTION_SCENARIO,
-     .value = "SCENARIO",
-     .help = "a run to hold the others against",
-     PLACE(against)},
-    {.name = "tolerance",
-     .type = OPTION_NUMBER,
-     .value = "PERCENT",
-     .help = "differences beyond it are marked (5)",
-     PLACE(tolerance),
-     .high = HUGE_VAL,
-     .initial = 5,
-     .unit = "percent"},
-    {.name = "markdown",
-     .type = OPTION_RESULT,
-     .value = "FILE|-",
-     .help = "write the table as one of a Markdown page",
-     PLACE(markdown)},
-    {.name = "columns",
-     .type = OPTION_TEXT,
-     .value = "KEY,KEY...",
-     .help = "show only these quantities, by their keys of --json",
-     PLACE(columns)},
+    OPTION(RESULT, "csv", "FILE|-", "write a row for each run", PLACE(csv)),
+    OPTION(SCENARIO, "against", "SCENARIO", "a run to hold the others against", PLACE(against)),
+    OPTION(NUMBER, "tolerance", "PERCENT", "differences beyond it are marked (5)", PLACE(tolerance),
+           .high = HUGE_VAL, .initial = 5, .unit = "percent"),
+    OPTION(RESULT, "markdown", "FILE|-", "write the table as one of a Markdown page",
+           PLACE(markdown)),
+    OPTION(TEXT, "columns", "KEY,KEY...", "show only these quantities, by their keys of --json",
+           PLACE(columns)),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 

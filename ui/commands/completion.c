@@ -100,6 +100,20 @@ static void put_quoted(FILE *stream, const char *text, const char *escaped)
     }
 }
 
+// What a shell offers for an option's value: its words between two texts, else the text of the
+// offer.
+static void put_offer(FILE *stream, const option_row *o, const char *const texts[],
+                      const char *open, const char *close)
+{
+    if (offer_of(o) != OFFER_WORDS) {
+        fputs(texts[offer_of(o)], stream);
+        return;
+    }
+    fputs(open, stream);
+    put_choices(stream, o);
+    fputs(close, stream);
+}
+
 // --- bash -----------------------------------------------------------------------------------
 
 static void put_bash_offer(FILE *stream, const option_row *o)
@@ -112,21 +126,13 @@ static void put_bash_offer(FILE *stream, const option_row *o)
         [OFFER_QUANTITIES] = "_impactlab_words \"$quantities\"",
     };
 
-    offer what = offer_of(o);
     fprintf(stream, "        '--%s'", o->name);
     if (o->letter != 0) {
         fprintf(stream, "|'-%c'", o->letter);
     }
     fprintf(stream, ") ");
 
-    if (what == OFFER_WORDS) {
-        fprintf(stream, "_impactlab_words '");
-        put_choices(stream, o);
-        fprintf(stream, "'");
-    } else {
-        fprintf(stream, "%s", calls[what]);
-    }
-
+    put_offer(stream, o, calls, "_impactlab_words '", "'");
     fprintf(stream, "; return ;;\n");
 }
 
@@ -225,13 +231,7 @@ static void put_zsh_option(FILE *stream, const option_row *o)
             fprintf(stream, ":");
             put_quoted(stream, o->value, "[]:\\");
             fprintf(stream, ":");
-            if (offer_of(o) == OFFER_WORDS) {
-                fprintf(stream, "(");
-                put_choices(stream, o);
-                fprintf(stream, ")");
-            } else {
-                fprintf(stream, "%s", actions[offer_of(o)]);
-            }
+            put_offer(stream, o, actions, "(", ")");
         }
 
         fprintf(stream, "'");
@@ -305,6 +305,12 @@ void write_zsh_completion(FILE *stream)
 
 static void put_fish_option(FILE *stream, const command *c, const option_row *o)
 {
+    static const char *const no_value[] = {[OFFER_NOTHING] = ""};
+    static const char *const values[] = {
+        [OFFER_NOTHING] = " -x",         [OFFER_FILES] = " -r -F",
+        [OFFER_PARAMETERS] = " -x -a '", [OFFER_SCENARIOS] = " -r -F -a '(__impactlab_scenarios)'",
+        [OFFER_QUANTITIES] = " -x -a '",
+    };
     fprintf(stream, "complete -c impactlab -n '__fish_seen_subcommand_from %s' -l %s", c->name,
             o->name);
 
@@ -312,32 +318,14 @@ static void put_fish_option(FILE *stream, const command *c, const option_row *o)
         fprintf(stream, " -s %c", o->letter);
     }
 
-    switch (offer_of(o)) {
-    case OFFER_NOTHING:
-        fprintf(stream, "%s", o->type == OPTION_FLAG ? "" : " -x");
-        break;
-    case OFFER_WORDS:
-        fprintf(stream, " -x -a '");
-        put_choices(stream, o);
-        fprintf(stream, "'");
-        break;
-    case OFFER_FILES:
-        fprintf(stream, " -r -F");
-        break;
-    case OFFER_PARAMETERS:
-        fprintf(stream, " -x -a '");
+    // the lists that have no function of their own stand in the text
+    put_offer(stream, o, o->type == OPTION_FLAG ? no_value : values, " -x -a '", "'");
+    if (offer_of(o) == OFFER_PARAMETERS) {
         put_parameters(stream);
-        fprintf(stream, "'");
-        break;
-    case OFFER_SCENARIOS:
-        fprintf(stream, " -r -F -a '(__impactlab_scenarios)'");
-        break;
-    case OFFER_QUANTITIES:
-        fprintf(stream, " -x -a '");
+    } else if (offer_of(o) == OFFER_QUANTITIES) {
         put_quantities(stream);
-        fprintf(stream, "'");
-        break;
     }
+    fputs(offer_of(o) == OFFER_PARAMETERS || offer_of(o) == OFFER_QUANTITIES ? "'" : "", stream);
 
     fprintf(stream, " -d '");
     put_quoted(stream, o->help, "");

@@ -8,7 +8,7 @@
 #include "src/base/shipped.h"
 #include "src/study/convergence.h"
 #include "ui/commands/pictures.h"
-#include "ui/commands/run_progress.h"
+#include "ui/commands/progress.h"
 
 #define PIECES "runs"
 
@@ -239,11 +239,8 @@ static int converge(const arguments *a)
 }
 
 static const option_row rows[] = {
-    {.name = "plot",
-     .type = OPTION_PICTURE,
-     .value = "FILE.{png,pdf,svg}",
-     .help = "draw the contact force at the three steps",
-     PLACE(plot)},
+    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", "draw the contact force at the three steps",
+           PLACE(plot)),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 

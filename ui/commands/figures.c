@@ -1,17 +1,23 @@
+// The commands that draw figures: those of the thesis, of a recipe, and a report of many.
 #include "ui/commands/command.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/figures/figures.h"
-#include "src/study/pool.h"
+#include "render/figures/recipe.h"
+#include "render/figures/report.h"
 #include "src/base/json.h"
-#include "src/base/words.h"
 #include "src/base/numbers.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
-#include "ui/commands/many_runs.h"
+#include "src/base/words.h"
+#include "src/study/pool.h"
+#include "ui/commands/progress.h"
 #include "ui/commands/pictures.h"
+
+// --- figures ----------------------------------------------------------------------------------
 
 #define DEFAULT_FOLDER  "figures"
 #define DEFAULT_FORMATS "png"
@@ -206,17 +212,8 @@ static const char *figure_word(int i)
 }
 
 static const option_row rows[] = {
-    {.name = "output",
-     .letter = 'o',
-     .type = OPTION_PLACE,
-     .value = "FOLDER",
-     .help = "folder to write to (figures)",
-     PLACE(output)},
-    {.name = "format",
-     .type = OPTION_TEXT,
-     .value = "png,pdf,svg",
-     .help = "which kinds of files to write",
-     PLACE(format)},
+    OPTION(PLACE, "output", "FOLDER", "folder to write to (figures)", PLACE(output), .letter = 'o'),
+    OPTION(TEXT, "format", "png,pdf,svg", "which kinds of files to write", PLACE(format)),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 
@@ -235,4 +232,124 @@ const command figures_command = {
     .operand_word = figure_word,
     .options = {&json_options, &options, &quiet_options, &page_options},
     .run = figures,
+};
+
+// --- plot -------------------------------------------------------------------------------------
+
+// The recipe's name with .png, in the present folder; NULL without memory.
+static char *default_name(const char *recipe)
+{
+    const char *slash = strrchr(recipe, '/'), *name = slash != NULL ? slash + 1 : recipe;
+    const char *dot = strrchr(name, '.');
+    const size_t length = dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name);
+    char *path = NULL;
+    return asprintf(&path, "%.*s.png", (int)length, name) < 0 ? NULL : path;
+}
+
+static int plot(const arguments *a)
+{
+    figure_options o;
+    fault f = {0};
+    artwork art;
+
+    // what can be refused before the recipe is read
+    int code = read_picture_options(a, &o);
+    if (code == EXIT_DONE && (o.overlay != NULL || o.signals != NULL)) {
+        code = complain("a recipe says itself which signals and data it shows, --%s is for runs",
+                        o.overlay != NULL ? "overlay" : "signals");
+    }
+    char *path = a->plot != NULL ? strdup(a->plot) : default_name(a->operands[0]);
+    if (path == NULL) {
+        fault_no_memory(&f);
+        return complain_fault(&f);
+    }
+    if (code == EXIT_DONE && picture_check_path(path, &f) != STATUS_OK) {
+        code = complain_fault(&f);
+    }
+
+    // faults in the recipe are reported as they are found and leave f empty
+    if (code == EXIT_DONE) {
+        status opened = recipe_open(a->operands[0], &o, report_to_stderr, NULL, &art, &f);
+        if (opened != STATUS_OK) {
+            code = f.code != STATUS_OK ? complain_fault(&f) : EXIT_BAD_ARGUMENTS;
+        } else {
+            code = artwork_publish(&art, &o, path, true, &f) == STATUS_OK ? EXIT_DONE
+                                                                          : complain_fault(&f);
+            artwork_finish(&art);
+        }
+    }
+
+    // a default name is not known to the user yet
+    if (code == EXIT_DONE && !a->quiet) {
+        say("%s: %s\n", a->operands[0], path);
+    }
+    free(path);
+    return code;
+}
+
+static const option_row plot_rows[] = {
+    OPTION(PICTURE, "output", "FILE.{png,pdf,svg}", "where to draw it (the recipe's name, as PNG)",
+           PLACE(plot), .letter = 'o'),
+};
+static const option_table plot_options = OPTION_TABLE("Options", plot_rows);
+
+const command plot_command = {
+    .name = "plot",
+    .group = GROUP_PICTURES,
+    .operands = "RECIPE.yaml",
+    .summary = "Draw a figure from a recipe: runs, data and tables in panels",
+    .help = "A recipe names runs with changed parameters, measured data and the databases of "
+            "sweeps, and the\npanels that show them. A CSV of what is drawn stands beside the "
+            "picture. Examples are in\nscenarios/recipes, all keys in docs/reference/recipes.md.\n",
+    .least = 1,
+    .most = 1,
+    .options = {&plot_options, &quiet_options, &page_options},
+    .run = plot,
+};
+
+// --- report -----------------------------------------------------------------------------------
+
+#define PIECES        "steps"
+
+#define REPORT_FOLDER "report"
+
+static int report(const arguments *a)
+{
+    fault f = {0};
+    const char *folder = a->output ? a->output : REPORT_FOLDER;
+    const int steps = 2 * report_length(a->operand_count); // computed, then drawn
+    run_monitor *monitor = work_begin(a, PIECES, steps);
+    status code = report_write(folder, a->operands, a->operand_count, monitor, &f);
+    work_end();
+
+    if (code == STATUS_STOPPED) {
+        work_leave(monitor->pieces, steps, PIECES, "the report is as it was before");
+    }
+    if (code != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (!a->quiet) {
+        say("%s/report.html\n%s/report.pdf\n", folder, folder);
+    }
+    return EXIT_DONE;
+}
+
+static const option_row report_rows[] = {
+    OPTION(PLACE, "output", "FOLDER", "folder to write to (report)", PLACE(output), .letter = 'o'),
+};
+static const option_table report_options = OPTION_TABLE("Options", report_rows);
+
+const command report_command = {
+    .name = "report",
+    .group = GROUP_THESIS,
+    .operands = "[SCENARIO|RECIPE.yaml]...",
+    .summary = "Figures and tables as one web page and one PDF",
+    .help = "Of the scenarios and recipes named, or without any of the whole thesis. Into the "
+            "folder 'report' unless -o says otherwise. The page needs no other file and "
+            "no network. Under\neach item stand its scenario, its model and the command that "
+            "makes it again.\n^C ends it and leaves the report of before (exit status 130).\n",
+    .most = 64,
+    .takes_scenarios = true,
+    .options = {&report_options, &quiet_options},
+    .run = report,
 };

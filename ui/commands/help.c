@@ -218,25 +218,15 @@ static const char *command_word(int i)
 }
 
 static const option_row rows[] = {
-    {.name = "man",
-     .type = OPTION_FLAG,
-     .help = "write the man page instead, of the command or of impactlab",
-     PLACE(man)},
-    {.name = "man-pages",
-     .type = OPTION_PLACE,
-     .value = "FOLDER",
-     .help = "write the man pages of all commands as files",
-     PLACE(man_pages)},
-    {.name = "completion",
-     .type = OPTION_CHOICE,
-     .value = "bash|zsh|fish",
-     .help = "write what this shell needs to complete commands and options",
-     PLACE(completion)},
-    {.name = "reference",
-     .type = OPTION_CHOICE,
-     .value = REFERENCE_PAGES,
-     .help = "write a chapter of the manual from the program's tables, the last as a man page",
-     PLACE(reference)},
+    OPTION(FLAG, "man", NULL, "write the man page instead, of the command or of impactlab",
+           PLACE(man)),
+    OPTION(PLACE, "man-pages", "FOLDER", "write the man pages of all commands as files",
+           PLACE(man_pages)),
+    OPTION(CHOICE, "completion", "bash|zsh|fish",
+           "write what this shell needs to complete commands and options", PLACE(completion)),
+    OPTION(CHOICE, "reference", REFERENCE_PAGES,
+           "write a chapter of the manual from the program's tables, the last as a man page",
+           PLACE(reference)),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 

@@ -3,6 +3,7 @@
 
 #include "render/figures/artwork.h"
 #include "render/figures/run_figure.h"
+#include "render/scene/scene.h"
 #include "ui/commands/command.h"
 
 // Reads the options of page_options. Returns EXIT_DONE, or reports an error and returns the exit
@@ -18,8 +19,20 @@ int publish_figure(const arguments *a, const figure *fig);
 int publish_runs(const arguments *a, const char *title, const trace_run *runs, int run_count);
 
 // The --plot option of a command.
-#define PLOT_OPTION(what)                                                                          \
-    {                                                                                              \
-        .name = "plot", .type = OPTION_PICTURE, .value = "FILE.{png,pdf,svg}", .help = (what),     \
-        PLACE(plot)                                                                                \
-    }
+#define PLOT_OPTION(what) OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", what, PLACE(plot))
+
+// --- the arm in space -------------------------------------------------------------------------
+// Pictures of the arm requested on the command line.
+
+// The view set by --gl, --camera and --size.
+scene_options read_view(const arguments *a);
+
+// Checks --camera. Returns the exit status.
+int check_view(const arguments *a);
+
+// Checks that run --scene can write its file and that --at does not give too many instants. Returns
+// the exit status.
+int check_scene(const arguments *a);
+
+// Writes the picture of run --scene. Returns the exit status.
+int write_scene(const arguments *a, const scenario *s, const run_result *result);

@@ -6,7 +6,7 @@
 #include "src/base/numbers.h"
 #include "src/run/first_contact.h"
 #include "ui/commands/pictures.h"
-#include "ui/commands/run_progress.h"
+#include "ui/commands/progress.h"
 
 // Commands of --then.
 enum { MOST_COMMANDS = 64 };
@@ -272,11 +272,8 @@ static int predict(const arguments *a)
 
 static const option_row rows[] = {
     PLOT_OPTION("draw the predicted peaks beside the simulated one"),
-    {.name = "then",
-     .type = OPTION_TEXT,
-     .value = "TIME:VOLTS,...",
-     .help = "what if the motor got these commands from the touch on (s, V)",
-     PLACE(then)},
+    OPTION(TEXT, "then", "TIME:VOLTS,...",
+           "what if the motor got these commands from the touch on (s, V)", PLACE(then)),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 

@@ -9,7 +9,7 @@
 #include "src/rig/rig.h"
 #include "src/study/store/sweep_store.h"
 #include "src/study/robust.h"
-#include "ui/commands/many_runs.h"
+#include "ui/commands/progress.h"
 #include "ui/commands/pictures.h"
 
 enum { DEFAULT_RUNS = 200, DEFAULT_CASE_RUNS = 4 };
@@ -355,12 +355,8 @@ static int write_results(const robustness *r)
     if (a->json != NULL) {
         code = worse(code, write_json(a->json, robust_json(&table)));
     }
-    if (a->csv != NULL) {
-        code = worse(code, write_file(a->csv, write_csv, &table));
-    }
-    if (a->markdown != NULL) {
-        code = worse(code, write_file(a->markdown, write_markdown, &table));
-    }
+    code = worse(code, write_file(a->csv, write_csv, &table));
+    code = worse(code, write_file(a->markdown, write_markdown, &table));
     if (a->plot != NULL) {
         char changes[SCENARIO_CHANGES];
         owned_figure *drawn = robust_figure_create(&table, scenario_changes(&r->scenario, changes));
@@ -408,35 +404,18 @@ static int robust(const arguments *a)
 }
 
 static const option_row rows[] = {
-    {.name = "laws",
-     .type = OPTION_TEXT,
-     .value = "LAW,LAW...",
-     .help = "control laws to judge (the scenario's)",
-     PLACE(laws)},
-    {.name = "over",
-     .type = OPTION_FILE,
-     .value = "SET",
-     .help = "file of what is drawn, a line PATH=a:b each (sets/robust.set)",
-     PLACE(over)},
-    {.name = "against",
-     .type = OPTION_TEXT,
-     .value = "LAW",
-     .help = "of cases: a law whose time from the start the others are held against",
-     PLACE(against)},
+    OPTION(TEXT, "laws", "LAW,LAW...", "control laws to judge (the scenario's)", PLACE(laws)),
+    OPTION(FILE, "over", "SET", "file of what is drawn, a line PATH=a:b each (sets/robust.set)",
+           PLACE(over)),
+    OPTION(TEXT, "against", "LAW",
+           "of cases: a law whose time from the start the others are held against", PLACE(against)),
     RUNS_OPTION("number of runs of each law (200; in each case 4)"),
     SEED_OPTION,
     JOBS_OPTION,
     DB_OPTION("keep every run, in FILE-LAW.sqlite; go on where they end"),
-    {.name = "csv",
-     .type = OPTION_RESULT,
-     .value = "FILE|-",
-     .help = "write a row for each law",
-     PLACE(csv)},
-    {.name = "markdown",
-     .type = OPTION_RESULT,
-     .value = "FILE|-",
-     .help = "write the table as one of a Markdown page",
-     PLACE(markdown)},
+    OPTION(RESULT, "csv", "FILE|-", "write a row for each law", PLACE(csv)),
+    OPTION(RESULT, "markdown", "FILE|-", "write the table as one of a Markdown page",
+           PLACE(markdown)),
     PLOT_OPTION("draw the distribution of the overshoot, a curve for each law"),
 };
 static const option_table options = OPTION_TABLE("Options", rows);

@@ -9,8 +9,7 @@
 #include "src/base/words.h"
 #include "src/tables/parameters.h"
 #include "ui/commands/pictures.h"
-#include "ui/commands/run_progress.h"
-#include "ui/commands/scene_request.h"
+#include "ui/commands/progress.h"
 
 enum { EVENTS_SHOWN = 16 };
 
@@ -133,9 +132,7 @@ static int write_results(const arguments *a, const scenario *s, const run_result
         code = worse(code, write_json(a->json, export_run(s, result)));
     }
 
-    if (a->csv != NULL) {
-        code = worse(code, write_file(a->csv, write_signals, &signals));
-    }
+    code = worse(code, write_file(a->csv, write_signals, &signals));
 
     if (a->plot != NULL) {
         const trace_run shown = {.scenario = s, .result = result, .name = s->name};
@@ -216,27 +213,11 @@ static int run(const arguments *a)
 }
 
 static const option_row rows[] = {
-    {.name = "csv",
-     .type = OPTION_RESULT,
-     .value = "FILE|-",
-     .help = "write the recorded signals, one row a step",
-     PLACE(csv)},
-    {.name = "plot",
-     .type = OPTION_PICTURE,
-     .value = "FILE.{png,pdf,svg}",
-     .help = "draw the recorded signals",
-     PLACE(plot)},
-    {.name = "scene",
-     .type = OPTION_PLACE,
-     .value = "FILE.png",
-     .help = "draw the arm",
-     PLACE(scene)},
-    {.name = "at",
-     .type = OPTION_NUMBERS,
-     .value = "T",
-     .help = "draw the arm at this instant [s] (may be repeated)",
-     PLACE(instants),
-     .high = 1e5},
+    OPTION(RESULT, "csv", "FILE|-", "write the recorded signals, one row a step", PLACE(csv)),
+    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", "draw the recorded signals", PLACE(plot)),
+    OPTION(PLACE, "scene", "FILE.png", "draw the arm", PLACE(scene)),
+    OPTION(NUMBERS, "at", "T", "draw the arm at this instant [s] (may be repeated)",
+           PLACE(instants), .high = 1e5),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 

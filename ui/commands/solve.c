@@ -4,8 +4,7 @@
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/study/solve.h"
-#include "ui/commands/many_runs.h"
-#include "ui/commands/run_progress.h"
+#include "ui/commands/progress.h"
 
 #define PIECES "runs"
 
@@ -158,13 +157,8 @@ static int solve_command_run(const arguments *a)
 }
 
 static const option_row rows[] = {
-    {.name = "runs",
-     .type = OPTION_WHOLE,
-     .value = "N",
-     .help = "values of the range that are run before limits are located (65)",
-     PLACE(runs),
-     .low = 2,
-     .high = SOLVE_MOST_POINTS},
+    OPTION(WHOLE, "runs", "N", "values of the range that are run before limits are located (65)",
+           PLACE(runs), .low = 2, .high = SOLVE_MOST_POINTS),
     JOBS_OPTION,
 };
 static const option_table options = OPTION_TABLE("Options", rows);

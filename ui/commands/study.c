@@ -1,13 +1,25 @@
-#include "ui/commands/study_topics.h"
+// impactlab study: error against cost of the methods of time integration, and what a force sensor
+// would read of the contact.
+#include "ui/commands/command.h"
 
 #include <assert.h>
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
-
 #include <string.h>
 
+#include "src/base/json.h"
 #include "src/base/shipped.h"
+#include "src/study/convergence.h"
+#include "src/study/sensor_view.h"
+#include "ui/commands/pictures.h"
+#include "ui/commands/progress.h"
 
-int publish_study(const arguments *a, figure *fig)
+// --- methods ----------------------------------------------------------------------------------
+
+// Draws a study's figure to --plot, panels side by side over one logarithmic axis, and its data
+// beside it. Returns the exit status.
+static int publish_study(const arguments *a, figure *fig)
 {
     assert(a != NULL && fig != NULL);
     char software[64];
@@ -19,6 +31,371 @@ int publish_study(const arguments *a, figure *fig)
     fig->software = software;
     return publish_figure(a, fig);
 }
+
+static json_t *methods_object(const scenario *s, const method_study *study)
+{
+    json_t *object = json_object(), *reference = json_object(), *points = json_array();
+    json_put(object, "scenario", json_text(s->name));
+
+    // what errors are measured against
+    json_put(reference, "method", json_string("event"));
+    json_put(reference, "step_s", json_number(study->reference_step));
+    for (int k = 0; k < STUDY_QUANTITIES; k++) {
+        json_put(reference, study_keys[k], json_number(study->reference[k]));
+    }
+    json_put(object, "reference", reference);
+
+    for (int m = 0; m < STUDY_METHODS; m++) {
+        for (int i = 0; i < STUDY_STEPS; i++) {
+            const study_point *p = &study->points[m][i];
+            json_t *line = json_object(), *errors = json_object();
+
+            json_put(line, "method", json_string(study_methods[m]));
+            json_put(line, "step_s", json_number(p->step));
+            json_put(line, "computing_time_s", json_number(p->cost));
+
+            for (int k = 0; k < STUDY_QUANTITIES; k++) {
+                json_put(errors, study_keys[k], json_number(p->error[k]));
+            }
+
+            json_put(line, "errors", errors);
+            json_add(points, line);
+        }
+    }
+
+    json_put(object, "methods", points);
+    return object;
+}
+
+// A number in a column of the given width, "-" where there is none.
+static void print_cell(int width, double value)
+{
+    char text[32] = "-";
+    if (!isnan(value)) {
+        snprintf(text, sizeof text, "%.3g", value);
+    }
+    printf(" %*s", width, text);
+}
+
+static void print_methods(const scenario *s, const method_study *study)
+{
+    char changes[SCENARIO_CHANGES];
+    say("%s%s: error against cost\nreference: event method at %g s; first contact %.12g s, first "
+        "pulse peak %.12g N,\nsteady force %.12g N\n",
+        s->name, scenario_changes(s, changes), study->reference_step, study->reference[0],
+        study->reference[1], study->reference[2]);
+
+    // a table for each method
+    for (int m = 0; m < STUDY_METHODS; m++) {
+        printf("\n%-18s %10s %12s %12s %12s\n", study_methods[m], "cost", "contact", "peak",
+               "steady");
+        printf("%-18s %10s %12s %12s %12s\n", "step [s]", "[ms]", "[s]", "[N]", "[N]");
+        for (int i = 0; i < STUDY_STEPS; i++) {
+            const study_point *p = &study->points[m][i];
+            printf("%-18g", p->step);
+            print_cell(10, 1e3 * p->cost);
+            for (int k = 0; k < STUDY_QUANTITIES; k++) {
+                print_cell(12, p->error[k]);
+            }
+            printf("\n");
+        }
+    }
+
+    // and the question that decides between them
+    printf("\nLeast cost for an error of the first pulse's peak of at most\n");
+    for (double error = 1e-2; error > 0.9e-8; error /= 100) {
+        printf("  %7.0e N:", error);
+        for (int m = 0; m < STUDY_METHODS; m++) {
+            double step = 0, cost = method_study_cost(study, m, 1, error, &step);
+            if (isnan(cost)) {
+                printf("   %s: none", study_methods[m]);
+            } else {
+                printf("   %s: %.3g ms at %g s", study_methods[m], 1e3 * cost, step);
+            }
+        }
+        printf("\n");
+    }
+}
+
+// Makes the errors fit for a logarithmic axis, which has no zero: what agrees to the last digit
+// stands at half of one.
+static void raise_zeros(method_study *study)
+{
+    for (int k = 0; k < STUDY_QUANTITIES; k++) {
+        const double least = DBL_EPSILON / 2 * fabs(study->reference[k]);
+        for (int m = 0; m < STUDY_METHODS; m++) {
+            for (int i = 0; i < STUDY_STEPS; i++) {
+                double *error = &study->points[m][i].error[k];
+                *error = isnan(*error) ? *error : fmax(*error, least);
+            }
+        }
+    }
+}
+
+static int plot_methods(const arguments *a, const scenario *s, const method_study *drawn)
+{
+    static const char *const labels[STUDY_METHODS] = {"Newmark", "generalised α", "event method"};
+    static const marker_kind markers[STUDY_METHODS] = {MARKER_SQUARE, MARKER_TRIANGLE,
+                                                       MARKER_CIRCLE};
+    static const int colours[STUDY_METHODS] = {1, 2, 0};
+    static const char *const names[STUDY_QUANTITIES] = {
+        "Error of first contact", "Error of first pulse\u2019s peak", "Error of steady force"};
+    static const char *const plain[STUDY_QUANTITIES] = {"first_contact", "first_pulse_peak",
+                                                        "steady_force"};
+    static const char *const units[STUDY_QUANTITIES] = {"s", "N", "N"};
+    figure_series series[STUDY_QUANTITIES][STUDY_METHODS];
+    figure_panel panels[STUDY_QUANTITIES];
+    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
+
+    for (int k = 0; k < STUDY_QUANTITIES; k++) {
+        for (int m = 0; m < STUDY_METHODS; m++) {
+            series[k][m] = (figure_series){.name = study_methods[m],
+                                           .label = labels[m],
+                                           .x = &drawn->points[m][0].cost,
+                                           .y = &drawn->points[m][0].error[k],
+                                           .count = STUDY_STEPS,
+                                           .stride = sizeof(study_point),
+                                           .colour = colours[m],
+                                           .marker = markers[m]};
+        }
+
+        panels[k] = (figure_panel){.y = {.name = plain[k],
+                                         .label = names[k],
+                                         .unit = units[k],
+                                         .scale = SCALE_LOGARITHMIC},
+                                   .series = series[k],
+                                   .series_count = STUDY_METHODS,
+                                   .weight = 1.8};
+    }
+
+    snprintf(title, sizeof title, "%s: error against cost%s", s->name,
+             scenario_changes(s, changes));
+
+    figure fig = {
+        .title = title,
+        .caption =
+            "Steps 10\u2009ms, 5\u2009ms, 2\u2009ms ... 1\u2009µs from left to right; the event "
+            "method needs none of them and costs about the same whichever is asked for. Left and "
+            "low is better. Reference: the event method at 20\u2009µs. What agrees with it to the "
+            "last digit stands at half of one.",
+        .x = {.name = "computing time", .label = "Computing time", .unit = "s"},
+        .panels = panels,
+        .panel_count = STUDY_QUANTITIES};
+    return publish_study(a, &fig);
+}
+
+static int study_of_methods(const arguments *a, scenario *s)
+{
+    method_study study;
+    fault f = {0};
+    run_monitor *monitor = work_begin(a, "runs", STUDY_RUNS);
+    status code = method_study_compute(s, monitor, &study, &f);
+    work_end();
+
+    // without the reference there is nothing to show
+    const int done = monitor->pieces;
+    if (code == STATUS_STOPPED && done == 0) {
+        work_leave(0, STUDY_RUNS, "runs", "there is nothing to show");
+    }
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
+        return complain_fault(&f);
+    }
+
+    if (summary_wanted(a)) {
+        print_methods(s, &study);
+    }
+
+    int result = a->json != NULL ? write_json(a->json, methods_object(s, &study)) : EXIT_DONE;
+    if (code == STATUS_STOPPED) {
+        work_leave(done, STUDY_RUNS, "runs", "the tables hold these");
+    }
+    if (result == EXIT_DONE && a->plot != NULL) {
+        raise_zeros(&study);
+        result = plot_methods(a, s, &study);
+    }
+    return result;
+}
+
+// --- sensor -----------------------------------------------------------------------------------
+
+#define PIECES "numbers of links"
+
+static json_t *sensor_object(const scenario *s, const sensor_study *study)
+{
+    json_t *object = json_object(), *rows = json_array();
+    json_put(object, "scenario", json_text(s->name));
+
+    for (int i = 0; i < study->count; i++) {
+        const sensor_view *view = &study->views[i];
+        json_t *line = json_object(), *sensors = json_array();
+
+        // what the contact gives, of the links and of the beam
+        json_put(line, "links", json_integer(view->links));
+        json_put(line, "approach_speed_m_s", json_number(view->speed));
+        json_put(line, "contact_impulse_Ns", json_number(view->impulse));
+        json_put(line, "peak_N", json_number(view->peak));
+        json_put(line, "impacts", json_number(view->impacts));
+        json_put(line, "momentum_2ms_Ns", json_number(view->momentum));
+        json_put(line, "beam_momentum_2ms_Ns", json_number(study->beam_momentum[i]));
+
+        // what sensors make of it
+        for (int k = 0; k < SENSOR_CONSTANTS; k++) {
+            json_t *sensor = json_object();
+            json_put(sensor, "time_constant_s", json_number(sensor_constants[k]));
+            json_put(sensor, "peak_N", json_number(view->sensed[k]));
+            json_put(sensor, "time_to_peak_s", json_number(view->delay[k]));
+            json_put(sensor, "beam_peak_N", json_number(study->beam_peak[k][i]));
+            json_add(sensors, sensor);
+        }
+
+        json_put(line, "sensors", sensors);
+        json_add(rows, line);
+    }
+
+    json_put(object, "sensor", rows);
+    return object;
+}
+
+static void print_sensor(const scenario *s, const sensor_study *study)
+{
+    char changes[SCENARIO_CHANGES];
+    say("%s%s: the first %g ms after first contact\n\n", s->name, scenario_changes(s, changes),
+        1e3 * SENSOR_WINDOW);
+    printf(
+        "        ideal point contact           momentum   peak of a sensor with time constant\n");
+
+    printf("links   impulse    peak      impacts  in %g ms  ", 1e3 * MOMENTUM_WINDOW);
+    for (int k = 0; k < SENSOR_CONSTANTS; k++) {
+        printf("%7g ms", 1e3 * sensor_constants[k]);
+    }
+
+    printf("\n        [N s]      [N]                [N s]     ");
+    for (int k = 0; k < SENSOR_CONSTANTS; k++) {
+        printf("%10s", "[N]");
+    }
+    printf("\n");
+
+    for (int i = 0; i < study->count; i++) {
+        const sensor_view *view = &study->views[i];
+        printf("%-6d  %-9.5f  %-8.4g  %-7g  %-9.5f ", view->links, view->impulse, view->peak,
+               view->impacts, view->momentum);
+
+        for (int k = 0; k < SENSOR_CONSTANTS; k++) {
+            printf(" %9.4g", view->sensed[k]);
+        }
+        printf("\n");
+    }
+
+    // the beam's limit below the links, from the speed of the longest
+    if (study->count < SENSOR_LENGTHS) {
+        return;
+    }
+    printf("%-6s  %-9s  %-8s  %-7s  %-9.5f ", "beam", "0", "infinite", "",
+           study->beam_momentum[SENSOR_LENGTHS - 1]);
+    for (int k = 0; k < SENSOR_CONSTANTS; k++) {
+        printf(" %9.4g", study->beam_peak[k][SENSOR_LENGTHS - 1]);
+    }
+
+    printf("\n\nbeam: a long Euler-Bernoulli beam whose tip is stopped from the same speed, %.4g "
+           "m/s\n",
+           study->views[SENSOR_LENGTHS - 1].speed);
+}
+
+static int plot_sensor(const arguments *a, const scenario *s, const sensor_study *study)
+{
+#define CURVE(what) .x = study->links, .y = (what), .count = SENSOR_LENGTHS
+
+    // largest force: ideal, by sensors, and the beam's limits
+    const figure_series force[] = {
+        {.name = "ideal",
+         .label = "ideal point contact",
+         CURVE(study->peak),
+         .colour = 5,
+         .marker = MARKER_SQUARE},
+        {.name = "sensor 0.5 ms",
+         .label = "sensor of 0.5\u2009ms",
+         CURVE(study->sensed[0]),
+         .colour = 3,
+         .marker = MARKER_CIRCLE},
+        {.name = "sensor 1 ms",
+         .label = "1 ms",
+         CURVE(study->sensed[1]),
+         .colour = 0,
+         .marker = MARKER_CIRCLE},
+        {.name = "sensor 2 ms",
+         .label = "2 ms",
+         CURVE(study->sensed[2]),
+         .colour = 2,
+         .marker = MARKER_CIRCLE},
+        {.name = "beam 0.5 ms",
+         .label = "a beam\u2019s limit",
+         CURVE(study->beam_peak[0]),
+         .colour = 7,
+         .secondary = true},
+        {.name = "beam 1 ms", CURVE(study->beam_peak[1]), .colour = 7, .secondary = true},
+        {.name = "beam 2 ms", CURVE(study->beam_peak[2]), .colour = 7, .secondary = true},
+    };
+
+    const figure_series momentum[] = {
+        {.name = "first impact", CURVE(study->impulse), .colour = 5, .marker = MARKER_SQUARE},
+        {.name = "2 ms", CURVE(study->momentum), .colour = 0, .marker = MARKER_CIRCLE},
+        {.name = "beam 2 ms", CURVE(study->beam_momentum), .colour = 7, .secondary = true},
+    };
+#undef CURVE
+
+    const figure_panel panels[] = {
+        {.y = {.name = "peak", .label = "Largest force", .unit = "N", .scale = SCALE_LOGARITHMIC},
+         .series = force,
+         .series_count = 7,
+         .weight = 1.8},
+        {.y = {.name = "momentum",
+               .label = "First impulse, momentum of 2\u2009ms",
+               .unit = "N s",
+               .scale = SCALE_LOGARITHMIC},
+         .series = momentum,
+         .series_count = 3,
+         .weight = 1.8},
+    };
+
+    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
+    snprintf(title, sizeof title, "%s: what a force sensor would see%s", s->name,
+             scenario_changes(s, changes));
+    figure fig = {.title = title,
+                  .caption =
+                      "Squares: force and first impulse of the rigid point contact. Circles: "
+                      "largest reading of a sensor, and all momentum of the first 2 ms.",
+                  .x = {.name = "links", .label = "Number of links <i>N</i>"},
+                  .panels = panels,
+                  .panel_count = 2};
+    return publish_study(a, &fig);
+}
+
+static int study_of_sensor(const arguments *a, scenario *s)
+{
+    sensor_study study;
+    fault f = {0};
+    run_monitor *monitor = work_begin(a, PIECES, SENSOR_LENGTHS);
+    status code = sensor_study_compute(s, monitor, &study, &f);
+    work_end();
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
+        return complain_fault(&f);
+    }
+
+    if (summary_wanted(a) && study.count > 0) {
+        print_sensor(s, &study);
+    }
+
+    int result = a->json != NULL ? write_json(a->json, sensor_object(s, &study)) : EXIT_DONE;
+    if (code == STATUS_STOPPED) {
+        work_leave(study.count, SENSOR_LENGTHS, PIECES, "the table is that of these");
+    }
+    if (result == EXIT_DONE && a->plot != NULL) {
+        result = plot_sensor(a, s, &study);
+    }
+    return result;
+}
+
+// --- the command ------------------------------------------------------------------------------
 
 typedef struct topic {
     const char *name, *scenario; // the scenario if none is given

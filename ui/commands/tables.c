@@ -170,10 +170,7 @@ static int tables(const arguments *a)
 }
 
 static const option_row rows[] = {
-    {.name = "fitted",
-     .type = OPTION_FLAG,
-     .help = "what comes nearest to the printed delays instead",
-     PLACE(fitted)},
+    OPTION(FLAG, "fitted", NULL, "what comes nearest to the printed delays instead", PLACE(fitted)),
 };
 static const option_table options = OPTION_TABLE("Options", rows);
 

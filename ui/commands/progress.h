@@ -1,0 +1,71 @@
+// Long work: its progress on the terminal, its orderly end by an interrupt; the options of many
+// runs.
+#pragma once
+
+#include <math.h>
+#include <signal.h>
+
+#include "src/run/run.h"
+#include "src/study/sweep_run.h"
+#include "ui/commands/command.h"
+
+// --- runs and pieces --------------------------------------------------------------------------
+// Progress of long work on the terminal, and its orderly end by an interrupt.
+
+// Work of `total` pieces ("runs", "presses") begins. The returned monitor is passed to the runs and
+// counts the pieces that are done (run_monitor_count). If standard error is a terminal and --quiet
+// was not given, work of more than a second shows its progress there. An interrupt (^C) sets
+// `stop`; a second one ends the program. To be ended with work_end; only one work at a time.
+run_monitor *work_begin(const arguments *a, const char *pieces, int total);
+void work_end(void);
+
+// As run_scenario_with, with progress shown. An interrupt ends the run: STATUS_STOPPED, with what
+// was computed until then.
+status run_with_progress(const arguments *a, const scenario *s, bool keep_trace,
+                         run_result *result);
+
+// Reports that `done` of `total` pieces were done when the work was stopped, and what happened to
+// them. Then ends the program by the signal itself, after all output is written, so that the
+// calling program sees it (a shell: status 130).
+_Noreturn void work_leave(int done, int total, const char *pieces, const char *what_became);
+
+// Ends the program by the interrupt.
+_Noreturn void leave_interrupted(void);
+
+// --- sweeps -----------------------------------------------------------------------------------
+// Shared by the commands that make many runs: options, ^C and the progress line.
+
+// The number of threads: --jobs, or the number of processors.
+int many_runs_jobs(const arguments *a);
+
+// Whether this process only computes runs for rank 0, which stores and reports them.
+bool many_runs_only_computes(const arguments *a);
+
+// From now on SIGINT and SIGTERM stop the sweeps of these options: the runs under way are finished,
+// or abandoned after five seconds. A second signal, a second or more later, ends the program.
+void many_runs_catch_signals(sweep_options *o);
+
+// Whether to show progress: on a terminal, without --quiet.
+bool many_runs_shows_progress(const arguments *a);
+
+// A sweep_options.report: the progress bar, a line on the terminal that is overwritten. `context`
+// is a word printed before it (const char *), or NULL.
+void many_runs_progress(void *context, const sweep_progress *p);
+void many_runs_clear_progress(void);
+
+// Prints how many of the newly computed runs failed, and why the first one did.
+void many_runs_tell_failure(const sweep_progress *p);
+
+// After a signal: prints how many runs there are and how to continue. `db`: file in which they are
+// stored, or NULL. Returns the exit status, 130 after ^C.
+int many_runs_stopped(const char *db, size_t done, size_t total);
+
+// Their common options, each with the command's own help text.
+#define RUNS_OPTION(what)                                                                          \
+    OPTION(WHOLE, "runs", "N", what, PLACE(runs), .low = 1, .high = SWEEP_MOST_RUNS)
+#define SEED_OPTION                                                                                \
+    OPTION(WHOLE, "seed", "S", "start of the random numbers (0)", PLACE(seed), .high = HUGE_VAL)
+#define JOBS_OPTION                                                                                \
+    OPTION(WHOLE, "jobs", "J", "number of runs at a time (as many as processors)", PLACE(jobs),    \
+           .low = 1, .high = SWEEP_MOST_JOBS)
+#define DB_OPTION(what) OPTION(PLACE, "db", "FILE.sqlite", what, PLACE(db))

@@ -1,0 +1,404 @@
+// The commands that look at scenarios: list, lesson, show, check.
+#include "ui/commands/command.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/base/json.h"
+#include "src/run/export.h"
+#include "src/tables/parameters.h"
+#include "src/tables/summary.h"
+#include "ui/commands/answers.h"
+
+// --- list -------------------------------------------------------------------------------------
+
+// The names of all scenarios, and what --json writes of them.
+typedef struct listing {
+    char **names;
+    int count;
+    json_t *all; // NULL: they are listed on the screen
+} listing;
+
+// Returns the exit status.
+static int open_listing(listing *l, const arguments *a)
+{
+    fault f = {0};
+    *l = (listing){.all = a->json != NULL ? json_array() : NULL};
+    const bool room = a->json == NULL || l->all != NULL;
+    if ((room ? scenario_list(&l->names, &l->count, &f) : fault_no_memory(&f)) != STATUS_OK) {
+        json_decref(l->all);
+        return complain_fault(&f);
+    }
+    return EXIT_DONE;
+}
+
+// Writes what --json asks for. Returns the exit status, `result` if that is worse.
+static int close_listing(listing *l, const arguments *a, int result)
+{
+    for (int i = 0; i < l->count; i++) {
+        free(l->names[i]);
+    }
+    free(l->names);
+    return a->json != NULL ? worse(result, write_json(a->json, l->all)) : result;
+}
+
+// Adds a line or, for a program, an object of name and title, which is null of one with faults.
+// Returns the exit status.
+static int list_one(const char *name, int width, json_t *all)
+{
+    scenario s;
+    bool faulty;
+    int result = open_listed(&s, name, &faulty);
+    if (result != EXIT_DONE) {
+        return result;
+    }
+
+    // the titles of all stand in a column
+    const char *title = faulty || s.title == NULL ? "" : s.title;
+    if (all != NULL) {
+        json_t *object = json_object();
+        json_put(object, "name", json_text(name));
+        json_put(object, "title", faulty ? json_null() : json_text(title));
+        json_add(all, object);
+    } else if (faulty) {
+        say("%-*s  (has faults, see impactlab check %s)\n", width, name, name);
+    } else {
+        say("%-*s  %s\n", width, name, title);
+    }
+    if (!faulty) {
+        scenario_finish(&s);
+    }
+    return EXIT_DONE;
+}
+
+static int list(const arguments *a)
+{
+    listing l;
+    int width = 0, result = open_listing(&l, a);
+    if (result != EXIT_DONE) {
+        return result;
+    }
+    for (int i = 0; i < l.count; i++) {
+        int length = (int)strlen(l.names[i]);
+        width = length > width ? length : width;
+    }
+    for (int i = 0; i < l.count; i++) {
+        result = worse(result, list_one(l.names[i], width, l.all));
+    }
+    return close_listing(&l, a, result);
+}
+
+const command list_command = {
+    .name = "list",
+    .group = GROUP_ONE_RUN,
+    .operands = "",
+    .summary = "Name and title of every scenario",
+    .help = "",
+    .options = {&json_options},
+    .run = list,
+};
+
+// --- lesson -----------------------------------------------------------------------------------
+
+// Tells whether a scenario is a lesson, and its title if so. One with faults is none; they are
+// reported when it is opened. Returns the exit status.
+static int read_lesson(const char *name, bool *is_lesson, char *title, size_t size)
+{
+    scenario s;
+    bool faulty;
+    int code = open_listed(&s, name, &faulty);
+    *is_lesson = code == EXIT_DONE && !faulty && s.lesson.step_count > 0;
+    if (*is_lesson) {
+        snprintf(title, size, "%s", s.title != NULL ? s.title : "");
+    }
+    if (code == EXIT_DONE && !faulty) {
+        scenario_finish(&s);
+    }
+    return code;
+}
+
+// The last part of a scenario's name.
+static const char *leaf_of(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash != NULL ? slash + 1 : name;
+}
+
+// Adds a lesson to those listed, as JSON or on the screen.
+static void list_lesson(json_t *all, const char *name, const char *title)
+{
+    if (all == NULL) {
+        say("%-20s %s\n", leaf_of(name), title);
+        return;
+    }
+    json_t *object = json_object();
+    json_put(object, "name", json_text(leaf_of(name)));
+    json_put(object, "scenario", json_text(name));
+    json_put(object, "title", json_text(title));
+    json_add(all, object);
+}
+
+// Opens the lab on a lesson, as the lab command does on a scenario.
+static int open_lesson(const arguments *a, char *name)
+{
+    arguments opened = *a;
+    char *operands[] = {name};
+    opened.operands = operands;
+    opened.operand_count = 1;
+    return command_find("lab")->run(&opened);
+}
+
+static int run_lesson(const arguments *a)
+{
+    listing l;
+    char title[256];
+    bool found = false;
+    if (a->json != NULL && a->operand_count > 0) {
+        return complain("--json lists the lessons, expected no name beside it");
+    }
+    int code = open_listing(&l, a);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+
+    // without a name all of them, otherwise the one with that name
+    const char *wanted = a->operand_count > 0 ? a->operands[0] : NULL;
+    for (int i = 0; i < l.count && !found; i++) {
+        const bool named = wanted != NULL && (strcmp(l.names[i], wanted) == 0 ||
+                                              strcmp(leaf_of(l.names[i]), wanted) == 0);
+        bool is_lesson = false;
+        if (wanted == NULL || named) {
+            code = worse(code, read_lesson(l.names[i], &is_lesson, title, sizeof title));
+        }
+        found = is_lesson && named;
+        if (found) {
+            code = open_lesson(a, l.names[i]);
+        } else if (is_lesson) {
+            list_lesson(l.all, l.names[i], title);
+        }
+    }
+    if (wanted != NULL && !found && code == EXIT_DONE) {
+        code = complain("there is no lesson '%s', 'impactlab lesson' lists them", wanted);
+    }
+    return close_listing(&l, a, code);
+}
+
+const command lesson_command = {
+    .name = "lesson",
+    .group = GROUP_ONE_RUN,
+    .operands = "[NAME]",
+    .summary = "Experiments step by step, on the terminal",
+    .help = "Opens a lesson in the lab: steps with questions, checked by the run itself. Without a "
+            "name it lists them.\nIn the lab y goes on and A answers; :lesson lists the lessons "
+            "there.\n",
+    .most = 1,
+    .options = {&set_options, &json_options, &lab_options, &quiet_options},
+    .run = run_lesson,
+};
+
+// --- show -------------------------------------------------------------------------------------
+
+static void print_range(const parameter_info *info)
+{
+    char text[256];
+    if (info->type == PARAMETER_CHOICE) {
+        snprintf(text, sizeof text, "%s", info->choices);
+    } else if (info->type == PARAMETER_BOOLEAN) {
+        snprintf(text, sizeof text, "true|false");
+    } else if (info->type == PARAMETER_TEXT) {
+        snprintf(text, sizeof text, "text");
+    } else if (info->type == PARAMETER_LIST) {
+        snprintf(text, sizeof text, "list of %g to %g", info->minimum, info->maximum);
+    } else {
+        snprintf(text, sizeof text, "%g to %g", info->minimum, info->maximum);
+    }
+    say("  %-29s", text);
+}
+
+static void print_parameter(const parameters *p, int index)
+{
+    const parameter_info *info = &parameter_table[index];
+    char value[128];
+    parameter_format(p, index, value, sizeof value);
+    say("%-33s %c %18s %-9s", info->path, p->set[index] ? '=' : ' ', value, info->unit);
+    print_range(info);
+    printf("  %s\n", info->description);
+}
+
+static void print_actions(const scenario *s)
+{
+    for (int i = 0; i < s->action_count; i++) {
+        const action *a = &s->actions[i];
+        if (a->kind == ACTION_PUSH) {
+            printf("  at %g s: push the tip with %g N s\n", a->time, a->value);
+        } else {
+            char value[128];
+            action_format_value(a, value, sizeof value);
+            say("  at %g s: %s = %s\n", a->time, parameter_table[a->parameter].path, value);
+        }
+    }
+}
+
+static void print_expectations(const scenario *s)
+{
+    for (int i = 0; i < s->expectation_count; i++) {
+        const expectation *e = &s->expectations[i];
+        if (e->is_null) {
+            printf("  %s does not occur\n", summary_table[e->quantity].key);
+        } else {
+            printf("  %s = %g within %g\n", summary_table[e->quantity].key, e->value, e->tolerance);
+        }
+    }
+}
+
+// The same for a program: values by path, and which of them were given.
+static json_t *show_object(const scenario *s)
+{
+    json_t *object = json_object(), *given = json_array();
+    char title[SCENARIO_TITLED];
+
+    // defaults are not named
+    for (int i = 0; i < parameter_count; i++) {
+        if (s->parameters.set[i]) {
+            json_add(given, json_string(parameter_table[i].path));
+        }
+    }
+
+    // what describes it, and all values whether given or not
+    json_put(object, "scenario", json_text(s->name));
+    json_put(object, "title", json_text(scenario_titled(s, title)));
+    json_put(object, "description", json_text(s->description));
+    json_put(object, "parameters", export_parameters(&s->parameters));
+    json_put(object, "given", given);
+    return object;
+}
+
+static int print_scenario(const arguments *a, scenario *s)
+{
+    if (a->json != NULL) {
+        return write_json(a->json, show_object(s));
+    }
+    say_title(s);
+    print_wrapped(stdout, s->description, (int)strlen(s->description), 96);
+
+    printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",
+           "value", "unit", "range");
+    for (int i = 0; i < parameter_count; i++) {
+        print_parameter(&s->parameters, i);
+    }
+
+    if (s->action_count > 0) {
+        printf("\nScript:\n");
+        print_actions(s);
+    }
+
+    if (s->expectation_count > 0) {
+        printf("\nExpected:\n");
+        print_expectations(s);
+    }
+
+    return EXIT_DONE;
+}
+
+static int show(const arguments *a)
+{
+    const int result = with_scenario(a->operands[0], a, print_scenario);
+
+    // "show k2" asks for something that has no file
+    if (result == EXIT_BAD_ARGUMENTS && strpbrk(a->operands[0], "/ ") == NULL) {
+        print_meanings(stderr, a->operands[0]);
+    }
+    return result;
+}
+
+const command show_command = {
+    .name = "show",
+    .group = GROUP_ONE_RUN,
+    .operands = "SCENARIO",
+    .summary = "The resolved parameters of a scenario, with units and ranges",
+    .help =
+        "A parameter marked with = was given by the scenario or by --set, the others have their "
+        "defaults.\n",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &json_options},
+    .run = show,
+};
+
+// --- check ------------------------------------------------------------------------------------
+
+// What came of the files so far.
+typedef struct checking {
+    json_t *files;  // an object each
+    json_t *faults; // the sentences of the present file
+    told_faults told;
+} checking;
+
+// Tells and keeps a fault.
+static void take_fault(void *context, const char *sentence)
+{
+    checking *c = context;
+    tell_fault(&c->told, sentence);
+    json_add(c->faults, json_text(sentence));
+}
+
+// Reads one file (or a scenario by its name). Returns the exit status.
+static int check_one(const char *file, const arguments *a, checking *c)
+{
+    scenario s;
+    int result = EXIT_DONE;
+    c->told = (told_faults){0};
+    c->faults = json_array();
+
+    // a file under test, or the name of a scenario
+    status code = access(file, F_OK) == 0 ? scenario_read(&s, file, NULL, take_fault, c)
+                                          : scenario_open(&s, file, take_fault, c);
+    if (code == STATUS_OK) {
+        scenario_finish(&s);
+        tell_first_fault(&c->told);
+        if (summary_wanted(a)) {
+            say("%s: no fault\n", file);
+        }
+    } else {
+        if (c->told.count == 0) {
+            json_add(c->faults, json_text(status_text(code)));
+        }
+        result = tell_unopened(&c->told, code, file);
+    }
+
+    json_t *object = json_object();
+    json_put(object, "file", json_text(file));
+    json_put(object, "faults", c->faults);
+    json_add(c->files, object);
+    return result;
+}
+
+static int check(const arguments *a)
+{
+    checking c = {.files = json_array()};
+    int result = EXIT_DONE;
+    for (int i = 0; i < a->operand_count; i++) {
+        result = worse(result, check_one(a->operands[i], a, &c));
+    }
+    if (a->json != NULL) {
+        return worse(result, write_json(a->json, c.files));
+    }
+    json_decref(c.files);
+    return result;
+}
+
+const command check_command = {
+    .name = "check",
+    .group = GROUP_ONE_RUN,
+    .operands = "FILE...",
+    .summary = "Validate scenario files",
+    .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what was expected.\n",
+    .least = 1,
+    .most = 1 << 20,
+    .takes_scenarios = true,
+    .options = {&json_options},
+    .run = check,
+};
