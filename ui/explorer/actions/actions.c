@@ -71,3 +71,19 @@ bool act_read_optional(explorer_state *st, const char *text, double *value)
     assert(text != NULL && value != NULL);
     return text[0] == '\0' || act_read_number(st, text, value);
 }
+
+int act_read_index(explorer_state *st, const char **text, int count, const char *what,
+                   const char *lister)
+{
+    assert(text != NULL && count > 0);
+    char *end;
+    const long number = strtol(*text, &end, 10);
+
+    // a number of the list, alone or before a blank
+    if (end == *text || (*end != '\0' && *end != ' ') || number < 1 || number > count) {
+        act_refuse(st, "%s are numbered from 1 to %d (%s lists them)", what, count, lister);
+        return -1;
+    }
+    *text = end + strspn(end, " ");
+    return (int)number - 1;
+}

@@ -34,6 +34,11 @@ bool act_read_number(explorer_state *st, const char *text, double *value);
 // The same for an argument that may be omitted: then the value stays.
 bool act_read_optional(explorer_state *st, const char *text, double *value);
 
+// Reads the number of one of `count` things (`what`, in the plural; `lister` shows them), from 1,
+// and the blanks behind it off *text. Returns its index, -1 if it is refused.
+int act_read_index(explorer_state *st, const char **text, int count, const char *what,
+                   const char *lister);
+
 // --- the run ----------------------------------------------------------------------------------
 
 // Replaces the session by one of another scenario and plays it; if that fails the old one stays.

@@ -306,29 +306,12 @@ bool act_drop_slider(explorer_state *st)
 
 // --- the list of changes ----------------------------------------------------------------------
 
-// Reads the number of a change, from 1, at the beginning of a text; *rest is what follows it.
-static bool read_change(explorer_state *st, const char *text, int *index, const char **rest)
+// Reads the number of a change off *text; -1 if it is refused.
+static int read_change(explorer_state *st, const char **text)
 {
-    const session *s = &st->session;
-    char *end;
-    const long number = strtol(text, &end, 10);
-
-    // a number from 1 on, and blanks behind it
-    if (s->input_count == 0) {
-        return act_refuse(st, "there are no changes");
-    }
-    if (end == text || (*end != '\0' && *end != ' ') || number < 1 || number > s->input_count) {
-        return act_refuse(st, "changes are numbered from 1 to %d (:changes lists them)",
-                          s->input_count);
-    }
-
-    // what follows the blanks is the rest
-    while (*end == ' ') {
-        end++;
-    }
-    *index = (int)number - 1;
-    *rest = end;
-    return true;
+    const int count = st->session.input_count;
+    return count == 0 ? (act_refuse(st, "there are no changes"), -1)
+                      : act_read_index(st, text, count, "changes", ":changes");
 }
 
 bool act_show_changes(explorer_state *st, const char *argument)
@@ -341,22 +324,21 @@ bool act_show_changes(explorer_state *st, const char *argument)
 
 bool act_edit_change(explorer_state *st, const char *argument)
 {
-    const char *value = "";
-    int index = 0;
-    if (!read_change(st, argument, &index, &value)) {
+    const int index = read_change(st, &argument);
+    if (index < 0) {
         return false;
     }
     char text[LINE_TEXT];
     const session_input *in = &st->session.inputs[index];
 
     // without a value it is asked for
-    if (value[0] == '\0' && in->kind != SESSION_INPUT_PUSH) {
+    if (argument[0] == '\0' && in->kind != SESSION_INPUT_PUSH) {
         snprintf(text, sizeof text, "change %d ", index + 1);
         prompt_open_value(&st->prompt, text, in->text);
         return act_tell(st, "%s", parameter_table[in->parameter].description);
     }
     fault f = {0};
-    if (!act_worked(st, session_change_input(&st->session, index, value, &f), &f)) {
+    if (!act_worked(st, session_change_input(&st->session, index, argument, &f), &f)) {
         return false;
     }
     st->change = st->session.input_count - 1;
@@ -366,10 +348,9 @@ bool act_edit_change(explorer_state *st, const char *argument)
 
 bool act_drop_change(explorer_state *st, const char *argument)
 {
-    const char *rest;
-    int index = 0;
     char text[LINE_TEXT];
-    if (!read_change(st, argument, &index, &rest)) {
+    const int index = read_change(st, &argument);
+    if (index < 0) {
         return false;
     }
 

@@ -71,37 +71,17 @@ bool act_show_runs(explorer_state *st, const char *argument)
     return true;
 }
 
-// Reads the number of a pinned run, from 1; *rest is what follows it.
-static bool read_run(explorer_state *st, const char *text, int *index, const char **rest)
+// Reads the number of a pinned run off *text; -1 if it is refused.
+static int read_run(explorer_state *st, const char **text)
 {
-    char *end;
-    const long number = strtol(text, &end, 10);
-
-    // without a pinned run no number is right
-    if (st->pinned.count == 0) {
-        return act_refuse(st, "no run is pinned (b pins this one)");
-    }
-
-    // a number of the list, alone or before a blank
-    if (end == text || (*end != '\0' && *end != ' ') || number < 1 || number > st->pinned.count) {
-        return act_refuse(st, "pinned runs are numbered from 1 to %d (R lists them)",
-                          st->pinned.count);
-    }
-
-    // the rest begins with a word
-    while (*end == ' ') {
-        end++;
-    }
-    *index = (int)number - 1;
-    *rest = end;
-    return true;
+    return st->pinned.count == 0 ? (act_refuse(st, "no run is pinned (b pins this one)"), -1)
+                                 : act_read_index(st, text, st->pinned.count, "pinned runs", "R");
 }
 
 bool act_take_run(explorer_state *st, const char *argument)
 {
-    int index = 0;
-    const char *rest = "";
-    if (!read_run(st, argument, &index, &rest)) {
+    const int index = read_run(st, &argument);
+    if (index < 0) {
         return false;
     }
     run_list *list = &st->pinned;
@@ -116,16 +96,14 @@ bool act_take_run(explorer_state *st, const char *argument)
     fault f = {0};
     const pinned_run *taken = &list->runs[index];
     const status code = session_take_inputs(&st->session, taken->inputs, taken->input_count, &f);
-    return code == STATUS_OK
-               ? act_tell(st, "'%s' goes on; the run before is compared with it", taken->name)
-               : act_worked(st, code, &f);
+    return act_worked(st, code, &f) &&
+           act_tell(st, "'%s' goes on; the run before is compared with it", taken->name);
 }
 
 bool act_hide_run(explorer_state *st, const char *argument)
 {
-    int index = 0;
-    const char *rest = "";
-    if (!read_run(st, argument, &index, &rest)) {
+    const int index = read_run(st, &argument);
+    if (index < 0) {
         return false;
     }
     st->pinned.runs[index].hidden = !st->pinned.runs[index].hidden;
@@ -134,9 +112,8 @@ bool act_hide_run(explorer_state *st, const char *argument)
 
 bool act_set_baseline(explorer_state *st, const char *argument)
 {
-    int index = 0;
-    const char *rest = "";
-    if (!read_run(st, argument, &index, &rest)) {
+    const int index = read_run(st, &argument);
+    if (index < 0) {
         return false;
     }
     st->pinned.baseline = index;
@@ -146,29 +123,27 @@ bool act_set_baseline(explorer_state *st, const char *argument)
 
 bool act_rename_run(explorer_state *st, const char *argument)
 {
-    int index = 0;
-    const char *name = "";
-    if (!read_run(st, argument, &index, &name)) {
+    const int index = read_run(st, &argument);
+    if (index < 0) {
         return false;
     }
     pinned_run *p = &st->pinned.runs[index];
 
     // without a name it is asked for
-    if (name[0] == '\0') {
+    if (argument[0] == '\0') {
         char line[32];
         snprintf(line, sizeof line, "rename %d ", index + 1);
         prompt_open_value(&st->prompt, line, p->name);
         return true;
     }
-    snprintf(p->name, sizeof p->name, "%s", name);
+    snprintf(p->name, sizeof p->name, "%s", argument);
     return true;
 }
 
 bool act_unpin(explorer_state *st, const char *argument)
 {
-    int index = 0;
-    const char *rest = "";
-    if (!read_run(st, argument, &index, &rest)) {
+    const int index = read_run(st, &argument);
+    if (index < 0) {
         return false;
     }
     run_list_drop(&st->pinned, index);

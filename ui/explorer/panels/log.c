@@ -107,20 +107,14 @@ static bool point(explorer_state *st, const panel_gesture *g)
     const run_log *log = state_run_log(st);
     size_t index = (size_t)(g->hit.index + g->event.y - g->hit.area.y);
 
-    switch (g->event.kind) {
-    case POINTER_PRESS:
-        if (index < log->count && log->entries[index].time <= st->session.seen) {
-            act_scrub(st, log->entries[index].time);
-            st->scroll[PANEL_LOG] = 0;
-        }
-        return true;
-    case POINTER_WHEEL_UP:
-    case POINTER_WHEEL_DOWN:
-        st->scroll[PANEL_LOG] += WHEEL_LINES * pointer_wheel(g->event);
-        return true;
-    default:
-        return false;
+    if (g->event.kind != POINTER_PRESS) {
+        return panel_scroll(st, g, WHEEL_LINES);
     }
+    if (index < log->count && log->entries[index].time <= st->session.seen) {
+        act_scrub(st, log->entries[index].time);
+        st->scroll[PANEL_LOG] = 0;
+    }
+    return true;
 }
 
 const panel log_panel = {.name = "log",

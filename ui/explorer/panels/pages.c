@@ -24,6 +24,8 @@ static const char mouse[] =
     "event, a parameter or a scenario (once more opens it); drag a slider and let go. Shift-drag "
     "selects text in most terminals.";
 
+enum { WRAPPED = 24 }; // most lines of one text
+
 // A page that is being written.
 typedef struct page {
     help_line *lines;
@@ -42,9 +44,9 @@ static help_line *new_line(page *p)
 // A text in as many lines as it takes, from a column on; the first line may be begun already.
 static void add_text(page *p, int column, const char *text, help_line *begun)
 {
-    text_line parts[16];
+    text_line parts[WRAPPED];
     int room = p->width - column;
-    int count = text_wrap(text, room < 1 ? 1 : room, parts, 16, NULL);
+    int count = text_wrap(text, room < 1 ? 1 : room, parts, WRAPPED, NULL);
 
     // the first part may go on in the begun line, the others have lines of their own
     for (int i = 0; i < count; i++) {
@@ -134,7 +136,6 @@ int help_write(const key_bindings *b, int width, help_line *lines, int most)
 }
 
 // --- help -------------------------------------------------------------------------------------
-// The help page.
 
 // Keeps the lines that pass a filter; returns how many.
 static int keep_matching(help_line *lines, int count, const char *filter)
@@ -148,109 +149,91 @@ static int keep_matching(help_line *lines, int count, const char *filter)
     return filter[0] != '\0' ? kept : count;
 }
 
+// The lines of a page from the one on that it is scrolled to, in their frame.
+static void draw_lines(screen *s, area a, const char *title, const help_line *lines, int count)
+{
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
+    for (int i = 0; i < a.height - 2 && i < count; i++) {
+        int x = a.x + 2, y = a.y + 1 + i, room = a.width - 4;
+        screen_text(s, x, y, room, lines[i].heading ? INK_EVENT : INK_TEXT, lines[i].text);
+        screen_tint(s, x, y, lines[i].keys < room ? lines[i].keys : room, 1, INK_TITLE);
+    }
+}
+
 static void draw_help(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    enum { MOST = 500 };
+    enum { MOST = 500, WIDTH = 114 };
     static help_line lines[MOST];
     const char *filter = st->filters.text[PANEL_HELP];
 
     // as wide as it may be, then as high as its lines need
-    area a = page_area(body, 114, body.height);
-    int count = help_write(&st->keys, a.width - 4, lines, MOST);
-    count = keep_matching(lines, count, filter);
-    a = page_area(body, 114, count + 2);
-    int shown = a.height - 2, last = count > shown ? count - shown : 0;
-    int scroll = layout_keep_scroll(lay, PANEL_HELP, last);
-    lay->page_lines = shown > 1 ? shown - 1 : 1;
+    area a = page_area(body, WIDTH, body.height);
+    const int count = keep_matching(lines, help_write(&st->keys, a.width - 4, lines, MOST), filter);
+    a = page_area(body, WIDTH, count + 2);
+    const int scroll = page_scroll(lay, PANEL_HELP, a, count, 2);
     char title[LINE_TEXT];
     snprintf(title, sizeof title,
-             last == 0      ? "keys and commands (/ filters, Esc closes)"
-             : a.width < 60 ? "%d of %d lines (Esc closes)"
-                            : "keys and commands, %d of %d lines (/ filters, Esc closes)",
-             scroll + shown, count);
+             count <= a.height - 2 ? "keys and commands (/ filters, Esc closes)"
+             : a.width < 60        ? "%d of %d lines (Esc closes)"
+                                   : "keys and commands, %d of %d lines (/ filters, Esc closes)",
+             scroll + a.height - 2, count);
     if (filter[0] != '\0') {
         snprintf(title, sizeof title, "keys and commands /%.200s", filter);
     }
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
-    layout_add_hit(lay, (hit_area){.panel = PANEL_HELP, .area = a});
-    for (int i = 0; i < shown && scroll + i < count; i++) {
-        const help_line *line = &lines[scroll + i];
-        int x = a.x + 2, y = a.y + 1 + i, room = a.width - 4;
-        screen_text(s, x, y, room, line->heading ? INK_EVENT : INK_TEXT, line->text);
-        screen_tint(s, x, y, line->keys < room ? line->keys : room, 1, INK_TITLE);
-    }
+    draw_lines(s, a, title, lines + scroll, count - scroll);
 }
 
 const panel help_panel = {.name = "help", .draw = draw_help, .point = page_point, .key = page_key};
 
 // --- the scenario -----------------------------------------------------------------------------
-// The page that says what the scenario is about.
-
-enum { INFO_LINES = 48, INFO_WIDTH = 84 };
 
 // The title, the description and the script in lines; returns how many.
-static int write_lines(const explorer_state *st, int width, char lines[INFO_LINES][LINE_TEXT])
+static int write_info(const scenario *base, int width, help_line *lines, int most)
 {
-    const scenario *base = &st->session.base;
-    const char *parts[] = {base->title, base->description};
-    int count = 0;
-    for (int k = 0; k < 2; k++) {
-        text_line wrapped[INFO_LINES / 2];
-        const char *text = parts[k] != NULL ? parts[k] : "";
-        const int found = text_wrap(text, width, wrapped, INFO_LINES / 2, NULL);
-        for (int i = 0; i < found && count < INFO_LINES; i++) {
-            snprintf(lines[count++], LINE_TEXT, "%.*s", wrapped[i].bytes, wrapped[i].start);
-        }
-        if (found > 0 && count < INFO_LINES) {
-            lines[count++][0] = '\0';
-        }
+    page p = {.lines = lines, .most = most, .width = width};
+    add_text(&p, 0, base->title != NULL ? base->title : "", NULL);
+    lines[0].keys = text_cells(lines[0].text); // in their colour
+    if (p.count > 0) {
+        new_line(&p);
+    }
+    add_text(&p, 0, base->description != NULL ? base->description : "", NULL);
+    if (p.count > 0 && lines[p.count - 1].text[0] != '\0') {
+        new_line(&p);
     }
 
     // what its script does
-    for (int i = 0; i < base->action_count && count < INFO_LINES; i++) {
+    for (int i = 0; i < base->action_count && p.count < most; i++) {
         const action *a = &base->actions[i];
         char value[PARAMETER_TEXT_SIZE];
         if (a->kind == ACTION_PUSH) {
-            snprintf(lines[count++], LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
+            snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
         } else {
             action_format_value(a, value, sizeof value);
-            snprintf(lines[count++], LINE_TEXT, "%9.5f s  %s = %s", a->time,
+            snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  %s = %s", a->time,
                      parameter_table[a->parameter].path, value);
         }
     }
-    while (count > 0 && lines[count - 1][0] == '\0') {
-        count--;
-    }
-    return count;
+    return p.count > 0 && lines[p.count - 1].text[0] == '\0' ? p.count - 1 : p.count;
 }
 
 static void draw_info(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    static char lines[INFO_LINES][LINE_TEXT];
-    area a = page_area(body, INFO_WIDTH, body.height);
-    const int count = write_lines(st, a.width - 4, lines);
+    enum { MOST = 48, WIDTH = 84 };
+    static help_line lines[MOST];
+    char title[LINE_TEXT];
+    area a = page_area(body, WIDTH, body.height);
+    const int count = write_info(&st->session.base, a.width - 4, lines, MOST);
 
     // as high as the text, or scrolled
-    a = page_area(body, INFO_WIDTH, count + 2);
-    const int shown = a.height - 2, beyond = count - shown;
-    const int scroll = layout_keep_scroll(lay, PANEL_INFO, beyond > 0 ? beyond : 0);
-
-    // frame and lines
-    char title[LINE_TEXT];
+    a = page_area(body, WIDTH, count + 2);
+    const int scroll = page_scroll(lay, PANEL_INFO, a, count, 2);
     snprintf(title, sizeof title, "%.180s (Esc closes)", st->session.base.name);
-    lay->page_lines = shown > 1 ? shown - 1 : 1;
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
-    layout_add_hit(lay, (hit_area){.panel = PANEL_INFO, .area = a});
-    for (int i = 0; i < shown && scroll + i < count; i++) {
-        screen_text(s, a.x + 2, a.y + 1 + i, a.width - 4, i == 0 ? INK_TITLE : INK_TEXT,
-                    lines[scroll + i]);
-    }
+    draw_lines(s, a, title, lines + scroll, count - scroll);
 }
 
 const panel info_panel = {.name = "info", .draw = draw_info, .point = page_point, .key = page_key};
 
 // --- the comparison ---------------------------------------------------------------------------
-// The page that compares the present run with the kept one in numbers.
 
 // A quantity of the comparison as a name and as columns; returns whether it means anything in
 // either run.
@@ -293,13 +276,10 @@ static void draw_comparison(const explorer_state *st, layout *lay, screen *s, ar
     int width = rows == 1 ? WIDE : NARROW;
     area a = page_area(body, names + 3 * width + 4, rows * count + 3);
     int room = a.width - 4, shown = a.height - 3;
-    int beyond = rows * count - shown;
-    int scroll = layout_keep_scroll(lay, PANEL_COMPARISON, beyond > 0 ? beyond : 0);
-    lay->page_lines = shown > 1 ? shown - 1 : 1;
+    int scroll = page_scroll(lay, PANEL_COMPARISON, a, rows * count, 3);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
                  e->has_other ? "this run beside the old one (Esc closes)"
                               : "this run (b branches, Esc closes)");
-    layout_add_hit(lay, (hit_area){.panel = PANEL_COMPARISON, .area = a});
     screen_print(s, a.x + 2 + names, a.y + 1, room - names, INK_DIM, "%*s%*s%*s", width, "this run",
                  width, e->has_other ? "old run" : "", width, e->has_other ? "change" : "");
 

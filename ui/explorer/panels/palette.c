@@ -71,7 +71,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
         st->palette.picked = true;
         return true;
     }
-    if (g->event.kind == POINTER_WHEEL_UP || g->event.kind == POINTER_WHEEL_DOWN) {
+    if (pointer_wheel(g->event) != 0) {
         act_move_in_palette(st, pointer_wheel(g->event));
         return true;
     }

@@ -25,9 +25,16 @@ bool panel_fits(const panel *p, screen_size body)
     return body.width >= p->least_width && body.height >= p->least_body;
 }
 
+bool panel_scroll(explorer_state *st, const panel_gesture *g, int lines)
+{
+    assert(st != NULL && g != NULL);
+    st->scroll[g->hit.panel] += lines * pointer_wheel(g->event);
+    return pointer_wheel(g->event) != 0;
+}
+
 int pointer_wheel(pointer_event e)
 {
-    return e.kind == POINTER_WHEEL_UP ? -1 : 1;
+    return e.kind == POINTER_WHEEL_UP ? -1 : e.kind == POINTER_WHEEL_DOWN ? 1 : 0;
 }
 
 // --- lines ------------------------------------------------------------------------------------
@@ -184,10 +191,18 @@ bool page_key(explorer_state *st, int key)
     return true;
 }
 
+int page_scroll(layout *lay, panel_id id, area a, int lines, int head)
+{
+    const int shown = a.height - head, beyond = lines - shown;
+    lay->page_lines = shown > 1 ? shown - 1 : 1;
+    layout_add_hit(lay, (hit_area){.panel = id, .area = a});
+    return layout_keep_scroll(lay, id, beyond > 0 ? beyond : 0);
+}
+
 bool page_point(explorer_state *st, const panel_gesture *g)
 {
     assert(st != NULL && g != NULL);
-    if (g->event.kind != POINTER_WHEEL_UP && g->event.kind != POINTER_WHEEL_DOWN) {
+    if (pointer_wheel(g->event) == 0) {
         return false;
     }
     for (int i = 0; i < WHEEL_LINES && st->page.panel != PANEL_NONE; i++) {

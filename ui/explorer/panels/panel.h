@@ -1,5 +1,5 @@
 // A panel: a part of the screen that draws a part of the state and handles the mouse, and keys if
-// it is a page. Each has a file of its own; panel_list.h lists them all.
+// it is a page. view.h lists them all.
 #pragma once
 
 #include "src/predict/predictors.h"
@@ -129,7 +129,7 @@ typedef struct panel_gesture {
     bool dragged;   // it has moved since it was pressed
 } panel_gesture;
 
-// Which way the wheel turns: -1 up, 1 down.
+// Which way the wheel turns: -1 up, 1 down; 0: another gesture.
 int pointer_wheel(pointer_event e);
 
 typedef struct panel {
@@ -157,6 +157,9 @@ PANEL_LIST(PANEL_DECLARATION)
 // The description of a panel; not for PANEL_NONE.
 const panel *panel_of(panel_id id);
 
+// The wheel scrolls the panel of the gesture by some lines a step; false for other gestures.
+bool panel_scroll(explorer_state *st, const panel_gesture *g, int lines);
+
 // Whether a panel has room on a screen whose panels have the area `body`.
 bool panel_fits(const panel *p, screen_size body);
 
@@ -165,6 +168,10 @@ bool panel_fits(const panel *p, screen_size body);
 
 // Scrolls the page that is open; any other key closes it.
 bool page_key(explorer_state *st, int key);
+
+// What a page of `lines` lines in an area stores for keys and the mouse, `head` rows of which are
+// not lines; returns how far it is scrolled.
+int page_scroll(layout *lay, panel_id id, area a, int lines, int head);
 
 // The wheel presses a page's keys for up and down.
 bool page_point(explorer_state *st, const panel_gesture *g);

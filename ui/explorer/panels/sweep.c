@@ -153,7 +153,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 // A click selects a run, the wheel goes through them.
 static bool point(explorer_state *st, const panel_gesture *g)
 {
-    if (g->event.kind == POINTER_WHEEL_UP || g->event.kind == POINTER_WHEEL_DOWN) {
+    if (pointer_wheel(g->event) != 0) {
         act_select_swept(st, pointer_wheel(g->event));
         return true;
     }

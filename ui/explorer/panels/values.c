@@ -89,11 +89,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
 static bool point(explorer_state *st, const panel_gesture *g)
 {
-    if (g->event.kind != POINTER_WHEEL_UP && g->event.kind != POINTER_WHEEL_DOWN) {
-        return false;
-    }
-    st->scroll[PANEL_VALUES] += WHEEL_LINES * pointer_wheel(g->event);
-    return true;
+    return panel_scroll(st, g, WHEEL_LINES);
 }
 
 const panel values_panel = {.name = "values", .draw = draw, .point = point};
@@ -195,14 +191,9 @@ static void draw_statistics(const explorer_state *st, layout *lay, screen *s, ar
     }
 }
 
-// The wheel scrolls.
 static bool point_at_statistics(explorer_state *st, const panel_gesture *g)
 {
-    if (g->event.kind != POINTER_WHEEL_UP && g->event.kind != POINTER_WHEEL_DOWN) {
-        return false;
-    }
-    st->scroll[PANEL_STATISTICS] += pointer_wheel(g->event);
-    return true;
+    return panel_scroll(st, g, 1);
 }
 
 const panel statistics_panel = {
