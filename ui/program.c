@@ -67,6 +67,9 @@ static int run_command(const command *c, int argc, char **argv, const rank_group
         return EXIT_DONE;
     }
     if (!arguments_read(&a, c, argc, argv, &result)) {
+        if (result == EXIT_DONE) {
+            print_help(stdout, c);
+        }
         return result;
     }
     a.ranks = ranks;

@@ -48,7 +48,7 @@ static const option_row quiet_rows[] = {
 };
 const option_table quiet_options = OPTION_TABLE("Options", quiet_rows);
 
-// arguments_read prints the help itself
+// its place is nowhere: the program prints the help
 static const option_row help_rows[] = {
     OPTION(FLAG, "help", NULL, "print this help", .letter = 'h'),
 };
@@ -98,12 +98,6 @@ static const option_row page_rows[] = {
 const option_table page_options = OPTION_TABLE("Pictures", page_rows);
 
 // --- values -----------------------------------------------------------------------------------
-
-// The place of an option's value in the arguments.
-static void *option_place(const arguments *a, const option_row *o)
-{
-    return (char *)a + o->place;
-}
 
 static int read_number(const option_row *o, const char *text, double *value)
 {
@@ -269,41 +263,6 @@ static int option_store(arguments *a, const option_row *o, char *text)
 
 // getopt_long's value of the option in row i is ROW_VALUE + i, apart from all letters
 enum { ROW_VALUE = 256 };
-
-const option_table *command_options(const command *c, int i)
-{
-    int own = 0; // tables that come before --help
-    assert(c != NULL && i >= 0 && i <= COMMAND_TABLES);
-    while (c->options[own] != NULL && strcmp(c->options[own]->title, help_options.title) == 0) {
-        own++;
-    }
-    return i < own ? c->options[i] : i == own ? &help_options : c->options[i - 1];
-}
-
-const option_row *command_option(const command *c, int i)
-{
-    const option_table *t;
-    assert(c != NULL && i >= 0);
-    for (int k = 0; (t = command_options(c, k)) != NULL; k++) {
-        if (i < t->count) {
-            return &t->rows[i];
-        }
-        i -= t->count;
-    }
-    return NULL;
-}
-
-const char *option_text(const arguments *a, const option_row *o)
-{
-    assert(o->type >= OPTION_TEXT && o->type <= OPTION_QUANTITY);
-    return *(const char **)option_place(a, o);
-}
-
-bool option_is_written(const option_row *o)
-{
-    assert(o != NULL);
-    return o->type == OPTION_RESULT || o->type == OPTION_PICTURE || o->type == OPTION_PLACE;
-}
 
 // --- getopt ---------------------------------------------------------------------------------
 
@@ -532,7 +491,6 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv, in
     }
     remember(a, "impactlab ", self->name != NULL ? self->name : "");
     if (take_options(a, argc, argv, exit_status)) {
-        print_help(stdout, self);
         arguments_finish(a);
         return false;
     }

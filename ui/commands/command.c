@@ -80,6 +80,46 @@ int complain_command(const char *name)
     return complain("there is no command '%s', only %s", name, known);
 }
 
+void *option_place(const arguments *a, const option_row *o)
+{
+    return (char *)a + o->place;
+}
+
+const option_table *command_options(const command *c, int i)
+{
+    int own = 0; // tables that come before --help
+    assert(c != NULL && i >= 0 && i <= COMMAND_TABLES);
+    while (c->options[own] != NULL && strcmp(c->options[own]->title, help_options.title) == 0) {
+        own++;
+    }
+    return i < own ? c->options[i] : i == own ? &help_options : c->options[i - 1];
+}
+
+const option_row *command_option(const command *c, int i)
+{
+    const option_table *t;
+    assert(c != NULL && i >= 0);
+    for (int k = 0; (t = command_options(c, k)) != NULL; k++) {
+        if (i < t->count) {
+            return &t->rows[i];
+        }
+        i -= t->count;
+    }
+    return NULL;
+}
+
+const char *option_text(const arguments *a, const option_row *o)
+{
+    assert(o->type >= OPTION_TEXT && o->type <= OPTION_QUANTITY);
+    return *(const char **)option_place(a, o);
+}
+
+bool option_is_written(const option_row *o)
+{
+    assert(o != NULL);
+    return o->type == OPTION_RESULT || o->type == OPTION_PICTURE || o->type == OPTION_PLACE;
+}
+
 // --- what they share --------------------------------------------------------------------------
 
 int complain(const char *format, ...)

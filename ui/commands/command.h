@@ -244,10 +244,13 @@ int tell_unopened(told_faults *t, status code, const char *name_or_file);
 
 // Reads argv (argv[0] is the command's name) by the command's rows of options, which may stand
 // before or after the operands, and checks each value by its row. True with `a` filled, to be freed
-// by arguments_finish; false if the command ends here (help was asked for, or an argument is wrong,
-// which has been reported), with the exit status in *exit_status.
+// by arguments_finish; false if the command ends here, with the exit status in *exit_status:
+// EXIT_DONE if help was asked for, else that of what was wrong, which has been reported.
 bool arguments_read(arguments *a, const command *self, int argc, char **argv, int *exit_status);
 void arguments_finish(arguments *a);
+
+// The place of an option's value in the arguments.
+void *option_place(const arguments *a, const option_row *o);
 
 // The text an option's place holds, NULL if it was not given. Only for types that store a text.
 const char *option_text(const arguments *a, const option_row *o);

@@ -14,22 +14,15 @@
 
 static json_t *panel_object(const scenario *s, const convergence_panel *panel)
 {
-    json_t *object = json_object(), *steps = json_array(), *rows = json_array();
+    json_t *object = json_object(), *rows = json_array();
     json_put(object, "scenario", json_text(s->name));
-
-    for (int i = 0; i < PANEL_STEPS; i++) {
-        json_add(steps, json_number(panel->step[i]));
-    }
-    json_put(object, "step_s", steps);
+    json_put(object, "step_s", json_numbers(panel->step, PANEL_STEPS));
 
     for (int k = 0; k < panel->row_count; k++) {
         const convergence_row *row = &panel->rows[k];
-        json_t *line = json_object(), *values = json_array();
-        for (int i = 0; i < PANEL_STEPS; i++) {
-            json_add(values, json_number(row->value[i]));
-        }
+        json_t *line = json_object();
         json_put(line, "quantity", json_string(row->key));
-        json_put(line, "values", values);
+        json_put(line, "values", json_numbers(row->value, PANEL_STEPS));
         json_put(line, "order", json_number(row->order));
         json_add(rows, line);
     }

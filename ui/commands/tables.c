@@ -6,15 +6,6 @@
 #include "src/study/thesis_tables.h"
 #include "src/base/json.h"
 
-static json_t *numbers(const double *values)
-{
-    json_t *array = json_array();
-    for (int i = 0; i < TABLE_VOLTAGES; i++) {
-        json_add(array, json_number(values[i]));
-    }
-    return array;
-}
-
 static json_t *tables_object(const thesis_tables *t)
 {
     json_t *object = json_object(), *rows = json_array();
@@ -26,9 +17,9 @@ static json_t *tables_object(const thesis_tables *t)
         json_put(line, "k2_factor", json_number(row->k2_factor));
         json_put(line, "model", json_string(row->model));
         json_put(line, "quantity", json_string(row->quantity));
-        json_put(line, "voltage_V", numbers(t->voltage));
-        json_put(line, "printed", numbers(row->printed));
-        json_put(line, "computed", numbers(row->computed));
+        json_put(line, "voltage_V", json_numbers(t->voltage, TABLE_VOLTAGES));
+        json_put(line, "printed", json_numbers(row->printed, TABLE_VOLTAGES));
+        json_put(line, "computed", json_numbers(row->computed, TABLE_VOLTAGES));
         json_add(rows, line);
     }
 

@@ -303,24 +303,3 @@ void act_select_swept(explorer_state *st, int direction)
     at = at > last ? last : at;
     sweep->selected = at < 0 ? 0 : at;
 }
-
-bool act_take_swept(explorer_state *st)
-{
-    assert(st != NULL);
-    const lab_sweep *sweep = &st->sweep;
-    session *s = &st->session;
-    char value[SWEEP_VALUE_TEXT];
-    if (sweep->selected >= sweep->count) {
-        return act_refuse(st, "the sweep has no run yet");
-    }
-
-    // a change from the start, whatever is looked at
-    const double now = s->now;
-    sweep_axis_format(&sweep->axis, sweep->runs[sweep->selected].value, value, sizeof value);
-    session_seek(s, 0);
-    const bool changed = act_change(st, sweep->axis.parameter, value);
-    const double seen = s->seen;
-    session_seek(s, now);
-    s->seen = fmax(seen, s->now);
-    return changed;
-}

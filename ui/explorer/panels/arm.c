@@ -1,5 +1,5 @@
 // The arm, its wall and the contact force, drawn live.
-#include "ui/explorer/panels/panel.h"
+#include "ui/explorer/panels/plot.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -226,17 +226,12 @@ static void draw_dots(const explorer_state *st, const stage *g)
 
 // --- as pixels --------------------------------------------------------------------------------
 
-static colour colour_of(const explorer_state *st, const screen *s, ink i)
-{
-    const rgb c = picture_ink(s, st->looks.theme, i);
-    return (colour){c.red / 255.0, c.green / 255.0, c.blue / 255.0};
-}
-
 static void draw_pixels(const explorer_state *st, const stage *g)
 {
     const session *e = &st->session;
     const screen *s = g->canvas.screen;
     const rgb ground = s->pictures->ground;
+    const colour_theme theme = st->looks.theme;
     const plan p = {
         .rows = &e->run.trace,
         .parameters = &e->effective.parameters,
@@ -250,12 +245,12 @@ static void draw_pixels(const explorer_state *st, const stage *g)
         .pull_x = st->pull.x,
         .pull_y = st->pull.y,
         .colours = {.ground = {ground.red / 255.0, ground.green / 255.0, ground.blue / 255.0},
-                    .arm = colour_of(st, s, INK_ARM),
-                    .hub = colour_of(st, s, INK_HUB),
-                    .wall = colour_of(st, s, INK_WALL),
-                    .force = colour_of(st, s, INK_FORCE),
-                    .other = colour_of(st, s, INK_OTHER),
-                    .frame = colour_of(st, s, INK_FRAME)}};
+                    .arm = picture_colour(s, theme, INK_ARM),
+                    .hub = picture_colour(s, theme, INK_HUB),
+                    .wall = picture_colour(s, theme, INK_WALL),
+                    .force = picture_colour(s, theme, INK_FORCE),
+                    .other = picture_colour(s, theme, INK_OTHER),
+                    .frame = picture_colour(s, theme, INK_FRAME)}};
     plan_paint(g->picture, &p, &g->view);
 }
 

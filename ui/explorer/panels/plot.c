@@ -117,10 +117,15 @@ static void draw_columns(const plot_frame *f, const trace *t, int signal, double
     draw_column(f, column, low, high);
 }
 
+colour picture_colour(const screen *s, colour_theme theme, ink i)
+{
+    const rgb c = picture_ink(s, theme, i);
+    return (colour){c.red / 255.0, c.green / 255.0, c.blue / 255.0};
+}
+
 static colour pixel_colour(const plot_frame *f, ink i)
 {
-    const rgb c = picture_ink(f->canvas.screen, f->theme, i);
-    return (colour){c.red / 255.0, c.green / 255.0, c.blue / 255.0};
+    return picture_colour(f->canvas.screen, f->theme, i);
 }
 
 void plot_frame_signal(const plot_frame *f, const trace *t, int signal, double until,

@@ -10,6 +10,9 @@
 // --- the frame --------------------------------------------------------------------------------
 // The area of a pane over time, with its window and range, in cells or in pixels.
 
+// The colour of an ink in pictures, for what draws them.
+colour picture_colour(const screen *s, colour_theme theme, ink i);
+
 // A pane's place, time window and range.
 typedef struct plot_frame {
     canvas canvas;

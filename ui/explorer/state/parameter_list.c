@@ -268,30 +268,25 @@ static const char *reason_of_arm(const parameters *p, int parameter)
     return NULL;
 }
 
-// Whether a parameter of the controller means the same under every law.
-static bool is_of_every_law(int parameter)
+// Whether a parameter is one of some fields, by where it lies.
+static bool is_among(int parameter, const size_t *fields, size_t count)
 {
-    const size_t fields[] = {offsetof(parameters, control.law),
-                             offsetof(parameters, control.settings),
-                             offsetof(parameters, control.rate),
-                             offsetof(parameters, control.delay),
-                             offsetof(parameters, control.delay_periods),
-                             offsetof(parameters, control.jitter),
-                             offsetof(parameters, control.seed),
-                             offsetof(parameters, control.force),
-                             offsetof(parameters, control.k2_table),
-                             offsetof(parameters, control.force_rate),
-                             offsetof(parameters, control.force_amplitude),
-                             offsetof(parameters, control.force_frequency)};
-
-    // a parameter is known by where it lies
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
-        if (parameter_table[parameter].offset == fields[i]) {
-            return true;
-        }
+    bool found = false;
+    for (size_t i = 0; i < count; i++) {
+        found = found || parameter_table[parameter].offset == fields[i];
     }
-    return false;
+    return found;
 }
+
+#define FIELD(field)                offsetof(parameters, field)
+#define IS_AMONG(parameter, fields) is_among(parameter, fields, sizeof fields / sizeof fields[0])
+
+// What means the same under every law.
+static const size_t every_law[] = {
+    FIELD(control.law),        FIELD(control.settings),        FIELD(control.rate),
+    FIELD(control.delay),      FIELD(control.delay_periods),   FIELD(control.jitter),
+    FIELD(control.seed),       FIELD(control.force),           FIELD(control.k2_table),
+    FIELD(control.force_rate), FIELD(control.force_amplitude), FIELD(control.force_frequency)};
 
 // What the control law does not read.
 static const char *reason_of_control(const parameters *p, int parameter)
@@ -304,7 +299,7 @@ static const char *reason_of_control(const parameters *p, int parameter)
     if (IS_OF(parameter, control.command) || IS_OF(parameter, control.answer_time)) {
         return p->control.law == LAW_PROCESS ? NULL : "it belongs to control.law = process";
     }
-    if (law == NULL || is_of_every_law(parameter)) {
+    if (law == NULL || IS_AMONG(parameter, every_law)) {
         return NULL;
     }
     if (IS_OF(parameter, control.lock)) {
@@ -320,47 +315,46 @@ static const char *reason_of_control(const parameters *p, int parameter)
     return "the control law does not use it";
 }
 
-// Whether a parameter is a fault of sensors or converters, which ideal ones do not have.
-static bool is_imperfection(int parameter)
-{
-    return IS_OF(parameter, sensor.encoder_counts) || IS_OF(parameter, sensor.tachometer_ripple) ||
-           IS_OF(parameter, sensor.tachometer_ripple_count) ||
-           IS_OF(parameter, sensor.tachometer_noise) || IS_OF(parameter, sensor.fsr_noise) ||
-           IS_OF(parameter, sensor.piezo_noise) || IS_OF(parameter, sensor.film_noise) ||
-           IS_OF(parameter, sensor.accelerometer_noise) || IS_OF(parameter, sensor.adc_bits) ||
-           IS_OF(parameter, sensor.dac_bits) || IS_OF(parameter, sensor.fsr_rise_time) ||
-           IS_OF(parameter, sensor.piezo_rise_time) || IS_OF(parameter, sensor.piezo_leak_time) ||
-           IS_OF(parameter, sensor.piezo_range) || IS_OF(parameter, sensor.film_leak_time) ||
-           IS_OF(parameter, sensor.accelerometer_rise_time) ||
-           IS_OF(parameter, sensor.accelerometer_range);
-}
+// The parameters of sensors that need not be fitted, and those that ideal ones do not have.
+static const size_t piezo[] = {FIELD(sensor.piezo_gain), FIELD(sensor.piezo_rise_time),
+                               FIELD(sensor.piezo_leak_time), FIELD(sensor.piezo_range),
+                               FIELD(sensor.piezo_noise)};
+static const size_t film[] = {FIELD(sensor.film_gain), FIELD(sensor.film_leak_time),
+                              FIELD(sensor.film_noise)};
+static const size_t accelerometer[] = {
+    FIELD(sensor.accelerometer_gain), FIELD(sensor.accelerometer_rise_time),
+    FIELD(sensor.accelerometer_range), FIELD(sensor.accelerometer_noise)};
+static const size_t imperfections[] = {FIELD(sensor.encoder_counts),
+                                       FIELD(sensor.tachometer_ripple),
+                                       FIELD(sensor.tachometer_ripple_count),
+                                       FIELD(sensor.tachometer_noise),
+                                       FIELD(sensor.fsr_noise),
+                                       FIELD(sensor.piezo_noise),
+                                       FIELD(sensor.film_noise),
+                                       FIELD(sensor.accelerometer_noise),
+                                       FIELD(sensor.adc_bits),
+                                       FIELD(sensor.dac_bits),
+                                       FIELD(sensor.fsr_rise_time),
+                                       FIELD(sensor.piezo_rise_time),
+                                       FIELD(sensor.piezo_leak_time),
+                                       FIELD(sensor.piezo_range),
+                                       FIELD(sensor.film_leak_time),
+                                       FIELD(sensor.accelerometer_rise_time),
+                                       FIELD(sensor.accelerometer_range)};
 
 // What sensors that are not fitted, or are ideal, make no use of.
 static const char *reason_of_sensor(const parameters *p, int parameter)
 {
-    const bool piezo = IS_OF(parameter, sensor.piezo_gain) ||
-                       IS_OF(parameter, sensor.piezo_rise_time) ||
-                       IS_OF(parameter, sensor.piezo_leak_time) ||
-                       IS_OF(parameter, sensor.piezo_range) || IS_OF(parameter, sensor.piezo_noise);
-    const bool film = IS_OF(parameter, sensor.film_gain) ||
-                      IS_OF(parameter, sensor.film_leak_time) ||
-                      IS_OF(parameter, sensor.film_noise);
-    const bool accelerometer = IS_OF(parameter, sensor.accelerometer_gain) ||
-                               IS_OF(parameter, sensor.accelerometer_rise_time) ||
-                               IS_OF(parameter, sensor.accelerometer_range) ||
-                               IS_OF(parameter, sensor.accelerometer_noise);
-
-    // not fitted, or without the fault
-    if (piezo && !p->sensor.piezo) {
+    if (IS_AMONG(parameter, piezo) && !p->sensor.piezo) {
         return "no piezo sensor is fitted (sensor.piezo)";
     }
-    if (film && !p->sensor.film) {
+    if (IS_AMONG(parameter, film) && !p->sensor.film) {
         return "no piezo film is fitted (sensor.film)";
     }
-    if (accelerometer && !p->sensor.accelerometer) {
+    if (IS_AMONG(parameter, accelerometer) && !p->sensor.accelerometer) {
         return "none is fitted (sensor.accelerometer)";
     }
-    if (p->sensor.ideal && is_imperfection(parameter)) {
+    if (p->sensor.ideal && IS_AMONG(parameter, imperfections)) {
         return "the sensors are ideal (sensor.ideal)";
     }
     return NULL;

@@ -29,23 +29,18 @@ void scenario_menu_read_titles(scenario_menu *menu)
     assert(menu != NULL);
 
     // read once, as it opens every file
-    if (menu->titles != NULL || menu->count == 0) {
+    if (menu->texts != NULL || menu->count == 0) {
         return;
     }
-    menu->titles = calloc((size_t)menu->count, sizeof *menu->titles);
-    menu->descriptions = calloc((size_t)menu->count, sizeof *menu->descriptions);
-    menu->lessons = calloc((size_t)menu->count, sizeof *menu->lessons);
-    const bool room = menu->titles != NULL && menu->descriptions != NULL && menu->lessons != NULL;
+    menu->texts = calloc((size_t)menu->count, sizeof *menu->texts);
+    loss_unless(menu->texts != NULL);
 
     // a file that cannot be read has only its name
-    loss_unless(room);
-    for (int i = 0; room && i < menu->count; i++) {
+    for (int i = 0; menu->texts != NULL && i < menu->count; i++) {
         scenario s;
         const status code = scenario_open(&s, menu->names[i], ignore_fault, NULL);
         if (code == STATUS_OK) {
-            menu->titles[i] = s.title;
-            menu->lessons[i] = s.lesson.step_count > 0;
-            menu->descriptions[i] = s.description;
+            menu->texts[i] = (menu_text){s.title, s.description, s.lesson.step_count > 0};
             s.title = s.description = NULL;
             scenario_finish(&s);
         }
@@ -58,12 +53,10 @@ void scenario_menu_finish(scenario_menu *menu)
     assert(menu != NULL);
     for (int i = 0; i < menu->count; i++) {
         free(menu->names[i]);
-        free(menu->titles != NULL ? menu->titles[i] : NULL);
-        free(menu->descriptions != NULL ? menu->descriptions[i] : NULL);
+        free(menu->texts != NULL ? menu->texts[i].title : NULL);
+        free(menu->texts != NULL ? menu->texts[i].description : NULL);
     }
-    free(menu->lessons);
-    free(menu->descriptions);
-    free(menu->titles);
+    free(menu->texts);
     free(menu->names);
     *menu = (scenario_menu){0};
 }
@@ -78,24 +71,28 @@ int scenario_menu_find(const scenario_menu *menu, const char *name)
     return at;
 }
 
-const char *scenario_menu_title(const scenario_menu *menu, int index)
+// What a scenario says of itself, nothing before it is read.
+static menu_text text_of(const scenario_menu *menu, int index)
 {
     assert(menu != NULL && index >= 0 && index < menu->count);
-    return menu->titles != NULL && menu->titles[index] != NULL ? menu->titles[index] : "";
+    return menu->texts != NULL ? menu->texts[index] : (menu_text){0};
+}
+
+const char *scenario_menu_title(const scenario_menu *menu, int index)
+{
+    const char *title = text_of(menu, index).title;
+    return title != NULL ? title : "";
 }
 
 const char *scenario_menu_description(const scenario_menu *menu, int index)
 {
-    assert(menu != NULL && index >= 0 && index < menu->count);
-    return menu->descriptions != NULL && menu->descriptions[index] != NULL
-               ? menu->descriptions[index]
-               : "";
+    const char *description = text_of(menu, index).description;
+    return description != NULL ? description : "";
 }
 
 bool scenario_menu_is_lesson(const scenario_menu *menu, int index)
 {
-    assert(menu != NULL && index >= 0 && index < menu->count);
-    return menu->lessons != NULL && menu->lessons[index];
+    return text_of(menu, index).is_lesson;
 }
 
 bool scenario_menu_shows(const scenario_menu *menu, int index)

@@ -6,11 +6,15 @@
 #include "src/session/session.h"
 #include "ui/explorer/state/runs.h"
 
+// What a scenario says of itself.
+typedef struct menu_text {
+    char *title, *description; // NULL if it has none or could not be read
+    bool is_lesson;
+} menu_text;
+
 typedef struct scenario_menu {
-    char **names;  // of all scenarios
-    char **titles; // NULL before they are read
-    char **descriptions;
-    bool *lessons; // whether each is a lesson; NULL before they are read
+    char **names;     // of all scenarios
+    menu_text *texts; // of each; NULL before they are read
     int count;
     char filter[LINE_TEXT];
     bool filtering; // the filter receives the keys
