@@ -46,6 +46,6 @@ expect 2 show nonesuch
 # what nothing is known of
 expect 2 help blurp splodge
 says err "nothing is known"
-expect 2 help swep
-says err "did you mean 'sweep'"
+expect 2 help rnu
+says err "did you mean 'run'"
 nothing_failed

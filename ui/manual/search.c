@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/words.h"
+
 enum { WORDS = 16, WORD = 32 };
 
 // Okapi BM25: how fast further occurrences of a word stop to count, how much a long text needs more
@@ -170,10 +172,12 @@ static double score_of(const question_words *q, const occurrences *o, double *sh
     return score;
 }
 
-// How much each word says: the fewer entries have it, the more.
-static void weigh(question_words *q, const search_source *sources, int source_count)
+// Number of entries, and of those that have each word.
+static double count_entries(const question_words *q, const search_source *sources, int source_count,
+                            double with[WORDS])
 {
-    double with[WORDS] = {0}, entries = 0;
+    double entries = 0;
+    memset(with, 0, WORDS * sizeof with[0]);
     for (int s = 0; s < source_count; s++) {
         for (int i = 0; i < sources[s].count; i++) {
             const search_entry e = sources[s].entry(i);
@@ -184,6 +188,44 @@ static void weigh(question_words *q, const search_source *sources, int source_co
             entries++;
         }
     }
+    return entries;
+}
+
+// Takes the word of a title that is nearest to a misspelt one in its place, if one is near: one
+// letter in four.
+static void correct_word(char word[WORD], const search_source *sources, int source_count)
+{
+    char best[WORD], candidate[WORD];
+    int least = (int)strlen(word) / 4 + 1;
+    strcpy(best, word);
+    for (int s = 0; s < source_count; s++) {
+        for (int i = 0; i < sources[s].count; i++) {
+            const char *title = sources[s].entry(i).title;
+            while (next_word(&title, candidate)) {
+                const int distance = edit_distance(word, candidate, least);
+                if (distance < least) {
+                    least = distance;
+                    strcpy(best, candidate);
+                }
+            }
+        }
+    }
+    strcpy(word, best);
+}
+
+// How much each word says: the fewer entries have it, the more. One that none has is taken for a
+// misspelt one.
+static void weigh(question_words *q, const search_source *sources, int source_count)
+{
+    double with[WORDS];
+    count_entries(q, sources, source_count, with);
+    for (int w = 0; w < q->count; w++) {
+        if (with[w] == 0) {
+            correct_word(q->words[w], sources, source_count);
+        }
+    }
+
+    const double entries = count_entries(q, sources, source_count, with);
     for (int w = 0; w < q->count; w++) {
         q->weight[w] = log(1 + (entries - with[w] + 0.5) / (with[w] + 0.5));
     }

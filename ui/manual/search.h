@@ -26,9 +26,9 @@ typedef struct search_hit {
 } search_hit;
 
 // Finds what fits a question, the best first: at most `most` hits; returns how many. Words are
-// compared without their usual endings; words such as "how" and "the" do not count beside others.
-// The score is that of Okapi BM25 (Robertson and Zaragoza, 2009) with the title as a field of more
-// weight, times the share of the question that is met.
+// compared without their usual endings, misspelt ones are corrected; words such as "how" and "the"
+// do not count beside others. The score is that of Okapi BM25 (Robertson and Zaragoza, 2009) with
+// the title as a field of more weight, times the share of the question that is met.
 int search_find(const search_source *sources, int source_count, const char *question,
                 search_hit *hits, int most);
 
