@@ -104,3 +104,9 @@ void sha256_finish(sha256 *h, char text[SHA256_TEXT])
     }
     text[SHA256_TEXT - 1] = '\0';
 }
+
+void sha256_add_text(sha256 *h, const char *text)
+{
+    assert(text != NULL);
+    sha256_add(h, text, strlen(text) + 1);
+}

@@ -18,3 +18,6 @@ void sha256_add(sha256 *h, const void *bytes, size_t size);
 
 // Writes the digest as 64 hexadecimal digits; nothing more can be added then.
 void sha256_finish(sha256 *h, char text[SHA256_TEXT]);
+
+// Takes in a text with its end, so that two texts are not taken for two others.
+void sha256_add_text(sha256 *h, const char *text);

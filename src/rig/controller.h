@@ -41,8 +41,8 @@ typedef struct controller_setup {
     double link_mass;         // m of each of two links [kg]
     double link_length;       // l of each of two links [m]
     double link_inertia;      // I2 = I3 about the centre of mass [kg m2]
-    double k2;                // stiffness of the beam's joint, as believed [N m/rad]
-    double wall_angle;        // theta_imp, as believed [rad]
+    double k2;                // stiffness of the beam's joint, nominal [N m/rad]
+    double wall_angle;        // theta_imp, nominal [rad]
     int links;                // of the beam in a model that can have several
     double hub_spring;        // k1 between hub and beam, HUGE_VAL if they are one body [N m/rad]
     double damping_ratio;     // of the beam's first clamped-free mode

@@ -92,7 +92,8 @@ bool rig_can_change(const parameters *p, int parameter);
 
 // --- for the parts of the rig
 
-// What the controller is told: the arm and the rig as they are, changed by what it believes.
+// The nominal model, which is what the controller is told: arm and rig as they are, changed by
+// belief.*.
 controller_setup rig_nominal_setup(const rig *r, const parameters *p);
 // Takes the commanded force along its ramp and its wave to `time` [s], before a sample.
 status rig_follow_setpoint(rig *r, double time, fault *f);

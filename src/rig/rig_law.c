@@ -102,7 +102,7 @@ int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, 
 
 controller_setup rig_nominal_setup(const rig *r, const parameters *p)
 {
-    const belief_parameters *b = &p->belief;
+    const nominal_model_parameters *b = &p->belief;
 
     // the beam in two links, whatever the arm is
     double m = p->arm.mass / 2, l = p->arm.length / 2, k2 = p->arm.k2;
@@ -177,7 +177,7 @@ status rig_takes(const rig *r, const parameters *p, fault *f)
 // refuses.
 static status tell_controller(rig *r, const parameters *p, fault *f)
 {
-    // its parameters, and the rig as it is to believe it
+    // its parameters, and the nominal model
     status s = controller_values(r->law, p, r->values, f);
     if (s != STATUS_OK) {
         return s;

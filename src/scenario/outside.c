@@ -36,12 +36,6 @@ unsigned outside_read(const parameters *p)
     return sources;
 }
 
-// Takes in a text with its end, so that two texts are not taken for two others.
-static void add_text(sha256 *h, const char *text)
-{
-    sha256_add(h, text, strlen(text) + 1);
-}
-
 // Takes in the digest of a plain file's content. False, with the reason in errno, if it cannot be
 // read.
 static bool add_content(sha256 *h, const char *path)
@@ -61,7 +55,7 @@ static bool add_content(sha256 *h, const char *path)
     fclose(file);
     errno = reason;
     sha256_finish(&content, digest);
-    add_text(h, digest);
+    sha256_add_text(h, digest);
     return whole;
 }
 
@@ -116,7 +110,7 @@ static bool add_program(sha256 *h, const char *word, reading how)
 static bool add_command(sha256 *h, const char *command, reading how)
 {
     char word[PARAMETER_TEXT_SIZE];
-    add_text(h, command);
+    sha256_add_text(h, command);
     for (const char *at = command; *(at += strspn(at, " ")) != '\0'; at += strlen(word)) {
         snprintf(word, sizeof word, "%.*s", (int)strcspn(at, " "), at);
         const char *value = strchr(word, '='), *names[] = {word, value != NULL ? value + 1 : ""};
@@ -125,7 +119,7 @@ static bool add_command(sha256 *h, const char *command, reading how)
             if (!taken && !is_no_file()) {
                 return false;
             }
-            add_text(h, taken ? "a file" : "no file");
+            sha256_add_text(h, taken ? "a file" : "no file");
         }
 
         // options may be anything but programs
@@ -138,7 +132,7 @@ static bool add_command(sha256 *h, const char *command, reading how)
 
 static bool add_source(sha256 *h, const outside_source *source, const char *value, reading how)
 {
-    add_text(h, parameter_table[parameter_at(source->parameter)].path);
+    sha256_add_text(h, parameter_table[parameter_at(source->parameter)].path);
     return source->kind == OUTSIDE_COMMAND ? add_command(h, value, how) : add_file(h, value, how);
 }
 

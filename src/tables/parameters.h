@@ -153,8 +153,9 @@ typedef enum impact_angle_source {
     IMPACT_ANGLE_BY_ACCELEROMETER
 } impact_angle_source;
 
-// What a controller is told of the arm on the rig, as factors of the truth and differences from it.
-typedef struct belief_parameters {
+// The nominal model that a controller is told of the arm on the rig (belief.*), as factors of the
+// truth and differences from it.
+typedef struct nominal_model_parameters {
     int links;                // number of links its model of the beam has
     double mass_factor;       // of the beam's mass and its moments of inertia
     double inertia_factor;    // of the hub's moment of inertia
@@ -162,9 +163,9 @@ typedef struct belief_parameters {
     double torque_factor;     // of kT
     double k2_factor;         // of k2 (of that of control.k2_table)
     double hub_spring_factor; // of k1, where the hub has a spring
-    double wall_error;        // wall angle believed minus the wall's [rad]
-    double delay_error;       // delay of commands believed minus the true one [s]
-} belief_parameters;
+    double wall_error;        // nominal wall angle minus the wall's [rad]
+    double delay_error;       // nominal delay of commands minus the true one [s]
+} nominal_model_parameters;
 
 // In the order of the choices of sensor.force.
 typedef enum force_sensor { FORCE_BY_FSR, FORCE_BY_PIEZO } force_sensor;
@@ -213,7 +214,7 @@ typedef struct parameters {
     initial_parameters initial;
     run_parameters run;
     control_parameters control;
-    belief_parameters belief;
+    nominal_model_parameters belief;
     sensor_parameters sensor;
     bool code_allowed; // the user allows the scenario to start a program or load a plug-in; no file
                        // can allow it

@@ -24,7 +24,7 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define MOVES        0.05   // a slower hub tells nothing of what arm it is [rad/s]
 #define TAILS        4.0    // degrees of freedom of the distribution that misses of readings have
 #define STIFF_MEMORY                                                                               \
-    0.5 // over which readings count for the stiffness, and as what the belief does [s]
+    0.5 // over which readings count for the stiffness, and as what the nominal one does [s]
 #define LEAST_STIFF 0.2  // share of it that the arm has at least
 #define OUTLIER     4.0  // readings further off, in standard deviations, are worth less
 #define REST        0.01 // a slower hub counts as at rest [rad/s]
@@ -99,7 +99,7 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup, do
     o->stiction = setup->stiction;
     o->period = setup->period;
     o->delay = fmin(setup->delay, setup->period);
-    o->stiff_belief = STIFF_MEMORY * force * force;
+    o->stiff_nominal = STIFF_MEMORY * force * force;
     for (int k = 0; k < 2; k++) {
         double h = k == 0 ? o->delay : o->period - o->delay;
         sample_model(o, &o->arm.free, 2 * o->arm.free.count, h, &o->free_model[k]);
@@ -265,7 +265,7 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
     // process noise of the states that drift
     noise[arm_observer_torque_index(o)] = TORQUE_DRIFT * TORQUE_DRIFT * h;
     if (o->touches) {
-        // a stiffness believed wrongly shows as a wall that moves with the hub
+        // a wrong nominal stiffness shows as a wall that moves with the hub
         double bend = hub_angle(o, e) - e->z[wall_index(o)];
         double wandering = 2 * STIFFNESS * STIFFNESS * fabs(bend * arm_observer_rate(o, e));
         noise[wall_index(o)] = (WALL_DRIFT * WALL_DRIFT + wandering) * h;
@@ -277,7 +277,7 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
         return;
     }
 
-    // stiffer than believed: the difference as a force held over h
+    // stiffer than nominal: the difference as a force held over h
     sampled_model now = *model;
     double more = (o->stiffness - 1) * o->arm.contact.square[0] * h;
     now.a[n][0] -= more;
@@ -364,7 +364,7 @@ static double take_force(arm_observer *o, const controller_input *in)
 }
 
 // How stiff the arm is in contact: the force over the way of the hub since the touch, both less
-// what the other modes and the motion make of them, by least squares. The belief counts as
+// what the other modes and the motion make of them, by least squares. The nominal one counts as
 // STIFF_TIME of pressing with the wanted force, long enough for vibrations that the model does not
 // show to cancel.
 static void learn_stiffness(arm_observer *o, const controller_input *in, double worth)
@@ -376,16 +376,16 @@ static void learn_stiffness(arm_observer *o, const controller_input *in, double 
         bend -= set->hub[i] * o->e.z[i];
     }
 
-    // the force of the first mode, as believed and as read
-    double believed = per_mode * bend / set->hub[0];
+    // the force of the first mode, nominal and as read
+    double nominal = per_mode * bend / set->hub[0];
     double others = arm_observer_force(o, &o->e, drive) - per_mode * o->stiffness * o->e.z[0];
     double read = in->force - others;
 
     double kept = 1 - fmin(1, o->period / STIFF_MEMORY), weight = o->period * worth * worth;
-    o->stiff_force = kept * o->stiff_force + weight * believed * read;
-    o->stiff_bend = kept * o->stiff_bend + weight * believed * believed;
+    o->stiff_force = kept * o->stiff_force + weight * nominal * read;
+    o->stiff_bend = kept * o->stiff_bend + weight * nominal * nominal;
     double stiffness =
-        (o->stiff_force + o->stiff_belief) / fmax(o->stiff_bend + o->stiff_belief, 1e-12);
+        (o->stiff_force + o->stiff_nominal) / fmax(o->stiff_bend + o->stiff_nominal, 1e-12);
     o->stiffness = fmax(LEAST_STIFF, stiffness);
 }
 

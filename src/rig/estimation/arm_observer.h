@@ -26,9 +26,9 @@ typedef struct arm_observer {
     double wall, wall_variance; // as last known [rad], [rad2]
     double tip_before, tip_now; // tip angle in flight at the last two samples [rad]
     double met;                 // wall's angle at the touch [rad]
-    // stiffness of the first mode in contact over what it is believed to be, the sums that it is
-    // the quotient of, and what the belief adds to both [N2 s]
-    double stiffness, stiff_force, stiff_bend, stiff_belief;
+    // stiffness of the first mode in contact over its nominal one, the sums that it is
+    // the quotient of, and what the nominal one adds to both [N2 s]
+    double stiffness, stiff_force, stiff_bend, stiff_nominal;
     // misfit of its predictions to the readings while the hub moved: -2 log likelihood of the
     // readings, each with its own noise and Student's tails; its difference from another model's
     // misfit is the evidence for this one
@@ -62,7 +62,7 @@ int arm_observer_torque_index(const arm_observer *o);
 
 // Square of the frequency of mode i of the present state [1/s2], of the first in contact with the
 // stiffness that the readings have shown: what a wrong k2, a spring at the hub or more links than
-// believed come to at rest.
+// nominal come to at rest.
 double arm_observer_square(const arm_observer *o, int i);
 
 // Of an estimate: tip angle [rad], hub velocity [rad/s].

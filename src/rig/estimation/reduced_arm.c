@@ -14,7 +14,7 @@
 #define MODES_BELOW 0.5
 
 // The chain that the setup describes, without motor and wall.
-static void believed_arm(arm *a, const controller_setup *setup)
+static void nominal_arm(arm *a, const controller_setup *setup)
 {
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
@@ -132,7 +132,7 @@ const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup)
     assert(r != NULL && setup != NULL);
     arm a;
     memset(r, 0, sizeof *r);
-    believed_arm(&a, setup);
+    nominal_arm(&a, setup);
     r->length = 2 * setup->link_length;
 
     // one block for the matrices and shapes of the whole chain

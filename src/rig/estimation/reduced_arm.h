@@ -1,4 +1,4 @@
-// The arm that a controller believes in, reduced to its first modes: in free flight, and with its
+// The nominal arm of a controller, reduced to its first modes: in free flight, and with its
 // tip at the wall.
 //
 // With M and K of the straight chain, J = (l ... l) the tip's displacement by the link angles and r

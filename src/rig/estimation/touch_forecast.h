@@ -1,5 +1,5 @@
 // How hard would it hit if the tip struck the wall now? The rig's answer at every sample, from what
-// its sensors read and what it believes: the impact dynamics, (4.20)-(4.22), while the arm is on
+// its sensors read and the nominal model: the impact dynamics, (4.20)-(4.22), while the arm is on
 // its way.
 //
 // The predictor asks for both links, the rig sees the hub. In free flight the bend b of the beam's
@@ -17,7 +17,7 @@
 #include "src/rig/controller.h"
 
 typedef struct touch_forecast {
-    parameters arm;   // that is believed in, two links
+    parameters arm;   // the nominal one, two links
     double frequency; // of the bend, hub held [rad/s]
     double lag;       // 1 + m32/m33
     double decay;     // [1/s]
@@ -26,7 +26,7 @@ typedef struct touch_forecast {
     bool flies;                // the last sample was in the air: bend and time are of it
 } touch_forecast;
 
-// Takes what is believed: the parameters told and the setup that the controller gets of them. The
+// Takes the nominal model: the parameters told and the setup that the controller gets of them. The
 // bend so far stays.
 void touch_forecast_tell(touch_forecast *t, const parameters *told, const controller_setup *setup);
 

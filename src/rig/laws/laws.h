@@ -1,5 +1,9 @@
 // The built-in control laws. Each is written against src/rig/controller.h and nothing else of the
-// rig; docs/explanation/control-design.md says where each comes from.
+// rig. Between its start and its end a law needs nothing of the lab: no file, no allocation, no
+// table of parameters; what a sample computes with stands in its memory and in the values of its
+// setup (tests/law_alone.c holds the laws without the lab). The start of `observer` alone needs the
+// modes of an arm (src/arm/modes.h), and memory for the moment. docs/explanation/control-design.md
+// says where each comes from.
 #pragma once
 
 #include <stddef.h>

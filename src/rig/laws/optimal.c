@@ -291,7 +291,7 @@ static void predict_contact(const optimal_memory *m, const sampled_model *model,
     bool rests = fabs(z[PRESSED_RATE]) < 0.01 && fabs(torque) <= m->rig.stiction;
     double held = friction(m, z[PRESSED_RATE], torque);
 
-    // a stiffness believed wrongly shows as a wall that moves with the hub
+    // a wrong nominal stiffness shows as a wall that moves with the hub
     double noise[4], wandering = K2_DOUBT * z[PRESSED_RATE] * m->rig.period;
     memcpy(noise, contact_noise, sizeof noise);
     noise[PRESSED_WALL] += wandering * wandering;
@@ -393,7 +393,7 @@ static double hold(optimal_memory *m, const controller_input *in)
 }
 
 // Asked to press before there is contact: the feedback round the angle at which the beam would
-// press if the wall were where it is believed to be.
+// press if the wall were at its nominal place.
 static double seek_wall(const optimal_memory *m)
 {
     const double *z = m->e.z;

@@ -7,15 +7,22 @@ import os
 import subprocess
 import tempfile
 from ctypes import POINTER, byref, c_char_p, c_double, c_size_t, c_void_p
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, NamedTuple, Optional
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Protocol
 
 import numpy as np
 
 from . import library
 from .library import Error, ErrorStruct, Owner, Table, call, error_of, lib, missing, number, text
 
-if TYPE_CHECKING:
-    from .scenario import Scenario
+
+class Source(Protocol):
+    """What a run is computed from: a scenario."""
+
+    _handle: c_void_p
+
+    @property
+    def yaml(self) -> str:
+        """The scenario's file."""
 
 
 class Signal(NamedTuple):
@@ -87,13 +94,13 @@ class Run(Owner):
     _kind = "run"
     _instead = "its scenario can, and gives the same run again"
     _destroy = staticmethod(lib.impactlab_run_destroy)
-    _scenario: Optional["Scenario"] = None
+    _scenario: Optional[Source] = None
 
     def __init__(self) -> None:
         raise TypeError("a run comes from scenario.run() or loop.run()")
 
     @classmethod
-    def _create(cls, scenario: "Scenario", flags: int, law: Any = None) -> "Run":
+    def _create(cls, scenario: Source, flags: int, law: Any = None) -> "Run":
         """A run of a scenario that nobody else has."""
         run = cls.__new__(cls)
         error = ErrorStruct()
@@ -285,7 +292,7 @@ def _take_answer(out: Any, answered: Any) -> None:
         raise KeyError("a controller's answer lacks 'command', expected volts")
 
 
-def run_with(scenario: "Scenario", flags: int, function: Callable[[Any], Any]) -> Run:
+def run_with(scenario: Source, flags: int, function: Callable[[Any], Any]) -> Run:
     """A run with a Python function as its controller; what it raises is raised again."""
     raised: List[BaseException] = []
     if not callable(function):
