@@ -8,7 +8,6 @@
 
 #include "render/page/text.h"
 #include "render/plot/plot.h"
-#include "src/base/shipped.h"
 #include "src/base/whole_file.h"
 
 status make_folder(const char *folder, fault *f)
@@ -44,14 +43,6 @@ picture artwork_picture(const artwork *a, const figure_options *options)
 {
     assert(a != NULL && options != NULL);
 
-    // the same string for every picture, made by whichever thread comes first
-    static gsize software;
-    if (g_once_init_enter(&software)) {
-        char *named = g_strdup_printf("impactlab %s", lab_version());
-        g_once_init_leave(&software, (gsize)g_intern_string(named));
-        g_free(named);
-    }
-
     // without an alternative text the title stands in for it
     return (picture){.width = a->width,
                      .height = a->height,
@@ -60,7 +51,7 @@ picture artwork_picture(const artwork *a, const figure_options *options)
                      .command = options->command,
                      .alternative = a->alternative != NULL ? a->alternative : a->title,
                      .title = a->title,
-                     .software = (const char *)software,
+                     .software = picture_software(),
                      .parameters = a->parameters,
                      .paint = paint_artwork,
                      .what = a};

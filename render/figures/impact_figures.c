@@ -11,7 +11,6 @@
 #include "render/plot/plot.h"
 #include "render/figures/run_figure.h"
 #include "src/base/numbers.h"
-#include "src/base/shipped.h"
 
 #define IMPACT_SCENARIO "corrected/first-impact"
 
@@ -71,7 +70,7 @@ static impact_figure *new_impact(const char *title, const char *of, const char *
     // what all of them have
     fig->figure.title = own(fig, g_strdup(title));
     fig->figure.parameters = own(fig, parameters_line(&fig->run.scenario));
-    fig->figure.software = own(fig, g_strconcat("impactlab ", lab_version(), NULL));
+    fig->figure.software = picture_software();
     fig->figure.panels = fig->panels;
     figure_take_look(&fig->figure, &o->look);
     for (int i = 0; i < PANELS; i++) {

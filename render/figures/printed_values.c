@@ -8,7 +8,6 @@
 #include "render/figures/thesis_tables.h"
 #include "render/page/text.h"
 #include "render/plot/drawing.h"
-#include "src/base/shipped.h"
 
 enum { TABLES = 3, QUANTITIES = 3, PANELS = 2 * TABLES, SERIES = 2 * QUANTITIES };
 
@@ -63,7 +62,7 @@ typedef struct printed_values {
     double voltage[TABLE_VOLTAGES];
     double values[TABLES][SERIES][TABLE_VOLTAGES];        // thesis, computed of each quantity
     double residuals[TABLES][QUANTITIES][TABLE_VOLTAGES]; // [% of the thesis's]
-    char *title, *caption, *headings[TABLES], *software;
+    char *title, *caption, *headings[TABLES];
     char *names[PANELS]; // of the vertical axes, for the CSV
 } printed_values;
 
@@ -78,7 +77,6 @@ static void release_values(void *owner)
     }
     g_free(v->title);
     g_free(v->caption);
-    g_free(v->software);
     g_free(v);
 }
 
@@ -153,15 +151,14 @@ static status open_values(const printed_kind *kind, const char *title, const fig
 
     printed_values *v = g_new0(printed_values, 1);
     v->title = g_strdup(title);
-    v->software = g_strconcat("impactlab ", lab_version(), NULL);
     v->caption = text_printf(
         "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, whose constants were "
         "inferred from these tables (docs/explanation/model.md). Residual: what the model gives "
         "beyond what is printed, in per cent of that. %s.",
-        v->software);
+        picture_software());
     v->figure = (figure){.title = v->title,
                          .caption = v->caption,
-                         .software = v->software,
+                         .software = picture_software(),
                          .panels = v->panels,
                          .panel_count = PANELS,
                          .columns = TABLES,

@@ -7,7 +7,6 @@
 #include "render/figures/recipe_parts.h"
 #include "render/figures/run_figure.h"
 #include "render/plot/trace_plot.h"
-#include "src/base/shipped.h"
 
 static void release(void *owner)
 {
@@ -144,18 +143,17 @@ static void describe(recipe_figure *fig, const figure_options *o)
         recipe_describe_panel(fig, i);
     }
 
-    fig->figure =
-        (figure){.title = r->title,
-                 .caption = r->caption,
-                 .x = horizontal_axis(fig),
-                 .panels = fig->panels,
-                 .panel_count = r->panel_count,
-                 .columns = r->columns,
-                 .shared_y = r->shared,
-                 .marks = r->marks,
-                 .mark_count = r->mark_count,
-                 .software = recipe_own(fig, g_strconcat("impactlab ", lab_version(), NULL)),
-                 .parameters = recipe_own(fig, parameters_of(fig))};
+    fig->figure = (figure){.title = r->title,
+                           .caption = r->caption,
+                           .x = horizontal_axis(fig),
+                           .panels = fig->panels,
+                           .panel_count = r->panel_count,
+                           .columns = r->columns,
+                           .shared_y = r->shared,
+                           .marks = r->marks,
+                           .mark_count = r->mark_count,
+                           .software = picture_software(),
+                           .parameters = recipe_own(fig, parameters_of(fig))};
 
     // the first run's contact
     if (r->contact && fig->sources[0].ran) {

@@ -209,25 +209,16 @@ static void add_signal(recipe_figure *fig, int panel, int source, int signal, in
 static void add_difference(recipe_figure *fig, int panel)
 {
     const recipe_panel *from = &fig->recipe.panels[panel];
-    const trace *of = trace_of(fig, from->of), *less = trace_of(fig, from->less);
-    int index = signal_index(from->signals[0]);
-    double *x = recipe_own(fig, g_new(double, of->row_count + 1));
-    double *y = recipe_own(fig, g_new(double, of->row_count + 1));
-
-    for (size_t i = 0; i < of->row_count; i++) {
-        x[i] = of->rows[i].time;
-        y[i] = signal_value(&of->rows[i], index) - trace_value_at(less, index, x[i]);
-    }
+    figure_series *s = &fig->series[panel][0];
+    *s = trace_difference(trace_of(fig, from->of), trace_of(fig, from->less),
+                          signal_index(from->signals[0]), fig->owned);
 
     // points where data are compared, else a line
     bool data = fig->recipe.sources[from->of].kind == SOURCE_DATA;
-    fig->series[panel][0] = (figure_series){.name = "difference",
-                                            .x = x,
-                                            .y = y,
-                                            .count = of->row_count,
-                                            .colour = data ? 6 : 7,
-                                            .no_line = data,
-                                            .marker = data ? MARKER_CIRCLE : MARKER_NONE};
+    s->name = "difference";
+    s->colour = data ? 6 : 7;
+    s->no_line = data;
+    s->marker = data ? MARKER_CIRCLE : MARKER_NONE;
     fig->panels[panel].series_count = 1;
 }
 

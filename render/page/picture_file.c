@@ -16,6 +16,7 @@
 
 #include "render/page/svg.h"
 #include "render/page/text.h"
+#include "src/base/shipped.h"
 #include "src/base/whole_file.h"
 
 enum { NOTES_MOST = 8, COMPRESSION = 3 };
@@ -185,6 +186,18 @@ status picture_check_path(const char *path, fault *f)
     assert(path != NULL);
     status code = check_extension(path, f);
     return code == STATUS_OK ? whole_file_check(path, f) : code;
+}
+
+const char *picture_software(void)
+{
+    // made by whichever thread comes first
+    static gsize software;
+    if (g_once_init_enter(&software)) {
+        char *named = g_strdup_printf("impactlab %s", lab_version());
+        g_once_init_leave(&software, (gsize)g_intern_string(named));
+        g_free(named);
+    }
+    return (const char *)software;
 }
 
 static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsigned length)

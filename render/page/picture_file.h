@@ -24,6 +24,9 @@ typedef struct picture {
     const void *what; // for paint
 } picture;
 
+// The program and its version, as files of pictures name what made them.
+const char *picture_software(void);
+
 // Strokes and clears the path, as cairo_stroke does. If cairo gets no memory for the outline of a
 // long line, it omits a piece of it without reporting an error; picture_end_drawing reports it.
 void picture_stroke(cairo_t *cr);

@@ -48,51 +48,42 @@ static size_t opening_length(const char *text)
     return 0;
 }
 
-char *svg_prefix_ids(const char *svg, const char *prefix)
+// The SVG with every id, where it is set and where it is referred to, by its name in the table (may
+// be NULL), or else with the prefix before it.
+static char *rename_ids(const char *svg, GHashTable *names, const char *prefix)
 {
-    assert(svg != NULL && prefix != NULL);
     GString *out = g_string_sized_new(strlen(svg) + 1);
-
-    // the prefix stands between the opening and the identifier
     while (*svg != '\0') {
         size_t length = opening_length(svg);
         if (length == 0) {
             g_string_append_c(out, *svg++);
             continue;
         }
+
         g_string_append_len(out, svg, (gssize)length);
-        g_string_append(out, prefix);
         svg += length;
+        char *id = g_strndup(svg, id_length(svg));
+        const char *name = names != NULL ? g_hash_table_lookup(names, id) : NULL;
+        g_string_append_printf(out, "%s%s", name ? "" : prefix, name ? name : id);
+        svg += strlen(id);
+        g_free(id);
     }
     return g_string_free(out, FALSE);
+}
+
+char *svg_prefix_ids(const char *svg, const char *prefix)
+{
+    assert(svg != NULL && prefix != NULL);
+    return rename_ids(svg, NULL, prefix);
 }
 
 char *svg_renumber_ids(const char *svg)
 {
     assert(svg != NULL);
     GHashTable *names = collect_ids(svg);
-    GString *out = g_string_sized_new(strlen(svg) + 1);
-
-    // all but identifiers is copied
-    while (*svg != '\0') {
-        size_t length = opening_length(svg);
-        if (length == 0) {
-            g_string_append_c(out, *svg++);
-            continue;
-        }
-
-        // an identifier that is known gets its number
-        g_string_append_len(out, svg, (gssize)length);
-        svg += length;
-        char *id = g_strndup(svg, id_length(svg));
-        const char *name = g_hash_table_lookup(names, id);
-        g_string_append(out, name ? name : id);
-        svg += strlen(id);
-        g_free(id);
-    }
-
+    char *renumbered = rename_ids(svg, names, "");
     g_hash_table_destroy(names);
-    return g_string_free(out, FALSE);
+    return renumbered;
 }
 
 // Ids of this SVG with known outlines, and the ids to use instead; their symbols are removed.
@@ -131,23 +122,13 @@ char *svg_share_symbols(const char *svg, GHashTable *known)
 {
     assert(svg != NULL && known != NULL);
     GHashTable *renamed = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
-    GString *kept = drop_known(svg, known, renamed), *out = g_string_sized_new(kept->len);
+    GString *kept = drop_known(svg, known, renamed);
 
     // references to what went
-    for (const char *at = kept->str; *at != '\0';) {
-        if (strncmp(at, "\"#", 2) == 0) {
-            char *name = g_strndup(at + 2, id_length(at + 2));
-            const char *other = g_hash_table_lookup(renamed, name);
-            g_string_append_printf(out, "\"#%s", other != NULL ? other : name);
-            at += 2 + strlen(name);
-            g_free(name);
-        } else {
-            g_string_append_c(out, *at++);
-        }
-    }
+    char *shared = rename_ids(kept->str, renamed, "");
     g_string_free(kept, TRUE);
     g_hash_table_destroy(renamed);
-    return g_string_free(out, FALSE);
+    return shared;
 }
 
 // ==== fewer bytes

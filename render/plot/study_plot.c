@@ -20,7 +20,7 @@ owned_figure *owned_figure_create(void)
     o->panel.series = o->series;
     o->figure.panels = &o->panel;
     o->figure.panel_count = 1;
-    o->figure.software = owned_figure_keep(o, g_strconcat("impactlab ", lab_version(), NULL));
+    o->figure.software = picture_software();
     return o;
 }
 

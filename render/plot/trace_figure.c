@@ -4,22 +4,24 @@
 #include <assert.h>
 #include <glib.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "render/plot/plot.h"
 #include "render/plot/trace_parts.h"
-#include "src/base/shipped.h"
 
-bool trace_shows(const trace_run *run, const trace_panel *panel, int index)
+// Whether a run has a signal of a panel to show: not the first link's where it equals the hub's,
+// and of data only what was measured.
+static bool shows(const trace_run *run, const trace_panel *panel, int index)
 {
     bool twin = panel->signals[1] != NULL && signal_table[index].body == BODY_FIRST_LINK &&
                 trace_hub_is_first_link(run->scenario);
     return !twin && !(run->points && !trace_has(&run->result->trace, index));
 }
 
-int trace_run_colour(const trace_run *run)
+// Slot of the colour of a run with a rank.
+static int run_colour(const trace_run *run)
 {
     // the most different first
     static const int colours[TRACE_RUNS] = {0, 5, 2, 4, 1, 3, 6, 7};
@@ -46,7 +48,8 @@ static int find_entry(const trace_figure *t, int meaning)
     return -1;
 }
 
-line_style trace_line(const trace_figure *t, int index)
+// The line of a signal by the key, solid of one that it does not have.
+static line_style line_of(const trace_figure *t, int index)
 {
     int i = find_entry(t, meaning_of(index));
     return i >= 0 ? t->key_series[i].style : LINE_SOLID;
@@ -110,8 +113,8 @@ static void add_signals(trace_figure *t, const trace_panel *panels, int panel,
         int index = signal_index(p->signals[i]), meaning = meaning_of(index);
         bool shown = false;
         for (int run = 0; run < run_count; run++) {
-            shown = shown || (trace_shows(&runs[run], p, index) &&
-                              trace_has(&runs[run].result->trace, index));
+            shown = shown ||
+                    (shows(&runs[run], p, index) && trace_has(&runs[run].result->trace, index));
         }
         if (shown && find_entry(t, meaning) < 0) {
             const figure_series line = {
@@ -121,14 +124,15 @@ static void add_signals(trace_figure *t, const trace_panel *panels, int panel,
     }
 }
 
-void trace_make_key(trace_figure *t, const trace_panel *panels, const trace_run *runs,
-                    int run_count)
+// Gives signals that stand in one panel different lines, and the figure one key for all panels of
+// both runs and signals; does nothing where no run has a rank. Before the panels are described.
+static void make_key(trace_figure *t, const trace_panel *panels, const trace_run *runs,
+                     int run_count)
 {
     // runs
     for (int run = 0; run < run_count; run++) {
         if (runs[run].rank > 0) {
-            const figure_series line = {.run = runs[run].rank,
-                                        .colour = trace_run_colour(&runs[run])};
+            const figure_series line = {.run = runs[run].rank, .colour = run_colour(&runs[run])};
             add_entry(t, line, 0, text_escape(runs[run].name));
         }
     }
@@ -173,7 +177,7 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
 
         // what the hub shows already, and what was not measured
         bool left_out = run > 0 && runs[run].brief && i > 0;
-        if (left_out || !trace_shows(&runs[run], from, index)) {
+        if (left_out || !shows(&runs[run], from, index)) {
             continue;
         }
 
@@ -200,8 +204,8 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         if (runs[run].rank > 0) {
             out->secondary = false;
             out->run = runs[run].rank;
-            out->colour = trace_run_colour(&runs[run]);
-            out->style = trace_line(t, index);
+            out->colour = run_colour(&runs[run]);
+            out->style = line_of(t, index);
             continue;
         }
 
@@ -267,8 +271,7 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
 
     // what is drawn with them
     if (from->impulses) {
-        panel->impulses = t->impulses;
-        panel->impulse_count = trace_impulses(&runs[0].result->trace, t->impulses);
+        panel->impulses = trace_impulses(&runs[0].result->trace, &panel->impulse_count, texts);
         panel->impulse_label = "Impulse";
         panel->impulse_unit = signal_table[SIGNAL_INDEX(impulse)].unit;
     }
@@ -298,22 +301,11 @@ static void add_residuals(trace_figure *t, const trace_panel *panels, const trac
     }
 
     int index = signal_index(panels[panel].signals[0]);
-    double *x = trace_keep(owned, g_new(double, data->row_count + 1));
-    double *y = trace_keep(owned, g_new(double, data->row_count + 1));
-
-    for (size_t i = 0; i < data->row_count; i++) {
-        x[i] = data->rows[i].time;
-        y[i] = signal_value(&data->rows[i], index) -
-               trace_value_at(&computed->result->trace, index, x[i]);
-    }
-
-    t->residual = (figure_series){.name = "residual",
-                                  .x = x,
-                                  .y = y,
-                                  .count = data->row_count,
-                                  .colour = 6,
-                                  .marker = MARKER_CIRCLE,
-                                  .no_line = true};
+    t->residual = trace_difference(data, &computed->result->trace, index, owned);
+    t->residual.name = "residual";
+    t->residual.colour = 6;
+    t->residual.marker = MARKER_CIRCLE;
+    t->residual.no_line = true;
 
     t->panels[last] = (figure_panel){.y = {.name = "residual",
                                            .label = "Residual",
@@ -366,17 +358,6 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     }
     bool (*shaded)(const sample *row) = modes ? trace_in_second_mode : trace_in_contact;
     const char *mode = modes ? trace_mode_name(runs[0].scenario, 1) : NULL;
-    int intervals = trace_intervals(rows, shaded, NULL), impulses = trace_impulses(rows, NULL);
-
-    // room for what happened
-    t->marks = calloc(TRACE_MARKS, sizeof *t->marks);
-    t->intervals = calloc((size_t)intervals + 1, sizeof *t->intervals);
-    t->impulses = calloc((size_t)impulses + 1, sizeof *t->impulses);
-    if (t->marks == NULL || t->intervals == NULL || t->impulses == NULL) {
-        trace_figure_finish(t);
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for a figure of %zu rows",
-                         rows->row_count);
-    }
 
     // the page
     GPtrArray *texts = t->owned = g_ptr_array_new_with_free_func(g_free);
@@ -394,7 +375,7 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     fig->panel_count = panel_count;
 
     // panels with their curves; side by side, runs are told by colours and signals by lines
-    trace_make_key(t, panels, runs, run_count);
+    make_key(t, panels, runs, run_count);
     for (int i = 0; i < panel_count; i++) {
         describe_panel(t, i, &panels[i], runs, run_count, texts);
     }
@@ -408,10 +389,9 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     // marks and shading
     trace_mark_events(t, &runs[0], texts);
     fig->marks = t->marks;
-    fig->interval_count = trace_intervals(rows, shaded, t->intervals);
-    fig->intervals = t->intervals;
+    fig->intervals = trace_intervals(rows, shaded, &fig->interval_count, texts);
 
-    fig->software = trace_keep(texts, g_strconcat("impactlab ", lab_version(), NULL));
+    fig->software = picture_software();
     fig->parameters = trace_keep(texts, parameters_line(runs[0].scenario));
     return STATUS_OK;
 }
@@ -421,9 +401,6 @@ void trace_figure_finish(trace_figure *t)
     if (t->owned != NULL) {
         g_ptr_array_free(t->owned, TRUE);
     }
-    free(t->marks);
-    free(t->intervals);
-    free(t->impulses);
     memset(t, 0, sizeof *t);
 }
 

@@ -3,8 +3,6 @@
 
 #include "render/plot/trace_plot.h"
 
-enum { TRACE_ACTIONS = 16, TRACE_MARKS = 3 + TRACE_ACTIONS };
-
 // Adds a block, mostly a text, to those that are freed with the figure.
 void *trace_keep(GPtrArray *owned, void *block);
 
@@ -32,23 +30,6 @@ char *trace_axis_label(const scenario *s, const signal_info *signal);
 // shading and the marks belong to.
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 
-// --- runs side by side: trace_figure.c
-
-// Whether a run has a signal of a panel to show: not the first link's where it equals the hub's,
-// and of data only what was measured.
-bool trace_shows(const trace_run *run, const trace_panel *panel, int index);
-
-// Slot of the colour of a run with a rank.
-int trace_run_colour(const trace_run *run);
-
-// Gives signals that stand in one panel different lines, and the figure one key for all panels of
-// both runs and signals; does nothing where no run has a rank. Before the panels are described.
-void trace_make_key(trace_figure *t, const trace_panel *panels, const trace_run *runs,
-                    int run_count);
-
-// The line of a signal by that key, solid of one that it does not have.
-line_style trace_line(const trace_figure *t, int index);
-
 // --- what happened: trace_series.c
 
 // Marks contact, peak, release and changes by the script; on the rig changes of mode.
@@ -57,9 +38,10 @@ void trace_mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts);
 bool trace_in_contact(const sample *row);
 bool trace_in_second_mode(const sample *row);
 
-// Intervals from each first row with the property to the next one without it. Only counts them if
-// `out` is NULL.
-int trace_intervals(const trace *rows, bool (*is_so)(const sample *row), figure_interval *out);
+// Intervals from each first row with the property to the next one without it. The array is added
+// to `owned`.
+figure_interval *trace_intervals(const trace *rows, bool (*is_so)(const sample *row), int *count,
+                                 GPtrArray *owned);
 
-// The impulses of all impacts. Only counts them if `out` is NULL.
-int trace_impulses(const trace *rows, figure_impulse *out);
+// The impulses of all impacts. The array is added to `owned`.
+figure_impulse *trace_impulses(const trace *rows, int *count, GPtrArray *owned);

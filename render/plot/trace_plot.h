@@ -7,7 +7,7 @@
 #include "src/base/fault.h"
 #include "src/run/run.h"
 
-enum { TRACE_SIGNALS = 4, TRACE_RUNS = 8 };
+enum { TRACE_SIGNALS = 4, TRACE_RUNS = 8, TRACE_ACTIONS = 16, TRACE_MARKS = 3 + TRACE_ACTIONS };
 
 // A panel: signals of one unit over time.
 typedef struct trace_panel {
@@ -46,9 +46,7 @@ typedef struct trace_figure {
     int key_signals[TRACE_KEY]; // what the entry is a line of, see trace_figure.c; 0: no signal
     figure_level wall;
     GPtrArray *owned; // blocks
-    figure_mark *marks;
-    figure_interval *intervals;
-    figure_impulse *impulses;
+    figure_mark marks[TRACE_MARKS];
 } trace_figure;
 
 // The scenario's title, and what was changed of what it speaks of. Free with g_free.
@@ -64,9 +62,9 @@ char *trace_symbol(const scenario *s, int index);
 // is added to `owned`.
 figure_series trace_series(const trace_run *run, int index, GPtrArray *owned);
 
-// The value of a signal at an instant of a run, interpolated linearly between rows; NaN outside the
-// run.
-double trace_value_at(const trace *t, int index, double time);
+// A signal at the instants of one run less that of another, interpolated linearly between its rows.
+// The numbers are added to `owned`.
+figure_series trace_difference(const trace *of, const trace *less, int index, GPtrArray *owned);
 
 // The intervals of contact; the array is added to `owned`.
 figure_interval *trace_contact(const trace *rows, int *count, GPtrArray *owned);

@@ -10,6 +10,12 @@
 
 // ==== what happened
 
+void *trace_keep(GPtrArray *owned, void *block)
+{
+    g_ptr_array_add(owned, block);
+    return block;
+}
+
 static void add_mark(trace_figure *t, double time, const char *label)
 {
     t->marks[t->figure.mark_count++] = (figure_mark){.x = time, .label = label};
@@ -119,49 +125,42 @@ bool trace_in_second_mode(const sample *row)
     return row->controller_mode == 1;
 }
 
-int trace_intervals(const trace *rows, bool (*is_so)(const sample *row), figure_interval *out)
+figure_interval *trace_intervals(const trace *rows, bool (*is_so)(const sample *row), int *count,
+                                 GPtrArray *owned)
 {
-    int count = 0;
+    GArray *found = g_array_new(FALSE, FALSE, sizeof(figure_interval));
     bool touching = false;
 
     // opened by a row that is so, closed by the first that is not
     for (size_t i = 0; i < rows->row_count; i++) {
+        const double time = rows->rows[i].time;
         bool now = is_so(&rows->rows[i]);
         if (now && !touching) {
-            if (out != NULL) {
-                out[count] = (figure_interval){rows->rows[i].time, rows->rows[i].time};
-            }
-            count++;
-        }
-        if ((now || touching) && out != NULL) {
-            out[count - 1].to = rows->rows[i].time;
+            const figure_interval begun = {time, time};
+            g_array_append_val(found, begun);
+        } else if (touching) {
+            g_array_index(found, figure_interval, found->len - 1).to = time;
         }
         touching = now;
     }
-    return count;
+    *count = (int)found->len;
+    return trace_keep(owned, g_array_free(found, FALSE));
 }
 
-int trace_impulses(const trace *rows, figure_impulse *out)
+figure_impulse *trace_impulses(const trace *rows, int *count, GPtrArray *owned)
 {
-    int count = 0;
+    GArray *found = g_array_new(FALSE, FALSE, sizeof(figure_impulse));
     for (size_t i = 0; i < rows->event_count; i++) {
         if (rows->events[i].kind == EVENT_IMPACT) {
-            if (out != NULL) {
-                out[count] = (figure_impulse){rows->events[i].time, rows->events[i].impulse};
-            }
-            count++;
+            const figure_impulse impact = {rows->events[i].time, rows->events[i].impulse};
+            g_array_append_val(found, impact);
         }
     }
-    return count;
+    *count = (int)found->len;
+    return trace_keep(owned, g_array_free(found, FALSE));
 }
 
 // ==== series
-
-void *trace_keep(GPtrArray *owned, void *block)
-{
-    g_ptr_array_add(owned, block);
-    return block;
-}
 
 static figure_series series_of(const trace_run *run, int index)
 {
@@ -249,13 +248,12 @@ figure_series trace_series(const trace_run *run, int index, GPtrArray *owned)
 
 figure_interval *trace_contact(const trace *rows, int *count, GPtrArray *owned)
 {
-    *count = trace_intervals(rows, trace_in_contact, NULL);
-    figure_interval *intervals = trace_keep(owned, g_new0(figure_interval, *count + 1));
-    trace_intervals(rows, trace_in_contact, intervals);
-    return intervals;
+    return trace_intervals(rows, trace_in_contact, count, owned);
 }
 
-double trace_value_at(const trace *t, int index, double time)
+// The value of a signal at an instant of a run, interpolated linearly between rows; NaN outside the
+// run.
+static double value_at(const trace *t, int index, double time)
 {
     size_t low = 0, high = t->row_count;
     if (high == 0 || time < t->rows[0].time || time > t->rows[high - 1].time) {
@@ -280,4 +278,15 @@ double trace_value_at(const trace *t, int index, double time)
     double span = t->rows[high].time - t->rows[low].time;
     double share = span > 0 ? (time - t->rows[low].time) / span : 0;
     return here + share * (signal_value(&t->rows[high], index) - here);
+}
+
+figure_series trace_difference(const trace *of, const trace *less, int index, GPtrArray *owned)
+{
+    double *x = trace_keep(owned, g_new(double, of->row_count + 1));
+    double *y = trace_keep(owned, g_new(double, of->row_count + 1));
+    for (size_t i = 0; i < of->row_count; i++) {
+        x[i] = of->rows[i].time;
+        y[i] = signal_value(&of->rows[i], index) - value_at(less, index, x[i]);
+    }
+    return (figure_series){.x = x, .y = y, .count = of->row_count};
 }

@@ -7,7 +7,6 @@
 
 #include "render/plot/trace_plot.h"
 #include "render/scene/film_file.h"
-#include "src/base/shipped.h"
 #include "src/base/worker_signals.h"
 
 enum { MOST_THREADS = 2, BUFFERS = 2 };
@@ -215,11 +214,10 @@ static status record(film_making *m, const char *path, fault *f)
 {
     // the same notes as a picture's, of the first run
     const film_plan *plan = m->plan;
-    char software[64], *values = parameters_line(plan->runs[0].scenario);
+    char *values = parameters_line(plan->runs[0].scenario);
     char *title = scenario_title(plan->runs[0].scenario);
-    snprintf(software, sizeof software, "impactlab %s", lab_version());
     const png_note notes[] = {{"Title", title},
-                              {"Software", software},
+                              {"Software", picture_software()},
                               {"Parameters", values},
                               {"Renderer", film_painter_name(m->painter)}};
     const film_facts facts = {.width = plan->options.width,

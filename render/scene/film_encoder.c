@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <glib.h>
 #include <poll.h>
 #include <spawn.h>
 #include <stdlib.h>
@@ -17,10 +18,7 @@
 
 extern char **environ;
 
-enum {
-    ARGUMENTS_MOST = 64,
-    PATIENCE = 200 // longest until a request to stop is seen [ms]
-};
+enum { PATIENCE = 200 }; // longest until a request to stop is seen [ms]
 
 // Fixed numbers of threads and bitexact keep the bytes alike. Marks: ISO/IEC 14496-12, an ftyp box
 // first; RFC 8794, the EBML mark; GIF89a, a trailer last; RFC 9649, WEBP in a RIFF file.
@@ -62,94 +60,57 @@ const film_format *film_format_of(const char *path)
 
 bool film_encoder_is_there(void)
 {
-    const char *folders = getenv("PATH");
-    bool found = false;
-    while (folders != NULL && *folders != '\0' && !found) {
-        char path[4096];
-        int length = (int)strcspn(folders, ":");
-        snprintf(path, sizeof path, "%.*s/ffmpeg", length, folders);
-        found = access(path, X_OK) == 0;
-        folders += length + (folders[length] == ':');
-    }
-    return found;
+    char *program = g_find_program_in_path("ffmpeg");
+    g_free(program);
+    return program != NULL;
 }
 
 // ---- its arguments
 
-typedef struct argument_list {
-    char *words[ARGUMENTS_MOST];
-    int count;
-    bool out_of_memory;
-} argument_list;
-
-static void add_word(argument_list *list, const char *word)
-{
-    char *copy = list->count + 1 < ARGUMENTS_MOST ? strdup(word) : NULL;
-    list->out_of_memory = list->out_of_memory || copy == NULL;
-    if (copy != NULL) {
-        list->words[list->count++] = copy;
-    }
-}
-
 // Words separated by blanks.
-static void add_words(argument_list *list, const char *words)
+static void add_words(GPtrArray *list, const char *words)
 {
-    while (*words != '\0') {
-        char word[512];
-        int length = (int)strcspn(words, " ");
-        snprintf(word, sizeof word, "%.*s", length, words);
-        add_word(list, word);
-        words += length + (words[length] == ' ');
+    char **each = g_strsplit(words, " ", -1);
+    for (int i = 0; each[i] != NULL; i++) {
+        g_ptr_array_add(list, each[i]);
     }
+    g_free(each);
 }
 
-static void add_notes(argument_list *list, const film_facts *facts)
+// The containers know few keys; a comment takes the parameters.
+static const char *key_of(const char *keyword)
 {
-    for (int i = 0; i < facts->note_count; i++) {
-        const png_note *note = &facts->notes[i];
-        char *word = malloc(strlen(note->keyword) + strlen(note->text ? note->text : "") + 16);
-        if (word == NULL || note->text == NULL) {
-            free(word);
-            continue;
-        }
-
-        // the containers know few keys; a comment takes the parameters
-        bool title = strcmp(note->keyword, "Title") == 0;
-        bool parameters_note = strcmp(note->keyword, "Parameters") == 0;
-        if (title || parameters_note) {
-            sprintf(word, "%s=%s", title ? "title" : "comment", note->text);
-        } else {
-            sprintf(word, "%s=%s",
-                    strcmp(note->keyword, "Software") == 0 ? "artist" : "description", note->text);
-        }
-
-        add_word(list, "-metadata");
-        add_word(list, word);
-        free(word);
-    }
+    return strcmp(keyword, "Title") == 0        ? "title"
+           : strcmp(keyword, "Parameters") == 0 ? "comment"
+           : strcmp(keyword, "Software") == 0   ? "artist"
+                                                : "description";
 }
 
-static void list_arguments(argument_list *list, const film_format *format, const film_facts *facts,
-                           const char *target)
+// To be freed with g_strfreev.
+static char **list_arguments(const film_format *format, const film_facts *facts, const char *target)
 {
-    char word[4096 + 8];
+    GPtrArray *list = g_ptr_array_new();
 
     // raw frames from the pipe
     add_words(list, "ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo -pix_fmt bgr0 -s");
-    snprintf(word, sizeof word, "%dx%d", facts->width, facts->height);
-    add_word(list, word);
-    add_word(list, "-r");
-    snprintf(word, sizeof word, "%d", facts->frames_per_second);
-    add_word(list, word);
+    g_ptr_array_add(list, g_strdup_printf("%dx%d", facts->width, facts->height));
+    g_ptr_array_add(list, g_strdup("-r"));
+    g_ptr_array_add(list, g_strdup_printf("%d", facts->frames_per_second));
 
     add_words(list, "-i pipe:0 -an");
     add_words(list, format->codec);
     add_words(list, "-fflags +bitexact -flags:v +bitexact");
-    add_notes(list, facts);
+    for (int i = 0; i < facts->note_count; i++) {
+        const png_note *note = &facts->notes[i];
+        if (note->text != NULL) {
+            g_ptr_array_add(list, g_strdup("-metadata"));
+            g_ptr_array_add(list, g_strdup_printf("%s=%s", key_of(note->keyword), note->text));
+        }
+    }
 
-    snprintf(word, sizeof word, "file:%s", target);
-    add_word(list, word);
-    list->words[list->count] = NULL;
+    g_ptr_array_add(list, g_strconcat("file:", target, NULL));
+    g_ptr_array_add(list, NULL);
+    return (char **)g_ptr_array_free(list, FALSE);
 }
 
 // ---- the program
@@ -189,26 +150,18 @@ static status spawn(film_encoder *e, char **words, int input, fault *f)
 status film_encoder_start(film_encoder *e, const film_format *format, const film_facts *facts,
                           const char *target, fault *f)
 {
-    argument_list list = {.count = 0};
     int ends[2];
-    status code = STATUS_NO_MEMORY;
+    status code = STATUS_CANNOT_WRITE;
     *e = (film_encoder){.pipe = -1, .stop = facts->stop, .words = tmpfile()};
-    list_arguments(&list, format, facts, target);
 
-    if (list.out_of_memory) {
-        fault_set(f, code, "no memory for a film");
-    } else if (e->words == NULL || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-        code = fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
-                         strerror(errno));
-    } else {
-        code = spawn(e, list.words, ends[0], f);
-        close(ends[0]);
-        e->pipe = ends[1];
+    if (e->words == NULL || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        return fault_set(f, code, "the program ffmpeg could not be started: %s", strerror(errno));
     }
-
-    for (int i = 0; i < list.count; i++) {
-        free(list.words[i]);
-    }
+    char **words = list_arguments(format, facts, target);
+    code = spawn(e, words, ends[0], f);
+    close(ends[0]);
+    e->pipe = ends[1];
+    g_strfreev(words);
     return code;
 }
 

@@ -45,7 +45,7 @@ typedef struct film_encoder {
 bool film_encoder_is_there(void);
 
 // Starts it: raw frames (0xAARRGGBB without the alpha) become the file `target`.
-// STATUS_CANNOT_WRITE or STATUS_NO_MEMORY if that fails. film_encoder_finish must be called in
+// STATUS_CANNOT_WRITE if that fails. film_encoder_finish must be called in
 // either case.
 status film_encoder_start(film_encoder *e, const film_format *format, const film_facts *facts,
                           const char *target, fault *f);

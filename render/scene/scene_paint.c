@@ -10,7 +10,6 @@
 #include "render/scene/scene.h"
 #include "src/base/instant.h"
 #include "src/base/numbers.h"
-#include "src/base/shipped.h"
 #include "src/base/whole_file.h"
 
 enum {
@@ -346,11 +345,10 @@ static status check_instants(const scene_picture *p, fault *f)
 static status write_surface(const scene *sc, cairo_surface_t *surface, const char *path, fault *f)
 {
     whole_file file;
-    char software[64], *values = parameters_line(sc->scenario);
+    char *values = parameters_line(sc->scenario);
     char *title = scenario_title(sc->scenario);
-    snprintf(software, sizeof software, "impactlab %s", lab_version());
     const png_note notes[] = {{"Title", title},
-                              {"Software", software},
+                              {"Software", picture_software()},
                               {"Parameters", values},
                               {"Renderer", scene_renderer_name(sc)}};
 
