@@ -112,7 +112,9 @@ static status write_plotted(const void *what, const char *path, fault *f)
 static void release_plotted(void *what)
 {
     plotted *p = what;
-    p->release(p->owner);
+    if (p->release != NULL) {
+        p->release(p->owner);
+    }
     g_free(p);
 }
 
@@ -165,7 +167,7 @@ static char *describe_figure(const figure *fig)
 
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner))
 {
-    assert(fig != NULL && release != NULL);
+    assert(fig != NULL);
 
     // what paints and releases it later; the figure stays its owner's
     plotted *p = g_new0(plotted, 1);
@@ -419,11 +421,6 @@ void figure_take_range(figure *fig, const figure_options *o)
     }
 }
 
-static void borrow_nothing(void *owner)
-{
-    (void)owner;
-}
-
 status figure_publish(const figure *fig, const figure_options *o, const char *path, bool with_csv,
                       fault *f)
 {
@@ -440,7 +437,7 @@ status figure_publish(const figure *fig, const figure_options *o, const char *pa
     figure_take_look(&shown, &o->look);
     figure_take_range(&shown, o);
 
-    artwork a = artwork_of_figure(&shown, NULL, borrow_nothing);
+    artwork a = artwork_of_figure(&shown, NULL, NULL);
     status code = artwork_publish(&a, o, path, with_csv, f);
     artwork_finish(&a);
     return code;

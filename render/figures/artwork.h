@@ -48,7 +48,7 @@ status artwork_write(const artwork *a, const figure_options *options, const char
                      const char *file, char *const *formats, fault *f);
 
 // An artwork of a plotted figure. `owner` holds what the figure borrows and the figure itself;
-// release frees it.
+// release (NULL: nothing to free) frees it.
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner));
 
 // Creates a folder unless it exists. STATUS_CANNOT_WRITE with the reason.

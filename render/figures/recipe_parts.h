@@ -142,6 +142,9 @@ const tree_node *recipe_child(const tree_node *map, const char *key);
 // Reads the lists of runs, data and tables, in any position in the recipe.
 void recipe_take_sources(recipe_context *c, const tree_node *root);
 
+// Whether a parameter has that path; reports if none has.
+bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char *path);
+
 // The index of a source that a panel names, or -1 after a fault.
 int recipe_find_source(recipe_context *c, const tree_node *node);
 

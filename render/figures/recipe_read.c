@@ -5,7 +5,6 @@
 
 #include "render/figures/recipe_parts.h"
 #include "render/page/text.h"
-#include "src/base/words.h"
 
 // ==== small multiples: runs and panels once for each value of a parameter
 //
@@ -31,16 +30,9 @@ static const char *keep(recipe_context *c, char *text)
 TAKE(take_vary, multiples)
 {
     const char *path = recipe_text(c, node, "vary");
-    if (path != NULL && parameter_find(path) < 0) {
-        nearest_word near = nearest_begin(path);
-        for (int i = 0; i < parameter_count; i++) {
-            nearest_try(&near, parameter_table[i].path);
-        }
-        report_node(&c->reader, node, "there is no parameter '%.60s', did you mean '%s'?", path,
-                    near.best != NULL ? near.best : "motor.voltage");
-        return;
+    if (path != NULL && recipe_knows_parameter(c, node, path)) {
+        ((multiples *)into)->parameter = path;
     }
-    ((multiples *)into)->parameter = path;
 }
 
 TAKE(take_values, multiples)
@@ -202,12 +194,8 @@ TAKE(take_signals, panel)
 
         // known, with room, and of the panel's unit
         if (index <= 0) {
-            nearest_word near = nearest_begin(name);
-            for (int i = 1; i < signal_count; i++) {
-                nearest_try(&near, signal_table[i].name);
-            }
             report_node(&c->reader, item, "there is no signal '%.60s', did you mean '%s'?", name,
-                        near.best != NULL ? near.best : "force");
+                        nearest_signal(name));
         } else if (p->signal_count == TRACE_SIGNALS) {
             report_node(&c->reader, item, "a panel shows at most %d signals", TRACE_SIGNALS);
         } else if (p->signal_count > 0 && strcmp(signal_table[signal_find(p->signals[0])].unit,

@@ -139,6 +139,20 @@ TAKE(take_shift, source)
     reader_quantity(&c->reader, node, "shift", "s", &SOURCE->shift);
 }
 
+bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char *path)
+{
+    bool known = parameter_find(path) >= 0;
+    nearest_word near = nearest_begin(path);
+    for (int i = 0; i < parameter_count && !known; i++) {
+        nearest_try(&near, parameter_table[i].path);
+    }
+    if (!known) {
+        report_node(&c->reader, node, "there is no parameter '%.60s', did you mean '%s'?", path,
+                    near.best != NULL ? near.best : "motor.voltage");
+    }
+    return known;
+}
+
 TAKE(take_set, source)
 {
     recipe_source *s = into;
@@ -153,14 +167,10 @@ TAKE(take_set, source)
         }
 
         // a known path with a value, as on the command line
-        if (parameter_find(path) < 0) {
-            nearest_word near = nearest_begin(path);
-            for (int i = 0; i < parameter_count; i++) {
-                nearest_try(&near, parameter_table[i].path);
-            }
-            report_node(&c->reader, child->key, "there is no parameter '%.60s', did you mean '%s'?",
-                        path, near.best != NULL ? near.best : "arm.k2");
-        } else if (s->change_count == RECIPE_CHANGES) {
+        if (!recipe_knows_parameter(c, child->key, path)) {
+            continue;
+        }
+        if (s->change_count == RECIPE_CHANGES) {
             report_node(&c->reader, child->key, "a run has more than %d changes", RECIPE_CHANGES);
         } else if (!node_is_scalar(child)) {
             report_node(&c->reader, child, "%s is %s, expected a value", path,

@@ -355,20 +355,11 @@ static status open_scenario(report_item *item, const char *name, run_monitor *mo
     return STATUS_OK;
 }
 
-// Keeps the first of a recipe's faults.
-static void keep_first(void *context, const char *sentence)
-{
-    fault *f = context;
-    if (f->code == STATUS_OK) {
-        fault_set(f, STATUS_BAD_SCENARIO, "%s", sentence);
-    }
-}
-
 static status open_recipe(report_item *item, const char *path, fault *f)
 {
     const figure_options options = {0};
     fault first = {0};
-    status code = recipe_open(path, &options, keep_first, &first, &item->drawn, f);
+    status code = recipe_open(path, &options, keep_first_fault, &first, &item->drawn, f);
     if (code != STATUS_OK) {
         return first.code != STATUS_OK ? fault_set(f, code, "%s", first.text) : code;
     }

@@ -9,8 +9,7 @@
 
 // ---- scenarios run for figures
 
-// Keeps the first of a scenario's faults.
-static void keep_first(void *context, const char *sentence)
+void keep_first_fault(void *context, const char *sentence)
 {
     fault *f = context;
     if (f->code == STATUS_OK) {
@@ -35,15 +34,15 @@ status run_begin_changed(opened_run *r, const char *name, const char *const *cha
     assert(r != NULL && name != NULL);
     const run_options options = {.keep_trace = true, .monitor = monitor};
     fault first = {STATUS_OK, ""};
-    status code = scenario_open(&r->scenario, name, keep_first, &first);
+    status code = scenario_open(&r->scenario, name, keep_first_fault, &first);
     if (code != STATUS_OK) {
         return fault_set(f, code, "%s", first.text);
     }
 
     // changes lie above what the file says
     if (count > 0) {
-        code =
-            scenario_override_all(&r->scenario, (char *const *)changes, count, keep_first, &first);
+        code = scenario_override_all(&r->scenario, (char *const *)changes, count, keep_first_fault,
+                                     &first);
         fault_set(f, code, "%s", first.text);
     }
 
@@ -64,14 +63,13 @@ status run_begin_changed(opened_run *r, const char *name, const char *const *cha
 
 // ---- the signals asked for
 
-static status unknown_signal(const char *name, fault *f)
+const char *nearest_signal(const char *name)
 {
     nearest_word near = nearest_begin(name);
     for (int i = 1; i < signal_count; i++) {
         nearest_try(&near, signal_table[i].name);
     }
-    return fault_set(f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?", name,
-                     near.best != NULL ? near.best : "force");
+    return near.best != NULL ? near.best : "force";
 }
 
 // What goes without saying for a panel of its first signal.
@@ -97,7 +95,8 @@ static status read_panel(const char *text, trace_panel *p, GPtrArray *names, fau
 
         // known, with room, and of the panel's one unit
         if (index <= 0) {
-            code = unknown_signal(name, f);
+            code = fault_set(f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?",
+                             name, nearest_signal(name));
         } else if (i == TRACE_SIGNALS) {
             code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a panel shows at most %d signals", text,
                              TRACE_SIGNALS);

@@ -66,6 +66,13 @@ colour palette_series(figure_theme theme, int slot, int place)
     return theme == THEME_DARK ? on_black[slot] : on_white[slot];
 }
 
+int palette_slot(int index)
+{
+    static const int slots[] = {0, 5, 2, 4, 1, 3, 6, 7};
+    assert(index >= 0);
+    return slots[index % 8];
+}
+
 colour palette_grey(int index)
 {
     assert(index >= 0 && index < (int)(sizeof greys / sizeof greys[0]));

@@ -20,6 +20,9 @@ const palette *palette_of(figure_theme theme);
 // The colour of a slot, 0-7; in a mono figure by the series' place in its panel.
 colour palette_series(figure_theme theme, int slot, int place);
 
+// The slots in the order in which they differ most, again from the eighth on.
+int palette_slot(int index);
+
 // Black and the greys of a mono figure, 0 to 2 from dark to light.
 colour palette_grey(int index);
 

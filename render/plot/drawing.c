@@ -79,6 +79,12 @@ void clip_to(cairo_t *cr, const figure_rect *box, double space)
     cairo_clip(cr);
 }
 
+bool rects_meet(const figure_rect *a, const figure_rect *b, double space)
+{
+    return a->x < b->x + b->width + space && b->x < a->x + a->width + space &&
+           a->y < b->y + b->height && b->y < a->y + a->height;
+}
+
 void fill_box(cairo_t *cr, const figure_rect *box, colour c)
 {
     set_colour(cr, c);

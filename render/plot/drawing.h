@@ -154,6 +154,8 @@ void draw_line(cairo_t *cr, double x0, double y0, double x1, double y1);
 void set_plain_line(cairo_t *cr, colour c, double width);
 void clip_to(cairo_t *cr, const figure_rect *box, double space);
 void fill_box(cairo_t *cr, const figure_rect *box, colour c);
+// Whether two rectangles lie over each other, or less than `space` apart sideways.
+bool rects_meet(const figure_rect *a, const figure_rect *b, double space);
 
 // --- axes: drawing.c
 
@@ -212,7 +214,7 @@ bool place_pointed_marks(drawing *d, placement *grid);
 // is none for one of them.
 bool place_marks_inside(drawing *d, placement *grid);
 
-// --- impulses: impulses.c
+// --- impulses: series.c
 
 void draw_impulses(drawing *d, const panel_layout *l);
 
@@ -232,7 +234,7 @@ void draw_legend(drawing *d, const panel_layout *l);
 void draw_common_legend(drawing *d);
 void draw_end_labels(drawing *d, const panel_layout *l);
 
-// --- the inset: inset.c
+// --- the inset: legend.c
 
 void place_inset(const drawing *d, panel_layout *l, placement *grid);
 void draw_inset(drawing *d, const panel_layout *l);

@@ -1,8 +1,109 @@
-// Legends: inside a panel, in a row or column above it, at the ends of its curves, or one for all
-// panels.
+// What takes a free place in a panel: legends (also in a row or column above it, at the ends of its
+// curves, or one for all panels), and the inset, a short stretch of the panel once more, larger.
 #include <math.h>
 
+#include "render/page/picture_file.h"
 #include "render/plot/drawing.h"
+
+// ==== the inset
+
+#define INSET_ROOM 0.1 // of the data's range, kept free above and below them
+
+// The inset's axes within its outer rectangle.
+static void divide_inset(const drawing *d, panel_layout *l)
+{
+    const figure_panel *panel = l->panel;
+    plane *p = &l->inset_plane;
+    double line = height_of(d, figure_text_of(d, "0", d->style.small));
+
+    // the stretch of x, and all y that lie in it
+    p->x = scale_empty(d->x.scale.kind);
+    scale_include(&p->x, panel->zoom_from);
+    scale_include(&p->x, panel->zoom_to);
+    p->y = scale_empty(l->plane.y.kind);
+    for (int i = 0; i < panel->series_count; i++) {
+        series_include_y(&panel->series[i], &p->x, &p->y);
+    }
+    scale_widen(&p->y, INSET_ROOM);
+
+    // ticks, and the box that leaves room for their labels
+    l->inset_x.scale = p->x;
+    l->inset_y.scale = p->y;
+    axis_choose_ticks(&l->inset_x, &d->fig->x, axis_wish(l->inset.width, 35, 2, 5));
+    axis_choose_ticks(&l->inset_y, &panel->y, axis_wish(l->inset.height, 15, 2, 4));
+    double left = widest_tick(d, &l->inset_y, d->style.small) + TICK_SPACE + 4;
+    double wide = widest_tick(d, &l->inset_x, d->style.small);
+    double width = l->inset.width - left - wide / 2;
+
+    // the digits of a short stretch of time are many: labels that would meet are left out
+    double space = l->inset_x.even.step / (p->x.high - p->x.low) * width;
+    int every = space > 0 ? (int)ceil((wide + LABEL_GAP) / space) : 1;
+    for (int i = 0; i < l->inset_x.count; i++) {
+        l->inset_x.text[i] = i % every == 0 ? l->inset_x.text[i] : "";
+    }
+    p->box = (figure_rect){l->inset.x + left, l->inset.y + 3, width,
+                           l->inset.height - 3 - line - TICK_SPACE - 2};
+}
+
+void place_inset(const drawing *d, panel_layout *l, placement *grid)
+{
+    // the largest that covers no curve
+    static const double scales[] = {1, 0.85, 0.7};
+    const figure_panel *panel = l->panel;
+    const figure_rect *box = &l->plane.box;
+    l->inset = (figure_rect){0};
+
+    // nothing to enlarge
+    if (!(panel->zoom_from < panel->zoom_to)) {
+        return;
+    }
+
+    // one too small to read is rather left out
+    for (int i = 0; i < 3; i++) {
+        figure_rect found;
+        double width = 0.4 * scales[i] * box->width, height = 0.66 * scales[i] * box->height;
+        if (height < 36 || width < 60) {
+            return;
+        }
+        if (placement_find(grid, width, height, 3, &found) < INK_CURVE) {
+            l->inset = found;
+            divide_inset(d, l);
+            placement_block(grid, found, INK_CURVE);
+            return;
+        }
+    }
+}
+
+void draw_inset(drawing *d, const panel_layout *l)
+{
+    const plane *p = &l->inset_plane;
+    if (l->inset.width <= 0) {
+        return;
+    }
+    if (!d->fig->transparent) {
+        fill_box(d->cr, &l->inset, d->style.colours->page);
+    }
+    draw_intervals(d, p);
+    draw_grid(d, p, &l->inset_x, &l->inset_y);
+    draw_series(d, l, p);
+    draw_axes(d, p, &l->inset_x, &l->inset_y,
+              (axes_look){.x_labels = true, .y_labels = true, .size = d->style.small});
+
+    // the part of the panel that the inset shows
+    double left = plane_x(&l->plane, scale_value(p->x.kind, p->x.low));
+    double right = plane_x(&l->plane, scale_value(p->x.kind, p->x.high));
+    double top = fmax(plane_y(&l->plane, scale_value(p->y.kind, p->y.high)), l->plane.box.y);
+    double bottom = fmin(plane_y(&l->plane, scale_value(p->y.kind, p->y.low)),
+                         l->plane.box.y + l->plane.box.height);
+    cairo_save(d->cr);
+    clip_out_labels(d);
+    set_plain_line(d->cr, d->style.colours->mark, MARK_WIDTH);
+    cairo_rectangle(d->cr, left, top, right - left, bottom - top);
+    picture_stroke(d->cr);
+    cairo_restore(d->cr);
+}
+
+// ==== legends
 
 // What the legend says of a series: on a narrow page its symbol.
 static const char *entry(const drawing *d, const figure_series *s)

@@ -79,12 +79,6 @@ int place_marks(drawing *d)
 
 // ---- inside the first panel
 
-static bool rects_meet(const figure_rect *a, const figure_rect *b, double space)
-{
-    return a->x < b->x + b->width + space && b->x < a->x + a->width + space &&
-           a->y < b->y + b->height && b->y < a->y + a->height;
-}
-
 // Whether the line of another mark than `index` would cross a label.
 static bool crosses_line(const drawing *d, const figure_rect *r, int index)
 {

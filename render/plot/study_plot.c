@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/page/palette.h"
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "render/plot/study_plot.h"
@@ -42,7 +43,7 @@ void *owned_figure_keep(owned_figure *o, void *block)
 // ==== robust: the distribution of the overshoot
 
 // The curve of a law: run i of n, in the order of their overshoots, is at (i + 1)/n.
-static figure_series describe_law(owned_figure *o, const robust_law *law, int colour)
+static figure_series describe_law(owned_figure *o, const robust_law *law, int slot)
 {
     double *share = owned_figure_keep(o, g_new(double, law->runs));
     for (size_t i = 0; i < law->runs; i++) {
@@ -53,18 +54,17 @@ static figure_series describe_law(owned_figure *o, const robust_law *law, int co
                            .x = law->overshoots,
                            .y = share,
                            .count = law->runs,
-                           .colour = colour};
+                           .colour = slot};
 }
 
 owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 {
     assert(t != NULL && t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
-    static const int colours[ROBUST_MOST_CURVES] = {0, 5, 2, 4, 1, 3, 6, 7};
     owned_figure *o = owned_figure_create();
 
     // a curve for each law: the same runs, and so the same kind of overshoot
     for (int i = 0; i < t->count; i++) {
-        o->series[i] = describe_law(o, &t->laws[i], colours[i]);
+        o->series[i] = describe_law(o, &t->laws[i], palette_slot(i));
     }
     o->panel.series_count = t->count;
     o->panel.weight = 2.4;
@@ -287,7 +287,6 @@ static void describe_line(sweep_drawing *s, const sweep_picture *p)
 // A parameter of words and one of numbers: a curve for each word, over the numbers.
 static void describe_words(sweep_drawing *s, const sweep_picture *p, int words, int numbers)
 {
-    static const int colours[] = {0, 5, 2, 4, 1, 3, 6, 7};
     static const marker_kind markers[] = {MARKER_CIRCLE, MARKER_SQUARE, MARKER_TRIANGLE,
                                           MARKER_DIAMOND};
     const varied *word = &s->varied[words], *number = &s->varied[numbers];
@@ -305,7 +304,7 @@ static void describe_words(sweep_drawing *s, const sweep_picture *p, int words, 
                                               .x = number->place,
                                               .y = y,
                                               .count = number->count,
-                                              .colour = colours[k % G_N_ELEMENTS(colours)],
+                                              .colour = palette_slot((int)k),
                                               .marker = number->count > MOST_MARKERS
                                                             ? MARKER_NONE
                                                             : markers[k % G_N_ELEMENTS(markers)],

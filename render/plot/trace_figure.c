@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/page/palette.h"
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "render/plot/plot.h"
@@ -18,14 +19,6 @@ static bool shows(const trace_run *run, const trace_panel *panel, int index)
     bool twin = panel->signals[1] != NULL && signal_table[index].body == BODY_FIRST_LINK &&
                 trace_hub_is_first_link(run->scenario);
     return !twin && !(run->points && !trace_has(&run->result->trace, index));
-}
-
-// Slot of the colour of a run with a rank.
-static int run_colour(const trace_run *run)
-{
-    // the most different first
-    static const int colours[TRACE_RUNS] = {0, 5, 2, 4, 1, 3, 6, 7};
-    return colours[(run->rank - 1) % TRACE_RUNS];
 }
 
 // ---- lines
@@ -132,7 +125,8 @@ static void make_key(trace_figure *t, const trace_panel *panels, const trace_run
     // runs
     for (int run = 0; run < run_count; run++) {
         if (runs[run].rank > 0) {
-            const figure_series line = {.run = runs[run].rank, .colour = run_colour(&runs[run])};
+            const figure_series line = {.run = runs[run].rank,
+                                        .colour = palette_slot(runs[run].rank - 1)};
             add_entry(t, line, 0, text_escape(runs[run].name));
         }
     }
@@ -204,7 +198,7 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         if (runs[run].rank > 0) {
             out->secondary = false;
             out->run = runs[run].rank;
-            out->colour = run_colour(&runs[run]);
+            out->colour = palette_slot(runs[run].rank - 1);
             out->style = line_of(t, index);
             continue;
         }

@@ -163,7 +163,8 @@ material scene_paler(const scene *sc, material m, double share)
     return m;
 }
 
-vector at_angle(double angle, double x, double y, double z)
+// The point at distance x along a direction [rad] in the plane, y across it, and z above.
+static vector at_angle(double angle, double x, double y, double z)
 {
     return (vector){x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z};
 }

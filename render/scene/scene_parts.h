@@ -103,9 +103,6 @@ struct scene {
     material trail_of[TRAIL_POINTS];
 };
 
-// The point at distance x along a direction [rad] in the plane, y across it, and z above.
-vector at_angle(double angle, double x, double y, double z);
-
 // A material blended with the colour of the distant past, by a share of 0 to 1.
 material scene_paler(const scene *sc, material m, double share);
 

@@ -78,11 +78,6 @@ int publish_figure(const arguments *a, const figure *fig)
     return code;
 }
 
-static void borrow_nothing(void *owner)
-{
-    (void)owner;
-}
-
 int publish_runs(const arguments *a, const char *title, const trace_run *runs, int run_count)
 {
     assert(a != NULL && a->plot != NULL && runs != NULL && run_count > 0);
@@ -99,7 +94,7 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs, i
         return complain_fault(&f);
     }
 
-    artwork drawn = artwork_of_figure(&r.traces.figure, NULL, borrow_nothing);
+    artwork drawn = artwork_of_figure(&r.traces.figure, NULL, NULL);
     if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
         code = complain_fault(&f);
     }
