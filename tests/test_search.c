@@ -1,0 +1,148 @@
+// Search by words: what is found, in which order, and that every section of the manual can be.
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "ui/manual/passages.h"
+#include "ui/manual/search.h"
+
+static const char *const about_walls[] = {"a wall may give", "how stiff the settled wall is"};
+static const char *const about_beams[] = {"a beam bends", "its frequencies, with the hub held"};
+static const char *const about_hubs[] = {"the hub turns, the beam with it"};
+
+static const search_entry things[] = {
+    {"A soft wall", "Walls", about_walls, 2},
+    {"The beam", "Arms", about_beams, 2},
+    {"Hub", "Arms", about_hubs, 1},
+    {"arm.beam_length", "parameter", NULL, 0},
+};
+
+static search_entry thing(int i)
+{
+    return things[i];
+}
+
+static const search_source source = {4, thing};
+
+// Index of the best hit, -1 if nothing is found.
+static int best(const char *question)
+{
+    search_hit hit;
+    return search_find(&source, 1, question, &hit, 1) > 0 ? hit.index : -1;
+}
+
+static void finds_what_fits_best(void **state)
+{
+    (void)state;
+    assert_int_equal(best("soft wall"), 0);
+    assert_int_equal(best("What is the beam?"), 1);
+    assert_int_equal(best("length"), 3);
+    assert_int_equal(best("beam_length"), 3);
+    assert_int_equal(best("frequency held"), 1);
+    assert_int_equal(best("nonsense"), -1);
+    assert_int_equal(best(""), -1);
+    assert_int_equal(best("?"), -1);
+}
+
+static void compares_without_endings_and_case(void **state)
+{
+    (void)state;
+    assert_int_equal(best("SETTLING"), 0);
+    assert_int_equal(best("bending"), 1);
+    assert_int_equal(best("turned"), 2);
+}
+
+static void corrects_misspelt_words(void **state)
+{
+    (void)state;
+    assert_int_equal(best("lenght"), 3);
+    assert_int_equal(best("hubb"), 2);
+    assert_int_equal(best("zzzz"), -1);
+}
+
+static void keeps_the_best_in_order(void **state)
+{
+    (void)state;
+    search_hit hits[4];
+
+    // all that has the word, the one that is called so first
+    const int count = search_find(&source, 1, "hub", hits, 4);
+    assert_int_equal(count, 2);
+    assert_int_equal(hits[0].index, 2);
+    assert_int_equal(hits[1].index, 1);
+    assert_true(hits[0].score > hits[1].score);
+    assert_int_equal(hits[1].text, 1);
+
+    // no more than there is room for, and the same ones
+    assert_int_equal(search_find(&source, 1, "hub", hits, 1), 1);
+    assert_int_equal(hits[0].index, 2);
+}
+
+static void takes_long_questions(void **state)
+{
+    (void)state;
+    char question[4096];
+    memset(question, 'a', sizeof question);
+    for (size_t i = 30; i < sizeof question; i += 40) {
+        question[i] = ' ';
+    }
+    snprintf(question + sizeof question - 6, 6, " wall");
+    search_hit hit;
+    assert_in_range(search_find(&source, 1, question, &hit, 1), 0, 1);
+}
+
+static void knows_names(void **state)
+{
+    (void)state;
+    assert_true(search_names("arm.k2", "k2"));
+    assert_true(search_names("settling_time_s", "settling time"));
+    assert_false(search_names("settling_time_s", "settling force"));
+    assert_false(search_names("arm.k2", "."));
+}
+
+static search_entry heading(int i)
+{
+    const manual_section s = manual_section_at(i);
+    return (search_entry){s.heading, s.title, s.texts, s.text_count};
+}
+
+// A search for the titles of a page's section leads to one that is called so.
+static void finds_every_section_by_its_title(void **state)
+{
+    (void)state;
+    const search_source sections = {manual_sections(), heading};
+    assert_true(manual_sections() > 100);
+    for (int i = 0; i < manual_sections(); i++) {
+        const manual_section s = manual_section_at(i);
+        search_hit hits[12];
+        bool met = false;
+        char question[512];
+        snprintf(question, sizeof question, "%s %s", s.title, s.heading);
+        const int count = search_find(&sections, 1, question, hits, 12);
+        for (int k = 0; k < count; k++) {
+            met = met || strcmp(manual_section_at(hits[k].index).heading, s.heading) == 0;
+        }
+        const bool in_docs = strncmp(s.page, "docs/", 5) == 0;
+        assert_true(in_docs || strcmp(s.page, "README.md") == 0);
+        assert_true(met || !in_docs); // README's headings are words that say little
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(finds_what_fits_best),
+        cmocka_unit_test(compares_without_endings_and_case),
+        cmocka_unit_test(corrects_misspelt_words),
+        cmocka_unit_test(keeps_the_best_in_order),
+        cmocka_unit_test(takes_long_questions),
+        cmocka_unit_test(knows_names),
+        cmocka_unit_test(finds_every_section_by_its_title),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
