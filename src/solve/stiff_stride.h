@@ -67,6 +67,16 @@ static inline double *stiff_accelerations(const stiff_stride *s)
     return s->kept + STIFF_HEAD + 2 * s->step.dof;
 }
 
+// Numbers of a state behind KEPT_COUNT, and bytes of it before what it keeps.
+static inline size_t stiff_kept_size(const arm *a)
+{
+    return (size_t)(STIFF_HEAD - KEPT_COUNT) + (size_t)a->dof * (2 + RADAU_LANES);
+}
+static inline size_t stiff_head_size(const motion *m)
+{
+    return (SLOT_COUNT + 4 * (size_t)m->dof + QUADRATURE_COUNT) * sizeof(double);
+}
+
 // --- stiff_newton.c ------------------------------------------------------------------------------
 
 // The arm in its contact state, and the state at the step's start.
@@ -95,3 +105,26 @@ double stiff_momentum(const stiff_stride *s, const double *w);
 
 // The watched functions of the step, which begins at m->state.
 void stiff_watch(stiff_stride *s, const arm *a, const motion *m);
+
+// --- stiff_control.c -----------------------------------------------------------------------------
+
+// Takes a step from m->state, as long as its error allows or up to its first event. False if none
+// can be made.
+bool stiff_make_step(stiff_stride *s, const arm *a, motion *m);
+
+// --- stiff_output.c ------------------------------------------------------------------------------
+
+// Angles, velocities and what has added up at `time` [s] after the step's start, evaluated.
+void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double time, double *state);
+
+// The engine's functions of these names (engine.h).
+status stiff_state_at(const arm *a, motion *m, double h);
+glance stiff_look(const arm *a, const motion *m, watch w, double h);
+double stiff_bend(const arm *a, const motion *m, watch w, double from, double to);
+bool stiff_clear(const arm *a, motion *m, watch w, double h);
+bool stiff_bounded(const arm *a, motion *m, double h, double most);
+glance stiff_force_at(const arm *a, const motion *m, double h);
+glance stiff_gap_at(const arm *a, const motion *m, double h);
+glance stiff_hub_at(const arm *a, const motion *m, double h);
+void stiff_sense_at(const arm *a, const motion *m, double time, double *state);
+void stiff_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);
