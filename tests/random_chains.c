@@ -5,15 +5,13 @@
 //
 // LEAST to MOST links. KIND: `plain`, equal bare links; `uneven`, links and joints given one by
 // one, or a mass at the tip; `loaded`, joints that stiffen, damping by mode, air; `electric`, a
-// motor with inductance or a limit of its current; `modes`, the straight chain's modes compared
-// with power series alone, which costs a hundredth of the formula, for arms that modes are used
-// for: not those that bounce undamped.
+// motor with inductance or a limit of its current.
 //
 // Run i is made of its own number. Compared are first contact (1 us), its impulse (1e-4), the
 // momentum after 1 and up to 50 ms (1e-3) and what a 1 ms sensor reads (5e-3, root mean square); of
 // arms that are not plain also the largest force (1e-5), when it is (1e-5 s), and each loss (1e-6
-// of what was put in). Where the explicit formula does not agree with itself at other strides, or
-// the series with themselves at a mass of 1e-12 more, the motion is chaotic and nothing is said.
+// of what was put in). Where the explicit formula does not agree with itself at other strides,
+// the motion is chaotic and nothing is said.
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,17 +23,14 @@
 
 #define AFTER_CONTACT 0.0501
 #define DURATION      0.1
-#define SUBSTEPS      20    // of the explicit formula: its fastest rate times its time step
-#define FASTEST       3e6   // beyond which the explicit formula takes too long [1/s]
-#define FASTEST_MODES 1.5e5 // the same of the series, of which there are to be many
-#define NEXT_TO_NONE  1e-12 // share of the mass
+#define SUBSTEPS      20  // of the explicit formula: its fastest rate times its time step
+#define FASTEST       3e6 // beyond which the explicit formula takes too long [1/s]
 
 enum { MOST_SETTINGS = 16 };
 
 // What is compared.
 typedef enum chain_kind {
     KIND_PLAIN,
-    KIND_MODES,
     KIND_UNEVEN,
     KIND_LOADED,
     KIND_ELECTRIC,
@@ -44,8 +39,8 @@ typedef enum chain_kind {
     KIND_FACE,
     KINDS
 } chain_kind;
-static const char *const kind_names[KINDS] = {"plain",    "modes", "uneven", "loaded",
-                                              "electric", "soft",  "hertz",  "face"};
+static const char *const kind_names[KINDS] = {"plain", "uneven", "loaded", "electric",
+                                              "soft",  "hertz",  "face"};
 
 // A random arm in front of its wall.
 typedef struct random_chain {
@@ -68,18 +63,10 @@ static chain_outcome by_formula(const random_chain *c, double step)
     return simulate(c, &p, &explicit_engine);
 }
 
-// By power series alone, of an arm that is heavier by a share.
-static chain_outcome by_series(const random_chain *c, double heavier)
-{
-    parameters p = c->parameters;
-    p.arm.mass *= 1 + heavier;
-    return simulate(c, &p, &series_engine);
-}
-
 // Whether forces and losses are compared too.
 static bool is_close(chain_kind kind)
 {
-    return kind != KIND_PLAIN && kind != KIND_MODES;
+    return kind != KIND_PLAIN;
 }
 
 // Largest difference of two outcomes, as a multiple of what may be.
@@ -270,30 +257,19 @@ static bool find_truth(const random_chain *c, chain_kind kind, chain_outcome *tr
 {
     arm a;
     arm_init(&a, &c->parameters);
-    if (kind == KIND_MODES) {
-        const bool bounces =
-            c->parameters.wall.restitution > 0 && a.fastest_decay <= a.highest_frequency;
-        if (bounces || a.fastest_rate > FASTEST_MODES) {
-            return false;
-        }
-        *truth = by_series(c, 0);
-    } else {
-        if (a.fastest_rate > FASTEST) {
-            return false;
-        }
-        *truth = by_formula(c, formula_step(&a, kind));
+    if (a.fastest_rate > FASTEST) {
+        return false;
     }
+    *truth = by_formula(c, formula_step(&a, kind));
     return truth->status == STATUS_OK && truth->samples >= 2;
 }
 
 // Whether that is worth anything.
 static bool is_sure(const random_chain *c, chain_kind kind, const chain_outcome *truth)
 {
-    const bool modes = kind == KIND_MODES;
     arm a;
     arm_init(&a, &c->parameters);
-    const chain_outcome again =
-        modes ? by_series(c, NEXT_TO_NONE) : by_formula(c, 0.61 * formula_step(&a, kind));
+    const chain_outcome again = by_formula(c, 0.61 * formula_step(&a, kind));
     return distance(truth, &again, is_close(kind)) < 0.1;
 }
 
@@ -322,8 +298,7 @@ int main(int argc, char **argv)
         // wrong: said to be, or not
         const double bound = c.parameters.method.residual_bound;
         compared++;
-        const chain_outcome o =
-            simulate(&c, &c.parameters, kind == KIND_MODES ? &modal_engine : NULL);
+        const chain_outcome o = simulate(&c, &c.parameters, NULL);
         const bool ok = o.status == STATUS_OK && o.residual <= bound * o.put_in;
         const double worst = o.samples > 0 ? distance(&truth, &o, is_close(kind)) : HUGE_VAL;
         said += !ok;

@@ -69,7 +69,8 @@ static bounces bounces_of(const parameters *p, const engine *by, double gap, dou
 }
 
 // Strongly damped chains bounce ever lower, to flights of 1e-9 s and 1e-13 m, and what is left of
-// their speed makes the peak force. By the modes that is as by series, however long the run is.
+// their speed makes the peak force. By the stiff engine that is as by series, however long the run
+// is.
 static void low_bounces_are_those_of_the_series(void **state)
 {
     (void)state;
@@ -80,16 +81,16 @@ static void low_bounces_are_those_of_the_series(void **state)
     const bounces series = bounces_of(&p, &series_engine, 1e-4, 0.65, 1.6e-4);
     assert_int_equal(series.impacts, 7);
     for (int i = 1; i <= 4; i++) {
-        const bounces modes = bounces_of(&p, &stiff_engine, 1e-4, 0.65, 1.6e-4 * i * i);
-        assert_int_equal(modes.impacts, series.impacts);
-        check_relative(modes.slowest, series.slowest, 1e-6);
-        check_relative(modes.peak, series.peak, 1e-6);
-        check_close(modes.peak_time, series.peak_time, 1e-12);
+        const bounces stiff = bounces_of(&p, &stiff_engine, 1e-4, 0.65, 1.6e-4 * i * i);
+        assert_int_equal(stiff.impacts, series.impacts);
+        check_relative(stiff.slowest, series.slowest, 1e-6);
+        check_relative(stiff.peak, series.peak, 1e-6);
+        check_close(stiff.peak_time, series.peak_time, 1e-12);
     }
 }
 
 // With a rest speed of 1e-7 m/s flights become as short as 4e-14 s and as low as 1e-22 m, which is
-// less than what the modes' sums are rounded to. None of them regains any speed.
+// less than what angles are rounded to. None of them regains any speed.
 static void flights_lower_than_any_rounding_are_those_of_the_series(void **state)
 {
     (void)state;
@@ -106,12 +107,12 @@ static void flights_lower_than_any_rounding_are_those_of_the_series(void **state
         p.method.rest_speed = 1e-7;
         const double velocity = 3.6, gap = 1e-4 * velocity, until = 1.1e-4;
         const bounces series = bounces_of(&p, &series_engine, gap, velocity, until);
-        const bounces modes = bounces_of(&p, &stiff_engine, gap, velocity, until);
+        const bounces stiff = bounces_of(&p, &stiff_engine, gap, velocity, until);
         assert_in_range(series.impacts, 10, 20);
-        assert_int_equal(modes.impacts, series.impacts);
-        check_relative(modes.slowest, series.slowest, 1e-4);
-        check_relative(modes.peak, series.peak, 1e-6);
-        check_close(modes.peak_time, series.peak_time, 1e-12);
+        assert_int_equal(stiff.impacts, series.impacts);
+        check_relative(stiff.slowest, series.slowest, 1e-4);
+        check_relative(stiff.peak, series.peak, 1e-6);
+        check_close(stiff.peak_time, series.peak_time, 1e-12);
     }
 }
 
@@ -127,9 +128,9 @@ static void a_slow_arm_meets_its_wall_in_time(void **state)
     for (int i = 1; i <= 10; i++) {
         const double gap = 5e-11 * i, velocity = 1.25e-7;
         const bounces series = bounces_of(&p, &series_engine, gap, velocity, 5e-3);
-        const bounces modes = bounces_of(&p, &stiff_engine, gap, velocity, 5e-3);
-        assert_true(series.impacts > 0 && modes.impacts > 0);
-        check_close(modes.first, series.first, 1e-6);
+        const bounces stiff = bounces_of(&p, &stiff_engine, gap, velocity, 5e-3);
+        assert_true(series.impacts > 0 && stiff.impacts > 0);
+        check_close(stiff.first, series.first, 1e-6);
     }
 }
 

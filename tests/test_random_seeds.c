@@ -201,8 +201,7 @@ static void test_no_step_leads_through_a_fold(void **state)
     }
 }
 
-// A decay that strides are only as brief as is no reason to leave the series of two links: in fast
-// rotation a stride of the modes is hardly longer and costs twenty times as much.
+// A decay that strides are only as brief as is no reason to leave the series of two links.
 static void test_a_braked_pair_stays_with_its_series(void **state)
 {
     (void)state;

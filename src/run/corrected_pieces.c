@@ -154,8 +154,8 @@ static bool falls_at_once(glance first, glance last, double width)
 }
 
 // Keeps the force over equal pieces of the rest of the step just made, `before` being its integral
-// up to there: each has the mean of the cubic through both ends' values and slopes. A stride of the
-// modes may begin with a decay that is over at once, which only the motion's own integral knows.
+// up to there: each has the mean of the cubic through both ends' values and slopes. A stride may
+// begin with a decay that is over at once, which only the motion's own integral knows.
 static status record_equal_pieces(corrected_run *c, const force_step *rest, double before,
                                   int count)
 {

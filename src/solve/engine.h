@@ -18,7 +18,7 @@
 // rate start at zero, to rounding (motion_gap_edges).
 //
 // A dense engine provides dense output: after `begin` it holds the whole stride as a function of
-// time (a power series, a collocation polynomial, a sum of modes), so state_at is one evaluation. A
+// time (a power series, a collocation polynomial), so state_at is one evaluation. A
 // stepping engine does not: there state_at takes one step of the method from the stride's start,
 // and locate.h repeats such steps to locate events and peaks.
 //
@@ -155,7 +155,6 @@ extern const engine newmark_engine;           // implicit, stepping
 extern const engine generalized_alpha_engine; // the same step with other coefficients
 
 extern const engine series_engine; // power series of chains; dense
-extern const engine modal_engine;  // exponential collocation for chains of many links; dense
 extern const engine taylor_engine; // power series of the two-link arm; dense
 extern const engine stiff_engine;  // Radau IIA of seven stages for every arm; dense
 

@@ -262,7 +262,6 @@ void motion_follow_arm(const arm *a, motion *m)
     m->engine = wanted;
     m->size = size_of_states(a, m, wanted);
     m->starved = !open_engine(a, m);
-    m->state[SLOT_STRIDE] = 0;
     motion_end_stride(m);
 
     // it knows nothing yet of the strides to come

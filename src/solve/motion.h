@@ -41,7 +41,6 @@ enum motion_slot {
     SLOT_WALL_POWER,       // lost in a wall that gives, at this state [W]
     SLOT_LAST_IMPACT,      // when it was, -1 if there was none [s]
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
-    SLOT_STRIDE,           // length of the next stride proposed by the engine, 0 if none [s]
     SLOT_FACE,             // how far the face of a wall that gives is pushed in [m]
     SLOT_FACE_VELOCITY,    // [m/s]
     SLOT_COUNT

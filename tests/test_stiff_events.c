@@ -1,5 +1,5 @@
-// Events within strides of the modes, which hold many vibrations: what a motion meets there is what
-// the explicit formula and the series meet, down to bounces lower than rounding.
+// Events within strides of the stiff engine: what a motion meets there is what the explicit formula
+// and the series meet, down to bounces lower than rounding.
 #include <math.h>
 
 #include "src/solve/contact_machine.h"
@@ -42,8 +42,8 @@ static meetings meetings_by(const parameters *p, const engine *by, double angle,
     return all;
 }
 
-// Strides of the modes hold many vibrations: what happens within one is what the explicit formula
-// finds at steps a thousand times shorter.
+// What happens within a stride is what the explicit formula finds at steps a thousand times
+// shorter.
 static void events_within_a_stride_are_the_formulas(void **state)
 {
     (void)state;
@@ -97,28 +97,28 @@ static void events_within_a_stride_are_the_formulas(void **state)
         assert_ptr_equal(m->engine, &stiff_engine);
         motion_destroy(m);
 
-        // by the modes, and by the formula
+        // by the stiff engine, and by the formula
         const double angle = cases[i].angle, velocity = cases[i].velocity, until = cases[i].until;
-        meetings modes = meetings_by(&p, NULL, angle, velocity, until);
+        meetings stiff = meetings_by(&p, NULL, angle, velocity, until);
         p.method.step = 1e-5;
         meetings formula = meetings_by(&p, &explicit_engine, angle, velocity, until);
 
         // the same events at the same times
-        if (modes.count != cases[i].events || formula.count != cases[i].events) {
-            fail_msg("%s: %d events by modes, %d by the formula", cases[i].what, modes.count,
-                     formula.count);
+        if (stiff.count != cases[i].events || formula.count != cases[i].events) {
+            fail_msg("%s: %d events by the stiff engine, %d by the formula", cases[i].what,
+                     stiff.count, formula.count);
         }
-        for (int k = 0; k < modes.count; k++) {
-            assert_int_equal(modes.event[k], formula.event[k]);
-            check_close(modes.time[k], formula.time[k], cases[i].tolerance);
+        for (int k = 0; k < stiff.count; k++) {
+            assert_int_equal(stiff.event[k], formula.event[k]);
+            check_close(stiff.time[k], formula.time[k], cases[i].tolerance);
         }
-        check_close(modes.peak, formula.peak, 1e-6 * fabs(formula.peak));
-        check_close(modes.peak_time, formula.peak_time, 1e-6);
+        check_close(stiff.peak, formula.peak, 1e-6 * fabs(formula.peak));
+        check_close(stiff.peak_time, formula.peak_time, 1e-6);
     }
 }
 
-// An arm of 1e-7 rad with bounces down to 1e-9 m/s: the modes resolve them as far as the series do,
-// and what comes afterwards is the same.
+// An arm of 1e-7 rad with bounces down to 1e-9 m/s: the stiff engine resolves them as far as the
+// series do, and what comes afterwards is the same.
 static void bounces_end_where_no_engine_tells_them(void **state)
 {
     (void)state;
@@ -127,10 +127,10 @@ static void bounces_end_where_no_engine_tells_them(void **state)
                  "wall.restitution=0.2997", "wall.angle=1.2349084692906555e-7",
                  "motor.voltage=5.7081e-6", "arm.k2=4.64501", "arm.k1=211.051", "arm.mass=0.12368",
                  "arm.hub_inertia=0.050495", "motor.stiction=0", "method.rest_speed=8.56e-10"));
-    const meetings modes = meetings_by(&p, &stiff_engine, 1.20397e-7, 1.24542e-6, 0.00753);
+    const meetings stiff = meetings_by(&p, &stiff_engine, 1.20397e-7, 1.24542e-6, 0.00753);
     const meetings series = meetings_by(&p, &series_engine, 1.20397e-7, 1.24542e-6, 0.00753);
-    assert_int_equal(modes.count, series.count);
-    check_close(modes.peak, series.peak, 1e-4 * series.peak);
+    assert_int_equal(stiff.count, series.count);
+    check_close(stiff.peak, series.peak, 1e-4 * series.peak);
 }
 
 // An arm that strikes at 3e-7 m/s and comes to rest in some microseconds: an impact that is a
@@ -143,10 +143,10 @@ static void slow_impacts_are_in_time(void **state)
         "wall.restitution=0.600972", "wall.angle=1.0272161409848381e-7", "motor.voltage=2.00084e-6",
         "arm.k2=6.35355", "arm.mass=0.290645", "arm.k1=230.417", "arm.hub_inertia=2.04816e-4",
         "motor.stiction=8.7131e-9", "method.rest_speed=1e-13"));
-    const meetings modes = meetings_by(&p, &stiff_engine, 1.02316e-7, 3.07823e-7, 0.003);
+    const meetings stiff = meetings_by(&p, &stiff_engine, 1.02316e-7, 3.07823e-7, 0.003);
     const meetings series = meetings_by(&p, &series_engine, 1.02316e-7, 3.07823e-7, 0.003);
-    assert_int_equal(modes.count, series.count);
-    check_close(modes.peak, series.peak, 1e-5 * series.peak);
+    assert_int_equal(stiff.count, series.count);
+    check_close(stiff.peak, series.peak, 1e-5 * series.peak);
 }
 
 // An arm that comes to the wall at 7e-9 m/s: first contact is no later for the tolerance of the
@@ -159,11 +159,11 @@ static void a_slow_arm_touches_in_time(void **state)
                  "wall.angle=7.8856745847127184e-7", "motor.voltage=1.605e-7", "arm.k2=2.07622",
                  "arm.mass=0.14437", "arm.hub_inertia=0.042581", "motor.stiction=5.1311e-8",
                  "method.rest_speed=1.66e-10"));
-    const meetings modes = meetings_by(&p, &stiff_engine, 7.88542e-7, 6.75857e-9, 0.01);
+    const meetings stiff = meetings_by(&p, &stiff_engine, 7.88542e-7, 6.75857e-9, 0.01);
     const meetings series = meetings_by(&p, &series_engine, 7.88542e-7, 6.75857e-9, 0.01);
-    assert_true(modes.count > 0 && series.count > 0);
-    assert_int_equal(modes.event[0], series.event[0]);
-    check_close(modes.time[0], series.time[0], 1e-7);
+    assert_true(stiff.count > 0 && series.count > 0);
+    assert_int_equal(stiff.event[0], series.event[0]);
+    check_close(stiff.time[0], series.time[0], 1e-7);
 }
 
 // An arm that presses with 5e-7 N leaves the wall where the force is zero to a share of what it
@@ -176,15 +176,15 @@ static void a_slow_arm_leaves_in_time(void **state)
                  "wall.angle=5.1124406976777767e-8", "motor.voltage=1.6161e-6", "arm.k2=3.51557",
                  "arm.k1=19.0639", "arm.mass=0.10088", "arm.hub_inertia=0.0012667",
                  "motor.stiction=4.1505e-8", "method.rest_speed=9.31e-10"));
-    const meetings modes = meetings_by(&p, &stiff_engine, 5.1118e-8, 2.19239e-9, 0.0065);
+    const meetings stiff = meetings_by(&p, &stiff_engine, 5.1118e-8, 2.19239e-9, 0.0065);
     const meetings series = meetings_by(&p, &series_engine, 5.1118e-8, 2.19239e-9, 0.0065);
-    assert_int_equal(modes.count, series.count);
-    assert_int_equal(modes.event[modes.count - 1], MOTION_RELEASE);
-    for (int i = 0; i < modes.count; i++) {
-        assert_int_equal(modes.event[i], series.event[i]);
-        check_close(modes.time[i], series.time[i], 1e-9);
+    assert_int_equal(stiff.count, series.count);
+    assert_int_equal(stiff.event[stiff.count - 1], MOTION_RELEASE);
+    for (int i = 0; i < stiff.count; i++) {
+        assert_int_equal(stiff.event[i], series.event[i]);
+        check_close(stiff.time[i], series.time[i], 1e-9);
     }
-    check_close(modes.peak, series.peak, 1e-6 * series.peak);
+    check_close(stiff.peak, series.peak, 1e-6 * series.peak);
 }
 
 // Between bounces of some 1e-9 s the tip flies 1e-13 m high, and the motor presses: no impact is
@@ -267,7 +267,7 @@ static bool grazes(const parameters *p, const engine *by, double wall)
 }
 
 // The farthest wall that an arm which turns back just touches, the instant far within a stride, is
-// the same by the modes and by the formula: a graze is an impact however short it is.
+// the same by the stiff engine and by the formula: a graze is an impact however short it is.
 static void a_graze_within_a_stride_is_found(void **state)
 {
     (void)state;
