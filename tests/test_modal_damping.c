@@ -158,15 +158,16 @@ static void modes_decay_with_the_ratios_of_the_list(void **state)
         for (int mode = 0; mode < 4; mode++) {
             parameters p = fixture_parameters(SETTINGS(hubs[hub], "arm.links=5", "wall.kind=none",
                                                        "arm.modal_ratios=0.02,0.3,0.005",
-                                                       "motor.stiction=1000"));
+                                                       "motor.stiction=1000", "motor.voltage=0"));
             check_decay(&p, mode, ratios[mode]);
         }
     }
 
     // and links that differ
-    parameters p = fixture_parameters(SETTINGS(
-        "arm.links=4", "wall.kind=none", "arm.modal_ratios=0.02,0.3,0.1",
-        "arm.joint_stiffness=8,11,5", "arm.link_lengths=0.2,0.3,0.4,0.1", "motor.stiction=1000"));
+    parameters p = fixture_parameters(
+        SETTINGS("arm.links=4", "wall.kind=none", "arm.modal_ratios=0.02,0.3,0.1",
+                 "arm.joint_stiffness=8,11,5", "arm.link_lengths=0.2,0.3,0.4,0.1",
+                 "motor.stiction=1000", "motor.voltage=0"));
     check_decay(&p, 0, 0.02);
     check_decay(&p, 1, 0.3);
     check_decay(&p, 2, 0.1);
@@ -178,8 +179,9 @@ static void air_takes_from_all_modes_alike(void **state)
     (void)state;
     const double drag = 0.5, rate = drag / 0.40108 / 2;
     for (int mode = 0; mode < 3; mode++) {
-        parameters p = fixture_parameters(
-            SETTINGS("arm.links=4", "wall.kind=none", "arm.air_drag=0.5", "motor.stiction=1000"));
+        parameters p =
+            fixture_parameters(SETTINGS("arm.links=4", "wall.kind=none", "arm.air_drag=0.5",
+                                        "motor.stiction=1000", "motor.voltage=0"));
         held_modes m = modes_of(&p);
         check_decay(&p, mode, rate / m.frequencies[mode]);
     }
