@@ -91,9 +91,9 @@ static void takes_long_questions(void **state)
     for (size_t i = 30; i < sizeof question; i += 40) {
         question[i] = ' ';
     }
-    snprintf(question + sizeof question - 6, 6, " wall");
-    search_hit hit;
-    assert_in_range(search_find(&source, 1, question, &hit, 1), 0, 1);
+    memcpy(question, "wall ", 5);
+    question[sizeof question - 1] = '\0';
+    assert_int_equal(best(question), 0);
 }
 
 static void knows_names(void **state)
