@@ -6,16 +6,16 @@
 #include "src/base/clock.h"
 #include "ui/program.h"
 
-#define NAP_US 500 // between two looks for a message [us]
+#define PAUSE_US 500 // between two polls for a message [us]
 
-enum { TAG = 1, LOOKS = 5 }; // looks before the first nap
+enum { TAG = 1, POLLS = 5 }; // polls before the first pause
 
 // MPI's own waiting would keep a processor busy that others compute on: what has to be waited for
-// is looked for again and again, with naps after the first few looks.
-static void nap(int looks)
+// is polled, with pauses after the first few polls.
+static void pause_between(int polls)
 {
-    if (looks >= LOOKS) {
-        usleep(NAP_US);
+    if (polls >= POLLS) {
+        usleep(PAUSE_US);
     }
 }
 
@@ -25,10 +25,10 @@ static void send_message(void *context, int to, const void *bytes, size_t size)
     MPI_Request request;
     (void)context;
     MPI_Isend(bytes, (int)size, MPI_BYTE, to, TAG, MPI_COMM_WORLD, &request);
-    for (int looks = 0; !sent; looks++) {
+    for (int polls = 0; !sent; polls++) {
         MPI_Test(&request, &sent, MPI_STATUS_IGNORE);
         if (!sent) {
-            nap(looks);
+            pause_between(polls);
         }
     }
 }
@@ -37,7 +37,7 @@ static bool wait_for_message(void *context, double seconds, int *from, size_t *s
 {
     const double until = clock_seconds(CLOCK_MONOTONIC) + seconds;
     (void)context;
-    for (int looks = 0;; looks++) {
+    for (int polls = 0;; polls++) {
         int there = 0, bytes;
         MPI_Status what;
         MPI_Iprobe(MPI_ANY_SOURCE, TAG, MPI_COMM_WORLD, &there, &what);
@@ -50,7 +50,7 @@ static bool wait_for_message(void *context, double seconds, int *from, size_t *s
         if (seconds == 0 || clock_seconds(CLOCK_MONOTONIC) >= until) {
             return false;
         }
-        nap(looks);
+        pause_between(polls);
     }
 }
 

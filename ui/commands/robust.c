@@ -1,4 +1,4 @@
-// impactlab robust: control laws over many beliefs, sensors, walls and starts.
+// impactlab robust: control laws over many nominal models, sensors, walls and initial states.
 #include "ui/commands/command.h"
 
 #include <stdlib.h>

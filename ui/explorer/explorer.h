@@ -55,9 +55,6 @@ bool explorer_carry_out(explorer *ex, const char *line);
 // A key was pressed.
 void explorer_key(explorer *ex, int key);
 
-// Executes the entry of the palette that was chosen with the mouse, if any.
-void explorer_take_picked(explorer *ex);
-
 // Presses the keys of a text: characters, and names in angle brackets ("<Space>", "<Right>",
 // "<C-l>"). False, with the reason in f, at an unknown name.
 bool explorer_keys(explorer *ex, const char *text, fault *f);

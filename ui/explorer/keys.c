@@ -112,9 +112,9 @@ static void key_in_prompt(explorer *ex, int key)
     }
 }
 
-void explorer_take_picked(explorer *ex)
+// Executes the entry of the palette that was chosen with the mouse, if any.
+static void take_picked(explorer *ex)
 {
-    assert(ex != NULL);
     if (ex->state.palette.picked && ex->state.prompt.open) {
         ex->state.palette.picked = false;
         enter_prompt(ex);
@@ -237,7 +237,7 @@ static bool give(explorer *ex, const panel_gesture *g)
         return false;
     }
     bool taken = panel_of(g->hit.panel)->point(&ex->state, g);
-    explorer_take_picked(ex);
+    take_picked(ex);
     return taken;
 }
 

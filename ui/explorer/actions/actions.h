@@ -44,9 +44,6 @@ int act_read_index(explorer_state *st, const char **text, int count, const char 
 // Replaces the session by one of another scenario and plays it; if that fails the old one stays.
 bool act_open_scenario(explorer_state *st, const char *name);
 
-// Gives a parameter another value, from the cursor on or from the start.
-bool act_change(explorer_state *st, int parameter, const char *text);
-
 // Warns if the present run failed, or asks whether its program may run. True if there was something
 // to say.
 bool act_tell_failed_run(explorer_state *st);
@@ -77,8 +74,6 @@ void act_pan_by(explorer_state *st, double seconds);
 bool act_hold_tip(explorer_state *st, plane_vector place);
 void act_move_pull(explorer_state *st, plane_vector place);
 bool act_drop_pull(explorer_state *st);
-// Gives the run the pushes that are due until an instant [s], if the tip is held.
-bool act_pull_until(explorer_state *st, double time);
 
 // --- filters ----------------------------------------------------------------------------------
 
@@ -93,9 +88,6 @@ bool act_continue_sweep(explorer_state *st);
 
 // Moves the selection among a sweep's runs.
 void act_select_swept(explorer_state *st, int direction);
-
-// Makes the run of the selected value the present run, by a change from the start.
-bool act_take_swept(explorer_state *st);
 
 // --- lessons ----------------------------------------------------------------------------------
 

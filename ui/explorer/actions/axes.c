@@ -92,8 +92,8 @@ void act_shift_axis(explorer_state *st, int index, double share)
 {
     value_range now;
     if (state_pane_axis(st, index, &now)) {
-        double way = share * (now.high - now.low);
-        pane_fix_axis(&st->panes.pane[index], (value_range){now.low + way, now.high + way});
+        double shift = share * (now.high - now.low);
+        pane_fix_axis(&st->panes.pane[index], (value_range){now.low + shift, now.high + shift});
     }
 }
 

@@ -41,7 +41,8 @@ static bool tell_change(explorer_state *st)
     return act_tell(st, "%s = %s%s%s %s", info->path, in->text, blank, info->unit, when);
 }
 
-bool act_change(explorer_state *st, int parameter, const char *text)
+// Gives a parameter another value, from the cursor on or from the start.
+static bool change(explorer_state *st, int parameter, const char *text)
 {
     assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
     session_forget_ghost(&st->session);
@@ -114,7 +115,7 @@ bool act_set(explorer_state *st, const char *argument)
         return act_tell(st, "%s: %s%s%s", info->path, info->description,
                         inert != NULL ? "; without effect, " : "", inert != NULL ? inert : "");
     }
-    return act_change(st, parameter, value);
+    return change(st, parameter, value);
 }
 
 // How far a nudge of a real parameter goes up from a value: a fixed step, or on a logarithmic scale
@@ -171,7 +172,8 @@ bool act_nudge(explorer_state *st, const char *argument)
     return act_adjust(st, index, fmax(info->minimum, fmin(info->maximum, value)));
 }
 
-bool act_take_swept(explorer_state *st)
+// Makes the run of the selected value the present run, by a change from the start.
+static bool take_swept(explorer_state *st)
 {
     assert(st != NULL);
     const lab_sweep *sweep = &st->sweep;
@@ -185,7 +187,7 @@ bool act_take_swept(explorer_state *st)
     const double now = s->now;
     sweep_axis_format(&sweep->axis, sweep->runs[sweep->selected].value, value, sizeof value);
     session_seek(s, 0);
-    const bool changed = act_change(st, sweep->axis.parameter, value);
+    const bool changed = change(st, sweep->axis.parameter, value);
     const double seen = s->seen;
     session_seek(s, now);
     s->seen = fmax(seen, s->now);
@@ -202,7 +204,7 @@ bool act_edit(explorer_state *st, const char *argument)
         }
         parameter_list_select(&st->parameters, (parameter_line){parameter, false});
     } else if (st->side.panel == PANEL_SWEEP) {
-        return act_take_swept(st);
+        return take_swept(st);
     }
     if (st->parameters.on_heading) {
         parameter_list_fold(&st->parameters, st->parameters.parameter);
@@ -267,7 +269,7 @@ bool act_exchange_model(explorer_state *st, const char *argument)
 {
     (void)argument;
     bool printed = st->session.effective.parameters.arm.model == ARM_PRINTED;
-    return act_change(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
+    return change(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
 }
 
 bool act_extend(explorer_state *st, const char *argument)
@@ -281,7 +283,7 @@ bool act_extend(explorer_state *st, const char *argument)
     // what has been seen stays seen: only rows are added
     double seen = st->session.seen;
     number_format(text, duration + more);
-    if (!act_change(st, PARAMETER_INDEX(run.duration), text)) {
+    if (!change(st, PARAMETER_INDEX(run.duration), text)) {
         return false;
     }
     st->session.seen = seen;
@@ -411,7 +413,7 @@ static bool lock_prevents(const session *s, const char *name)
 // Changes the control law; if the lock on a mode prevents it, the message says what to do.
 static bool change_law(explorer_state *st, const char *name)
 {
-    return act_change(st, PARAMETER_INDEX(control.law), name) ||
+    return change(st, PARAMETER_INDEX(control.law), name) ||
            (lock_prevents(&st->session, name) &&
             act_refuse(st, "%.200s; undo the lock first", st->message.text));
 }
@@ -499,7 +501,7 @@ static bool lock(explorer_state *st, const char *wanted)
     // a lock that is refused leaves the one before in effect
     parameters p = state_parameters(st);
     const bool other = strcmp(p.control.lock, wanted) != 0;
-    if (other && !act_change(st, PARAMETER_INDEX(control.lock), wanted)) {
+    if (other && !change(st, PARAMETER_INDEX(control.lock), wanted)) {
         if (replaces) {
             session_redo(s, &f);
         }

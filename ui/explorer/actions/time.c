@@ -55,7 +55,8 @@ void act_move_pull(explorer_state *st, plane_vector place)
     follow_tip(st);
 }
 
-bool act_pull_until(explorer_state *st, double time)
+// Gives the run the pushes that are due until an instant [s], if the tip is held.
+static bool pull_until(explorer_state *st, double time)
 {
     assert(st != NULL);
     session *s = &st->session;
@@ -116,7 +117,7 @@ bool act_advance(explorer_state *st, double seconds)
     const double before = s->now, duration = s->effective.parameters.run.duration;
     play->slowed = playback_slowness(play, &s->run.trace, duration, before);
     const double next = before + seconds * play->speed / play->slowed;
-    if (!act_pull_until(st, next)) {
+    if (!pull_until(st, next)) {
         return false;
     }
 

@@ -11,12 +11,8 @@ bool act_select_parameter(explorer_state *st, const char *argument)
     const int direction = argument[0] == '-' ? -1 : 1;
 
     // panels in which nothing is selected scroll
-    if (st->side.panel == PANEL_VALUES) {
-        st->scroll[PANEL_VALUES] += direction;
-        return true;
-    }
-    if (st->side.panel == PANEL_STATISTICS) {
-        st->scroll[PANEL_STATISTICS] += direction;
+    if (st->side.panel == PANEL_VALUES || st->side.panel == PANEL_STATISTICS) {
+        st->scroll[st->side.panel] += direction;
         return true;
     }
 

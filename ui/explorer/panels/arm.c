@@ -46,7 +46,7 @@ static void find_extent(const explorer_state *st, arm_extent *known)
     const unsigned long run = state_run_id(st);
     const bool grows = s->computing != NULL;
 
-    // of another scenario nothing holds
+    // what was known of another scenario is not valid
     if (known->opened != st->opened) {
         *known = (arm_extent){.opened = st->opened};
     }

@@ -9,7 +9,7 @@ static void draw_change(const explorer_state *st, screen *s, area a, int index)
     const ink colour = later ? INK_DIM : INK_TEXT;
     char text[LINE_TEXT], when[32] = "from the start";
 
-    // what holds from the start has no instant
+    // what is in force from the start has no instant
     if (in->kind != SESSION_INPUT_START) {
         snprintf(when, sizeof when, "%9.5f s", in->time);
     }

@@ -8,7 +8,7 @@ enum {
     MOST_LANES = 16,
     FEWEST_CURVES = 14, // rows of curves from which on lanes show by themselves
     LEAST_CURVES = 6,   // that lanes leave where they are asked for
-    LOOKS = 32          // rows of a run that a column looks at
+    SAMPLES = 32        // rows of a run that a column samples
 };
 
 typedef enum lane_kind {
@@ -118,11 +118,11 @@ int lanes_rows(const explorer_state *st, const lane_survey *known, int height)
 // --- what is in them --------------------------------------------------------------------------
 
 // Whether any of the rows from an instant to another one is in contact, sticks, and so on; a few of
-// many are looked at.
+// many are sampled.
 static bool any_row(const trace *t, double from, double to, size_t offset, double above)
 {
     const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
-    const size_t stride = (last - first) / LOOKS + 1;
+    const size_t stride = (last - first) / SAMPLES + 1;
     for (size_t r = first; r <= last; r += stride) {
         double value;
         memcpy(&value, (const char *)&t->rows[r] + offset, sizeof value);

@@ -254,7 +254,7 @@ void extremes_update(extremes *e, unsigned long run, const trace *t, int signal)
     assert(e != NULL && t != NULL && run != 0);
     assert(signal >= 0 && signal < EXTREMES_SIGNALS);
 
-    // another run: nothing of the old one holds
+    // another run: the blocks of the old one are not valid
     if (e->run != run) {
         extremes_forget(e);
         e->run = run;

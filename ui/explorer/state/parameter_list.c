@@ -315,32 +315,27 @@ static const char *reason_of_control(const parameters *p, int parameter)
     return "the control law does not use it";
 }
 
-// The parameters of sensors that need not be fitted, and those that ideal ones do not have.
-static const size_t piezo[] = {FIELD(sensor.piezo_gain), FIELD(sensor.piezo_rise_time),
-                               FIELD(sensor.piezo_leak_time), FIELD(sensor.piezo_range),
-                               FIELD(sensor.piezo_noise)};
-static const size_t film[] = {FIELD(sensor.film_gain), FIELD(sensor.film_leak_time),
-                              FIELD(sensor.film_noise)};
-static const size_t accelerometer[] = {
-    FIELD(sensor.accelerometer_gain), FIELD(sensor.accelerometer_rise_time),
-    FIELD(sensor.accelerometer_range), FIELD(sensor.accelerometer_noise)};
-static const size_t imperfections[] = {FIELD(sensor.encoder_counts),
-                                       FIELD(sensor.tachometer_ripple),
-                                       FIELD(sensor.tachometer_ripple_count),
-                                       FIELD(sensor.tachometer_noise),
-                                       FIELD(sensor.fsr_noise),
-                                       FIELD(sensor.piezo_noise),
-                                       FIELD(sensor.film_noise),
-                                       FIELD(sensor.accelerometer_noise),
-                                       FIELD(sensor.adc_bits),
-                                       FIELD(sensor.dac_bits),
-                                       FIELD(sensor.fsr_rise_time),
-                                       FIELD(sensor.piezo_rise_time),
-                                       FIELD(sensor.piezo_leak_time),
-                                       FIELD(sensor.piezo_range),
-                                       FIELD(sensor.film_leak_time),
-                                       FIELD(sensor.accelerometer_rise_time),
-                                       FIELD(sensor.accelerometer_range)};
+// The parameters of sensors that need not be fitted, the gain first, and the faults of the others.
+#define SENSOR(field) FIELD(sensor.field)
+static const size_t piezo[] = {SENSOR(piezo_gain), SENSOR(piezo_rise_time), SENSOR(piezo_leak_time),
+                               SENSOR(piezo_range), SENSOR(piezo_noise)};
+static const size_t film[] = {SENSOR(film_gain), SENSOR(film_leak_time), SENSOR(film_noise)};
+static const size_t accelerometer[] = {SENSOR(accelerometer_gain), SENSOR(accelerometer_rise_time),
+                                       SENSOR(accelerometer_range), SENSOR(accelerometer_noise)};
+static const size_t others[] = {
+    SENSOR(encoder_counts),   SENSOR(tachometer_ripple), SENSOR(tachometer_ripple_count),
+    SENSOR(tachometer_noise), SENSOR(fsr_noise),         SENSOR(fsr_rise_time),
+    SENSOR(adc_bits),         SENSOR(dac_bits)};
+
+// Whether a parameter is a fault of a sensor or converter, which ideal ones do not have.
+static bool is_imperfection(int parameter)
+{
+    const bool gain = parameter_table[parameter].offset == piezo[0] ||
+                      parameter_table[parameter].offset == film[0] ||
+                      parameter_table[parameter].offset == accelerometer[0];
+    return !gain && (IS_AMONG(parameter, piezo) || IS_AMONG(parameter, film) ||
+                     IS_AMONG(parameter, accelerometer) || IS_AMONG(parameter, others));
+}
 
 // What sensors that are not fitted, or are ideal, make no use of.
 static const char *reason_of_sensor(const parameters *p, int parameter)
@@ -354,7 +349,7 @@ static const char *reason_of_sensor(const parameters *p, int parameter)
     if (IS_AMONG(parameter, accelerometer) && !p->sensor.accelerometer) {
         return "none is fitted (sensor.accelerometer)";
     }
-    if (p->sensor.ideal && IS_AMONG(parameter, imperfections)) {
+    if (p->sensor.ideal && is_imperfection(parameter)) {
         return "the sensors are ideal (sensor.ideal)";
     }
     return NULL;

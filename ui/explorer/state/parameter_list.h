@@ -25,7 +25,7 @@ int parameter_group(int parameter);
 void parameter_group_name(int parameter, char *name, size_t size);
 
 // Folds the groups that have no effect on a run of these parameters, and those of sensors and
-// beliefs if none of their values was set; selects a parameter.
+// nominal models if none of their values was set; selects a parameter.
 void parameter_list_arrange(parameter_list *list, const parameters *p, int selected);
 
 // Fills the lines that are shown and returns how many. With a filter, matching parameters are shown

@@ -39,7 +39,7 @@ void run_log_update(run_log *log, unsigned long run, const trace *t, bool comple
         log->mode = (double)NAN;
     }
 
-    // a run that is being computed grows: go on where the last look ended
+    // a run that is being computed grows: continue from the rows that were read before
     for (; log->rows < t->row_count; log->rows++) {
         const sample *row = &t->rows[log->rows];
 

@@ -71,8 +71,8 @@ static void begin_lesson(explorer_state *st)
     }
 }
 
-// How a session is looked at at first.
-static void look_afresh(explorer_state *st)
+// How a session is shown at first.
+static void show_anew(explorer_state *st)
 {
     st->opened++;
     if (st->side.panel == PANEL_SWEEP) {
@@ -103,7 +103,7 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
     st->playback.slow = USUAL_SLOW;
     st->side.panel = panel_first_on_side();
     scenario_menu_read(&st->scenarios);
-    look_afresh(st);
+    show_anew(st);
     return STATUS_OK;
 }
 
@@ -136,7 +136,7 @@ void state_take_session(explorer_state *st, session *fresh)
     run_list_clear(&st->pinned);
     session_finish(&st->session);
     st->session = *fresh;
-    look_afresh(st);
+    show_anew(st);
 }
 
 // --- the runs ---------------------------------------------------------------------------------
