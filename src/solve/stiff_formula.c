@@ -1,5 +1,7 @@
 #include "src/solve/stiff_formula.h"
 
+#include <string.h>
+
 const _Alignas(32) double radau_node[RADAU_LANES] = {0.029316427159784893,
                                                      0.1480785996684843,
                                                      0.3369846902811543,
@@ -74,21 +76,21 @@ const _Alignas(32) double radau_difference[RADAU_LANES] = {
     -0.17837015151824315,  0.11598670096427419,  -0.088825844937001519, 0.070783203314562421,
     -0.055680879947603928, 0.040195716152553351, -0.015985209328576441};
 
-const _Alignas(32) double radau_legendre[RADAU_STAGES][RADAU_STAGES] = {
-    {0.074494235556010313, -0.21037927768502115, 0.30887476147162168, -0.35119396850825024,
-     0.32687461537159823, -0.23545886308724948, 0.086788496881290672},
-    {0.15910211573365074, -0.33594863618815946, 0.19338228309987313, 0.20499506935400982,
-     -0.58570576559136567, 0.64923044293238785, -0.28505550934039642},
-    {0.21235188950297781, -0.20769965422026015, -0.36158860645138019, 0.59816258480952211,
-     0.04935115309709022, -0.78737379233465832, 0.4967964255967085},
-    {0.22355491450728324, 0.078697838177918117, -0.53580067781852736, -0.26912131051125471,
-     0.65227701295832841, 0.50671229845830368, -0.65632007577205131},
-    {0.19047493682211558, 0.30769381716329286, -0.061979368467074893, -0.55650723547846925,
-     -0.5905655177193665, 8.0615136756948393e-06, 0.71087530616582639},
-    {0.1196137446126562, 0.30641142295631141, 0.35507079183895707, 0.23080771747729936,
-     -0.035904967504039785, -0.3576079434008268, -0.61839076598035747},
-    {0.020408163265306121, 0.061224489795918366, 0.10204081632653061, 0.14285714285714285,
-     0.18367346938775511, 0.22448979591836735, 0.26530612244897961}};
+const _Alignas(32) double radau_legendre[RADAU_STAGES][RADAU_LANES] = {
+    {0.074494235556010313, 0.15910211573365074, 0.21235188950297781, 0.22355491450728324,
+     0.19047493682211558, 0.1196137446126562, 0.020408163265306121, 0},
+    {-0.21037927768502115, -0.33594863618815946, -0.20769965422026015, 0.078697838177918117,
+     0.30769381716329286, 0.30641142295631141, 0.061224489795918366, 0},
+    {0.30887476147162168, 0.19338228309987313, -0.36158860645138019, -0.53580067781852736,
+     -0.061979368467074893, 0.35507079183895707, 0.10204081632653061, 0},
+    {-0.35119396850825024, 0.20499506935400982, 0.59816258480952211, -0.26912131051125471,
+     -0.55650723547846925, 0.23080771747729936, 0.14285714285714285, 0},
+    {0.32687461537159823, -0.58570576559136567, 0.04935115309709022, 0.65227701295832841,
+     -0.5905655177193665, -0.035904967504039785, 0.18367346938775511, 0},
+    {-0.23545886308724948, 0.64923044293238785, -0.78737379233465832, 0.50671229845830368,
+     8.0615136756948393e-06, -0.3576079434008268, 0.22448979591836735, 0},
+    {0.086788496881290672, -0.28505550934039642, 0.4967964255967085, -0.65632007577205131,
+     0.71087530616582639, -0.61839076598035747, 0.26530612244897961, 0}};
 
 const _Alignas(32) double radau_bernstein[RADAU_LANES][RADAU_LANES] = {
     {0, 0, 0, 0, 0, 0, 0, 1},
@@ -109,35 +111,60 @@ const _Alignas(32) double radau_bernstein[RADAU_LANES][RADAU_LANES] = {
 const _Alignas(32) double radau_slope[RADAU_LANES + 1] = {0,     0.125, -1.5,  5.625, -10,
                                                           9.375, -4.5,  0.875, 0};
 
-void radau_weights_at(double x, radau_weights *w)
-{
-    enum { MOST = RADAU_STAGES + 2 };
-    double p[MOST], once[MOST] = {0}, twice[MOST] = {0};
-    const double u = 2 * x - 1;
+// P_k+1 = NEXT[k] u P_k - BEFORE[k] P_k-1, and the integrals' PER_DEGREE[k] = 1/(4 k + 2).
+enum { MOST = RADAU_STAGES + 2 };
+static const double next[MOST] = {1,        3.0 / 2,  5.0 / 3,  7.0 / 4, 9.0 / 5,
+                                  11.0 / 6, 13.0 / 7, 15.0 / 8, 17.0 / 9};
+static const double before[MOST] = {0,       1.0 / 2, 2.0 / 3, 3.0 / 4, 4.0 / 5,
+                                    5.0 / 6, 6.0 / 7, 7.0 / 8, 8.0 / 9};
+static const double per_degree[MOST] = {1.0 / 2,  1.0 / 6,  1.0 / 10, 1.0 / 14, 1.0 / 18,
+                                        1.0 / 22, 1.0 / 26, 1.0 / 30, 1.0 / 34};
 
-    // Legendre's polynomials, and their integrals from 0: with I_k = (P_k+1 - P_k-1)/(4 k + 2)
-    // those of the P_k, twice as many steps of the same kind
+// Legendre's polynomials P_0 to P_most of 2 x - 1.
+static inline void legendre_at(double x, int most, double *p)
+{
+    const double u = 2 * x - 1;
     p[0] = 1;
     p[1] = u;
-    for (int k = 1; k + 1 < MOST; k++) {
-        p[k + 1] = ((2 * k + 1) * u * p[k] - k * p[k - 1]) / (k + 1);
+    for (int k = 1; k < most; k++) {
+        p[k + 1] = next[k] * u * p[k] - before[k] * p[k - 1];
     }
+}
+
+// The Lagrange polynomials' sums of so many functions of degree k.
+static inline void add_up(const double *degree, double *weight)
+{
+    double sum[RADAU_LANES] = {0};
+    for (int k = 0; k < RADAU_STAGES; k++) {
+        for (int j = 0; j < RADAU_LANES; j++) {
+            sum[j] += radau_legendre[k][j] * degree[k];
+        }
+    }
+    memcpy(weight, sum, sizeof sum);
+}
+
+void radau_values_at(double x, double value[RADAU_LANES])
+{
+    double p[RADAU_STAGES];
+    legendre_at(x, RADAU_STAGES - 1, p);
+    add_up(p, value);
+}
+
+void radau_weights_at(double x, radau_weights *w)
+{
+    // Legendre's polynomials, and their integrals from 0: with I_k = (P_k+1 - P_k-1)/(4 k + 2)
+    // those of the P_k, twice as many steps of the same kind
+    double p[MOST], once[MOST - 1], twice[RADAU_STAGES];
+    legendre_at(x, MOST - 1, p);
     once[0] = x;
     for (int k = 1; k + 1 < MOST; k++) {
-        once[k] = (p[k + 1] - p[k - 1]) / (4 * k + 2);
+        once[k] = (p[k + 1] - p[k - 1]) * per_degree[k];
     }
     twice[0] = x * x / 2;
     for (int k = 1; k < RADAU_STAGES; k++) {
-        twice[k] = (once[k + 1] - once[k - 1]) / (4 * k + 2);
+        twice[k] = (once[k + 1] - once[k - 1]) * per_degree[k];
     }
-
-    for (int j = 0; j < RADAU_STAGES; j++) {
-        w->value[j] = w->integral[j] = w->twice[j] = 0;
-        for (int k = 0; k < RADAU_STAGES; k++) {
-            const double share = radau_legendre[j][k];
-            w->value[j] += share * p[k];
-            w->integral[j] += share * once[k];
-            w->twice[j] += share * twice[k];
-        }
-    }
+    add_up(p, w->value);
+    add_up(once, w->integral);
+    add_up(twice, w->twice);
 }

@@ -36,8 +36,8 @@ extern const _Alignas(32) double radau_from_imaginary[RADAU_SYSTEMS][RADAU_LANES
 extern const double radau_start;
 extern const _Alignas(32) double radau_difference[RADAU_LANES];
 
-// L_j = sum over k of radau_legendre[j][k] P_k(2x - 1).
-extern const _Alignas(32) double radau_legendre[RADAU_STAGES][RADAU_STAGES];
+// L_j = sum over k of radau_legendre[k][j] P_k(2x - 1), and 0 in the last lane.
+extern const _Alignas(32) double radau_legendre[RADAU_STAGES][RADAU_LANES];
 
 // Bernstein's coefficients of the polynomial through the values at the stages and at the start, by
 // [coefficient][value]; of the polynomial that is zero there and has slope 1 at the start.
@@ -45,8 +45,9 @@ extern const _Alignas(32) double radau_bernstein[RADAU_LANES][RADAU_LANES];
 extern const _Alignas(32) double radau_slope[RADAU_LANES + 1];
 
 // Weights of f's values at the stages for the value at x of the polynomial through them, of its
-// integral from 0 and of that one's.
+// integral from 0 and of that one's; 0 in the last lane.
 typedef struct radau_weights {
-    double value[RADAU_STAGES], integral[RADAU_STAGES], twice[RADAU_STAGES];
+    double value[RADAU_LANES], integral[RADAU_LANES], twice[RADAU_LANES];
 } radau_weights;
 void radau_weights_at(double x, radau_weights *w);
+void radau_values_at(double x, double value[RADAU_LANES]); // of these the first alone

@@ -110,10 +110,10 @@ bool stiff_solve_stages(stiff_stride *stride, bool fresh, double offset, double 
     stiff_step *s = &stride->step;
     _Alignas(32) double weight[RADAU_STAGES][RADAU_LANES] = {{0}};
     for (int i = 0; i < RADAU_STAGES && !fresh; i++) {
-        radau_weights w;
-        radau_weights_at(smaller(offset + ratio * radau_node[i], FARTHEST), &w);
+        double value[RADAU_LANES];
+        radau_values_at(smaller(offset + ratio * radau_node[i], FARTHEST), value);
         for (int j = 0; j < RADAU_STAGES; j++) {
-            weight[j][i] = w.value[j];
+            weight[j][i] = value[j];
         }
     }
     stride->loops->predict(s, stiff_accelerations(stride), stride->kept + STIFF_FORCE, weight[0]);
