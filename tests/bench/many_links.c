@@ -1,5 +1,5 @@
-// The cost of many links, for docs/methods.md: chains that strike a plane wall, from contact on,
-// and chains from rest, in processor time.
+// The cost of many links, for docs/explanation/methods.md: chains that strike a plane wall, from
+// contact on, and chains from rest, in processor time.
 //
 //   many_links [DAMPING LINKS...]     share of critical damping, 0.01 or 0; the usual rows without
 #include <math.h>
