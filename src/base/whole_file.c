@@ -173,54 +173,39 @@ static void remove_if_left(int folder, const char *name)
     close(file);
 }
 
-static void clean(DIR *folder)
-{
-    struct dirent *entry;
-    while ((entry = readdir(folder)) != NULL) {
-        if (is_temporary_name(entry->d_name)) {
-            remove_if_left(dirfd(folder), entry->d_name);
-        }
-    }
-}
-
 void whole_file_clean_folder(const char *path)
 {
     assert(path != NULL);
     DIR *folder = opendir(path);
+    for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
+        if (is_temporary_name(entry->d_name)) {
+            remove_if_left(dirfd(folder), entry->d_name);
+        }
+    }
     if (folder != NULL) {
-        clean(folder);
         closedir(folder);
     }
 }
 
 // Removes what runs that were killed left in the folder of `path`, once for each folder after
-// another.
+// another: the frames of a film, the pictures of a report go into one many times.
 static void remove_left_behind(const char *path)
 {
     static pthread_mutex_t looking = PTHREAD_MUTEX_INITIALIZER;
-    static dev_t last_device;
-    static ino_t last_folder;
+    static struct stat last;
 
     struct stat about;
     char *name = folder_of(path);
-    DIR *folder = name != NULL ? opendir(name) : NULL;
+    if (name != NULL && stat(name, &about) == 0) {
+        pthread_mutex_lock(&looking);
+        const bool known = about.st_dev == last.st_dev && about.st_ino == last.st_ino;
+        last = about;
+        pthread_mutex_unlock(&looking);
+        if (!known) {
+            whole_file_clean_folder(name);
+        }
+    }
     free(name);
-    if (folder == NULL) {
-        return;
-    }
-
-    // the frames of a film, the pictures of a report: one folder many times
-    pthread_mutex_lock(&looking);
-    bool known = fstat(dirfd(folder), &about) != 0 ||
-                 (about.st_dev == last_device && about.st_ino == last_folder);
-    last_device = known ? last_device : about.st_dev;
-    last_folder = known ? last_folder : about.st_ino;
-    pthread_mutex_unlock(&looking);
-
-    if (!known) {
-        clean(folder);
-    }
-    closedir(folder);
 }
 
 // --- the stream -----------------------------------------------------------------------------

@@ -206,100 +206,70 @@ static int varied_width(const compare_table *t, int which)
     return width;
 }
 
-// The first line.
-static void text_heading(FILE *stream, const compare_table *t, int width, int law)
+// A result as people see it.
+static void format_result(double value, bool page, char *text, size_t size)
 {
-    char heading[PARAMETER_TEXT_SIZE];
-    fprintf(stream, "%-*s  %-*s", width, "scenario", law, "law");
-    for (int v = 0; v < t->varied_count; v++) {
-        format_varied_heading(t, v, false, heading, sizeof heading);
-        fprintf(stream, "  %*s", varied_width(t, v), heading);
+    const char *format = !page ? "%.4g" : fabs(value) >= 999.5 ? "%.0f" : "%.3g";
+    if (isnan(value)) {
+        snprintf(text, size, "%s", page ? "–" : "-");
+    } else {
+        decimal_print(text, size, format, value);
     }
+}
 
-    for (int k = 0; k < COMPARE_QUANTITIES; k++) {
-        const compare_quantity *quantity = &compare_quantities[k];
-        format_heading(quantity->heading, quantity->unit, false, heading, sizeof heading);
-        if (!t->hidden[k]) {
-            fprintf(stream, "  %11s ", heading);
+// The table in columns of blanks, results marked where they differ, or of a Markdown page.
+static void write_table(FILE *stream, const compare_table *t, bool page)
+{
+    assert(stream != NULL && t != NULL);
+    const int width = page ? 0 : longest(t, false), law = page ? 0 : longest(t, true);
+    const char *names = page ? "| %-*s | %-*s |" : "%-*s  %-*s";
+    char text[PARAMETER_TEXT_SIZE];
+    int columns = 2;
+
+    // the first line, and on a page what makes it a table; then a line each: names, what was
+    // varied, results
+    for (int i = -1; i < t->count; i++) {
+        const compare_row *row = i < 0 ? NULL : &t->rows[i];
+        print_printable(stream, names, width, row != NULL ? row->scenario : "scenario", law,
+                        row != NULL ? row->law : "law");
+        for (int v = 0; v < t->varied_count; v++) {
+            if (row != NULL) {
+                format_varied(t, i, v, text, sizeof text);
+            } else {
+                format_varied_heading(t, v, page, text, sizeof text);
+            }
+            fprintf(stream, page ? " %*s |" : "  %*s", page ? 0 : varied_width(t, v), text);
+        }
+
+        for (int k = 0; k < COMPARE_QUANTITIES; k++) {
+            const compare_quantity *quantity = &compare_quantities[k];
+            if (row != NULL) {
+                format_result(row->values[k], page, text, sizeof text);
+            } else {
+                format_heading(quantity->heading, quantity->unit, page, text, sizeof text);
+            }
+            const char *mark = page ? " |" : row != NULL && marked(t, i, k) ? "*" : " ";
+            if (!t->hidden[k]) {
+                fprintf(stream, page ? " %*s%s" : "  %*s%s", page ? 0 : 11, text, mark);
+                columns += row == NULL;
+            }
+        }
+        fprintf(stream, "%s\n", page || row == NULL || row->ok ? "" : " failed");
+        for (int k = 0; page && row == NULL && k < columns + t->varied_count; k++) {
+            fprintf(stream, "%s---|%s", k == 0 ? "|" : "",
+                    k == columns + t->varied_count - 1 ? "\n" : "");
         }
     }
-    fputc('\n', stream);
 }
 
 void compare_text(FILE *stream, const compare_table *t)
 {
-    assert(stream != NULL && t != NULL);
-    int width = longest(t, false), law = longest(t, true);
-    text_heading(stream, t, width, law);
-
-    // a line each: names, what was varied, results with a mark where they differ
-    for (int i = 0; i < t->count; i++) {
-        const compare_row *row = &t->rows[i];
-        print_printable(stream, "%-*s  %-*s", width, row->scenario, law, row->law);
-        for (int v = 0; v < t->varied_count; v++) {
-            char text[PARAMETER_TEXT_SIZE];
-            format_varied(t, i, v, text, sizeof text);
-            fprintf(stream, "  %*s", varied_width(t, v), text);
-        }
-
-        for (int k = 0; k < COMPARE_QUANTITIES; k++) {
-            char text[32] = "-";
-            if (!isnan(row->values[k])) {
-                decimal_print(text, sizeof text, "%.4g", row->values[k]);
-            }
-            if (!t->hidden[k]) {
-                fprintf(stream, "  %11s%c", text, marked(t, i, k) ? '*' : ' ');
-            }
-        }
-        fprintf(stream, "%s\n", row->ok ? "" : " failed");
-    }
+    write_table(stream, t, false);
 }
 
 void compare_markdown(FILE *stream, const compare_table *t)
 {
-    assert(stream != NULL && t != NULL);
-    char text[PARAMETER_TEXT_SIZE];
-    int columns = 2 + t->varied_count;
-
-    // headings
-    fputs("| scenario | law |", stream);
-    for (int v = 0; v < t->varied_count; v++) {
-        format_varied_heading(t, v, true, text, sizeof text);
-        fprintf(stream, " %s |", text);
-    }
-    for (int k = 0; k < COMPARE_QUANTITIES; k++) {
-        const compare_quantity *quantity = &compare_quantities[k];
-        format_heading(quantity->heading, quantity->unit, true, text, sizeof text);
-        if (!t->hidden[k]) {
-            fprintf(stream, " %s |", text);
-            columns++;
-        }
-    }
-
-    // the line that makes it a table
-    fputs("\n|", stream);
-    for (int i = 0; i < columns; i++) {
-        fputs("---|", stream);
-    }
-    fputc('\n', stream);
-
-    // rows
-    for (int i = 0; i < t->count; i++) {
-        print_printable(stream, "| %s | %s |", t->rows[i].scenario, t->rows[i].law);
-        for (int v = 0; v < t->varied_count; v++) {
-            format_varied(t, i, v, text, sizeof text);
-            fprintf(stream, " %s |", text);
-        }
-
-        for (int k = 0; k < COMPARE_QUANTITIES; k++) {
-            double value = t->rows[i].values[k];
-            if (!t->hidden[k]) {
-                decimal_print(text, sizeof text, fabs(value) >= 999.5 ? "%.0f" : "%.3g", value);
-                fprintf(stream, " %s |", isnan(value) ? "–" : text);
-            }
-        }
-        fputc('\n', stream);
-    }
+    write_table(stream, t, true);
 }
 
 // --- for programs ---------------------------------------------------------------------------

@@ -31,33 +31,28 @@ typedef struct column {
     const char *unit; // in CSV
 } column;
 
+// The three quantiles of a quantity, in the order of their enumeration.
+#define QUANTILES(name, key_unit, unit)                                                            \
+    {name "_median" key_unit, name "_median", unit},                                               \
+        {name "_nine_tenths" key_unit, name "_nine_tenths", unit},                                 \
+    {                                                                                              \
+        name "_worst" key_unit, name "_worst", unit                                                \
+    }
+
 static const column columns[COLUMNS] = {
     {"settled_percent", "settled", "%"},
     {"separated_percent", "separated", "%"},
     {"exceeded_percent", "exceeded", "%"},
-    {"overshoot_median_percent", "overshoot_median", "%"},
-    {"overshoot_nine_tenths_percent", "overshoot_nine_tenths", "%"},
-    {"overshoot_worst_percent", "overshoot_worst", "%"},
-    {"settling_median_s", "settling_median", "s"},
-    {"settling_nine_tenths_s", "settling_nine_tenths", "s"},
-    {"settling_worst_s", "settling_worst", "s"},
-    {"error_median_percent", "error_median", "%"},
-    {"error_nine_tenths_percent", "error_nine_tenths", "%"},
-    {"error_worst_percent", "error_worst", "%"},
-    {"from_start_median_s", "from_start_median", "s"},
-    {"from_start_nine_tenths_s", "from_start_nine_tenths", "s"},
-    {"from_start_worst_s", "from_start_worst", "s"},
-    {"back_share_median", "back_share_median", ""},
-    {"back_share_nine_tenths", "back_share_nine_tenths", ""},
-    {"back_share_worst", "back_share_worst", ""},
+    QUANTILES("overshoot", "_percent", "%"),
+    QUANTILES("settling", "_s", "s"),
+    QUANTILES("error", "_percent", "%"),
+    QUANTILES("from_start", "_s", "s"),
+    QUANTILES("back_share", "", ""),
     {"from_start_share", "from_start_share", ""},
-    {"raw_overshoot_median_percent", "raw_overshoot_median", "%"},
-    {"raw_overshoot_nine_tenths_percent", "raw_overshoot_nine_tenths", "%"},
-    {"raw_overshoot_worst_percent", "raw_overshoot_worst", "%"},
-    {"smoothed_overshoot_median_percent", "smoothed_overshoot_median", "%"},
-    {"smoothed_overshoot_nine_tenths_percent", "smoothed_overshoot_nine_tenths", "%"},
-    {"smoothed_overshoot_worst_percent", "smoothed_overshoot_worst", "%"},
+    QUANTILES("raw_overshoot", "_percent", "%"),
+    QUANTILES("smoothed_overshoot", "_percent", "%"),
 };
+#undef QUANTILES
 static const char over_of[] = "overshoot_of"; // in JSON and CSV
 
 // What people see, of the laws and of cases.
@@ -142,68 +137,40 @@ static void format_cell(char *text, size_t size, const robust_law *law, const do
     }
 }
 
-void robust_text(FILE *stream, const robust_table *t)
+// The widest title of a case, 0 without cases.
+static int case_width(const robust_table *t)
 {
-    assert(stream != NULL && t != NULL && t->count > 0);
-    const shown_column *shown;
-    const int count = shown_columns(t, &shown);
-    char text[64];
     int width = 0;
-
-    // headings
-    for (int i = 0; i < t->count; i++) {
-        int length = t->laws[i].case_title != NULL ? (int)strlen(t->laws[i].case_title) : -2;
+    for (int i = 0; i < t->count && t->laws[0].case_title != NULL; i++) {
+        const int length = (int)strlen(t->laws[i].case_title);
         width = length > width ? length : width;
     }
-    if (width > 0) {
-        fprintf(stream, "%-*s  ", width, "case");
-    }
-    fprintf(stream, "%-16s  %5s", "law", "runs");
-    for (int k = 0; k < count; k++) {
-        format_heading(text, sizeof text, t, &shown[k]);
-        fprintf(stream, "  %12s", text);
-    }
-    fputc('\n', stream);
-
-    // a line a law
-    for (int i = 0; i < t->count; i++) {
-        const robust_law *law = &t->laws[i];
-        double values[COLUMNS];
-        values_of(law, values);
-        if (width > 0) {
-            print_printable(stream, "%-*s  ", width, law->case_title);
-        }
-        fprintf(stream, "%-16s  %5zu", law->law, law->runs);
-        for (int k = 0; k < count; k++) {
-            format_cell(text, sizeof text, law, values, shown[k].column);
-            fprintf(stream, "  %12s", text);
-        }
-        if (law->failed > 0) {
-            fprintf(stream, "  %zu failed", law->failed);
-        }
-        fputc('\n', stream);
-    }
+    return width;
 }
 
-void robust_markdown(FILE *stream, const robust_table *t)
+// The table in columns of blanks, or of a Markdown page.
+static void write_table(FILE *stream, const robust_table *t, bool page)
 {
     assert(stream != NULL && t != NULL && t->count > 0);
     const shown_column *shown;
-    const int count = shown_columns(t, &shown);
+    const int count = shown_columns(t, &shown), width = case_width(t);
     const bool cases = t->laws[0].case_title != NULL;
+    const char *cell = page ? " %s |" : "  %12s";
     char text[64];
 
     // headings
-    fputs(cases ? "| case | law | runs |" : "| law | runs |", stream);
+    if (cases) {
+        fprintf(stream, page ? "| %-*s " : "%-*s  ", page ? 0 : width, "case");
+    }
+    fprintf(stream, page ? "| %s | %s |" : "%-16s  %5s", "law", "runs");
     for (int k = 0; k < count; k++) {
         format_heading(text, sizeof text, t, &shown[k]);
-        fprintf(stream, " %s |", text);
-    }
-    fputs(cases ? "\n|---|---|---|" : "\n|---|---|", stream);
-    for (int k = 0; k < count; k++) {
-        fputs("---|", stream);
+        fprintf(stream, cell, text);
     }
     fputc('\n', stream);
+    for (int k = 0; page && k < count + 2 + cases; k++) {
+        fprintf(stream, "%s---|%s", k == 0 ? "|" : "", k == count + 1 + cases ? "\n" : "");
+    }
 
     // a line a law
     for (int i = 0; i < t->count; i++) {
@@ -211,15 +178,28 @@ void robust_markdown(FILE *stream, const robust_table *t)
         double values[COLUMNS];
         values_of(law, values);
         if (cases) {
-            print_printable(stream, "| %s ", law->case_title);
+            print_printable(stream, page ? "| %-*s " : "%-*s  ", page ? 0 : width, law->case_title);
         }
-        fprintf(stream, "| %s | %zu |", law->law, law->runs);
+        fprintf(stream, page ? "| %s | %zu |" : "%-16s  %5zu", law->law, law->runs);
         for (int k = 0; k < count; k++) {
             format_cell(text, sizeof text, law, values, shown[k].column);
-            fprintf(stream, " %s |", text);
+            fprintf(stream, cell, text);
+        }
+        if (law->failed > 0 && !page) {
+            fprintf(stream, "  %zu failed", law->failed);
         }
         fputc('\n', stream);
     }
+}
+
+void robust_text(FILE *stream, const robust_table *t)
+{
+    write_table(stream, t, false);
+}
+
+void robust_markdown(FILE *stream, const robust_table *t)
+{
+    write_table(stream, t, true);
 }
 
 void robust_csv(FILE *stream, const robust_table *t)

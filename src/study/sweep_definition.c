@@ -327,8 +327,8 @@ void definition_digest(const definition *d, char digest[SHA256_TEXT])
     sha256 h;
     sha256_init(&h);
     for (int i = 0; i < d->count; i++) {
-        sha256_add(&h, d->lines[i].key, strlen(d->lines[i].key) + 1);
-        sha256_add(&h, d->lines[i].value, strlen(d->lines[i].value) + 1);
+        sha256_add_text(&h, d->lines[i].key);
+        sha256_add_text(&h, d->lines[i].value);
     }
     sha256_finish(&h, digest);
 }

@@ -51,12 +51,6 @@ bool consent_needed(const scenario *s)
 
 // --- the digest -------------------------------------------------------------------------------
 
-// Takes in a text with its end, so that two texts are not taken for two others.
-static void add_text(sha256 *h, const char *text)
-{
-    sha256_add(h, text, strlen(text) + 1);
-}
-
 // The scenario as text.
 static bool add_scenario(sha256 *h, const scenario *s)
 {
@@ -93,8 +87,8 @@ static bool digest_of(const scenario *s, char digest[SHA256_TEXT])
             told = outside_is_told(source, &s->parameters) &&
                    outside_digest(source, &s->parameters, content, NULL) == STATUS_OK &&
                    getcwd(folder, sizeof folder) != NULL;
-            add_text(&h, told ? content : "");
-            add_text(&h, told && source->kind == OUTSIDE_COMMAND ? folder : "");
+            sha256_add_text(&h, told ? content : "");
+            sha256_add_text(&h, told && source->kind == OUTSIDE_COMMAND ? folder : "");
             named++;
         }
     }
