@@ -23,15 +23,13 @@ bool reader_is_group(const char *word)
     return false;
 }
 
-// Reports a key that its group does not have: under another name, near to one, or in another group.
+// Reports a key that its group does not have: in another group, or near to one of its own.
 static void report_unknown_parameter(reader *r, const tree_node *key, const char *group)
 {
-    // renamed
-    char whole[128];
-    snprintf(whole, sizeof whole, "%.40s.%.80s", group, key->text);
-    const char *now = parameter_renamed(whole);
-    if (now != NULL) {
-        report_node(r, key, "unknown key '%.60s' in %s, did you mean %s?", key->text, group, now);
+    const char *elsewhere = parameter_suggest(key->text);
+    if (elsewhere != NULL && strcmp(strchr(elsewhere, '.') + 1, key->text) == 0) {
+        report_node(r, key, "unknown key '%.60s' in %s, did you mean %s?", key->text, group,
+                    elsewhere);
         return;
     }
 
@@ -47,23 +45,13 @@ static void report_unknown_parameter(reader *r, const tree_node *key, const char
             nearest_try(&near, tail);
         }
     }
-
     if (near.best != NULL) {
         report_node(r, key, "unknown key '%.60s' in %s, did you mean '%s'?", key->text, group,
                     near.best);
-        return;
+    } else {
+        report_node(r, key, "unknown key '%.60s' in %s, expected one of %s", key->text, group,
+                    known);
     }
-
-    // in another group
-    const char *elsewhere = parameter_suggest(key->text);
-    const char *tail = elsewhere != NULL ? strchr(elsewhere, '.') + 1 : NULL;
-    if (tail != NULL && strcmp(tail, key->text) == 0) {
-        report_node(r, key, "unknown key '%.60s' in %s, did you mean %s?", key->text, group,
-                    elsewhere);
-        return;
-    }
-
-    report_node(r, key, "unknown key '%.60s' in %s, expected one of %s", key->text, group, known);
 }
 
 const char *reader_value_text(reader *r, const tree_node *node, const char *path)

@@ -389,25 +389,6 @@ int parameter_index(const char *path)
     return index;
 }
 
-// Parameters that have another name now.
-static const struct {
-    const char *old, *now;
-} renamed[] = {
-    {"control.k2_factor", "belief.k2_factor"},
-    {"control.wall_error", "belief.wall_error"},
-};
-
-const char *parameter_renamed(const char *path)
-{
-    assert(path != NULL);
-    for (size_t i = 0; i < sizeof renamed / sizeof renamed[0]; i++) {
-        if (strcmp(renamed[i].old, path) == 0) {
-            return renamed[i].now;
-        }
-    }
-    return NULL;
-}
-
 int parameter_look_up(const char *path, fault *f)
 {
     int index = parameter_find(path);
@@ -422,12 +403,13 @@ int parameter_look_up(const char *path, fault *f)
 
 const char *parameter_suggest(const char *path)
 {
-    const char *now = parameter_renamed(path);
-    if (now != NULL) {
-        return now;
-    }
+    // the right name, perhaps in a wrong group or in none
+    const char *dot = strrchr(path, '.'), *name = dot != NULL ? dot + 1 : path;
     nearest_word nearest = nearest_begin(path);
     for (int i = 0; i < parameter_count; i++) {
+        if (strcmp(strchr(parameter_table[i].path, '.') + 1, name) == 0) {
+            return parameter_table[i].path;
+        }
         nearest_try(&nearest, parameter_table[i].path);
     }
     return nearest.best;

@@ -290,15 +290,12 @@ int parameter_at(size_t offset);
 // Index of a path that the program itself names: an unknown one fails an assertion.
 int parameter_index(const char *path);
 
-// The present path of a parameter that was formerly called by this one, or NULL.
-const char *parameter_renamed(const char *path);
-
 // Index of a path as people write it; -1, with a sentence in f that names the nearest, if there is
 // no such parameter.
 int parameter_look_up(const char *path, fault *f);
 
-// The path that replaced this one, or the nearest to a misspelt one (for "did you mean"); NULL if
-// there is none.
+// The path of that name in another group, or the nearest to a misspelt one (for "did you mean");
+// NULL if there is none.
 const char *parameter_suggest(const char *path);
 
 // All defaults of the given model (arm_model_kind), nothing marked as set.
