@@ -204,6 +204,38 @@ static void an_arm_that_rests_on_a_face_stays_on_it(void **state)
     check_close(o[0].lost[4], o[1].lost[4], 1e-9 * o[1].put_in);
 }
 
+// Ten links lie on a soft wall while the hub starts: for milliseconds the tip's gap is rounding. A
+// hub on a stiff spring comes to rest slowly, far from zero: its angle's last digits are momentum.
+static void rounding_makes_no_events_and_stops_none(void **state)
+{
+    (void)state;
+    const parameters lies = fixture_parameters(SETTINGS(
+        "arm.links=10", "arm.hub_joint=spring", "wall.angle=-2.5203893907510242",
+        "initial.angle=-2.5203893907510242", "motor.voltage=0.34", "arm.mass=0.1", "arm.k2=1.55",
+        "motor.inductance=0.44", "wall.contact=kelvin-voigt", "wall.stiffness=56"));
+    const parameters slow = fixture_parameters(SETTINGS(
+        "arm.links=1", "arm.hub_joint=spring", "wall.angle=1.6029091097614279",
+        "initial.angle=1.6013044654119684", "motor.voltage=1.0383019815759789",
+        "arm.mass=0.67605488209424403", "arm.hub_inertia=0.0013041262868641415",
+        "motor.stiction=0.0049450852012509119", "arm.k2=1.397745898348157",
+        "wall.restitution=0.73448653687268595", "arm.damping_ratio=0.0045224480198796518"));
+    const chain_start starts[] = {
+        {&lies, lies.wall.angle, 0, 0.03, 0.03, NULL},
+        {&slow, 1.6013044654119684, 0.101077, 0.06, 0.06, NULL},
+    };
+    for (int i = 0; i < 2; i++) {
+        chain_start start = starts[i];
+        start.by = &stiff_engine;
+        const chain_outcome o = chain_outcome_of(&start);
+        start.by = &series_engine;
+        const chain_outcome truth = chain_outcome_of(&start);
+        assert_int_equal(o.status, STATUS_OK);
+        assert_int_equal(o.impacts, truth.impacts);
+        check_close(o.motor_work, truth.motor_work, 1e-9 * truth.put_in);
+        check_below(o.residual, 1e-9 * o.put_in);
+    }
+}
+
 // Tip against a flat wall through the hub's axis, where the force has a pole.
 static void steps_keep_clear_of_a_fold(void **state)
 {
@@ -306,6 +338,7 @@ int main(void)
         cmocka_unit_test(the_series_give_the_same),
         cmocka_unit_test(starts_on_the_wall_are_told_from_rounding),
         cmocka_unit_test(an_arm_that_rests_on_a_face_stays_on_it),
+        cmocka_unit_test(rounding_makes_no_events_and_stops_none),
         cmocka_unit_test(steps_keep_clear_of_a_fold),
         cmocka_unit_test(a_chain_that_bounces_keeps_its_impacts),
         cmocka_unit_test(decays_of_any_rate_are_passed_over),

@@ -91,6 +91,14 @@ static void set_gap(stiff_stride *s, const arm *a, const motion *m)
     s->kept[STIFF_GAP] = function_greatest(&s->gap) < LOW_FLIGHT ? end : 0;
 }
 
+// A gap or depth that is less than places are known to all through the step says nothing.
+static void ignore_rounding(stiff_function *f)
+{
+    if (function_least(f) > -EDGE_PLACE && function_greatest(f) < EDGE_PLACE) {
+        *f = (stiff_function){.degree = f->degree};
+    }
+}
+
 static void watch_wall(stiff_stride *s, const arm *a, const motion *m, contact_state now)
 {
     bool at_edge = m->state[SLOT_JUMPED] != 0;
@@ -107,6 +115,7 @@ static void watch_wall(stiff_stride *s, const arm *a, const motion *m, contact_s
             at_edge = true;
         }
     }
+    ignore_rounding(&s->watched[WATCH_GAP]);
     if (!at_edge) {
         return;
     }

@@ -11,6 +11,8 @@
 #define LEAST_RATE  1e-4 // of the iteration that is believed
 #define SLOW_RATE   0.6  // and from which on a shorter step is cheaper
 #define LEAST_SHARE 1e-14
+#define LAST_DIGITS 1e-14 // of an angle, as corrections that do not converge show them
+#define MOST_LEFT   30    // times what is wanted, of such corrections
 
 enum { MOST_ITERATIONS = 12 };
 
@@ -141,8 +143,9 @@ bool stiff_solve_stages(stiff_stride *stride, bool fresh, double offset, double 
         if (now < LEAST_SHARE * scale) {
             return true;
         }
-        if (i > 1 && theta > SLOW_RATE) {
-            return now < 1e-3 * wanted;
+        if (i > 1 && theta > SLOW_RATE) { // as near as the angles' last digits let it come
+            const double rounding = LAST_DIGITS * stiff_momentum(stride, s->q0) / s->length;
+            return now < smaller(rounding, MOST_LEFT * wanted);
         }
         before = now;
     }
