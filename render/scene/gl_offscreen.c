@@ -71,11 +71,9 @@ enum {
     X(unsigned, GetError, (void))                                                                  \
     X(void, GenFramebuffers, (int count, unsigned *names))                                         \
     X(void, BindFramebuffer, (unsigned target, unsigned name))                                     \
-    X(void, DeleteFramebuffers, (int count, const unsigned *names))                                \
     X(unsigned, CheckFramebufferStatus, (unsigned target))                                         \
     X(void, GenRenderbuffers, (int count, unsigned *names))                                        \
     X(void, BindRenderbuffer, (unsigned target, unsigned name))                                    \
-    X(void, DeleteRenderbuffers, (int count, const unsigned *names))                               \
     X(void, RenderbufferStorage, (unsigned target, unsigned format, int width, int height))        \
     X(void, FramebufferRenderbuffer,                                                               \
       (unsigned target, unsigned attachment, unsigned kind, unsigned name))                        \
@@ -88,14 +86,11 @@ enum {
     X(void, LinkProgram, (unsigned program))                                                       \
     X(void, GetProgramiv, (unsigned program, unsigned what, int *value))                           \
     X(void, UseProgram, (unsigned program))                                                        \
-    X(void, DeleteProgram, (unsigned program))                                                     \
     X(void, GenVertexArrays, (int count, unsigned *names))                                         \
     X(void, BindVertexArray, (unsigned name))                                                      \
-    X(void, DeleteVertexArrays, (int count, const unsigned *names))                                \
     X(void, GenBuffers, (int count, unsigned *names))                                              \
     X(void, BindBuffer, (unsigned target, unsigned name))                                          \
     X(void, BufferData, (unsigned target, ptrdiff_t size, const void *from, unsigned use))         \
-    X(void, DeleteBuffers, (int count, const unsigned *names))                                     \
     X(void, EnableVertexAttribArray, (unsigned index))                                             \
     X(void, VertexAttribPointer,                                                                   \
       (unsigned index, int size, unsigned type, unsigned char normalised, int stride,              \
@@ -111,9 +106,8 @@ struct gl_offscreen {
     function_finder find;
     char renderer[256];
     void *context, *display, *surface;
-    unsigned char *small;                // OSMesa's own picture, which nothing is drawn into
-    unsigned framebuffer, colour, depth; // names of OpenGL's objects
-    unsigned program, vertex_array, buffers[2];
+    unsigned char *small; // OSMesa's own picture, which nothing is drawn into
+    unsigned program;
     int width, height;
 #define GL_MEMBER(result, name, arguments) result(*name) arguments;
     GL_FUNCTIONS(GL_MEMBER)
@@ -336,30 +330,30 @@ static bool make_program(gl_offscreen *g)
 
 static bool make_framebuffer(gl_offscreen *g)
 {
-    // colours of 8 bits
-    g->GenFramebuffers(1, &g->framebuffer);
-    g->BindFramebuffer(GL_FRAMEBUFFER, g->framebuffer);
-    g->GenRenderbuffers(1, &g->colour);
-    g->BindRenderbuffer(GL_RENDERBUFFER, g->colour);
-    g->RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, g->width, g->height);
-    g->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, g->colour);
-
-    // and a depth buffer
-    g->GenRenderbuffers(1, &g->depth);
-    g->BindRenderbuffer(GL_RENDERBUFFER, g->depth);
-    g->RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, g->width, g->height);
-    g->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, g->depth);
+    // colours of 8 bits, and depths
+    static const unsigned formats[] = {GL_RGBA8, GL_DEPTH_COMPONENT24};
+    static const unsigned places[] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
+    unsigned framebuffer, buffers[2];
+    g->GenFramebuffers(1, &framebuffer);
+    g->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    g->GenRenderbuffers(2, buffers);
+    for (int i = 0; i < 2; i++) {
+        g->BindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
+        g->RenderbufferStorage(GL_RENDERBUFFER, formats[i], g->width, g->height);
+        g->FramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER, buffers[i]);
+    }
     return g->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
 static void make_buffers(gl_offscreen *g)
 {
     // vertices and corners of one array
-    g->GenVertexArrays(1, &g->vertex_array);
-    g->BindVertexArray(g->vertex_array);
-    g->GenBuffers(2, g->buffers);
-    g->BindBuffer(GL_ARRAY_BUFFER, g->buffers[0]);
-    g->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->buffers[1]);
+    unsigned vertex_array, buffers[2];
+    g->GenVertexArrays(1, &vertex_array);
+    g->BindVertexArray(vertex_array);
+    g->GenBuffers(2, buffers);
+    g->BindBuffer(GL_ARRAY_BUFFER, buffers[0]);
+    g->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
 
     // places and colours alternate
     g->EnableVertexAttribArray(0);
@@ -426,21 +420,7 @@ void gl_offscreen_destroy(gl_offscreen *g)
         return;
     }
 
-    // OpenGL's objects, as far as they were made
-    bool current = g->context != NULL && make_current(g);
-    if (current && g->vertex_array != 0) {
-        g->DeleteVertexArrays(1, &g->vertex_array);
-        g->DeleteBuffers(2, g->buffers);
-    }
-    if (current && g->framebuffer != 0) {
-        g->DeleteFramebuffers(1, &g->framebuffer);
-        g->DeleteRenderbuffers(1, &g->colour);
-        g->DeleteRenderbuffers(1, &g->depth);
-    }
-    if (current && g->program != 0) {
-        g->DeleteProgram(g->program);
-    }
-
+    // the context takes OpenGL's objects with it
     if (g->library == GL_OSMESA) {
         close_osmesa(g);
     } else {
