@@ -14,33 +14,24 @@
 
 #define IMPACT_SCENARIO "corrected/first-impact"
 
-enum { PANELS = 2, SERIES = 4, ASSUMED_POINTS = 101, MARKS = 2 };
+enum { PANELS = 2, ASSUMED_POINTS = 101, MARKS = 2 };
 
 // A figure with everything it borrows.
 typedef struct impact_figure {
-    figure figure;
-    figure_panel panels[PANELS];
-    figure_series series[PANELS][SERIES];
+    owned_figure plot;
     figure_level levels[PANELS];
     figure_mark marks[MARKS];
     figure_interval interval;
     figure_impulse impulse;
     opened_run run;
-    GPtrArray *owned;                // texts and numbers
     double contact, peak_time, peak; // first pulse [s], [s], [N]
 } impact_figure;
-
-static void *own(impact_figure *fig, void *block)
-{
-    g_ptr_array_add(fig->owned, block);
-    return block;
-}
 
 static void release_impact(void *owner)
 {
     impact_figure *fig = owner;
     run_end(&fig->run);
-    g_ptr_array_free(fig->owned, TRUE);
+    owned_figure_finish(&fig->plot);
     g_free(fig);
 }
 
@@ -56,7 +47,7 @@ static impact_figure *new_impact(const char *title, const char *of, const char *
 
     // the pulse that the figure is about
     const summary *m = &fig->run.result.summary;
-    fig->owned = g_ptr_array_new_with_free_func(g_free);
+    owned_figure_init(&fig->plot, title, PANELS);
     fig->contact = m->first_contact_s;
     fig->peak_time = m->first_contact_s + m->first_pulse_time_to_peak_s;
     fig->peak = m->first_pulse_peak_N;
@@ -67,21 +58,15 @@ static impact_figure *new_impact(const char *title, const char *of, const char *
         return NULL;
     }
 
-    // what all of them have
-    fig->figure.title = own(fig, g_strdup(title));
-    fig->figure.parameters = own(fig, parameters_line(&fig->run.scenario));
-    fig->figure.software = picture_software();
-    fig->figure.panels = fig->panels;
-    figure_take_look(&fig->figure, &o->look);
-    for (int i = 0; i < PANELS; i++) {
-        fig->panels[i].series = fig->series[i];
-    }
+    fig->plot.figure.parameters =
+        owned_figure_keep(&fig->plot, parameters_line(&fig->run.scenario));
+    figure_take_look(&fig->plot.figure, &o->look);
     return fig;
 }
 
 static figure_series *add_series(impact_figure *fig, int panel, figure_series s)
 {
-    figure_series *out = &fig->series[panel][fig->panels[panel].series_count++];
+    figure_series *out = &fig->plot.series[panel][fig->plot.panels[panel].series_count++];
     *out = s;
     return out;
 }
@@ -92,8 +77,8 @@ static void add_signal(impact_figure *fig, int panel, const char *name, const ch
     const trace *t = &fig->run.result.trace;
     const signal_info *signal = &signal_table[signal_index(name)];
     const char *base = (const char *)t->rows;
-    fig->panels[panel].y.name = signal->name;
-    fig->panels[panel].y.unit = signal->unit;
+    fig->plot.panels[panel].y.name = signal->name;
+    fig->plot.panels[panel].y.unit = signal->unit;
 
     // its values are read in place, in the rows of the run
     add_series(fig, panel,
@@ -113,14 +98,14 @@ static status paint_profile(cairo_t *cr, const void *what, figure_report *report
 {
     const impact_figure *fig = what;
     figure_report *seen = report != NULL ? report : g_new0(figure_report, 1);
-    status code = figure_paint(cr, &fig->figure, seen, f);
+    status code = figure_paint(cr, &fig->plot.figure, seen, f);
 
     // the measure stands above the peak, from contact to it
     if (code == STATUS_OK) {
-        const figure *shown = &fig->figure;
+        const figure *shown = &fig->plot.figure;
         plane p = {seen->panels[0],
                    {SCALE_LINEAR, shown->x.low, shown->x.high},
-                   {SCALE_LINEAR, fig->panels[0].y.low, fig->panels[0].y.high}};
+                   {SCALE_LINEAR, fig->plot.panels[0].y.low, fig->plot.panels[0].y.high}};
         sketch s = {.cr = cr,
                     .context = text_context_create(),
                     .colours = palette_of(shown->theme),
@@ -148,7 +133,7 @@ static status paint_profile(cairo_t *cr, const void *what, figure_report *report
 static status write_profile(const void *what, const char *path, fault *f)
 {
     const impact_figure *fig = what;
-    return figure_write_csv(&fig->figure, path, f);
+    return figure_write_csv(&fig->plot.figure, path, f);
 }
 
 // An axis of time from low to high, with marks at first contact and at the peak.
@@ -156,14 +141,14 @@ static void show_pulse(impact_figure *fig, double low, double high)
 {
     fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
     fig->marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
-    fig->figure.marks = fig->marks;
-    fig->figure.mark_count = 2;
+    fig->plot.figure.marks = fig->marks;
+    fig->plot.figure.mark_count = 2;
 
-    fig->figure.x.name = "time";
-    fig->figure.x.label = "Time <i>t</i>";
-    fig->figure.x.unit = "s";
-    fig->figure.x.low = low;
-    fig->figure.x.high = high;
+    fig->plot.figure.x.name = "time";
+    fig->plot.figure.x.label = "Time <i>t</i>";
+    fig->plot.figure.x.unit = "s";
+    fig->plot.figure.x.low = low;
+    fig->plot.figure.x.high = high;
 }
 
 status figure_force_profile(const char *title, const figure_options *o, artwork *out, fault *f)
@@ -174,7 +159,7 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
     }
 
     const summary *m = &fig->run.result.summary;
-    figure_panel *panel = &fig->panels[0];
+    figure_panel *panel = &fig->plot.panels[0];
     double pulse = isfinite(m->first_pulse_s) ? m->first_pulse_s : fig->peak_time - fig->contact;
     add_signal(fig, 0, "force", NULL);
     panel->y.label = "Contact force <i>f</i>";
@@ -190,32 +175,33 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
     panel->impulse_unit = "N s";
 
     fig->levels[0] = (figure_level){
-        fig->peak, own(fig, text_printf("<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak))};
+        fig->peak, owned_figure_keep(
+                       &fig->plot, text_printf("<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak))};
     panel->levels = fig->levels;
     panel->level_count = 1;
 
     // the contact is shaded; the measure of T stands at the top of the panel
     fig->interval = (figure_interval){fig->contact, fig->contact + pulse};
-    fig->figure.marks_above = true;
-    fig->figure.intervals = &fig->interval;
-    fig->figure.interval_count = 1;
+    fig->plot.figure.marks_above = true;
+    fig->plot.figure.intervals = &fig->interval;
+    fig->plot.figure.interval_count = 1;
 
     show_pulse(fig, fig->contact - 0.25 * pulse, fig->contact + 1.25 * pulse);
-    fig->figure.panel_count = 1;
-    fig->figure.caption =
+    fig->plot.figure.panel_count = 1;
+    fig->plot.figure.caption =
         "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse that takes no "
         "time (arrow, its own axis); the force that follows is finite and grows to its peak while "
         "the beam bends. Shaded: contact.";
 
     // the figure with the measure of T on top
-    *out = (artwork){.title = fig->figure.title,
-                     .caption = fig->figure.caption,
-                     .parameters = fig->figure.parameters,
+    *out = (artwork){.title = fig->plot.figure.title,
+                     .caption = fig->plot.figure.caption,
+                     .parameters = fig->plot.figure.parameters,
                      .what = fig,
                      .paint = paint_profile,
                      .write_csv = write_profile,
                      .release = release_impact};
-    figure_size(&fig->figure, &out->width, &out->height);
+    figure_size(&fig->plot.figure, &out->width, &out->height);
     return STATUS_OK;
 }
 
@@ -249,8 +235,8 @@ static double assumed_at(const assumption *a, double since)
 
 static void add_assumption(impact_figure *fig, int panel, const assumption *a, const char *label)
 {
-    double *x = own(fig, g_new(double, ASSUMED_POINTS));
-    double *y = own(fig, g_new(double, ASSUMED_POINTS));
+    double *x = owned_figure_keep(&fig->plot, g_new(double, ASSUMED_POINTS));
+    double *y = owned_figure_keep(&fig->plot, g_new(double, ASSUMED_POINTS));
 
     // the assumed course, from the contact on
     for (int i = 0; i < ASSUMED_POINTS; i++) {
@@ -308,7 +294,7 @@ static status assumed_motion(const char *title, bool of_angle, const figure_opti
         const char *name = signals[of_angle][i];
         add_signal(fig, i, name, i == 0 ? "computed" : NULL);
         // one legend speaks for both panels, so both have its colours
-        fig->series[i][0].colour = 0;
+        fig->plot.series[i][0].colour = 0;
 
         const assumption a = {angles[i], velocities[i], period, of_angle};
         add_assumption(fig, i, &a,
@@ -316,24 +302,25 @@ static status assumed_motion(const char *title, bool of_angle, const figure_opti
                        : of_angle ? "quadratic approximation (4.19)"
                                   : "linear approximation");
         most[i] = departure(fig, name, &a);
-        fig->panels[i].y.label = labels[of_angle][i];
+        fig->plot.panels[i].y.label = labels[of_angle][i];
     }
 
     show_pulse(fig, fig->contact - 0.4 * period, fig->contact + 1.4 * period);
-    fig->figure.panel_count = PANELS;
+    fig->plot.figure.panel_count = PANELS;
 
-    fig->figure.caption =
-        own(fig, text_printf("First and last link of corrected/first-impact from first contact to "
-                             "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
-                             "departure between them: %.2g and %.2g\u2009%s.",
-                             1e3 * period,
-                             of_angle ? "The angles that belong to velocities falling to zero in a "
-                                        "straight line"
-                                      : "The predictors assume that velocities fall to zero in a "
-                                        "straight line",
-                             most[0], most[1], of_angle ? "rad" : "rad/s"));
+    fig->plot.figure.caption = owned_figure_keep(
+        &fig->plot,
+        text_printf("First and last link of corrected/first-impact from first contact to "
+                    "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
+                    "departure between them: %.2g and %.2g\u2009%s.",
+                    1e3 * period,
+                    of_angle ? "The angles that belong to velocities falling to zero in a "
+                               "straight line"
+                             : "The predictors assume that velocities fall to zero in a "
+                               "straight line",
+                    most[0], most[1], of_angle ? "rad" : "rad/s"));
 
-    *out = artwork_of_figure(&fig->figure, fig, release_impact);
+    *out = artwork_of_figure(&fig->plot.figure, fig, release_impact);
     return STATUS_OK;
 }
 

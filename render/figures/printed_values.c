@@ -55,28 +55,17 @@ static const printed_kind delays = {.quantities = {{"delay_dynamics", "delay_dyn
 
 // The figure with all that it borrows.
 typedef struct printed_values {
-    figure figure;
-    figure_panel panels[PANELS];
-    figure_series series[PANELS][SERIES];
+    owned_figure plot;
     figure_level zero;
     double voltage[TABLE_VOLTAGES];
     double values[TABLES][SERIES][TABLE_VOLTAGES];        // thesis, computed of each quantity
     double residuals[TABLES][QUANTITIES][TABLE_VOLTAGES]; // [% of the thesis's]
-    char *title, *caption, *headings[TABLES];
-    char *names[PANELS]; // of the vertical axes, for the CSV
 } printed_values;
 
 static void release_values(void *owner)
 {
     printed_values *v = owner;
-    for (int i = 0; i < TABLES; i++) {
-        g_free(v->headings[i]);
-    }
-    for (int i = 0; i < PANELS; i++) {
-        g_free(v->names[i]);
-    }
-    g_free(v->title);
-    g_free(v->caption);
+    owned_figure_finish(&v->plot);
     g_free(v);
 }
 
@@ -84,7 +73,9 @@ static void release_values(void *owner)
 static void add_table(printed_values *v, const printed_kind *kind, int t,
                       const table_row *const *rows, figure_panel *shown, figure_panel *distances)
 {
-    int panel = (int)(shown - v->panels), below = (int)(distances - v->panels);
+    owned_figure *plot = &v->plot;
+    int panel = (int)(shown - plot->panels), below = (int)(distances - plot->panels);
+    figure_series *lines = plot->series[panel], *points = lines + kind->count;
     for (int q = 0; q < kind->count; q++) {
         const printed_quantity *of = &kind->quantities[q];
         double *printed = v->values[t][2 * q], *computed = v->values[t][2 * q + 1];
@@ -95,48 +86,48 @@ static void add_table(printed_values *v, const printed_kind *kind, int t,
         }
 
         // lines first, so that points lie on them
-        v->series[panel][q] = (figure_series){.name = of->key,
-                                              .x = v->voltage,
-                                              .y = computed,
-                                              .count = TABLE_VOLTAGES,
-                                              .colour = of->colour,
-                                              .style = LINE_SOLID,
-                                              .secondary = true};
-        v->series[panel][kind->count + q] = (figure_series){.name = of->printed,
-                                                            .label = of->label,
-                                                            .x = v->voltage,
-                                                            .y = printed,
-                                                            .count = TABLE_VOLTAGES,
-                                                            .colour = of->colour,
-                                                            .no_line = true,
-                                                            .marker = of->marker,
-                                                            .radius = POINT_RADIUS};
-        v->series[below][q] = v->series[panel][kind->count + q];
-        v->series[below][q].y = v->residuals[t][q];
+        lines[q] = (figure_series){.name = of->key,
+                                   .x = v->voltage,
+                                   .y = computed,
+                                   .count = TABLE_VOLTAGES,
+                                   .colour = of->colour,
+                                   .style = LINE_SOLID,
+                                   .secondary = true};
+        points[q] = (figure_series){.name = of->printed,
+                                    .label = of->label,
+                                    .x = v->voltage,
+                                    .y = printed,
+                                    .count = TABLE_VOLTAGES,
+                                    .colour = of->colour,
+                                    .no_line = true,
+                                    .marker = of->marker,
+                                    .radius = POINT_RADIUS};
+        plot->series[below][q] = points[q];
+        plot->series[below][q].y = v->residuals[t][q];
     }
 
-    v->names[panel] = text_printf("%s k2 x %g", kind->name, rows[0]->k2_factor);
-    v->names[below] = text_printf("residual k2 x %g", rows[0]->k2_factor);
+    // the names are those of the CSV
+    double factor = rows[0]->k2_factor;
+    char *name = owned_figure_keep(plot, text_printf("%s k2 x %g", kind->name, factor));
+    char *residual = owned_figure_keep(plot, text_printf("residual k2 x %g", factor));
 
     // 1, 2, 5, 10 V are nearly even on a logarithmic axis
     *shown = (figure_panel){
-        .heading = v->headings[t],
+        .heading = owned_figure_keep(
+            plot, text_printf("Table %s: <i>k</i><sub>2</sub> × %g", rows[0]->table, factor)),
         .weight = VALUES_WEIGHT,
         .legend = LEGEND_NONE,
-        .y = {.name = v->names[panel], .label = kind->axis, .unit = kind->unit, .with_zero = true},
-        .series = v->series[panel],
+        .y = {.name = name, .label = kind->axis, .unit = kind->unit, .with_zero = true},
+        .series = lines,
         .series_count = 2 * kind->count};
-    *distances = (figure_panel){.weight = RESIDUALS_WEIGHT,
-                                .legend = LEGEND_NONE,
-                                .levels = &v->zero,
-                                .level_count = 1,
-                                .y = {.name = v->names[below],
-                                      .label = "Residual",
-                                      .unit = "%",
-                                      .with_zero = true,
-                                      .room = 0.12},
-                                .series = v->series[below],
-                                .series_count = kind->count};
+    *distances = (figure_panel){
+        .weight = RESIDUALS_WEIGHT,
+        .legend = LEGEND_NONE,
+        .levels = &v->zero,
+        .level_count = 1,
+        .y = {.name = residual, .label = "Residual", .unit = "%", .with_zero = true, .room = 0.12},
+        .series = plot->series[below],
+        .series_count = kind->count};
 }
 
 static status open_values(const printed_kind *kind, const char *title, const figure_options *o,
@@ -150,43 +141,40 @@ static status open_values(const printed_kind *kind, const char *title, const fig
     }
 
     printed_values *v = g_new0(printed_values, 1);
-    v->title = g_strdup(title);
-    v->caption = text_printf(
-        "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, whose constants were "
-        "inferred from these tables (docs/explanation/model.md). Residual: what the model gives "
-        "beyond what is printed, in per cent of that. %s.",
-        picture_software());
-    v->figure = (figure){.title = v->title,
-                         .caption = v->caption,
-                         .software = picture_software(),
-                         .panels = v->panels,
-                         .panel_count = PANELS,
-                         .columns = TABLES,
-                         .common_legend = true,
-                         .x = {.name = "voltage",
-                               .label = "Voltage",
-                               .unit = "V",
-                               .scale = SCALE_LOGARITHMIC,
-                               .room = 0.06,
-                               .ticks = voltages,
-                               .tick_count = (int)G_N_ELEMENTS(voltages)}};
-    figure_take_look(&v->figure, &o->look);
+    figure *fig = &v->plot.figure;
+    owned_figure_init(&v->plot, title, PANELS);
+    fig->caption = owned_figure_keep(
+        &v->plot,
+        text_printf(
+            "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, whose constants were "
+            "inferred from these tables (docs/explanation/model.md). Residual: what the model "
+            "gives "
+            "beyond what is printed, in per cent of that. %s.",
+            picture_software()));
+    fig->columns = TABLES;
+    fig->common_legend = true;
+    fig->x = (figure_axis){.name = "voltage",
+                           .label = "Voltage",
+                           .unit = "V",
+                           .scale = SCALE_LOGARITHMIC,
+                           .room = 0.06,
+                           .ticks = voltages,
+                           .tick_count = (int)G_N_ELEMENTS(voltages)};
+    figure_take_look(fig, &o->look);
     memcpy(v->voltage, all->voltage, sizeof v->voltage);
 
     // panels side by side have their residuals in a row below, panels in a column next to them
-    bool rows_of_tables = figure_columns(&v->figure) == TABLES;
+    bool rows_of_tables = figure_columns(fig) == TABLES;
     for (int t = 0; t < TABLES; t++) {
         const table_row *rows[QUANTITIES];
         for (int q = 0; q < kind->count; q++) {
             rows[q] = computed_row(all, tables[t], "printed", kind->quantities[q].key);
         }
-        v->headings[t] =
-            text_printf("Table %s: <i>k</i><sub>2</sub> × %g", tables[t], rows[0]->k2_factor);
-        figure_panel *shown = &v->panels[rows_of_tables ? t : 2 * t];
+        figure_panel *shown = &v->plot.panels[rows_of_tables ? t : 2 * t];
         add_table(v, kind, t, rows, shown, rows_of_tables ? shown + TABLES : shown + 1);
     }
 
-    *out = artwork_of_figure(&v->figure, v, release_values);
+    *out = artwork_of_figure(fig, v, release_values);
     return STATUS_OK;
 }
 

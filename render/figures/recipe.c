@@ -22,7 +22,7 @@ static void release(void *owner)
         }
     }
 
-    g_ptr_array_free(fig->owned, TRUE);
+    owned_figure_finish(&fig->plot);
     recipe_finish(&fig->recipe);
     g_free(fig->path);
     g_free(fig);
@@ -143,26 +143,25 @@ static void describe(recipe_figure *fig, const figure_options *o)
         recipe_describe_panel(fig, i);
     }
 
-    fig->figure = (figure){.title = r->title,
-                           .caption = r->caption,
-                           .x = horizontal_axis(fig),
-                           .panels = fig->panels,
-                           .panel_count = r->panel_count,
-                           .columns = r->columns,
-                           .shared_y = r->shared,
-                           .marks = r->marks,
-                           .mark_count = r->mark_count,
-                           .software = picture_software(),
-                           .parameters = recipe_own(fig, parameters_of(fig))};
+    figure *shown = &fig->plot.figure;
+    shown->title = r->title;
+    shown->caption = r->caption;
+    shown->x = horizontal_axis(fig);
+    shown->panel_count = r->panel_count;
+    shown->columns = r->columns;
+    shown->shared_y = r->shared;
+    shown->marks = r->marks;
+    shown->mark_count = r->mark_count;
+    shown->parameters = owned_figure_keep(&fig->plot, parameters_of(fig));
 
     // the first run's contact
     if (r->contact && fig->sources[0].ran) {
-        fig->figure.intervals = trace_contact(&fig->sources[0].run.result.trace,
-                                              &fig->figure.interval_count, fig->owned);
+        fig->plot.figure.intervals = trace_contact(
+            &fig->sources[0].run.result.trace, &fig->plot.figure.interval_count, fig->plot.kept);
     }
 
-    figure_take_look(&fig->figure, &o->look);
-    figure_take_range(&fig->figure, o);
+    figure_take_look(&fig->plot.figure, &o->look);
+    figure_take_range(&fig->plot.figure, o);
 }
 
 status recipe_open(const char *path, const figure_options *o, fault_handler report, void *context,
@@ -181,7 +180,7 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
     // what it says
     recipe_figure *fig = g_new0(recipe_figure, 1);
     fig->path = g_strdup(path);
-    fig->owned = g_ptr_array_new_with_free_func(g_free);
+    owned_figure_init(&fig->plot, NULL, FIGURE_PANELS);
     status code = recipe_read(&fig->recipe, path, text, length, report, context)
                       ? STATUS_OK
                       : STATUS_BAD_SCENARIO;
@@ -198,7 +197,7 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
 
     // what it shows
     describe(fig, o);
-    *out = artwork_of_figure(&fig->figure, fig, release);
+    *out = artwork_of_figure(&fig->plot.figure, fig, release);
     return STATUS_OK;
 }
 

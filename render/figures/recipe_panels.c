@@ -7,16 +7,10 @@
 #include "render/page/text.h"
 #include "src/tables/summary.h"
 
-void *recipe_own(recipe_figure *fig, void *block)
-{
-    g_ptr_array_add(fig->owned, block);
-    return block;
-}
-
 // The legend text of a source, markup.
 static const char *label_of(recipe_figure *fig, const recipe_source *s)
 {
-    return recipe_own(fig, text_escape(s->label != NULL ? s->label : s->name));
+    return owned_figure_keep(&fig->plot, text_escape(s->label != NULL ? s->label : s->name));
 }
 
 // The colour of curve number `index` of a panel; the first ones differ most.
@@ -36,7 +30,7 @@ figure_axis recipe_column_axis(recipe_figure *fig, const char *key)
     // what neither table describes goes by its own name, without a unit
     char *label = words != NULL ? text_label(words) : g_strdup(key);
     figure_axis axis = {.name = key,
-                        .label = recipe_own(fig, text_escape(label)),
+                        .label = owned_figure_keep(&fig->plot, text_escape(label)),
                         .unit = parameter >= 0  ? parameter_table[parameter].unit
                                 : quantity >= 0 ? summary_table[quantity].unit
                                                 : ""};
@@ -50,7 +44,7 @@ static void add_curve(recipe_figure *fig, int panel, int source)
 {
     static const marker_kind markers[] = {MARKER_CIRCLE, MARKER_SQUARE, MARKER_TRIANGLE,
                                           MARKER_DIAMOND};
-    figure_panel *p = &fig->panels[panel];
+    figure_panel *p = &fig->plot.panels[panel];
     const opened_source *s = &fig->sources[source];
 
     // more curves than a panel has room for are left out
@@ -59,7 +53,7 @@ static void add_curve(recipe_figure *fig, int panel, int source)
     }
 
     // points are marked while they are few enough to be told apart
-    fig->series[panel][p->series_count] =
+    fig->plot.series[panel][p->series_count] =
         (figure_series){.name = fig->recipe.sources[source].name,
                         .label = label_of(fig, &fig->recipe.sources[source]),
                         .x = s->columns[0],
@@ -103,7 +97,7 @@ static void describe_cells(recipe_figure *fig, int panel, const opened_source *s
 {
     figure_map *map = &fig->maps[panel];
     size_t cells = map->columns * map->rows;
-    double *z = recipe_own(fig, g_new(double, cells));
+    double *z = owned_figure_keep(&fig->plot, g_new(double, cells));
 
     // the map goes column by column; cells that no run fills keep no number
     for (size_t i = 0; i < cells; i++) {
@@ -116,16 +110,16 @@ static void describe_cells(recipe_figure *fig, int panel, const opened_source *s
     }
     map->z = z;
     map->contours = true;
-    fig->panels[panel].map = map;
+    fig->plot.panels[panel].map = map;
 }
 
 static void add_map(recipe_figure *fig, int panel, int source)
 {
     const opened_source *s = &fig->sources[source];
     const recipe_source *from = &fig->recipe.sources[source];
-    figure_panel *p = &fig->panels[panel];
-    double *x = recipe_own(fig, g_new(double, s->count + 1));
-    double *y = recipe_own(fig, g_new(double, s->count + 1));
+    figure_panel *p = &fig->plot.panels[panel];
+    double *x = owned_figure_keep(&fig->plot, g_new(double, s->count + 1));
+    double *y = owned_figure_keep(&fig->plot, g_new(double, s->count + 1));
     size_t columns = different_values(s->columns[0], s->count, x);
     size_t rows = different_values(s->columns[1], s->count, y);
 
@@ -138,19 +132,19 @@ static void add_map(recipe_figure *fig, int panel, int source)
         describe_cells(fig, panel, s);
         return;
     }
-    fig->series[panel][p->series_count++] = (figure_series){.name = from->name,
-                                                            .x = s->columns[0],
-                                                            .y = s->columns[1],
-                                                            .shade = s->columns[2],
-                                                            .count = s->count,
-                                                            .no_line = true,
-                                                            .marker = MARKER_CIRCLE,
-                                                            .radius = 2.4};
+    fig->plot.series[panel][p->series_count++] = (figure_series){.name = from->name,
+                                                                 .x = s->columns[0],
+                                                                 .y = s->columns[1],
+                                                                 .shade = s->columns[2],
+                                                                 .count = s->count,
+                                                                 .no_line = true,
+                                                                 .marker = MARKER_CIRCLE,
+                                                                 .radius = 2.4};
 }
 
 static void add_table(recipe_figure *fig, int panel, int source)
 {
-    bool empty = fig->panels[panel].map == NULL && fig->panels[panel].series_count == 0;
+    bool empty = fig->plot.panels[panel].map == NULL && fig->plot.panels[panel].series_count == 0;
     if (fig->recipe.sources[source].z == NULL) {
         add_curve(fig, panel, source);
     } else if (empty && fig->sources[source].count > 0) {
@@ -169,7 +163,7 @@ static const trace *trace_of(const recipe_figure *fig, int source)
 static void add_signal(recipe_figure *fig, int panel, int source, int signal, int signals)
 {
     const recipe_source *from = &fig->recipe.sources[source];
-    figure_panel *p = &fig->panels[panel];
+    figure_panel *p = &fig->plot.panels[panel];
     bool data = from->kind == SOURCE_DATA;
     int index = signal_index(fig->recipe.panels[panel].signals[signal]);
 
@@ -181,23 +175,24 @@ static void add_signal(recipe_figure *fig, int panel, int source, int signal, in
     const opened_source *s = &fig->sources[source];
     const trace_run run = {
         .scenario = &s->run.scenario, .result = data ? &s->data : &s->run.result, .points = data};
-    figure_series *out = &fig->series[panel][p->series_count];
-    *out = trace_series(&run, index, fig->owned);
+    figure_series *out = &fig->plot.series[panel][p->series_count];
+    *out = trace_series(&run, index, fig->plot.kept);
 
     // several signals of one run are told by their symbols, several runs by their labels
     const char *label = label_of(fig, from);
     if (signals > 1) {
         const opened_source *first = &fig->sources[0];
         char *symbol = trace_symbol(data ? &first->run.scenario : run.scenario, index);
-        label =
-            recipe_own(fig, fig->recipe.source_count > 1 ? g_strdup_printf("%s %s", label, symbol)
-                                                         : g_strdup(symbol));
+        label = owned_figure_keep(&fig->plot, fig->recipe.source_count > 1
+                                                  ? g_strdup_printf("%s %s", label, symbol)
+                                                  : g_strdup(symbol));
         g_free(symbol);
     }
 
     // measured data are points without a line
     out->label = label;
-    out->name = recipe_own(fig, g_strdup_printf("%s %s", from->name, signal_table[index].name));
+    out->name = owned_figure_keep(&fig->plot,
+                                  g_strdup_printf("%s %s", from->name, signal_table[index].name));
     out->style = LINE_SOLID;
     out->colour = data ? 6 : colour_of(p->series_count);
     out->no_line = data;
@@ -209,9 +204,9 @@ static void add_signal(recipe_figure *fig, int panel, int source, int signal, in
 static void add_difference(recipe_figure *fig, int panel)
 {
     const recipe_panel *from = &fig->recipe.panels[panel];
-    figure_series *s = &fig->series[panel][0];
+    figure_series *s = &fig->plot.series[panel][0];
     *s = trace_difference(trace_of(fig, from->of), trace_of(fig, from->less),
-                          signal_index(from->signals[0]), fig->owned);
+                          signal_index(from->signals[0]), fig->plot.kept);
 
     // points where data are compared, else a line
     bool data = fig->recipe.sources[from->of].kind == SOURCE_DATA;
@@ -219,7 +214,7 @@ static void add_difference(recipe_figure *fig, int panel)
     s->colour = data ? 6 : 7;
     s->no_line = data;
     s->marker = data ? MARKER_CIRCLE : MARKER_NONE;
-    fig->panels[panel].series_count = 1;
+    fig->plot.panels[panel].series_count = 1;
 }
 
 // ---- panels
@@ -228,7 +223,7 @@ static void add_difference(recipe_figure *fig, int panel)
 static void describe_axis(recipe_figure *fig, int panel)
 {
     const recipe_panel *from = &fig->recipe.panels[panel];
-    figure_axis *y = &fig->panels[panel].y;
+    figure_axis *y = &fig->plot.panels[panel].y;
     *y = (figure_axis){.with_zero = from->zero,
                        .low = from->low,
                        .high = from->high,
@@ -241,13 +236,15 @@ static void describe_axis(recipe_figure *fig, int panel)
 
         y->name = signal->name;
         y->unit = signal->unit;
-        y->symbol = from->signal_count == 1
-                        ? recipe_own(fig, g_strconcat(from->of >= 0 ? "Δ" : "", symbol, NULL))
-                        : NULL;
-        y->label = recipe_own(fig, from->of >= 0 ? g_strdup_printf("Difference of %s", symbol)
-                                   : from->signal_count == 1
-                                       ? g_strdup_printf("%s %s", signal->quantity, symbol)
-                                       : g_strdup(signal->quantity));
+        y->symbol =
+            from->signal_count == 1
+                ? owned_figure_keep(&fig->plot, g_strconcat(from->of >= 0 ? "Δ" : "", symbol, NULL))
+                : NULL;
+        y->label = owned_figure_keep(&fig->plot,
+                                     from->of >= 0 ? g_strdup_printf("Difference of %s", symbol)
+                                     : from->signal_count == 1
+                                         ? g_strdup_printf("%s %s", signal->quantity, symbol)
+                                         : g_strdup(signal->quantity));
         g_free(symbol);
     } else if (from->source_count > 0) {
         const recipe_source *table = &fig->recipe.sources[from->sources[0]];
@@ -269,26 +266,25 @@ static void describe_axis(recipe_figure *fig, int panel)
 // A panel with the first one's curves needs no legend of its own.
 static void share_legend(recipe_figure *fig, int panel)
 {
-    const figure_panel *first = &fig->panels[0], *p = &fig->panels[panel];
+    const figure_panel *first = &fig->plot.panels[0], *p = &fig->plot.panels[panel];
     bool same = panel > 0 && p->series_count == first->series_count;
     for (int i = 0; i < p->series_count && same; i++) {
         same = g_strcmp0(p->series[i].label, first->series[i].label) == 0 &&
                p->series[i].colour == first->series[i].colour;
     }
     if (same) {
-        fig->panels[panel].legend = LEGEND_NONE;
+        fig->plot.panels[panel].legend = LEGEND_NONE;
     }
 }
 
 void recipe_describe_panel(recipe_figure *fig, int panel)
 {
     const recipe_panel *from = &fig->recipe.panels[panel];
-    figure_panel *p = &fig->panels[panel];
+    figure_panel *p = &fig->plot.panels[panel];
     describe_axis(fig, panel);
 
     p->heading = from->heading;
     p->weight = from->weight;
-    p->series = fig->series[panel];
     p->notes = from->notes;
     p->note_count = from->note_count;
 

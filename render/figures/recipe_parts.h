@@ -163,18 +163,12 @@ typedef struct recipe_figure {
     recipe recipe;
     char *path;
     opened_source sources[RECIPE_SOURCES];
-    figure figure;
-    figure_panel panels[FIGURE_PANELS];
-    figure_series series[FIGURE_PANELS][PANEL_SERIES];
+    owned_figure plot;
     figure_map maps[FIGURE_PANELS];
     figure_colours colours[FIGURE_PANELS];
-    GPtrArray *owned;
 } recipe_figure;
 
 // --- panels: recipe_panels.c
-
-// Adds a block to those that are freed with the figure.
-void *recipe_own(recipe_figure *fig, void *block);
 
 // The axis of a table's column: label and unit of a parameter or summary quantity, otherwise the
 // key itself.

@@ -13,20 +13,17 @@ enum { MAP_PANELS = 3, MAP_LAYERS = 4, MAP_COLUMNS = 40, MAP_ROWS = 30, MAP_RING
 
 // A map with everything its figure borrows. Fill the first block, then compute and open.
 typedef struct newmark_map {
-    int columns, rows;                  // of cells, up to MAP_COLUMNS and MAP_ROWS
-    const char *headings[MAP_PANELS];   // markup
-    figure_axis scale;                  // of the numbers
-    bool reversed;                      // low values are bright
-    char *title, *caption, *parameters; // owned
+    int columns, rows;                // of cells, up to MAP_COLUMNS and MAP_ROWS
+    const char *headings[MAP_PANELS]; // markup
+    figure_axis scale;                // of the numbers
+    bool reversed;                    // low values are bright
     // the number of a pair in a panel, from a run of its own on any thread; not finite if the run
     // failed
     double (*value)(const void *context, int panel, double beta, double gamma);
     void *context; // for value
     void (*release)(void *context);
 
-    figure figure;
-    figure_panel panels[MAP_PANELS];
-    figure_series layers[MAP_PANELS][MAP_LAYERS];
+    owned_figure plot;
     int layer_count;
     figure_map maps[MAP_PANELS];
     figure_colours colours[MAP_PANELS];
@@ -52,9 +49,9 @@ static void add_layer(newmark_map *m, figure_series layer)
 {
     assert(m->layer_count < MAP_LAYERS);
     for (int panel = 0; panel < MAP_PANELS; panel++) {
-        m->layers[panel][m->layer_count] = layer;
+        m->plot.series[panel][m->layer_count] = layer;
         if (layer.shade != NULL) {
-            m->layers[panel][m->layer_count].shade = m->ring_value[panel];
+            m->plot.series[panel][m->layer_count].shade = m->ring_value[panel];
         }
     }
     m->layer_count++;
@@ -155,13 +152,13 @@ static void describe_panel(newmark_map *m, int panel)
                                   .z = m->values[panel]};
     m->colours[panel] =
         (figure_colours){.axis = m->scale, .reversed = m->reversed, .bar = panel == MAP_PANELS - 1};
-    m->panels[panel] = (figure_panel){
+    m->plot.panels[panel] = (figure_panel){
         .heading = m->headings[panel],
         .y = {.name = "gamma", .label = "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH},
         .weight = WEIGHT,
         .map = &m->maps[panel],
         .colours = &m->colours[panel],
-        .series = m->layers[panel],
+        .series = m->plot.series[panel],
         .series_count = m->layer_count};
 }
 
@@ -172,31 +169,24 @@ static void newmark_map_destroy(void *what)
     if (m->release != NULL) {
         m->release(m->context);
     }
-    g_free(m->title);
-    g_free(m->caption);
-    g_free(m->parameters);
+    owned_figure_finish(&m->plot);
     g_free(m);
 }
 
 static artwork newmark_map_open(newmark_map *m, const figure_options *o)
 {
-    assert(m != NULL && o != NULL && m->title != NULL);
+    assert(m != NULL && o != NULL);
     for (int panel = 0; panel < MAP_PANELS; panel++) {
         describe_panel(m, panel);
     }
 
-    m->figure = (figure){.title = m->title,
-                         .caption = m->caption,
-                         .x = {.name = "beta", .label = "<i>β</i>", .low = 0, .high = BETA_HIGH},
-                         .panels = m->panels,
-                         .panel_count = MAP_PANELS,
-                         .columns = MAP_PANELS,
-                         .common_legend = true,
-                         .shared_y = true,
-                         .parameters = m->parameters};
-    figure_take_look(&m->figure, &o->look);
+    figure *fig = &m->plot.figure;
+    fig->x = (figure_axis){.name = "beta", .label = "<i>β</i>", .low = 0, .high = BETA_HIGH};
+    fig->columns = MAP_PANELS;
+    fig->common_legend = fig->shared_y = true;
+    figure_take_look(fig, &o->look);
 
-    artwork drawn = artwork_of_figure(&m->figure, m, newmark_map_destroy);
+    artwork drawn = artwork_of_figure(fig, m, newmark_map_destroy);
     drawn.cells = true;
     return drawn;
 }
@@ -340,20 +330,23 @@ status stability_map(const char *title, const figure_options *o, artwork *out, f
                   .low = 0.01,
                   .high = 100},
         .reversed = true,
-        .title = g_strdup(title),
-        .parameters = parameters_line(&r->run.scenario),
         .value = newmark_error,
         .context = r,
         .release = release_event_reference};
-    m->caption = text_printf(
-        "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). Error: root of "
-        "the mean square difference of the contact force from the event method's over the "
-        "%g\u2009ms after first contact, in per cent of its peak. Lines: <i>γ</i> = ½ and "
-        "2<i>β</i> = <i>γ</i>, between which Table 3.1 promises stability at any step; dashed: "
-        "<i>β</i> = ¼, below which the constraint of the contact makes accelerations grow from "
-        "step to step, whatever <i>γ</i>. Hatched: the run was stopped because its "
-        "energy no longer balanced. Rings have the colour of their own method's error.",
-        1e3 * WINDOW);
+    owned_figure_init(&m->plot, title, MAP_PANELS);
+    m->plot.figure.parameters = owned_figure_keep(&m->plot, parameters_line(&r->run.scenario));
+    m->plot.figure.caption = owned_figure_keep(
+        &m->plot,
+        text_printf(
+            "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). Error: root "
+            "of "
+            "the mean square difference of the contact force from the event method's over the "
+            "%g\u2009ms after first contact, in per cent of its peak. Lines: <i>γ</i> = ½ and "
+            "2<i>β</i> = <i>γ</i>, between which Table 3.1 promises stability at any step; dashed: "
+            "<i>β</i> = ¼, below which the constraint of the contact makes accelerations grow from "
+            "step to step, whatever <i>γ</i>. Hatched: the run was stopped because its "
+            "energy no longer balanced. Rings have the colour of their own method's error.",
+            1e3 * WINDOW));
 
     newmark_map_compute(m);
     compute_rings(m, r);
@@ -427,20 +420,24 @@ status printed_stability_map(const char *title, const figure_options *o, artwork
                                  .low = 0.5,
                                  .high = 500},
                        .reversed = true,
-                       .title = g_strdup(title),
-                       .parameters = parameters_line(&r->run.scenario),
                        .value = printed_force,
                        .context = r,
                        .release = release_printed_reference};
-    m->caption = text_printf(
-        "The printed model (thesis/fig-3-4, 1\u2009V), largest contact force of the %g\u2009ms "
-        "after first contact, in times the %.3g\u2009N of Fig. 3.4. Two runs: accelerations and "
-        "force "
-        "are computed once more from the constraint's second derivative (3.13), the thesis's "
-        "remedy. One run: without it no pair gives a usable force, and a shorter step "
-        "makes it worse, because the impulse of the impact is delivered within one step. Lines as "
-        "in the map of the corrected arm. Hatched: the equations of a step became singular.",
-        1e3 * WINDOW, r->peak);
+    owned_figure_init(&m->plot, title, MAP_PANELS);
+    m->plot.figure.parameters = owned_figure_keep(&m->plot, parameters_line(&r->run.scenario));
+    m->plot.figure.caption = owned_figure_keep(
+        &m->plot,
+        text_printf(
+            "The printed model (thesis/fig-3-4, 1\u2009V), largest contact force of the %g\u2009ms "
+            "after first contact, in times the %.3g\u2009N of Fig. 3.4. Two runs: accelerations "
+            "and "
+            "force "
+            "are computed once more from the constraint's second derivative (3.13), the thesis's "
+            "remedy. One run: without it no pair gives a usable force, and a shorter step "
+            "makes it worse, because the impulse of the impact is delivered within one step. Lines "
+            "as "
+            "in the map of the corrected arm. Hatched: the equations of a step became singular.",
+            1e3 * WINDOW, r->peak));
 
     newmark_map_compute(m);
     *out = newmark_map_open(m, o);

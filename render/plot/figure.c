@@ -11,6 +11,37 @@
 #define PANEL_HEIGHT 34.0 // of a panel of weight 1 on a page without a height [mm]
 #define SIDES        52.0 // approximate width of the labels next to the panels [pt]
 
+void owned_figure_init(owned_figure *o, const char *title, int panels)
+{
+    *o = (owned_figure){.kept = g_ptr_array_new_with_free_func(g_free)};
+    o->figure = (figure){.title = title != NULL ? owned_figure_keep(o, g_strdup(title)) : NULL,
+                         .panels = o->panels,
+                         .panel_count = panels,
+                         .software = picture_software()};
+    for (int i = 0; i < panels; i++) {
+        o->panels[i].series = o->series[i];
+    }
+}
+
+void owned_figure_finish(owned_figure *o)
+{
+    g_ptr_array_free(o->kept, TRUE);
+}
+
+void owned_figure_destroy(owned_figure *o)
+{
+    if (o != NULL) {
+        owned_figure_finish(o);
+        g_free(o);
+    }
+}
+
+void *owned_figure_keep(owned_figure *o, void *block)
+{
+    g_ptr_array_add(o->kept, block);
+    return block;
+}
+
 void figure_take_look(figure *fig, const page_look *look)
 {
     assert(fig != NULL && look != NULL);
@@ -305,23 +336,14 @@ static void write_panel_name(long_form *t, const figure_panel *panel)
     }
 }
 
-// The end of a row.
-static void write_point(long_form *t, double x, double y)
+// The end of a row; `shade` is the value on the colour scale, where the figure has one.
+static void write_point(long_form *t, double x, double y, double shade)
 {
     csv_number(&t->csv, x);
     csv_number(&t->csv, isfinite(y) ? y : (double)NAN);
     if (t->shaded) {
-        csv_number(&t->csv, (double)NAN);
+        csv_number(&t->csv, isfinite(shade) ? shade : (double)NAN);
     }
-    csv_end_row(&t->csv);
-}
-
-// The end of a row that has a value on a colour scale, too.
-static void write_shaded_point(long_form *t, double x, double y, double shade)
-{
-    csv_number(&t->csv, x);
-    csv_number(&t->csv, y);
-    csv_number(&t->csv, isfinite(shade) ? shade : (double)NAN);
     csv_end_row(&t->csv);
 }
 
@@ -334,11 +356,8 @@ static void write_series(long_form *t, const figure_panel *panel, const figure_s
 
         write_panel_name(t, panel);
         write_name(t, s->name, s->label, NULL);
-        if (s->shade != NULL) {
-            write_shaded_point(t, series_x(s, i), series_y(s, i), series_shade(s, i));
-        } else {
-            write_point(t, series_x(s, i), series_y(s, i));
-        }
+        double shade = s->shade != NULL ? series_shade(s, i) : (double)NAN;
+        write_point(t, series_x(s, i), series_y(s, i), shade);
     }
 }
 
@@ -349,7 +368,7 @@ static void write_map(long_form *t, const figure_panel *panel)
         for (size_t j = 0; j < map->rows; j++) {
             write_panel_name(t, panel);
             csv_text(&t->csv, "map");
-            write_shaded_point(t, map->x[i], map->y[j], map->z[i * map->rows + j]);
+            write_point(t, map->x[i], map->y[j], map->z[i * map->rows + j]);
         }
     }
 }
@@ -359,7 +378,7 @@ static void write_levels_and_impulses(long_form *t, const figure_panel *panel)
     for (int i = 0; i < panel->impulse_count; i++) {
         write_panel_name(t, panel);
         write_name(t, "impulse", NULL, panel->impulse_unit);
-        write_point(t, panel->impulses[i].x, panel->impulses[i].size);
+        write_point(t, panel->impulses[i].x, panel->impulses[i].size, (double)NAN);
     }
 
     // levels go by their label alone
@@ -368,7 +387,7 @@ static void write_levels_and_impulses(long_form *t, const figure_panel *panel)
         write_panel_name(t, panel);
         write_name(t, NULL, label ? label : "level", NULL);
         // a level has no x of its own
-        write_point(t, (double)NAN, panel->levels[i].y);
+        write_point(t, (double)NAN, panel->levels[i].y, (double)NAN);
     }
 }
 
@@ -377,7 +396,7 @@ static void write_instant(long_form *t, const char *panel, const char *series, d
 {
     csv_text(&t->csv, panel);
     csv_text(&t->csv, series);
-    write_point(t, x, (double)NAN);
+    write_point(t, x, (double)NAN, (double)NAN);
 }
 
 static void write_marks(long_form *t, const figure *fig)

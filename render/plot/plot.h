@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cairo.h>
+#include <glib.h>
 
 #include "render/page/page.h"
 #include "src/base/fault.h"
@@ -166,6 +167,25 @@ typedef struct figure {
     const char *software;   // plain, for the file's metadata, "impactlab 0.1.0"
     const char *parameters; // plain, for the file's metadata
 } figure;
+
+// A figure with all that it borrows: panels, series, texts and numbers made for it.
+typedef struct owned_figure {
+    figure figure;
+    figure_panel panels[FIGURE_PANELS];
+    figure_series series[FIGURE_PANELS][PANEL_SERIES]; // of each panel
+    GPtrArray *kept;                                   // blocks
+} owned_figure;
+
+// A figure of empty panels with the program's name and version and a copy of the plain title (may
+// be NULL).
+void owned_figure_init(owned_figure *o, const char *title, int panels);
+void owned_figure_finish(owned_figure *o);
+
+// The same on the heap; NULL is accepted.
+void owned_figure_destroy(owned_figure *o);
+
+// Gives a block from g_malloc to the figure, and returns it.
+void *owned_figure_keep(owned_figure *o, void *block);
 
 // Applies the given look to a figure; fields that are zero have no effect.
 void figure_take_look(figure *fig, const page_look *look);

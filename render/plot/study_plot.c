@@ -12,34 +12,6 @@
 #include "src/base/shipped.h"
 #include "src/tables/summary.h"
 
-// ==== a figure with everything it borrows
-
-owned_figure *owned_figure_create(void)
-{
-    owned_figure *o = g_new0(owned_figure, 1);
-    o->kept = g_ptr_array_new_with_free_func(g_free);
-    o->panel.series = o->series;
-    o->figure.panels = &o->panel;
-    o->figure.panel_count = 1;
-    o->figure.software = picture_software();
-    return o;
-}
-
-void owned_figure_destroy(owned_figure *o)
-{
-    if (o != NULL) {
-        g_ptr_array_free(o->kept, TRUE);
-        g_free(o);
-    }
-}
-
-void *owned_figure_keep(owned_figure *o, void *block)
-{
-    assert(o != NULL && block != NULL);
-    g_ptr_array_add(o->kept, block);
-    return block;
-}
-
 // ==== robust: the distribution of the overshoot
 
 // The curve of a law: run i of n, in the order of their overshoots, is at (i + 1)/n.
@@ -60,19 +32,20 @@ static figure_series describe_law(owned_figure *o, const robust_law *law, int sl
 owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 {
     assert(t != NULL && t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
-    owned_figure *o = owned_figure_create();
+    owned_figure *o = g_new(owned_figure, 1);
+    owned_figure_init(o, NULL, 1);
 
     // a curve for each law: the same runs, and so the same kind of overshoot
     for (int i = 0; i < t->count; i++) {
-        o->series[i] = describe_law(o, &t->laws[i], palette_slot(i));
+        o->series[0][i] = describe_law(o, &t->laws[i], palette_slot(i));
     }
-    o->panel.series_count = t->count;
-    o->panel.weight = 2.4;
-    o->panel.y = (figure_axis){.name = "share",
-                               .label = "Runs with at most this overshoot",
-                               .unit = "%",
-                               .low = 0,
-                               .high = 100};
+    o->panels[0].series_count = t->count;
+    o->panels[0].weight = 2.4;
+    o->panels[0].y = (figure_axis){.name = "share",
+                                   .label = "Runs with at most this overshoot",
+                                   .unit = "%",
+                                   .low = 0,
+                                   .high = 100};
 
     // the page
     o->figure.title =
@@ -270,7 +243,7 @@ static void describe_line(sweep_drawing *s, const sweep_picture *p)
 
     // one curve, or dots alone
     bool joined = grid && !v->words;
-    s->drawn->series[0] =
+    s->drawn->series[0][0] =
         (figure_series){.name = p->key,
                         .x = grid ? v->place : drawn_places(s, from, 0),
                         .y = y,
@@ -279,9 +252,9 @@ static void describe_line(sweep_drawing *s, const sweep_picture *p)
                         .marker = joined && count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE,
                         .radius = marker_radius(count)};
 
-    s->drawn->panel.y = quantity_axis(s, p->key);
-    s->drawn->panel.y.room = LINE_ROOM;
-    s->drawn->panel.series_count = 1;
+    s->drawn->panels[0].y = quantity_axis(s, p->key);
+    s->drawn->panels[0].y.room = LINE_ROOM;
+    s->drawn->panels[0].series_count = 1;
 }
 
 // A parameter of words and one of numbers: a curve for each word, over the numbers.
@@ -299,21 +272,21 @@ static void describe_words(sweep_drawing *s, const sweep_picture *p, int words, 
             size_t w = word->order[k], n = number->order[i];
             y[i] = p->values[words == 0 ? w * inner + n : n * inner + w];
         }
-        s->drawn->series[k] = (figure_series){.name = own(s, point_label(word, k)),
-                                              .label = own(s, point_label(word, k)),
-                                              .x = number->place,
-                                              .y = y,
-                                              .count = number->count,
-                                              .colour = palette_slot((int)k),
-                                              .marker = number->count > MOST_MARKERS
-                                                            ? MARKER_NONE
-                                                            : markers[k % G_N_ELEMENTS(markers)],
-                                              .radius = marker_radius(number->count)};
+        s->drawn->series[0][k] = (figure_series){.name = own(s, point_label(word, k)),
+                                                 .label = own(s, point_label(word, k)),
+                                                 .x = number->place,
+                                                 .y = y,
+                                                 .count = number->count,
+                                                 .colour = palette_slot((int)k),
+                                                 .marker = number->count > MOST_MARKERS
+                                                               ? MARKER_NONE
+                                                               : markers[k % G_N_ELEMENTS(markers)],
+                                                 .radius = marker_radius(number->count)};
     }
 
-    s->drawn->panel.y = quantity_axis(s, p->key);
-    s->drawn->panel.y.room = LINE_ROOM;
-    s->drawn->panel.series_count = (int)word->count;
+    s->drawn->panels[0].y = quantity_axis(s, p->key);
+    s->drawn->panels[0].y.room = LINE_ROOM;
+    s->drawn->panels[0].series_count = (int)word->count;
 }
 
 // The axis of words that gives a curve each, -1 if the picture is a map.
@@ -334,21 +307,21 @@ static void describe_map(sweep_drawing *s, const sweep_picture *p)
     const varied *x = &s->varied[0], *y = &s->varied[1];
     figure_colours *colours = own(s, g_new(figure_colours, 1));
     *colours = (figure_colours){.axis = quantity_axis(s, p->key), .bar = true};
-    s->drawn->panel.colours = colours;
+    s->drawn->panels[0].colours = colours;
 
     // values that were drawn are dots
     if (from->sampling != SWEEP_GRID) {
-        s->drawn->series[0] = (figure_series){.name = p->key,
-                                              .x = drawn_places(s, from, 0),
-                                              .y = drawn_places(s, from, 1),
-                                              .shade = p->values,
-                                              .count = from->run_count,
-                                              .no_line = true,
-                                              .marker = MARKER_CIRCLE,
-                                              .radius = from->run_count > 1000  ? 1.5
-                                                        : from->run_count > 200 ? 2.2
-                                                                                : 3.2};
-        s->drawn->panel.series_count = 1;
+        s->drawn->series[0][0] = (figure_series){.name = p->key,
+                                                 .x = drawn_places(s, from, 0),
+                                                 .y = drawn_places(s, from, 1),
+                                                 .shade = p->values,
+                                                 .count = from->run_count,
+                                                 .no_line = true,
+                                                 .marker = MARKER_CIRCLE,
+                                                 .radius = from->run_count > 1000  ? 1.5
+                                                           : from->run_count > 200 ? 2.2
+                                                                                   : 3.2};
+        s->drawn->panels[0].series_count = 1;
         return;
     }
 
@@ -367,8 +340,8 @@ static void describe_map(sweep_drawing *s, const sweep_picture *p)
                         .rows = y->count,
                         .z = z,
                         .contours = !x->words && !y->words};
-    s->drawn->panel.map = map;
-    s->drawn->figure.x.room = s->drawn->panel.y.room = 0;
+    s->drawn->panels[0].map = map;
+    s->drawn->figure.x.room = s->drawn->panels[0].y.room = 0;
 }
 
 // ---- the picture
@@ -435,11 +408,11 @@ static void describe(sweep_drawing *s, const sweep_picture *p)
     } else if (words >= 0) {
         describe_words(s, p, words, 1 - words);
     } else {
-        s->drawn->panel.y = axes[1];
+        s->drawn->panels[0].y = axes[1];
         describe_map(s, p);
     }
     if (missing == from->run_count) {
-        s->drawn->panel.remark = "the quantity did not occur in any run";
+        s->drawn->panels[0].remark = "the quantity did not occur in any run";
     }
 
     // the page
@@ -447,7 +420,7 @@ static void describe(sweep_drawing *s, const sweep_picture *p)
     const summary_info *quantity = &summary_table[summary_index(p->key)];
     fig->title = own(s, title_of(p, quantity->label));
     fig->caption = own(s, caption_of(p, missing));
-    s->drawn->panel.weight = PANEL_WEIGHT;
+    s->drawn->panels[0].weight = PANEL_WEIGHT;
     fig->parameters = own(s, command_of(from));
 }
 
@@ -466,7 +439,8 @@ status sweep_plot_check(const sweep *s, const char *path, fault *f)
 owned_figure *sweep_figure_create(const sweep_picture *p)
 {
     assert(p != NULL && p->sweep->axis_count >= 1 && p->sweep->axis_count <= 2);
-    sweep_drawing s = {.drawn = owned_figure_create()};
+    sweep_drawing s = {.drawn = g_new(owned_figure, 1)};
+    owned_figure_init(s.drawn, NULL, 1);
     describe(&s, p);
     return s.drawn;
 }
