@@ -5,7 +5,6 @@
 
 #include "src/run/run.h"
 #include "src/solve/contact_machine.h"
-#include "src/solve/series_engine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 #include "tests/motion_advance.h"
@@ -687,34 +686,6 @@ static void a_mass_at_the_tip_strikes_a_rigid_wall(void **state)
     check_close(log10(fabs((contact[1] - contact[0]) / (contact[2] - contact[0]))), 2, 0.1);
 }
 
-// Hunt and Crossley's force has no power series at the touch. Next to it, where it does little, low
-// orders are enough, and the ledger closes.
-static void next_to_a_touch_few_orders_are_enough(void **state)
-{
-    (void)state;
-    const parameters p = fixture_parameters(SETTINGS("wall.contact=hunt-crossley"));
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create_by(&a, &p.method, &series_engine);
-    motion_start(&a, m, 0.09, 0.7);
-
-    // from touch to release
-    long orders = 0, strides = 0;
-    motion_report r = {.event = MOTION_REACHED};
-    while (r.event != MOTION_RELEASE) {
-        const bool within = m->state[SLOT_CONTACT] != 0;
-        assert_int_equal(motion_step(&a, m, 1, 1e-3, &r), STATUS_OK);
-        orders += within ? ((const series_stride *)m->memory)->series->order : 0;
-        strides += within;
-        assert_true(strides < 100 && m->state[SLOT_TIME] < 1);
-        motion_apply(&a, m, &r);
-    }
-    assert_true(strides > 20);
-    assert_true(orders < 20 * strides);
-    check_close(motion_energy_residual(&a, m, m->state), 0, 1e-12);
-    motion_destroy(m);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -737,7 +708,6 @@ int main(void)
         cmocka_unit_test(a_mass_at_the_tip_strikes_a_rigid_wall),
         cmocka_unit_test(a_wall_without_damping_takes_nothing),
         cmocka_unit_test(a_slow_face_lets_go_behind_the_wall),
-        cmocka_unit_test(next_to_a_touch_few_orders_are_enough),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -133,11 +133,11 @@ void chain_series_choose_drive(chain_series *s, const arm *a, double current, do
 // Computes the series of an arm from q[dof] and w[dof] [rad/s] in the contact state s->mode, for a
 // stride of `length` up to chain_series_wall_reach [s], which comes first; of an electric drive
 // after chain_series_choose_drive, with its current in the mode. s->allowed is then that length, or
-// less where the last terms are not small: of the velocities, and in free flight of the gap's rate
-// over the arm's length, `last_terms` of the largest velocity; of the contact force, a share of
+// less where the last terms are more than rounding: of the velocities, and in free flight of the
+// gap's rate over the arm's length, as a share of the largest velocity; of the contact force, of
 // its first ones. 0 where they are not finite.
 void chain_series_compute(chain_series *s, const arm *a, const double *q, const double *w,
-                          double length, double last_terms);
+                          double length);
 
 // Coefficient n of w of the first link [rad].
 double chain_series_first_rate(const chain_series *s, int n);

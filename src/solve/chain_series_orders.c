@@ -9,9 +9,9 @@
 #include "src/solve/chain_series_parts.h"
 #include "src/solve/taylor_lanes.h"
 
-#define REACH       6.0   // of the fastest mode or decay in a stride
 #define TURNING     1.2   // rotation counts so many times
 #define LEAST_RATE  0.1   // that counts as the largest velocity [rad/s]
+#define LAST_TERMS  1e-13 // of the velocities, as a share of the largest one
 #define SHORTENING  0.92  // of a stride that is too long for that
 #define FORCE_TERMS 1e-9  // last terms of the contact force, as a share of its first ones
 #define LEAST_FORCE 1e-6  // that counts as a force [N]
@@ -277,7 +277,7 @@ static bool force_converges(const chain_series *s, double share)
 // How far the last terms are small, as a share of the stride; 0 if they are not finite. In free
 // flight those of the gap's rate over the arm's length count, too, and in air those of the links'
 // velocities: of a link that gathers speed the rate is a short polynomial, the gap the sine of one.
-static double small_terms(const chain_series *s, const arm *a, double last_terms)
+static double small_terms(const chain_series *s, const arm *a)
 {
     const chain_rows *r = &s->rows;
     double largest = LEAST_RATE * s->length, last = 0, before = 0, sum = 0;
@@ -312,7 +312,7 @@ static double small_terms(const chain_series *s, const arm *a, double last_terms
     double share = 1;
     for (int i = 0; i < MOST_SHORTENINGS; i++) {
         const double high = power(share, order - 1);
-        if (high * (before + share * last) <= last_terms * largest && force_converges(s, share)) {
+        if (high * (before + share * last) <= LAST_TERMS * largest && force_converges(s, share)) {
             break;
         }
         share *= SHORTENING;
@@ -321,9 +321,9 @@ static double small_terms(const chain_series *s, const arm *a, double last_terms
 }
 
 void chain_series_compute(chain_series *s, const arm *a, const double *q, const double *w,
-                          double length, double last_terms)
+                          double length)
 {
-    assert(s != NULL && a != NULL && q != NULL && w != NULL && length > 0 && last_terms > 0);
+    assert(s != NULL && a != NULL && q != NULL && w != NULL && length > 0);
     assert(a->links == s->links);
     const chain_loops *loops = BY_WIDTH(&chain_loops_, taylor_width());
     chain_rows *r = &s->rows;
@@ -364,7 +364,7 @@ void chain_series_compute(chain_series *s, const arm *a, const double *q, const 
     if (a->motor.electric) {
         chain_series_sum_drive(s, a);
     }
-    s->allowed = length * small_terms(s, a, last_terms);
+    s->allowed = length * small_terms(s, a);
 }
 
 double chain_series_first_rate(const chain_series *s, int n)

@@ -1,13 +1,31 @@
-#include "src/solve/series_engine.h"
-
+// A chain of links by power series (chain_series.h): a dense engine, exact to rounding. The
+// two-link arm has its own (taylor_kernel.h), which is the same mathematics written out.
 #include <math.h>
 #include <string.h>
 
+#include "src/solve/chain_series.h"
 #include "src/solve/edge_limits.h"
 #include "src/solve/locate.h"
+#include "src/solve/motion.h"
 
 // Share of a limit of the current below which its margin counts as rounding (edge_limits.h).
 #define EDGE_CURRENT 1e-10
+
+// A function over a stride as a polynomial in x = t/L, the share of the stride's length.
+typedef struct series_function {
+    double term[SERIES_TERMS];
+    int count;
+    bool divided; // by a power of x
+} series_function;
+
+typedef struct series_stride {
+    series_function watched[WATCHES]; // those of the contact state; stiction, current: nearer limit
+    series_function far_limit, far_current; // the other ones
+    series_function force;                  // never divided
+    bool force_apart;                       // what is watched of the force is not the force itself
+    double force_most, force_until; // the force's bound, for times up to the second [N], [s]
+    chain_series *series;
+} series_stride;
 
 // --- polynomials --------------------------------------------------------------------------------
 
@@ -77,13 +95,14 @@ static void leave_edge(series_function *p, const double limits[3], double length
 
 // --- a stride -----------------------------------------------------------------------------------
 
-size_t series_stride_size(const arm *a)
+static size_t memory_for(const arm *a)
 {
     return sizeof(series_stride) + chain_series_size(a);
 }
 
-void series_stride_place(series_stride *s, const arm *a)
+static void open(const arm *a, motion *m)
 {
+    series_stride *s = m->memory;
     memset(s, 0, sizeof *s);
     s->series = (chain_series *)(s + 1);
     chain_series_place(s->series, a);
@@ -179,9 +198,10 @@ static void prepare_watched(series_stride *s, const arm *a, const motion *m, dou
     }
 }
 
-double series_stride_begin(series_stride *s, const arm *a, motion *m, double remaining,
-                           double last_terms)
+static double begin(const arm *a, motion *m, double remaining, double step)
 {
+    series_stride *s = m->memory;
+    (void)step;
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     chain_series *c = s->series;
     c->mode = contact_state_of(m->state);
@@ -207,7 +227,7 @@ double series_stride_begin(series_stride *s, const arm *a, motion *m, double rem
         reach = fmin(reach, wall_face_lasts(&a->wall, state_face(m->state)));
     }
     const double length = fmin(remaining, reach);
-    chain_series_compute(c, a, q, w, length, last_terms);
+    chain_series_compute(c, a, q, w, length);
     double face_lacks = 0;
     if (swings) {
         face_lacks = chain_series_add_face(c, a, state_face(m->state));
@@ -229,8 +249,9 @@ double series_stride_begin(series_stride *s, const arm *a, motion *m, double rem
     return s->series->allowed;
 }
 
-status series_stride_state(const series_stride *s, const arm *a, motion *m, double h)
+static status state_at(const arm *a, motion *m, double h)
 {
+    const series_stride *s = m->memory;
     const chain_series *c = s->series;
     const double x = h / c->length, per = 1 / c->length;
     const double *before = state_quadratures(m, m->state);
@@ -274,8 +295,10 @@ status series_stride_state(const series_stride *s, const arm *a, motion *m, doub
 
 // --- what the contact machine asks --------------------------------------------------------------
 
-glance series_stride_look(const series_stride *s, watch w, double h)
+static glance look(const arm *a, const motion *m, watch w, double h)
 {
+    const series_stride *s = m->memory;
+    (void)a;
     const double x = h / s->series->length;
     glance near = glance_at(&s->watched[w], x);
     if (w >= WATCH_STICTION) {
@@ -285,8 +308,10 @@ glance series_stride_look(const series_stride *s, watch w, double h)
     return (glance){near.value, near.slope / s->series->length};
 }
 
-double series_stride_bend(const series_stride *s, watch w, double to)
+static double bend(const arm *a, const motion *m, watch w, double from, double to)
 {
+    const series_stride *s = m->memory;
+    (void)a, (void)from;
     const double length = s->series->length, x = to / length;
     double bend = bend_of(&s->watched[w], x);
     if (w == WATCH_FORCE && s->force_apart) {
@@ -303,8 +328,10 @@ static bool far_is_clear(const series_stride *s, double h)
     return s->far_current.term[0] > spread_of(&s->far_current, h / s->series->length);
 }
 
-bool series_stride_clear(series_stride *s, watch w, double h)
+static bool clear(const arm *a, motion *m, watch w, double h)
 {
+    series_stride *s = m->memory;
+    (void)a;
     // of two limits the nearer one, as far as the other
     const series_function *p = &s->watched[w];
     const double spread = spread_of(p, h / s->series->length);
@@ -316,58 +343,19 @@ bool series_stride_clear(series_stride *s, watch w, double h)
     return p->term[0] > spread && (!far || far_is_clear(s, h));
 }
 
-bool series_stride_bounded(const series_stride *s, double h, double most)
-{
-    return h <= s->force_until && s->force_most <= most;
-}
-
-glance series_stride_force(const series_stride *s, double h)
-{
-    const glance g = glance_at(&s->force, h / s->series->length);
-    return (glance){g.value, g.slope / s->series->length};
-}
-
-// --- as an engine of its own --------------------------------------------------------------------
-
-static double begin(const arm *a, motion *m, double remaining, double step)
-{
-    (void)step;
-    return series_stride_begin(m->memory, a, m, remaining, SERIES_EXACT);
-}
-
-static status state_at(const arm *a, motion *m, double h)
-{
-    return series_stride_state(m->memory, a, m, h);
-}
-
-static glance look(const arm *a, const motion *m, watch w, double h)
-{
-    (void)a;
-    return series_stride_look(m->memory, w, h);
-}
-
-static double bend(const arm *a, const motion *m, watch w, double from, double to)
-{
-    (void)a, (void)from;
-    return series_stride_bend(m->memory, w, to);
-}
-
-static bool clear(const arm *a, motion *m, watch w, double h)
-{
-    (void)a;
-    return series_stride_clear(m->memory, w, h);
-}
-
 static bool bounded(const arm *a, motion *m, double h, double most)
 {
+    const series_stride *s = m->memory;
     (void)a;
-    return series_stride_bounded(m->memory, h, most);
+    return h <= s->force_until && s->force_most <= most;
 }
 
 static glance force_at(const arm *a, const motion *m, double h)
 {
+    const series_stride *s = m->memory;
     (void)a;
-    return series_stride_force(m->memory, h);
+    const glance g = glance_at(&s->force, h / s->series->length);
+    return (glance){g.value, g.slope / s->series->length};
 }
 
 static glance gap_at(const arm *a, const motion *m, double h)
@@ -381,11 +369,6 @@ static glance gap_at(const arm *a, const motion *m, double h)
     return (glance){g.value, g.slope / c->length};
 }
 
-static void open_memory(const arm *a, motion *m)
-{
-    series_stride_place(m->memory, a);
-}
-
 const engine series_engine = {.name = "series",
                               .begin = begin,
                               .state_at = state_at,
@@ -395,5 +378,5 @@ const engine series_engine = {.name = "series",
                               .bounded = bounded,
                               .force_at = force_at,
                               .gap_at = gap_at,
-                              .memory_for = series_stride_size,
-                              .open = open_memory};
+                              .memory_for = memory_for,
+                              .open = open};
