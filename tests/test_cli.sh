@@ -475,7 +475,10 @@ says err "KEY<VALUE"
 expect 0 study sensor --plot sensor.pdf
 says out "beam"
 [ -s sensor.pdf ] && [ -s sensor.csv ] || fail "study draws nothing"
+expect 0 study links --json links.json --plot links.svg
+says out "take "
+grep -q '"limits"' links.json && [ -s links.svg ] || fail "study links writes no limits or draws nothing"
 expect 2 study sense
-says err "expected methods or sensor"
+says err "expected methods, sensor or links"
 
 nothing_failed

@@ -1,5 +1,5 @@
-// impactlab study: error against cost of the methods of time integration, and what a force sensor
-// would read of the contact.
+// impactlab study: error against cost of the methods of time integration, what a force sensor would
+// read of the contact, and how far a number of links is from a beam.
 #include "ui/commands/command.h"
 
 #include <assert.h>
@@ -9,8 +9,10 @@
 #include <string.h>
 
 #include "src/base/json.h"
+#include "src/base/numbers.h"
 #include "src/base/shipped.h"
 #include "src/study/convergence.h"
+#include "src/study/links.h"
 #include "src/study/sensor_view.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
@@ -68,11 +70,11 @@ static json_t *methods_object(const scenario *s, const method_study *study)
 }
 
 // A number in a column of the given width, "-" where there is none.
-static void print_cell(int width, double value)
+static void print_cell(int width, double value, const char *format)
 {
     char text[32] = "-";
     if (!isnan(value)) {
-        snprintf(text, sizeof text, "%.3g", value);
+        decimal_print(text, sizeof text, format, value);
     }
     printf(" %*s", width, text);
 }
@@ -93,9 +95,9 @@ static void print_methods(const scenario *s, const method_study *study)
         for (int i = 0; i < STUDY_STEPS; i++) {
             const study_point *p = &study->points[m][i];
             printf("%-18g", p->step);
-            print_cell(10, 1e3 * p->cost);
+            print_cell(10, 1e3 * p->cost, "%.3g");
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
-                print_cell(12, p->error[k]);
+                print_cell(12, p->error[k], "%.3g");
             }
             printf("\n");
         }
@@ -395,6 +397,156 @@ static int study_of_sensor(const arguments *a, scenario *s)
     return result;
 }
 
+// --- links ------------------------------------------------------------------------------------
+
+static json_t *links_object(const scenario *s, const links_study *study)
+{
+    json_t *object = json_object(), *rows = json_array(), *quantities = json_array();
+    json_put(object, "scenario", json_text(s->name));
+    for (int i = 0; i < study->count; i++) {
+        json_t *line = json_object();
+        json_put(line, "links", json_integer(links_numbers[i]));
+        for (int k = 0; k < LINKS_QUANTITIES; k++) {
+            json_put(line, study->rows[k].key, json_number(study->rows[k].value[i]));
+        }
+        json_add(rows, line);
+    }
+    json_put(object, "links", rows);
+
+    // what they tend to
+    for (int k = 0; k < LINKS_QUANTITIES; k++) {
+        const links_row *row = &study->rows[k];
+        json_t *line = json_object();
+        json_put(line, "quantity", json_string(row->key));
+        json_put(line, "order", json_number(row->order));
+        json_put(line, "limit", json_number(row->limit));
+        json_put(line, "error", json_number(row->error));
+        json_put(line, "beam", json_number(row->beam));
+        json_put(line, "enough_links", row->enough > 0 ? json_integer(row->enough) : json_null());
+        json_add(quantities, line);
+    }
+    json_put(object, "limits", quantities);
+    return object;
+}
+
+static void print_links(const scenario *s, const links_study *study)
+{
+    char changes[SCENARIO_CHANGES];
+    say("%s%s: from links to a beam\n\n%-26s", s->name, scenario_changes(s, changes), "links");
+    for (int i = 0; i < study->count; i++) {
+        printf(" %9d", links_numbers[i]);
+    }
+    printf(" %10s %9s %9s %6s\n", "limit", "+-", "beam", "order");
+
+    for (int k = 0; k < LINKS_QUANTITIES; k++) {
+        const links_row *row = &study->rows[k];
+        char name[64];
+        snprintf(name, sizeof name, "%s [%s]", row->label, row->unit);
+        printf("%-26s", name);
+        for (int i = 0; i < study->count; i++) {
+            print_cell(9, row->value[i], "%.4g");
+        }
+        print_cell(10, row->limit, "%.5g");
+        print_cell(9, row->error, "%.1g");
+        print_cell(9, row->beam, "%.5g");
+        print_cell(6, row->order, "%.2f");
+        printf("\n");
+    }
+    if (study->count < LINKS_LENGTHS) {
+        return;
+    }
+
+    // the answer in words
+    printf("\n");
+    for (int k = 0; k < LINKS_QUANTITIES; k++) {
+        const links_row *row = &study->rows[k];
+        const char *aim = isnan(row->beam) ? "its limit" : "the beam";
+        if (row->enough > 0) {
+            printf("%s: take %d links; from there on it is within %g %% of %s\n", row->label,
+                   row->enough, 100 * LINKS_ENOUGH, aim);
+        } else {
+            printf("%s: %d links are too few, or it has no limit\n", row->label,
+                   links_numbers[LINKS_LENGTHS - 1]);
+        }
+    }
+}
+
+// What each quantity lacks of the beam's, or of its limit, over the number of links.
+static int plot_links(const arguments *a, const scenario *s, const links_study *study)
+{
+    static const int colours[LINKS_QUANTITIES] = {0, 3, 5, 2, 1, 6, 7};
+    static const marker_kind markers[LINKS_QUANTITIES] = {
+        MARKER_CIRCLE,   MARKER_SQUARE, MARKER_TRIANGLE, MARKER_DIAMOND,
+        MARKER_TRIANGLE, MARKER_SQUARE, MARKER_CIRCLE};
+    static const figure_tick ticks[LINKS_LENGTHS] = {{2, "2"},   {4, "4"},   {8, "8"},
+                                                     {16, "16"}, {32, "32"}, {64, "64"}};
+    double off[LINKS_QUANTITIES][LINKS_LENGTHS];
+    figure_series series[LINKS_QUANTITIES];
+    int drawn = 0;
+    for (int k = 0; k < LINKS_QUANTITIES; k++) {
+        const links_row *row = &study->rows[k];
+        const double aim = isnan(row->beam) ? row->limit : row->beam;
+        if (isnan(aim)) {
+            continue;
+        }
+        for (int i = 0; i < LINKS_LENGTHS; i++) {
+            const double share = 100 * fabs(row->value[i] / aim - 1);
+            off[k][i] = share > 0 ? share : (double)NAN;
+        }
+        series[drawn++] = (figure_series){.name = row->key,
+                                          .label = row->label,
+                                          .x = study->links,
+                                          .y = off[k],
+                                          .count = LINKS_LENGTHS,
+                                          .colour = colours[k],
+                                          .marker = markers[k]};
+    }
+
+    const figure_panel panel = {
+        .y = {.name = "off", .label = "Off the beam", .unit = "%", .scale = SCALE_LOGARITHMIC},
+        .series = series,
+        .series_count = drawn,
+        .weight = 1.8};
+    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
+    snprintf(title, sizeof title, "%s: from links to a beam%s", s->name,
+             scenario_changes(s, changes));
+    figure fig = {.title = title,
+                  .caption = "From the Euler-Bernoulli beam where it has a closed form, else from "
+                             "Richardson\u2019s limit; what has neither is left out.",
+                  .x = {.name = "links",
+                        .label = "Number of links <i>N</i>",
+                        .ticks = ticks,
+                        .tick_count = LINKS_LENGTHS},
+                  .panels = &panel,
+                  .panel_count = 1};
+    return publish_study(a, &fig);
+}
+
+static int study_of_links(const arguments *a, scenario *s)
+{
+    links_study study;
+    fault f = {0};
+    run_monitor *monitor = work_begin(a, PIECES, LINKS_LENGTHS);
+    status code = links_study_compute(s, monitor, &study, &f);
+    work_end();
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
+        return complain_fault(&f);
+    }
+
+    if (summary_wanted(a) && study.count > 0) {
+        print_links(s, &study);
+    }
+
+    int result = a->json != NULL ? write_json(a->json, links_object(s, &study)) : EXIT_DONE;
+    if (code == STATUS_STOPPED) {
+        work_leave(study.count, LINKS_LENGTHS, PIECES, "the table is that of these");
+    }
+    if (result == EXIT_DONE && a->plot != NULL) {
+        result = plot_links(a, s, &study);
+    }
+    return result;
+}
+
 // --- the command ------------------------------------------------------------------------------
 
 typedef struct topic {
@@ -405,6 +557,7 @@ typedef struct topic {
 static const topic topics[] = {
     {"methods", "corrected/first-impact", study_of_methods},
     {"sensor", "corrected/plane-wall-fast", study_of_sensor},
+    {"links", "corrected/damped-beam", study_of_links},
 };
 enum { TOPICS = sizeof topics / sizeof topics[0] };
 
@@ -427,7 +580,8 @@ static int study(const arguments *a)
 {
     const topic *t = find_topic(a->operands[0]);
     if (t == NULL) {
-        return complain("there is no study '%s', expected methods or sensor", a->operands[0]);
+        return complain("there is no study '%s', expected methods, sensor or links",
+                        a->operands[0]);
     }
     return with_scenario(a->operand_count > 1 ? a->operands[1] : t->scenario, a, t->study);
 }
@@ -435,14 +589,17 @@ static int study(const arguments *a)
 const command study_command = {
     .name = "study",
     .group = GROUP_MANY_RUNS,
-    .operands = "methods|sensor [SCENARIO]",
-    .summary = "Error against cost of the methods; what a force sensor would see",
+    .operands = "methods|sensor|links [SCENARIO]",
+    .summary = "Error against cost; what a force sensor would see; links against a beam",
     .help = "methods: the scenario (corrected/first-impact) by every method of time integration at "
             "steps from 1e-2\ndown to 1e-6 s, with the error of first contact, first pulse's peak "
             "and steady force.\nsensor: the scenario (corrected/plane-wall-fast) with 2 to 32 "
             "links; the force itself has no limit,\nwhat a first-order sensor of 0.5, 1 or 2 ms "
-            "reads has one. See docs/explanation/methods.md and\ndocs/explanation/trust.md. ^C "
-            "ends either "
+            "reads has one.\nlinks: the scenario (corrected/damped-beam) with 2 to 64 links, "
+            "Richardson's limit "
+            "and the Euler-Bernoulli\nbeam, and how many links are enough for which question. See "
+            "docs/explanation/methods.md and\ndocs/explanation/trust.md. ^C "
+            "ends any of them "
             "with what it "
             "has until then (exit status 130).\n",
     .least = 1,

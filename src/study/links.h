@@ -1,0 +1,44 @@
+// How far a number of links is from a beam: quantities of a scenario over arm.links, their limit by
+// Richardson's extrapolation, and the Euler-Bernoulli beam where a closed form exists.
+#pragma once
+
+#include "src/run/run_result.h"
+#include "src/scenario/scenario.h"
+
+enum { LINKS_LENGTHS = 6, LINKS_QUANTITIES = 7 };
+extern const int links_numbers[LINKS_LENGTHS]; // 2, 4, 8 ... 64
+
+#define LINKS_ENOUGH 0.05 // of the beam's value, or the limit's, that a number of links may be off
+
+// A quantity over the number of links. What is not there, or cannot be told, is NaN.
+typedef struct links_row {
+    const char *key;             // "momentum_2ms_Ns", in JSON
+    const char *label, *unit;    // for people
+    double value[LINKS_LENGTHS]; // with links_numbers[i] links [unit]
+    double order;                // p observed, the error falling as N^-p
+    double limit, error;         // Richardson's from the last three, and what it may be off [unit]
+    double beam;                 // of the Euler-Bernoulli beam [unit]
+    int enough;                  // fewest links from which on all are within LINKS_ENOUGH; 0: none
+} links_row;
+
+typedef struct links_study {
+    int count; // numbers of links that were computed, the first ones
+    links_row rows[LINKS_QUANTITIES];
+    double links[LINKS_LENGTHS]; // as curves need them
+} links_study;
+
+// The fewest links from which on every value is within LINKS_ENOUGH of the beam's value (of the
+// limit where there is none), 0 if there are none.
+int links_enough(const links_row *row);
+
+// Runs the scenario with each number of links: momentum of the first 2 ms and what a sensor of 1 ms
+// reads (sensor_view.h), contact time and steady force (of the run's summary), the first frequency
+// with the tip free and pinned, hub held, and the tip's compliance. Fails as sensor_view_compute
+// does; *study then has the numbers of links before. STATUS_STOPPED if `monitor` (NULL: nobody
+// looks on) asked for it.
+//
+// The beam: 4 EI v (rho A / 4 EI)^(3/4) sqrt(t / pi) [N s] in t after a blow with speed v, as long
+// as nothing has come back from its other end, without damping and on a rigid wall; (beta L)^2
+// sqrt(EI / (m L^3)) with beta L = 1.8751 and 3.9266; L^3 / (3 EI). It has no closed form with a
+// mass at the tip or uneven links.
+status links_study_compute(const scenario *s, run_monitor *monitor, links_study *study, fault *f);
