@@ -39,6 +39,26 @@ for command in list show check run tables figures animate predict modes sweep co
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
 done
+# the chapters of the manual have what the tables have
+expect 0 show corrected/first-impact
+sed -n 's/^\([a-z]*\.[A-Za-z0-9_]*\) .*/\1/p' out | sort >shown
+expect 0 help --reference parameters
+sed -n 's/^| `\([^`]*\)` |.*/\1/p' out | sort >described
+diff shown described >err || fail "the chapter of parameters has others"
+expect 0 help --reference scenario.5
+[ "$(wc -l <described)" -ge 100 ] || fail "the chapter of parameters has too few"
+while read -r path; do
+    grep -qF "$path" out || fail "man 5 impactlab-scenario does not name $path"
+done <described
+expect 0 help --reference quantities
+says out '| `peak_force_N` | N |'
+expect 0 help --reference signals
+says out '| `force` |'
+expect 0 help --reference events
+says out '| `chatter` |'
+expect 0 help --reference laws
+says out '## observer'
+expect 2 help --reference blurp
 # every option of every command stands in its man page and in each shell's completion
 expect 0 help --man-pages man1
 for shell in bash zsh fish; do

@@ -179,6 +179,7 @@ static void write_overview(FILE *stream)
     PUT_TERMS(stream, "Environment", environment);
     PUT_TERMS(stream, "Exit status", exit_status);
     PUT_TERMS(stream, "Examples", examples);
+    fputs(".SH SEE ALSO\n\\fBimpactlab\\-scenario\\fR(5), \\fBlibimpactlab\\fR(3)\n", stream);
 }
 
 static void write_command(FILE *stream, const command *c)
