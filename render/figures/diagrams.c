@@ -7,6 +7,7 @@
 #include "render/figures/figures.h"
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
+#include "src/base/loss.h"
 #include "src/base/numbers.h"
 #include "src/rig/sensors.h"
 
@@ -379,7 +380,7 @@ static void paint_part(sketch *s, const figure *fig, double x, double y)
     cairo_save(s->cr);
     cairo_translate(s->cr, x, y);
     cairo_scale(s->cr, 1 / s->scale, 1 / s->scale);
-    figure_paint(s->cr, fig, part, NULL);
+    loss_unless(figure_paint(s->cr, fig, part, NULL) == STATUS_OK);
     cairo_restore(s->cr);
 
     // its texts into the report of the whole

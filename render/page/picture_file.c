@@ -255,12 +255,17 @@ status picture_end_drawing(cairo_t *cr, status code, fault *f)
 // Draws on a surface and finishes it.
 static status paint_surface(cairo_surface_t *surface, const picture *p, bool finish, fault *f)
 {
+    // libraries without memory may draw another letter, or none, and say nothing
+    errno = 0;
     cairo_t *cr = cairo_create(surface);
-    status code = picture_end_drawing(cr, p->paint(cr, p->what, f), f);
+    const status painted = p->paint(cr, p->what, f);
+    status code = picture_end_drawing(cr, painted, f);
     if (finish) {
         cairo_surface_finish(surface);
     }
-    return drawn(code, cairo_surface_status(surface), f);
+    const cairo_status_t state =
+        errno == ENOMEM ? CAIRO_STATUS_NO_MEMORY : cairo_surface_status(surface);
+    return drawn(code, state, f);
 }
 
 static status write_png(FILE *stream, const picture *p, fault *f)

@@ -1,3 +1,4 @@
+#include "src/base/loss.h"
 #include "src/run/corrected.h"
 
 #include <assert.h>
@@ -301,9 +302,9 @@ static void sum_up(corrected_run *c, status failed)
     motion *m = c->motion;
     summary *s = &r->result->summary;
 
-    // as if the run ended here; a step that fails in this does not end the run
+    // as if the run ended here; a step that fails in this does not end the run, but may be lost
     fault none;
-    corrected_end_step(c, &none);
+    loss_unless(corrected_end_step(c, &none) != STATUS_NO_MEMORY);
     s->steps = (double)m->steps;
     s->max_penetration_m = fmax(0, m->largest_penetration);
     s->motor_work_J = motion_motor_work(m, m->state);

@@ -15,8 +15,8 @@ int corrected_force_pieces(const corrected_run *c, double length);
 
 // Lets the sensors follow the arm within the step under way, which is in flight, to where it has
 // come to `to`. STATUS_NOT_FINITE if a state on the way cannot be computed.
-status corrected_follow_flight(corrected_run *c, const way *to);
+status corrected_follow_flight(corrected_run *c, const way *to) __attribute__((warn_unused_result));
 
 // Lets the sensors follow the arm over the step just made, or over what is left of it, and keeps
 // its force. STATUS_NOT_FINITE as above, STATUS_NO_MEMORY.
-status corrected_record_forces(corrected_run *c);
+status corrected_record_forces(corrected_run *c) __attribute__((warn_unused_result));

@@ -12,10 +12,11 @@ void corrected_begin_step(corrected_run *c);
 
 // Goes on by one stride, recorded with the event at its end: to the end of the stretch or, cut
 // there, to `until` [s] at the most. What fails is explained in f.
-status corrected_stride(corrected_run *c, double until, fault *f);
+status corrected_stride(corrected_run *c, double until, fault *f)
+    __attribute__((warn_unused_result));
 
 // Ends the step under way, if there is one, at the instant that the run has come to.
-status corrected_end_step(corrected_run *c, fault *f);
+status corrected_end_step(corrected_run *c, fault *f) __attribute__((warn_unused_result));
 
 // The present state, as good as the next call of any function here or of the motion.
 double *corrected_present(const corrected_run *c);

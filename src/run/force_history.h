@@ -59,7 +59,7 @@ static inline const force_step *force_steps(const force_history *h)
 }
 
 // Appends a step. STATUS_NO_MEMORY.
-status force_history_add(force_history *h, force_step step);
+status force_history_add(force_history *h, force_step step) __attribute__((warn_unused_result));
 
 // Appends `count` steps that the caller fills in at once. NULL without memory.
 force_step *force_history_extend(force_history *h, size_t count);

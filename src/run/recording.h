@@ -50,7 +50,8 @@ typedef struct recording {
 size_t recording_most_rows(size_t expected);
 
 // Sets up an empty trace of the kind that is asked for. STATUS_NO_MEMORY, with a sentence in f.
-status recording_open_trace(recording *r, int angle_count, fault *f);
+status recording_open_trace(recording *r, int angle_count, fault *f)
+    __attribute__((warn_unused_result));
 
 // Whether the run is to end at once.
 static inline bool recording_is_abandoned(const recording *r)
@@ -70,14 +71,15 @@ void recording_publish(const recording *r, double time);
 
 // Sets a parameter at an instant [s], which the rig is told, too. On failure f says why: a lock
 // that a law from outside does not know, a law that cannot be tuned.
-status recording_set(recording *r, const action *todo, double time, fault *f);
+status recording_set(recording *r, const action *todo, double time, fault *f)
+    __attribute__((warn_unused_result));
 
 // Adds a row with all angles [rad] and velocities [rad/s] and lets it be seen. STATUS_NO_MEMORY.
 status recording_add_row(recording *r, const sample *row, const double *angles,
-                         const double *velocities);
+                         const double *velocities) __attribute__((warn_unused_result));
 
 // Keeps the force over a step. STATUS_NO_MEMORY.
-status recording_add_step(recording *r, force_step step);
+status recording_add_step(recording *r, force_step step) __attribute__((warn_unused_result));
 
 // Room for the force over `count` steps, which the caller fills in. NULL without memory.
 force_step *recording_add_steps(recording *r, int count);

@@ -149,5 +149,5 @@ status session_take_inputs(session *s, const session_input *inputs, int count, f
 
 // Takes back the last input, or puts it in again; the cursor goes to where it was, or to where the
 // input takes effect. STATUS_BAD_ARGUMENT if there is none.
-status session_undo(session *s, fault *f);
-status session_redo(session *s, fault *f);
+status session_undo(session *s, fault *f) __attribute__((warn_unused_result));
+status session_redo(session *s, fault *f) __attribute__((warn_unused_result));

@@ -182,7 +182,7 @@ status method_study_compute(const scenario *s, run_monitor *monitor, method_stud
         for (int i = 0; i < STUDY_STEPS; i++) {
             study_point *point = &study->points[m][i];
             code = study_one(s, method_kinds[m], study->reference, monitor, point);
-            if (code == STATUS_STOPPED) {
+            if (code == STATUS_STOPPED || code == STATUS_NO_MEMORY) {
                 point->cost = (double)NAN;
                 return fault_set(f, code, "%s", status_text(code));
             }

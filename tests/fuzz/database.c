@@ -7,12 +7,6 @@
 
 #include "src/study/store/sweep_store.h"
 
-static void ignore(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
 // Reads all that a store has.
 static void read_store(sweep_store *store, const sweep *s)
 {
@@ -24,12 +18,16 @@ static void read_store(sweep_store *store, const sweep *s)
     if (sweep_store_present(store, present, &count, &f) == STATUS_OK) {
         FUZZ_CHECK(count <= s->run_count);
     }
-    sweep_store_quantity(store, "peak_force_N", values, &failed, &f);
+    f = (fault){0};
+    status code = sweep_store_quantity(store, "peak_force_N", values, &failed, &f);
+    FUZZ_CHECK(code == STATUS_OK || f.text[0] != '\0');
     char *text = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
     FUZZ_CHECK(stream != NULL);
-    sweep_store_csv(store, stream, &f);
+    f = (fault){0};
+    code = sweep_store_csv(store, stream, &f);
+    FUZZ_CHECK(code == STATUS_OK || f.text[0] != '\0');
     fclose(stream);
     free(text);
 }
@@ -41,8 +39,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     scenario base;
     sweep s;
     fault f = {0};
-    FUZZ_CHECK(scenario_parse(&base, yaml, sizeof yaml - 1, "f", "base", ignore, NULL) ==
-               STATUS_OK);
+    fuzz_scenario(&base, yaml);
     const sweep_request request = {.vary = lines, .vary_count = 1};
     FUZZ_CHECK(sweep_init(&s, &base, &request, &f) == STATUS_OK);
     char *path = strdup(fuzz_file(data, size));
@@ -51,7 +48,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     // a part, then a table, then the sweep itself: only that may write to it
     sweep_merged merged;
     char *parts[] = {path};
-    sweep_merge(parts, 1, "/dev/null", &merged, &f);
+    FUZZ_CHECK(sweep_merge(parts, 1, "/dev/null", &merged, &f) == STATUS_OK || f.text[0] != '\0');
+    f = (fault){0};
     const char *const keys[] = {"motor.voltage", "peak_force_N"};
     double *columns[SWEEP_TABLE_COLUMNS] = {NULL};
     size_t rows;

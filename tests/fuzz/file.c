@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/scenario/scenario.h"
+
 static char folder[] = "/tmp/impactlab-fuzz-XXXXXX";
 
 // Removes what is in the folder, and in the end the folder.
@@ -45,4 +47,15 @@ const char *fuzz_file(const uint8_t *data, size_t size)
     FUZZ_CHECK(write(file, data, size) == (ssize_t)size);
     close(file);
     return path;
+}
+
+static void fail(void *context, const char *sentence)
+{
+    (void)context;
+    fuzz_fail(__FILE__, __LINE__, sentence);
+}
+
+void fuzz_scenario(struct scenario *s, const char *yaml)
+{
+    FUZZ_CHECK(scenario_parse(s, yaml, strlen(yaml), "f", "base", fail, NULL) == STATUS_OK);
 }

@@ -36,3 +36,7 @@ void fuzz_folder(void);
 
 // Writes the bytes into a file of the target's own, which the next call replaces. Returns its path.
 const char *fuzz_file(const uint8_t *data, size_t size);
+
+// A scenario of a text that is a good one.
+struct scenario;
+void fuzz_scenario(struct scenario *s, const char *yaml);

@@ -146,12 +146,6 @@ static void make_piece(source *s, char text[PIECE])
     }
 }
 
-static void ignore(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const char yaml[] = "title: base\nrun: {duration: 0.1 s}\n";
@@ -162,8 +156,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fault f = {0};
     fuzz_folder();
     setenv("XDG_CONFIG_HOME", ".", 1);
-    FUZZ_CHECK(scenario_parse(&base, yaml, sizeof yaml - 1, "f", "base", ignore, NULL) ==
-               STATUS_OK);
+    fuzz_scenario(&base, yaml);
     FUZZ_CHECK(explorer_init(&ex, &base, HUGE_VAL, &f) == STATUS_OK);
     ex.state.size = (screen_size){120, 40};
 

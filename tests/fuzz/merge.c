@@ -14,12 +14,6 @@
 
 enum { RUNS = 6, MOST_STEPS = 20000 };
 
-static void ignore(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
 // Part 1 or 2 of the sweep, as it was computed once.
 static void write_part(const sweep *s, int part, const char *path)
 {
@@ -110,8 +104,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     scenario base;
     sweep s;
     fault f = {0};
-    FUZZ_CHECK(scenario_parse(&base, yaml, sizeof yaml - 1, "f", "base", ignore, NULL) ==
-               STATUS_OK);
+    fuzz_scenario(&base, yaml);
     const sweep_request request = {.vary = lines, .vary_count = 2};
     FUZZ_CHECK(sweep_init(&s, &base, &request, &f) == STATUS_OK);
     // in memory where there is such a folder: every change waits for the disk

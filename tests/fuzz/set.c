@@ -11,12 +11,6 @@
 
 enum { LOOKED_AT = 64 };
 
-static void ignore(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
 // What is drawn: a plan, or a sentence with the number of a line.
 static void check_lines(const robust_set *set)
 {
@@ -63,8 +57,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     scenario base;
     robust_set set;
     fault f = {0};
-    FUZZ_CHECK(scenario_parse(&base, yaml, sizeof yaml - 1, "f", "base", ignore, NULL) ==
-               STATUS_OK);
+    fuzz_scenario(&base, yaml);
     const char *path = fuzz_file(data, size);
     if (robust_set_read(&set, path, &f) == STATUS_OK) {
         FUZZ_CHECK(set.count > 0);

@@ -9,12 +9,6 @@
 
 enum { MOST_LINES = 12, LOOKED_AT = 200, MOST_BYTES = 400 };
 
-static void ignore(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
 static void check_runs(const sweep *s)
 {
     FUZZ_CHECK(s->run_count >= 1 && s->run_count <= SWEEP_MOST_RUNS);
@@ -44,8 +38,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     sweep s;
     fault f = {0};
     static const char yaml[] = "title: base\nrun: {duration: 0.1 s}\n";
-    FUZZ_CHECK(scenario_parse(&base, yaml, sizeof yaml - 1, "f", "base", ignore, NULL) ==
-               STATUS_OK);
+    fuzz_scenario(&base, yaml);
     const sweep_request request = {.vary = lines,
                                    .vary_count = count,
                                    .sampling = (sweep_sampling)(data[0] % 3),

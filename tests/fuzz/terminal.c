@@ -12,12 +12,6 @@
 
 enum { MOST_STEPS = 60 };
 
-static void ignore(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
 static const char *const lines[] = {
     "set motor.voltage 2",  "set wall.angle 0.1", "seek 0.05",  "branch",       "undo",
     "set motor.voltage x",  "panes 27",           "theme mono", "law hybrid",   "law none",
@@ -63,7 +57,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     screen shown = {0};
     fault f = {0};
     escape_sequence sequence = {.state = SEQUENCE_NONE};
-    FUZZ_CHECK(scenario_parse(&s, yaml, sizeof yaml - 1, "f", "base", ignore, NULL) == STATUS_OK);
+    fuzz_scenario(&s, yaml);
     FUZZ_CHECK(explorer_init(&ex, &s, HUGE_VAL, &f) == STATUS_OK);
     ex.state.size = (screen_size){120, 40};
 

@@ -12,6 +12,7 @@
 #include "render/page/picture_file.h"
 #include "src/base/numbers.h"
 #include "src/base/whole_file.h"
+#include "src/base/loss.h"
 #include "src/base/words.h"
 
 // --- shared options ---------------------------------------------------------------------------
@@ -362,6 +363,7 @@ static void remember(arguments *a, const char *before, const char *word)
     const char *quote = plain ? "" : "'", *so_far = a->command_line ? a->command_line : "";
     size_t size = strlen(so_far) + strlen(before) + strlen(word) + 4;
     char *longer = malloc(size);
+    loss_unless(longer != NULL);
     if (longer != NULL) {
         snprintf(longer, size, "%s%s%s%s%s", so_far, before, quote, word, quote);
         free(a->command_line);

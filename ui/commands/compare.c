@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/loss.h"
 #include "src/study/compare.h"
 #include "src/study/sweep.h"
 #include "ui/commands/progress.h"
@@ -238,8 +239,9 @@ static int plot_runs(const arguments *a, const comparison *c)
     run_monitor *monitor = work_begin(a, PIECES, c->opened);
     const run_options options = {.keep_trace = true, .monitor = monitor};
     for (; count < c->opened; count++) {
-        // one that fails shows what it has
-        run_scenario_with(&c->scenarios[count], &options, &results[count]);
+        // one that fails shows what it has, unless that is less than was compared
+        const status ran = run_scenario_with(&c->scenarios[count], &options, &results[count]);
+        loss_unless(ran != STATUS_NO_MEMORY);
         run_monitor_count(monitor);
         shown[count] = (trace_run){.scenario = &c->scenarios[count],
                                    .result = &results[count],

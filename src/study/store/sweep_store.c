@@ -1,3 +1,4 @@
+#include "src/base/loss.h"
 #include "src/study/store/sweep_store.h"
 
 #include <assert.h>
@@ -160,7 +161,7 @@ void sweep_store_close(sweep_store *closed)
     }
     sweep_database *store = database_of(closed);
     if (store->in_transaction) {
-        sweep_store_commit(closed, NULL);
+        loss_unless(sweep_store_commit(closed, NULL) == STATUS_OK);
     }
 
     // the database before the lock that guards it

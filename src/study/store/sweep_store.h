@@ -15,29 +15,34 @@
 // STATUS_BAD_ARGUMENT if the file is something else or holds a sweep that is defined otherwise (f
 // says in what they differ), STATUS_CANNOT_WRITE if it cannot be written or another sweep writes to
 // it. `s` is borrowed and has to live as long as the store.
-status sweep_store_open(sweep_store **store, const char *path, const sweep *s, fault *f);
+status sweep_store_open(sweep_store **store, const char *path, const sweep *s, fault *f)
+    __attribute__((warn_unused_result));
 
 // Commits what is not committed and closes; NULL is nothing. Errors are lost here: commit first.
 void sweep_store_close(sweep_store *store);
 
 // Makes what was put permanent. STATUS_CANNOT_WRITE also where the file was deleted or moved since.
-status sweep_store_commit(sweep_store *store, fault *f);
+status sweep_store_commit(sweep_store *store, fault *f) __attribute__((warn_unused_result));
 
 // What the store of a sweep does (sweep_run.h): of the rows that are there, of one more in the
 // transaction, and of a quantity of all.
-status sweep_store_present(sweep_store *store, unsigned char *present, size_t *count, fault *f);
-status sweep_store_put(sweep_store *store, size_t run, const summary *result, fault *f);
+status sweep_store_present(sweep_store *store, unsigned char *present, size_t *count, fault *f)
+    __attribute__((warn_unused_result));
+status sweep_store_put(sweep_store *store, size_t run, const summary *result, fault *f)
+    __attribute__((warn_unused_result));
 status sweep_store_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
-                            fault *f);
+                            fault *f) __attribute__((warn_unused_result));
 
 // Writes all rows in the order of the runs as CSV: run, varied values, status, message, then the
 // quantities that do not depend on the machine; the header is name[unit]. Errors of the stream stay
 // in it (ferror).
-status sweep_store_csv(sweep_store *store, FILE *stream, fault *f);
+status sweep_store_csv(sweep_store *store, FILE *stream, fault *f)
+    __attribute__((warn_unused_result));
 
 // The same as JSON: scenario, sampling, and in `runs` an object for each row under the keys of
 // `impactlab run --json`, the varied values under their paths. STATUS_NO_MEMORY.
-status sweep_store_json(sweep_store *store, FILE *stream, fault *f);
+status sweep_store_json(sweep_store *store, FILE *stream, fault *f)
+    __attribute__((warn_unused_result));
 
 // --- databases of others ---
 
@@ -52,7 +57,7 @@ typedef struct sweep_merged {
 // no sweep of this program, holds another sweep than the first, or a run that another part holds
 // too; f says which.
 status sweep_merge(char *const *files, int count, const char *output, sweep_merged *merged,
-                   fault *f);
+                   fault *f) __attribute__((warn_unused_result));
 
 enum { SWEEP_TABLE_COLUMNS = 3 };
 
@@ -62,4 +67,4 @@ enum { SWEEP_TABLE_COLUMNS = 3 };
 // failure they are NULL. STATUS_CANNOT_READ or STATUS_BAD_ARGUMENT with the path if the file is no
 // sweep's database, has no such column, or something infinite in it.
 status sweep_table_read(const char *path, const char *const *keys, int key_count, double **columns,
-                        size_t *count, fault *f);
+                        size_t *count, fault *f) __attribute__((warn_unused_result));

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/loss.h"
 #include "src/base/numbers.h"
 #include "src/rig/controller.h"
 
@@ -503,7 +504,7 @@ static bool lock(explorer_state *st, const char *wanted)
     const bool other = strcmp(p.control.lock, wanted) != 0;
     if (other && !change(st, PARAMETER_INDEX(control.lock), wanted)) {
         if (replaces) {
-            session_redo(s, &f);
+            loss_unless(session_redo(s, &f) == STATUS_OK);
         }
         return false;
     }
