@@ -89,6 +89,39 @@ status artwork_write(const artwork *a, const figure_options *options, const char
     return code;
 }
 
+// ---- tables
+
+static status paint_table(cairo_t *cr, const void *what, figure_report *report, fault *f)
+{
+    return table_paint(cr, what, report, f);
+}
+
+static status write_table(const void *what, const char *path, fault *f)
+{
+    return table_write_csv(what, path, f);
+}
+
+static void release_table(void *what)
+{
+    table_finish(what);
+    g_free(what);
+}
+
+artwork artwork_of_table(table_page *t)
+{
+    assert(t != NULL);
+    artwork a = {.title = t->title,
+                 .caption = t->caption,
+                 .parameters = t->parameters,
+                 .table = t,
+                 .what = t,
+                 .paint = paint_table,
+                 .write_csv = write_table,
+                 .release = release_table};
+    table_size(t, &a.width, &a.height);
+    return a;
+}
+
 // ---- plotted figures
 
 typedef struct plotted {

@@ -51,6 +51,9 @@ status artwork_write(const artwork *a, const figure_options *options, const char
 // release (NULL: nothing to free) frees it.
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner));
 
+// A table from g_new0 as an artwork, which owns it.
+artwork artwork_of_table(table_page *t);
+
 // Creates a folder unless it exists. STATUS_CANNOT_WRITE with the reason.
 status make_folder(const char *folder, fault *f);
 

@@ -3,8 +3,8 @@
 
 #include "render/figures/diagram.h"
 #include "render/figures/figures.h"
-#include "render/page/text.h"
 #include "render/figures/run_figure.h"
+#include "render/page/text.h"
 #include "src/base/numbers.h"
 
 #define CONTACT_ACROSS 6.0  // enlargement of what lies across the reference line, 3.1

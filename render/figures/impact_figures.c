@@ -3,7 +3,6 @@
 
 #include <glib.h>
 #include <math.h>
-#include <string.h>
 
 #include "render/page/sketch.h"
 #include "render/page/text.h"

@@ -214,17 +214,6 @@ static status add_figures(report *r, fault *f)
     return STATUS_OK;
 }
 
-static status paint_table(cairo_t *cr, const void *what, figure_report *seen, fault *f)
-{
-    return table_paint(cr, what, seen, f);
-}
-
-static void release_table(void *what)
-{
-    table_finish(what);
-    g_free(what);
-}
-
 static void add_parameter_row(table_page *t, const parameter_info *info, int index,
                               const parameters *corrected, const parameters *printed)
 {
@@ -273,14 +262,7 @@ static void add_parameters(report *r)
             add_parameter_row(t, &parameter_table[i], i, &corrected, &printed);
         }
 
-        report_item item = {.model = "defaults of both models",
-                            .drawn = {.title = t->title,
-                                      .table = t,
-                                      .what = t,
-                                      .paint = paint_table,
-                                      .release = release_table}};
-
-        table_size(t, &item.drawn.width, &item.drawn.height);
+        report_item item = {.model = "defaults of both models", .drawn = artwork_of_table(t)};
         g_array_append_val(r->items, item);
     }
 }

@@ -1,10 +1,11 @@
+#include "render/figures/thesis_tables.h"
+
 #include <assert.h>
 #include <glib.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-#include "render/figures/thesis_tables.h"
 #include "render/figures/figures.h"
 #include "render/page/text.h"
 #include "src/arm/modes.h"
@@ -41,44 +42,12 @@ const table_row *computed_row(const thesis_tables *t, const char *table, const c
 
 // ==== pages
 
-// ---- a table as an artwork
-
-static status paint_table(cairo_t *cr, const void *what, figure_report *report, fault *f)
-{
-    return table_paint(cr, what, report, f);
-}
-
-static status write_table(const void *what, const char *path, fault *f)
-{
-    return table_write_csv(what, path, f);
-}
-
-static void release_table(void *what)
-{
-    table_finish(what);
-    g_free(what);
-}
-
 static table_page *new_table(const char *title, const figure_options *o)
 {
     table_page *t = g_new0(table_page, 1);
     table_begin(t, title);
     t->look = o->look;
     return t;
-}
-
-static artwork artwork_of_table(table_page *t)
-{
-    artwork a = {.title = t->title,
-                 .caption = t->caption,
-                 .parameters = t->parameters,
-                 .table = t,
-                 .what = t,
-                 .paint = paint_table,
-                 .write_csv = write_table,
-                 .release = release_table};
-    table_size(t, &a.width, &a.height);
-    return a;
 }
 
 // ---- 2.1: the motor

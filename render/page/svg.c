@@ -1,4 +1,6 @@
 // SVG text: ids that do not depend on what was drawn before, and pictures in fewer bytes.
+#include "render/page/svg.h"
+
 #include <assert.h>
 #include <glib.h>
 #include <math.h>
@@ -6,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/page/svg.h"
 #include "src/base/numbers.h"
 
 // Length of the id that begins at `text`: all up to the quote or bracket that ends it.

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/base/whole_file.h"
 #include "src/base/csv.h"
+#include "src/base/whole_file.h"
 
 #define CELL_SPACE 3.0 // above and below a row's text, and left and right of a cell's
 #define CELL_SIZE  7.0

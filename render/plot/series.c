@@ -1,7 +1,6 @@
 // Series and impulses on the page: lines, markers, and arrows in a strip above a panel.
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "render/page/picture_file.h"

@@ -1,13 +1,13 @@
 // Pictures of studies: sweeps and the comparison of laws.
+#include "render/plot/study_plot.h"
+
 #include <assert.h>
 #include <glib.h>
 #include <math.h>
-#include <string.h>
 
 #include "render/page/palette.h"
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
-#include "render/plot/study_plot.h"
 #include "src/base/numbers.h"
 #include "src/base/shipped.h"
 #include "src/tables/summary.h"

@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <glib.h>
 #include <math.h>
-#include <stdio.h>
 
 #include "render/plot/trace_plot.h"
 #include "render/scene/film_file.h"

@@ -1,10 +1,11 @@
 // Geometry of scenes: vectors, solids as triangles, and the camera that sees them.
+#include "render/scene/geometry.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/scene/geometry.h"
 #include "src/base/numbers.h"
 
 enum { LATHE_SIDES = 56, TUBE_SIDES = 8, BOX_CELLS = 40 };
