@@ -145,8 +145,8 @@ const parameter_info parameter_table[] = {
              "links on a rigid wall, a stiff formula of order 13, power series of any chain")},
     {PATH(method.tolerance), REAL("", 1e-13, 1e-3), DEFAULT(1e-10),
      MEANING("error of the stiff engine's steps as its embedded formula of order 7 sees it, as a "
-             "share of the largest momentum; ten times that where decays are faster than "
-             "vibrations and 3e4 1/s")},
+             "share of the arm's largest momentum; ten times that where decays are faster than "
+             "vibrations, the motor's current and 3e4 1/s, a tenth where an undamped arm bounces")},
 
     {PATH(printed.spring_counted_twice), BOOLEAN, DEFAULT(true),
      MEANING("printed model: (2.16) carries the spring k2 that belongs in (2.17) alone")},
