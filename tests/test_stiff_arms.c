@@ -11,6 +11,49 @@
 #include "tests/explicit_stepper.h"
 #include "tests/passage.h"
 
+// Two equal links on a rigid wall, arms that nothing but the motor damps, and all others.
+static void each_arm_has_its_engine(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *settings[4];
+        const engine *by;
+    } cases[] = {
+        // two links
+        {{NULL}, &taylor_engine},
+        {{"arm.damping_ratio=0.3", "wall.restitution=0.5"}, &taylor_engine},
+        {{"arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02"}, &stiff_engine},
+        {{"arm.tip_mass=0.1"}, &series_engine},
+        {{"motor.current_limit=0.2"}, &series_engine},
+        {{"motor.inductance=1e-3"}, &stiff_engine},
+        {{"wall.contact=kelvin-voigt", "wall.damping=0"}, &series_engine},
+        {{"wall.contact=kelvin-voigt", "wall.damping=50"}, &stiff_engine},
+        {{"wall.contact=hunt-crossley", "wall.damping=0"}, &stiff_engine},
+
+        // other chains
+        {{"arm.links=3"}, &series_engine},
+        {{"arm.links=64", "wall.restitution=0.9"}, &series_engine},
+        {{"arm.links=16", "wall.contact=kelvin-voigt", "wall.damping=50"}, &series_engine},
+        {{"arm.links=16", "wall.contact=kelvin-voigt", "wall.damping=1e4"}, &stiff_engine},
+        {{"arm.links=3", "arm.damping_ratio=1e-4"}, &stiff_engine},
+        {{"arm.links=3", "arm.modal_ratios=0.01"}, &stiff_engine},
+        {{"arm.links=3", "arm.air_drag=0.01"}, &stiff_engine},
+        {{"arm.links=3", "arm.stiffening=1"}, &stiff_engine},
+        {{"arm.links=1"}, &stiff_engine},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const parameters p = fixture_parameters(cases[i].settings);
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        assert_non_null(m);
+        if (m->engine != cases[i].by) {
+            fail_msg("case %zu goes by %s, not %s", i, m->engine->name, cases[i].by->name);
+        }
+        motion_destroy(m);
+    }
+}
+
 // A hub of a milligram square metre on a damped spring: its decay of 4e8 1/s is over at once.
 static void a_stiff_hub_takes_few_strides(void **state)
 {
@@ -405,6 +448,7 @@ static void an_arm_without_damping_loses_nothing_to_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_arm_has_its_engine),
         cmocka_unit_test(a_stiff_hub_takes_few_strides),
         cmocka_unit_test(a_stiff_pair_moves_as_by_the_formula),
         cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
