@@ -54,6 +54,7 @@ compare/force-pd compare/force-pd-piezo compare/optimal compare/optimal-piezo'
     table 'Tables 4.1 to 4.3' 'impactlab tables'
     table 'Methods of integration' 'impactlab study methods corrected/first-impact'
     table 'What a sensor would see' 'impactlab study sensor'
+    table 'How many links' 'impactlab study links'
     table 'Speed' 'impactlab bench'
     table 'Long checks' 'bash tests/test_counts.sh .'
     printf '\n---\n%s, commit %s, %s\n' "$(impactlab --version)" \
