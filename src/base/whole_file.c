@@ -351,17 +351,23 @@ static int open_target(whole_file *w)
     }
 
     w->stream = open_sink(w, descriptor);
-    if (w->stream == NULL) {
-        reason = ENOMEM;
-        close(descriptor);
-        if (w->temporary != NULL) {
-            unlink(w->temporary);
-            forget_unfinished(w->temporary);
-        }
-        free(w->sink);
-        return reason;
+    if (w->stream != NULL) {
+        return 0;
     }
-    return 0;
+    close(descriptor);
+    if (w->temporary != NULL) {
+        unlink(w->temporary);
+    }
+    return ENOMEM;
+}
+
+static void forget(whole_file *w)
+{
+    forget_unfinished(w->temporary);
+    free(w->sink);
+    free(w->path);
+    free(w->temporary);
+    memset(w, 0, sizeof *w);
 }
 
 status whole_file_open(whole_file *w, const char *path, fault *f)
@@ -378,9 +384,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
     w->path = target_of(path);
     int reason = w->path ? open_target(w) : errno;
     if (reason != 0) {
-        free(w->path);
-        free(w->temporary);
-        memset(w, 0, sizeof *w);
+        forget(w);
         return cannot_write(f, path, reason);
     }
     return STATUS_OK;
@@ -418,38 +422,33 @@ static int close_sink(whole_file *w, bool wanted)
     return reason;
 }
 
-static void forget(whole_file *w)
+// Closes the file; it takes the place of the old one if it is wanted and whole, or goes. 0 or the
+// reason why it is not there.
+static int finish(whole_file *w, bool wanted)
 {
-    forget_unfinished(w->temporary);
-    free(w->sink);
-    free(w->path);
-    free(w->temporary);
-    memset(w, 0, sizeof *w);
+    int reason = w->sink != NULL ? close_sink(w, wanted) : wanted ? stream_failure(stdout) : 0;
+    reason = w->sink == NULL && reason == EPIPE ? 0 : reason;
+
+    // what was lost before it came here is missing in it
+    if (wanted && loss_noted() && reason == 0) {
+        reason = ENOMEM;
+    }
+    bool kept = wanted && reason == 0;
+    if (kept && w->temporary != NULL && rename(w->temporary, w->path) != 0) {
+        reason = errno;
+        kept = false;
+    }
+    if (!kept && w->temporary != NULL) {
+        unlink(w->temporary);
+    }
+    return reason;
 }
 
 status whole_file_commit(whole_file *w, fault *f)
 {
     assert(w != NULL && w->stream != NULL && w->path != NULL);
-    int reason = w->sink == NULL ? stream_failure(stdout) : close_sink(w, true);
-    if (w->sink == NULL && reason == EPIPE) {
-        reason = 0;
-    }
-    // what was lost before it came here is missing in it
-    if (loss_noted() && reason == 0) {
-        reason = ENOMEM;
-    }
-
-    // the new file takes the place of the old one, or goes
-    if (w->temporary != NULL) {
-        if (reason == 0 && rename(w->temporary, w->path) != 0) {
-            reason = errno;
-        }
-        if (reason != 0) {
-            unlink(w->temporary);
-        }
-    }
-
-    status result = reason == 0 ? STATUS_OK : cannot_write(f, w->path, reason);
+    const int reason = finish(w, true);
+    const status result = reason == 0 ? STATUS_OK : cannot_write(f, w->path, reason);
     forget(w);
     return result;
 }
@@ -457,12 +456,7 @@ status whole_file_commit(whole_file *w, fault *f)
 void whole_file_abandon(whole_file *w)
 {
     assert(w != NULL);
-    if (w->sink != NULL) {
-        close_sink(w, false);
-    }
-    if (w->temporary != NULL) {
-        unlink(w->temporary);
-    }
+    finish(w, false);
     forget(w);
 }
 

@@ -1,7 +1,7 @@
 #include "ui/commands/command.h"
 
-#include <dirent.h>
 #include <fcntl.h>
+#include <ftw.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -15,22 +15,12 @@
 
 // --- what the programs add to the library's benchmarks --------------------------------------
 
-static void remove_folder(const char *folder)
+static int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *place)
 {
-    DIR *open = opendir(folder);
-
-    // the folder contains only files
-    for (struct dirent *entry = NULL; open != NULL && (entry = readdir(open)) != NULL;) {
-        char path[4096 + 256];
-        if (entry->d_name[0] != '.') {
-            snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-            unlink(path);
-        }
-    }
-    if (open != NULL) {
-        closedir(open);
-    }
-    rmdir(folder);
+    (void)about;
+    (void)kind;
+    (void)place;
+    return remove(path);
 }
 
 // Runs the program once more, without its words, and waits for its end.
@@ -71,7 +61,7 @@ static status measure_figures(const benchmark *b, double *value, fault *f)
     const double start = bench_computing_time();
     const status code = run_program((char *[]){"impactlab", "figures", "-o", folder, NULL}, f);
     *value = bench_computing_time() - start;
-    remove_folder(folder);
+    nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
     return code;
 }
 
