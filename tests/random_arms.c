@@ -519,10 +519,11 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         const distances own = distances_of(r, &truth, &again);
         const distances change = distances_of(r, &truth, &heavier);
 
-        // judged by the finer one
-        d = distances_of(r, &again, &mine);
+        // judged by the finer one, if that came to the end
+        const bool ends = again.status == STATUS_OK;
+        d = ends ? distances_of(r, &again, &mine) : d;
         worst = worst_of(&d, &change, &may);
-        const bool sure = own.same && change.same && worst_of(&own, &change, &may) < 0.3;
+        const bool sure = ends && own.same && change.same && worst_of(&own, &change, &may) < 0.3;
         if (!d.same || worst > 1 || !closes) {
             int at = 0;
             while (at < d.contacts - 1 && d.time[at] <= may.time) {
