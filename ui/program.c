@@ -75,7 +75,7 @@ static int run_command(const command *c, int argc, char **argv, const rank_group
     a.ranks = ranks;
     result = check_results(&a);
     if (result == EXIT_DONE) {
-        result = c->run(&a);
+        result = command_run(&a);
     }
     arguments_finish(&a);
     return result;

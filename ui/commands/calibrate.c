@@ -152,11 +152,6 @@ static int press_and_report(const arguments *a, scenario *s)
     return code == STATUS_OK ? report(a, s, &c, true) : complain_fault(&f);
 }
 
-static int calibrate_command_run(const arguments *a)
-{
-    return with_scenario(a->operands[0], a, press_and_report);
-}
-
 static const option_row rows[] = {
     OPTION(RESULT, "csv", "FILE|-", "write a row for each command", PLACE(csv)),
     OPTION(RESULT, "output", "FILE|-", "write the scenario with the table in it", PLACE(output),
@@ -180,5 +175,5 @@ const command calibrate_command = {
     .most = 1,
     .takes_scenarios = true,
     .options = {&set_options, &vary_options, &json_options, &options, &quiet_options},
-    .run = calibrate_command_run,
+    .use = press_and_report,
 };

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <langinfo.h>
+#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -273,6 +274,12 @@ int with_scenario(const char *name_or_file, const arguments *a,
     return result;
 }
 
+int command_run(const arguments *a)
+{
+    const command *c = a->command;
+    return c->use != NULL ? with_scenario(a->operands[0], a, c->use) : c->run(a);
+}
+
 int write_json(const char *path, json_t *value)
 {
     assert(path != NULL);
@@ -331,6 +338,16 @@ void say(const char *format, ...)
     va_start(list, format);
     print_printable_list(stdout, format, list);
     va_end(list);
+}
+
+void print_cell(int width, const char *conversion, double value)
+{
+    char text[40] = "-";
+    assert(conversion != NULL);
+    if (!isnan(value)) {
+        snprintf(text, sizeof text, conversion, value);
+    }
+    printf(" %*s", width, text);
 }
 
 void say_title(const scenario *s)

@@ -185,6 +185,8 @@ struct command {
     const option_table *options[COMMAND_TABLES]; // ends with NULL; --help is every command's
     bool on_ranks;                  // every MPI rank runs it (a.ranks), not only rank 0
     int (*run)(const arguments *a); // returns the exit status
+    // instead of it: what is done with the scenario of the first operand; returns the exit status
+    int (*use)(const arguments *a, scenario *s);
 };
 
 // All commands, by group.
@@ -212,6 +214,10 @@ int complain_fault(const fault *f);
 // Prints a text that contains words from outside (titles, names of files and scenarios) to the
 // standard output, without unprintable characters and with what is lost noted (src/base/words.h).
 void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+// Prints a blank and a number (a printf conversion of a double) at the right of a column of that
+// width, "-" for NaN.
+void print_cell(int width, const char *conversion, double value);
 
 // Prints "NAME: TITLE" and what was changed since the scenario was read, as a line.
 void say_title(const scenario *s);
@@ -291,6 +297,9 @@ int open_listed(scenario *s, const char *name, bool *faulty) __attribute__((warn
 // Opens the scenario, calls `use` with it and closes it. Returns the exit status.
 int with_scenario(const char *name_or_file, const arguments *a,
                   int (*use)(const arguments *a, scenario *s));
+
+// Carries out the command of the arguments. Returns the exit status.
+int command_run(const arguments *a);
 
 // Writes the JSON value to path ("-": standard output) whole or not at all. Takes over value, which
 // may be NULL (no memory). Returns the exit status.

@@ -58,11 +58,7 @@ static void print_panel(const scenario *s, const convergence_panel *panel)
         printf("  %-26s", quantity->label);
 
         for (int i = 0; i < PANEL_STEPS; i++) {
-            if (isnan(row->value[i])) {
-                printf(" %15s", "-");
-            } else {
-                printf(" %15.10g", row->value[i]);
-            }
+            print_cell(15, "%.10g", row->value[i]);
         }
 
         printf(" %-4s", quantity->unit);
@@ -226,11 +222,6 @@ static int compute_and_report(const arguments *a, scenario *s)
     return result;
 }
 
-static int converge(const arguments *a)
-{
-    return with_scenario(a->operands[0], a, compute_and_report);
-}
-
 static const option_row rows[] = {
     OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", "draw the contact force at the three steps",
            PLACE(plot)),
@@ -249,5 +240,5 @@ const command converge_command = {
     .most = 1,
     .takes_scenarios = true,
     .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
-    .run = converge,
+    .use = compute_and_report,
 };

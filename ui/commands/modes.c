@@ -232,11 +232,6 @@ static int check_and_compute(const arguments *args, scenario *s)
     return compute_and_report(args, s);
 }
 
-static int modes(const arguments *a)
-{
-    return with_scenario(a->operands[0], a, check_and_compute);
-}
-
 static const option_row rows[] = {PLOT_OPTION("draw the first modes' shapes")};
 static const option_table options = OPTION_TABLE("Options", rows);
 
@@ -252,5 +247,5 @@ const command modes_command = {
     .most = 1,
     .takes_scenarios = true,
     .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
-    .run = modes,
+    .use = check_and_compute,
 };

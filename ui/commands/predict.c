@@ -78,21 +78,12 @@ static json_t *predict_object(const scenario *s, const sample *row,
     return object;
 }
 
-static void print_cell(double value, double scale)
-{
-    if (isnan(value)) {
-        printf(" %14s", "-");
-    } else {
-        printf(" %14.5g", scale * value);
-    }
-}
-
 static void print_line(const char *label, double force, double delay, double impulse)
 {
     printf("  %-30s", label);
-    print_cell(force, 1);
-    print_cell(delay, 1e3);
-    print_cell(impulse, 1);
+    print_cell(14, "%.5g", force);
+    print_cell(14, "%.5g", 1e3 * delay);
+    print_cell(14, "%.5g", impulse);
     printf("\n");
 }
 
@@ -265,11 +256,6 @@ static int predict_and_report(const arguments *a, scenario *s)
     return code;
 }
 
-static int predict(const arguments *a)
-{
-    return with_scenario(a->operands[0], a, predict_and_report);
-}
-
 static const option_row rows[] = {
     PLOT_OPTION("draw the predicted peaks beside the simulated one"),
     OPTION(TEXT, "then", "TIME:VOLTS,...",
@@ -289,5 +275,5 @@ const command predict_command = {
     .most = 1,
     .takes_scenarios = true,
     .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
-    .run = predict,
+    .use = predict_and_report,
 };

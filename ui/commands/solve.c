@@ -151,11 +151,6 @@ static int read_and_find(const arguments *a, scenario *s)
     return result;
 }
 
-static int solve_command_run(const arguments *a)
-{
-    return with_scenario(a->operands[0], a, read_and_find);
-}
-
 static const option_row rows[] = {
     OPTION(WHOLE, "runs", "N", "values of the range that are run before limits are located (65)",
            PLACE(runs), .low = 2, .high = SOLVE_MOST_POINTS),
@@ -178,5 +173,5 @@ const command solve_command = {
     .most = 3,
     .takes_scenarios = true,
     .options = {&set_options, &json_options, &options, &quiet_options},
-    .run = solve_command_run,
+    .use = read_and_find,
 };

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "src/base/json.h"
-#include "src/base/numbers.h"
 #include "src/base/shipped.h"
 #include "src/study/convergence.h"
 #include "src/study/links.h"
@@ -69,16 +68,6 @@ static json_t *methods_object(const scenario *s, const method_study *study)
     return object;
 }
 
-// A number in a column of the given width, "-" where there is none.
-static void print_cell(int width, double value, const char *format)
-{
-    char text[32] = "-";
-    if (!isnan(value)) {
-        decimal_print(text, sizeof text, format, value);
-    }
-    printf(" %*s", width, text);
-}
-
 static void print_methods(const scenario *s, const method_study *study)
 {
     char changes[SCENARIO_CHANGES];
@@ -95,9 +84,9 @@ static void print_methods(const scenario *s, const method_study *study)
         for (int i = 0; i < STUDY_STEPS; i++) {
             const study_point *p = &study->points[m][i];
             printf("%-18g", p->step);
-            print_cell(10, 1e3 * p->cost, "%.3g");
+            print_cell(10, "%.3g", 1e3 * p->cost);
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
-                print_cell(12, p->error[k], "%.3g");
+                print_cell(12, "%.3g", p->error[k]);
             }
             printf("\n");
         }
@@ -444,12 +433,12 @@ static void print_links(const scenario *s, const links_study *study)
         snprintf(name, sizeof name, "%s [%s]", row->label, row->unit);
         printf("%-26s", name);
         for (int i = 0; i < study->count; i++) {
-            print_cell(9, row->value[i], "%.4g");
+            print_cell(9, "%.4g", row->value[i]);
         }
-        print_cell(10, row->limit, "%.5g");
-        print_cell(9, row->error, "%.1g");
-        print_cell(9, row->beam, "%.5g");
-        print_cell(6, row->order, "%.2f");
+        print_cell(10, "%.5g", row->limit);
+        print_cell(9, "%.1g", row->error);
+        print_cell(9, "%.5g", row->beam);
+        print_cell(6, "%.2f", row->order);
         printf("\n");
     }
     if (study->count < LINKS_LENGTHS) {

@@ -184,16 +184,6 @@ static bool is_remembered(const char *line)
     return length == 0 || line[0] == '#';
 }
 
-// Where the file is; false if there is no folder for it.
-static bool settings_path(char *path, size_t size, bool make)
-{
-    if (!settings_folder(path, size - 8, make)) {
-        return false;
-    }
-    strcat(path, "/lab");
-    return true;
-}
-
 // Executes a line of the file; errors are reported with line and column.
 static bool execute_line(explorer_state *st, const char *path, int number, const char *line)
 {
@@ -218,7 +208,7 @@ void explorer_load_settings(explorer *ex)
     message_line first = {.text = ""};
     size_t room = 0;
     int faults = 0;
-    if (!settings_path(path, sizeof path, false)) {
+    if (!user_file("lab", path, sizeof path, false)) {
         return;
     }
 
@@ -294,7 +284,7 @@ bool act_remember(explorer_state *st, const char *argument)
     char path[1024];
     whole_file file;
     fault f = {0};
-    if (!settings_path(path, sizeof path, true)) {
+    if (!user_file("lab", path, sizeof path, true)) {
         return act_refuse(st, "there is no folder for settings (XDG_CONFIG_HOME or HOME)");
     }
     if (st->settings_broken) {

@@ -39,15 +39,44 @@ static void draw_title(const explorer_state *st, screen *s)
 
 // --- status -----------------------------------------------------------------------------------
 
-enum { STATUS_ITEMS = 9 };
+// A part of a bar.
+typedef struct bar_item {
+    char text[96]; // "" for none
+    int rank;      // the lower ones stay where not all fit
+} bar_item;
 
-typedef struct status_item {
-    char text[96];
-    int rank; // the lower ones stay where not all fit
-} status_item;
+enum { BAR_ITEMS = 16 };
+
+static void blank_row(screen *s, int y)
+{
+    for (int x = 0; x < s->width; x++) {
+        screen_put(s, x, y, ' ', INK_TEXT);
+    }
+}
+
+// Draws a bar: the items of the lowest ranks as far as they have room, those below `always` in any
+// case, in their order from left to right.
+static void draw_bar(screen *s, int y, int room, int always, ink colour, const bar_item *items,
+                     int count)
+{
+    bool shown[BAR_ITEMS] = {false};
+    for (int rank = 0, used = 1; rank < BAR_ITEMS; rank++) {
+        for (int i = 0; i < count; i++) {
+            const int length = text_cells(items[i].text);
+            if (items[i].rank == rank && length > 0 && (rank < always || used + length <= room)) {
+                shown[i] = true;
+                used += length + 2;
+            }
+        }
+    }
+    blank_row(s, y);
+    for (int i = 0, x = 1; i < count; i++) {
+        x += shown[i] ? 2 + screen_text(s, x, y, s->width - x, colour, items[i].text) : 0;
+    }
+}
 
 // Fills the items from left to right; returns how many.
-static int write_status(const explorer_state *st, status_item items[STATUS_ITEMS])
+static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
 {
     const session *e = &st->session;
     const sample *row = session_sample(e);
@@ -106,30 +135,9 @@ static int write_status(const explorer_state *st, status_item items[STATUS_ITEMS
 
 static void draw_status(const explorer_state *st, screen *s, int y)
 {
-    status_item items[STATUS_ITEMS];
-    int count = write_status(st, items), x = 1;
-    bool shown[STATUS_ITEMS] = {false};
-
-    // the most important ones first, as long as there is room
-    for (int rank = 0, used = 1; rank < 8; rank++) {
-        for (int i = 0; i < count; i++) {
-            int length = text_cells(items[i].text);
-            if (items[i].rank == rank && (rank < 2 || used + length <= s->width)) {
-                shown[i] = true;
-                used += length + 2;
-            }
-        }
-    }
-
-    // a bar across the screen with what is shown
-    for (int i = 0; i < s->width; i++) {
-        screen_put(s, i, y, ' ', INK_TEXT);
-    }
-    for (int i = 0; i < count; i++) {
-        if (shown[i]) {
-            x += 2 + screen_text(s, x, y, s->width - x, INK_TEXT, items[i].text);
-        }
-    }
+    bar_item items[BAR_ITEMS];
+    const int count = write_status(st, items);
+    draw_bar(s, y, s->width, 2, INK_TEXT, items, count);
 
     // what went wrong colours the bar
     const summary *m = &st->session.run.summary;
@@ -138,13 +146,6 @@ static void draw_status(const explorer_state *st, screen *s, int y)
 }
 
 // --- the bottom -------------------------------------------------------------------------------
-
-static void blank_row(screen *s, int y)
-{
-    for (int x = 0; x < s->width; x++) {
-        screen_put(s, x, y, ' ', INK_TEXT);
-    }
-}
 
 // The end of the prompt if it is wider than the screen, and what was said about it.
 static int draw_prompt(const explorer_state *st, screen *s)
@@ -192,9 +193,7 @@ static void draw_hints(const explorer_state *st, screen *s)
                  {"compare", "compare", 8}, {"open", "open", 9},         {"save", "save", 10},
                  {"help", "help", 1},       {"quit", "quit", 2}};
     enum { HINTS = sizeof hints / sizeof hints[0] };
-    char texts[HINTS][64];
-    bool shown[HINTS] = {false};
-    int x = 1;
+    bar_item items[HINTS];
 
     // the first key of each, and what it does
     for (int i = 0; i < HINTS; i++) {
@@ -206,29 +205,13 @@ static void draw_hints(const explorer_state *st, screen *s)
                             : strncmp(keys, "+ = -", 5) == 0       ? "+/-"
                                                                    : NULL;
         keys[strcspn(keys, " ")] = '\0';
-        snprintf(texts[i], sizeof texts[i], "%.20s %s", brief ? brief : keys, hints[i].does);
-        if (keys[0] == '\0') {
-            texts[i][0] = '\0';
+        items[i] = (bar_item){.rank = hints[i].rank};
+        if (keys[0] != '\0') {
+            snprintf(items[i].text, sizeof items[i].text, "%.20s %s", brief ? brief : keys,
+                     hints[i].does);
         }
     }
-
-    // the most wanted ones first
-    for (int rank = 0, used = 1; rank < HINTS; rank++) {
-        for (int i = 0; i < HINTS; i++) {
-            int length = text_cells(texts[i]);
-            if (hints[i].rank == rank && length > 0 && used + length < s->width) {
-                shown[i] = true;
-                used += length + 2;
-            }
-        }
-    }
-
-    // from left to right
-    for (int i = 0; i < HINTS; i++) {
-        if (shown[i]) {
-            x += 2 + screen_text(s, x, s->height - 1, s->width - x, INK_DIM, texts[i]);
-        }
-    }
+    draw_bar(s, s->height - 1, s->width - 1, 0, INK_DIM, items, HINTS);
 }
 
 // Draws the prompt, the message or hints in the last rows and returns how many it took.
@@ -252,7 +235,6 @@ static int draw_bottom(const explorer_state *st, screen *s)
 
     // without a message there are hints
     if (st->message.text[0] == '\0') {
-        blank_row(s, s->height - 1);
         draw_hints(st, s);
         return 1;
     }

@@ -43,17 +43,9 @@ static void draw_ends(screen *s, area a, value_range x, const char *name)
 
 // --- one signal over another ------------------------------------------------------------------
 
-// The rows of a run that are looked at, from the first to the last.
-static void rows_between(const trace *t, double from, double to, size_t *first, size_t *last)
-{
-    *first = trace_row_at(t, from);
-    *last = trace_row_at(t, to);
-}
-
 static void widen_by(value_range *r, const trace *t, int signal, double from, double to)
 {
-    size_t first, last;
-    rows_between(t, from, to, &first, &last);
+    const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
     for (size_t i = first; i <= last; i++) {
         const double value = signal_value(&t->rows[i], signal);
         if (isfinite(value)) {
@@ -65,9 +57,8 @@ static void widen_by(value_range *r, const trace *t, int signal, double from, do
 static void draw_path(const plane *p, const trace *t, const pane *of, double from, double to,
                       ink colour)
 {
-    size_t first, last;
+    const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
     double x0 = (double)NAN, y0 = (double)NAN;
-    rows_between(t, from, to, &first, &last);
     for (size_t i = first; i <= last; i++) {
         const double x = dot_x(p, signal_value(&t->rows[i], of->signals[1]));
         const double y = dot_y(p, signal_value(&t->rows[i], of->signals[0]));

@@ -14,7 +14,7 @@
 #include "src/base/words.h"
 #include "src/scenario/outside.h"
 
-bool settings_folder(char *path, size_t size, bool make)
+bool user_file(const char *name, char *path, size_t size, bool make)
 {
     assert(path != NULL && size > 0);
     const char *base = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
@@ -28,7 +28,7 @@ bool settings_folder(char *path, size_t size, bool make)
     } else {
         return false;
     }
-    if (length < 0 || (size_t)length + 16 > size) {
+    if (length < 0 || (size_t)length + 24 > size) {
         return false;
     }
 
@@ -36,8 +36,10 @@ bool settings_folder(char *path, size_t size, bool make)
     if (make) {
         mkdir(path, 0700);
     }
-    snprintf(path + length, size - (size_t)length, "/impactlab");
-    return !make || mkdir(path, 0700) == 0 || errno == EEXIST;
+    length += snprintf(path + length, size - (size_t)length, "/impactlab");
+    const bool there = !make || mkdir(path, 0700) == 0 || errno == EEXIST;
+    snprintf(path + length, size - (size_t)length, "/%s", name);
+    return there;
 }
 
 // --- consent ----------------------------------------------------------------------------------
@@ -98,16 +100,6 @@ static bool digest_of(const scenario *s, char digest[SHA256_TEXT])
 
 // --- the file ---------------------------------------------------------------------------------
 
-static bool allowed_path(char *path, size_t size, bool make)
-{
-    const char name[] = "/allowed";
-    if (!settings_folder(path, size - sizeof name, make)) {
-        return false;
-    }
-    memcpy(path + strlen(path), name, sizeof name);
-    return true;
-}
-
 // Whether a line of the file begins with the digest; copies the lines to `copy` (may be NULL).
 static bool look_through(const char *path, const char *digest, FILE *copy)
 {
@@ -135,7 +127,7 @@ bool consent_remembered(const scenario *s)
     char path[1024], digest[SHA256_TEXT];
 
     // the program is read only if the user has allowed any
-    return allowed_path(path, sizeof path, false) && access(path, R_OK) == 0 &&
+    return user_file("allowed", path, sizeof path, false) && access(path, R_OK) == 0 &&
            digest_of(s, digest) && look_through(path, digest, NULL);
 }
 
@@ -144,7 +136,7 @@ status consent_remember(const scenario *s, bool *kept, fault *f)
     assert(s != NULL && kept != NULL);
     char path[1024], digest[SHA256_TEXT], what[2 * PARAMETER_TEXT_SIZE];
     *kept = false;
-    if (!digest_of(s, digest) || !allowed_path(path, sizeof path, true)) {
+    if (!digest_of(s, digest) || !user_file("allowed", path, sizeof path, true)) {
         return STATUS_OK;
     }
 

@@ -7,9 +7,10 @@
 #include "src/base/fault.h"
 #include "src/scenario/scenario.h"
 
-// The folder's path ($XDG_CONFIG_HOME/impactlab or ~/.config/impactlab), created if `make`. False
-// if there is none or the path is too long.
-bool settings_folder(char *path, size_t size, bool make);
+// The path of a file (a name of a few letters) in the folder of settings,
+// $XDG_CONFIG_HOME/impactlab or ~/.config/impactlab, which is created if `make`. False if there is
+// none or the path is too long.
+bool user_file(const char *name, char *path, size_t size, bool make);
 
 // --- consent ----------------------------------------------------------------------------------
 // The user's consent to a scenario's program or plug-in, remembered for the content of both.
