@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "src/base/plain_math.h"
 #include "src/arm/modes.h"
 #include "src/run/run.h"
 #include "src/study/convergence.h"
@@ -118,7 +119,7 @@ static void extrapolate(links_row *row)
     const double coarse = row->value[LINKS_LENGTHS - 3], middle = row->value[LINKS_LENGTHS - 2],
                  fine = row->value[LINKS_LENGTHS - 1];
     row->order = observed_order(coarse, middle, fine);
-    row->limit = fine + (fine - middle) / (exp2(row->order) - 1);
+    row->limit = fine + (fine - middle) / (plain_pow(2, row->order) - 1);
     row->error = fabs(row->limit - fine);
 
     // one of which not even the sign is sure is none

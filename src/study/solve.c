@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/plain_math.h"
 #include "src/base/numbers.h"
 #include "src/run/run.h"
 #include "src/study/pool.h"
@@ -158,7 +159,7 @@ static double point_of(const search *s, size_t i)
     if (i == 0 || i == (size_t)s->found->points - 1) {
         return i == 0 ? low : high;
     }
-    double value = s->axis->logarithmic ? low * pow(high / low, share)
+    double value = s->axis->logarithmic ? low * plain_pow(high / low, share)
                                         : (low * (last - (double)i) + high * (double)i) / last;
     return is_whole(s) ? round(value) : value;
 }

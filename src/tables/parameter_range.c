@@ -1,7 +1,9 @@
 #include "src/tables/parameters.h"
+#include "src/base/plain_math.h"
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 
 #define FEWEST_DECADES 3    // from this many on a range is logarithmic
 #define MOST_DECADES   6    // a wider range shows those near the default
@@ -15,10 +17,28 @@ static double default_of(int parameter)
     return isfinite(value) ? value : 0;
 }
 
+// 10^k for a whole number k.
+static double power_of_ten(int k)
+{
+    double power = 1;
+    for (int i = 0; i < abs(k); i++) {
+        power *= 10;
+    }
+    return k < 0 ? 1 / power : power;
+}
+
+// The largest whole number k for which 10^k is not above a positive number.
+static int decade_of(double x)
+{
+    int k = (int)floor(plain_log(x) / M_LN10);
+    k -= power_of_ten(k) > x;
+    return k + (power_of_ten(k + 1) <= x);
+}
+
 // The smallest of 1, 2, 5, 10, 20... that is not below a positive number.
 static double round_up(double x)
 {
-    double decade = pow(10, floor(log10(x)));
+    double decade = power_of_ten(decade_of(x));
     static const double steps[] = {1, 2, 5, 10};
     for (int i = 0; i < 4; i++) {
         if (steps[i] * decade >= x * (1 - 1e-9)) {
@@ -40,10 +60,11 @@ bool parameter_usual_range(int parameter, double value, double *range_low, doubl
     double usual = fabs(default_of(parameter)), low = info->minimum, high = info->maximum;
 
     // decades: all of them, or some near the default up to the value
-    if (low > 0 && log10(high / low) >= FEWEST_DECADES) {
-        if (log10(high / low) > MOST_DECADES && usual > 0) {
-            low = fmax(low, fmin(value, pow(10, floor(log10(usual)) - 2)));
-            high = fmin(high, fmax(value, pow(10, ceil(log10(usual)) + 2)));
+    if (low > 0 && high / low >= power_of_ten(FEWEST_DECADES) * (1 - 1e-9)) {
+        if (high / low > power_of_ten(MOST_DECADES) * (1 + 1e-9) && usual > 0) {
+            const int below = decade_of(usual), above = below + (power_of_ten(below) < usual);
+            low = fmax(low, fmin(value, power_of_ten(below - 2)));
+            high = fmin(high, fmax(value, power_of_ten(above + 2)));
         }
         *range_low = low;
         *range_high = high;
