@@ -426,6 +426,20 @@ static char *file_of(const scenario *s)
     return text;
 }
 
+// What YAML takes for the end of a line within a text comes back as it was.
+static void other_line_ends_read_back(void **state)
+{
+    (void)state;
+    scenario s = good("title: \"a \\L b\\P c\\\"f\"\n");
+    assert_string_equal(s.title, "a \xe2\x80\xa8 b\xe2\x80\xa9 c\"f");
+    char *file = file_of(&s);
+    scenario again = good(file);
+    assert_string_equal(again.title, s.title);
+    free(file);
+    scenario_finish(&s);
+    scenario_finish(&again);
+}
+
 // However long the title is and however much was changed, the file can be read, and tells of it.
 static void changed_scenarios_read_back(void **state)
 {
@@ -550,6 +564,7 @@ int main(void)
         cmocka_unit_test(a_wrong_override_changes_nothing),
         cmocka_unit_test(an_endless_override_is_refused),
         cmocka_unit_test(written_scenarios_read_back),
+        cmocka_unit_test(other_line_ends_read_back),
         cmocka_unit_test(changed_scenarios_read_back),
         cmocka_unit_test(written_lessons_read_back),
         cmocka_unit_test(a_copy_shares_nothing_with_the_original),

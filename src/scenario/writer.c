@@ -7,16 +7,35 @@
 #include "src/scenario/scenario.h"
 #include "src/base/numbers.h"
 
+// The escape of a character that YAML takes for a line's end or changes, NULL for any other; its
+// bytes in *length.
+static const char *yaml_escape(const char *c, size_t *length)
+{
+    static const struct {
+        const char *bytes, *escape;
+    } escapes[] = {{"\n", "\\n"},          {"\t", "\\t"},       {"\"", "\\\""},
+                   {"\\", "\\\\"},         {"\xc2\x85", "\\N"}, {"\xe2\x80\xa8", "\\L"},
+                   {"\xe2\x80\xa9", "\\P"}};
+    for (size_t i = 0; i < sizeof escapes / sizeof escapes[0]; i++) {
+        *length = strlen(escapes[i].bytes);
+        if (strncmp(c, escapes[i].bytes, *length) == 0) {
+            return escapes[i].escape;
+        }
+    }
+    return NULL;
+}
+
 // What stands between quotation marks so that YAML reads it back.
 static void write_inside(FILE *stream, const char *text)
 {
-    for (const char *c = text; *c != '\0'; c++) {
-        if (*c == '\n' || *c == '\t') {
-            fputs(*c == '\n' ? "\\n" : "\\t", stream);
-        } else if ((unsigned char)*c < ' ') {
-            fputc(' ', stream);
+    size_t length;
+    for (const char *c = text; *c != '\0'; c += length) {
+        const char *escape = yaml_escape(c, &length);
+        if (escape != NULL) {
+            fputs(escape, stream);
         } else {
-            fprintf(stream, "%s%c", *c == '"' || *c == '\\' ? "\\" : "", *c);
+            fputc((unsigned char)*c < ' ' ? ' ' : *c, stream);
+            length = 1;
         }
     }
 }
