@@ -107,6 +107,10 @@ static void functions_are_their_polynomials(void **state)
     divided = f;
     function_scale(&divided, 2, -1);
     function_divide(&divided);
+    // what it has at the start, value or slope, is taken off it all along
+    stiff_function lifted = f;
+    function_divide(&lifted);
+    function_divide(&lifted);
     for (double x = 0.05; x <= 1; x += 0.095) {
         const double value = polynomial(x, &slope, &bend);
         check_close(function_at(&f, x).value, value, 1e-13);
@@ -114,6 +118,7 @@ static void functions_are_their_polynomials(void **state)
         check_close(function_at(&rising, x).value, value, 1e-13);
         check_close(function_at(&sum, x).slope, 2 * value, 1e-13);
         check_close(function_at(&divided, x).value, (2 * value - 1) / x, 1e-11);
+        check_close(function_at(&lifted, x).value, (value - 0.5 - 3 * x) / (x * x), 1e-9);
         assert_true(function_bend(&f, x - 0.05, x) * (1 + 1e-12) >= fabs(bend));
         assert_true(value >= function_least(&f));
         assert_true(function_greatest(&f) >= value);

@@ -64,8 +64,9 @@ void function_scale(stiff_function *f, double factor, double offset)
 void function_divide(stiff_function *f)
 {
     const int n = f->degree--;
+    const double start = f->b[0];
     for (int i = 1; i <= n; i++) {
-        f->b[i - 1] = f->b[i] * n / i;
+        f->b[i - 1] = (f->b[i] - start) * n / i;
     }
 }
 

@@ -25,7 +25,7 @@ void function_through_rising(stiff_function *f, const double *nodes, double slop
 void function_integrate(stiff_function *f, double start, double factor);
 // f times a number, and a number added.
 void function_scale(stiff_function *f, double factor, double offset);
-// f/x, f being taken for zero at 0.
+// (f - f(0)) / x.
 void function_divide(stiff_function *f);
 // Coefficients of the first four powers of x; the degree is at least 3.
 void function_start(const stiff_function *f, double powers[4]);

@@ -113,6 +113,7 @@ arguments() {
     show | run | predict | modes | converge | calibrate) echo "$2" ;;
     check) echo "scenarios/$2.yaml" ;;
     sweep) echo "$2 --vary motor.voltage=1,2 --jobs 2" ;;
+    solve) echo "$2 motor.voltage=0.5:2 peak_force_N<1 --runs 3 --jobs 2" ;;
     merge) echo "scenarios/$2.yaml" ;;
     compare) echo "$2 corrected/first-impact" ;;
     study) echo "sensor $2" ;;
