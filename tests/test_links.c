@@ -81,9 +81,9 @@ static void enough_is_enough_for_all_that_follow(void **state)
     assert_int_equal(links_enough(&row), 0);
 
     // without a beam the limit counts; without either there is no answer
-    row = (links_row){.value = {1, 1, 1, 1, 1, 1}, .beam = NAN, .limit = 1.01};
+    row = (links_row){.value = {1, 1, 1, 1, 1, 1}, .beam = (double)NAN, .limit = 1.01};
     assert_int_equal(links_enough(&row), 2);
-    row.limit = NAN;
+    row.limit = (double)NAN;
     assert_int_equal(links_enough(&row), 0);
 }
 

@@ -124,7 +124,7 @@ static void extrapolate(links_row *row)
 
     // one of which not even the sign is sure is none
     if (!(row->error < fabs(row->limit))) {
-        row->limit = row->error = NAN;
+        row->limit = row->error = (double)NAN;
     }
 
     // values that no longer change have arrived
@@ -150,7 +150,7 @@ static void compute_beam(const parameters *p, double speed, links_row *rows)
 
     // the blow's closed form is that of a beam without damping which the wall stops at once
     if (p->wall.contact != WALL_RIGID || p->arm.damping_ratio > 0) {
-        rows[MOMENTUM].beam = rows[SENSED].beam = NAN;
+        rows[MOMENTUM].beam = rows[SENSED].beam = (double)NAN;
     }
 }
 
@@ -171,14 +171,14 @@ int links_enough(const links_row *row)
 status links_study_compute(const scenario *s, run_monitor *monitor, links_study *study, fault *f)
 {
     assert(s != NULL && study != NULL);
-    double speed = NAN;
+    double speed = (double)NAN;
     *study = (links_study){0};
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         study->rows[k] = blank_rows[k];
-        study->rows[k].order = study->rows[k].limit = study->rows[k].error = NAN;
-        study->rows[k].beam = NAN;
+        study->rows[k].order = study->rows[k].limit = study->rows[k].error = (double)NAN;
+        study->rows[k].beam = (double)NAN;
         for (int i = 0; i < LINKS_LENGTHS; i++) {
-            study->rows[k].value[i] = NAN;
+            study->rows[k].value[i] = (double)NAN;
         }
     }
 

@@ -114,7 +114,7 @@ static void run_trial(const search *s, double value, trial_result *r)
     scenario derived = *s->base;
     parameters p = s->base->parameters;
     fault f = {0};
-    *r = (trial_result){.trial = {.value = value, .quantity = NAN}};
+    *r = (trial_result){.trial = {.value = value, .quantity = (double)NAN}};
 
     // values that do not go with the others of the scenario are as good as a run that fails
     status code = sweep_axis_apply(s->axis, value, &p, &f);
