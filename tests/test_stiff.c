@@ -206,6 +206,7 @@ static void an_arm_that_rests_on_a_face_stays_on_it(void **state)
 
 // Ten links lie on a soft wall while the hub starts: for milliseconds the tip's gap is rounding. A
 // hub on a stiff spring comes to rest slowly, far from zero: its angle's last digits are momentum.
+// A link leaves a light face on a stiff spring, whose place's last digits push it.
 static void rounding_makes_no_events_and_stops_none(void **state)
 {
     (void)state;
@@ -219,9 +220,18 @@ static void rounding_makes_no_events_and_stops_none(void **state)
         "arm.mass=0.67605488209424403", "arm.hub_inertia=0.0013041262868641415",
         "motor.stiction=0.0049450852012509119", "arm.k2=1.397745898348157",
         "wall.restitution=0.73448653687268595", "arm.damping_ratio=0.0045224480198796518"));
+    const parameters leaves = fixture_parameters(
+        SETTINGS("arm.links=1", "arm.hub_joint=beam", "wall.angle=0.52551617311434207",
+                 "initial.angle=-2.6139982837488329", "motor.voltage=9.2267505502571954",
+                 "arm.mass=0.2539037021673044", "arm.hub_inertia=0.032602848952261856",
+                 "motor.stiction=0.057846404023573494", "arm.k2=1.1296948727964351",
+                 "arm.stiffening=0.17374677983270193", "wall.contact=kelvin-voigt",
+                 "wall.stiffness=44316398.161449909", "wall.damping=1.2410654660832594",
+                 "wall.mass=0.014843778839791476", "wall.restitution=0"));
     const chain_start starts[] = {
         {&lies, lies.wall.angle, 0, 0.03, 0.03, NULL},
         {&slow, 1.6013044654119684, 0.101077, 0.06, 0.06, NULL},
+        {&leaves, -2.6139982837488329, -0.11927640780125666, 0.06, 0.03, NULL},
     };
     // a straight arm on its point, whose hub starts: the tip's gap grows as a high power of time,
     // and touches within rounding are no impacts to be counted
@@ -233,7 +243,7 @@ static void rounding_makes_no_events_and_stops_none(void **state)
     assert_int_equal(straight.status, STATUS_OK);
     check_below(straight.residual, 1e-9 * straight.put_in);
 
-    for (int i = 0; i < 2; i++) {
+    for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
         chain_start start = starts[i];
         start.by = &stiff_engine;
         const chain_outcome o = chain_outcome_of(&start);
@@ -244,6 +254,35 @@ static void rounding_makes_no_events_and_stops_none(void **state)
         check_close(o.motor_work, truth.motor_work, 1e-9 * truth.put_in);
         check_below(o.residual, 1e-9 * o.put_in);
     }
+}
+
+// Where the wall holds the link and friction the hub, the force stays what it is while the motor's
+// current still changes: its peak is reached when the hub comes to rest.
+static void a_force_that_stays_has_its_peak_at_its_start(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(SETTINGS(
+        "arm.links=1", "arm.hub_joint=beam", "wall.kind=plane", "motor.voltage=0.49199248223745717",
+        "arm.mass=0.95154417458975349", "arm.hub_inertia=0.0033970417183283095",
+        "arm.k2=17.381623622079722", "motor.inductance=0.011351328772705165"));
+    const double end = 0.06;
+    double held = 0;
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create_by(&a, &p.method, &stiff_engine);
+    assert_non_null(m);
+    motion_start(&a, m, 0.099711351379691532, 0.058592421014174362);
+    while (m->state[SLOT_TIME] < end) {
+        motion_report r;
+        assert_int_equal(motion_step(&a, m, end, p.method.step, &r), STATUS_OK);
+        motion_apply(&a, m, &r);
+        held = r.event == MOTION_STICK ? m->state[SLOT_TIME] : held;
+    }
+    assert_true(m->state[SLOT_CONTACT] != 0 && m->state[SLOT_FRICTION] == HUB_STICK);
+    assert_true(held > 0 && held < 0.8 * end);
+    check_close(m->pulse_peak_time, held, 1e-9);
+    check_close(m->pulse_peak, m->state[SLOT_FORCE], 1e-9 * m->pulse_peak);
+    motion_destroy(m);
 }
 
 // Tip against a flat wall through the hub's axis, where the force has a pole.
@@ -349,6 +388,7 @@ int main(void)
         cmocka_unit_test(starts_on_the_wall_are_told_from_rounding),
         cmocka_unit_test(an_arm_that_rests_on_a_face_stays_on_it),
         cmocka_unit_test(rounding_makes_no_events_and_stops_none),
+        cmocka_unit_test(a_force_that_stays_has_its_peak_at_its_start),
         cmocka_unit_test(steps_keep_clear_of_a_fold),
         cmocka_unit_test(a_chain_that_bounces_keeps_its_impacts),
         cmocka_unit_test(decays_of_any_rate_are_passed_over),

@@ -107,12 +107,6 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     return worst;
 }
 
-// What the force on a face with a mass errs by [N]: its spring times the rounding of its place.
-static double face_rounding(const arm *a, const motion *m)
-{
-    return m->wall_has_face ? EDGE_PLACE * a->wall.stiffness : 0;
-}
-
 // Ends a motion that is only rounding, which would say that contact or friction end.
 static void end_rounding(motion *m)
 {
@@ -166,7 +160,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
                                                                            : 0;
     const double more = event == MOTION_RELEASE ? larger(m->engine->left_out, 1) : 1;
     const double beyond = accelerates ? more * (motion_rounding(a, m) - 1) : 0;
-    const double rounding = FORCE_TOLERANCE * (1 + beyond) + face_rounding(a, m);
+    const double rounding = FORCE_TOLERANCE * (1 + beyond) + motion_face_rounding(a, m);
     double least = 0;
     contact_state best = {false, sliding}, tried = best;
 

@@ -336,16 +336,23 @@ double motion_rounding(const arm *a, const motion *m)
     return motion_rounding_at(a, m->dof, state_angles(m, m->state), state_velocities(m, m->state));
 }
 
+double motion_face_rounding(const arm *a, const motion *m)
+{
+    return m->wall_has_face ? EDGE_PLACE * a->wall.stiffness : 0;
+}
+
 void motion_gap_edges(const arm *a, const motion *m, double limits[3])
 {
-    // a rounding error of the force accelerates a face by that error over its mass; one without a
-    // mass returns at a rate that has the error of the place where it was left
+    // a rounding error of the force accelerates a face by that error over its mass, and so does
+    // that of its spring, by the face's place; one without a mass returns at a rate that has the
+    // error of the place where it was left
     const bool returns = m->wall_gives && state_face_swings(m->state);
     const double rate = returns ? wall_face_rate(&a->wall, state_face(m->state)) : 0;
     const double yields = m->wall_has_face ? 1 / a->wall.face_mass : 0;
     limits[0] = EDGE_GAP;
     limits[1] = EDGE_RATE + EDGE_PLACE * rate;
-    limits[2] = EDGE_RATE * (motion_rounding(a, m) + yields) + EDGE_PLACE * rate * rate;
+    limits[2] = EDGE_RATE * (motion_rounding(a, m) + yields) + EDGE_PLACE * rate * rate +
+                yields * motion_face_rounding(a, m);
     limits[2] = fmax(EDGE_MORE, limits[2]);
 }
 

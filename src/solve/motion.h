@@ -325,6 +325,9 @@ bool motion_project(const arm *a, motion *m, double *state);
 // into an acceleration error of (k/I) q 2^-52, where k/I is at most the square of the arm's highest
 // frequency; and what turns at w has accelerations of w^2, with an error in their last bit.
 double motion_rounding(const arm *a, const motion *m);
+// What the force on a wall's face with a mass errs by: its spring times the rounding of its place
+// [N]; 0 without such a face.
+double motion_face_rounding(const arm *a, const motion *m);
 // What counts as rounding of the gap just after an event, and of its first and second derivatives
 // by time (edge_limits.h) [m], [m/s], [m/s2].
 void motion_gap_edges(const arm *a, const motion *m, double limits[3]);

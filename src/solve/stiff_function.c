@@ -12,11 +12,18 @@
 void function_through(stiff_function *f, const double *nodes)
 {
     f->degree = RADAU_LANES - 1;
+    bool varies = false;
     for (int i = 0; i < RADAU_LANES; i++) {
         f->b[i] = 0;
         for (int k = 0; k < RADAU_LANES; k++) {
             f->b[i] += radau_bernstein[i][k] * nodes[k];
         }
+        varies = varies || nodes[i] != nodes[0];
+    }
+
+    // what does not change stays the same to the last bit
+    for (int i = 0; i < RADAU_LANES && !varies; i++) {
+        f->b[i] = nodes[0];
     }
 
     // to the last bit at both ends

@@ -171,8 +171,15 @@ void stiff_keep_stages(stiff_stride *stride)
     for (int k = 0; k < s->dof; k++) {
         memcpy(a + (size_t)RADAU_LANES * (size_t)k, s->stage[k].a, sizeof s->stage[k].a);
     }
-    if (s->dof == 1 && s->contact == STIFF_RIGID) { // what holds one link holds it to the last bit
-        memset(a, 0, RADAU_LANES * sizeof *a);
+
+    // what holds one link holds it to the last bit; with the hub stuck too, what joins the two
+    // presses with one force throughout
+    const bool both = s->dof == 2 && s->stuck;
+    if (s->contact == STIFF_RIGID && (s->dof == 1 || both)) {
+        memset(a, 0, (size_t)s->dof * RADAU_LANES * sizeof *a);
+    }
+    for (int i = 0; i < RADAU_LANES && both && s->contact == STIFF_RIGID; i++) {
+        kept[STIFF_FORCE + i] = s->force.at[RADAU_LANES - 1];
     }
     kept[STIFF_LENGTH] = s->length;
 }
