@@ -433,7 +433,7 @@ static void check_record(soak *s)
 
 static void check_terminal(soak *s)
 {
-    static const int off[] = {1, 1000, 1002, 1003, 1006, 1015, 1047, 1049, 2026};
+    static const int off[] = {1, 1000, 1002, 1003, 1006, 1015, 1047, 1049, 2004, 2026};
     struct termios after;
     tcgetattr(s->slave, &after);
     bool same = after.c_iflag == s->before.c_iflag && after.c_oflag == s->before.c_oflag &&

@@ -57,7 +57,7 @@ static void test_what_means_nothing_is_passed_over(void **state)
 {
     (void)state;
     static const char *const others[] = {"[<64;45;30m", "[<2;45;30M", "[<35;45;30M", "[<0;45M",
-                                         "[<;;M",       "[1;5C",      "OQ",          "[200~",
+                                         "[<;;M",       "[1;5C",      "OQ",          "[202~",
                                          "[?1;2c",      "[<0;1;2;3M"};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         meant m = feed_fresh(others[i]);
@@ -71,6 +71,17 @@ static void test_what_means_nothing_is_passed_over(void **state)
     digits[sizeof digits - 2] = 'M';
     digits[sizeof digits - 1] = '\0';
     assert_int_equal(feed_fresh(digits).result, SEQUENCE_OVER);
+}
+
+static void test_pasted_text_has_marks(void **state)
+{
+    (void)state;
+    assert_int_equal(feed_fresh("[200~").result, SEQUENCE_PASTE);
+    assert_int_equal(feed_fresh("[201~").result, SEQUENCE_PASTED);
+
+    // also while answers of the terminal are awaited
+    escape_sequence e = {.state = SEQUENCE_ESCAPED, .awaits = true};
+    assert_int_equal(feed(&e, "[200~").result, SEQUENCE_PASTE);
 }
 
 static void test_a_sequence_may_come_in_pieces(void **state)
@@ -100,6 +111,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_mouse_reports_are_understood),
         cmocka_unit_test(test_what_means_nothing_is_passed_over),
+        cmocka_unit_test(test_pasted_text_has_marks),
         cmocka_unit_test(test_a_sequence_may_come_in_pieces),
         cmocka_unit_test(test_other_keys_end_it),
     };

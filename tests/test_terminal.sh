@@ -179,6 +179,15 @@ mux send-keys Space Home
 await "t 0.00000 s"
 mux send-keys -l $'\033[<0;45;30M\033[<0;45;30m'
 await "t 0.53906 s"
+# what is pasted presses no keys: neither quits nor opens anything, and in the prompt it is text
+mux set-buffer $'q\nqy:quit\n'
+mux paste-buffer -p
+await "pasted text does nothing here"
+mux send-keys :
+mux set-buffer $'set motor.voltage=3\nquit'
+mux paste-buffer -p
+await "set motor.voltage=3 quit"
+mux send-keys Escape
 mux send-keys ":mouse off" Enter
 await "the mouse is off"
 mouse_is_off() {

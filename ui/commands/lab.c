@@ -109,7 +109,11 @@ static int run_off_screen(explorer *ex, const arguments *a)
 static void take_input(explorer *ex, terminal_input in)
 {
     if (in.kind == TERMINAL_KEY) {
-        explorer_key(ex, in.code);
+        if (in.pasted) {
+            explorer_paste(ex, in.code);
+        } else {
+            explorer_key(ex, in.code);
+        }
     } else if (in.kind == TERMINAL_POINTER) {
         explorer_point(ex, in.pointer);
     } else if (in.kind == TERMINAL_RESIZE) {

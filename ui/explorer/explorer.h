@@ -55,6 +55,10 @@ bool explorer_carry_out(explorer *ex, const char *line);
 // A key was pressed.
 void explorer_key(explorer *ex, int key);
 
+// A character was pasted: typed where text is typed, a line's end as a blank, and nothing
+// elsewhere, so that what was copied never acts as keys.
+void explorer_paste(explorer *ex, int character);
+
 // Presses the keys of a text: characters, and names in angle brackets ("<Space>", "<Right>",
 // "<C-l>"). False, with the reason in f, at an unknown name.
 bool explorer_keys(explorer *ex, const char *text, fault *f);

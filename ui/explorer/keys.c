@@ -228,6 +228,20 @@ void explorer_key(explorer *ex, int key)
     }
 }
 
+void explorer_paste(explorer *ex, int character)
+{
+    assert(ex != NULL);
+    explorer_state *st = &ex->state;
+    const bool typing = st->prompt.open || st->filters.typing != PANEL_NONE ||
+                        (st->page.panel == PANEL_SCENARIOS && st->scenarios.filtering);
+    const bool blank = character == '\n' || character == '\r' || character == '\t';
+    if (!typing) {
+        act_warn(st, "pasted text does nothing here, : opens the prompt for it");
+    } else if (blank || (character >= ' ' && character < KEY_CODE_FIRST && character != 127)) {
+        explorer_key(ex, blank ? ' ' : character);
+    }
+}
+
 // --- the mouse --------------------------------------------------------------------------------
 
 // Passes a gesture to the panel of its hit area; false if it has no effect.

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { WHEEL = 64, DRAG = 32, SHIFT = 4, META = 8, CONTROL = 16, OLD_RELEASE = 3, OLD_OFFSET = 32 };
 
@@ -37,6 +38,9 @@ static sequence_result end(escape_sequence *e, int last, pointer_event *report)
                      sscanf(e->text, "<%d;%d;%d%c", &button, &column, &row, &rest) == 3;
     if (is_report) {
         return mouse(button, column, row, last == 'M', report);
+    }
+    if (last == '~' && (strcmp(e->text, "200") == 0 || strcmp(e->text, "201") == 0)) {
+        return e->text[2] == '0' ? SEQUENCE_PASTE : SEQUENCE_PASTED;
     }
     e->introducer = '[';
     e->final = (char)last;

@@ -1,7 +1,8 @@
 // Escape sequences on the terminal's input, byte by byte. Mouse reports are decoded, answers of the
 // terminal are passed on while some are expected, and everything else is skipped, so that the
 // letters of an unknown key are not taken for keys. It never waits: a sequence that arrives in
-// pieces is continued when the next piece is there.
+// pieces is continued when the next piece is there. ESC [ 200 ~ and ESC [ 201 ~ stand before and
+// after pasted text (bracketed paste).
 #pragma once
 
 #include "ui/terminal/keys.h"
@@ -26,9 +27,11 @@ typedef struct escape_sequence {
 
 typedef enum sequence_result {
     SEQUENCE_GOES_ON,
-    SEQUENCE_OVER,     // it had no meaning or was skipped
-    SEQUENCE_MOUSE,    // the first button or the wheel
-    SEQUENCE_ANSWER,   // given by introducer, text and final
+    SEQUENCE_OVER,   // it had no meaning or was skipped
+    SEQUENCE_MOUSE,  // the first button or the wheel
+    SEQUENCE_ANSWER, // given by introducer, text and final
+    SEQUENCE_PASTE,  // what follows was pasted, as far as SEQUENCE_PASTED
+    SEQUENCE_PASTED,
     SEQUENCE_OTHER_KEY // ESC was a key by itself; this character is the next key
 } sequence_result;
 

@@ -170,6 +170,15 @@ static void ask_for_pixels(void)
     terminal_send(question, strlen(question));
 }
 
+void terminal_bracket_pastes(bool on)
+{
+    // a console that does not know it may print it
+    const char *name = getenv("TERM");
+    if (name != NULL && strcmp(name, "linux") != 0) {
+        terminal_send(on ? "\033[?2004h" : "\033[?2004l", 8);
+    }
+}
+
 status terminal_open(fault *f)
 {
     if (!terminal_usable(f)) {
@@ -194,7 +203,7 @@ status terminal_open(fault *f)
     tty.restore_length = 0;
     terminal_prepare_crash("\033\\"); // ends a picture that is cut off
     terminal_prepare_crash(tigetstr("rmkx"));
-    terminal_prepare_crash("\033[?1000l\033[?1002l\033[?1006l\033[?2026l");
+    terminal_prepare_crash("\033[?1000l\033[?1002l\033[?1006l\033[?2004l\033[?2026l");
     terminal_prepare_crash(tigetstr("sgr0"));
     terminal_prepare_crash(tigetstr("cnorm"));
     terminal_prepare_crash(tigetstr("rmcup"));
@@ -211,6 +220,7 @@ status terminal_open(fault *f)
     tty.has_mouse = reports != NULL && reports != (const char *)-1;
     keyok(KEY_MOUSE, FALSE);
     tty.sequence.state = SEQUENCE_NONE;
+    tty.pasting = false;
 
     // no waiting in ncurses: terminal_wait does that
     nodelay(stdscr, TRUE);
@@ -224,6 +234,7 @@ status terminal_open(fault *f)
         use_default_colors();
     }
     tty.themed = false;
+    terminal_bracket_pastes(true);
     ask_for_pixels();
     return STATUS_OK;
 }
@@ -232,6 +243,7 @@ void terminal_close(void)
 {
     if (tty.curses != NULL) {
         terminal_mouse(false);
+        terminal_bracket_pastes(false);
         terminal_remove_pictures();
         // where there is no alternate screen the prompt comes back to an empty one
         if (tty.painted) {

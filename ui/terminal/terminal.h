@@ -19,6 +19,7 @@ typedef enum terminal_input_kind {
 typedef struct terminal_input {
     terminal_input_kind kind;
     int code;
+    bool pasted; // a key that is a character of pasted text
     pointer_event pointer;
 } terminal_input;
 

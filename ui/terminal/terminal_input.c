@@ -12,6 +12,7 @@
 #include "src/base/clock.h"
 
 #define SEQUENCE_TIME 0.25 // after such a pause what is missing of a sequence does not come [s]
+#define PASTE_TIME    1.0  // nor the end of pasted text [s]
 
 static int key_of_curses(int key)
 {
@@ -97,8 +98,21 @@ static bool take_sequence(wint_t key, int kind, terminal_input *in)
         in->kind = take_answer() ? TERMINAL_RESIZE : TERMINAL_NONE;
         return true;
     }
+    if (result == SEQUENCE_PASTE || result == SEQUENCE_PASTED) {
+        tty.pasting = result == SEQUENCE_PASTE;
+        tty.paste_time = tty.sequence_time;
+    }
     in->kind = result == SEQUENCE_MOUSE ? TERMINAL_POINTER : TERMINAL_NONE;
     return true;
+}
+
+// A key, which is one of pasted text until that ends.
+static terminal_input key_input(int code)
+{
+    const double now = clock_seconds(CLOCK_MONOTONIC);
+    tty.pasting = tty.pasting && now - tty.paste_time < PASTE_TIME;
+    tty.paste_time = now;
+    return (terminal_input){.kind = TERMINAL_KEY, .code = code, .pasted = tty.pasting};
 }
 
 // The input that has arrived; TERMINAL_NONE if there is none, or only a part of a sequence.
@@ -128,13 +142,12 @@ static terminal_input pending_input(void)
         }
 
         if (kind == KEY_CODE_YES) {
-            return key == KEY_RESIZE
-                       ? (terminal_input){.kind = TERMINAL_RESIZE}
-                       : (terminal_input){.kind = TERMINAL_KEY, .code = key_of_curses((int)key)};
+            return key == KEY_RESIZE ? (terminal_input){.kind = TERMINAL_RESIZE}
+                                     : key_input(key_of_curses((int)key));
         }
 
         if (key != KEY_CODE_ESCAPE) {
-            return (terminal_input){.kind = TERMINAL_KEY, .code = (int)key};
+            return key_input((int)key);
         }
         tty.sequence.state = SEQUENCE_ESCAPED;
     }
@@ -142,7 +155,7 @@ static terminal_input pending_input(void)
     // no more came after an escape: it was the key
     if (tty.sequence.state == SEQUENCE_ESCAPED) {
         tty.sequence.state = SEQUENCE_NONE;
-        return (terminal_input){.kind = TERMINAL_KEY, .code = KEY_CODE_ESCAPE};
+        return key_input(KEY_CODE_ESCAPE);
     }
 
     return (terminal_input){.kind = TERMINAL_NONE};
@@ -154,6 +167,7 @@ static void suspend(void)
 {
     struct sigaction ours, plain = {.sa_handler = SIG_DFL};
     terminal_mouse(false);
+    terminal_bracket_pastes(false);
     terminal_remove_pictures();
     erase();
     refresh();
@@ -168,6 +182,7 @@ static void suspend(void)
     clearok(stdscr, TRUE);
     refresh();
     curs_set(0);
+    terminal_bracket_pastes(true);
 }
 
 // Takes the bytes that signals left, and the terminal's new size.

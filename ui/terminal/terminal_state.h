@@ -23,6 +23,8 @@ typedef struct terminal_state {
     bool painted;             // the contents were not drawn by ncurses
     escape_sequence sequence; // sequence begun on the input
     double sequence_time;     // of its last character [s]
+    bool pasting;             // what comes is pasted text
+    double paste_time;        // of its last character [s]
     pixel_answers pixels;     // answers about pictures
     char restore[256];        // sequence sent by a crash
     size_t restore_length;
@@ -39,6 +41,9 @@ void terminal_prepare_crash(const char *text);
 
 // Sends all bytes to the terminal, however slowly it accepts them.
 void terminal_send(const char *bytes, size_t count);
+
+// Asks the terminal to mark what is pasted (bracketed paste), or no longer to.
+void terminal_bracket_pastes(bool on);
 
 // Removes all pictures from the terminal.
 void terminal_remove_pictures(void);
