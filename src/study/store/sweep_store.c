@@ -1,4 +1,3 @@
-#include "src/base/loss.h"
 #include "src/study/store/sweep_store.h"
 
 #include <assert.h>
@@ -10,6 +9,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "src/base/loss.h"
 #include "src/study/store/sweep_database.h"
 
 // Creates the tables and writes the definition, all in one transaction.
