@@ -252,7 +252,7 @@ static void try_line(source *s)
         FUZZ_CHECK(code == EXIT_DONE && a.operand_count >= c->least && a.operand_count <= c->most);
         if (may_run(&a, &l)) {
             code = check_results(&a);
-            code = code == EXIT_DONE ? c->run(&a) : code;
+            code = code == EXIT_DONE ? command_run(&a) : code;
             FUZZ_CHECK(code >= EXIT_DONE && code <= EXIT_BAD_ARGUMENTS);
         }
         arguments_finish(&a);
