@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "src/run/statistics.h"
+#include "src/run/trace.h"
 
 static void test_a_spectrum_names_the_highest_line(void **state)
 {

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "src/base/random.h"
-#include "src/run/statistics.h"
+#include "src/run/trace.h"
 
 static void add(trace *t, double time, double force)
 {

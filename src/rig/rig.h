@@ -1,7 +1,7 @@
 // The rig: sensors, a controller that samples them, and the command it sends to the amplifier.
 //
 // The run's motion is the plant. It stops at rig_next_time or, in flight, is observed there without
-// stopping (src/run/corrected_step.h); at the time of a sample sensors are read and the
+// stopping (src/run/corrected.h); at the time of a sample sensors are read and the
 // controller is called, and `delay` later its command takes effect and holds (zero-order hold)
 // until the next one does.
 #pragma once

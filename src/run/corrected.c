@@ -8,10 +8,8 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
-#include "src/run/checkpoint.h"
-#include "src/run/corrected_events.h"
-#include "src/run/corrected_rows.h"
-#include "src/run/rig_recording.h"
+#include "src/run/resume.h"
+#include "src/run/recording.h"
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
 

@@ -5,7 +5,48 @@
 // so that several can go side by side (src/run/run.c), and programs step them (src/run/loop.h).
 #pragma once
 
-#include "src/run/corrected_step.h"
+#include "src/run/recording.h"
+#include "src/solve/contact_machine.h"
+#include "src/solve/motion.h"
+#include "src/solve/pace.h"
+
+// A point on the way along a step: the instant, and what the sensors see there.
+typedef struct way {
+    double time; // [s]
+    sensed_motion at;
+    double integral; // of the force [N s]
+} way;
+
+// A step that continues beyond instants at which the run is observed: samples of the rig that
+// change nothing, stops of a program. The motion still stands at the step's start and knows how far
+// the step goes (m->ahead; m->trial is a copy, as after a step); the run has come to an instant
+// within it.
+typedef struct step_under_way {
+    bool goes_on;     // there is one
+    double begun_for; // the stop that it was begun for [s]
+    double now;       // the run's instant [s]
+    way sensed;       // up to where the sensors have followed the arm
+} step_under_way;
+
+typedef struct corrected_run {
+    recording *recording;
+    motion *motion;
+
+    // the stretch between two stops of script, rig or window that the motion is in
+    double stop;       // where it ends at the latest, 0 before the first [s]
+    double last_event; // in it, -1 if none [s]
+    int at_once;       // events in a row without time passing
+    pace pace;         // of the whole run
+    step_under_way under_way;
+
+    arm arm; // with the command in force
+} corrected_run;
+
+// The instant that the run has come to [s].
+static inline double corrected_now(const corrected_run *c)
+{
+    return c->under_way.goes_on ? c->under_way.now : c->motion->state[SLOT_TIME];
+}
 
 // Begins a run, or takes one up, in the storage of a motion that is over (`spare`, which may be
 // NULL and is used up). Whatever it returns, corrected_close or corrected_finish is due.
@@ -25,3 +66,113 @@ void corrected_close(corrected_run *c, status failed);
 
 // The same, but for its motion's storage, which it returns: NULL if there is none.
 motion *corrected_finish(corrected_run *c, status failed);
+
+// --- a step, from where it is begun to what comes of its end ----------------------------------
+
+// Looks how far the next step goes (motion_look_ahead), in flight beyond the instants of samples:
+// it is under way then. Of an arm that a dense engine moves and nothing holds still.
+void corrected_begin_step(corrected_run *c);
+
+// Goes on by one stride, recorded with the event at its end: to the end of the stretch or, cut
+// there, to `until` [s] at the most. What fails is explained in f.
+status corrected_stride(corrected_run *c, double until, fault *f)
+    __attribute__((warn_unused_result));
+
+// Ends the step under way, if there is one, at the instant that the run has come to.
+status corrected_end_step(corrected_run *c, fault *f) __attribute__((warn_unused_result));
+
+// The present state, as good as the next call of any function here or of the motion.
+double *corrected_present(const corrected_run *c);
+
+// What the sensors are fixed to at present.
+sensed_motion corrected_sensed_now(const corrected_run *c);
+
+// Advice to the user where the energy balance does not close: dense engines choose their strides
+// themselves.
+const char *corrected_advice(const motion *m);
+
+// --- between steps: events, the script, commands of the rig -----------------------------------
+
+// Derives the arm's constants from the parameters as they are now; the command in force stays.
+void corrected_bind_arm(corrected_run *c);
+
+// To be called of a run that begins: one that starts at rest on the wall is in its first contact,
+// which no event begins. STATUS_NO_MEMORY.
+status corrected_begin_in_contact(corrected_run *c);
+
+// The first pulse is over: takes note of its length and of the largest force until now.
+void corrected_close_first_pulse(corrected_run *c);
+
+// The same of the landing's pulse.
+void corrected_close_landing(corrected_run *c);
+
+// The bounds [N] of a force into two numbers of the summary, which stay as they are where it is
+// determined.
+void corrected_tell_bounds(force_bounds bounds, double *low, double *high);
+
+// Applies an event that the motion stopped at and records the rows on its both sides.
+status corrected_pass_event(corrected_run *c, motion_report *report);
+
+// Carries out one action now and records it as action `index` of the script (-1: of no script); the
+// rows on its both sides show what it changed.
+status corrected_act(corrected_run *c, const action *todo, int index, fault *f);
+
+// Carries out the script's actions that are due. A failure is explained in f, or has a code only.
+status corrected_run_script(corrected_run *c, fault *f);
+
+// Puts a new command of the rig into effect: the torque jumps, and with it accelerations and force.
+// Records the rows on both sides of the jump.
+status corrected_apply_command(corrected_run *c);
+
+// --- what is recorded after every step --------------------------------------------------------
+
+// Records the residual of the energy balance. STATUS_UNSTABLE if the run gains energy,
+// STATUS_NOT_FINITE if an energy is not finite.
+status corrected_audit(corrected_run *c) __attribute__((warn_unused_result));
+
+// The row of a state of the motion, at which an impulse [N s] acts or none.
+sample corrected_row(const corrected_run *c, double *state, double impulse);
+
+// Adds a row of a state of the motion, at which an impulse [N s] acts or none, if the run keeps
+// rows. STATUS_NO_MEMORY.
+status corrected_record_row(corrected_run *c, double *state, double impulse)
+    __attribute__((warn_unused_result));
+
+// Records the rows of the grid up to an instant [s] within the step under way. STATUS_NOT_FINITE if
+// a state cannot be had, STATUS_NO_MEMORY, STATUS_STOPPED.
+status corrected_record_rows_to(corrected_run *c, double time) __attribute__((warn_unused_result));
+
+// Records the step just made: force, separation, ledger, and the rows of the grid that lie within
+// it; of one at its end only if there is no event, which records rows of its own.
+status corrected_record_step(corrected_run *c, bool at_event) __attribute__((warn_unused_result));
+
+// --- a step's force and what the sensors see of it, in pieces ---------------------------------
+
+// What the sensors are fixed to, in a state of the motion.
+sensed_motion corrected_sensed_motion(const corrected_run *c, double *state);
+
+// The `way` for an instant [s], from the motion's state there.
+way corrected_way_at(const corrected_run *c, double time, double *state);
+
+// Into how many pieces the force over a step in contact of this length [s] is divided for
+// recording.
+int corrected_force_pieces(const corrected_run *c, double length);
+
+// Lets the sensors follow the arm within the step under way, which is in flight, to where it has
+// come to `to`. STATUS_NOT_FINITE if a state on the way cannot be computed.
+status corrected_follow_flight(corrected_run *c, const way *to) __attribute__((warn_unused_result));
+
+// Lets the sensors follow the arm over the step just made, or over what is left of it, and keeps
+// its force. STATUS_NOT_FINITE as above, STATUS_NO_MEMORY.
+status corrected_record_forces(corrected_run *c) __attribute__((warn_unused_result));
+
+// --- of the whole of a step in free flight ----------------------------------------------------
+
+// Both are of the step that motion_step has just made.
+
+// Whether the gap was a separation, above SEPARATION_GAP, at any instant of the step.
+bool flight_separated(const arm *a, motion *m);
+
+// How fast the tip came towards the wall at most in the step [m/s]: at its ends or, where it was
+// faster and then slower, in between. Negative if it only went away; 0 without a wall.
+double flight_closing_speed(const arm *a, motion *m);

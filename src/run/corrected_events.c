@@ -1,11 +1,10 @@
-#include "src/run/corrected_events.h"
+#include "src/run/corrected.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/run/corrected_rows.h"
-#include "src/run/rig_recording.h"
+#include "src/run/recording.h"
 #include "src/base/instant.h"
 #include "src/base/sincos.h"
 

@@ -1,15 +1,12 @@
-#include "src/run/corrected_step.h"
-
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
-#include "src/run/checkpoint.h"
-#include "src/run/corrected_events.h"
-#include "src/run/corrected_pieces.h"
-#include "src/run/corrected_rows.h"
+#include "src/run/resume.h"
+#include "src/run/corrected.h"
+#include "src/run/recording.h"
 
 #define SAME_EVENT_TIME 1e-13 // events nearer than this come at once [s]
 
@@ -248,4 +245,201 @@ sensed_motion corrected_sensed_now(const corrected_run *c)
         return corrected_sensed_motion(c, c->motion->state);
     }
     return on->sensed.time == on->now || sensed_within(c, on->now, &at) ? at : on->sensed.at;
+}
+
+// --- rows -------------------------------------------------------------------------------------
+
+#define TINY_ENERGY    1e-9 // below it nothing is called unstable [J]
+#define TINY_TURN      1e-2 // nor below what the motor does in this turn [rad]
+#define WRONG_ENERGY   0.1  // share of the energy turned over that may not be unaccounted for
+#define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near a step's end lies at it
+
+// corrected_audit for a state that holds that energy.
+static inline status audit(corrected_run *c, state_energy has)
+{
+    const motion *m = c->motion;
+    summary *s = &c->recording->result->summary;
+    const double held = motion_wall_energy(&c->arm, m, m->state);
+    double residual = motion_unaccounted(m, m->state, has.kinetic + has.strain + held);
+    s->energy_residual_J = larger(fabs(residual), s->energy_residual_J);
+
+    double turned_over = fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
+                         m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN + TINY_ENERGY;
+    // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
+    double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
+    if (!isfinite(residual) || !isfinite(turned_over)) {
+        return STATUS_NOT_FINITE;
+    }
+    return wrong > WRONG_ENERGY * turned_over ? STATUS_UNSTABLE : STATUS_OK;
+}
+
+status corrected_audit(corrected_run *c)
+{
+    return audit(c, motion_energy(&c->arm, c->motion, c->motion->state));
+}
+
+// The row of a state that holds that energy.
+static sample row_of(const corrected_run *c, double *state, state_energy has, double impulse)
+{
+    const arm *a = &c->arm;
+    const motion *m = c->motion;
+
+    // the state's parts, and the links that the signals name
+    double *q = state_angles(m, state), *w = state_velocities(m, state);
+    double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
+    const bool rigid = motion_wall_is_rigid(m);
+    const double held = motion_wall_energy(a, m, state);
+    int first = a->first, last = a->dof - 1;
+    sample row = {
+        // every signal of the table that the corrected model has
+        .time = state[SLOT_TIME],
+        .hub_angle = q[0],
+        .first_angle = q[first],
+        .last_angle = q[last],
+        .hub_velocity = w[0],
+        .first_velocity = w[first],
+        .last_velocity = w[last],
+        .hub_acceleration = al[0],
+        .first_acceleration = al[first],
+        .last_acceleration = al[last],
+        .gap = state_rest_gap(state),
+        .gap_velocity = state_rest_gap_velocity(state),
+        .force = state[SLOT_FORCE],
+        .impulse = impulse,
+        .contact = state[SLOT_CONTACT],
+        .sticking = state[SLOT_FRICTION] == HUB_STICK,
+        .voltage = a->motor.voltage,
+        .motor_torque = a->motor.torque + state[SLOT_MOTOR_TORQUE],
+        .friction_torque = state[SLOT_FRICTION_TORQUE],
+        .kinetic_energy = has.kinetic,
+        .strain_energy = has.strain,
+        .motor_work = motion_motor_work(m, state),
+        .external_work = state[SLOT_EXTERNAL_WORK],
+        .viscous_loss = quadrature[QUADRATURE_VISCOUS],
+        .friction_loss = state[SLOT_FRICTION_LOSS],
+        .damping_loss = quadrature[QUADRATURE_DAMPING],
+        .impact_loss = state[SLOT_IMPACT_LOSS],
+        .energy_residual = motion_unaccounted(m, state, has.kinetic + has.strain + held),
+        .wall_energy = rigid ? (double)NAN : held,
+        .wall_loss = rigid ? (double)NAN : quadrature[QUADRATURE_WALL],
+        .face_depth = rigid ? (double)NAN : state[SLOT_FACE],
+    };
+
+    recording_add_rig_signals(c->recording, &row);
+    return row;
+}
+
+sample corrected_row(const corrected_run *c, double *state, double impulse)
+{
+    return row_of(c, state, motion_energy(&c->arm, c->motion, state), impulse);
+}
+
+static status record_row_of(corrected_run *c, double *state, state_energy has, double impulse)
+{
+    const motion *m = c->motion;
+    const sample row = row_of(c, state, has, impulse);
+    return recording_add_row(c->recording, &row, state_angles(m, state),
+                             state_velocities(m, state));
+}
+
+status corrected_record_row(corrected_run *c, double *state, double impulse)
+{
+    if (!c->recording->options->keep_trace) {
+        return STATUS_OK;
+    }
+    const state_energy has = motion_energy(&c->arm, c->motion, state);
+    return record_row_of(c, state, has, impulse);
+}
+
+// Records rows within the step just made or under way, stepped to again from its start: side by
+// side if the engine can do that.
+static status record_within(corrected_run *c, const double *times, int count)
+{
+    recording *r = c->recording;
+    motion *m = c->motion;
+    state_energy has[MOTION_TOGETHER];
+    const bool together = count > 1 && motion_between_all(&c->arm, m, times, count, has);
+    status failed = STATUS_OK;
+    for (int i = 0; i < count && failed == STATUS_OK; i++) {
+        if (together) {
+            failed = record_row_of(c, m->between + i * m->size, has[i], 0);
+        } else {
+            double *state = motion_between(&c->arm, m, times[i]);
+            failed = state ? corrected_record_row(c, state, 0) : STATUS_NOT_FINITE;
+        }
+        failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
+    }
+    return failed;
+}
+
+// Records the rows of the grid before an instant [s], which lie within the step just made or under
+// way.
+static status record_rows_before(corrected_run *c, double instant)
+{
+    recording *r = c->recording;
+    const double interval = r->scenario->parameters.method.step;
+    double time = (double)r->state.grid_row * interval;
+    status failed = STATUS_OK;
+
+    // some at a time
+    while (failed == STATUS_OK && time < instant) {
+        double times[MOTION_TOGETHER];
+        int count = 0;
+        for (; count < MOTION_TOGETHER && time < instant; count++) {
+            times[count] = time;
+            time = (double)++r->state.grid_row * interval;
+        }
+        failed = record_within(c, times, count);
+    }
+    return failed;
+}
+
+status corrected_record_rows_to(corrected_run *c, double time)
+{
+    const double interval = c->recording->scenario->parameters.method.step;
+    const bool keeps = c->recording->options->keep_trace;
+    return keeps ? record_rows_before(c, time + GRID_TOLERANCE * interval) : STATUS_OK;
+}
+
+// Records the rows of the grid that lie within the step just made, and passes over one at its end
+// if an event is there.
+static status record_grid(corrected_run *c, bool at_event)
+{
+    recording *r = c->recording;
+    motion *m = c->motion;
+    const double interval = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
+    const double end = GRID_TOLERANCE * interval;
+
+    // those within it, then one at its end; an event records its own rows
+    status failed = record_rows_before(c, now - end);
+    if (failed == STATUS_OK && (double)r->state.grid_row * interval <= now + end) {
+        r->state.grid_row++;
+        failed = at_event ? STATUS_OK : corrected_record_row(c, m->state, 0);
+        failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
+    }
+    return failed;
+}
+
+status corrected_record_step(corrected_run *c, bool at_event)
+{
+    recording *r = c->recording;
+    motion *m = c->motion;
+
+    // how far the arm has gone from the wall
+    if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
+        r->state.separated = flight_separated(&c->arm, m);
+    }
+    r->state.energy_put_in += fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial));
+
+    // an arm held still has the energy it had
+    const bool known = m->reached.kinetic >= 0;
+    status s = motion_held_still(m) ? STATUS_OK : known ? audit(c, m->reached) : corrected_audit(c);
+
+    // how fast the tip came towards the wall on its own
+    if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
+        recording_follow_flight(r, flight_closing_speed(&c->arm, m));
+    }
+
+    s = s == STATUS_OK ? corrected_record_forces(c) : s;
+    return s == STATUS_OK && r->options->keep_trace ? record_grid(c, at_event) : s;
 }

@@ -8,7 +8,7 @@
 #include "src/base/instant.h"
 #include "src/base/shipped.h"
 #include "src/run/loop_parts.h"
-#include "src/run/recording_frame.h"
+#include "src/run/recording.h"
 
 #define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near is the present one
 

@@ -3,7 +3,7 @@
 // It is a run like any other, observed at the requested instants; stepped from sample to sample of
 // the rig it equals the uninterrupted run to the last bit, cut elsewhere to rounding (1e-16). Such
 // instants do not influence the choice of steps: a step that goes beyond one is cut there or, in
-// flight on the rig, continues (corrected_step.h); the printed model, which has no states between
+// flight on the rig, continues (corrected.h); the printed model, which has no states between
 // the ends of its steps, stops at the end of the first step that reaches it. What is due at an
 // instant (a sample of the rig, an action of the script) happens when the loop goes on from it.
 #pragma once

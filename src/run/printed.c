@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "src/run/rig_recording.h"
+#include "src/run/recording.h"
 
 // --- what a step is recorded as ---------------------------------------------------------------
 

@@ -2,6 +2,71 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
+
+#include "src/arm/motor.h"
+#include "src/base/clock.h"
+#include "src/base/extremes.h"
+#include "src/run/largest_mean.h"
+
+// What a run counts and adds up begins with nothing.
+static void summary_start(summary *s)
+{
+    summary_init(s);
+    s->impacts = s->separations = s->steps = s->max_penetration_m = 0;
+    s->motor_work_J = s->energy_residual_J = 0;
+}
+
+time_used time_now(void)
+{
+    return (time_used){clock_seconds(CLOCK_THREAD_CPUTIME_ID), clock_seconds(CLOCK_MONOTONIC)};
+}
+
+time_used time_since(time_used start)
+{
+    time_used now = time_now();
+    return (time_used){now.cpu - start.cpu, now.wall - start.wall};
+}
+
+status recording_begin(recording *r, const scenario *s, const run_options *options,
+                       run_result *result, fault *f)
+{
+    assert(r != NULL && s != NULL && options != NULL && result != NULL && f != NULL);
+    *r = (recording){.scenario = s, .result = result, .options = options, .now = s->parameters};
+    *f = (fault){.text = "", .path = ""};
+    if (!options->resume) {
+        memset(result, 0, sizeof *result);
+        summary_start(&result->summary);
+    }
+
+    // not even set up: an arm of a thousand links takes seconds for that
+    return recording_is_abandoned(r) ? STATUS_STOPPED : recording_start_rig(r, f);
+}
+
+void recording_tell_fault(summary *s, status code, const fault *f)
+{
+    s->status = code;
+    if (code != STATUS_OK) {
+        const char *why = f->code != STATUS_OK ? f->text : status_text(code);
+        snprintf(s->message, sizeof s->message, "%s", why);
+        s->path = f->path;
+    }
+}
+
+void recording_end(recording *r, status code, const fault *f, time_used used)
+{
+    assert(r != NULL && f != NULL);
+    run_result *result = r->result;
+    rig_destroy(r->rig);
+    recording_tell_fault(&result->summary, code, f);
+    result->summary.cpu_time_s = used.cpu;
+    result->summary.wall_time_s = used.wall;
+    if (result->history.forces.array.reserved == 0) {
+        force_history_finish(&result->history.forces); // needed until here only
+    }
+}
+
+// --- rows and events --------------------------------------------------------------------------
 
 // Room for rows is made in advance up to so many of them, some of them for events.
 enum { MOST_ROWS_AHEAD = 100000, ROWS_OF_EVENTS = 64 };
@@ -90,4 +155,104 @@ void recording_finish_summary(recording *r, double force_integral)
         double settled = force_settled_since(&r->result->history.forces, s->steady_force_N);
         s->settling_time_s = isnan(settled) ? (double)NAN : fmax(0, settled - s->first_contact_s);
     }
+}
+
+// --- the rig ----------------------------------------------------------------------------------
+
+// The smoothed force: means over SMOOTHING_WINDOW [s], from SMOOTHED_AFTER first contact on [s].
+#define SMOOTHING_WINDOW 5e-3
+#define SMOOTHED_AFTER   0.02
+
+status recording_start_rig(recording *r, fault *f)
+{
+    assert(r != NULL && r->rig == NULL);
+    const parameters *p = &r->scenario->parameters;
+    if (p->control.law == LAW_NONE && r->options->law == NULL) {
+        return STATUS_OK;
+    }
+
+    r->command = (recorded_command){.hub_angle = p->initial.angle};
+    r->result->summary.electrical_energy_J = 0;
+    if (p->arm.model != ARM_PRINTED) { // whose listing has no rate of the gap
+        r->result->summary.approach_speed_m_s = r->result->summary.return_speed_m_s = 0;
+    }
+    const run_options *o = r->options;
+    const rig_options given = {
+        .law = o->law,
+        .transcript = o->transcript,
+        .ends = {o->monitor != NULL ? &o->monitor->stop : NULL, o->abandon},
+    };
+    status s = rig_create(&r->rig, p, &given, f);
+    return s == STATUS_OK && !r->rig->withheld ? scenario_check_locks(r->scenario, r->rig->law, f)
+                                               : s;
+}
+
+void recording_add_rig_signals(const recording *r, sample *row)
+{
+    const rig *on = r->rig;
+    bool sampled = on != NULL && on->samples > 0;
+
+    // what the sensors read; before their first sample nothing
+    row->encoder = sampled ? on->reading.encoder : (double)NAN;
+    row->tachometer = sampled ? on->reading.tachometer : (double)NAN;
+    row->force_reading = sampled ? on->reading.force_reading : (double)NAN;
+    row->piezo_force = sampled ? on->reading.piezo_force : (double)NAN;
+    row->film = sampled ? on->reading.film : (double)NAN;
+    row->accelerometer = sampled ? on->reading.accelerometer : (double)NAN;
+
+    // what the controller made of it
+    row->command = sampled ? on->output.command : (double)NAN;
+    row->controller_mode = sampled ? on->output.mode : (double)NAN;
+    row->desired_angle = sampled ? on->output.desired_angle : (double)NAN;
+    row->desired_velocity = sampled ? on->output.desired_velocity : (double)NAN;
+    row->calculated_force = sampled ? on->output.calculated_force : (double)NAN;
+    row->predicted_force = sampled ? on->predicted_force : (double)NAN;
+}
+
+void recording_change_command(recording *r, double time, double hub_angle)
+{
+    assert(r != NULL && r->rig != NULL);
+    const recorded_command *c = &r->command;
+    r->result->summary.electrical_energy_J +=
+        motor_electrical_energy(&r->now.motor, c->volts, time - c->time, hub_angle - c->hub_angle);
+    r->command = (recorded_command){r->rig->voltage, time, hub_angle};
+}
+
+void recording_before_change(recording *r, const action *todo, double time, double hub_angle)
+{
+    assert(r != NULL && todo != NULL);
+    if (r->rig != NULL && todo->parameter == PARAMETER_INDEX(motor.voltage_limit)) {
+        recording_change_command(r, time, hub_angle);
+    }
+}
+
+void recording_follow_flight(recording *r, double closing_speed)
+{
+    assert(r != NULL && r->rig != NULL);
+    summary *s = &r->result->summary;
+    double *largest = isnan(s->first_contact_s) ? &s->approach_speed_m_s : &s->return_speed_m_s;
+    *largest = larger(closing_speed, *largest);
+}
+
+void recording_finish_rig_summary(recording *r, double hub_angle)
+{
+    assert(r != NULL);
+    summary *s = &r->result->summary;
+    const parameters *p = &r->scenario->parameters;
+    const double command = r->now.control.force; // the script may have changed it
+    if (r->rig == NULL) {
+        return;
+    }
+
+    // energy up to the end, and what the controller made of its task
+    recording_change_command(r, p->run.duration, hub_angle);
+    s->largest_command_V = r->rig->largest_command;
+    s->force_command_N = command;
+    s->force_over_command_N = s->peak_force_N - command;
+    if (!isnan(s->first_contact_s)) {
+        s->smoothed_over_command_N =
+            force_largest_mean(r->result, s->first_contact_s + SMOOTHED_AFTER, SMOOTHING_WINDOW) -
+            command;
+    }
+    s->steady_error_N = s->steady_force_N - command;
 }

@@ -87,3 +87,47 @@ force_step *recording_add_steps(recording *r, int count);
 // Fills in steady force, overshoot and settling time; force_integral is that of the force over the
 // last STEADY_WINDOW of the run [N s].
 void recording_finish_summary(recording *r, double force_integral);
+
+// --- what begins and ends every run -----------------------------------------------------------
+
+// Computing time of the thread and time by the clock [s].
+typedef struct time_used {
+    double cpu, wall;
+} time_used;
+
+time_used time_now(void);
+time_used time_since(time_used start);
+
+// Begins to record a run of the scenario into result: an empty summary, and the rig if a law is
+// chosen or given. f holds no fault or why it cannot begin; STATUS_STOPPED where options->abandon
+// is true already. recording_end is due in any case.
+status recording_begin(recording *r, const scenario *s, const run_options *options,
+                       run_result *result, fault *f);
+
+// Ends it: the rig is gone, and the summary says what stopped the run and what it took.
+void recording_end(recording *r, status code, const fault *f, time_used used);
+
+// Writes into the summary what stopped the run.
+void recording_tell_fault(summary *s, status code, const fault *f);
+
+// --- the rig in a run, in every row and in the summary ----------------------------------------
+
+// Sets up the rig, if the scenario has a control law; until its first command the motor rests.
+status recording_start_rig(recording *r, fault *f);
+
+// Copies what the rig knows into a row; NaN without a rig or before its first sample.
+void recording_add_rig_signals(const recording *r, sample *row);
+
+// The rig's present command takes effect at `time` [s], with the hub at hub_angle [rad]: what the
+// amplifier fed in under the one before is booked.
+void recording_change_command(recording *r, double time, double hub_angle);
+
+// A parameter is about to change at `time` [s], with the hub at hub_angle [rad]: what the amplifier
+// fed in under another limit is booked.
+void recording_before_change(recording *r, const action *todo, double time, double hub_angle);
+
+// The tip moves in the air towards the wall, at most with closing_speed [m/s] since the last call.
+void recording_follow_flight(recording *r, double closing_speed);
+
+// Fills in what the summary says of the rig; the hub is at the given angle at the end [rad].
+void recording_finish_rig_summary(recording *r, double hub_angle);

@@ -1,8 +1,50 @@
 // Runs that reuse the beginning of another run, and runs that share equal rows in memory.
 #pragma once
 
+#include "src/run/recording.h"
 #include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
+#include "src/solve/motion.h"
+
+// Checkpoints of a run of the corrected arm: what is needed to go on from an instant as if the run
+// had never stopped, kept every few hundred rows.
+
+// An element of run_history.checkpoints; its size there includes the motion's state.
+typedef struct checkpoint {
+    double time;                      // [s]
+    size_t rows, events, force_steps; // recorded until then
+    bool impacted;                    // run_result.before_impact is known
+    recording_state recording;
+    summary summary;
+    // of the motion
+    long steps;
+    double start_energy;        // [J]
+    double pulse_peak;          // [N]
+    double pulse_peak_time;     // [s]
+    double largest_penetration; // [m]
+    double state[];
+} checkpoint;
+
+// The checkpoint of a number, oldest first.
+checkpoint *checkpoint_at(const run_history *h, size_t index);
+
+// Reserves address space for the forces and checkpoints (of `size` bytes each) of a run of so many
+// rows. False if it cannot be had.
+bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected);
+
+// Prepares the history of a run that keeps one (options.rows_expected, and no rig), or else one of
+// the forces alone. STATUS_NO_MEMORY, with a sentence in f.
+status checkpoint_open_history(recording *r, const motion *m, fault *f);
+
+// Keeps the state at the beginning of a step, if the last checkpoint is some rows ago. Does nothing
+// right after an event (the last one was at last_event [s]), because a checkpoint does not contain
+// the count of simultaneous events. False without memory.
+bool checkpoint_keep(recording *r, const motion *m, double last_event);
+
+// Goes back to the last checkpoint of a result that run_resume has prepared.
+void checkpoint_restore(recording *r, arm *a, motion *m);
+
+// --- runs that begin with the rows of another -------------------------------------------------
 
 // Lets `result` begin with what `from`, a run of the scenario `old`, has in common with a run of
 // `s`, up to the last checkpoint before they differ: without a copy and to the last bit. False if

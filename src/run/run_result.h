@@ -11,7 +11,7 @@
 // What a run that can be resumed (src/run/resume.h) keeps besides its rows.
 typedef struct run_history {
     force_history forces;
-    shared_array checkpoints; // of the run, every few hundred rows (src/run/checkpoint.h)
+    shared_array checkpoints; // of the run, every few hundred rows (src/run/resume.h)
     size_t checkpoint_count;
 } run_history;
 

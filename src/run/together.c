@@ -7,8 +7,7 @@
 #include <string.h>
 
 #include "src/run/corrected.h"
-#include "src/run/corrected_pieces.h"
-#include "src/run/recording_frame.h"
+#include "src/run/recording.h"
 #include "src/run/run.h"
 #include "src/solve/taylor_lanes.h"
 

@@ -1,9 +1,9 @@
 // A recorded run: rows of samples, the link angles at each, and the events between them.
 #pragma once
 
+#include "src/base/fault.h"
 #include "src/base/shared_array.h"
 #include "src/tables/signals.h"
-#include "src/base/fault.h"
 
 // The kinds of events: name in the enumeration, word in JSON and on screens, what happens.
 #define EVENT_KINDS(KIND)                                                                          \
@@ -79,3 +79,17 @@ size_t trace_row_at(const trace *t, double time);
 
 // Whether any row holds a finite value of the signal.
 bool trace_has(const trace *t, int signal);
+
+// --- statistics of a signal -------------------------------------------------------------------
+
+typedef struct signal_statistics {
+    double minimum, maximum; // in the signal's unit
+    double mean;             // over time
+    double rms;              // square root of the mean square over time
+    double integral;         // over time [unit s]; a force's is its momentum, impulses excluded
+    double duration;         // for which it had a value [s]
+} signal_statistics;
+
+// Of a signal from one instant to a later one [s], straight between rows, both kept within the run.
+// All NaN where it never has a value.
+signal_statistics trace_statistics(const trace *t, int signal, double from, double to);

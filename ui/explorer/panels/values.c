@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/run/statistics.h"
+#include "src/run/trace.h"
 
 // --- values -----------------------------------------------------------------------------------
 // The panel of all recorded values at the cursor.
