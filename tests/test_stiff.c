@@ -355,6 +355,37 @@ static void decays_of_any_rate_are_passed_over(void **state)
     }
 }
 
+// A force of rounding on the wall that the arm just touches ends no step beyond the hub's
+// break-away, and what friction holds stays within stiction.
+static void a_force_of_rounding_hides_no_slip(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(
+        SETTINGS("arm.links=3", "arm.hub_joint=rigid", "wall.kind=plane", "method.engine=stiff",
+                 "motor.voltage=2.5157641983999302", "arm.mass=0.26491769416740801",
+                 "arm.hub_inertia=0.027055577608406902", "motor.stiction=0.020115620297431486",
+                 "wall.angle=-2.4908818215445754", "initial.angle=-2.4908818215445754",
+                 "arm.k2=21.635624238531371", "arm.air_drag=0.52074942104057076",
+                 "motor.inductance=0.92955259258329925", "motor.current_limit=0.90031986558427557",
+                 "wall.contact=kelvin-voigt", "wall.stiffness=7616.9205058752668",
+                 "wall.damping=68.236035295918327", "arm.damping_ratio=0.026265943154315696"));
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    assert_non_null(m);
+    motion_start(&a, m, p.initial.angle, 0);
+    bool slid = false;
+    for (int i = 0; i < 200 && m->state[SLOT_TIME] < 0.01; i++) {
+        motion_report r;
+        assert_int_equal(motion_step(&a, m, 0.01, 1e-3, &r), STATUS_OK);
+        check_below(fabs(m->state[SLOT_FRICTION_TORQUE]), a.motor.stiction + 1e-9);
+        motion_apply(&a, m, &r);
+        slid = slid || r.event == MOTION_SLIP;
+    }
+    assert_true(slid);
+    motion_destroy(m);
+}
+
 static bool is_refused(const char *const *settings)
 {
     parameters p;
@@ -394,6 +425,7 @@ int main(void)
         cmocka_unit_test(decays_of_any_rate_are_passed_over),
         cmocka_unit_test(stops_change_no_bit),
         cmocka_unit_test(a_copy_of_the_state_goes_on_with_the_same_bits),
+        cmocka_unit_test(a_force_of_rounding_hides_no_slip),
         cmocka_unit_test(an_engine_that_cannot_take_the_arm_is_refused),
         cmocka_unit_test(every_width_of_vectors_gives_the_same_bits),
     };

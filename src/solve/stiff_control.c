@@ -77,10 +77,26 @@ static bool take_stages(stiff_stride *s, const arm *a, motion *m)
     return true;
 }
 
-// Takes the step again up to an event at `time` within it, until it ends there.
+// Whether a watched function other than `passed` falls below zero in the step, and then the first
+// one and when [s].
+static bool another_event(stiff_stride *s, const arm *a, motion *m, watch passed, watch *first,
+                          double *time)
+{
+    bool any;
+    *time = s->step.length;
+    s->passed = 1 + (int)passed;
+    dense_search_event(a, m, time, first, &any);
+    s->passed = 0;
+    return any;
+}
+
+// Takes the step again up to an event at `time` within it, until it ends there: no longer than its
+// error allows, and at another event where the first moves to beyond that one. An event that moves
+// out of the step was one of rounding, and does not end it.
 static bool end_at_event(stiff_stride *s, const arm *a, motion *m, watch w, double time)
 {
-    double ratio = time / s->step.length, rate = 0.5;
+    const double allowed = s->step.length;
+    double ratio = time / allowed, rate = 0.5;
     for (int i = 0; i < MOST_ENDS; i++) {
         const double h = s->step.length * ratio;
         if (!(h > SHORTEST)) { // at once
@@ -94,13 +110,23 @@ static bool end_at_event(stiff_stride *s, const arm *a, motion *m, watch w, doub
             !take_stages(s, a, m)) {
             return false;
         }
-        const double miss = miss_of(s, a, m, w);
+        double miss = miss_of(s, a, m, w), earlier;
+        watch other;
+        if (h > time * (1 + AT_EVENT) && another_event(s, a, m, w, &other, &earlier)) {
+            w = other;
+            time = earlier;
+            miss = earlier - h;
+        }
         if (fabs(miss) <= AT_EVENT * h || fabs(miss) < SAME_INSTANT) {
             s->kept[KEPT_LENGTH] = h + miss;
             evaluate_end(s, a, m);
             break;
         }
+        if (miss > 0 && h >= allowed) {
+            return true;
+        }
         ratio = smaller(larger(1 + miss / h, 0.5), 1.5);
+        ratio = smaller(ratio, larger(allowed / h, 1));
     }
     s->kept[STIFF_EVENT] = 1 + (int)w;
     return true;

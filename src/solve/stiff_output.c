@@ -142,7 +142,8 @@ bool stiff_clear(const arm *a, motion *m, watch w, double h)
     const stiff_stride *s = m->memory;
     const stiff_function *far = w == WATCH_CURRENT ? &s->far_current : &s->far_limit;
     (void)a, (void)h;
-    return function_least(&s->watched[w]) > 0 && (w < WATCH_STICTION || function_least(far) > 0);
+    return s->passed == 1 + (int)w ||
+           (function_least(&s->watched[w]) > 0 && (w < WATCH_STICTION || function_least(far) > 0));
 }
 
 bool stiff_bounded(const arm *a, motion *m, double h, double most)

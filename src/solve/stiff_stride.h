@@ -50,6 +50,7 @@ typedef struct stiff_stride {
     double *end;       // state at the step's end, without what it keeps
     bool ended;        // whether it is that
     bool turned;       // the step begins where the drive's equation changes
+    int passed;        // 1 + the watch that a search leaves out, or 0
 
     double *scratch[4]; // [dof]
 } stiff_stride;
