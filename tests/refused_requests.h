@@ -16,7 +16,7 @@
 #include <sys/mman.h>
 
 #include "src/base/json.h"
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/scenario/scenario.h"
 #include "tests/check.h"
 

@@ -1,6 +1,6 @@
 // JSON files: read back by jansson, with the intended order and digits.
 #include "src/base/json.h"
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 
 #include <stdlib.h>
 #include <string.h>

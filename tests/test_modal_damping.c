@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/arm/modal_damping.h"
 #include "src/arm/modes.h"
 #include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"

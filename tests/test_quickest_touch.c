@@ -1,8 +1,7 @@
 // The way to the wall in the least time, and the rise of the force after a touch.
 #include "src/base/random.h"
 #include "src/predict/least_time.h"
-#include "src/rig/laws/force_rise.h"
-#include "src/rig/laws/quickest_touch.h"
+#include "src/rig/laws/observer_paths.h"
 #include "tests/rig_fixture.h"
 
 // --- the rise ---------------------------------------------------------------------------------

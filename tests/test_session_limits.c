@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/external/transcript.h"
+#include "src/rig/external/process_lines.h"
 #include "tests/session_fixture.h"
 
 static scenario read_text(const char *text)

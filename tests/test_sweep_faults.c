@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 

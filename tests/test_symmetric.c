@@ -1,5 +1,5 @@
 // Eigenvalues and factors of symmetric matrices against what defines them.
-#include "src/base/symmetric.h"
+#include "src/base/dense.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // Questions to a program and its answers: found again in any number, on every way that was gone,
 // and not without a transcript.
-#include "src/rig/external/transcript.h"
+#include "src/rig/external/process_lines.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // The word most similar to a misspelt one, and texts that a terminal may show.
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "tests/check.h"
 
 #include <string.h>

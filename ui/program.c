@@ -11,7 +11,7 @@
 
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/base/shipped.h"
 #include "ui/commands/command.h"

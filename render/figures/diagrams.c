@@ -7,7 +7,7 @@
 #include "render/figures/figures.h"
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/base/numbers.h"
 #include "src/rig/sensors.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "src/arm/chain.h"
-#include "src/arm/modal_damping.h"
+#include "src/arm/modes.h"
 
 // What a decay counts against a vibration: it dies within a step or two and need not be followed,
 // so that steps may be several times longer.

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 static void swap_rows(int length, double *matrix, int i, int j)
 {
@@ -69,4 +70,269 @@ bool dense_solve_columns(int n, int columns, double *matrix, double *right)
 {
     assert(n > 0 && columns > 0 && matrix != NULL && right != NULL);
     return solve(n, columns, matrix, right);
+}
+
+// --- symmetric matrices ----------------------------------------------------------------------
+
+enum { MOST_SHIFTS = 60 };
+
+// Reduces the matrix to tridiagonal form: `diagonal`, and `beside` it from index 1 on. On return
+// row k of `matrix` from k + 1 on holds the k-th reflection's vector and `norms` its 2 / v'v.
+static void tridiagonalise(int n, double *matrix, double *diagonal, double *beside, double *norms)
+{
+    for (int k = 0; k < n - 1; k++) {
+        double *v = matrix + (long)k * n; // row k is column k
+        double size = 0;
+        for (int i = k + 1; i < n; i++) {
+            size += v[i] * v[i];
+        }
+
+        // the reflection that leaves only the first of these entries
+        size = sqrt(size);
+        diagonal[k] = v[k];
+        beside[k + 1] = v[k + 1] > 0 ? -size : size;
+        v[k + 1] -= beside[k + 1];
+
+        // 2 / v'v without forming v'v, which might cancel
+        double square = size * (size + fabs(v[k + 1] + beside[k + 1]));
+        norms[k] = square > 0 ? 1 / square : 0;
+        if (square == 0) {
+            continue;
+        }
+
+        // p = A v / (v'v / 2), then A -= v w' + w v' with w = p - (p'v / v'v) v
+        double *w = diagonal + k + 1; // free until its entries are known
+        double along = 0;
+        for (int i = k + 1; i < n; i++) {
+            const double *row = matrix + (long)i * n;
+            double sum = 0;
+            for (int j = k + 1; j < n; j++) {
+                sum += row[j] * v[j];
+            }
+            w[i - k - 1] = sum * norms[k];
+            along += w[i - k - 1] * v[i];
+        }
+
+        // w, and both rank-one terms at once
+        along *= norms[k] / 2;
+        for (int i = k + 1; i < n; i++) {
+            w[i - k - 1] -= along * v[i];
+        }
+        for (int i = k + 1; i < n; i++) {
+            double *row = matrix + (long)i * n;
+            const double vi = v[i], wi = w[i - k - 1];
+            for (int j = k + 1; j < n; j++) {
+                row[j] -= vi * w[j - k - 1] + wi * v[j];
+            }
+        }
+    }
+    diagonal[n - 1] = matrix[(long)n * n - 1];
+}
+
+// Turns the rows that hold the reflections into the rows of Q', Q = H_0 H_1 ...
+static void accumulate(int n, double *matrix, const double *norms, double *v)
+{
+    matrix[(long)n * n - 1] = 1;
+    for (int k = n - 2; k >= 0; k--) {
+        memcpy(v, matrix + (long)k * n, (size_t)n * sizeof *v);
+
+        // row and column k + 1 onwards hold Q' of the later ones: Q' H_k, row by row
+        for (int i = k + 1; i < n; i++) {
+            double *row = matrix + (long)i * n;
+            double sum = 0;
+            for (int j = k + 1; j < n; j++) {
+                sum += row[j] * v[j];
+            }
+            sum *= norms[k];
+            for (int j = k + 1; j < n; j++) {
+                row[j] -= sum * v[j];
+            }
+            row[k] = 0;
+        }
+
+        // row k itself has only its diagonal so far
+        memset(matrix + (long)k * n, 0, (size_t)n * sizeof *matrix);
+        matrix[(long)k * n + k] = 1;
+    }
+}
+
+// One sweep of the QL method over the block l..m.
+static void ql_sweep(int n, int l, int m, double *d, double *e, double *rows)
+{
+    double g = (d[l + 1] - d[l]) / (2 * e[l]), r = sqrt(g * g + 1);
+    g = d[m] - d[l] + e[l] / (g + copysign(r, g));
+    double s = 1, c = 1, p = 0;
+
+    // rotations chase the bulge from the bottom of the block to its top
+    for (int i = m - 1; i >= l; i--) {
+        double f = s * e[i], b = c * e[i];
+
+        // the rotation that removes it here; none is needed where it has vanished
+        r = sqrt(f * f + g * g);
+        e[i + 1] = r;
+        if (r == 0) {
+            d[i + 1] -= p;
+            e[m] = 0;
+            return;
+        }
+
+        // both diagonal entries follow the rotation
+        s = f / r;
+        c = g / r;
+        g = d[i + 1] - p;
+        r = (d[i] - g) * s + 2 * c * b;
+        p = s * r;
+        d[i + 1] = g + p;
+        g = c * r - b;
+
+        // and so do the eigenvectors
+        double *lower = rows + (long)i * n, *upper = lower + n;
+        for (int k = 0; k < n; k++) {
+            double u = upper[k], w = lower[k];
+            upper[k] = s * w + c * u;
+            lower[k] = c * w - s * u;
+        }
+    }
+    d[l] -= p;
+    e[l] = g;
+    e[m] = 0;
+}
+
+// Sorts eigenvalues and the rows that belong to them.
+static void sort_rows(int n, double *values, double *rows, double *spare)
+{
+    const size_t size = (size_t)n * sizeof(double);
+    for (int i = 0; i < n - 1; i++) {
+        int least = i;
+        for (int j = i + 1; j < n; j++) {
+            least = values[j] < values[least] ? j : least;
+        }
+
+        // both change places, value and row
+        if (least != i) {
+            double value = values[i];
+            values[i] = values[least];
+            values[least] = value;
+            memcpy(spare, rows + (long)i * n, size);
+            memcpy(rows + (long)i * n, rows + (long)least * n, size);
+            memcpy(rows + (long)least * n, spare, size);
+        }
+    }
+}
+
+bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
+{
+    assert(n > 0 && n <= SYMMETRIC_MOST && matrix != NULL && values != NULL && scratch != NULL);
+
+    // tridiagonal form, and the rotation that leads there
+    double *e = scratch, *norms = scratch + n;
+    tridiagonalise(n, matrix, values, e, norms);
+    for (int i = 1; i < n; i++) { // e[i] couples i and i + 1 from here on
+        e[i - 1] = e[i];
+    }
+    e[n - 1] = 0;
+    double first[SYMMETRIC_MOST];
+    accumulate(n, matrix, norms, first);
+
+    // eigenvalue by eigenvalue: sweeps over the block that still couples with it
+    for (int l = 0; l < n; l++) {
+        for (int shifts = 0;; shifts++) {
+            int m = l;
+            while (m < n - 1 && fabs(e[m]) > 1e-16 * (fabs(values[m]) + fabs(values[m + 1]))) {
+                m++;
+            }
+            if (m == l) {
+                break;
+            }
+            if (shifts == MOST_SHIFTS) {
+                return false;
+            }
+            ql_sweep(n, l, m, values, e, matrix);
+        }
+    }
+    sort_rows(n, values, matrix, scratch);
+    return true;
+}
+
+bool symmetric_factor(int n, double *matrix)
+{
+    for (int i = 0; i < n; i++) {
+        double *row = matrix + (long)i * n;
+        for (int j = 0; j <= i; j++) {
+            const double *other = matrix + (long)j * n;
+            double sum = row[j];
+
+            // what the columns before have taken already
+            for (int k = 0; k < j; k++) {
+                sum -= row[k] * other[k];
+            }
+
+            // a pivot that is not positive: the matrix is not positive definite
+            if (i == j && !(sum > 0)) {
+                return false;
+            }
+            row[j] = i == j ? sqrt(sum) : sum / other[j];
+        }
+    }
+    return true;
+}
+
+void symmetric_forward(int n, const double *factor, double *vector)
+{
+    for (int i = 0; i < n; i++) {
+        const double *row = factor + (long)i * n;
+        double sum = vector[i];
+        for (int k = 0; k < i; k++) {
+            sum -= row[k] * vector[k];
+        }
+        vector[i] = sum / row[i];
+    }
+}
+
+void symmetric_backward(int n, const double *factor, double *vector)
+{
+    for (int i = n - 1; i >= 0; i--) {
+        const double *row = factor + (long)i * n;
+        vector[i] /= row[i];
+        for (int k = 0; k < i; k++) {
+            vector[k] -= row[k] * vector[i];
+        }
+    }
+}
+
+bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values, double *scratch)
+{
+    assert(n > 0 && matrix != NULL && mass != NULL);
+    const size_t side = (size_t)n;
+    if (!symmetric_factor(n, mass)) {
+        return false;
+    }
+
+    // L^-1 A L^-T with mass = L L': symmetric, so that rows may stand for columns
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < side; i++) {
+            symmetric_forward(n, mass, matrix + i * side);
+        }
+        for (size_t i = 0; i < side; i++) {
+            for (size_t j = 0; j < i; j++) {
+                double entry = matrix[i * side + j];
+                matrix[i * side + j] = matrix[j * side + i];
+                matrix[j * side + i] = entry;
+            }
+        }
+    }
+    for (size_t i = 0; i < side; i++) {
+        for (size_t j = 0; j < i; j++) {
+            matrix[i * side + j] = matrix[j * side + i];
+        }
+    }
+    if (!symmetric_eigen(n, matrix, values, scratch)) {
+        return false;
+    }
+
+    // back to the coordinates of both matrices
+    for (size_t k = 0; k < side; k++) {
+        symmetric_backward(n, mass, matrix + k * side);
+    }
+    return true;
 }

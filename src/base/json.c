@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/base/numbers.h"
 
 void json_put(json_t *object, const char *key, json_t *value)

@@ -17,7 +17,7 @@ json_t *json_text(const char *text);
 
 // Puts a member into an object, an element at the end of an array, and takes the value over. What
 // cannot be put for want of memory (value or container may be NULL then) is lost, and noted
-// (loss.h).
+// (text_stream.h).
 void json_put(json_t *object, const char *key, json_t *value);
 void json_add(json_t *array, json_t *value);
 

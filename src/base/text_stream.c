@@ -5,8 +5,6 @@
 #include <string.h>
 #include <sys/types.h>
 
-#include "src/base/loss.h"
-
 // Makes room for some bytes more and the 0 behind them.
 static bool make_room(text_stream *t, size_t count)
 {
@@ -58,4 +56,25 @@ char *text_stream_close(text_stream *t, size_t *length)
         *length = t->length;
     }
     return t->text;
+}
+
+// --- what was lost for want of memory --------------------------------------------------------
+
+static _Thread_local bool lost;
+
+void loss_unless(bool kept)
+{
+    lost = lost || !kept;
+}
+
+bool loss_noted(void)
+{
+    const bool since = lost;
+    lost = false;
+    return since;
+}
+
+void loss_forget(void)
+{
+    lost = false;
 }

@@ -16,7 +16,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 
 static status cannot_write(fault *f, const char *path, int reason)
 {

@@ -32,9 +32,9 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
     __attribute__((warn_unused_result));
 
 // Checks everything written so far, brings it to the disk and puts the file in its place. If
-// anything failed, or was lost for want of memory (loss.h), the target is as it was before and f
-// says why. A reader of the standard output that went away (a closed pipe) had what it wanted and
-// is no failure. Closes w in either case.
+// anything failed, or was lost for want of memory (text_stream.h), the target is as it was before
+// and f says why. A reader of the standard output that went away (a closed pipe) had what it wanted
+// and is no failure. Closes w in either case.
 status whole_file_commit(whole_file *w, fault *f) __attribute__((warn_unused_result));
 
 // Gives up: the target stays as it was. Closes w.

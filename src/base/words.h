@@ -42,7 +42,7 @@ void make_printable(char *text);
 void make_lines_printable(char *text);
 
 // Prints like printf, with a decimal point, what make_lines_printable leaves of the text. What is
-// lost of a long one without memory is noted (loss.h); errors stay in the stream.
+// lost of a long one without memory is noted (text_stream.h); errors stay in the stream.
 void print_printable(FILE *stream, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void print_printable_list(FILE *stream, const char *format, va_list list)
     __attribute__((format(printf, 2, 0)));

@@ -1,4 +1,4 @@
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/run/corrected.h"
 
 #include <assert.h>

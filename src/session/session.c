@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/external/transcript.h"
-#include "src/base/loss.h"
+#include "src/rig/external/process_lines.h"
+#include "src/base/text_stream.h"
 #include "src/run/background_run.h"
 #include "src/run/resume.h"
 #include "src/base/instant.h"

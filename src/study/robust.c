@@ -1,8 +1,258 @@
 #include "src/study/robust.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+
+// --- the sets of arms ------------------------------------------------------------------------
+
+enum { MOST_SET_BYTES = 65536 };
+
+// The whole file as a text on the heap; nothing is handed over on failure.
+static status read_text(const char *path, char **text, fault *f)
+{
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        return fault_set(f, STATUS_CANNOT_READ, "the set '%s' cannot be opened: %s", path,
+                         strerror(errno));
+    }
+
+    // all of it, if it is not too long
+    char *bytes = calloc(1, MOST_SET_BYTES + 1);
+    const size_t length = bytes != NULL ? fread(bytes, 1, MOST_SET_BYTES, file) : 0;
+    const bool whole = bytes != NULL && ferror(file) == 0 && fgetc(file) == EOF;
+    const int reason = ferror(file) != 0 ? errno : 0;
+    fclose(file);
+
+    status code = STATUS_OK;
+    if (bytes == NULL) {
+        code = fault_no_memory(f);
+    } else if (reason != 0) {
+        code = fault_set(f, STATUS_CANNOT_READ, "the set '%s' cannot be read: %s", path,
+                         strerror(reason));
+    } else if (!whole || strlen(bytes) != length) {
+        code =
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%s' is no set, expected lines PATH=a:b or PATH=v1,v2 of at most %d bytes",
+                      path, MOST_SET_BYTES);
+    }
+    if (code != STATUS_OK) {
+        free(bytes);
+        return code;
+    }
+    *text = bytes;
+    return STATUS_OK;
+}
+
+// The text without the blanks at both ends, which are cut off.
+static char *trimmed(char *text)
+{
+    while (is_blank(*text)) {
+        text++;
+    }
+    size_t length = strlen(text);
+    while (length > 0 && is_blank(text[length - 1])) {
+        text[--length] = '\0';
+    }
+    return text;
+}
+
+// Reads IMPULSE@TIME, both finite. False if the text is something else.
+static bool read_push(robust_case *c, const char *text)
+{
+    const char *rest;
+    double impulse, time;
+    if (c->push_count == ROBUST_CASE_PUSHES || !decimal_read(text, &impulse, &rest) ||
+        *rest != '@' || !decimal_read(rest + 1, &time, &rest) || *rest != '\0' || time < 0 ||
+        !isfinite(impulse) || !isfinite(time)) {
+        return false;
+    }
+    c->push_impulse[c->push_count] = impulse;
+    c->push_time[c->push_count++] = time;
+    return true;
+}
+
+// Takes a case apart: "TITLE: PATH=VALUE; push=IMPULSE@TIME". Its settings go behind those of the
+// cases before. False if a piece is neither.
+static bool read_case(robust_case *c, char *text, char **settings)
+{
+    char *rest = strchr(text, ':');
+    c->settings = settings;
+    if (rest == NULL) {
+        return false;
+    }
+    *rest++ = '\0';
+    c->title = trimmed(text);
+
+    for (char *piece; (piece = strsep(&rest, ";")) != NULL;) {
+        piece = trimmed(piece);
+        if (strncmp(piece, "push=", strlen("push=")) == 0) {
+            if (!read_push(c, piece + strlen("push="))) {
+                return false;
+            }
+        } else if (*piece != '\0') {
+            if (strchr(piece, '=') == NULL) {
+                return false;
+            }
+            settings[c->setting_count++] = piece;
+        }
+    }
+    return c->title[0] != '\0';
+}
+
+// Sorts the lines of the text into what is drawn and what is a case.
+static status read_lines(robust_set *set, fault *f)
+{
+    static const char word[] = "case ";
+    char *rest = set->text, **settings = set->settings;
+    int number = 0;
+    for (char *line; (line = strsep(&rest, "\n")) != NULL;) {
+        number++;
+        line = trimmed(line);
+        if (line[0] == '\0' || line[0] == '#') {
+            continue;
+        }
+        if (strncmp(line, word, strlen(word)) != 0) {
+            set->line_numbers[set->count] = number;
+            set->lines[set->count++] = line;
+            continue;
+        }
+
+        robust_case *c = &set->cases[set->case_count++];
+        *c = (robust_case){.file = set->file, .line = number};
+        if (!read_case(c, line + strlen(word), settings)) {
+            return fault_set_place(f, STATUS_BAD_ARGUMENT, number, 1,
+                                   "%s:%d: no case, expected 'case TITLE: PATH=VALUE; PATH=VALUE', "
+                                   "or push=IMPULSE@TIME for a value",
+                                   set->file, number);
+        }
+        settings += c->setting_count;
+    }
+    return STATUS_OK;
+}
+
+// Room for everything that the text of the set may have: a line, a case and a setting have at least
+// one character. False without memory.
+static bool make_room(robust_set *set)
+{
+    const size_t most = strlen(set->text) + 1;
+    size_t lines = 1;
+    for (const char *c = set->text; *c != '\0'; c++) {
+        lines += *c == '\n';
+    }
+    set->lines = calloc(lines, sizeof *set->lines);
+    set->line_numbers = calloc(lines, sizeof *set->line_numbers);
+    set->settings = calloc(most, sizeof *set->settings);
+    set->cases = calloc(lines, sizeof *set->cases);
+    return set->lines != NULL && set->line_numbers != NULL && set->settings != NULL &&
+           set->cases != NULL;
+}
+
+status robust_set_read(robust_set *set, const char *path, fault *f)
+{
+    assert(set != NULL && path != NULL);
+    *set = (robust_set){.file = strdup(path)};
+    status code = set->file != NULL ? read_text(path, &set->text, f) : fault_no_memory(f);
+    if (code == STATUS_OK) {
+        code = make_room(set) ? read_lines(set, f) : fault_no_memory(f);
+    }
+    if (code == STATUS_OK && set->count == 0) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT,
+                         "the set '%s' names no parameter, expected lines PATH=a:b or PATH=v1,v2",
+                         path);
+    }
+    if (code != STATUS_OK) {
+        robust_set_finish(set);
+    }
+    return code;
+}
+
+void robust_set_finish(robust_set *set)
+{
+    if (set != NULL) {
+        free(set->file);
+        free(set->text);
+        free(set->lines);
+        free(set->line_numbers);
+        free(set->settings);
+        free(set->cases);
+        *set = (robust_set){0};
+    }
+}
+
+// Keeps the first sentence of several.
+static void keep_first(void *context, const char *sentence)
+{
+    fault *f = context;
+    if (f->code == STATUS_OK) {
+        fault_set(f, STATUS_BAD_ARGUMENT, "%s", sentence);
+    }
+}
+
+status robust_case_fault(const robust_case *c, const fault *why, fault *f)
+{
+    assert(c != NULL && why != NULL);
+    return why->code == STATUS_NO_MEMORY
+               ? fault_no_memory(f)
+               : fault_set_place(f, why->code, c->line, 1, "%.200s:%d: case '%.60s': %.600s",
+                                 c->file, c->line, c->title, why->text);
+}
+
+// The settings and pushes of a case, which must go together with the scenario.
+static status apply_case(scenario *derived, const robust_case *c, fault *f)
+{
+    status code = scenario_override_all(derived, c->settings, c->setting_count, keep_first, f);
+    const double duration = derived->parameters.run.duration;
+    for (int i = 0; i < c->push_count && code == STATUS_OK; i++) {
+        if (c->push_time[i] > duration) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT,
+                             "a push at %g s is outside the run, expected 0 to %g s (run.duration)",
+                             c->push_time[i], duration);
+        }
+        scenario_insert_action(derived, (action){.time = c->push_time[i],
+                                                 .kind = ACTION_PUSH,
+                                                 .parameter = -1,
+                                                 .value = c->push_impulse[i],
+                                                 .added = true});
+    }
+    const parameters p = derived->parameters;
+    return code == STATUS_OK ? scenario_take_parameters(derived, &p, f) : code;
+}
+
+status robust_case_scenario(scenario *derived, const scenario *base, const robust_case *c, fault *f)
+{
+    assert(derived != NULL && base != NULL);
+    *derived = *base;
+    int pushes = c != NULL ? c->push_count : 0;
+    derived->actions = calloc((size_t)(base->action_count + pushes + 1), sizeof(action));
+    if (derived->actions == NULL) {
+        return fault_no_memory(f);
+    }
+    if (base->action_count > 0) {
+        memcpy(derived->actions, base->actions, (size_t)base->action_count * sizeof(action));
+    }
+
+    fault why = {.code = STATUS_OK};
+    if (c != NULL && apply_case(derived, c, &why) != STATUS_OK) {
+        robust_case_finish(derived);
+        return robust_case_fault(c, &why, f);
+    }
+    return STATUS_OK;
+}
+
+void robust_case_finish(scenario *derived)
+{
+    if (derived != NULL) {
+        free(derived->actions);
+        derived->actions = NULL;
+        derived->action_count = 0;
+    }
+}
 
 static const double robust_levels[ROBUST_QUANTILES] = {
     [ROBUST_MEDIAN] = 0.5, [ROBUST_NINE_TENTHS] = 0.9, [ROBUST_WORST] = 1};

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/study/robust_set.h"
+#include "src/study/robust.h"
 #include "src/study/sweep.h"
 
 enum { LOOKED_AT = 64 };

@@ -12,7 +12,7 @@
 #include "render/page/picture_file.h"
 #include "src/base/numbers.h"
 #include "src/base/whole_file.h"
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/base/words.h"
 
 // --- shared options ---------------------------------------------------------------------------

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 
 #include "src/base/json.h"
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/base/words.h"
 
 // One line a command: its name as a C word, in the order in which they are listed.

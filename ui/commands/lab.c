@@ -8,7 +8,7 @@
 #include <wchar.h>
 
 #include "src/base/clock.h"
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "ui/explorer/explorer.h"
 #include "ui/terminal/pictures.h"
 #include "ui/terminal/terminal.h"

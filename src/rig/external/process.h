@@ -14,7 +14,7 @@
 
 #include "src/tables/parameters.h"
 #include "src/rig/controller.h"
-#include "src/rig/external/transcript.h"
+#include "src/rig/external/process_lines.h"
 
 typedef struct process process;
 

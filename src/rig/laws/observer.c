@@ -10,11 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/rig/laws/force_rise.h"
+#include "src/rig/laws/observer_paths.h"
 #include "src/rig/laws/laws.h"
-#include "src/rig/laws/observer_arms.h"
-#include "src/rig/laws/quickest_touch.h"
-#include "src/rig/laws/smooth_approach.h"
+#include "src/rig/laws/observer_design.h"
 
 enum { TRAVEL, PRESS, HOLD, RECOVER };
 static const char *const mode_names[] = {"travel", "press", "hold", "recover", NULL};

@@ -19,9 +19,9 @@
 #include <string.h>
 
 #include "src/rig/estimation/estimator.h"
+#include "src/rig/estimation/riccati.h"
 #include "src/rig/laws/laws.h"
 #include "src/base/plain_math.h"
-#include "src/rig/estimation/riccati.h"
 
 enum { APPROACH, PRESS, HOLD };
 

@@ -9,7 +9,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/study/store/sweep_database.h"
 
 // Creates the tables and writes the definition, all in one transaction.

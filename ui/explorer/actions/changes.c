@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/base/numbers.h"
 #include "src/rig/controller.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "render/scene/plan.h"
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "ui/terminal/pictures.h"
 
 enum {

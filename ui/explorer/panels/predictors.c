@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/run/first_contact.h"
 
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds

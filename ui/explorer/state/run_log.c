@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 
 static void add_entry(run_log *log, log_entry entry)
 {

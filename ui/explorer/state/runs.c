@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "src/base/instant.h"
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/run/resume.h"
 #include "ui/explorer/state/parameter_list.h"
 

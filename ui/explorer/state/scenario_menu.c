@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/loss.h"
+#include "src/base/text_stream.h"
 #include "src/scenario/scenario.h"
 #include "ui/explorer/state/view.h"
 
