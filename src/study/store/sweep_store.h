@@ -19,7 +19,7 @@ status sweep_store_open(sweep_store **store, const char *path, const sweep *s, f
     __attribute__((warn_unused_result));
 
 // Commits what is not committed and closes; NULL is nothing. An error is only noted
-// (loss.h): commit first.
+// (text_stream.h): commit first.
 void sweep_store_close(sweep_store *store);
 
 // Makes what was put permanent. STATUS_CANNOT_WRITE also where the file was deleted or moved since.
