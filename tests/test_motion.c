@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "src/run/run.h"
+#include "src/solve/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/told_events.h"
 
@@ -143,6 +144,31 @@ static void an_arm_inside_a_rigid_wall_is_never_ok(void **state)
             assert_non_null(strstr(r.summary.message, "inside a rigid wall"));
         }
         run_finish(&r);
+    }
+}
+
+// A torque that nobody tells the motion of takes a stuck hub beyond stiction: that is noted, and
+// what is within stiction or slides is not.
+static void a_hub_held_beyond_stiction_is_noted(void **state)
+{
+    (void)state;
+    static const char *const engines[] = {"method.engine=pair", "method.engine=series",
+                                          "method.engine=stiff"};
+    for (int i = 0; i < 3; i++) {
+        const parameters p = fixture_parameters(SETTINGS("motor.stiction=1e3", engines[i]));
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        motion_report r;
+        assert_non_null(m);
+        motion_start(&a, m, 0, 0);
+        assert_int_equal(motion_step(&a, m, 1e-3, 1e-3, &r), STATUS_OK);
+        assert_true(m->state[SLOT_FRICTION] == HUB_STICK && m->overheld == 0);
+        a.motor.stiction = 0.5 * fabs(a.motor.torque);
+        motion_end_stride(m);
+        assert_int_equal(motion_step(&a, m, 2e-3, 1e-3, &r), STATUS_OK);
+        check_close(m->overheld, 0.5 * fabs(a.motor.torque), 1e-6);
+        motion_destroy(m);
     }
 }
 
@@ -648,6 +674,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_single_rod_follows_its_closed_form),
         cmocka_unit_test(an_arm_inside_a_rigid_wall_is_never_ok),
+        cmocka_unit_test(a_hub_held_beyond_stiction_is_noted),
         cmocka_unit_test(a_start_on_the_wall_is_the_same_at_any_angle),
         cmocka_unit_test(a_start_on_the_point_behind_the_hub_is_a_touch_from_behind),
         cmocka_unit_test(a_rod_that_gathers_speed_meets_the_wall_where_it_is),

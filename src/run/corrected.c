@@ -279,6 +279,13 @@ static void judge(const corrected_run *c)
         remark(s, "the arm was %.3g m inside a rigid wall: the method was %s%s",
                s->max_penetration_m, m->engine->name, corrected_advice(m));
     }
+    if (m->overheld > 0) {
+        s->inaccurate = true;
+        remark(s,
+               "friction held the hub by %.3g N m more than motor.stiction allows, a slip was "
+               "missed: the method was %s%s",
+               m->overheld, m->engine->name, corrected_advice(m));
+    }
     judge_size(c, energy > rounding ? energy : 0);
 }
 

@@ -90,7 +90,8 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
                          .start_energy = m->start_energy,
                          .pulse_peak = m->pulse_peak,
                          .pulse_peak_time = m->pulse_peak_time,
-                         .largest_penetration = m->largest_penetration};
+                         .largest_penetration = m->largest_penetration,
+                         .overheld = m->overheld};
     memcpy(kept->state, m->state, (size_t)m->size * sizeof(double));
 
     return true;
@@ -118,6 +119,7 @@ void checkpoint_restore(recording *r, arm *a, motion *m)
     m->pulse_peak = kept->pulse_peak;
     m->pulse_peak_time = kept->pulse_peak_time;
     m->largest_penetration = kept->largest_penetration;
+    m->overheld = kept->overheld;
     recording_publish(r, kept->time);
 }
 

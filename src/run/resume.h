@@ -22,6 +22,7 @@ typedef struct checkpoint {
     double pulse_peak;          // [N]
     double pulse_peak_time;     // [s]
     double largest_penetration; // [m]
+    double overheld;            // [N m]
     double state[];
 } checkpoint;
 

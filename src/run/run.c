@@ -83,7 +83,7 @@ typedef struct saved_motion {
     int at_once;
     step_under_way under_way;
     long steps;
-    double start_energy, cut, pulse_peak, pulse_peak_time, largest_penetration;
+    double start_energy, cut, pulse_peak, pulse_peak_time, largest_penetration, overheld;
 } saved_motion;
 
 static size_t corrected_saved_size(const stepped_run *run)
@@ -107,6 +107,7 @@ static void corrected_save(const stepped_run *run, void *bytes)
     saved.pulse_peak = m->pulse_peak;
     saved.pulse_peak_time = m->pulse_peak_time;
     saved.largest_penetration = m->largest_penetration;
+    saved.overheld = m->overheld;
     memcpy(bytes, &saved, sizeof saved);
     char *state = (char *)bytes + sizeof saved;
     const size_t size = (size_t)m->size * sizeof(double);
@@ -133,6 +134,7 @@ static void corrected_restore(stepped_run *run, const void *bytes)
     m->pulse_peak = saved.pulse_peak;
     m->pulse_peak_time = saved.pulse_peak_time;
     m->largest_penetration = saved.largest_penetration;
+    m->overheld = saved.overheld;
 
     // the step under way, looked at again as it was when it was begun
     c->under_way.goes_on = false;

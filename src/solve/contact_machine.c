@@ -384,7 +384,7 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
         chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
         chain_strain_energy(a, state_angles(m, m->state));
     m->steps = 0;
-    m->largest_penetration = 0;
+    m->largest_penetration = m->overheld = 0;
     motion_watch(m);
 
     double g, rate;

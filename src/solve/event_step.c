@@ -12,10 +12,29 @@
 
 #define MOST_HALVINGS   8    // of a step that does not converge or makes energy
 #define LEAST_AFTER_CUT 1e-9 // share of a step; what is left of one before a cut is longer
+// What a stuck hub may be held by beyond stiction: a share of the torques, and of what rounding
+// makes of a slow soft arm's [N m].
+#define HOLD_SHARE    1e-6
+#define HOLD_ROUNDING 1e-8
 // Angles, velocities and accelerations below this are set to zero [rad, rad/s, rad/s2]. Squares of
 // larger ones are normal numbers: so a motion that dies away never computes with denormal numbers,
 // which are many times slower on some processors.
 #define FADED 1e-150
+
+// Notes what the friction of a stuck hub exceeds stiction by, beyond rounding, which only a slip
+// that was missed explains. Stepping engines may be a step late.
+static void note_hold(const arm *a, motion *m)
+{
+    const double *state = m->state;
+    const double beyond = fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction;
+    if (state[SLOT_FRICTION] != HUB_STICK || !engine_is_dense(m->engine) || !(beyond > 0)) {
+        return;
+    }
+    const double largest = larger(a->motor.stiction, fabs(state[SLOT_MOTOR_TORQUE]));
+    if (beyond > HOLD_SHARE * largest + HOLD_ROUNDING * motion_rounding(a, m)) {
+        m->overheld = larger(beyond, m->overheld);
+    }
+}
 
 // Counts a step of this length [s].
 static void count_step(motion *m, double passed, double step)
@@ -324,6 +343,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 
     accept(m, step);
     m->made = h;
+    note_hold(a, m);
     const bool folded = any && (first == WATCH_GAP || first == WATCH_FORCE) &&
                         motion_wall_is_rigid(m) && chain_is_folded(a, state_angles(m, m->state));
     if (folded || went_through_fold(a, m)) {

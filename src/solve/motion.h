@@ -133,6 +133,7 @@ struct motion {
     double pulse_peak;          // largest f since the last impact or touch, -1 if none [N]
     double pulse_peak_time;     // [s]
     double largest_penetration; // [m]
+    double overheld;            // largest friction torque beyond stiction that held the hub [N m]
     double failure_time;        // instant from which a step failed [s]
 };
 
