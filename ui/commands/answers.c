@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/text_stream.h"
 #include "src/base/shipped.h"
 #include "src/tables/parameters.h"
 #include "src/tables/signals.h"
@@ -171,8 +172,9 @@ int print_answers(FILE *stream, const char *question)
         print_hit(stream, sources, &hits[i]);
     }
 
-    // where the pages are; without memory for the path the answer is no less right
+    // where the pages are
     char *folder = count > 0 ? shipped_path(SHIPPED_MANUAL) : NULL;
+    loss_unless(count == 0 || folder != NULL);
     if (folder != NULL) {
         fprintf(stream, "\nThe pages are in %s\n", folder);
     }
