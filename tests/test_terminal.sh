@@ -68,9 +68,15 @@ await_file() {
     until_true test -s "$1" || { fail "$1 is not written"; return 1; }
 }
 
+# whether the shell waits for a command: what is sent to it earlier may be lost
+is_prompted() {
+    picture | grep -v '^ *$' | tail -n 1 | grep -q '^ready> *$'
+}
+
 # starts the lab; afterwards its exit status and the terminal's settings go to files
 start() {
     rm -f "$folder/after" "$folder/pid"
+    until_true is_prompted || fail "the shell has no prompt"
     mux send-keys "clear; lab $*" Enter
     await "Space run/pause"
 }
