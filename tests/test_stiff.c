@@ -243,6 +243,18 @@ static void rounding_makes_no_events_and_stops_none(void **state)
     assert_int_equal(straight.status, STATUS_OK);
     check_below(straight.residual, 1e-9 * straight.put_in);
 
+    // the same by a current that grows: the gap opens as the fourth power of the time
+    const parameters breaks_away = fixture_parameters(
+        SETTINGS("arm.hub_joint=beam", "arm.damping_ratio=0.84005097425089026", "wall.kind=point",
+                 "wall.angle=1.6867664463009513", "motor.voltage=1.3641530173187046",
+                 "motor.inductance=0.074513991456584897", "motor.current_limit=4.1334815398448788",
+                 "arm.mass=0.24099001101541614", "arm.hub_inertia=0.013887622986487512",
+                 "arm.joint_stiffness=4.7,4.5"));
+    const chain_outcome opens = chain_outcome_of(
+        &(chain_start){&breaks_away, breaks_away.wall.angle, 0, 0.03, 0.03, &stiff_engine});
+    assert_int_equal(opens.status, STATUS_OK);
+    check_below(opens.residual, 1e-9 * opens.put_in);
+
     for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
         chain_start start = starts[i];
         start.by = &stiff_engine;

@@ -9,7 +9,8 @@
 // Of the current, as a share of its limit.
 #define EDGE_CURRENT 1e-10
 // Shares of a function's largest coefficient: of what is rounding at a start, and of what a force
-// that presses at all stages may lack there, where it changes faster than the step shows.
+// that presses at all stages, or a gap that is open at them, may lack there, where it changes
+// faster than the step shows.
 #define FLAT  1e-5
 #define LACKS 1e-3
 // A gap that nowhere in a step exceeds this is followed as it grows [m].
@@ -26,13 +27,15 @@ static void leave_edge(stiff_stride *s, watch w, const double limits[3])
         s->divided[w] = true;
     }
 
-    // of one that starts flatter still, what is left at the start is rounding
+    // of one that starts flatter still, what is left at the start is rounding; of a force that
+    // presses at all stages, or a gap that is open at all of them, the step's own error, too
     double *start = s->watched[w].b;
-    bool presses = w == WATCH_FORCE && powers > 0;
-    for (int i = 0; i < RADAU_STAGES && presses; i++) {
-        presses = s->step.force.at[i] > 0;
+    bool holds = (w == WATCH_FORCE && powers > 0) || (w == WATCH_GAP && powers == 3);
+    for (int i = 0; i < RADAU_STAGES && holds; i++) {
+        holds = w == WATCH_FORCE ? s->step.force.at[i] > 0
+                                 : function_at(&s->watched[w], radau_node[i]).value > 0;
     }
-    const double share = presses ? LACKS : powers == 3 ? FLAT : 0;
+    const double share = holds ? LACKS : powers == 3 ? FLAT : 0;
     if (*start < 0 && *start > -share * function_greatest(&s->watched[w])) {
         *start = -*start;
     }
