@@ -43,13 +43,18 @@ static inline char *picture(explorer *ex, int width, int height, glyph_set set)
     return text;
 }
 
-static inline void assert_shows(explorer *ex, const char *wanted)
+static inline void assert_shows_at(explorer *ex, int width, int height, const char *wanted)
 {
-    char *text = picture(ex, 120, 40, GLYPHS_BRAILLE);
+    char *text = picture(ex, width, height, GLYPHS_BRAILLE);
     if (strstr(text, wanted) == NULL) {
         fail_msg("'%s' is not on the screen:\n%s", wanted, text);
     }
     free(text);
+}
+
+static inline void assert_shows(explorer *ex, const char *wanted)
+{
+    assert_shows_at(ex, 120, 40, wanted);
 }
 
 static inline void assert_hides(explorer *ex, const char *unwanted)

@@ -249,11 +249,23 @@ bool act_push(explorer_state *st, const char *argument)
            act_tell(st, "pushed with %g N s at %.4f s", impulse, st->session.now);
 }
 
+// Opening a scenario is undone and done again as changes are.
+static bool turn(explorer_state *st, int direction)
+{
+    fault f = {0};
+    const bool turned = act_worked(st, state_turn(st, direction, &f), &f);
+    return turned && act_tell(st, "in %s again, %s", st->session.base.name,
+                              direction < 0 ? "U opens the one you left" : "u goes back");
+}
+
 bool act_undo(explorer_state *st, const char *argument)
 {
     session_forget_ghost(&st->session);
     (void)argument;
     fault f = {0};
+    if (st->session.input_count == 0 && state_can_turn(st, -1)) {
+        return turn(st, -1);
+    }
     return act_worked(st, session_undo(&st->session, &f), &f) &&
            act_tell(st, "undone, U puts it in again");
 }
@@ -263,6 +275,9 @@ bool act_redo(explorer_state *st, const char *argument)
     session_forget_ghost(&st->session);
     (void)argument;
     fault f = {0};
+    if (st->session.input_count == st->session.input_total && state_can_turn(st, 1)) {
+        return turn(st, 1);
+    }
     return act_worked(st, session_redo(&st->session, &f), &f) && act_tell(st, "put in again");
 }
 

@@ -85,7 +85,7 @@ bool act_take_run(explorer_state *st, const char *argument)
         return false;
     }
     run_list *list = &st->pinned;
-    if (run_list_is_present(&list->runs[index], &st->session)) {
+    if (run_origin_is_of(&list->runs[index].from, &st->session)) {
         return act_tell(st, "this is that run");
     }
 
@@ -95,7 +95,17 @@ bool act_take_run(explorer_state *st, const char *argument)
     }
     fault f = {0};
     const pinned_run *taken = &list->runs[index];
-    const status code = session_take_inputs(&st->session, taken->inputs, taken->input_count, &f);
+    const run_origin *from = &taken->from;
+    session other;
+    status code = STATUS_OK;
+    if (same_base(&from->base, &st->session.base)) {
+        code = session_take_inputs(&st->session, from->inputs, from->input_count, &f);
+    } else {
+        code = session_reopen(&other, from, st->session.patience, &f);
+        if (code == STATUS_OK && (code = state_take_session(st, &other, &f)) != STATUS_OK) {
+            session_finish(&other);
+        }
+    }
     return act_worked(st, code, &f) &&
            act_tell(st, "'%s' goes on; the run before is compared with it", taken->name);
 }

@@ -34,11 +34,18 @@ bool act_open_scenario(explorer_state *st, const char *name)
         return act_worked(st, code, &f);
     }
 
-    // from here on nothing fails: the new session takes the old one's place
-    state_take_session(st, &fresh);
+    // the new session takes the old one's place, to which u returns
+    const int changes = st->session.input_count;
+    code = state_take_session(st, &fresh, &f);
+    if (code != STATUS_OK) {
+        session_finish(&fresh);
+        return act_worked(st, code, &f);
+    }
     st->playback.playing = true;
+    const char *title = st->session.base.title ? st->session.base.title : "";
     return act_tell_failed_run(st) ||
-           act_tell(st, "%s", st->session.base.title ? st->session.base.title : "");
+           act_tell(st, changes > 0 ? "%s (u returns to %s and its changes)" : "%s", title,
+                    st->visits[st->present_visit - 1].from.base.name);
 }
 
 // The list of scenarios with the present one selected.

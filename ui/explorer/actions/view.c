@@ -357,19 +357,31 @@ bool act_quit(explorer_state *st, const char *argument)
 {
     (void)argument;
     const session *s = &st->session;
-    const bool unsaved = s->input_count > 0 && st->saved_version != state_run_id(st);
+    const int pins = st->kept_pins == st->pinned.pinned ? 0 : st->pinned.count;
+    int changes = st->saved_version == state_run_id(st) ? 0 : s->input_count;
+    for (int i = 0; i < st->visit_count; i++) {
+        changes += st->visits[i].from.input_count;
+    }
 
-    // changes are lost only if quitting is requested twice
-    if (!unsaved || st->asked_to_quit) {
+    // work is lost only if quitting is requested twice
+    if (changes + pins == 0 || st->asked_to_quit) {
         st->quit = true;
         return true;
     }
+    char lost[96] = "";
+    const char *and = changes > 0 && pins > 0 ? " and " : "";
+    if (changes > 0) {
+        snprintf(lost, sizeof lost, "%d change%s%s", changes, changes == 1 ? "" : "s", and);
+    }
+    if (pins > 0) {
+        const size_t used = strlen(lost);
+        snprintf(lost + used, sizeof lost - used, "%d pinned run%s", pins, pins == 1 ? "" : "s");
+    }
     st->asked_to_quit = true;
     return act_warn(st,
-                    "%d change%s would be lost: q leaves all the same, :save NAME.yaml keeps "
-                    "%s, Esc stays",
-                    s->input_count, s->input_count == 1 ? "" : "s",
-                    s->input_count == 1 ? "it" : "them");
+                    "%s would be lost: q leaves all the same, :save NAME.yaml keeps this run, Esc "
+                    "stays",
+                    lost);
 }
 
 bool act_quit_now(explorer_state *st, const char *argument)

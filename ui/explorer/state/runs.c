@@ -13,30 +13,24 @@
 
 // --- pinned runs ------------------------------------------------------------------------------
 
-static bool same_input(const session_input *a, const session_input *b)
-{
-    return a->kind == b->kind && a->parameter == b->parameter && a->value == b->value &&
-           (a->kind == SESSION_INPUT_START || a->time == b->time) && strcmp(a->text, b->text) == 0;
-}
-
 static bool has_input(const session_input *inputs, int count, const session_input *wanted)
 {
     for (int i = 0; i < count; i++) {
-        if (same_input(&inputs[i], wanted)) {
+        if (session_same_input(&inputs[i], wanted)) {
             return true;
         }
     }
     return false;
 }
 
-bool run_list_is_present(const pinned_run *p, const session *s)
+int run_list_of_scenario(const run_list *list, const session *s)
 {
-    assert(p != NULL && s != NULL);
-    bool same = p->input_count == s->input_count;
-    for (int i = 0; same && i < p->input_count; i++) {
-        same = same_input(&p->inputs[i], &s->inputs[i]);
+    assert(list != NULL && s != NULL);
+    int count = 0;
+    for (int i = 0; i < list->count; i++) {
+        count += same_base(&list->runs[i].from.base, &s->base);
     }
-    return same;
+    return count;
 }
 
 // A change as a line of text: what it gives what, and from when on.
@@ -75,9 +69,15 @@ void run_list_differences(const pinned_run *p, const session *s, char *text, siz
 {
     assert(p != NULL && s != NULL && text != NULL && size > 0);
     char here[256] = "";
+    const run_origin *o = &p->from;
     text[0] = '\0';
-    append_others(p->inputs, p->input_count, s->inputs, s->input_count, text, size);
-    append_others(s->inputs, s->input_count, p->inputs, p->input_count, here, sizeof here);
+    if (!same_base(&o->base, &s->base)) {
+        snprintf(text, size, "of %s%s", o->base.name, o->input_count > 0 ? ": " : "");
+        append_others(o->inputs, o->input_count, NULL, 0, text, size);
+        return;
+    }
+    append_others(o->inputs, o->input_count, s->inputs, s->input_count, text, size);
+    append_others(s->inputs, s->input_count, o->inputs, o->input_count, here, sizeof here);
     const size_t used = strlen(text);
     if (here[0] != '\0' && used < size) {
         snprintf(text + used, size - used, "%s(now: %s)", used > 0 ? " " : "", here);
@@ -86,10 +86,21 @@ void run_list_differences(const pinned_run *p, const session *s, char *text, siz
     }
 }
 
+#define AS_OPENED "as opened"
+
+// The last part of a scenario's name.
+static const char *leaf_of(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash != NULL ? slash + 1 : name;
+}
+
 // A name for the present run that no other of the list has.
 static void propose_name(const run_list *list, const session *s, char name[RUN_NAME])
 {
-    char text[SESSION_INPUT_TEXT + 80] = "as opened";
+    char text[SESSION_INPUT_TEXT + 80];
+    snprintf(text, sizeof text, "%s",
+             run_list_of_scenario(list, s) < list->count ? leaf_of(s->base.name) : AS_OPENED);
 
     // the last change describes best what is new
     if (s->input_count > 0) {
@@ -110,6 +121,17 @@ static void propose_name(const run_list *list, const session *s, char name[RUN_N
     }
 }
 
+void run_list_name_strangers(run_list *list, const session *s)
+{
+    assert(list != NULL && s != NULL);
+    for (int i = 0; i < list->count; i++) {
+        pinned_run *p = &list->runs[i];
+        if (strcmp(p->name, AS_OPENED) == 0 && !same_base(&p->from.base, &s->base)) {
+            snprintf(p->name, sizeof p->name, "%s", leaf_of(p->from.base.name));
+        }
+    }
+}
+
 status run_list_pin(run_list *list, const session *s, const char *name, fault *f)
 {
     assert(list != NULL && s != NULL && name != NULL);
@@ -117,7 +139,7 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
 
     // one of the same changes only becomes the baseline
     for (int i = 0; i < list->count; i++) {
-        if (run_list_is_present(&list->runs[i], s)) {
+        if (run_origin_is_of(&list->runs[i].from, s)) {
             list->baseline = list->selected = i;
             list->runs[i].hidden = false;
             return STATUS_OK;
@@ -135,14 +157,13 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
     } else {
         propose_name(list, s, p.name);
     }
-    p.input_count = s->input_count;
-    p.inputs = calloc((size_t)s->input_count + 1, sizeof *p.inputs);
-    if (p.inputs == NULL || run_share(&s->run, s->run.trace.row_count, &p.run) != STATUS_OK) {
-        free(p.inputs);
-        return fault_no_memory(f);
+    const status code = run_origin_take(&p.from, s, f);
+    if (code != STATUS_OK) {
+        return code;
     }
-    if (s->input_count > 0) {
-        memcpy(p.inputs, s->inputs, (size_t)s->input_count * sizeof *p.inputs);
+    if (run_share(&s->run, s->run.trace.row_count, &p.run) != STATUS_OK) {
+        run_origin_finish(&p.from);
+        return fault_no_memory(f);
     }
     list->pinned++;
     list->baseline = list->selected = list->count;
@@ -154,7 +175,7 @@ void run_list_drop(run_list *list, int index)
 {
     assert(list != NULL && index >= 0 && index < list->count);
     run_finish(&list->runs[index].run);
-    free(list->runs[index].inputs);
+    run_origin_finish(&list->runs[index].from);
     memmove(&list->runs[index], &list->runs[index + 1],
             (size_t)(list->count - index - 1) * sizeof list->runs[0]);
     list->count--;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/run/run.h"
-#include "src/session/session.h"
+#include "src/session/origin.h"
 #include "src/study/sweep_axis.h"
 #include "ui/explorer/state/command_list.h"
 
@@ -13,9 +13,8 @@ enum { PINNED_RUNS = LESSON_PINNED_RUNS, RUN_NAME = LINE_TEXT };
 
 typedef struct pinned_run {
     char name[RUN_NAME];
-    run_result run;        // its rows are shared with the session's
-    session_input *inputs; // the changes from the scenario to this run
-    int input_count;
+    run_result run;   // its rows are shared with the session's
+    run_origin from;  // also of another scenario than the present one
     unsigned long id; // unique among all runs ever pinned in the list
     bool hidden;
 } pinned_run;
@@ -33,15 +32,18 @@ typedef struct run_list {
 // the list is full, STATUS_NO_MEMORY.
 status run_list_pin(run_list *list, const session *s, const char *name, fault *f);
 
+// Names the runs that are not of the session's scenario, and were "as opened", after their own.
+void run_list_name_strangers(run_list *list, const session *s);
+
 // Removes a run from the list.
 void run_list_drop(run_list *list, int index);
 void run_list_clear(run_list *list);
 
-// Whether two runs have the same changes.
-bool run_list_is_present(const pinned_run *p, const session *s);
+// The number of runs of the list that are of the session's scenario.
+int run_list_of_scenario(const run_list *list, const session *s);
 
 // The difference between a run of the list and the present one as a line of text: changes that only
-// the former has, then, in brackets, those that only the latter has.
+// the former has, then, in brackets, those that only the latter has. Of another scenario its name.
 void run_list_differences(const pinned_run *p, const session *s, char *text, size_t size);
 
 // --- a sweep ----------------------------------------------------------------------------------

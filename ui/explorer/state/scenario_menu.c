@@ -181,7 +181,7 @@ bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, cons
         return fabs(value - step->value) <= step->within * fabs(step->value);
     }
     case LESSON_PINNED:
-        return pinned->count >= step->pinned;
+        return run_list_of_scenario(pinned, s) >= step->pinned;
     case LESSON_RATIO:
         return ratio_is_in_range(step, s);
     }

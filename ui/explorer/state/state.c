@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/text_stream.h"
 #include "src/rig/controller.h"
 #include "src/rig/rig.h"
 
@@ -94,6 +95,7 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
         return code;
     }
 
+    st->visit_count = 1;
     st->pinned.baseline = -1;
     st->sweep.metric = SUMMARY_INDEX(peak_force_N);
     st->playback.speed = 0.2;
@@ -122,21 +124,90 @@ void state_finish(explorer_state *st)
     difference_finish(&st->difference);
     lab_sweep_end(&st->sweep);
     run_list_clear(&st->pinned);
+    for (int i = 0; i < st->visit_count; i++) {
+        run_origin_finish(&st->visits[i].from);
+    }
     session_finish(&st->session);
 
     // nothing points to what is gone
     memset(st, 0, sizeof *st);
 }
 
-void state_take_session(explorer_state *st, session *fresh)
+// Puts a session in the place of the present one, which is compared with what that was.
+static void replace_session(explorer_state *st, session *fresh)
 {
-    assert(st != NULL && fresh != NULL);
+    const run_list *list = &st->pinned;
     difference_finish(&st->difference);
     lab_sweep_end(&st->sweep);
-    run_list_clear(&st->pinned);
     session_finish(&st->session);
     st->session = *fresh;
+    if (list->baseline >= 0) {
+        loss_unless(session_keep_beside(&st->session, &list->runs[list->baseline].run, NULL) ==
+                    STATUS_OK);
+    }
+    run_list_name_strangers(&st->pinned, &st->session);
     show_anew(st);
+}
+
+// What there is, to be returned to.
+static status take_visit(const explorer_state *st, visit *v, fault *f)
+{
+    v->lesson = st->lesson;
+    return run_origin_take(&v->from, &st->session, f);
+}
+
+status state_take_session(explorer_state *st, session *fresh, fault *f)
+{
+    assert(st != NULL && fresh != NULL);
+    visit left;
+    const status code = take_visit(st, &left, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // what undoing had left is given up, and the oldest where there is no room
+    for (int i = st->present_visit + 1; i < st->visit_count; i++) {
+        run_origin_finish(&st->visits[i].from);
+    }
+    st->visits[st->present_visit] = left;
+    if (st->present_visit == VISITS - 1) {
+        run_origin_finish(&st->visits[0].from);
+        memmove(&st->visits[0], &st->visits[1], (VISITS - 1) * sizeof st->visits[0]);
+        st->present_visit--;
+    }
+    st->visits[++st->present_visit] = (visit){0};
+    st->visit_count = st->present_visit + 1;
+    replace_session(st, fresh);
+    return STATUS_OK;
+}
+
+bool state_can_turn(const explorer_state *st, int direction)
+{
+    assert(st != NULL && (direction == 1 || direction == -1));
+    const int to = st->present_visit + direction;
+    return to >= 0 && to < st->visit_count;
+}
+
+status state_turn(explorer_state *st, int direction, fault *f)
+{
+    assert(state_can_turn(st, direction));
+    visit left, *to = &st->visits[st->present_visit + direction];
+    session fresh;
+    status code = session_reopen(&fresh, &to->from, st->session.patience, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    code = take_visit(st, &left, f);
+    if (code != STATUS_OK) {
+        session_finish(&fresh);
+        return code;
+    }
+    replace_session(st, &fresh);
+    st->lesson = to->lesson;
+    st->visits[st->present_visit] = left;
+    st->present_visit += direction;
+    run_origin_finish(&to->from);
+    return STATUS_OK;
 }
 
 // --- the runs ---------------------------------------------------------------------------------

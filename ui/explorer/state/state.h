@@ -42,6 +42,14 @@ typedef struct page_view {
     int lines;      // number of its lines shown at once when it was drawn last
 } page_view;
 
+// A scenario that was opened before the present one, or that undoing has left: as it was then.
+typedef struct visit {
+    run_origin from;
+    lesson_progress lesson;
+} visit;
+
+enum { VISITS = 32 }; // kept for undoing, the present one included
+
 typedef struct screen_size {
     int width, height; // [cells]
 } screen_size;
@@ -52,7 +60,9 @@ typedef struct explorer_state {
     run_list pinned;
     lab_sweep sweep;
     run_difference difference;
-    unsigned opened; // number of scenarios opened
+    unsigned opened;      // number of scenarios opened
+    visit visits[VISITS]; // [present_visit] is empty: it is the session
+    int visit_count, present_visit;
 
     // the instants of interest
     playback playback;
@@ -84,6 +94,7 @@ typedef struct explorer_state {
     char last_law[LINE_TEXT];    // the law that was switched off last, "" for none
     bool settings_broken;        // the settings file contains errors
     unsigned long saved_version; // the run last saved as a scenario, 0 for none
+    unsigned long kept_pins;     // runs ever pinned when they were last saved in a session
     bool asked_to_quit;          // the last key asked to quit, and changes would be lost
     bool quit;
 
@@ -98,8 +109,12 @@ typedef struct explorer_state {
 status state_init(explorer_state *st, scenario *s, double patience, fault *f);
 void state_finish(explorer_state *st);
 
-// Shows another session, which it owns from then on, as if newly opened.
-void state_take_session(explorer_state *st, session *fresh);
+// Shows another session, which it owns from then on, as if newly opened; pinned runs stay. What was
+// there can be returned to. On failure nothing changes and the caller keeps the session.
+status state_take_session(explorer_state *st, session *fresh, fault *f);
+// Returns to the scenario before (-1), or goes on to the one that this left (1).
+bool state_can_turn(const explorer_state *st, int direction);
+status state_turn(explorer_state *st, int direction, fault *f);
 
 // Updates everything that drawing reads: panes, window, growing axes and results derived from the
 // runs.
