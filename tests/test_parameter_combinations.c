@@ -37,9 +37,8 @@ static void impossible_combinations_are_refused(void **state)
     check_conflict("wall.contact", "kelvin-voigt", "wall.mass", "1e-12", "at least");
     check_conflict("arm.hub_joint", "beam", "arm.hub_inertia", "0", "nothing to move");
     check_conflict("wall.contact", "kelvin-voigt", "method.name", "newmark", "event only");
-    check_conflict("control.delay", "0.02", "control.rate", "100",
-                   "longer than the period of 0.01 s");
-    check_conflict("control.delay_periods", "0.8", "control.delay", "0.002", "period of 0.005 s");
+    check_conflict("control.delay", "0.06", "control.rate", "100", "longer than 5 periods of 0.01");
+    check_conflict("control.delay_periods", "4.8", "control.delay", "0.002", "periods of 0.005 s");
 }
 
 // Two settings that look like a conflict and are none.
@@ -216,15 +215,15 @@ static void conditions_hold_up_to_their_limits(void **state)
         {{"wall.contact=rigid", "method.name=newmark"}, NULL},
         {{"wall.contact=hunt-crossley", "method.name=newmark"}, "wall.contact"},
 
-        // delays and jitter as long as the period allows, and beyond
-        {{"control.rate=100", "control.delay=0.01"}, NULL},
-        {{"control.rate=100", "control.delay=0.0101"}, "control.delay"},
-        {{"control.rate=64", "control.delay=0.0078125", "control.delay_periods=0.5"}, NULL},
-        {{"control.rate=64", "control.delay=0.0078125", "control.delay_periods=0.51"},
+        // delays and jitter as long as the periods allow, and beyond
+        {{"control.rate=100", "control.delay=0.05"}, NULL},
+        {{"control.rate=100", "control.delay=0.0501"}, "control.delay"},
+        {{"control.rate=64", "control.delay=0.0078125", "control.delay_periods=4.5"}, NULL},
+        {{"control.rate=64", "control.delay=0.0078125", "control.delay_periods=4.51"},
          "control.delay_periods"},
-        {{"control.delay_periods=1"}, NULL},
-        {{"control.rate=64", "control.jitter=0.0078125"}, NULL},
-        {{"control.rate=64", "control.jitter=0.00782"}, "control.jitter"},
+        {{"control.delay_periods=5"}, NULL},
+        {{"control.rate=64", "control.jitter=0.015625"}, NULL},
+        {{"control.rate=64", "control.jitter=0.01563"}, "control.jitter"},
 
         // a sensor that is asked for is there, unless it was left out
         {{"control.impact_angle=film"}, NULL},

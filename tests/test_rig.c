@@ -82,21 +82,59 @@ static void a_command_a_period_late_goes_out_with_the_next_sample(void **state)
                 continue; // only a command took effect
             }
             assert_true(r->voltage == latest || samples == 0);
-            assert_true(r->pending != r->voltage);
-            latest = r->pending;
+            assert_true(r->pending[0] != r->voltage);
+            latest = r->pending[0];
         }
         rig_destroy(r);
     }
 }
 
-static void a_delay_is_at_most_a_period(void **state)
+// Commands that are several periods under way keep their order and their delay, also where samples
+// scatter over the whole period; with a delay of whole periods they go out at a sample at the
+// latest.
+static void commands_of_several_periods_go_out_in_order(void **state)
+{
+    (void)state;
+    const char *const delays[] = {"control.delay_periods=2.5", "control.delay_periods=5"};
+    const char *const jitters[] = {"control.jitter=0", "control.jitter=0.005"};
+    for (int k = 0; k < 4; k++) {
+        rig *r;
+        fault f;
+        bool changed;
+        double given[64] = {0}, taken[64] = {0}, before = -1;
+        int out = 0, samples = 0;
+        parameters p = rig_parameters(
+            SETTINGS("control.law=force-pd", delays[k / 2], jitters[k % 2], "sensor.ideal=true"));
+        assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
+        while (samples < 60) {
+            const double time = rig_next_time(r);
+            sensed_motion now = {.force = 0.5 + 0.003 * samples};
+            assert_int_equal(rig_act(r, time, &now, &changed, &f), STATUS_OK);
+            assert_true(time >= before);
+            before = time;
+            if (r->samples > samples) {
+                given[samples] = r->output.command;
+                taken[samples++] = time;
+            }
+            if (changed && out < samples && r->voltage == given[out]) {
+                check_below(time - taken[out], r->delay + 1e-9);
+                check_below(k % 2 == 0 ? r->delay : r->delay - 0.005, time - taken[out] + 1e-9);
+                out++;
+            }
+        }
+        assert_in_range(out, 54, 58);
+        rig_destroy(r);
+    }
+}
+
+static void a_delay_is_at_most_five_periods(void **state)
 {
     (void)state;
     fault f;
     scenario s = {.parameters = rig_parameters(SETTINGS("control.delay=0.003"))};
-    assert_int_equal(scenario_override(&s, "control.delay_periods=0.4", &f), STATUS_OK);
-    assert_int_equal(scenario_override(&s, "control.delay_periods=0.5", &f), STATUS_BAD_SCENARIO);
-    assert_non_null(strstr(f.text, "together longer than the period of 0.005 s"));
+    assert_int_equal(scenario_override(&s, "control.delay_periods=4.4", &f), STATUS_OK);
+    assert_int_equal(scenario_override(&s, "control.delay_periods=4.5", &f), STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(f.text, "together longer than 5 periods of 0.005 s"));
 }
 
 static void jitter_stays_within_its_width(void **state)
@@ -372,7 +410,8 @@ int main(void)
         cmocka_unit_test(delay_shifts_the_command),
         cmocka_unit_test(a_command_still_on_its_way_does_not_count),
         cmocka_unit_test(a_command_a_period_late_goes_out_with_the_next_sample),
-        cmocka_unit_test(a_delay_is_at_most_a_period),
+        cmocka_unit_test(commands_of_several_periods_go_out_in_order),
+        cmocka_unit_test(a_delay_is_at_most_five_periods),
         cmocka_unit_test(jitter_stays_within_its_width),
         cmocka_unit_test(sensors_feel_the_spike_of_a_damped_chain),
         cmocka_unit_test(rig_changes_the_bare_arm_only_by_its_converter),

@@ -1,5 +1,8 @@
 // Sensors and converters against their data.
 #include "src/rig/sensors.h"
+
+#include <string.h>
+
 #include "tests/rig_fixture.h"
 
 #define PI 3.14159265358979323846
@@ -260,6 +263,63 @@ static void ripple_follows_the_shaft(void **state)
     check_close(read_hub(&s, 1.5 * PI / 79, 2, 0).tachometer, 1.9, 1e-9);
 }
 
+// (1 + gain error) times the value and an offset, each sensor its own; none with ideal sensors.
+static void sensors_show_what_they_are_calibrated_for(void **state)
+{
+    (void)state;
+    const char *const all[] = {"sensor.encoder_gain_error=0.02",
+                               "sensor.encoder_offset=-0.03",
+                               "sensor.tachometer_gain_error=-0.1",
+                               "sensor.tachometer_offset=0.2",
+                               "sensor.fsr_gain_error=0.25",
+                               "sensor.fsr_offset=-0.5",
+                               "sensor.piezo_gain_error=0.5",
+                               "sensor.piezo_offset=0.1",
+                               "sensor.piezo=true",
+                               "sensor.encoder_counts=0",
+                               "sensor.tachometer_noise=0",
+                               "sensor.tachometer_ripple=0",
+                               "sensor.fsr_noise=0",
+                               "sensor.fsr_rise_time=0",
+                               "sensor.piezo_noise=0",
+                               "sensor.piezo_rise_time=0",
+                               "sensor.piezo_leak_time=0",
+                               "sensor.adc_bits=0",
+                               NULL,
+                               NULL};
+    const char *as_ideal[sizeof all / sizeof all[0]];
+    memcpy(as_ideal, all, sizeof all);
+    as_ideal[18] = "sensor.ideal=true";
+    for (int ideal = 0; ideal < 2; ideal++) {
+        sensors s = fresh_sensors(ideal ? as_ideal : all, 1);
+        for (double x = 0.5; x < 3; x += 0.7) {
+            sensor_reading r = read_hub(&s, x, x, x);
+            check_close(r.encoder, ideal ? x : 1.02 * x - 0.03, 1e-12);
+            check_close(r.tachometer, ideal ? x : 0.9 * x + 0.2, 1e-12);
+            check_close(r.force_reading, ideal ? x : 1.25 * x - 0.5, 1e-12);
+            check_close(r.piezo_force, ideal ? x : 1.5 * x + 0.1, 1e-12);
+        }
+    }
+}
+
+// A force that goes up and down shows the loop of a play, and nothing is left where it ends.
+static void hysteresis_is_a_play(void **state)
+{
+    (void)state;
+    sensors s = fresh_sensors(SETTINGS("sensor.fsr_hysteresis=0.1", "sensor.fsr_noise=0",
+                                       "sensor.fsr_rise_time=0", "sensor.adc_bits=0"),
+                              1);
+    const struct {
+        double force, shown;
+    } way[] = {{1, 0.9},   {2, 1.8}, {1.9, 1.8}, {1.7, 1.8}, {1, 1.1},
+               {1.1, 1.1}, {2, 1.8}, {0, 0},     {0.5, 0.45}};
+    for (size_t i = 0; i < sizeof way / sizeof way[0]; i++) {
+        follow_force(&s, 0.01, way[i].force, way[i].force, way[i].force);
+        assert_true(sensors_at_rest(&s) == (way[i].force == 0));
+        check_close(read_hub(&s, 0, 0, way[i].force).force_reading, way[i].shown, 1e-12);
+    }
+}
+
 static void ideal_sensors_tell_the_truth(void **state)
 {
     (void)state;
@@ -286,6 +346,8 @@ int main(void)
         cmocka_unit_test(divider_follows_the_power_law),
         cmocka_unit_test(noise_has_its_spread_and_follows_its_seed),
         cmocka_unit_test(ripple_follows_the_shaft),
+        cmocka_unit_test(sensors_show_what_they_are_calibrated_for),
+        cmocka_unit_test(hysteresis_is_a_play),
         cmocka_unit_test(ideal_sensors_tell_the_truth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

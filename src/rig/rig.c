@@ -145,10 +145,9 @@ status rig_create(rig **created, const parameters *p, const rig_options *o, faul
     r->told = *p;
     r->ramp = r->wanted_force = p->control.force;
     r->period = 1 / p->control.rate;
-    r->delay = p->control.delay + p->control.delay_periods * r->period;
+    rig_take_delay(r, p);
     r->jitter = p->control.jitter;
     r->voltage_limit = motor_command_limit(&p->motor);
-    r->effect_time = HUGE_VAL;
     r->read_time = -1;
     r->predicted_force = (double)NAN;
     r->output = no_answer();
@@ -199,16 +198,22 @@ void rig_destroy(rig *r)
 
 double rig_next_time(const rig *r)
 {
-    return smaller(r->sample_time, r->effect_time);
+    return r->pending_count > 0 ? smaller(r->sample_time, r->effect_time[0]) : r->sample_time;
 }
 
-// The pending command goes out.
-static void apply(rig *r, bool *changed)
+// The commands that are due at an instant go out, and all but `most` of the others.
+static void apply(rig *r, double time, int most, bool *changed)
 {
-    *changed = *changed || r->pending != r->voltage;
-    r->voltage = r->pending;
-    r->largest_command = larger(fabs(r->voltage), r->largest_command);
-    r->effect_time = HUGE_VAL;
+    while (r->pending_count > 0 &&
+           (!instant_after(r->effect_time[0], time) || r->pending_count > most)) {
+        *changed = *changed || r->pending[0] != r->voltage;
+        r->voltage = r->pending[0];
+        r->largest_command = larger(fabs(r->voltage), r->largest_command);
+        r->pending_count--;
+        memmove(r->pending, r->pending + 1, (size_t)r->pending_count * sizeof r->pending[0]);
+        memmove(r->effect_time, r->effect_time + 1,
+                (size_t)r->pending_count * sizeof r->effect_time[0]);
+    }
 }
 
 // What a controller gets to see of a reading.
@@ -265,8 +270,8 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     }
 
     // what the D/A makes of it goes out after the delay
-    r->pending = converter_value(&r->dac, out->command);
-    r->effect_time = time + r->delay;
+    r->pending[r->pending_count] = converter_value(&r->dac, out->command);
+    r->effect_time[r->pending_count++] = time + r->delay;
 
     r->samples++;
     r->sample_time = sampling_instant(r);
@@ -288,18 +293,16 @@ status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fau
     *changed = false;
     const bool samples = !instant_after(r->sample_time, time);
 
-    // with jitter the next sample may come before a late command: it goes out then
-    if (!instant_after(r->effect_time, time) || (samples && r->effect_time < HUGE_VAL)) {
-        apply(r, changed);
-    }
+    // with jitter a sample may come before the command of one long before: that goes out then
+    apply(r, time, samples ? r->pending_most : CONTROL_MOST_DELAY + 1, changed);
 
     status s = STATUS_OK;
     if (samples) {
         s = take_sample(r, time, now, f);
     }
     // without a delay the new command takes effect at once
-    if (s == STATUS_OK && !instant_after(r->effect_time, time)) {
-        apply(r, changed);
+    if (s == STATUS_OK) {
+        apply(r, time, CONTROL_MOST_DELAY + 1, changed);
     }
     *changed = *changed || r->output.mode != mode;
     return s;

@@ -39,24 +39,26 @@ typedef struct rig {
     double voltage_limit;         // [V]
     converter dac;                // within that limit [V]
     double sample_time;           // of the next sample [s]
-    double effect_time;           // when the pending command takes effect, HUGE_VAL if none [s]
-    parameters told;              // what sensors and controller have been told so far
-    double clock_start;           // nominal instant of sample clock_samples [s]
-    long clock_samples;           // the sample from which the clock of the present rate counts
-    double ramp;                  // commanded force at present, on its ramp to control.force [N]
-    double ramp_time;             // when it was there [s]
-    double wanted_force;          // that the controller was told last [N]
-    double pending;               // the pending command, after the D/A [V]
-    long samples;                 // taken so far
-    random_generator clock;       // of the jitter
-    double voltage;               // command in effect [V]
-    sensor_reading reading;       // of the last sample
-    touch_forecast forecast;      // kept up with control.force_limit
-    double predicted_force;       // of the last sample, NaN without a limit or in contact [N]
-    double read_time;             // when it was taken, -1 before the first [s]
-    controller_output output;     // of the last sample
-    double largest_command;       // in magnitude, of those that took effect [V]
-    int lock;                     // mode that the controller is to be in, -1 if it chooses
+    // commands under way, after the D/A, the next one first: what they are [V], when they take
+    // effect [s], and how many of them wait at most when the next sample is taken
+    double pending[CONTROL_MOST_DELAY + 1], effect_time[CONTROL_MOST_DELAY + 1];
+    int pending_count, pending_most;
+    parameters told;          // what sensors and controller have been told so far
+    double clock_start;       // nominal instant of sample clock_samples [s]
+    long clock_samples;       // the sample from which the clock of the present rate counts
+    double ramp;              // commanded force at present, on its ramp to control.force [N]
+    double ramp_time;         // when it was there [s]
+    double wanted_force;      // that the controller was told last [N]
+    long samples;             // taken so far
+    random_generator clock;   // of the jitter
+    double voltage;           // command in effect [V]
+    sensor_reading reading;   // of the last sample
+    touch_forecast forecast;  // kept up with control.force_limit
+    double predicted_force;   // of the last sample, NaN without a limit or in contact [N]
+    double read_time;         // when it was taken, -1 before the first [s]
+    controller_output output; // of the last sample
+    double largest_command;   // in magnitude, of those that took effect [V]
+    int lock;                 // mode that the controller is to be in, -1 if it chooses
 } rig;
 
 // Sets up the rig of resolved parameters with control.law other than none, or with the law of the
@@ -95,6 +97,8 @@ bool rig_can_change(const parameters *p, int parameter);
 // The nominal model, which is what the controller is told: arm and rig as they are, changed by
 // belief.*.
 controller_setup rig_nominal_setup(const rig *r, const parameters *p);
+// Takes the delay of commands from the parameters, at the present period.
+void rig_take_delay(rig *r, const parameters *p);
 // Takes the commanded force along its ramp and its wave to `time` [s], before a sample.
 status rig_follow_setpoint(rig *r, double time, fault *f);
 

@@ -138,6 +138,14 @@ controller_setup rig_nominal_setup(const rig *r, const parameters *p)
     };
 }
 
+void rig_take_delay(rig *r, const parameters *p)
+{
+    assert(r != NULL && p != NULL);
+    r->delay = p->control.delay + p->control.delay_periods * r->period;
+    const double periods = r->delay / r->period;
+    r->pending_most = (int)larger(ceil(periods - 1e-9) - 1, 0);
+}
+
 static const double turn = 2 * 3.14159265358979323846; // [rad]
 
 // Whether any parameter of a group differs; the lock is the rig's own affair.
@@ -240,7 +248,7 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
         }
     }
     r->period = period;
-    r->delay = p->control.delay + p->control.delay_periods * r->period;
+    rig_take_delay(r, p);
     return tell_controller(r, told, f);
 }
 

@@ -75,6 +75,9 @@ static void idealise(sensor_parameters *p)
     p->piezo_rise_time = p->piezo_leak_time = p->piezo_range = p->piezo_noise = 0;
     p->film_leak_time = p->film_noise = 0;
     p->accelerometer_rise_time = p->accelerometer_range = p->accelerometer_noise = 0;
+    p->encoder_gain_error = p->tachometer_gain_error = p->fsr_gain_error = p->piezo_gain_error = 0;
+    p->encoder_offset = p->tachometer_offset = p->fsr_offset = p->piezo_offset = 0;
+    p->fsr_hysteresis = 0;
 }
 
 static void set_lag(first_order_lag *y, double time_constant)
@@ -95,8 +98,8 @@ void sensors_retune(sensors *s, const sensor_parameters *p)
     s->adc = converter_of(s->p.adc_bits, s->p.ideal ? HUGE_VAL : s->p.adc_range);
     s->encoder_step = s->p.encoder_counts > 0 ? turn / s->p.encoder_counts : 0;
 
-    // no force, no volts is on every curve
-    s->felt = (fsr_point){0, 0};
+    // the curve is another one
+    s->felt = (fsr_point){(double)NAN, 0};
     memset(s->read, 0, sizeof s->read);
     s->seen_angle = (double)NAN;
     set_lag(&s->fsr, s->p.fsr_rise_time / RISE_OVER_TIME_CONSTANT);
@@ -181,6 +184,14 @@ static double lag_output(const first_order_lag *y, double input)
     return y->time_constant > 0 ? y->value : input;
 }
 
+// What the FSR shows of a force that turned: a play as wide as the hysteresis times the force.
+static double fsr_shows(sensors *s, double force)
+{
+    const double play = s->p.fsr_hysteresis * fabs(force);
+    s->fsr_shown = larger(force - play, smaller(s->fsr_shown, force + play));
+    return s->fsr_shown;
+}
+
 // Turns a jump of the hub's velocity since the last look into a pulse of its acceleration.
 static void feel_jump(sensors *s, double velocity)
 {
@@ -194,6 +205,7 @@ void sensors_follow(sensors *s, double h, const sensed_motion *first, const sens
                     double mean_force)
 {
     lag_follow(&s->fsr, h, first->force, last->force, mean_force);
+    fsr_shows(s, lag_output(&s->fsr, last->force));
 
     if (s->p.piezo) {
         lag_follow(&s->piezo_rise, h, first->force, last->force, mean_force);
@@ -221,7 +233,8 @@ void sensors_follow(sensors *s, double h, const sensed_motion *first, const sens
 bool sensors_at_rest(const sensors *s)
 {
     const bool none = !s->p.film && !s->p.accelerometer;
-    return none && s->fsr.value == 0 && s->piezo_rise.value == 0 && s->piezo_leak.value == 0;
+    return none && s->fsr.value == 0 && s->fsr_shown == 0 && s->piezo_rise.value == 0 &&
+           s->piezo_leak.value == 0;
 }
 
 void sensors_strike(sensors *s, double impulse)
@@ -257,11 +270,18 @@ double fsr_force(const sensor_parameters *p, double volts)
     return smaller(force, p->fsr_saturation);
 }
 
+// What a sensor that is calibrated wrongly shows of a value.
+static double off(double value, double gain_error, double offset)
+{
+    return (1 + gain_error) * value + offset;
+}
+
 // The volts of a force in the FSR, before noise.
 static double felt_volts(sensors *s, double force)
 {
     if (force != s->felt.force) {
-        s->felt = (fsr_point){force, fsr_volts(&s->p, force)};
+        const double shown = off(force, s->p.fsr_gain_error, s->p.fsr_offset);
+        s->felt = (fsr_point){force, fsr_volts(&s->p, shown)};
     }
     return s->felt.volts;
 }
@@ -286,7 +306,8 @@ static void see_angle(sensors *s, double angle)
         return;
     }
     s->seen_angle = angle;
-    s->counted = count == 0 ? angle : count * floor(angle / count + 0.5);
+    const double shown = off(angle, s->p.encoder_gain_error, s->p.encoder_offset);
+    s->counted = count == 0 ? shown : count * floor(shown / count + 0.5);
     s->ripple = 1 + s->p.tachometer_ripple * inline_sin(s->p.tachometer_ripple_count * angle);
 }
 
@@ -313,6 +334,7 @@ static double read_piezo(sensors *s, double force)
     if (leak > 0) {
         felt = (felt - s->piezo_leak.value) * leak / (leak - rise);
     }
+    felt = off(felt, p->piezo_gain_error, p->piezo_offset);
     double volts = p->piezo_gain * on_scale(felt, p->piezo_range);
     return convert(s, &s->piezo_noise, volts, p->piezo_noise) / p->piezo_gain;
 }
@@ -339,10 +361,11 @@ sensor_reading sensors_read(sensors *s, const sensed_motion *now)
     const sensor_parameters *p = &s->p;
 
     // what takes longest first
-    const double felt = felt_volts(s, lag_output(&s->fsr, now->force));
+    const double felt = felt_volts(s, fsr_shows(s, lag_output(&s->fsr, now->force)));
     see_angle(s, now->angle);
-    double tachometer =
-        convert(s, &s->noise, p->tachometer_gain * now->velocity * s->ripple, p->tachometer_noise);
+    const double turning =
+        off(now->velocity * s->ripple, p->tachometer_gain_error, p->tachometer_offset);
+    double tachometer = convert(s, &s->noise, p->tachometer_gain * turning, p->tachometer_noise);
     double fsr = convert(s, &s->noise, felt, p->fsr_noise);
 
     // the others draw from noise of their own, in any order

@@ -2,7 +2,9 @@
 //
 // Hub encoder and tachometer are collocated with the motor. The force sensing resistor (FSR) at the
 // tip lags the force by a first-order rise, its resistance falls with the force by a power law, and
-// a voltage divider and an amplifier (Fig. 2.1) turn that into volts.
+// a voltage divider and an amplifier (Fig. 2.1) turn that into volts. Its hysteresis is a play: the
+// reading y follows a force f only as far as (1 - h) f <= y <= (1 + h) f asks for. Readings of
+// sensors that are calibrated wrongly are (1 + gain error) times the value plus an offset.
 //
 // Three more need not be there: the additional measurements that chapter 6 of the thesis wishes
 // for. A piezoelectric force sensor rises fast, goes off scale in an impact, and its charge leaks
@@ -65,7 +67,8 @@ typedef struct sensors {
     noise_source piezo_noise; // the other sensors have their own: fitting one shifts nothing
     noise_source film_noise;  //
     noise_source acceleration_noise;
-    first_order_lag fsr;        // what has arrived in the FSR [N]
+    first_order_lag fsr;        // what has arrived in the FSR [N],
+    double fsr_shown;           // and what its hysteresis makes of that [N]
     first_order_lag piezo_rise; // what has arrived in the piezoelectric sensor [N],
     first_order_lag piezo_leak; // and the part of it that has leaked [N]
     first_order_lag film_leak;  // the part of the bending that has leaked [rad]

@@ -170,14 +170,20 @@ typedef struct nominal_model_parameters {
 // In the order of the choices of sensor.force.
 typedef enum force_sensor { FORCE_BY_FSR, FORCE_BY_PIEZO } force_sensor;
 
+enum { CONTROL_MOST_DELAY = 5 }; // from a sample to its command [periods]
+
 typedef struct sensor_parameters {
     bool ideal;                     // all imperfections of sensors and converters are off
     int force;                      // force_sensor: whose reading a controller gets as the force
     int encoder_counts;             // per revolution, 0: continuous
+    double encoder_gain_error;      // share by which it shows more than there is
+    double encoder_offset;          // [rad]
     double tachometer_gain;         // [V s/rad]
     double tachometer_ripple;       // amplitude as a share of the reading
     int tachometer_ripple_count;    // ripples a revolution
     double tachometer_noise;        // standard deviation [V]
+    double tachometer_gain_error;   // share by which it shows more than there is
+    double tachometer_offset;       // [rad/s]
     double fsr_rise_time;           // 10 % to 90 % [s]
     double fsr_resistance;          // at 1 N [ohm]
     double fsr_exponent;            // of the power law
@@ -186,12 +192,17 @@ typedef struct sensor_parameters {
     double fsr_gain;                // of the stage behind it
     double fsr_saturation;          // force beyond which the resistance falls no further [N]
     double fsr_noise;               // standard deviation [V]
+    double fsr_gain_error;          // share by which it shows more than there is
+    double fsr_offset;              // [N]
+    double fsr_hysteresis;          // share by which it lags behind a force that turns
     bool piezo;                     // piezoelectric force sensor fitted
     double piezo_gain;              // [V/N]
     double piezo_rise_time;         // 10 % to 90 % [s]
     double piezo_leak_time;         // time constant with which its charge leaks, 0: it stays [s]
     double piezo_range;             // largest force it shows either way, 0: any [N]
     double piezo_noise;             // standard deviation [V]
+    double piezo_gain_error;        // share by which it shows more than there is
+    double piezo_offset;            // [N]
     bool film;                      // piezo film along the beam fitted
     double film_gain;               // [V/rad]
     double film_leak_time;          // time constant with which its charge leaks, 0: it stays [s]

@@ -120,7 +120,7 @@ static status check_engine(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// The controller's texts, and its timing: a command goes out before the next one does.
+// The controller's texts, and its timing.
 static status check_control(const parameters *p, fault *f)
 {
     const control_parameters *c = &p->control;
@@ -141,25 +141,18 @@ static status check_control(const parameters *p, fault *f)
         return STATUS_BAD_SCENARIO;
     }
 
-    // delays of more than a period would let commands overtake one another, and jitter of more than
-    // half a period samples
-    if (c->delay * c->rate > 1) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, control.delay, control.rate),
-                            "control.delay = %g s is longer than the period of %g s (control.rate)",
-                            c->delay, period);
-    }
-    if (c->delay * c->rate + c->delay_periods > 1) {
+    // so many commands are under way at most, and samples stay in order
+    if (c->delay * c->rate + c->delay_periods > CONTROL_MOST_DELAY) {
         return fault_set_at(
             f, STATUS_BAD_SCENARIO, BLAME3(p, control.delay_periods, control.delay, control.rate),
-            "control.delay_periods = %g and control.delay = %g s are together longer than the "
-            "period of %g s (control.rate)",
-            c->delay_periods, c->delay, period);
+            "control.delay_periods = %g and control.delay = %g s are together longer than %d "
+            "periods of %g s (control.rate)",
+            c->delay_periods, c->delay, CONTROL_MOST_DELAY, period);
     }
-    if (c->jitter * c->rate > 0.5) {
-        return fault_set_at(
-            f, STATUS_BAD_SCENARIO, BLAME2(p, control.jitter, control.rate),
-            "control.jitter = %g s is more than half the period of %g s (control.rate)", c->jitter,
-            period);
+    if (c->jitter * c->rate > 1) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, control.jitter, control.rate),
+                            "control.jitter = %g s is more than the period of %g s (control.rate)",
+                            c->jitter, period);
     }
     return STATUS_OK;
 }

@@ -317,15 +317,27 @@ static const char *reason_of_control(const parameters *p, int parameter)
 
 // The parameters of sensors that need not be fitted, the gain first, and the faults of the others.
 #define SENSOR(field) FIELD(sensor.field)
-static const size_t piezo[] = {SENSOR(piezo_gain), SENSOR(piezo_rise_time), SENSOR(piezo_leak_time),
-                               SENSOR(piezo_range), SENSOR(piezo_noise)};
+static const size_t piezo[] = {
+    SENSOR(piezo_gain),  SENSOR(piezo_rise_time),  SENSOR(piezo_leak_time), SENSOR(piezo_range),
+    SENSOR(piezo_noise), SENSOR(piezo_gain_error), SENSOR(piezo_offset)};
 static const size_t film[] = {SENSOR(film_gain), SENSOR(film_leak_time), SENSOR(film_noise)};
 static const size_t accelerometer[] = {SENSOR(accelerometer_gain), SENSOR(accelerometer_rise_time),
                                        SENSOR(accelerometer_range), SENSOR(accelerometer_noise)};
-static const size_t others[] = {
-    SENSOR(encoder_counts),   SENSOR(tachometer_ripple), SENSOR(tachometer_ripple_count),
-    SENSOR(tachometer_noise), SENSOR(fsr_noise),         SENSOR(fsr_rise_time),
-    SENSOR(adc_bits),         SENSOR(dac_bits)};
+static const size_t others[] = {SENSOR(encoder_counts),
+                                SENSOR(tachometer_ripple),
+                                SENSOR(tachometer_ripple_count),
+                                SENSOR(tachometer_noise),
+                                SENSOR(fsr_noise),
+                                SENSOR(fsr_rise_time),
+                                SENSOR(adc_bits),
+                                SENSOR(dac_bits),
+                                SENSOR(encoder_gain_error),
+                                SENSOR(encoder_offset),
+                                SENSOR(tachometer_gain_error),
+                                SENSOR(tachometer_offset),
+                                SENSOR(fsr_gain_error),
+                                SENSOR(fsr_offset),
+                                SENSOR(fsr_hysteresis)};
 
 // Whether a parameter is a fault of a sensor or converter, which ideal ones do not have.
 static bool is_imperfection(int parameter)
