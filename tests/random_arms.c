@@ -17,7 +17,9 @@
 //         cost=0                                 1: processor time of both, and their ratio
 //
 // Arm i is made of its own number. A limit is the stated one, or ten times what a mass of 1e-12
-// more changes in the reference, whichever is larger: bounces amplify. Where the reference does not
+// more, in a place a few roundings away, changes in the reference, whichever is larger: bounces
+// amplify. Limits of momentum are shares of what the wall took, and at least of a thousandth of
+// what the arm can have. Where the reference does not
 // agree with itself at another tolerance nothing is said. An arm that starts behind its wall must
 // be refused, and no other for where it starts.
 #include <stdarg.h>
@@ -39,6 +41,8 @@
 #define FASTEST_WHOLE 1e6   // the same with wall and motor
 #define LOSSES        1e-5  // what may be of each loss, as a share of what was put in
 #define NEXT_TO_NONE  1e-12 // share of the mass
+#define NEXT_TO       1e-3  // of that, as an angle: some roundings of one [rad]
+#define LEAST_SHARE   1e-3  // of the arm's own momentum, of which shares are taken
 #define IMPLICIT_MOST 24    // links
 #define LEAST_FORCE   1e-3  // of which shares are taken: 1e-6 of it counts as tension [N]
 #define LEAST_GAP     2e-12 // what the engines take for a touch, twice [m]
@@ -306,8 +310,13 @@ static chain_outcome by_reference(const random_arm *r, const options *o, double 
     parameters p = r->parameters;
     p.arm.mass *= 1 + heavier;
     const engine *formula = finer > 1 ? &explicit_fine_engine : &explicit_engine;
-    const chain_start start = {&p,      r->angle,        r->velocity, DURATION, AFTER_CONTACT,
-                               formula, OUTCOME_CONTACTS};
+    const chain_start start = {&p,
+                               r->angle - NEXT_TO * heavier,
+                               r->velocity,
+                               DURATION,
+                               AFTER_CONTACT,
+                               formula,
+                               OUTCOME_CONTACTS};
     if (strcmp(o->by, "explicit") == 0) {
         arm a;
         arm_init(&a, &p);
@@ -404,7 +413,9 @@ static distances distances_of(const random_arm *r, const chain_outcome *a, const
             fmax(d.momentum, apart - i * REFERENCE_INTERVAL * undetermined_force(&r->parameters));
     }
     if (samples > 0) {
-        d.momentum /= fmax(fabs(a->momentum[samples - 1]), 1e-6);
+        const double mass = r->parameters.arm.mass + r->parameters.arm.tip_mass;
+        const double own = LEAST_SHARE * sqrt(2 * mass * fmax(a->put_in, LEAST_WORK));
+        d.momentum /= fmax(fabs(a->momentum[samples - 1]), own);
     }
     if (a->peak > 0) {
         d.peak = fabs(a->peak - fmax(b->peak, 0)) / fmax(a->peak, LEAST_FORCE);
