@@ -1,0 +1,334 @@
+#include "src/base/csv_table.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+
+enum { MOST_COLUMNS = 4096, SHOWN = 60 };
+
+// --- the file ---------------------------------------------------------------------------------
+
+// The whole file as a text on the heap.
+static status read_text(const char *path, char **text, fault *f)
+{
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        return fault_set(f, STATUS_CANNOT_READ, "'%.300s' cannot be opened: %s", path,
+                         strerror(errno));
+    }
+
+    size_t room = 0, length = 0;
+    char *bytes = NULL;
+    do {
+        char *more = realloc(bytes, (room = 2 * room + 65536));
+        if (more == NULL) {
+            free(bytes);
+            fclose(file);
+            return fault_no_memory(f);
+        }
+        bytes = more;
+        length += fread(bytes + length, 1, room - length - 1, file);
+    } while (length + 1 == room);
+
+    const int reason = ferror(file) != 0 ? errno : 0;
+    fclose(file);
+    bytes[length] = '\0';
+    if (reason != 0 || strlen(bytes) != length) {
+        free(bytes);
+        return reason != 0
+                   ? fault_set(f, STATUS_CANNOT_READ, "'%.300s' cannot be read: %s", path,
+                               strerror(reason))
+                   : fault_set(f, STATUS_BAD_ARGUMENT,
+                               "'%.300s' is no text, expected a table of numbers (CSV)", path);
+    }
+    *text = bytes;
+    return STATUS_OK;
+}
+
+// Takes a field off the text: without quotes and blanks at its ends, ended by a 0. *last: it ends
+// its row; *line counts line ends, *text is NULL behind the last row.
+static char *next_field(char **text, bool *last, int *line)
+{
+    char *from = *text, *to, *field;
+    while (*from == ' ' || *from == '\t') {
+        from++;
+    }
+    field = to = from;
+    const bool quoted = *from == '"';
+    from += quoted;
+    for (bool inside = quoted; *from != '\0' && (inside || (*from != ',' && *from != '\n'));) {
+        if (quoted && *from == '"') {
+            inside = inside && from[1] == '"';
+            from += inside;
+            if (!inside) {
+                from++;
+                continue;
+            }
+        }
+        *line += *from == '\n';
+        *to++ = *from++;
+    }
+
+    const char end = *from;
+    *last = end != ',';
+    *line += end == '\n';
+    *text = end == '\0' || (*last && from[1] == '\0') ? NULL : from + 1;
+    while (to > field && is_blank(to[-1])) {
+        to--;
+    }
+    *to = '\0';
+    return field;
+}
+
+// Splits the text into headings and rows; there is room for all of them.
+static status split(csv_table *t, char *text, fault *f)
+{
+    static const char mark[] = "\xEF\xBB\xBF"; // that some programs put before UTF-8
+    text += strncmp(text, mark, strlen(mark)) == 0 ? strlen(mark) : 0;
+    int line = 1;
+    bool last = false;
+    size_t count = 0;
+    while (text != NULL && !last && t->columns < MOST_COLUMNS) {
+        t->headings[t->columns++] = next_field(&text, &last, &line);
+    }
+
+    // rows of as many fields; an empty line is none
+    while (text != NULL && last) {
+        const int begin = line;
+        int columns = 0;
+        char **row = t->fields + count;
+        last = false;
+        while (text != NULL && !last && columns < t->columns) {
+            row[columns++] = next_field(&text, &last, &line);
+        }
+        if (columns == 1 && row[0][0] == '\0' && last) {
+            continue;
+        }
+        if (columns < t->columns || !last) {
+            return fault_set_place(f, STATUS_BAD_ARGUMENT, begin, columns,
+                                   "%.300s:%d: the row has %s than %d fields, expected one for "
+                                   "each heading",
+                                   t->file, begin, last ? "fewer" : "more", t->columns);
+        }
+        t->lines[t->rows++] = begin;
+        count += (size_t)columns;
+    }
+    return STATUS_OK;
+}
+
+status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
+{
+    assert(t != NULL && path != NULL);
+    *t = (csv_table){.file = strdup(path)};
+    status code = t->file != NULL ? read_text(path, &t->text, f) : fault_no_memory(f);
+    if (code == STATUS_OK) {
+        // a field for each comma and each line end
+        size_t fields = 2, lines = 2;
+        for (const char *c = t->text; *c != '\0'; c++) {
+            lines += *c == '\n';
+            fields += *c == '\n' || *c == ',';
+        }
+        t->headings = calloc(MOST_COLUMNS, sizeof *t->headings);
+        t->fields = calloc(fields, sizeof *t->fields);
+        t->lines = calloc(lines, sizeof *t->lines);
+        const bool room = t->headings != NULL && t->fields != NULL && t->lines != NULL;
+        code = room ? split(t, t->text, f) : fault_no_memory(f);
+    }
+    if (code == STATUS_OK && t->rows < least) {
+        const int line = t->rows > 0 ? t->lines[t->rows - 1] : 1;
+        code = fault_set_place(f, STATUS_BAD_ARGUMENT, line, 1,
+                               "%.300s:%d: %zu row%s below the headings, expected at least %zu",
+                               path, line, t->rows, t->rows == 1 ? "" : "s", least);
+    }
+    if (code != STATUS_OK) {
+        csv_table_finish(t);
+    }
+    return code;
+}
+
+void csv_table_finish(csv_table *t)
+{
+    if (t != NULL) {
+        free(t->file);
+        free(t->text);
+        free(t->headings);
+        free(t->fields);
+        free(t->lines);
+        *t = (csv_table){0};
+    }
+}
+
+// --- columns ----------------------------------------------------------------------------------
+
+// Length of a heading's name, without "[unit]" and the blanks before it.
+static size_t name_length(const char *heading)
+{
+    const char *bracket = strrchr(heading, '[');
+    const size_t whole = strlen(heading);
+    if (bracket == NULL || heading[whole - 1] != ']') {
+        return whole;
+    }
+    while (bracket > heading && is_blank(bracket[-1])) {
+        bracket--;
+    }
+    return (size_t)(bracket - heading);
+}
+
+int csv_table_find(const csv_table *t, const char *heading)
+{
+    assert(t != NULL && heading != NULL);
+    const size_t length = name_length(heading);
+    int found = -1;
+    for (int c = t->columns - 1; c >= 0; c--) {
+        const char *here = t->headings[c];
+        if (strcmp(here, heading) == 0) {
+            return c;
+        }
+        if (name_length(here) == length && strncmp(here, heading, length) == 0) {
+            found = c;
+        }
+    }
+    return found;
+}
+
+// The units that a column may have beside the wanted one, and how many of that they are.
+static const struct {
+    const char *unit, *wanted;
+    double factor;
+} units[] = {
+    {"ms", "s", 1e-3},
+    {"us", "s", 1e-6},
+    {"µs", "s", 1e-6},
+    {"min", "s", 60},
+    {"mV", "V", 1e-3},
+    {"kV", "V", 1e3},
+    {"mN", "N", 1e-3},
+    {"kN", "N", 1e3},
+    {"mrad", "rad", 1e-3},
+    {"deg", "rad", 3.14159265358979323846 / 180},
+    {"°", "rad", 3.14159265358979323846 / 180},
+    {"rev", "rad", 2 * 3.14159265358979323846},
+    {"mrad/s", "rad/s", 1e-3},
+    {"deg/s", "rad/s", 3.14159265358979323846 / 180},
+    {"°/s", "rad/s", 3.14159265358979323846 / 180},
+    {"rpm", "rad/s", 3.14159265358979323846 / 30},
+    {"rad/s^2", "rad/s2", 1},
+    {"rad/s²", "rad/s2", 1},
+    {"deg/s2", "rad/s2", 3.14159265358979323846 / 180},
+    {"mm", "m", 1e-3},
+    {"um", "m", 1e-6},
+    {"cm", "m", 1e-2},
+    {"Nm", "N m", 1},
+    {"mA", "A", 1e-3},
+};
+
+// Copies the unit of a heading; false if it has none.
+static bool unit_of(const char *heading, char unit[32])
+{
+    const char *bracket = heading + name_length(heading);
+    while (is_blank(*bracket)) {
+        bracket++;
+    }
+    if (*bracket != '[') {
+        return false;
+    }
+    snprintf(unit, 32, "%.*s", (int)(strlen(bracket) - 2), bracket + 1);
+    return true;
+}
+
+// The factor to the wanted unit, 0 for an unknown one.
+static double factor_to(const char *unit, const char *wanted)
+{
+    double factor = strcmp(unit, wanted) == 0;
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+        if (strcmp(units[i].unit, unit) == 0 && strcmp(units[i].wanted, wanted) == 0) {
+            factor = units[i].factor;
+        }
+    }
+    return factor;
+}
+
+status csv_table_numbers(const csv_table *t, const char *heading, const char *unit, double **values,
+                         fault *f)
+{
+    assert(t != NULL && heading != NULL && unit != NULL && values != NULL);
+    *values = NULL;
+    const int column = csv_table_find(t, heading);
+    if (column < 0) {
+        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
+                               "%.300s:1: there is no column '%.*s', expected one of its %d "
+                               "headings, such as '%.*s'",
+                               t->file, SHOWN, heading, t->columns, SHOWN, t->headings[0]);
+    }
+
+    // its unit
+    char own[32];
+    const bool said = unit_of(heading, own) || unit_of(t->headings[column], own);
+    const double factor = said ? factor_to(own, unit) : 1;
+    if (factor == 0) {
+        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, column + 1,
+                               "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] "
+                               "or what can be converted to it",
+                               t->file, column + 1, own, SHOWN, t->headings[column], unit);
+    }
+
+    // and its numbers
+    double *numbers = calloc(t->rows + 1, sizeof *numbers);
+    if (numbers == NULL) {
+        return fault_no_memory(f);
+    }
+    for (size_t r = 0; r < t->rows; r++) {
+        const char *field = t->fields[r * (size_t)t->columns + (size_t)column], *rest;
+        if (!decimal_read(field, &numbers[r], &rest) || *rest != '\0' || !isfinite(numbers[r])) {
+            free(numbers);
+            return fault_set_place(f, STATUS_BAD_ARGUMENT, t->lines[r], column + 1,
+                                   "%.300s:%d:%d: '%.*s' in column '%.*s' is no finite number",
+                                   t->file, t->lines[r], column + 1, SHOWN, field, SHOWN,
+                                   t->headings[column]);
+        }
+        numbers[r] *= factor;
+    }
+    *values = numbers;
+    return STATUS_OK;
+}
+
+status csv_table_times(const csv_table *t, const char *heading, double **values, fault *f)
+{
+    status code = csv_table_numbers(t, heading, "s", values, f);
+    for (size_t r = 1; code == STATUS_OK && r < t->rows; r++) {
+        if ((*values)[r] < (*values)[r - 1]) {
+            const int column = csv_table_find(t, heading) + 1;
+            code = fault_set_place(f, STATUS_BAD_ARGUMENT, t->lines[r], column,
+                                   "%.300s:%d:%d: the time %.9g s lies before that of the row "
+                                   "above, %.9g s, expected rows by growing time",
+                                   t->file, t->lines[r], column, (*values)[r], (*values)[r - 1]);
+            free(*values);
+            *values = NULL;
+        }
+    }
+    return code;
+}
+
+double csv_table_at(const double *times, const double *values, size_t rows, double time,
+                    bool linear)
+{
+    assert(times != NULL && values != NULL && rows > 0);
+    size_t low = 0, high = rows; // the first row that is later lies in (low, high]
+    if (times[0] > time) {
+        return values[0];
+    }
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        *(times[middle] <= time ? &low : &high) = middle;
+    }
+    if (!linear || high == rows) {
+        return values[low];
+    }
+    const double share = (time - times[low]) / (times[high] - times[low]);
+    return (1 - share) * values[low] + share * values[high];
+}

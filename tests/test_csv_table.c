@@ -1,0 +1,131 @@
+// Tables that people recorded: what is read, and where what cannot be read stands.
+#include "src/base/csv_table.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "tests/check.h"
+
+static const char *written(const char *text)
+{
+    static char path[] = "/tmp/test_csv_table.XXXXXX";
+    memcpy(path + sizeof path - 7, "XXXXXX", 6);
+    const int file = mkstemp(path);
+    assert_true(file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text));
+    close(file);
+    return path;
+}
+
+static status read_table(csv_table *t, const char *text, size_t least, fault *f)
+{
+    const char *path = written(text);
+    *f = (fault){.text = ""};
+    const status code = csv_table_read(t, path, least, f);
+    unlink(path);
+    return code;
+}
+
+static void columns_are_found_by_name_and_converted(void **state)
+{
+    (void)state;
+    csv_table t;
+    fault f;
+    double *values;
+    assert_int_equal(read_table(&t,
+                                "\xEF\xBB\xBF\"t\" [ms],speed[rpm],\"a, \"\"b\"\"[V]\",plain\r\n"
+                                "0, 60 ,1,2\r\n\n500,30,-1e3,3",
+                                2, &f),
+                     STATUS_OK);
+    assert_int_equal(t.rows, 2);
+    assert_int_equal(t.lines[1], 4);
+    const struct {
+        const char *heading, *unit;
+        double first, second;
+    } cases[] = {{"t", "s", 0, 0.5},
+                 {"speed", "rad/s", 6.283185307179586, 3.141592653589793},
+                 {"speed[rad/s]", "rad/s", 60, 30},
+                 {"a, \"b\"", "V", 1, -1000},
+                 {"plain[mV]", "V", 2e-3, 3e-3},
+                 {"plain", "N", 2, 3}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        assert_int_equal(csv_table_numbers(&t, cases[i].heading, cases[i].unit, &values, &f),
+                         STATUS_OK);
+        check_close(values[0], cases[i].first, 1e-15);
+        check_close(values[1], cases[i].second, 1e-15);
+        free(values);
+    }
+    csv_table_finish(&t);
+}
+
+static void what_cannot_be_read_is_named_with_line_and_column(void **state)
+{
+    (void)state;
+    const struct {
+        const char *text;
+        int line, column; // 0: nowhere
+        const char *said;
+    } cases[] = {
+        {"", 1, 1, "0 rows"},
+        {"time[s],v[V]\n", 1, 1, "0 rows"},
+        {"time[s],v[V]\n0,1\n", 2, 1, "1 row below"},
+        {"time[s],v[V]\n0,1\n1\n", 3, 1, "fewer than 2"},
+        {"time[s],v[V]\n0,1\n1,2,3\n", 3, 2, "more than 2"},
+        {"time[s],w[V]\n0,1\n1,2\n", 1, 1, "no column 'v'"},
+        {"time[s],v[furlong]\n0,1\n1,2\n", 1, 2, "[furlong]"},
+        {"time[N],v[V]\n0,1\n1,2\n", 1, 1, "[N]"},
+        {"time[s],v[V]\n0,1\n1,nan\n", 3, 2, "'nan'"},
+        {"time[s],v[V]\n0,1\n1,inf\n", 3, 2, "'inf'"},
+        {"time[s],v[V]\n0,\n1,2\n", 2, 2, "''"},
+        {"time[s],v[V]\n0,1\n1,2x\n", 3, 2, "'2x'"},
+        {"time[s],v[V]\n0,1\n1,1e999\n", 3, 2, "'1e999'"},
+        {"time[s],v[V]\n1,1\n0.5,2\n", 3, 1, "growing"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        csv_table t;
+        fault f;
+        double *times = NULL, *values = NULL;
+        status code = read_table(&t, cases[i].text, 2, &f);
+        if (code == STATUS_OK) {
+            code = csv_table_times(&t, "time", &times, &f);
+            code = code == STATUS_OK ? csv_table_numbers(&t, "v", "V", &values, &f) : code;
+            csv_table_finish(&t);
+        }
+        assert_int_equal(code, STATUS_BAD_ARGUMENT);
+        free(times);
+        assert_null(values);
+        assert_non_null(strstr(f.text, cases[i].said));
+        assert_int_equal(f.line, cases[i].line);
+        assert_int_equal(f.column, cases[i].column);
+    }
+
+    // what is no table at all
+    csv_table t;
+    fault f;
+    assert_int_equal(csv_table_read(&t, "/nowhere/at/all.csv", 2, &f), STATUS_CANNOT_READ);
+    assert_int_equal(csv_table_read(&t, "/", 2, &f), STATUS_CANNOT_READ);
+}
+
+static void between_rows_a_value_holds_or_lies_on_a_line(void **state)
+{
+    (void)state;
+    const double times[] = {0, 1, 1, 3}, values[] = {5, 6, 8, 10};
+    const struct {
+        double time, held, linear;
+    } cases[] = {{-1, 5, 5}, {0, 5, 5},   {0.5, 5, 5.5}, {1, 8, 8},
+                 {2, 8, 9},  {3, 10, 10}, {9, 10, 10}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        check_close(csv_table_at(times, values, 4, cases[i].time, false), cases[i].held, 0);
+        check_close(csv_table_at(times, values, 4, cases[i].time, true), cases[i].linear, 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(columns_are_found_by_name_and_converted),
+        cmocka_unit_test(what_cannot_be_read_is_named_with_line_and_column),
+        cmocka_unit_test(between_rows_a_value_holds_or_lies_on_a_line),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
