@@ -1,5 +1,9 @@
-// What one did in the lab is kept: scenarios that are opened, pinned runs, leaving.
+// What one did in the lab is kept: scenarios that are opened, pinned runs, leaving. And what
+// matters is on the screen, at three sizes.
 #include "tests/explorer_on_screen.h"
+
+static const int sizes[][2] = {{80, 24}, {100, 30}, {200, 60}};
+enum { SIZES = sizeof sizes / sizeof sizes[0] };
 
 static double peak(const explorer *ex)
 {
@@ -64,13 +68,12 @@ static void test_openings_are_undone_one_by_one(void **state)
 static void test_a_pinned_run_of_another_scenario_is_drawn_and_taken(void **state)
 {
     (void)state;
-    static const int sizes[][2] = {{80, 24}, {100, 30}, {200, 60}};
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     const double first = peak(&ex);
     press(&ex, "b]");
     assert_int_equal(state_run_count(&ex.state), 2);
-    for (size_t i = 0; i < 3; i++) {
+    for (size_t i = 0; i < SIZES; i++) {
         assert_shows_at(&ex, sizes[i][0], sizes[i][1], " first-impact");
     }
     const double second = peak(&ex);
@@ -123,6 +126,118 @@ static void test_leaving_asks_for_everything_that_would_be_lost(void **state)
     }
 }
 
+// --- on the screen ----------------------------------------------------------------------------
+
+// What a line of keys makes the lab say, and what it must not.
+static void test_sentences_are_whole_and_numbers_short(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *keys, *says, *never;
+    } cases[] = {
+        {":set arm.k2 2.8000000000000003<Enter>", "arm.k2 = 2.8 N m/rad from the start", "000003"},
+        {":set arm.k2 2.8000000000000003<Enter>bR", "k2 2.8 ", "000003"},
+        {":set arm.k2 2.8000000000000003<Enter>H", "arm.k2 = 2.8 N", "000003"},
+        {":set arm.k2 2.8000000000000003<Enter>:edit arm.k2<Enter>", ":set arm.k2 2.8", "000003"},
+        {":law nosuch<Enter>", "there is no control law 'nosuch'", "|"},
+        {":law hybird<Enter>", "did you mean 'hybrid'?", "|"},
+        {":seek 99<Enter>", "the run goes from 0 to 1 s", "|"},
+        {":seek end<Enter>", "in contact", "the run goes"},
+    };
+    for (size_t i = 0; i < SIZES * sizeof cases / sizeof cases[0]; i++) {
+        explorer ex;
+        const int *size = sizes[i % SIZES];
+        open_explorer(&ex, "corrected/first-impact");
+        press(&ex, cases[i / SIZES].keys);
+        assert_shows_at(&ex, size[0], size[1], cases[i / SIZES].says);
+        char *text = picture(&ex, size[0], size[1], GLYPHS_BRAILLE);
+        assert_null(strstr(text, cases[i / SIZES].never));
+        free(text);
+        explorer_finish(&ex);
+    }
+
+    // a title that is too long ends in a sign
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":set arm.k2 5<Enter>");
+    assert_shows_at(&ex, 66, 24, "First impact at\u2026");
+    explorer_finish(&ex);
+}
+
+// The lines of parameters between the edges of their panel.
+static int parameter_rows(explorer *ex, int width, int height)
+{
+    int rows = 0;
+    free(picture(ex, width, height, GLYPHS_BRAILLE));
+    for (int y = 0; y < height; y++) {
+        bool found = false;
+        for (int i = 0; i < ex->layout.hit_count; i++) {
+            const hit_area *h = &ex->layout.hits[i];
+            found = found || (h->panel == PANEL_PARAMETERS && h->area.y == y);
+        }
+        rows += found;
+    }
+    return rows;
+}
+
+// With a law and pinned runs the parameters keep six lines; what is folded is a tab.
+static void test_parameters_keep_their_rows(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, "b:set control.force 2<Enter>b:set control.force 3<Enter>");
+    for (size_t i = 0; i < SIZES; i++) {
+        assert_true(parameter_rows(&ex, sizes[i][0], sizes[i][1]) >= 6);
+    }
+    assert_shows_at(&ex, 80, 24, "Tab: ");
+    for (int i = 0; i < 6; i++) {
+        press(&ex, "<Tab>");
+        char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+        const bool there = strstr(text, "impact dynamics") != NULL;
+        free(text);
+        if (there) {
+            break;
+        }
+    }
+    assert_shows_at(&ex, 80, 24, "impact dynamics");
+    press(&ex, "<Tab><Tab><Tab><Tab><Tab>");
+    assert_true(ex.state.side.panel != PANEL_NONE);
+
+    // a tall screen gives its rows to the curves
+    free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
+    assert_true(ex.layout.plot.height >= 36);
+    explorer_finish(&ex);
+}
+
+// One key hides a signal, and a click on its legend; neither moves the cursor.
+static void test_a_signal_is_hidden_by_a_key_or_a_click(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "compare/hybrid");
+    press(&ex, ":seek 0.5<Enter>K");
+    assert_int_equal(ex.state.panes.pane[0].hidden, 4);
+    press(&ex, "K");
+    assert_int_equal(ex.state.panes.pane[0].hidden, 2);
+    press(&ex, "KK");
+    assert_int_equal(ex.state.panes.pane[0].hidden, 0);
+    const hit_area legend = part_on_screen(&ex, PANEL_CURVES, PART_LEGEND);
+    click_at(&ex, legend.area.x, legend.area.y);
+    assert_int_equal(ex.state.panes.pane[legend.index / PANE_SIGNALS].hidden,
+                     1u << legend.index % PANE_SIGNALS);
+    check_close(ex.state.session.now, 0.5, 1e-12);
+
+    // the axis is that of what is shown
+    value_range all, calm;
+    press(&ex, ":signal all<Enter>");
+    assert_true(state_pane_axis(&ex.state, 0, &all));
+    press(&ex, ":signal force_reading<Enter>");
+    assert_true(state_pane_axis(&ex.state, 0, &calm));
+    check_below(calm.high, all.high);
+    explorer_finish(&ex);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -131,6 +246,9 @@ int main(void)
         cmocka_unit_test(test_a_pinned_run_of_another_scenario_is_drawn_and_taken),
         cmocka_unit_test(test_a_lesson_wants_a_pin_of_its_own),
         cmocka_unit_test(test_leaving_asks_for_everything_that_would_be_lost),
+        cmocka_unit_test(test_sentences_are_whole_and_numbers_short),
+        cmocka_unit_test(test_parameters_keep_their_rows),
+        cmocka_unit_test(test_a_signal_is_hidden_by_a_key_or_a_click),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,7 +26,7 @@ static void test_the_contact_lane_is_where_rows_touch(void **state)
     (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
-    press(&ex, "<End>");
+    press(&ex, "<End>b"); // beside another run
     screen s = drawn(&ex, 120, 50);
     const area lanes = find_part(&ex, PART_LANES);
     assert_true(lanes.width > 20 && lanes.height >= 2);
@@ -75,7 +75,7 @@ static void test_modes_are_named_and_changes_told(void **state)
     assert_int_equal(find_part(&ex, PART_LANES).height, 0);
     press(&ex, ":lanes all<Enter>");
     free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
-    assert_true(find_part(&ex, PART_LANES).height >= 3);
+    assert_true(find_part(&ex, PART_LANES).height >= 2);
     explorer_finish(&ex);
 }
 

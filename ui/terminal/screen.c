@@ -136,17 +136,16 @@ int text_wrap(const char *text, int width, text_line *lines, int most, bool *spl
     return count;
 }
 
-void screen_words(screen *s, int x, int y, int room, ink colour, const char *text)
+int screen_words(screen *s, int x, int y, int room, ink colour, const char *text)
 {
-    static const char left_out[] = "..";
-    const int mark = (int)strlen(left_out);
     text_line words = {text, 0};
     assert(s != NULL && text != NULL);
     if (text_cells(text) <= room) {
-        screen_text(s, x, y, room, colour, text);
-    } else if (room > mark && text_wrap(text, room - mark, &words, 1, NULL) > 0) {
-        screen_print(s, x, y, room, colour, "%.*s%s", words.bytes, words.start, left_out);
+        return screen_text(s, x, y, room, colour, text);
     }
+    return room > 1 && text_wrap(text, room - 1, &words, 1, NULL) > 0
+               ? screen_print(s, x, y, room, colour, "%.*s\u2026", words.bytes, words.start)
+               : 0;
 }
 
 void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title)
@@ -274,9 +273,9 @@ static uint32_t ascii_glyph(uint32_t glyph)
     } twins[] = {{0x2500, '-'}, {0x2502, '|'}, {0x250c, '+'}, {0x2510, '+'}, {0x2514, '+'},
                  {0x2518, '+'}, {0x25b6, '>'}, {0x25c0, '<'}, {0x25b2, '^'}, {0x25bc, 'v'},
                  {0x25cf, 'o'}, {0x25c6, '*'}, {0x2592, '%'}, {0x0394, 'd'}, {0x2016, '='},
-                 {0x00d7, 'x'}, {0x2025, '~'}, {0x25b8, '>'}, {0x2506, ':'}, {0x2524, '+'},
-                 {0x252c, '+'}, {0x254c, '='}, {0x2508, '.'}, {0x2574, '~'}, {0x25be, 'v'},
-                 {0x25cb, '.'}, {0x2191, '^'}, {0x222b, 'S'}, {0x2193, 'v'}};
+                 {0x00d7, 'x'}, {0x2025, '~'}, {0x2026, '~'}, {0x25b8, '>'}, {0x2506, ':'},
+                 {0x2524, '+'}, {0x252c, '+'}, {0x254c, '='}, {0x2508, '.'}, {0x2574, '~'},
+                 {0x25be, 'v'}, {0x25cb, '.'}, {0x2191, '^'}, {0x222b, 'S'}, {0x2193, 'v'}};
 
     for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++) {
         if (twins[i].glyph == glyph) {

@@ -70,9 +70,9 @@ int screen_text(screen *s, int x, int y, int room, ink colour, const char *text)
 // The same, formatted.
 int screen_print(screen *s, int x, int y, int room, ink colour, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
-// Writes as many whole words of a text as there is room for, and ".." if any are left out. A first
-// word that is wider is split.
-void screen_words(screen *s, int x, int y, int room, ink colour, const char *text);
+// Writes as many whole words of a text as there is room for, and "…" if any are left out. A first
+// word that is wider is split. Returns the cells it took.
+int screen_words(screen *s, int x, int y, int room, ink colour, const char *text);
 // A frame around a rectangle with a title in its upper edge; its inside is cleared.
 void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title);
 // Gives the cells of a rectangle another ink.

@@ -111,6 +111,9 @@ bool act_line_of_palette(const explorer_state *st, char line[LINE_TEXT], bool *g
 void act_scale_axis(explorer_state *st, int index, double factor, double share);
 void act_shift_axis(explorer_state *st, int index, double share);
 
+// Hides the k-th signal of a pane, or shows it.
+bool act_toggle_signal(explorer_state *st, int index, int k);
+
 // --- sliders ----------------------------------------------------------------------------------
 
 // A slider that is being dragged: its parameter, the share of its scale, its width in cells.

@@ -1,6 +1,7 @@
 // Actions on the axes of the curves: which part of the run is visible, and which values.
 #include "ui/explorer/actions/actions.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -260,6 +261,49 @@ bool act_focus(explorer_state *st, const char *argument)
     st->panes.focus = (focused + 1) % PANES;
     st->panes.focus = panes_focused(&st->panes);
     return true;
+}
+
+bool act_toggle_signal(explorer_state *st, int index, int k)
+{
+    assert(st != NULL && index >= 0 && index < PANES && k >= 0 && k < PANE_SIGNALS);
+    pane *p = &st->panes.pane[index];
+    p->hidden ^= 1u << k;
+    p->grown = value_range_empty;
+    return act_tell(st, "%s is %s", signal_table[p->signals[k]].name,
+                    p->hidden >> k & 1 ? "hidden (K or a click on its legend shows it)" : "shown");
+}
+
+// One signal after the other is hidden, from the last to the first, then all are shown.
+bool act_hide_signal(explorer_state *st, const char *argument)
+{
+    const int index = panes_focused(&st->panes), signal = signal_find(argument);
+    if (index < 0) {
+        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
+    }
+    pane *p = &st->panes.pane[index];
+    if (strcmp(argument, "all") == 0) {
+        p->hidden = 0;
+        return true;
+    }
+
+    // by name
+    for (int k = 0; k < p->count && argument[0] != '\0'; k++) {
+        if (p->signals[k] == signal) {
+            return act_toggle_signal(st, index, k);
+        }
+    }
+    if (argument[0] != '\0') {
+        return act_refuse(st, "the pane in focus has no signal '%.60s' (w: next pane)", argument);
+    }
+
+    // the one before that which is hidden; one that is alone stays
+    int next = p->count - 1;
+    for (int k = 0; k < p->count; k++) {
+        next = p->hidden >> k & 1 ? k - 1 : next;
+    }
+    p->hidden = 0;
+    return next >= 0 && p->count > 1 ? act_toggle_signal(st, index, next)
+                                     : act_tell(st, "all signals of the pane are shown");
 }
 
 bool act_alone(explorer_state *st, const char *argument)

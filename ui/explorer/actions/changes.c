@@ -8,6 +8,7 @@
 
 #include "src/base/text_stream.h"
 #include "src/base/numbers.h"
+#include "src/base/words.h"
 #include "src/rig/controller.h"
 
 // What the last input came to: that the run stops with it, that it has no effect, or its news.
@@ -16,7 +17,8 @@ static bool tell_change(explorer_state *st)
     const session *s = &st->session;
     const session_input *in = &s->inputs[s->input_count - 1];
     const parameter_info *info = &parameter_table[in->parameter];
-    char when[48] = "from the start";
+    char when[48] = "from the start", value[SESSION_INPUT_TEXT];
+    input_value_text(in, value);
     if (act_tell_failed_run(st)) {
         return true;
     }
@@ -29,7 +31,7 @@ static bool tell_change(explorer_state *st)
     const char *inert = state_inert_reason(st, in->parameter);
     const char *blank = info->unit[0] ? " " : "";
     if (inert != NULL) {
-        return act_warn(st, "%s = %s%s%s %s, without effect: %s", info->path, in->text, blank,
+        return act_warn(st, "%s = %s%s%s %s, without effect: %s", info->path, value, blank,
                         info->unit, when, inert);
     }
     if (in->parameter == PARAMETER_INDEX(motor.voltage) &&
@@ -37,9 +39,9 @@ static bool tell_change(explorer_state *st)
         return act_warn(st,
                         "%s = %s V %s, more than motor.voltage_limit: the command saturates "
                         "at %g V",
-                        info->path, in->text, when, p.motor.voltage_limit);
+                        info->path, value, when, p.motor.voltage_limit);
     }
-    return act_tell(st, "%s = %s%s%s %s", info->path, in->text, blank, info->unit, when);
+    return act_tell(st, "%s = %s%s%s %s", info->path, value, blank, info->unit, when);
 }
 
 // Gives a parameter another value, from the cursor on or from the start.
@@ -214,6 +216,9 @@ bool act_edit(explorer_state *st, const char *argument)
     char value[LINE_TEXT];
     parameters p = state_parameters(st);
     parameter_format(&p, st->parameters.parameter, value, sizeof value);
+    if (parameter_table[st->parameters.parameter].type == PARAMETER_REAL && value[0] != '\0') {
+        snprintf(value, sizeof value, "%.15g", parameter_get(&p, st->parameters.parameter));
+    }
     const parameter_info *info = &parameter_table[st->parameters.parameter];
     char line[LINE_TEXT];
     snprintf(line, sizeof line, "set %s ", info->path);
@@ -426,6 +431,18 @@ static bool lock_prevents(const session *s, const char *name)
     return scenario_check_locks(&wanted, law, NULL) != STATUS_OK;
 }
 
+// Says which law is near to a name that none has.
+static bool refuse_law(explorer_state *st, const char *name)
+{
+    nearest_word near = nearest_begin(name);
+    for (int i = 0; i < LAW_COUNT; i++) {
+        nearest_try(&near, control_law_table[i].word);
+    }
+    return act_refuse(st, "there is no control law '%.60s'%s%s%s", name,
+                      near.best ? ", did you mean '" : " (:law and Tab lists them)",
+                      near.best ? near.best : "", near.best ? "'?" : "");
+}
+
 // Changes the control law; if the lock on a mode prevents it, the message says what to do.
 static bool change_law(explorer_state *st, const char *name)
 {
@@ -444,6 +461,13 @@ bool act_law(explorer_state *st, const char *argument)
     // the law of now is the one to come back to
     if (state_has_law(st)) {
         snprintf(st->last_law, sizeof st->last_law, "%s", present);
+    }
+
+    // a name of the table, however the parameter would refuse another one
+    parameters scratch = st->session.effective.parameters;
+    if (argument[0] != '\0' && !is_release(argument) &&
+        parameter_set_text(&scratch, law, argument, NULL) != STATUS_OK) {
+        return refuse_law(st, argument);
     }
 
     // without a name: off, or on again

@@ -245,7 +245,9 @@ bool act_seek(explorer_state *st, const char *argument)
         }
     }
     act_scrub(st, time);
-    return true;
+    return fabs(st->session.now - time) < 1e-9 ||
+           act_warn(st, "the run goes from 0 to %g s: :extend makes it longer",
+                    session_end(&st->session));
 }
 
 bool act_set_speed(explorer_state *st, const char *argument)

@@ -11,7 +11,7 @@ bool act_select_parameter(explorer_state *st, const char *argument)
     const int direction = argument[0] == '-' ? -1 : 1;
 
     // panels in which nothing is selected scroll
-    if (st->side.panel == PANEL_VALUES || st->side.panel == PANEL_STATISTICS) {
+    if (st->side.panel != PANEL_PARAMETERS && st->side.panel != PANEL_SWEEP) {
         st->scroll[st->side.panel] += direction;
         return true;
     }
@@ -120,10 +120,14 @@ bool act_other_side(explorer_state *st, const char *argument)
 {
     (void)argument;
     bool narrow = st->size.width > 0 && st->size.width < SIDE_WIDTH;
-    panel_id next = panel_next_on_side(st->side.panel);
-    while (next == PANEL_SWEEP && !lab_sweep_is_on(&st->sweep)) {
-        next = panel_next_on_side(next);
-    }
+
+    // the panels of the side, then those that are folded for want of room
+    panel_id next = st->side.panel;
+    do {
+        next = next + 1 == PANEL_IDS ? PANEL_NONE : (panel_id)(next + 1);
+    } while (next != PANEL_NONE && (panel_place_of(next) == PLACE_SIDE
+                                        ? next == PANEL_SWEEP && !lab_sweep_is_on(&st->sweep)
+                                        : !st->side.folded[next]));
 
     // a narrow screen: curves, each panel of the side, curves again
     if (narrow && (!st->side.in_front || next == PANEL_NONE)) {

@@ -1,6 +1,7 @@
 // The arm, its wall and the contact force, drawn live.
 #include "ui/explorer/panels/plot.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,6 +113,19 @@ static plan_view whole_view(const explorer_state *st, const arm_extent *extent, 
     double spare = height / (v.scale * v.magnified) - (high - low);
     v.bottom = low - 0.3 * spare;
     return v;
+}
+
+int arm_rows(const explorer_state *st, layout *lay, screen_size room)
+{
+    enum { LEAST = 14 };
+    assert(st != NULL && lay != NULL);
+    find_extent(st, &lay->extent);
+
+    // what is drawn in true proportion takes its height, and the force an arrow
+    const plan_view v = whole_view(st, &lay->extent, 2.0 * room.width, 4.0 * room.height);
+    const double spread = (lay->extent.highest - lay->extent.lowest) * v.scale / 4;
+    const int wanted = lay->extent.most_angle > 0.8 ? room.height : 6 + (int)spread;
+    return wanted < LEAST ? LEAST : wanted;
 }
 
 // Where the tip is at the cursor, as it was recorded [m].

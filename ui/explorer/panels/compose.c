@@ -31,8 +31,8 @@ static void draw_title(const explorer_state *st, screen *s)
         x += screen_text(s, x, 0, room, INK_TITLE, "impactlab  ");
     }
     x += screen_text(s, x, 0, room - x + 1, INK_TITLE, e->base.name);
-    if (x + 2 + text_cells(title) <= room + 1) {
-        x += 2 + screen_text(s, x + 2, 0, room - x, INK_TEXT, title);
+    if (room - x > 8 && title[0] != '\0') {
+        x += 2 + screen_words(s, x + 2, 0, room - x - 1, INK_TEXT, title);
     }
     screen_text(s, x + 2, 0, s->width - x - 3, INK_EVENT, changes);
 }
@@ -311,24 +311,64 @@ static bool gives_way(const explorer_state *st, panel_id id)
     return wants_room && (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS);
 }
 
+// Folds panels of the stack until the chosen one has enough of the rows, of which it has `left`:
+// first those without anything to show. Returns the rows that became free.
+static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS], int left)
+{
+    enum { ENOUGH = 8 }; // six lines in a frame
+    const bool log_is_empty = st->log.count == 0 || st->session.seen <= 0;
+    const panel_id order[] = {log_is_empty ? PANEL_LOG : PANEL_NONE, PANEL_PREDICTORS,
+                              PANEL_CONTROLLER, PANEL_LOG, PANEL_RUNS};
+    int freed = 0;
+    for (size_t i = 0; i < sizeof order / sizeof order[0] && left + freed < ENOUGH; i++) {
+        lay->folded[order[i]] = rows[order[i]] > 0 || lay->folded[order[i]];
+        freed += rows[order[i]];
+        rows[order[i]] = 0;
+    }
+    return freed;
+}
+
+// What is folded, in the lower edge of the chosen panel.
+static void draw_tabs(const layout *lay, screen *s, area a)
+{
+    char text[96] = " Tab: ";
+    bool any = false;
+    for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
+        const size_t used = strlen(text);
+        if (lay->folded[id]) {
+            snprintf(text + used, sizeof text - used, "%s%s", any ? ", " : "",
+                     panel_of((panel_id)id)->name);
+            any = true;
+        }
+    }
+    if (any && a.height > 1) {
+        strncat(text, " ", sizeof text - strlen(text) - 1);
+        screen_text(s, a.x + 1, a.y + a.height - 1, a.width - 2, INK_DIM, text);
+    }
+}
+
 // The right side: the selected panel, and below it all that have room.
 static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
 {
     const screen_size body = {s->width, a.height};
-    int rows[PANEL_IDS] = {0}, taken = 0;
+    int rows[PANEL_IDS] = {0}, left = a.height;
 
     // the rows of those below; the chosen one gets what they leave
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         const panel *p = panel_of((panel_id)id);
         if (panel_place_of((panel_id)id) == PLACE_STACK && panel_fits(p, body) &&
-            !gives_way(st, (panel_id)id)) {
+            id != (int)st->side.panel) {
             rows[id] = p->rows(st, body);
-            taken += rows[id];
+            lay->folded[id] = rows[id] > 0 && gives_way(st, (panel_id)id);
+            rows[id] = lay->folded[id] ? 0 : rows[id];
+            left -= rows[id];
         }
     }
+    left += fold_stack(st, lay, rows, left);
 
-    area at = {a.x, a.y, a.width, a.height - taken};
+    area at = {a.x, a.y, a.width, left};
     panel_of(st->side.panel)->draw(st, lay, s, at);
+    draw_tabs(lay, s, at);
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         at.y += at.height;
         at.height = rows[id];
@@ -360,6 +400,8 @@ static void draw_panels(const explorer_state *st, layout *lay, screen *s, area b
     }
     int right = side_width(s->width), left = s->width - right;
     int top = body.height >= 20 ? body.height * 2 / 5 : body.height / 2;
+    const int arm = arm_rows(st, lay, (screen_size){left, top});
+    top = top > arm ? arm : top;
     draw_place(st, lay, s, PLACE_TOP, (area){body.x, body.y, left, top});
 
     // on a narrow screen the side takes the place of the curves

@@ -98,9 +98,10 @@ static const char *unit_of(const pane *p)
 }
 
 // Writes a legend and returns the cells it takes; values are padded so that it stands still.
-static int draw_legend(const explorer_state *st, screen *s, const pane *p, legend how, int x, int y,
-                       int room)
+static int draw_legend(const explorer_state *st, layout *lay, screen *s, int index, legend how,
+                       int x, int y, int room)
 {
+    const pane *p = &st->panes.pane[index];
     int start = x, end = x + room;
     const pane_look look = pane_look_of(st, p);
 
@@ -118,8 +119,13 @@ static int draw_legend(const explorer_state *st, screen *s, const pane *p, legen
             snprintf(text, sizeof text, "%s %-*s", how == LEGEND_NAMES ? info->name : info->ascii,
                      width, how == LEGEND_BARE ? "" : value);
         if (room > 0) {
-            screen_put(s, x, y, x < end ? line_glyph(look.style[k]) : ' ', look.colour[k]);
-            screen_text(s, x + 2, y, end - x - 2, look.colour[k], text);
+            const ink shade = p->hidden >> k & 1 ? INK_FRAME : look.colour[k];
+            screen_put(s, x, y, x < end ? line_glyph(look.style[k]) : ' ', shade);
+            screen_text(s, x + 2, y, end - x - 2, shade, text);
+            layout_add_hit(lay, (hit_area){PANEL_CURVES,
+                                           PART_LEGEND,
+                                           index * PANE_SIGNALS + k,
+                                           {x, y, 2 + length, 1}});
         }
         x += 2 + length + 1;
     }
@@ -128,7 +134,7 @@ static int draw_legend(const explorer_state *st, screen *s, const pane *p, legen
 
 // The pane's number, its unit, its signals with their values at the cursor as far as there is room,
 // and the mode of its axis, in the first row of the pane's area.
-static void draw_pane_title(const explorer_state *st, screen *s, int index, area a)
+static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, int index, area a)
 {
     const pane *p = &st->panes.pane[index];
     static const char *const axes[] = {"", "grows", "fixed"};
@@ -163,10 +169,11 @@ static void draw_pane_title(const explorer_state *st, screen *s, int index, area
 
     // as many words as fit
     legend how = LEGEND_NAMES;
-    while (how < LEGEND_BARE && draw_legend(st, s, p, how, x, a.y, 0) > room) {
+    while (how < LEGEND_BARE && draw_legend(st, lay, s, index, how, x, a.y, 0) > room) {
         how++;
     }
-    draw_legend(st, s, p, how, x, a.y, room);
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_VIEW, index, {a.x, a.y, a.width, 1}});
+    draw_legend(st, lay, s, index, how, x, a.y, room);
 }
 
 // --- the mouse --------------------------------------------------------------------------------
@@ -289,6 +296,9 @@ static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int 
         run.kind == SHOWN_SWEPT || (run.kind == SHOWN_PINNED && state_visible_pins(st) > 1);
     const int count = first_only && p->count > 1 ? 1 : p->count;
     for (int k = 0; k < count; k++) {
+        if (p->hidden >> k & 1) {
+            continue;
+        }
         const double *pairs =
             extremes_pairs(&st->extremes[number], run.id, run.trace, p->signals[k]);
         set_look(st, &f, &run, &look, k);
@@ -340,7 +350,7 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
 {
     plot_frame f = {
         .canvas = {s, a.x + LABEL_WIDTH + 1, a.y + 1, a.width - LABEL_WIDTH - 1, a.height - 1}};
-    draw_pane_title(st, s, index, a);
+    draw_pane_title(st, lay, s, index, a);
 
     // another axis than time: nothing to click at, nothing to scale
     const pane *shown = &st->panes.pane[index];
@@ -438,6 +448,9 @@ static bool point(explorer_state *st, const panel_gesture *g)
         return point_at_time_axis(st, g);
     case PART_VIEW:
         return true;
+    case PART_LEGEND:
+        return g->event.kind == POINTER_PRESS &&
+               act_toggle_signal(st, g->hit.index / PANE_SIGNALS, g->hit.index % PANE_SIGNALS);
     case PART_LANES:
     case PART_MAP:
         return lanes_point(st, g);

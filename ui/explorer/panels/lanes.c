@@ -67,7 +67,15 @@ static bool has_lock(const explorer_state *st)
 static int find_lanes(const explorer_state *st, const lane_survey *known, lane lanes[MOST_LANES])
 {
     int count = 0;
-    lanes[count++] = (lane){LANE_CONTACT, 0};
+
+    // the time axis shows this run's contact: a lane only beside those of others
+    bool others = false;
+    for (int run = 1; run < state_run_count(st); run++) {
+        others = others || state_run_name(st, run)[0] != '\0';
+    }
+    if (others) {
+        lanes[count++] = (lane){LANE_CONTACT, 0};
+    }
 
     // what this run has besides
     if (state_has_law(st)) {

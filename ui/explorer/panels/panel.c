@@ -113,6 +113,7 @@ void layout_begin(layout *lay, const explorer_state *st)
     lay->hit_count = 0;
     lay->plot = (area){0};
     lay->stage = (arm_stage){0};
+    memset(lay->folded, 0, sizeof lay->folded);
     lay->page_lines = st->page.lines;
     lay->first_scenario = st->scenarios.first;
     memcpy(lay->scroll, st->scroll, sizeof lay->scroll);
@@ -158,6 +159,7 @@ void layout_settle(const layout *lay, explorer_state *st)
     st->scenarios.first = lay->first_scenario;
     memcpy(st->scroll, lay->scroll, sizeof st->scroll);
     st->stage = lay->stage;
+    memcpy(st->side.folded, lay->folded, sizeof st->side.folded);
 }
 
 // --- pages ------------------------------------------------------------------------------------

@@ -29,7 +29,7 @@ void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink 
 
 enum { LABEL_WIDTH = 9 };                     // of an axis of values [cells]
 enum { LEAST_WIDTH = 40, LEAST_HEIGHT = 12 }; // of a screen that shows the explorer [cells]
-enum { HIT_AREAS = 160 };
+enum { HIT_AREAS = 256 };
 
 typedef struct area {
     int x, y, width, height; // [cells]
@@ -42,6 +42,7 @@ typedef enum hit_part {
     PART_HEADING,   // of a group of lines; index: its first parameter
     PART_SLIDER,    // index: the parameter
     PART_LABELS,    // an axis of values; index: the pane
+    PART_LEGEND,    // a signal in a legend; index: the pane * PANE_SIGNALS + which of its signals
     PART_TIME_AXIS, // below curves
     PART_VIEW,      // a pane that is not over time; index: the pane
     PART_LANES,     // bands below that
@@ -87,6 +88,7 @@ typedef struct layout {
     value_range axes[PANES];      // of the panes as they were drawn last
     int scroll[PANEL_IDS];        // by panel: the state's, limited to the existing lines
     int page_lines;               // lines of the page that are shown at once
+    bool folded[PANEL_IDS];       // panels of the stack for which there was no room
     int first_scenario;           // line of the list of scenarios that is shown first
     arm_stage stage;              // where the arm was drawn
     arm_extent extent;            // remembered
@@ -175,6 +177,11 @@ int page_scroll(layout *lay, panel_id id, area a, int lines, int head);
 
 // The wheel presses a page's keys for up and down.
 bool page_point(explorer_state *st, const panel_gesture *g);
+
+// --- the arm ----------------------------------------------------------------------------------
+
+// The rows that the arm's panel makes use of where there is plenty of room.
+int arm_rows(const explorer_state *st, layout *lay, screen_size room);
 
 // --- the help ---------------------------------------------------------------------------------
 // The text of the help page, made from the tables of keys and commands.

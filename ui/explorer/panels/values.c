@@ -155,6 +155,14 @@ static void draw_signal(screen *s, area a, int signal, const signal_statistics *
     if (a.height > 1) {
         screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, " min %-9s max %s", low, high);
     }
+
+    // a state has no mean and no integral, one that is on or off the time it is on
+    if (signal_is_state(signal)) {
+        if (a.height > 2 && x->maximum <= 1) {
+            screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " for %s s in all", integral);
+        }
+        return;
+    }
     if (a.height > 1 && a.width >= 40) {
         screen_print(s, a.x + 28, a.y + 1, a.width - 28, INK_TEXT, "mean %s", mean);
         screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " rms %-9s integral %s %s", rms, integral,

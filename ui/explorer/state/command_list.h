@@ -63,6 +63,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "axis", "auto|grow|LOW HIGH [PANE]", "range: what is visible, was seen, or yours",       \
       act_axis)                                                                                    \
     X("", "trace", "1-9|SIGNAL...", "show or hide a pane of curves", act_trace_pane)               \
+    X("", "signal", "[NAME|all]",                                                                  \
+      "hide a signal of the pane in focus, or show it; alone: the next", act_hide_signal)          \
     X("", "phase", "SIGNAL OVER", "a pane of one signal over another: phase gap force",            \
       act_phase_pane)                                                                              \
     X("", "spectrum", "SIGNAL", "a pane of its amplitudes in the visible part", act_spectrum_pane) \

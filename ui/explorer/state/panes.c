@@ -108,6 +108,7 @@ void panes_define(pane_set *set, const pane_wishes *wishes)
             continue;
         }
         p->count = 0;
+        p->hidden = 0;
         for (int j = 0; j < PANE_SIGNALS && names[j] != NULL; j++) {
             int signal = signal_find(names[j]);
             assert(signal >= 0);

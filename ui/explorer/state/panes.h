@@ -41,6 +41,7 @@ typedef enum pane_view {
 typedef struct pane {
     int signals[PANE_SIGNALS]; // indices in the signal table
     int count;                 // 0: not defined
+    unsigned hidden;           // bit k: signals[k] is only in the legend
     bool shown;
     pane_view view;
     axis_scaling scaling;

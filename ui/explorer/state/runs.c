@@ -33,6 +33,16 @@ int run_list_of_scenario(const run_list *list, const session *s)
     return count;
 }
 
+void input_value_text(const session_input *in, char text[SESSION_INPUT_TEXT])
+{
+    assert(in != NULL && in->parameter >= 0 && text != NULL);
+    if (parameter_table[in->parameter].type == PARAMETER_REAL) {
+        snprintf(text, SESSION_INPUT_TEXT, "%.10g", in->value);
+    } else {
+        memcpy(text, in->text, SESSION_INPUT_TEXT);
+    }
+}
+
 // A change as a line of text: what it gives what, and from when on.
 static void run_list_input_text(const session_input *in, char *text, size_t size)
 {
@@ -42,10 +52,12 @@ static void run_list_input_text(const session_input *in, char *text, size_t size
         return;
     }
     const char *name = strchr(parameter_table[in->parameter].path, '.') + 1;
+    char value[SESSION_INPUT_TEXT];
+    input_value_text(in, value);
     if (in->kind == SESSION_INPUT_TIMED) {
-        snprintf(text, size, "%s %s from %.4g s", name, in->text, in->time);
+        snprintf(text, size, "%s %s from %.4g s", name, value, in->time);
     } else {
-        snprintf(text, size, "%s %s", name, in->text);
+        snprintf(text, size, "%s %s", name, value);
     }
 }
 

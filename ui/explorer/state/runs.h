@@ -35,6 +35,9 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
 // Names the runs that are not of the session's scenario, and were "as opened", after their own.
 void run_list_name_strangers(run_list *list, const session *s);
 
+// The value of an input as it is shown: a number without the digits of its rounding.
+void input_value_text(const session_input *in, char text[SESSION_INPUT_TEXT]);
+
 // Removes a run from the list.
 void run_list_drop(run_list *list, int index);
 void run_list_clear(run_list *list);

@@ -316,7 +316,9 @@ void state_change_text(const explorer_state *st, int index, char *text, size_t s
         return;
     }
     const parameter_info *info = &parameter_table[in->parameter];
-    snprintf(text, size, "%s = %s%s%s", info->path, in->text, info->unit[0] ? " " : "", info->unit);
+    char value[SESSION_INPUT_TEXT];
+    input_value_text(in, value);
+    snprintf(text, size, "%s = %s%s%s", info->path, value, info->unit[0] ? " " : "", info->unit);
 }
 
 int state_later_changes(const explorer_state *st)
@@ -391,6 +393,9 @@ static value_range range_between(const explorer_state *st, const pane *p, double
         // one more row at the end, to which the line continues
         const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
         for (int k = 0; k < p->count; k++) {
+            if (p->hidden >> k & 1) {
+                continue;
+            }
             const double *pairs = extremes_pairs(&st->extremes[run], shown.id, t, p->signals[k]);
             value_range_widen(&found, range_of_rows(t, p->signals[k], pairs, first, last));
         }

@@ -33,7 +33,8 @@ typedef struct time_mark {
 // The side panel.
 typedef struct side_view {
     panel_id panel;
-    bool in_front; // a narrow screen shows it instead of the curves
+    bool in_front;          // a narrow screen shows it instead of the curves
+    bool folded[PANEL_IDS]; // panels of the stack that had no room: Tab selects them
 } side_view;
 
 // The page over the panels.

@@ -19,19 +19,13 @@ panel_place panel_place_of(panel_id id)
     return places[id];
 }
 
-panel_id panel_next_on_side(panel_id id)
-{
-    for (int next = id + 1; next < PANEL_IDS; next++) {
-        if (places[next] == PLACE_SIDE) {
-            return (panel_id)next;
-        }
-    }
-    return PANEL_NONE;
-}
-
 panel_id panel_first_on_side(void)
 {
-    return panel_next_on_side(PANEL_NONE);
+    int id = PANEL_NONE + 1;
+    while (places[id] != PLACE_SIDE) {
+        id++;
+    }
+    return (panel_id)id;
 }
 
 // --- filters ----------------------------------------------------------------------------------

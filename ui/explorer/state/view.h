@@ -55,9 +55,8 @@ typedef enum panel_id {
 // The place of a panel; not for PANEL_NONE.
 panel_place panel_place_of(panel_id id);
 
-// The first panel of the side, and the one after a panel of the side; PANEL_NONE after the last.
+// The first panel of the side.
 panel_id panel_first_on_side(void);
-panel_id panel_next_on_side(panel_id id);
 
 // --- filters ----------------------------------------------------------------------------------
 // A line of words for each panel that is a list.
