@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/check.h"
 
 #define SENSOR 1e-3  // time constant [s]

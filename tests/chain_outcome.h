@@ -4,7 +4,7 @@
 
 #include "src/base/fault.h"
 #include "src/tables/parameters.h"
-#include "src/solve/engine.h"
+#include "src/contact/engine.h"
 #include "tests/reference/reference_arm.h"
 
 #define OUTCOME_FIRST_MS 10 // the sample 1 ms after first contact

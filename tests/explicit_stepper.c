@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "src/arm/chain_kernel.h"
-#include "src/solve/motion.h"
+#include "src/contact/motion.h"
 #include "tests/explicit_stepper.h"
 
 // Steps over several time steps, which slow arms take, may go this far in (fastest rate) x (step):

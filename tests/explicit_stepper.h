@@ -2,7 +2,7 @@
 // arms and walls, and steps again for all that happens within a step.
 #pragma once
 
-#include "src/solve/engine.h"
+#include "src/contact/engine.h"
 
 extern const engine explicit_engine;
 

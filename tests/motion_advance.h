@@ -1,7 +1,7 @@
 // The motion from event to event, for tests without a run around it.
 #pragma once
 
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 
 // Steps until `until` [s] or the first event; a step takes `step` [s] at most.
 static inline status motion_advance(const arm *a, motion *m, double until, double step,

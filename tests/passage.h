@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 
 // What became of a motion.

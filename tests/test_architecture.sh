@@ -9,7 +9,8 @@
 set -euo pipefail
 cd "$1"
 
-rooms="src/base src/tables src/arm src/solve src/predict src/rig/controller src/rig/external
+rooms="src/base src/tables src/arm src/thesis src/contact src/engines src/engines/pair src/engines/newmark
+    src/engines/series src/engines/stiff src/predict src/rig/controller src/rig/external
     src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/study/store
     src/api/impactlab src/api
     render/page render/plot render/scene render/figures

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "src/base/random.h"
-#include "src/solve/taylor_lanes.h"
+#include "src/engines/pair/taylor_lanes.h"
 #include "src/study/batch.h"
 #include "tests/arm_fixture.h"
 

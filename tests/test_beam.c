@@ -5,7 +5,7 @@
 
 #include "src/arm/chain.h"
 #include "src/arm/modes.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

@@ -6,7 +6,7 @@
 #include "tests/motion_advance.h"
 #include "tests/explicit_stepper.h"
 
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 
 // A rod on its hub with its motion.
 typedef struct moving_rod {

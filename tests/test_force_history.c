@@ -4,7 +4,7 @@
 #include "src/base/random.h"
 #include "src/run/largest_mean.h"
 #include "src/run/run_result.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/rig_fixture.h"
 
 #define STEP 1e-2 // [s]

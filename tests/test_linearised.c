@@ -4,7 +4,7 @@
 #include "src/run/run.h"
 #include "src/predict/linearised.h"
 #include "src/predict/pulse.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

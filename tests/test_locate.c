@@ -1,6 +1,6 @@
 // Where an engine steps, the instants of events are found by stepping again from the step's start:
 // they are those that an engine finds which needs no steps, and few looks lead there.
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 

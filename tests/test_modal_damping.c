@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "src/arm/modes.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "src/run/run.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/told_events.h"
 

@@ -3,7 +3,7 @@
 #include "tests/motion_advance.h"
 
 #include "src/arm/motor.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 
 static motor_parameters drive(void)
 {

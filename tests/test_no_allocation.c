@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "src/predict/linearised.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 
 static long allocations;

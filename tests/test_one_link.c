@@ -5,7 +5,7 @@
 
 #include "src/base/random.h"
 #include "src/run/run.h"
-#include "src/solve/pace.h"
+#include "src/contact/pace.h"
 #include "tests/scenario_fixture.h"
 
 // A run of the scenario with this text, which does not fail.

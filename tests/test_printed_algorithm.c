@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/solve/printed_algorithm.h"
+#include "src/thesis/printed_algorithm.h"
 
 enum { MOST_ROWS = 20000 };
 

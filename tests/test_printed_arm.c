@@ -3,7 +3,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "src/arm/printed_arm.h"
+#include "src/thesis/printed_arm.h"
 #include "src/base/dense.h"
 
 // A fixed sequence of numbers between -1 and 1.

@@ -4,7 +4,7 @@
 
 #include "src/rig/rig.h"
 #include "src/run/loop.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/rig_fixture.h"
 
 static void command_holds_between_samples(void **state)

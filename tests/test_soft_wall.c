@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/run/run.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 #include "tests/motion_advance.h"

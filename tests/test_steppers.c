@@ -1,7 +1,7 @@
 // Order, damping and stability of the engines, on motions with known solutions.
 #include <math.h>
 
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 #include "tests/motion_advance.h"

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/solve/contact_machine.h"
-#include "src/solve/taylor_lanes.h"
+#include "src/contact/contact_machine.h"
+#include "src/engines/pair/taylor_lanes.h"
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
 

@@ -6,8 +6,8 @@
 
 #include "src/run/loop.h"
 #include "src/run/run.h"
-#include "src/solve/contact_machine.h"
-#include "src/solve/pace.h"
+#include "src/contact/contact_machine.h"
+#include "src/contact/pace.h"
 #include "tests/explicit_stepper.h"
 #include "tests/passage.h"
 

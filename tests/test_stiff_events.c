@@ -2,7 +2,7 @@
 // and the series meet, down to bounces lower than rounding.
 #include <math.h>
 
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 

@@ -1,7 +1,7 @@
 // The numbers of Radau IIA of seven stages are what they are said to be.
 #include <math.h>
 
-#include "src/solve/stiff_function.h"
+#include "src/engines/stiff/stiff_function.h"
 #include "tests/check.h"
 
 // x^n as products.

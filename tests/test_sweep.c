@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "src/run/run.h"
-#include "src/solve/taylor_lanes.h"
+#include "src/engines/pair/taylor_lanes.h"
 #include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
 #include "tests/check.h"

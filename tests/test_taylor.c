@@ -4,8 +4,8 @@
 
 #include "src/base/random.h"
 #include "src/run/run.h"
-#include "src/solve/contact_machine.h"
-#include "src/solve/taylor_stride.h"
+#include "src/contact/contact_machine.h"
+#include "src/engines/pair/taylor_stride.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

@@ -1,7 +1,7 @@
 // Where a watched function first falls below zero (taylor_roots.h): of functions that come back
 // above zero and fall again the first fall is found, or none.
 #define LANES 1
-#include "src/solve/taylor_roots.h"
+#include "src/engines/pair/taylor_roots.h"
 
 #include "src/base/random.h"
 #include "tests/check.h"

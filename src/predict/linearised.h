@@ -3,7 +3,7 @@
 
 #include "src/arm/arm.h"
 #include "src/predict/predict.h"
-#include "src/solve/motion.h"
+#include "src/contact/motion.h"
 
 // The pulse of a touch at this very instant, for any N and either hub joint. In free flight the
 // wall is assumed to be where the contact point of the arm is now. Exact are: the impact,

@@ -6,9 +6,9 @@
 #pragma once
 
 #include "src/run/recording.h"
-#include "src/solve/contact_machine.h"
-#include "src/solve/motion.h"
-#include "src/solve/pace.h"
+#include "src/contact/contact_machine.h"
+#include "src/contact/motion.h"
+#include "src/contact/pace.h"
 
 // A point on the way along a step: the instant, and what the sensors see there.
 typedef struct way {

@@ -4,7 +4,7 @@
 #include "src/base/instant.h"
 #include "src/run/corrected.h"
 #include "src/run/recording.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 
 #define SHORTEST_MEAN 1e-9 // a step shorter than this has the mean of its ends [s]
 

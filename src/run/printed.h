@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/run/recording.h"
-#include "src/solve/printed_algorithm.h"
+#include "src/thesis/printed_algorithm.h"
 
 // The forces at the rows beside a peak, for the parabola through the three.
 typedef struct sampled_peak {

@@ -5,7 +5,7 @@
 #include "src/rig/rig.h"
 #include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
-#include "src/solve/motion.h"
+#include "src/contact/motion.h"
 
 #define STEADY_WINDOW  0.1  // steady force: mean over the last of the run [s]
 #define SEPARATION_GAP 1e-6 // a smaller gap is no separation [m]

@@ -4,7 +4,7 @@
 #include "src/run/recording.h"
 #include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
-#include "src/solve/motion.h"
+#include "src/contact/motion.h"
 
 // Checkpoints of a run of the corrected arm: what is needed to go on from an instant as if the run
 // had never stopped, kept every few hundred rows.

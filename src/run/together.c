@@ -9,7 +9,7 @@
 #include "src/run/corrected.h"
 #include "src/run/recording.h"
 #include "src/run/run.h"
-#include "src/solve/taylor_lanes.h"
+#include "src/engines/pair/taylor_lanes.h"
 
 // So many runs are in hand at once: enough to fill the vectors with strides of one form, eight
 // lanes to 96 %, few enough to stay in the second cache.

@@ -11,8 +11,8 @@
 #include "src/predict/linearised.h"
 #include "src/run/export.h"
 #include "src/run/run.h"
-#include "src/solve/contact_machine.h"
-#include "src/solve/taylor_lanes.h"
+#include "src/contact/contact_machine.h"
+#include "src/engines/pair/taylor_lanes.h"
 #include "src/study/batch.h"
 #include "src/study/thesis_tables.h"
 

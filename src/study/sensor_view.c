@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
-#include "src/solve/contact_machine.h"
-#include "src/solve/pace.h"
+#include "src/contact/contact_machine.h"
+#include "src/contact/pace.h"
 #include "src/base/instant.h"
 #include "src/base/plain_math.h"
 

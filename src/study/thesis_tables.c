@@ -7,7 +7,7 @@
 #include "src/run/first_contact.h"
 #include "src/run/run.h"
 #include "src/predict/predict.h"
-#include "src/solve/printed_algorithm.h"
+#include "src/thesis/printed_algorithm.h"
 #include "src/base/instant.h"
 
 // The simulation's row of the printed model is the largest force within this time of first contact,

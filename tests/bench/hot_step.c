@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 
 #define STEP 1e-3 // [s]
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "src/base/clock.h"
-#include "src/solve/contact_machine.h"
+#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 
 enum { TRIES = 3 }; // of which the quickest counts

@@ -17,7 +17,7 @@
 #include "src/lab/run.h"
 #else
 #include "src/run/run.h"
-#include "src/solve/taylor_lanes.h"
+#include "src/engines/pair/taylor_lanes.h"
 #include "src/study/batch.h"
 #endif
 

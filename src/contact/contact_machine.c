@@ -1,0 +1,486 @@
+// The contact machine: an arm in free flight or on its wall, its hub stuck or sliding.
+//
+// Between events motion_step() moves the arm in one contact state; it ends a step at the first
+// event, just beyond it. motion_apply() then takes the transition:
+//
+//                   gap closes:  impact() at a speed,  touch() without
+//     motion_start  +--------+ --------------------------> +---------+
+//     ------------> |  FREE  |                             | CONTACT | --+  impact():
+//               +-> |        | <-------------------------- |         | <-+  motion_push() into
+//               |   +--------+   force falls below zero:   +---------+      the wall
+//               |       |               release()
+//               +-------+
+//          impact() that rebounds
+//
+//                     hub comes to rest:  stick()
+//         +---------+ --------------------------> +-------+
+//     +-- | SLIDING |                             | STUCK |      SLIDING is forwards or backwards
+//     +-> |         | <-------------------------- |       |
+//         +---------+  torque beyond stiction:    +-------+
+//       stick() where        slip()
+//       nothing holds it
+//
+// The two are coupled: an impact may set a stuck hub sliding, a hub that sticks may lift the arm
+// off. So each transition sets only what the event itself determines (a velocity, that the wall is
+// touched) and leaves the rest to resolve(), which finds the one pair of states that violates no
+// condition. The calls from outside, motion_push(), motion_retorque() and motion_rebind(), end in
+// resolve() too. Where steps do not resolve the fastest modes, accelerations at an instant carry no
+// information: release(), stick() and slip() then take the state that the event suggests, and the
+// next step corrects it.
+//
+// A wall that gives has a face, which goes with the arm in contact and moves on its own while the
+// arm is free (motion_try_step); gap and speed are those to the face. One with a mass is met as a
+// rigid wall is, by impact() and release(). One without imposes no constraint and causes no impact:
+// there touch() begins the contact at any speed, and release() ends it where the law's force falls
+// to zero. Behind its place at rest a damped face cannot follow then, and returns at its own rate
+// (wall.h).
+//
+// After every transition hold:
+//
+//   1  contact is 0 or 1; friction is one of stuck, forwards, backwards
+//   2  without a wall there is no contact
+//   3  without contact there is no force
+//   4  a stuck hub does not turn
+//   5  a hub with friction does not slide against the direction its friction is for
+//   6  an arm that contact and friction hold still is at rest
+//   7  an impact never increases the energy
+//
+// 4 to 6 need not hold while an impact is yet to be delivered by the next step (SLOT_IMPULSE).
+#include "src/contact/contact_machine.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/arm/impact.h"
+#include "src/base/extremes.h"
+#include "src/contact/edge_limits.h"
+#include "src/contact/locate.h"
+
+#define SHORT_FLIGHT 0.01  // of the arm's shortest period, a flight that says nothing by itself
+#define AT_REST      1e-20 // velocities all of which are below it are rounding of rest [rad/s]
+
+// --- what holds at an instant -----------------------------------------------------------------
+
+// Checks the numbered invariants, once after each event.
+static void check_invariants(const arm *a, const motion *m)
+{
+    const double *state = m->state;
+    const double friction = state[SLOT_FRICTION], hub_velocity = state[SLOT_COUNT + m->dof];
+    const bool contact = state[SLOT_CONTACT] != 0, settled = state[SLOT_IMPULSE] == 0;
+
+    assert(state[SLOT_CONTACT] == 0 || state[SLOT_CONTACT] == 1);                         // 1
+    assert(friction == HUB_STICK || friction == HUB_FORWARD || friction == HUB_BACKWARD); // 1
+    assert(!contact || wall_stands(&a->wall));                                            // 2
+    assert(contact || state[SLOT_FORCE] == 0);                                            // 3
+    assert(!settled || friction != HUB_STICK || hub_velocity == 0);                       // 4
+    assert(!settled || a->motor.stiction == 0 || !(friction * hub_velocity < 0));         // 5
+    assert(!settled || !motion_held_still(m) || hub_velocity == 0);                       // 6
+    (void)a, (void)friction, (void)hub_velocity, (void)contact, (void)settled;
+}
+
+// By how much the state violates the conditions of its contact state: tension in contact, imminent
+// penetration of a released touch, friction beyond its limit, sliding against the chosen direction.
+static double violation(const arm *a, const motion *m, const double *state, bool touching,
+                        bool hub_rests)
+{
+    contact_state now = contact_state_of(state);
+    double worst = 0;
+
+    // the wall: no tension, no acceleration into it
+    if (m->wall_gives) {
+        worst = 0;
+    } else if (now.contact) {
+        worst = fmax(worst, -state[SLOT_FORCE]);
+    } else if (touching) {
+        // of a light face the force that moves it: its acceleration amplifies the force's rounding
+        const double mass = m->wall_has_face ? fmin(a->wall.face_mass, 1) : 1;
+        worst = fmax(worst, -state[SLOT_GAP_ACCELERATION] * mass);
+    }
+
+    // the hub: within stiction, or sliding the way it was taken to
+    if (now.friction == HUB_STICK) {
+        worst = fmax(worst, fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction);
+    } else if (hub_rests) {
+        worst = fmax(worst, -now.friction * state[SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT]);
+    }
+    return worst;
+}
+
+// Ends a motion that is only rounding, which would say that contact or friction end.
+static void end_rounding(motion *m)
+{
+    double *w = state_velocities(m, m->state);
+    bool rests = true;
+    for (int i = 0; i < m->dof; i++) {
+        rests = rests && fabs(w[i]) < AT_REST;
+    }
+    if (rests) {
+        memset(w, 0, (size_t)m->dof * sizeof *w);
+    }
+}
+
+// Finds the one combination of contact and hub friction that violates nothing and evaluates the
+// state under it. Gauss's principle makes the problem a strictly convex one, since the friction
+// torque is bounded independently of the contact force: there is exactly one solution. At an event
+// two combinations satisfy the conditions to rounding; `event` tells which of them the motion has
+// just left. A wall that gives leaves no choice: it is touched if `touching`, and friction alone is
+// to be found.
+static void resolve(const arm *a, motion *m, bool touching, motion_event event)
+{
+    static const hub_friction sticking_first[] = {HUB_STICK, HUB_FORWARD, HUB_BACKWARD};
+    static const hub_friction sliding_first[][3] = {{HUB_FORWARD, HUB_BACKWARD, HUB_STICK},
+                                                    {HUB_BACKWARD, HUB_FORWARD, HUB_STICK}};
+    double *state = m->state;
+    end_rounding(m);
+
+    // a hub that breaks away goes on doing so where the contact changes at that instant; it gives
+    // way to what friction has held
+    const bool breaks_away =
+        (event == MOTION_RELEASE || event == MOTION_TOUCH) && state[SLOT_FRICTION] != HUB_STICK;
+    const bool slides = event == MOTION_SLIP || breaks_away;
+    const bool backwards =
+        breaks_away ? state[SLOT_FRICTION] == HUB_BACKWARD : state[SLOT_FRICTION_TORQUE] > 0;
+    const hub_friction *at_rest = slides ? sliding_first[backwards] : sticking_first;
+    if (touching && m->dof == 1 && motion_wall_is_rigid(m)) {
+        state_velocities(m, state)[0] = 0; // but for rounding it is
+    }
+    double hub_velocity = state_velocities(m, state)[0];
+    bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
+    hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
+
+    int choices = hub_rests ? 3 : 1, ways = touching && !m->wall_gives ? 2 : 1;
+
+    // the state that the event has ended would be violated an instant later: its successor is taken
+    // even if rounding makes it look worse
+    const bool accelerates = event == MOTION_RELEASE || event == MOTION_SLIP;
+    const int preferred = event == MOTION_RELEASE || event == MOTION_TOUCH ? choices
+                          : event == MOTION_SLIP                           ? 2
+                          : event == MOTION_STICK                          ? 1
+                                                                           : 0;
+    const double more = event == MOTION_RELEASE ? larger(m->engine->left_out, 1) : 1;
+    const double beyond = accelerates ? more * (motion_rounding(a, m) - 1) : 0;
+    const double rounding = FORCE_TOLERANCE * (1 + beyond) + motion_face_rounding(a, m);
+    double least = 0;
+    contact_state best = {false, sliding}, tried = best;
+
+    // at a release the released arm is tried first, else the one in contact
+    for (int i = 0; i < ways * choices; i++) {
+        bool second = i >= choices;
+        state[SLOT_CONTACT] = touching && (m->wall_gives || second == (event == MOTION_RELEASE));
+        state[SLOT_FRICTION] = hub_rests ? at_rest[i % choices] : sliding;
+        motion_evaluate(a, m, state);
+        double v = violation(a, m, state, touching, hub_rests);
+        tried = contact_state_of(state);
+        if (i == 0 || v < least) {
+            least = v;
+            best = contact_state_of(state);
+        }
+        if (v <= (i < preferred ? rounding : FORCE_TOLERANCE / 1000)) {
+            best = contact_state_of(state);
+            break;
+        }
+    }
+
+    // the state under it, unless the last one tried was that
+    state[SLOT_CONTACT] = best.contact;
+    state[SLOT_FRICTION] = best.friction;
+    if (motion_held_still(m)) {
+        memset(state_velocities(m, state), 0, (size_t)m->dof * sizeof(double));
+        motion_evaluate(a, m, state);
+    } else if (tried.contact != best.contact || tried.friction != best.friction) {
+        motion_evaluate(a, m, state);
+    }
+    if (motion_held_still(m)) {
+        memset(state_accelerations(m, state), 0, (size_t)m->dof * sizeof(double));
+    }
+
+    // the implicit methods start anew from the accelerations of this instant
+    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
+           (size_t)m->dof * sizeof(double));
+    state[SLOT_JUMPED] = 1;
+}
+
+// The arm leaves the face of a wall that gives, which returns by itself from now on. What does so
+// at once gives up its energy at once, if there is a damper to take it.
+static void leave_face(const arm *a, motion *m)
+{
+    double *state = m->state;
+    const double held = motion_wall_energy(a, m, state);
+    const wall_face face = wall_face_left_behind(&a->wall, state[SLOT_FACE]);
+    state[SLOT_FACE] = face.position;
+    state[SLOT_FACE_VELOCITY] = face.velocity;
+    if (a->wall.damping > 0) {
+        state_quadratures(m, state)[QUADRATURE_WALL] += held - motion_wall_energy(a, m, state);
+    }
+}
+
+// Whether an arm on the face of a wall that gives still presses on it, after its velocity or the
+// law changed; else it leaves it.
+static bool face_follows(const arm *a, motion *m)
+{
+    double depth, rate;
+    chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &depth, &rate);
+    const bool follows = wall_force(&a->wall, depth, rate) >= 0;
+    if (!follows) {
+        leave_face(a, m);
+    }
+    return follows;
+}
+
+// --- the transitions -----------------------------------------------------------------------------
+
+// Counts flights that are too short for arm or face to change in them. Returns whether the chatter
+// rule applies: after more than MOTION_MOST_SHORT_FLIGHTS in a row the arm stays on the wall.
+static bool chatters(const arm *a, motion *m)
+{
+    double *state = m->state;
+    double flight = state[SLOT_TIME] - state[SLOT_LAST_IMPACT];
+    double fastest = m->wall_has_face
+                         ? fmax(a->highest_frequency, sqrt(a->wall.stiffness / a->wall.face_mass))
+                         : a->highest_frequency;
+    bool is_short = state[SLOT_LAST_IMPACT] >= 0 && flight * fastest < SHORT_FLIGHT * 2 * M_PI;
+    state[SLOT_SHORT_FLIGHTS] = is_short ? state[SLOT_SHORT_FLIGHTS] + 1 : 0;
+    state[SLOT_LAST_IMPACT] = state[SLOT_TIME];
+    return state[SLOT_SHORT_FLIGHTS] > MOTION_MOST_SHORT_FLIGHTS;
+}
+
+// The jump of an impact, and the contact state after it. Slower than the rest speed, or after too
+// many short flights, it is plastic: a sequence of ever smaller bounces ends in contact.
+static void impact(const arm *a, motion *m, motion_report *report)
+{
+    double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    double *increment = m->scratch;
+    const double face = m->state[SLOT_FACE_VELOCITY];
+
+    // the wall's coefficient of restitution
+    double e = wall_restitution(&a->wall, chain_penetration_rate(a, q, w) - face);
+    if (chatters(a, m)) {
+        m->state[SLOT_SHORT_FLIGHTS] = 0;
+        report->chatter = e > 0;
+        e = 0;
+    }
+
+    // the jump of an instantaneous impact
+    impact_result result = impact_velocity_increments(a, m->links, q, w, face, e, increment);
+    report->speed = result.speed;
+    report->impulse = result.impulse;
+    report->loss = result.loss;
+    assert(!(result.loss < 0)); // 7
+
+    m->state[SLOT_CONTACT] = 1;
+    if (motion_unresolved(a, m) && e == 0 && !motion_held_still(m)) {
+        // the impact happens within the next step, whose own damping takes the loss (after Moreau)
+        m->state[SLOT_FORCE] = 0;
+        m->state[SLOT_IMPULSE] = result.impulse;
+        m->state[SLOT_JUMPED] = 1;
+        return;
+    }
+
+    m->state[SLOT_IMPACT_LOSS] += result.loss;
+    for (int i = 0; i < m->dof; i++) {
+        w[i] += increment[i];
+    }
+    if (m->wall_has_face) {
+        m->state[SLOT_FACE_VELOCITY] += result.impulse / a->wall.face_mass;
+    }
+    resolve(a, m, e == 0, MOTION_IMPACT);
+}
+
+// The arm comes to the wall without an approach velocity, as at a bounce's end; to a wall that
+// gives at any speed.
+static void touch(const arm *a, motion *m)
+{
+    resolve(a, m, true, MOTION_TOUCH);
+}
+
+// The wall would have to pull: the arm leaves it.
+static void release(const arm *a, motion *m)
+{
+    if (motion_unresolved(a, m)) {
+        m->state[SLOT_CONTACT] = m->state[SLOT_FORCE] = 0;
+        m->state[SLOT_JUMPED] = 1;
+    } else if (m->wall_gives) {
+        leave_face(a, m);
+        resolve(a, m, false, MOTION_REACHED);
+    } else {
+        resolve(a, m, true, MOTION_RELEASE);
+    }
+}
+
+// The hub comes to rest: friction holds it, or it turns back.
+static void stick(const arm *a, motion *m)
+{
+    const bool contact = m->state[SLOT_CONTACT] != 0;
+    state_velocities(m, m->state)[0] = 0;
+    if (contact && motion_unresolved(a, m)) {
+        m->state[SLOT_FRICTION] = HUB_STICK;
+        m->state[SLOT_JUMPED] = 1;
+    } else {
+        resolve(a, m, contact, MOTION_STICK);
+    }
+}
+
+// The stuck hub breaks away.
+static void slip(const arm *a, motion *m)
+{
+    double *state = m->state;
+    if (motion_unresolved(a, m)) {
+        bool forward = state[SLOT_FRICTION_TORQUE] < 0; // friction resists the way the hub goes
+        state[SLOT_FRICTION] = forward ? HUB_FORWARD : HUB_BACKWARD;
+        state[SLOT_FRICTION_TORQUE] = forward ? -a->motor.stiction : a->motor.stiction;
+        state[SLOT_JUMPED] = 1;
+    } else {
+        resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_SLIP);
+    }
+}
+
+void motion_apply(const arm *a, motion *m, motion_report *report)
+{
+    assert(a != NULL && m != NULL && report != NULL);
+
+    // the transition that belongs to the event
+    switch (report->event) {
+    case MOTION_REACHED:
+        return;
+    case MOTION_IMPACT:
+        impact(a, m, report);
+        break;
+    case MOTION_TOUCH:
+        touch(a, m);
+        break;
+    case MOTION_RELEASE:
+        release(a, m);
+        break;
+    case MOTION_STICK:
+        stick(a, m);
+        break;
+    case MOTION_SLIP:
+        slip(a, m);
+        break;
+    }
+
+    // what holds after each of them; a gap of rounding is no force that pulls
+    if (!motion_wall_is_rigid(m)) {
+        m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0);
+    }
+    report->holds = m->state[SLOT_CONTACT] != 0;
+    check_invariants(a, m);
+}
+
+// --- from outside ------------------------------------------------------------------------------
+
+void motion_start(const arm *a, motion *m, double angle, double velocity)
+{
+    assert(a != NULL && m != NULL && isfinite(angle) && isfinite(velocity));
+    memset(m->state, 0, (size_t)m->size * sizeof(double));
+    for (int i = 0; i < m->dof; i++) {
+        state_angles(m, m->state)[i] = angle;
+        state_velocities(m, m->state)[i] = velocity;
+    }
+
+    m->state[SLOT_LAST_IMPACT] = -1;
+    m->start_energy =
+        chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
+        chain_strain_energy(a, state_angles(m, m->state));
+    m->steps = 0;
+    m->largest_penetration = m->overheld = 0;
+    motion_watch(m);
+
+    double g, rate;
+    chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &g, &rate);
+    // an arm on a rigid wall or a face, at rest, that moves into it counts as free until the impact
+    // that follows at once; a gap of rounding is none
+    const bool closed = g >= -START_ROUNDING * a->links * a->link_length;
+    const bool touching = closed && (m->wall_gives ? rate >= 0 : rate == 0);
+    resolve(a, m, touching, MOTION_REACHED);
+    m->start_energy += motion_wall_energy(a, m, m->state); // of a depth by rounding
+    check_invariants(a, m);
+}
+
+bool motion_starts_in_contact(const motion *m)
+{
+    assert(m != NULL);
+    // what goes into a wall that gives is in contact, however hard the wall throws it back
+    const bool leaves =
+        m->wall_gives && m->state[SLOT_GAP_VELOCITY] >= 0 && m->state[SLOT_GAP_ACCELERATION] > 0;
+    return m->state[SLOT_CONTACT] != 0 && !leaves;
+}
+
+void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
+{
+    assert(a != NULL && m != NULL && report != NULL && isfinite(impulse));
+    double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    double *response = m->scratch, before = chain_kinetic_energy(a, q, w);
+
+    *report = (motion_report){.event = MOTION_REACHED};
+    chain_tip_response(a, m->links, q, response);
+    for (int i = 0; i < m->dof; i++) {
+        w[i] += impulse * response[i];
+    }
+    m->state[SLOT_EXTERNAL_WORK] += chain_kinetic_energy(a, q, w) - before;
+
+    // in contact the wall takes up the part of the push that is directed into it
+    if (m->wall_gives) {
+        resolve(a, m, contact && face_follows(a, m), MOTION_REACHED);
+    } else {
+        const double speed = chain_penetration_rate(a, q, w) - m->state[SLOT_FACE_VELOCITY];
+        if (contact && speed > TOUCH_SPEED) {
+            report->event = MOTION_IMPACT;
+            impact(a, m, report);
+        } else {
+            // a speed that is only rounding causes neither an impact nor a release
+            resolve(a, m, contact && speed >= -TOUCH_SPEED, MOTION_REACHED);
+        }
+    }
+    report->holds = m->state[SLOT_CONTACT] != 0;
+    check_invariants(a, m);
+}
+
+void motion_retorque(const arm *a, motion *m, double before)
+{
+    assert(a != NULL && m != NULL);
+    if (motion_unresolved(a, m)) {
+        return; // an instant's accelerations say nothing: the next step finds out
+    }
+    motion_note_change(m);
+
+    // a stuck hub: friction takes up what the motor does, the rest stays
+    double *state = m->state;
+    const bool sticks = contact_state_of(state).friction == HUB_STICK;
+    double friction = state[SLOT_FRICTION_TORQUE] - (a->motor.torque - before);
+    if (sticks && !m->electric && m->dof > 1 && fabs(friction) < a->motor.stiction * (1 - 1e-9)) {
+        state[SLOT_FRICTION_TORQUE] = friction;
+        motion_end_stride(m); // that was with the other torque
+        return;
+    }
+
+    // a moving hub keeps sliding in its direction, unless the contact is lost
+    bool moves = !sticks && state_velocities(m, state)[0] != 0;
+    if (moves && m->engine->retorque != NULL) {
+        m->engine->retorque(a, m, a->motor.torque - before);
+    } else {
+        motion_evaluate(a, m, state);
+    }
+    if (!moves || (state[SLOT_CONTACT] != 0 && state[SLOT_FORCE] <= 0)) {
+        resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_REACHED);
+        check_invariants(a, m);
+        return;
+    }
+    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
+           (size_t)m->dof * sizeof(double));
+    state[SLOT_JUMPED] = 1;
+}
+
+void motion_rebind(const arm *before, const arm *after, motion *m)
+{
+    assert(before != NULL && after != NULL && m != NULL && after->dof == m->dof);
+    const double *q = state_angles(m, m->state);
+    motion_note_change(m);
+    motion_follow_arm(after, m);
+    m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
+    const bool contact = m->state[SLOT_CONTACT] != 0;
+    resolve(after, m, contact && (!m->wall_gives || face_follows(after, m)), MOTION_REACHED);
+    check_invariants(after, m);
+}

@@ -1,0 +1,263 @@
+#include "src/contact/dense_location.h"
+
+#include <math.h>
+
+#include "src/contact/locate.h"
+
+#define ROOT_RESOLUTION 1e-16 // [s]
+#define SAME_PEAK       1e-13 // share of a peak that makes no difference
+
+enum { MOST_CUTS = 40, MOST_ITERATIONS = 100 };
+
+// A function at one instant of the stride.
+typedef struct point {
+    double time; // since the stride's start [s]
+    glance at;
+} point;
+
+// Where the cubic through both ends' values and slopes, the time over the value, is zero: for a
+// function that falls all the way; else the root of the chord.
+static double guess_root(point lo, point hi)
+{
+    const double fall = lo.at.value - hi.at.value, length = hi.time - lo.time;
+    const double s = lo.at.value / fall, chord = lo.time + length * s;
+    if (!(lo.at.slope < 0 && hi.at.slope < 0)) {
+        return chord;
+    }
+    const double start = s * (1 - s) * (1 - s) / lo.at.slope, end = s * s * (s - 1) / hi.at.slope;
+    const double guess = lo.time + length * s * s * (3 - 2 * s) - fall * (start + end);
+    return guess > lo.time && guess < hi.time ? guess : chord;
+}
+
+// The root of a function that falls from `lo` to `hi`, the function taken from `look`, its slope
+// too, and `bend` that bounds its second derivative: Newton's method within the bracket, halved
+// where that leaves it or gains too little.
+static double root_between(const arm *a, const motion *m, watch w, point lo, point hi, double bend)
+{
+    double from = lo.time, to = hi.time;
+    double t = guess_root(lo, hi);
+    double width = to - from;
+
+    for (int i = 0; i < MOST_ITERATIONS; i++) {
+        if (!(t > from && t < to)) {
+            t = 0.5 * (from + to);
+        }
+        glance g = m->engine->look(a, m, w, t);
+        if (g.value > 0) {
+            from = t;
+        } else {
+            to = t;
+        }
+
+        // end where the estimate has settled, the next correction would be below the resolution of
+        // time, or the bracket has closed
+        double next = t - g.value / g.slope;
+        const double step = fabs(next - t), resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
+        if (step <= resolution || bend * step * step <= resolution * fabs(g.slope) ||
+            to - from <= resolution) {
+            return fmin(fmax(next, lo.time), hi.time);
+        }
+
+        // three steps that do not halve the bracket are followed by one that does
+        if (i % 3 == 2) {
+            next = to - from > 0.5 * width ? 0.5 * (from + to) : next;
+            width = to - from;
+        }
+        t = next;
+    }
+    return t;
+}
+
+// The engine's bound on the second derivative; `known` if that is what it was for an interval that
+// this one is part of and the engine's is no tighter here, else HUGE_VAL.
+static double bend_between(const arm *a, const motion *m, watch w, point lo, point hi, double known)
+{
+    return isfinite(known) && m->engine->bends_from_start
+               ? known
+               : m->engine->bend(a, m, w, lo.time, hi.time);
+}
+
+// The first fall below zero from `lo` to `hi`, both known; negative if there is none. Intervals in
+// which the bound on the second derivative excludes a fall are skipped; those in which it excludes
+// a rising slope have exactly one root; all others are bisected. Where the function is not finite
+// nothing is found: the state at the step's end reports that.
+static double first_fall(const arm *a, const motion *m, watch w, point lo, point hi, int cuts,
+                         double known)
+{
+    const double length = hi.time - lo.time;
+    const double bend = bend_between(a, m, w, lo, hi, known);
+    const double room = bend * length * length / 8;
+    if (fmin(lo.at.value, hi.at.value) > room || !isfinite(room)) {
+        return -1;
+    }
+
+    // at most one root, or no dip deeper than the tolerance
+    const bool falls = hi.at.value < 0;
+    const bool steady = fmax(lo.at.slope, hi.at.slope) + bend * length / 2 < 0;
+    const bool flat = cuts == 0 || room <= watch_tolerance(w);
+    if (steady || flat) {
+        return falls ? root_between(a, m, w, lo, hi, bend) : -1;
+    }
+
+    // each half by itself, the earlier one first
+    double time = 0.5 * (lo.time + hi.time);
+    point middle = {time, m->engine->look(a, m, w, time)};
+    if (middle.at.value < 0) {
+        return first_fall(a, m, w, lo, middle, cuts - 1, bend);
+    }
+    double first = first_fall(a, m, w, lo, middle, cuts - 1, bend);
+    return first >= 0 ? first : first_fall(a, m, w, middle, hi, cuts - 1, bend);
+}
+
+void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    if (m->engine->first_event != NULL) {
+        m->engine->first_event(a, m, h, first, any);
+    } else {
+        dense_search_event(a, m, h, first, any);
+    }
+}
+
+void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    *any = false;
+    *first = WATCH_GAP;
+
+    // each function that is watched, as far as the first fall so far
+    for (watch w = WATCH_GAP; w < WATCHES; w++) {
+        if (!watch_active(a, m, w) || (m->engine->clear != NULL && m->engine->clear(a, m, w, *h))) {
+            continue;
+        }
+        point start = {0, m->engine->look(a, m, w, 0)}, end = {*h, m->engine->look(a, m, w, *h)};
+        double fall = start.at.value < 0 ? 0 : first_fall(a, m, w, start, end, MOST_CUTS, HUGE_VAL);
+        if (fall >= 0) {
+            *any = true;
+            *first = w;
+            *h = fall;
+        }
+    }
+}
+
+// --- the largest force -------------------------------------------------------------------------
+
+static void note_force(motion *m, point p)
+{
+    motion_note_force(m, m->state[SLOT_TIME] + p.time, p.at.value);
+}
+
+// Where the force stops growing between `lo`, where it grows, and `hi`, where it falls: secants of
+// the slope within the bracket, halved where they gain too little.
+static point summit(const arm *a, const motion *m, point lo, point hi)
+{
+    point top = lo.at.value > hi.at.value ? lo : hi;
+
+    double resolution = 1e-9 * (hi.time - lo.time);
+
+    for (int i = 0; i < MOST_ITERATIONS && hi.time - lo.time > resolution; i++) {
+        double share = lo.at.slope / (lo.at.slope - hi.at.slope);
+        share = i % 3 == 2 ? 0.5 : fmin(fmax(share, 1e-3), 1 - 1e-3);
+
+        // which side of the summit it is on
+        double time = lo.time + share * (hi.time - lo.time);
+        double last = top.time;
+        top = (point){time, m->engine->force_at(a, m, time)};
+        if (fabs(time - last) <= resolution) {
+            break;
+        }
+        if (top.at.slope > 0) {
+            lo = top;
+        } else {
+            hi = top;
+        }
+    }
+    return top;
+}
+
+static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, double known)
+{
+    // no larger force is possible here, or the slope keeps its sign
+    const double length = hi.time - lo.time;
+    const double bend = bend_between(a, m, WATCH_FORCE, lo, hi, known);
+    const double most = fmax(lo.at.value, hi.at.value) + bend * length * length / 8;
+    const double change = bend * length / 2; // of the slope from the nearer end
+    if (most <= m->pulse_peak * (1 + SAME_PEAK) || fmin(lo.at.slope, hi.at.slope) > change ||
+        fmax(lo.at.slope, hi.at.slope) < -change) {
+        return;
+    }
+
+    if (cuts == 0) {
+        if (lo.at.slope > 0 && hi.at.slope < 0) {
+            note_force(m, summit(a, m, lo, hi));
+        }
+        return;
+    }
+
+    // each half by itself
+    double time = 0.5 * (lo.time + hi.time);
+    point middle = {time, m->engine->force_at(a, m, time)};
+    note_force(m, middle);
+    raise_peak(a, m, lo, middle, cuts - 1, bend);
+    raise_peak(a, m, middle, hi, cuts - 1, bend);
+}
+
+void dense_peak(const arm *a, motion *m, double h)
+{
+    if (m->engine->peak != NULL) {
+        m->engine->peak(a, m, h);
+    } else {
+        dense_search_peak(a, m, h);
+    }
+}
+
+// The gap to the wall at rest and its rate at h in the stride.
+static glance rest_gap_at(const arm *a, const motion *m, double h)
+{
+    glance gap = m->engine->gap_at(a, m, h);
+    if (state_face_swings(m->state)) {
+        const wall_face face = wall_face_after(&a->wall, state_face(m->state), h);
+        gap.value -= face.position;
+        gap.slope -= face.velocity;
+    }
+    return gap;
+}
+
+void dense_deepest(const arm *a, motion *m, double h)
+{
+    enum { PIECES = 8 };
+    if (m->engine->gap_at == NULL) {
+        return;
+    }
+    point lo = {0, rest_gap_at(a, m, 0)};
+    for (int i = 1; i <= PIECES; i++) {
+        const double time = i * h / PIECES;
+        const point hi = {time, rest_gap_at(a, m, time)};
+
+        // it turns back within: false position on the rate, the end that stays halved
+        double from = lo.time, to = hi.time, v0 = lo.at.slope, v1 = hi.at.slope;
+        for (int k = 0; k < MOST_CUTS && v0 < 0 && v1 > 0 && to - from > 1e-9 * h; k++) {
+            const double t = from + (to - from) * v0 / (v0 - v1);
+            const glance g = rest_gap_at(a, m, t);
+            m->largest_penetration = fmax(m->largest_penetration, -g.value);
+            if (g.slope < 0) {
+                from = t, v0 = g.slope, v1 /= 2;
+            } else {
+                to = t, v1 = g.slope, v0 /= 2;
+            }
+        }
+        lo = hi;
+    }
+}
+
+void dense_search_peak(const arm *a, motion *m, double h)
+{
+    enum { CUTS = 4 };
+    if (m->engine->bounded != NULL && m->engine->bounded(a, m, h, m->pulse_peak)) {
+        return;
+    }
+
+    // both ends, and what may rise between them
+    point start = {0, m->engine->force_at(a, m, 0)}, end = {h, m->engine->force_at(a, m, h)};
+    note_force(m, start);
+    note_force(m, end);
+    raise_peak(a, m, start, end, CUTS, HUGE_VAL);
+}

@@ -1,0 +1,375 @@
+// Between events: a step of the contact machine, which ends at the first of them.
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/extremes.h"
+#include "src/base/instant.h"
+#include "src/base/sincos.h"
+#include "src/contact/contact_machine.h"
+#include "src/contact/dense_location.h"
+#include "src/contact/locate.h"
+
+#define MOST_HALVINGS   8    // of a step that does not converge or makes energy
+#define LEAST_AFTER_CUT 1e-9 // share of a step; what is left of one before a cut is longer
+// What a stuck hub may be held by beyond stiction: a share of the torques, and of what rounding
+// makes of a slow soft arm's [N m].
+#define HOLD_SHARE    1e-6
+#define HOLD_ROUNDING 1e-8
+// Angles, velocities and accelerations below this are set to zero [rad, rad/s, rad/s2]. Squares of
+// larger ones are normal numbers: so a motion that dies away never computes with denormal numbers,
+// which are many times slower on some processors.
+#define FADED 1e-150
+
+// Notes what the friction of a stuck hub exceeds stiction by, beyond rounding, which only a slip
+// that was missed explains. Stepping engines may be a step late.
+static void note_hold(const arm *a, motion *m)
+{
+    const double *state = m->state;
+    const double beyond = fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction;
+    if (state[SLOT_FRICTION] != HUB_STICK || !engine_is_dense(m->engine) || !(beyond > 0)) {
+        return;
+    }
+    const double largest = larger(a->motor.stiction, fabs(state[SLOT_MOTOR_TORQUE]));
+    if (beyond > HOLD_SHARE * largest + HOLD_ROUNDING * motion_rounding(a, m)) {
+        m->overheld = larger(beyond, m->overheld);
+    }
+}
+
+// Counts a step of this length [s].
+static void count_step(motion *m, double passed, double step)
+{
+    const double steps = passed / step - 1e-6;
+    const long whole = (long)steps; // rounded up, and one at least
+    m->steps += steps > 0 ? whole + ((double)whole < steps) : 1;
+    m->largest_penetration = larger(-state_rest_gap(m->state), m->largest_penetration);
+}
+
+static void accept(motion *m, double step)
+{
+    double *previous = m->state;
+    m->state = m->trial;
+    m->trial = previous;
+    m->reached = m->holds;
+    count_step(m, m->state[SLOT_TIME] - previous[SLOT_TIME], step);
+    if (!motion_wall_is_rigid(m)) {
+        m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
+    }
+}
+
+// Brings a motion that dies away to rest: what has faded below the limit becomes exactly zero. A
+// faded velocity is the sign of such a motion.
+static void come_to_rest(motion *m)
+{
+    const double *w = state_velocities(m, m->state);
+    const double *acceleration = state_accelerations(m, m->state);
+    bool fading = false;
+    for (int i = 0; i < m->dof && !fading; i++) {
+        fading = fabs(w[i]) < FADED && (w[i] != 0 || acceleration[i] != 0);
+    }
+    if (fading) {
+        motion_end_stride(m);
+    }
+    for (int i = SLOT_COUNT; fading && i < m->size; i++) {
+        m->state[i] = fabs(m->state[i]) < FADED ? 0 : m->state[i];
+    }
+}
+
+static motion_event event_of(const motion *m, watch w)
+{
+    // the wall: contact begins with an impact only at a speed, and only if it does not give
+    switch (w) {
+    case WATCH_GAP:
+        if (m->wall_gives) {
+            return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
+        }
+        return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
+    case WATCH_FORCE:
+        return MOTION_RELEASE;
+
+    // the hub
+    case WATCH_HUB:
+        return MOTION_STICK;
+    case WATCH_STICTION:
+        return MOTION_SLIP;
+    case WATCH_CURRENT:
+    case WATCHES:
+        break;
+    }
+    return MOTION_REACHED;
+}
+
+// Tries a step of *h, shorter if need be; *h and m->trial end at the first event, if there is
+// one.
+static status step_to_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    status s = motion_try_step(a, m, *h);
+    for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
+        *h /= 2;
+        s = motion_try_step(a, m, *h);
+    }
+    return s == STATUS_OK ? locate_first_event(a, m, h, first, any) : s;
+}
+
+// Ends a step of the `wanted` length that was just tried at m->cut if it goes beyond, or ends
+// within rounding of it.
+static status cut_step(const arm *a, motion *m, double step, status tried, double wanted, double *h,
+                       watch *first, bool *any)
+{
+    double left = m->cut - m->state[SLOT_TIME];
+    double reached = tried == STATUS_OK ? *h : wanted;
+    double spare = tried == STATUS_OK && *any ? 0 : LEAST_AFTER_CUT * step;
+    if (reached <= left - spare) {
+        return tried;
+    }
+    *h = left;
+    *any = false;
+    status s = tried == STATUS_OK ? motion_try_step(a, m, left) : tried;
+    return s == STATUS_OK ? s : step_to_event(a, m, h, first, any);
+}
+
+// A step of a stepping engine, which locates events and peaks by further, shorter steps.
+static status tried_step(const arm *a, motion *m, double step, double wanted, double *h,
+                         watch *first, bool *any)
+{
+    status s = step_to_event(a, m, h, first, any);
+    s = cut_step(a, m, step, s, wanted, h, first, any);
+    if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
+        s = locate_peak(a, m, *h);
+    }
+    return s;
+}
+
+// Whether a rigid wall holds the arm where the contact equations are singular: folded over the
+// hub's axis.
+static bool held_folded(const arm *a, motion *m)
+{
+    return m->state[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m) &&
+           chain_is_folded(a, state_angles(m, m->state));
+}
+
+// Whether the step just made by a stepping engine led an arm on a rigid flat wall through a fold,
+// where every link goes from one side of across the wall to the other. Strides of dense engines
+// keep clear of it.
+static bool went_through_fold(const arm *a, const motion *m)
+{
+    const double *before = state_angles(m, m->trial), *now = state_angles(m, m->state);
+    bool through = (!engine_is_dense(m->engine) || m->engine->kept_for != NULL) &&
+                   m->trial[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m) &&
+                   a->wall.kind == WALL_PLANE && a->links > 1;
+    for (int k = a->first; k < a->dof && through; k++) {
+        const double was =
+            inline_cos(before[k]) * a->wall.cosine + inline_sin(before[k]) * a->wall.sine;
+        const double is = inline_cos(now[k]) * a->wall.cosine + inline_sin(now[k]) * a->wall.sine;
+        through = was * is < 0;
+    }
+    return through;
+}
+
+// Unused length of the stride that the state keeps [s].
+static double left_of_stride(motion *m)
+{
+    const double *kept = state_kept(m, m->state);
+    return kept[KEPT_LENGTH] - kept[KEPT_USED];
+}
+
+// The body of motion_look_far, for an arm that can move on.
+static void look_ahead(const arm *a, motion *m, double until, double far, double step)
+{
+    const double now = m->state[SLOT_TIME];
+    double h = motion_begin_stride(a, m, until - now, step);
+    const bool begun = h > 0;
+    if (begun && far > until) {
+        h = larger(smaller(left_of_stride(m), far - now), h);
+    }
+    watch first = WATCH_GAP;
+    bool any = false;
+
+    // to the first event, the cut or the stride's end; an event at the instant of the cut is before
+    // it
+    if (begun) {
+        dense_first_event(a, m, &h, &first, &any);
+        if (now + h > m->cut) {
+            h = m->cut - now;
+            any = false;
+        }
+        const bool touches = m->state[SLOT_CONTACT] != 0;
+        if (touches) {
+            dense_peak(a, m, h);
+        }
+        // an arm that has left a swinging face may still be deeper than it stands at rest
+        if (!motion_wall_is_rigid(m) && (touches || state_face_swings(m->state))) {
+            dense_deepest(a, m, h);
+        }
+    }
+    m->ahead.known = true;
+    m->ahead.begun = begun;
+    m->ahead.length = h;
+    m->ahead.any = any;
+    m->ahead.first = first;
+}
+
+void motion_look_ahead(const arm *a, motion *m, double until, double step)
+{
+    motion_look_far(a, m, until, until, step);
+}
+
+void motion_look_far(const arm *a, motion *m, double until, double far, double step)
+{
+    assert(a != NULL && m != NULL && step > 0 && engine_is_dense(m->engine));
+    assert(!(far > until) || m->engine->hub_at != NULL);
+    if (!m->starved && !held_folded(a, m)) {
+        look_ahead(a, m, until, far, step);
+    }
+}
+
+// The stride of a dense engine.
+static status dense_stride(const arm *a, motion *m, double until, double step, double *h,
+                           watch *first, bool *any)
+{
+    if (!m->ahead.known) {
+        look_ahead(a, m, until, until, step);
+    }
+    m->ahead.known = false;
+    *h = m->ahead.length;
+    *any = m->ahead.any;
+    *first = m->ahead.first;
+    m->aim = smaller(until, m->cut);
+    if (!m->ahead.begun) {
+        double sum = 0;
+        for (int i = 0; i < m->dof; i++) {
+            sum += state_accelerations(m, m->state)[i];
+        }
+        return isfinite(sum) ? STATUS_NO_PROGRESS : STATUS_NOT_FINITE;
+    }
+    return motion_try_step(a, m, *h);
+}
+
+// A requested instant is reached to the last bit.
+static void meet_stop(motion *m, double until)
+{
+    const double stop = smaller(until, m->cut);
+    if (!instant_after(stop, m->state[SLOT_TIME])) {
+        m->state[SLOT_TIME] = stop;
+    }
+}
+
+// The stride of a dense engine where no event ends it and the engine can move the state in place;
+// m->trial gets its start. Otherwise returns false and does nothing.
+static bool glide(const arm *a, motion *m, double until, double step)
+{
+    if (m->engine->move_to == NULL || !motion_wall_is_rigid(m)) {
+        return false;
+    }
+    if (!m->ahead.known) {
+        look_ahead(a, m, until, until, step);
+    }
+    if (!m->ahead.begun || m->ahead.any) {
+        return false;
+    }
+
+    // to its end
+    double *state = m->state, *start = m->trial;
+    const double h = m->ahead.length;
+    memcpy(start, state, (size_t)m->size * sizeof *state);
+    if (!m->engine->move_to(a, m, h, &m->reached)) {
+        return false;
+    }
+    m->ahead.known = false;
+    m->made = h;
+
+    // time and the ledger
+    state[SLOT_TIME] += h;
+    state[SLOT_JUMPED] = state[SLOT_IMPULSE] = 0;
+    motion_book(a, m, state_angles(m, start)[0], state);
+    count_step(m, state[SLOT_TIME] - start[SLOT_TIME], step);
+    come_to_rest(m);
+    meet_stop(m, until);
+    return true;
+}
+
+// The step of an arm that is held still: time passes up to `until` or the cut [s], and its force
+// stays the same. m->trial gets its start.
+static void rest(motion *m, double until, double step)
+{
+    double *state = m->state;
+    const double now = state[SLOT_TIME], h = smaller(m->cut - now, until - now);
+    if (state[SLOT_CONTACT] != 0) {
+        motion_note_force(m, now, state[SLOT_FORCE]);
+    }
+    memcpy(m->trial, state, (size_t)m->size * sizeof *state);
+    state[SLOT_TIME] += h;
+    state_quadratures(m, state)[QUADRATURE_FORCE] += h * state[SLOT_FORCE];
+    m->reached = unknown_energy;
+    m->made = h;
+    count_step(m, state[SLOT_TIME] - now, step);
+    meet_stop(m, until);
+}
+
+status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
+{
+    assert(a != NULL && m != NULL && report != NULL && step > 0);
+    *report = (motion_report){.event = MOTION_REACHED};
+
+    // a step examined by motion_look_ahead needs no search any more
+    if (!m->ahead.known && (m->starved || held_folded(a, m))) {
+        m->failure_time = m->state[SLOT_TIME];
+        return m->starved ? STATUS_NO_MEMORY : STATUS_FOLDED;
+    }
+    if ((m->ahead.known || !motion_held_still(m)) && glide(a, m, until, step)) {
+        return STATUS_OK;
+    }
+    if (motion_held_still(m)) {
+        rest(m, until, step);
+        return STATUS_OK;
+    }
+
+    // as far as accuracy allows, the cut, or the first event
+    double h;
+    watch first = WATCH_GAP;
+    bool any = false;
+    status s;
+    if (engine_is_dense(m->engine)) {
+        s = dense_stride(a, m, until, step, &h, &first, &any);
+    } else {
+        double wanted = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step);
+        h = wanted;
+        s = tried_step(a, m, step, wanted, &h, &first, &any);
+    }
+    if (s != STATUS_OK) {
+        m->failure_time = m->state[SLOT_TIME] + h;
+        return s;
+    }
+
+    accept(m, step);
+    m->made = h;
+    note_hold(a, m);
+    const bool folded = any && (first == WATCH_GAP || first == WATCH_FORCE) &&
+                        motion_wall_is_rigid(m) && chain_is_folded(a, state_angles(m, m->state));
+    if (folded || went_through_fold(a, m)) {
+        m->failure_time = m->state[SLOT_TIME];
+        return STATUS_FOLDED;
+    }
+    if (any) {
+        report->event = event_of(m, first);
+    } else {
+        come_to_rest(m);
+    }
+    meet_stop(m, until);
+    return STATUS_OK;
+}
+
+double *motion_between(const arm *a, motion *m, double time)
+{
+    assert(a != NULL && m != NULL && isfinite(time));
+    // step again from the step's start, which is where m->trial was left, into m->between
+    double *now = m->state, *start = m->trial;
+    m->state = start;
+    m->trial = m->between;
+    m->aim = time;
+    status s = motion_try_step(a, m, time - start[SLOT_TIME]);
+    m->state = now;
+    m->trial = start;
+    m->between[SLOT_TIME] = time;
+    return s == STATUS_OK ? m->between : NULL;
+}

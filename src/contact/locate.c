@@ -1,0 +1,379 @@
+#include "src/contact/locate.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TOUCH_TOLERANCE   1e-12 // penetration that counts as crossing the wall [m]
+#define GAP_ROUNDING      4e-15 // penetration that may be rounding [m]
+#define TORQUE_TOLERANCE  1e-12 // excess that counts as breaking away [N m]
+#define UNRESOLVED_IMPACT 0.1 // share of a step that an impact takes where steps do not resolve it
+#define LOCATION_TIME     1e-15 // width to which the bracket of an event is narrowed [s]
+
+// What the law of a wall that gives says of an arm in contact.
+static double law_at(const arm *a, const double *state)
+{
+    return wall_force(&a->wall, -state[SLOT_GAP], -state[SLOT_GAP_VELOCITY]);
+}
+
+static double law_slope_at(const arm *a, const double *state)
+{
+    return wall_force_slope(&a->wall, -state[SLOT_GAP], -state[SLOT_GAP_VELOCITY],
+                            -state[SLOT_GAP_ACCELERATION]);
+}
+
+// Whether the arm is in contact with a wall that gives, and no constraint holds it: the watched gap
+// is then the depth, and the watched force that of the law, negative where it would pull.
+static bool within_wall(const motion *m, const double *state)
+{
+    return m->wall_gives && state[SLOT_CONTACT] != 0;
+}
+
+// Positive on the admissible side.
+static double watch_value(const arm *a, const motion *m, const double *state, watch w)
+{
+    switch (w) {
+    case WATCH_GAP:
+        return within_wall(m, state) ? -state[SLOT_GAP] : state[SLOT_GAP];
+    case WATCH_FORCE:
+        return within_wall(m, state) ? law_at(a, state) : state[SLOT_FORCE];
+    case WATCH_HUB:
+        return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
+    case WATCH_STICTION:
+        return a->motor.stiction - fabs(state[SLOT_FRICTION_TORQUE]);
+    case WATCH_CURRENT:
+    case WATCHES:
+        break;
+    }
+    return 1;
+}
+
+double watch_tolerance(watch w)
+{
+    return w == WATCH_GAP        ? TOUCH_TOLERANCE
+           : w == WATCH_FORCE    ? FORCE_TOLERANCE
+           : w == WATCH_STICTION ? TORQUE_TOLERANCE
+                                 : 0;
+}
+
+// Where in (0, 1) a cubic with the given end values and end slopes (per step) is least, if that
+// lies inside and the cubic falls at the start and rises at the end; else -1.
+static double cubic_dip(double v0, double v1, double d0, double d1)
+{
+    if (!(d0 < 0 && d1 > 0)) {
+        return -1;
+    }
+    // derivative of the Hermite cubic: d0 + 2 b s + 3 c s^2
+
+    double c = d0 + d1 - 2 * (v1 - v0), b = 3 * (v1 - v0) - 2 * d0 - d1;
+    double root = sqrt(fmax(b * b - 3 * c * d0, 0));
+    return b + root != 0 ? -d0 / (b + root) : -1;
+}
+
+// Slopes of a watched function at both ends of the step from m->state to m->trial, per step. False
+// where they are not known.
+static bool watch_slopes(const arm *a, const motion *m, double h, watch w, double *d0, double *d1)
+{
+    const double *state = m->state, *trial = m->trial;
+
+    const bool within = within_wall(m, state);
+
+    // states contain the slopes of gap and hub velocity; the law of a wall that gives has its own
+    // slope
+    if (w == WATCH_GAP) {
+        double sign = within ? -1 : 1;
+        *d0 = sign * state[SLOT_GAP_VELOCITY] * h;
+        *d1 = sign * trial[SLOT_GAP_VELOCITY] * h;
+    } else if (w == WATCH_FORCE && within) {
+        *d0 = law_slope_at(a, state) * h;
+        *d1 = law_slope_at(a, trial) * h;
+    } else if (w == WATCH_HUB) {
+        *d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
+        *d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;
+    } else if (w == WATCH_FORCE) {
+        // parabola through both ends with the mean the quadrature gives
+        double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
+                       state_quadratures(m, m->state)[QUADRATURE_FORCE]) /
+                      h;
+        double rise = trial[SLOT_FORCE] - state[SLOT_FORCE];
+        double curve = 3 * (state[SLOT_FORCE] + trial[SLOT_FORCE]) - 6 * mean;
+        *d0 = rise - curve;
+        *d1 = rise + curve;
+    }
+    return w != WATCH_STICTION;
+}
+
+// Hermite's cubic at s in (0, 1).
+static double cubic(double s, double v0, double v1, double d0, double d1)
+{
+    double t = 1 - s;
+    return t * t * (1 + 2 * s) * v0 + s * t * t * d0 + s * s * (3 - 2 * s) * v1 - s * s * t * d1;
+}
+
+// Fraction of the step at which a function that is admissible at both ends may dip below zero in
+// between; -1 if there is no sign of a dip.
+static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
+{
+    double d0, d1;
+
+    if (!watch_slopes(a, m, h, w, &d0, &d1)) {
+        // near the limit of friction the middle of the step is checked
+        return fmin(v0, v1) < 0.2 * a->motor.stiction ? 0.5 : -1;
+    }
+
+    // the least value of the cubic, if it comes near zero
+    double s = cubic_dip(v0, v1, d0, d1);
+    if (s <= 1e-6 || s >= 1) { // a dip right at the start is the edge it starts from
+        return -1;
+    }
+    return cubic(s, v0, v1, d0, d1) < 1e-3 * fmax(v0, v1) ? s : -1;
+}
+
+// A first guess of where the function crosses zero between v0 > 0 and v1 < 0: the root of Hermite's
+// cubic by a few steps of false position, or of the straight line.
+static double guess_crossing(const arm *a, const motion *m, double h, watch w, double v0, double v1)
+{
+    double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
+
+    if (!watch_slopes(a, m, h, w, &d0, &d1)) {
+        return s;
+    }
+
+    // false position, the end that stays halved
+    for (int i = 0; i < 12; i++) {
+        double v = cubic(s, v0, v1, d0, d1);
+        if (v > 0) {
+            lo = s, v_lo = v, v_hi /= 2;
+        } else {
+            hi = s, v_hi = v, v_lo /= 2;
+        }
+        s = lo + (hi - lo) * v_lo / (v_lo - v_hi);
+    }
+    return s;
+}
+
+// Where a function changes sign within a step, and its values there above its edge.
+typedef struct bracket {
+    double lo, v_lo, hi, v_hi;
+    double edge; // in the function's unit, commonly zero
+} bracket;
+
+// Narrows a bracket until it is as narrow as LOCATION_TIME; m->trial ends as the state at its far
+// side. Starts at `s` and goes on by Chandrupatla's method: inverse quadratic interpolation where
+// the last three values allow it, else bisection.
+static status narrow(const arm *a, motion *m, watch w, double s, bracket *b)
+{
+    // the velocities of an implicit step are differences of angles over it: it must not be tiny
+    const double least = motion_unresolved(a, m) ? 1e-6 * m->nominal_step : LOCATION_TIME;
+    const double resolution = fmax(least, LOCATION_TIME * m->state[SLOT_TIME]);
+
+    double evaluated = -1;
+    for (int i = 0; i < 200 && b->hi - b->lo > resolution; i++) {
+        s = fmin(fmax(s, b->lo + 0.5 * resolution), b->hi - 0.5 * resolution);
+        status failed = motion_try_step(a, m, s);
+        if (failed != STATUS_OK) {
+            return failed;
+        }
+        evaluated = s;
+
+        // the bracket, and the end that the new point replaces
+        double v = watch_value(a, m, m->trial, w) - b->edge, other, v_other, old, v_old;
+        if (v > 0) {
+            old = b->lo, v_old = b->v_lo, other = b->hi, v_other = b->v_hi;
+            b->lo = s, b->v_lo = v;
+        } else {
+            old = b->hi, v_old = b->v_hi, other = b->lo, v_other = b->v_lo;
+            b->hi = s, b->v_hi = v;
+        }
+
+        // where the three values let an inverse parabola go, else the middle
+        double xi = (s - other) / (old - other), phi = (v - v_other) / (v_old - v_other);
+        double t = 0.5;
+        if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
+            t = v / (v_other - v) * v_old / (v_other - v_old) +
+                (old - s) / (other - s) * v / (v_old - v) * v_other / (v_old - v_other);
+        }
+        // an estimate that has settled is stepped past, so that the bracket closes on it
+        double next = s + t * (other - s);
+        s = fabs(next - s) < 0.5 * resolution ? s + copysign(resolution, other - s) : next;
+    }
+    return evaluated == b->hi ? STATUS_OK : motion_try_step(a, m, b->hi);
+}
+
+// Looks for the first instant in (0, *h] at which `w` leaves its admissible side; if there is one,
+// *h and m->trial move there.
+static status search(const arm *a, motion *m, watch w, double *h, bool *found)
+{
+    double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
+    double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(a, m, *h, w, v0, v1) : 0.5 * *h;
+    double lo = 0, hi = *h, tolerance = watch_tolerance(w);
+
+    // admissible at the end: only a dip in between can matter
+    *found = false;
+    if (v1 >= -tolerance) {
+        double dip = v0 > 0 && v1 > 0 ? suspected_dip(a, m, *h, w, v0, v1) : -1;
+        if (dip < 0) {
+            return STATUS_OK;
+        }
+        status s = motion_try_step(a, m, dip * *h);
+        v1 = watch_value(a, m, m->trial, w);
+        if (s != STATUS_OK || v1 >= -tolerance) {
+            return s == STATUS_OK ? motion_try_step(a, m, *h) : s;
+        }
+        hi = dip * *h;
+        guess = 0.5 * hi;
+    }
+
+    // it starts at zero (a release, a break-away): find where it is clearly admissible, and on the
+    // way where a gap is first found closed beyond rounding
+    const double beyond = fmin(v0, 0) - GAP_ROUNDING;
+    double closed = hi, v_closed = v1;
+    if (v0 <= tolerance) {
+        double s = hi;
+        for (int i = 0; i < 20; i++) {
+            s /= 2;
+            status failed = motion_try_step(a, m, s);
+            if (failed != STATUS_OK) {
+                return failed;
+            }
+            double v = watch_value(a, m, m->trial, w);
+            if (v > 0) {
+                lo = s;
+                v0 = v;
+                break;
+            }
+            hi = s;
+            v1 = v;
+            if (v < beyond) {
+                closed = hi, v_closed = v;
+            }
+        }
+        guess = 0.5 * (lo + hi);
+    }
+
+    // narrowed to the width that time resolves; a gap that was nowhere found open closes where it
+    // exceeds its rounding: this ends flights too low to be told from rounding (after an impact
+    // that leaves the arm with hardly any force)
+    double edge = 0;
+    if (w == WATCH_GAP && !(v0 > 0) && !m->wall_gives) {
+        edge = beyond;
+        hi = closed;
+        v1 = v_closed;
+        guess = 0.5 * hi;
+    }
+    *found = true;
+    bracket between = {lo, v0 - edge, hi, v1 - edge, edge};
+    status s = narrow(a, m, w, guess, &between);
+    hi = between.hi;
+
+    // an unresolved impact happens within its step: nothing is located inside its first part
+    double least = fmin(*h, UNRESOLVED_IMPACT * m->nominal_step);
+    bool within_impact = m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
+    if (s == STATUS_OK && within_impact && motion_unresolved(a, m)) {
+        hi = least;
+        s = motion_try_step(a, m, hi);
+    }
+    *h = hi;
+    return s;
+}
+
+status locate_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+{
+    status s = STATUS_OK;
+    *any = false;
+    *first = WATCH_GAP;
+    for (watch w = WATCH_GAP; s == STATUS_OK && w <= WATCH_STICTION && !motion_held_still(m); w++) {
+        bool found = false;
+        if (watch_active(a, m, w)) {
+            s = search(a, m, w, h, &found);
+        }
+        *first = found ? w : *first;
+        *any |= found;
+    }
+    return s;
+}
+
+// --- the largest depth and force ---------------------------------------------------------------
+
+// Records the deepest point of a step within which the arm turns back, m->trial being its end.
+static status locate_depth(const arm *a, motion *m, double h)
+{
+    enum { MOST_LOOKS = 40 };
+    double v0 = -m->state[SLOT_GAP_VELOCITY], v1 = -m->trial[SLOT_GAP_VELOCITY], lo = 0, hi = h;
+    if (motion_wall_is_rigid(m) || !(v0 > 0 && v1 < 0)) {
+        return STATUS_OK;
+    }
+
+    // false position on the rate, the end that stays halved
+    memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
+    for (int i = 0; i < MOST_LOOKS && hi - lo > 1e-9 * h; i++) {
+        double s = lo + (hi - lo) * v0 / (v0 - v1); // false position, the end that stays halved
+        status failed = motion_try_step(a, m, s);
+        if (failed != STATUS_OK) {
+            return failed;
+        }
+        double v = -m->trial[SLOT_GAP_VELOCITY];
+        m->largest_penetration = fmax(m->largest_penetration, -state_rest_gap(m->trial));
+        if (v > 0) {
+            lo = s, v0 = v, v1 /= 2;
+        } else {
+            hi = s, v1 = v, v0 /= 2;
+        }
+        if (v == 0) {
+            break;
+        }
+    }
+
+    // the step's end, as it was
+    memcpy(m->trial, m->between, (size_t)m->size * sizeof(double));
+    return STATUS_OK;
+}
+
+status locate_peak(const arm *a, motion *m, double h)
+{
+    status looked = locate_depth(a, m, h);
+    if (looked != STATUS_OK) {
+        return looked;
+    }
+
+    // the ends
+    double f0 = m->state[SLOT_FORCE], f1 = m->trial[SLOT_FORCE], t0 = m->state[SLOT_TIME];
+    motion_note_force(m, t0, f0);
+    motion_note_force(m, t0 + h, f1);
+
+    // the summit of the parabola through both ends and the mean, if there is one inside
+    double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
+                   state_quadratures(m, m->state)[QUADRATURE_FORCE]) /
+                  h;
+    double curve = 3 * (f0 + f1) - 6 * mean, slope = f1 - f0 - curve;
+    if (!(slope > 0 && slope + 2 * curve < 0)) {
+        return STATUS_OK;
+    }
+    double s = -slope / (2 * curve) * h, top = f0 + slope * (s / h) / 2;
+    if (top <= m->pulse_peak * (1 + 1e-12)) {
+        return STATUS_OK;
+    }
+
+    // closer and closer around it, the parabola through three steps
+    memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
+    for (double width = h / 8; width > h / 1000; width /= 16) {
+        double f[3];
+        s = fmin(fmax(s, width), h - width);
+        for (int i = 0; i < 3; i++) {
+            status failed = motion_try_step(a, m, s + (i - 1) * width);
+            if (failed != STATUS_OK) {
+                return failed;
+            }
+            f[i] = m->trial[SLOT_FORCE];
+            motion_note_force(m, m->trial[SLOT_TIME], f[i]);
+        }
+        double second = f[0] - 2 * f[1] + f[2];
+        if (second >= 0) {
+            break;
+        }
+        double move = 0.5 * (f[0] - f[2]) / second;
+        s += fmin(fmax(move, -1), 1) * width;
+    }
+
+    memcpy(m->trial, m->between, (size_t)m->size * sizeof(double));
+    return STATUS_OK;
+}

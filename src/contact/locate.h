@@ -1,0 +1,46 @@
+// What happens within a step, and when: located by stepping again from the step's start. Where the
+// engine is dense, dense_location.h does it in the stride itself.
+#pragma once
+
+#include "src/contact/motion.h"
+
+#define FORCE_TOLERANCE 1e-9  // tension that counts as a release [N]
+#define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
+
+// Whether a fall of the watched function below zero would end the motion's present contact state.
+static inline bool watch_active(const arm *a, const motion *m, watch w)
+{
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
+    bool held = m->dof == 1 && contact && motion_wall_is_rigid(m);
+
+    // a watch is of use only where its event could end the present state
+    switch (w) {
+    case WATCH_GAP:
+        return (!contact || m->wall_gives) && wall_stands(&a->wall);
+    case WATCH_FORCE:
+        return contact;
+    case WATCH_HUB:
+        return !stuck && !held && a->motor.stiction > 0;
+    case WATCH_STICTION:
+        return stuck && !held;
+    case WATCH_CURRENT:
+        return m->electric && a->motor.current_limit < HUGE_VAL;
+    case WATCHES:
+        break;
+    }
+    return false;
+}
+
+// Tolerance of the watched function: how far below zero still counts as admissible, in its unit.
+double watch_tolerance(watch w);
+
+// Looks for the first function that leaves its admissible side within (0, *h], m->trial being the
+// state after a step *h. If there is one, *any is true, *first says which, and *h and m->trial move
+// to the far side of that instant. Returns why, if a step fails.
+status locate_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);
+
+// Records the largest force within the step from m->state to m->trial, located between its ends by
+// refining a parabola, and the deepest point of an arm that turns back within a wall that gives.
+// m->trial is left as it was.
+status locate_peak(const arm *a, motion *m, double h);

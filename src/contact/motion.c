@@ -1,0 +1,277 @@
+#include "src/contact/motion.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/extremes.h"
+#include "src/contact/edge_limits.h"
+
+// The remainders of decays change little within this share of the time since the event.
+#define GRADING 0.2
+
+// A link that friction holds so near the wall rests on it [m].
+#define RESTING_GAP 1e-12
+
+// A few units in the last place of an acceleration, relative to 1e-9, which counts as zero in a
+// slow soft arm.
+#define LAST_BITS 4e-4
+
+void motion_evaluate(const arm *a, motion *m, double *state)
+{
+    chain_reaction r;
+    contact_state mode = contact_state_of(state);
+    mode.current = state_quadratures(m, state)[QUADRATURE_CURRENT];
+    chain_accelerations(a, m->links, state_angles(m, state), state_velocities(m, state), mode,
+                        state_accelerations(m, state), &r);
+    state[SLOT_MOTOR_TORQUE] = r.motor_torque;
+    state[SLOT_FORCE] = r.force;
+    state[SLOT_FRICTION_TORQUE] = r.friction;
+    state[SLOT_GAP_ACCELERATION] = r.gap_acceleration;
+    state[SLOT_GAP] = r.gap;
+    state[SLOT_GAP_VELOCITY] = r.gap_velocity;
+    state[SLOT_VISCOUS_POWER] = r.viscous_power;
+    state[SLOT_DAMPING_POWER] = r.damping_power;
+    state[SLOT_WALL_POWER] = r.wall_power;
+
+    // the wall's face goes with the arm in contact, else the gap is that to it
+    if (mode.contact && !motion_wall_is_rigid(m)) {
+        state[SLOT_FACE] = -r.gap;
+        state[SLOT_FACE_VELOCITY] = -r.gap_velocity;
+    } else if (state_face_swings(state)) {
+        const wall_face face = state_face(state);
+        state[SLOT_GAP] += face.position;
+        state[SLOT_GAP_VELOCITY] += face.velocity;
+        state[SLOT_GAP_ACCELERATION] += wall_face_acceleration(&a->wall, face);
+    }
+}
+
+force_bounds motion_held_forces(const arm *a, const motion *m, double *state)
+{
+    assert(a != NULL && m != NULL && state != NULL && m->dof == 1 && wall_stands(&a->wall));
+    const double one = 1, lever = chain_penetration_rate(a, state_angles(m, state), &one);
+    const double balanced = (a->motor.torque + state[SLOT_MOTOR_TORQUE]) / lever;
+    const double friction = a->motor.stiction / fabs(lever);
+    return (force_bounds){larger(balanced - friction, 0), larger(balanced + friction, 0)};
+}
+
+force_bounds motion_force_bounds(const arm *a, const motion *m, double *state)
+{
+    assert(a != NULL && m != NULL && state != NULL);
+    const contact_state now = contact_state_of(state);
+    const bool single = m->dof == 1 && wall_stands(&a->wall) && motion_wall_is_rigid(m);
+    const bool near = state[SLOT_GAP] <= RESTING_GAP && now.friction == HUB_STICK;
+    const bool rests = single && state_velocities(m, state)[0] == 0 && (now.contact || near);
+    return rests ? motion_held_forces(a, m, state)
+                 : (force_bounds){state[SLOT_FORCE], state[SLOT_FORCE]};
+}
+
+void motion_watch(motion *m)
+{
+    m->pulse_peak = -1;
+    m->pulse_peak_time = m->state[SLOT_TIME];
+}
+
+double motion_rounding(const arm *a, const motion *m)
+{
+    return motion_rounding_at(a, m->dof, state_angles(m, m->state), state_velocities(m, m->state));
+}
+
+double motion_face_rounding(const arm *a, const motion *m)
+{
+    return m->wall_has_face ? EDGE_PLACE * a->wall.stiffness : 0;
+}
+
+void motion_gap_edges(const arm *a, const motion *m, double limits[3])
+{
+    // a rounding error of the force accelerates a face by that error over its mass, and so does
+    // that of its spring, by the face's place; one without a mass returns at a rate that has the
+    // error of the place where it was left
+    const bool returns = m->wall_gives && state_face_swings(m->state);
+    const double rate = returns ? wall_face_rate(&a->wall, state_face(m->state)) : 0;
+    const double yields = m->wall_has_face ? 1 / a->wall.face_mass : 0;
+    limits[0] = EDGE_GAP;
+    limits[1] = EDGE_RATE + EDGE_PLACE * rate;
+    limits[2] = EDGE_RATE * (motion_rounding(a, m) + yields) + EDGE_PLACE * rate * rate +
+                yields * motion_face_rounding(a, m);
+    limits[2] = fmax(EDGE_MORE, limits[2]);
+}
+
+double motion_rounding_at(const arm *a, int dof, const double *q, const double *w)
+{
+    double angle = 0, rate = 0;
+    for (int i = 0; i < dof; i++) {
+        angle = larger(fabs(q[i]), angle);
+        rate = larger(fabs(w[i]), rate);
+    }
+    return 1 + LAST_BITS * (a->highest_frequency * a->highest_frequency * angle + rate * rate);
+}
+
+double motion_decay_length(const arm *a, double reach, double since)
+{
+    return fmax(GRADING * since, reach / fmax(a->highest_frequency, a->fastest_decay));
+}
+
+double motion_wall_compliance(const arm *a, motion *m, double *state)
+{
+    double compliance;
+    const bool locked = contact_state_of(state).friction == HUB_STICK && m->dof > 1;
+    chain_contact_response(a, m->links, state_angles(m, state), locked, m->scratch, &compliance);
+    return compliance / (1 + a->wall.face_mass * compliance); // both masses on the spring
+}
+
+double motion_wall_rate(const arm *a, motion *m, double *state)
+{
+    if (motion_wall_is_rigid(m) || !contact_state_of(state).contact) {
+        return state_face_swings(state) ? wall_face_rate(&a->wall, state_face(state)) : 0;
+    }
+    return wall_rate(&a->wall, motion_wall_compliance(a, m, state), fmax(-state[SLOT_GAP], 0),
+                     -state[SLOT_GAP_VELOCITY]);
+}
+
+double motion_vibration(const arm *a, motion *m, double *state)
+{
+    // most have nothing but their own
+    if (motion_wall_is_rigid(m) && a->stiffening == 0 && a->motor.inductance == 0) {
+        return a->highest_frequency;
+    }
+    const double wall = motion_wall_rate(a, m, state);
+    const double current = a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
+    const double own = a->highest_frequency * chain_stiffened(a, state_angles(m, state));
+    return wall > 0 || current > 0 ? sqrt(own * own + wall * wall + current * current) : own;
+}
+
+state_energy motion_energy(const arm *a, const motion *m, double *state)
+{
+    const double *q = state_angles(m, state), *w = state_velocities(m, state);
+    return (state_energy){chain_kinetic_energy(a, q, w), chain_strain_energy(a, q)};
+}
+
+double motion_energy_residual(const arm *a, const motion *m, double *state)
+{
+    const state_energy has = motion_energy(a, m, state);
+    const double energy = has.kinetic + has.strain;
+    return motion_unaccounted(m, state, energy + motion_wall_energy(a, m, state));
+}
+
+// --- a step of smooth motion ----------------------------------------------------------------
+
+bool motion_project(const arm *a, motion *m, double *state)
+{
+    bool locked = contact_state_of(state).friction == HUB_STICK;
+    if (m->dof == 1 || !motion_drifted(state[SLOT_GAP], state[SLOT_GAP_VELOCITY])) {
+        return false;
+    }
+    double compliance, *response = m->scratch;
+    double *q = state_angles(m, state), *w = state_velocities(m, state);
+    chain_contact_response(a, m->links, q, locked, response, &compliance);
+
+    // position first, then velocity at the new position
+    double shift = -state[SLOT_GAP] / compliance; // g = -gap falls along the response
+    for (int i = 0; i < m->dof; i++) {
+        q[i] += shift * response[i];
+    }
+    double jump = chain_penetration_rate(a, q, w) / compliance;
+    for (int i = 0; i < m->dof; i++) {
+        w[i] += jump * response[i];
+    }
+    motion_evaluate(a, m, state);
+    return true;
+}
+
+double motion_begin_stride(const arm *a, motion *m, double remaining, double step)
+{
+    return motion_held_still(m) ? remaining : m->engine->begin(a, m, remaining, step);
+}
+
+// A step of an arm that is held still: only time passes.
+static void let_time_pass(motion *m, double h)
+{
+    memcpy(m->trial, m->state, (size_t)m->size * sizeof(double));
+    m->trial[SLOT_TIME] += h;
+    state_quadratures(m, m->trial)[QUADRATURE_FORCE] += h * m->state[SLOT_FORCE];
+}
+
+// The parts of a state, `h` after another one, that need no evaluation.
+static void set_slots(const arm *a, const motion *m, double *from, double h, double *state)
+{
+    static const int kept[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR};
+    memcpy(state, from, SLOT_COUNT * sizeof(double));
+    state[SLOT_TIME] += h;
+    state[SLOT_JUMPED] = state[SLOT_IMPULSE] = 0;
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
+        state_quadratures(m, state)[kept[i]] = state_quadratures(m, from)[kept[i]];
+    }
+    if (state_face_swings(from)) {
+        const wall_face face = wall_face_after(&a->wall, state_face(from), h);
+        state[SLOT_FACE] = face.position;
+        state[SLOT_FACE_VELOCITY] = face.velocity;
+    }
+}
+
+// Updates the energy ledger of an evaluated state from that of an earlier one.
+static void book(const arm *a, const motion *m, double *from, double *state)
+{
+    if (state_face_swings(from)) {
+        state_quadratures(m, state)[QUADRATURE_WALL] +=
+            motion_wall_energy(a, m, from) - motion_wall_energy(a, m, state);
+    }
+    motion_book(a, m, state_angles(m, from)[0], state);
+}
+
+static bool is_finite(const motion *m, double *state)
+{
+    double sum = state[SLOT_FORCE];
+    for (int i = 0; i < 2 * m->dof; i++) {
+        sum += state_angles(m, state)[i];
+    }
+    return isfinite(sum);
+}
+
+status motion_try_step(const arm *a, motion *m, double h)
+{
+    double *trial = m->trial;
+    m->holds = unknown_energy;
+    if (motion_held_still(m)) {
+        let_time_pass(m, h);
+        return STATUS_OK;
+    }
+
+    set_slots(a, m, m->state, h, trial);
+    status s = m->engine->state_at(a, m, h);
+    if (s != STATUS_OK) {
+        return s;
+    }
+
+    if (m->engine->kept_for == NULL) {
+        book(a, m, m->state, trial);
+    }
+    return is_finite(m, trial) ? STATUS_OK : STATUS_NOT_FINITE;
+}
+
+bool motion_between_all(const arm *a, motion *m, const double *times, int count,
+                        state_energy *energies)
+{
+    assert(a != NULL && m != NULL && count >= 1 && count <= MOTION_TOGETHER);
+    double *start = m->trial, *states[MOTION_TOGETHER], h[MOTION_TOGETHER];
+    if (m->engine->states_at == NULL || state_is_held_still(m, start) || count < 1) {
+        return false;
+    }
+
+    for (int i = 0; i < count; i++) {
+        states[i] = m->between + i * m->size;
+        h[i] = times[i] - start[SLOT_TIME];
+        set_slots(a, m, start, h[i], states[i]);
+    }
+    if (!m->engine->states_at(a, m, start, h, count, states, energies)) {
+        return false;
+    }
+
+    bool finite = true;
+    for (int i = 0; i < count; i++) {
+        book(a, m, start, states[i]);
+        states[i][SLOT_TIME] = times[i];
+        finite = finite && is_finite(m, states[i]);
+    }
+    return finite;
+}

@@ -1,0 +1,121 @@
+#include "src/contact/pace.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "src/base/numbers.h"
+
+// A run is given up where its strides are shorter than this, as a share of its duration or of a
+// second, whichever is less: it would take ten million of them, hours with many links. In contact
+// with a wall whose damper shortens each of them a million are enough: such strides follow a decay
+// that is long over. Steps requested by method.step do not count.
+#define SLOWEST_PACE 1e-7
+#define DAMPED_PACE  1e-6
+#define ASKED_FOR    1e-3 // share of method.step
+
+// Links up to which all chains have PACE_STRIDES between two checks, and the least number of those
+// of more links.
+enum { FEW_LINKS = 8, LEAST_STRIDES = 1 << 12 };
+
+// The wall makes strides short where more than one in so many ends in contact.
+enum { FEW_TOUCHING = 8 };
+
+// Whether the arm is in contact with a wall that gives.
+static bool is_within(const motion *m)
+{
+    return !motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0;
+}
+
+// Whether that wall has a damper.
+static bool is_damped(const arm *a, const motion *m)
+{
+    return is_within(m) && a->wall.damping > 0;
+}
+
+// Whether an event is one of the wall.
+static bool is_of_wall(motion_event event)
+{
+    return event == MOTION_IMPACT || event == MOTION_TOUCH || event == MOTION_RELEASE;
+}
+
+void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *text, size_t size)
+{
+    assert(a != NULL && m != NULL && text != NULL);
+    const double *w = state_velocities(m, m->state);
+    int fastest = 0;
+    for (int i = 1; i < m->dof; i++) {
+        fastest = fabs(w[i]) > fabs(w[fastest]) ? i : fastest;
+    }
+
+    if (fabs(w[fastest]) >= a->fastest_rate) {
+        decimal_print(text, size, "its angle %d turns at %.3g rad/s, too fast to follow",
+                      fastest + 1, w[fastest]);
+    } else if (last == MOTION_STICK || last == MOTION_SLIP) {
+        decimal_print(text, size,
+                      "the hub comes to rest and breaks away by turns, and another motor.stiction, "
+                      "or none, has longer strides");
+    } else if (is_within(m) || (is_of_wall(last) && !motion_wall_is_rigid(m))) {
+        decimal_print(text, size,
+                      "it is in contact with a wall that gives, and a smaller %swall.stiffness%s "
+                      "has longer strides",
+                      a->wall.damping > 0 ? "wall.damping or " : "",
+                      m->wall_has_face ? ", or a larger wall.mass," : "");
+    } else if (is_of_wall(last) && a->wall.restitution > 0) {
+        decimal_print(text, size,
+                      "it bounces off the wall, which a smaller wall.restitution or a larger "
+                      "method.rest_speed ends sooner");
+    } else if (m->engine == &series_engine) {
+        decimal_print(
+            text, size,
+            "an undamped arm is followed as fast as its fastest mode vibrates, %.3g "
+            "rad/s; fewer links, softer joints or an arm.damping_ratio have longer strides",
+            a->highest_frequency);
+    } else {
+        decimal_print(text, size,
+                      "the fastest mode of the arm changes at %.3g 1/s, and softer or fewer "
+                      "joints with less damping have longer strides",
+                      a->fastest_rate);
+    }
+}
+
+pace pace_begin(void)
+{
+    return (pace){.looked_from = -1};
+}
+
+long pace_strides(const arm *a)
+{
+    assert(a != NULL);
+    long strides = PACE_STRIDES;
+    if (a->dof > FEW_LINKS) {
+        strides = strides * FEW_LINKS / a->dof;
+        strides = strides > LEAST_STRIDES ? strides : LEAST_STRIDES;
+    }
+    return strides;
+}
+
+status pace_look(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f)
+{
+    assert(p != NULL && a != NULL && m != NULL && duration > 0 && asked > 0);
+    const double now = m->state[SLOT_TIME], from = p->looked_from;
+
+    // the first stride only begins to count
+    const double slowest = is_damped(a, m) ? DAMPED_PACE : SLOWEST_PACE;
+    const long strides = pace_strides(a);
+    const double least = (double)strides * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
+    const bool passes = from < 0 || now - from >= least;
+    const bool meets_wall = p->touching * FEW_TOUCHING > p->strides;
+    p->strides = p->touching = 0;
+    p->due = strides;
+    p->looked_from = now;
+    if (passes) {
+        return STATUS_OK;
+    }
+
+    char cause[PACE_CAUSE_SIZE];
+    pace_tell_cause(a, m, meets_wall ? MOTION_TOUCH : MOTION_REACHED, cause, sizeof cause);
+    return fault_set(f, STATUS_NO_PROGRESS,
+                     "at t = %.9g s of %g s: %ld strides by %s passed %.3g s, at which the run is "
+                     "given up: %s",
+                     now, duration, strides, m->engine->name, now - from, cause);
+}

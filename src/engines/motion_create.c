@@ -1,0 +1,266 @@
+// Which engine takes an arm, and the storage of its motion: one block of the state and one that is
+// the engine's own.
+
+#include "src/contact/motion.h"
+
+#include <assert.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The fastest decay of the two-link series [1/s]: so cheap are they that half a million strides
+// take a third of a second.
+#define FASTEST_OF_PAIR 2e6
+
+#define CACHE_LINE      64 // [bytes]
+
+// The engine asked for by name, NULL where the arm is to decide.
+static const engine *named_engine(engine_kind name)
+{
+    static const engine *const named[] = {[ENGINE_AUTO] = NULL,
+                                          [ENGINE_PAIR] = &taylor_engine,
+                                          [ENGINE_STIFF] = &stiff_engine,
+                                          [ENGINE_SERIES] = &series_engine};
+    return named[name];
+}
+
+// Whether the wall's force is one that the series follow in strides no shorter than the arm's: with
+// a power series at the touch, and a damper that slows the tip of the free last link (a mass m/4)
+// and what moves with it no faster than the arm vibrates.
+static bool wall_suits_series(const arm *a)
+{
+    const wall_model *w = &a->wall;
+    const double tip = arm_link_mass(a, a->links - 1) / 4 + a->tip_mass + w->face_mass;
+    const bool slow = w->damping <= 2 * a->highest_frequency * tip;
+    return !wall_stands(w) || !wall_gives(w) || (w->law == WALL_KELVIN_VOIGT && slow);
+}
+
+// Whether vibrations of the arm go on for ever but for what motor and wall take: nothing else damps
+// them. An engine that controls its error then has steps as short as the strides of the series,
+// which are exact and up to three times cheaper.
+static bool rings_on(const arm *a)
+{
+    bool damped = a->damped_modes > 0 || a->air_drag > 0 || a->fastest_decay > a->highest_frequency;
+    for (int k = 0; k < a->links && !damped; k++) {
+        damped = arm_joint_damping(a, k) > 0;
+    }
+    return !damped && a->stiffening == 0 && a->motor.inductance == 0;
+}
+
+// The event method's engine: series of two equal links on a rigid wall, series of chains that ring
+// on, the stiff engine for all others. It does not depend on the time step.
+static const engine *event_engine(const arm *a)
+{
+    if (taylor_engine_suits(a) && a->fastest_decay <= FASTEST_OF_PAIR) {
+        return &taylor_engine;
+    }
+    return rings_on(a) && wall_suits_series(a) ? &series_engine : &stiff_engine;
+}
+
+static void choose_engine(const arm *a, motion *m, const method_parameters *method,
+                          const engine *chosen)
+{
+    double rho = method->spectral_radius;
+    m->electric = a->motor.electric;
+    m->wall_has_face = wall_stands(&a->wall) && wall_has_face(&a->wall);
+    m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall) && !m->wall_has_face;
+
+    // the engine, and its coefficients
+    if (method->name == METHOD_NEWMARK) {
+        m->engine = &newmark_engine;
+        m->beta = method->beta;
+        m->gamma = method->gamma;
+    } else if (method->name == METHOD_GENERALIZED_ALPHA) {
+        m->engine = &generalized_alpha_engine;
+        // Chung and Hulbert (1993), equations (17), (18), (25)
+        m->alpha_m = (2 * rho - 1) / (rho + 1);
+        m->alpha_f = rho / (rho + 1);
+        m->gamma = 0.5 - m->alpha_m + m->alpha_f;
+        m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
+    } else {
+        const engine *wanted = chosen != NULL ? chosen : named_engine((engine_kind)method->engine);
+        m->engine = wanted != NULL ? wanted : event_engine(a);
+        m->chosen = wanted != NULL;
+        m->tolerance = method->tolerance;
+    }
+}
+
+// Divides one block of memory into parts, each on cache lines of its own. Adding parts without a
+// block first gives the size that the block needs.
+typedef struct layout {
+    char *block;   // NULL: there is none yet
+    size_t length; // [bytes]
+} layout;
+
+static void *add_part(layout *l, size_t size)
+{
+    void *part = l->block != NULL ? l->block + l->length : NULL;
+    l->length += (size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    return part;
+}
+
+// A block that has room for so many bytes from its first whole cache line on, zeroed; NULL if out
+// of memory. Pages of a large one are the system's until they are touched: of many links most never
+// are.
+static void *zeroed_block(size_t length)
+{
+    return calloc(1, length + CACHE_LINE - 1);
+}
+static char *first_line(void *block)
+{
+    const size_t beyond = (uintptr_t)block % CACHE_LINE;
+    return (char *)block + (CACHE_LINE - beyond) % CACHE_LINE;
+}
+
+// Lays out what belongs to the engine.
+static void lay_out_engine(const arm *a, motion *m, layout *l)
+{
+    const engine *e = m->engine;
+    const size_t state = (size_t)m->size * sizeof(double), links = (size_t)a->links;
+    m->memory = add_part(l, e->memory_for != NULL ? e->memory_for(a) : e->memory_size);
+    m->between = add_part(l, e->states_at != NULL ? MOTION_TOGETHER * state : state);
+    m->sweeps = add_part(l, links * e->link_scratch);
+}
+
+// Lays out everything else.
+static void lay_out_motion(const arm *a, motion *m, layout *l)
+{
+    const size_t state = (size_t)m->most_size * sizeof(double);
+    m->state = add_part(l, state);
+    m->trial = add_part(l, state);
+    m->scratch = add_part(l, 4 * (size_t)a->dof * sizeof(double));
+    m->links = add_part(l, (size_t)a->links * sizeof(chain_link));
+}
+
+// Allocates the engine's storage; false, with nothing allocated, if out of memory.
+static bool open_engine(const arm *a, motion *m)
+{
+    layout l = {0};
+    lay_out_engine(a, m, &l);
+    m->engine_block = zeroed_block(l.length);
+    if (m->engine_block == NULL) {
+        return false;
+    }
+    l = (layout){.block = first_line(m->engine_block)};
+    lay_out_engine(a, m, &l);
+    if (m->engine->open != NULL) {
+        m->engine->open(a, m);
+    }
+    return true;
+}
+
+// Numbers in a state of an engine.
+static int size_of_states(const arm *a, const motion *m, const engine *e)
+{
+    return m->head_size + (e->kept_for != NULL ? (int)e->kept_for(a) : 0);
+}
+
+// The same of the engine that has the most of those that a changed arm may get.
+static int most_size(const arm *a, const motion *m)
+{
+    const bool stays = motion_is_implicit(m) || m->chosen;
+    return size_of_states(a, m, stays ? m->engine : &stiff_engine);
+}
+
+motion *motion_create(const arm *a, const method_parameters *method)
+{
+    return motion_create_by(a, method, NULL);
+}
+
+motion *motion_create_by(const arm *a, const method_parameters *method, const engine *chosen)
+{
+    assert(a != NULL && method != NULL && a->dof > 0 && method->step > 0);
+    motion *m = calloc(1, sizeof *m);
+    if (m == NULL) {
+        return NULL;
+    }
+    m->dof = a->dof;
+    m->link_count = a->links;
+    m->nominal_step = method->step;
+    m->cut = HUGE_VAL;
+    m->head_size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT + KEPT_COUNT;
+    choose_engine(a, m, method, chosen);
+    m->size = size_of_states(a, m, m->engine);
+    m->most_size = most_size(a, m);
+
+    // its storage: all of it or none
+    layout l = {0};
+    lay_out_motion(a, m, &l);
+    m->block = zeroed_block(l.length);
+    if (m->block != NULL) {
+        l = (layout){.block = first_line(m->block)};
+        lay_out_motion(a, m, &l);
+    }
+    if (m->block == NULL || !open_engine(a, m)) {
+        motion_destroy(m);
+        return NULL;
+    }
+    return m;
+}
+
+motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
+{
+    assert(m == NULL || (a != NULL && method != NULL && method->step > 0));
+    if (m == NULL || m->dof != a->dof || a->links != m->link_count || m->starved) {
+        motion_destroy(m);
+        return motion_create(a, method);
+    }
+
+    // storage of the same sizes can be reused as it is
+    motion next = {.state = m->state,
+                   .size = m->size,
+                   .head_size = m->head_size,
+                   .dof = m->dof,
+                   .link_count = m->link_count,
+                   .nominal_step = method->step,
+                   .cut = HUGE_VAL,
+                   .trial = m->trial,
+                   .between = m->between,
+                   .scratch = m->scratch,
+                   .links = m->links,
+                   .sweeps = m->sweeps,
+                   .memory = m->memory,
+                   .forgets = true,
+                   .block = m->block,
+                   .engine_block = m->engine_block};
+    choose_engine(a, &next, method, NULL);
+    next.most_size = most_size(a, &next);
+    if (next.engine != m->engine || next.engine->memory_for != NULL ||
+        next.most_size > m->most_size) {
+        motion_destroy(m);
+        return motion_create(a, method);
+    }
+    *m = next;
+    if (m->engine->open != NULL) {
+        m->engine->open(a, m);
+    }
+    return m;
+}
+
+void motion_destroy(motion *m)
+{
+    if (m != NULL) {
+        free(m->engine_block);
+        free(m->block);
+        free(m);
+    }
+}
+
+void motion_follow_arm(const arm *a, motion *m)
+{
+    assert(a != NULL && m != NULL && a->dof == m->dof);
+    const bool stays = motion_is_implicit(m) || m->chosen;
+    const engine *wanted = stays ? m->engine : event_engine(a);
+    if (wanted == m->engine && !m->starved) {
+        return;
+    }
+    free(m->engine_block);
+    m->ahead.known = false;
+    m->engine = wanted;
+    m->size = size_of_states(a, m, wanted);
+    m->starved = !open_engine(a, m);
+    motion_end_stride(m);
+
+    // it knows nothing yet of the strides to come
+    memset(m->state + m->head_size, 0, (size_t)(m->size - m->head_size) * sizeof *m->state);
+}

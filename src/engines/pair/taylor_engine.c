@@ -1,0 +1,263 @@
+// The two-link arm by power series (taylor_kernel.h): a dense engine.
+//
+// The stride goes as far as the fastest mode and the rotation let a series of the highest order
+// reach, and is shortened until its last terms are small; where they are small before, as in one
+// that something else ends sooner, the series end with them. Everything within it (events, rows,
+// peaks, quadratures) is a polynomial.
+//
+// Steps that cut a stride without an event (a sample in contact whose command stays, an instant
+// that a program stops at) go on in it: the state says where it began, the engine's memory holds
+// its series. While commands stay, a stride is made for twice as long as the one before; just after
+// a change for twice the time since the change before.
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/extremes.h"
+#include "src/base/sincos.h"
+#include "src/contact/dense_location.h"
+#include "src/engines/pair/taylor_stride.h"
+
+// Strides stay below this over the fastest rate and the angular velocities.
+#define LONGEST_REACH 2.0
+// Limit of (decay rate) x (stride): the series of the highest order is stable on the negative real
+// axis to beyond 7.
+#define LONGEST_DECAY 4.0
+// On a flat wall the first link turns by no more than this share of what is left to a fold.
+#define LONGEST_TURN 0.1
+
+// Less of a stride left than this share of it is rounding.
+#define LEAST_LEFT 1e-9
+
+bool taylor_engine_suits(const arm *a)
+{
+    const bool wall =
+        a->wall.kind == WALL_NONE || a->wall.kind == WALL_POINT || a->wall.kind == WALL_PLANE;
+    const bool gives = wall_stands(&a->wall) && wall_gives(&a->wall);
+    return a->links == 2 && wall && !gives && arm_is_plain(a);
+}
+
+// --- a stride -----------------------------------------------------------------------------------
+
+// From angles q and velocities w on.
+static void put_inputs(const arm *a, const motion *m, const double *q, const double *w,
+                       double wanted, double *block)
+{
+    const bool point = a->wall.kind == WALL_POINT;
+
+    // the arm, its wall and its motor
+    block[AT_MASS] = a->link_mass;
+    block[AT_INERTIA] = a->link_inertia;
+    block[AT_LENGTH] = a->link_length;
+    block[AT_STIFFNESS] = a->joint_stiffness;
+    block[AT_DAMPING] = a->joint_damping;
+    block[AT_WALL_X] = point ? a->wall.x : a->wall.cosine;
+    block[AT_WALL_Y] = point ? a->wall.y : a->wall.sine;
+    block[AT_TORQUE] = a->motor.torque;
+    block[AT_STICTION] = a->motor.stiction;
+    block[AT_VISCOUS] = a->motor.damping;
+    block[AT_HUB_INERTIA] = a->hub_inertia;
+    block[AT_HUB_STIFFNESS] = a->hub_stiffness;
+    block[AT_HUB_DAMPING] = a->hub_joint_damping;
+
+    // the state
+    block[AT_FRICTION] = m->state[SLOT_FRICTION];
+    block[AT_START_ANGLE] = q[0];
+    block[AT_START_ANGLE + 1] = q[a->first];
+    block[AT_START_ANGLE + 2] = q[a->first + 1];
+    block[AT_START_VELOCITY] = w[0];
+    block[AT_START_VELOCITY + 1] = w[a->first];
+    block[AT_START_VELOCITY + 2] = w[a->first + 1];
+    block[AT_WANTED] = wanted;
+    const bool jumped = state_kept(m, m->state)[KEPT_JUMPED] != 0;
+    block[AT_EDGE_RATE] = jumped ? EDGE_RATE * motion_rounding_at(a, m->dof, q, w) : -1;
+}
+
+// The length that is tried from velocities w on, up to `most`.
+static double wanted_stride(const arm *a, const double *w, double most)
+{
+    // as far as the fastest mode, the rotation and the fastest decay let the highest order reach
+    const double first = w[a->first], second = w[a->first + 1];
+    const double links = larger(fabs(first), fabs(second));
+    const double turning = larger(fabs(second - first), fabs(w[0])); // the bend turns, too
+    const double rate = larger(1.2 * larger(links, turning), larger(a->highest_frequency, 1e-3));
+    double wanted = LONGEST_REACH / rate;
+    wanted = most < wanted ? most : wanted;
+    return a->fastest_decay * wanted > LONGEST_DECAY ? LONGEST_DECAY / a->fastest_decay : wanted;
+}
+
+// Records in the state the stride that begins there, at most `most` [s] long.
+static void keep(motion *m, double most)
+{
+    double *kept = state_kept(m, m->state);
+    const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    const double *quadratures = state_quadratures(m, m->state);
+    kept[KEPT_LENGTH] = kept[KEPT_USED] = 0;
+    kept[KEPT_WANTED] = most;
+    kept[KEPT_JUMPED] = m->state[SLOT_JUMPED];
+    for (int i = 0; i < 3; i++) {
+        kept[KEPT_QUADRATURES + i] = quadratures[i];
+    }
+    kept[KEPT_ANGLES] = q[0];
+    kept[KEPT_VELOCITIES] = w[0];
+    kept[KEPT_ANGLES + 1] = q[1];
+    kept[KEPT_VELOCITIES + 1] = w[1];
+    if (m->dof > 2) { // with a hub on a spring
+        kept[KEPT_ANGLES + 2] = q[2];
+        kept[KEPT_VELOCITIES + 2] = w[2];
+    }
+}
+
+// Fills in the inputs of the series of the stride that the state keeps.
+static void prepare(const arm *a, motion *m)
+{
+    taylor_stride *s = m->memory;
+    const double *kept = state_kept(m, m->state);
+    const double *q = kept + KEPT_ANGLES, *w = kept + KEPT_VELOCITIES;
+    put_inputs(a, m, q, w, wanted_stride(a, w, kept[KEPT_WANTED]), s->lane.block);
+    s->lane.form = (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
+                                 .point = a->wall.kind == WALL_POINT,
+                                 .hub_spring = a->hub_spring,
+                                 .damped = a->joint_damping > 0 || a->hub_joint_damping > 0};
+}
+
+// Whether the state's stride goes on: to the end of what remains, or, where it was not made for
+// less than that, to its own.
+static bool goes_on(motion *m, double remaining)
+{
+    const double *kept = state_kept(m, m->state);
+    const double length = kept[KEPT_LENGTH], left = length - kept[KEPT_USED];
+    return m->state[SLOT_JUMPED] == 0 && left > LEAST_LEFT * length &&
+           (left >= remaining || length <= remaining);
+}
+
+// How long a new stride is to be at most: what remains, or twice the stride that has been used up
+// since where nothing has changed but the instant to go to. Just after a change no more than twice
+// the time since the change before, as the next may come as soon.
+static double most_of_stride(motion *m, double remaining)
+{
+    const double *kept = state_kept(m, m->state);
+    if (m->state[SLOT_TIME] == kept[KEPT_CHANGED] && kept[KEPT_INTERVAL] > 0) {
+        return smaller(2 * kept[KEPT_INTERVAL], remaining);
+    }
+    const double before = kept[KEPT_LENGTH], ahead = kept[KEPT_WANTED] - kept[KEPT_USED];
+    const bool same = m->state[SLOT_JUMPED] == 0 && before > 0;
+    return same && fabs(ahead - remaining) > LEAST_LEFT * remaining ? larger(2 * before, remaining)
+                                                                    : remaining;
+}
+
+// Goes on in the state's stride, whose series may be to be computed again.
+static void take_up(const arm *a, motion *m)
+{
+    taylor_stride *s = m->memory;
+    double *kept = state_kept(m, m->state);
+    const size_t start = KEPT_WANTED * sizeof *kept, size = sizeof s->kept - start;
+    if (m->forgets || !s->own || memcmp(s->kept + KEPT_WANTED, kept + KEPT_WANTED, size) != 0) {
+        prepare(a, m);
+        taylor_compute_one(&s->lane);
+        s->known = 0;
+    }
+    s->lane.group = NULL;
+    s->lane.end = -1;
+    s->lane.pieces = 0;
+    s->own = true;
+}
+
+// The length of the stride whose series are computed: what they allow, but on a flat wall clear of
+// the fold over the hub's axis. There the force has a pole that does not show in the velocities:
+// the velocities' series pass it with small terms, while the force's series diverge.
+static double length_of_stride(const arm *a, const taylor_lane *lane)
+{
+    const double allowed = lane->block[AT_ALLOWED];
+    if (!lane->form.contact || lane->form.point) {
+        return allowed;
+    }
+
+    // how far the first link turns at most: in contact both stand as far from across the wall
+    const double *q = taylor_term(lane, AT_ANGLE_1);
+    const int spacing = taylor_spacing(lane);
+    double turn = 0;
+    for (int n = lane->form.order + 1; n > 0; n--) {
+        turn = (turn + fabs(q[n * spacing])) * allowed;
+    }
+
+    // a share of the length takes no more than that share of the turn
+    double sine, cosine;
+    inline_sincos(*q, &sine, &cosine);
+    const double left = fabs(cosine * a->wall.cosine + sine * a->wall.sine);
+    return turn > LONGEST_TURN * left ? allowed * (LONGEST_TURN * left / turn) : allowed;
+}
+
+static double begin(const arm *a, motion *m, double remaining, double step)
+{
+    taylor_stride *s = m->memory;
+    double *kept = state_kept(m, m->state);
+    (void)step;
+    if (!s->ready && goes_on(m, remaining)) {
+        take_up(a, m);
+    } else {
+        if (!s->ready) {
+            keep(m, most_of_stride(m, remaining));
+            prepare(a, m);
+            taylor_compute_one(&s->lane);
+        }
+        kept[KEPT_LENGTH] = length_of_stride(a, &s->lane);
+        s->known = 0;
+
+        // series of a group that are to be gone on with
+        const double way = smaller(m->cut - m->state[SLOT_TIME], remaining);
+        s->own = s->lane.group == NULL || kept[KEPT_LENGTH] > way;
+        if (s->own && s->lane.group != NULL) {
+            taylor_fetch(&s->lane);
+        }
+    }
+
+    s->ready = false;
+    m->forgets = false;
+    memcpy(s->kept, kept, sizeof s->kept);
+    s->used = kept[KEPT_USED];
+    return smaller(kept[KEPT_LENGTH] - s->used, remaining);
+}
+
+// No stride is known yet.
+static void open(const arm *a, motion *m)
+{
+    taylor_stride *s = m->memory;
+    (void)a;
+    s->ready = s->own = false;
+}
+
+taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
+{
+    assert(a != NULL && m != NULL);
+    taylor_stride *s = m->memory;
+    if (m->engine != &taylor_engine || m->starved || motion_held_still(m) ||
+        goes_on(m, remaining)) {
+        return NULL;
+    }
+    keep(m, most_of_stride(m, remaining));
+    prepare(a, m);
+    s->ready = true;
+    return &s->lane;
+}
+
+const engine taylor_engine = {.name = "pair",
+                              .begin = begin,
+                              .state_at = taylor_state_at,
+                              .states_at = taylor_states_at,
+                              .move_to = taylor_move_to,
+                              .look = taylor_look,
+                              .bend = taylor_bend,
+                              .bends_from_start = true,
+                              .clear = taylor_clear,
+                              .bounded = taylor_bounded,
+                              .force_at = taylor_force_at,
+                              .forces_at = taylor_forces_at,
+                              .gap_at = taylor_gap_at,
+                              .hub_at = taylor_hub_at,
+                              .first_event = taylor_first_event,
+                              .peak = dense_search_peak,
+                              .open = open,
+                              .retorque = taylor_retorque,
+                              .left_out = LEFT_OUT,
+                              .memory_size = sizeof(taylor_stride)};

@@ -1,0 +1,302 @@
+// What series come to at instants of their strides, side by side: those of one arm at LANES
+// instants, or of LANES arms at one each. An instant has the same bits wherever it is computed, and
+// its energies are those of chain_kinetic_energy and chain_strain_energy.
+//
+// With u = t^2 a polynomial is E(u) + t O(u), its even and its odd terms.
+#include "src/engines/pair/taylor_numbers.h"
+#include "src/engines/pair/taylor_series.h"
+
+#ifndef INSTANTS
+#define INSTANTS GLUE(taylor_instants_, LANES)
+#endif
+#define ENDS   GLUE(taylor_ends_, LANES)
+#define PIECES GLUE(taylor_pieces_, LANES)
+
+// A block of one arm, whose numbers all lanes share, or of an arm a lane.
+typedef struct coefficients {
+    const double *first;
+    bool shared;
+} coefficients;
+
+KERNEL real lanes_at(const double *place)
+{
+    real x;
+    memcpy(&x, place, sizeof x);
+    return x;
+}
+
+KERNEL void put(double *place, real x)
+{
+    memcpy(place, &x, sizeof x);
+}
+
+KERNEL real term(coefficients x, int n)
+{
+    return x.shared ? x.first[n] - (real){0} : lanes_at(x.first + n * LANES);
+}
+
+KERNEL coefficients from(coefficients x, int place)
+{
+    return (coefficients){x.first + (x.shared ? place : place * LANES), x.shared};
+}
+
+KERNEL real value_of(coefficients x, int count, real t, real u)
+{
+    real even = term(x, count - 2), odd = term(x, count - 1);
+    for (int n = count - 4; n >= 0; n -= 2) {
+        even = even * u + term(x, n);
+        odd = odd * u + term(x, n + 1);
+    }
+    return even + t * odd;
+}
+
+KERNEL real integral_of(coefficients x, int count, real t, real u)
+{
+    real even = term(x, count - 2) * inverse[count - 1], odd = term(x, count - 1) * inverse[count];
+    for (int n = count - 4; n >= 0; n -= 2) {
+        even = even * u + term(x, n) * inverse[n + 1];
+        odd = odd * u + term(x, n + 1) * inverse[n + 2];
+    }
+    return t * (even + t * odd);
+}
+
+// Value, first and second derivative, p' = O + 2 t (E' + t O'), p'' = 2 E' + 6 t O' + 4 u (E'' + t
+// O''), the dashes on the right by u.
+KERNEL void derivatives_of(coefficients x, int count, real t, real u, real result[3])
+{
+    const real zero = (real){0};
+    real even = term(x, count - 2), odd = term(x, count - 1);
+    real even1 = zero, odd1 = zero, even2 = zero, odd2 = zero;
+    for (int n = count - 4; n >= 0; n -= 2) {
+        even2 = even2 * u + even1;
+        odd2 = odd2 * u + odd1;
+        even1 = even1 * u + even;
+        odd1 = odd1 * u + odd;
+        even = even * u + term(x, n);
+        odd = odd * u + term(x, n + 1);
+    }
+    result[0] = even + t * odd;
+    result[1] = odd + 2 * t * (even1 + t * odd1);
+    result[2] = 2 * even1 + 6 * t * odd1 + 8 * u * (even2 + t * odd2);
+}
+
+// Value and first derivative, by the operations of glance_at (taylor_polynomial.h): terms in pairs,
+// the pairs by turns.
+KERNEL void glance_of(coefficients x, int count, real t, double *value, double *slope)
+{
+    const real u = t * t, v = u * u;
+    real even[2] = {(real){0}, (real){0}}, odd[2] = {(real){0}, (real){0}};
+    real even1[2] = {(real){0}, (real){0}}, odd1[2] = {(real){0}, (real){0}}, at[2], by_u[2];
+    int n = count - 2;
+    if (n % 4 == 0) {
+        even[0] = term(x, n);
+        even[1] = term(x, n + 1);
+        n -= 2;
+    }
+    for (; n >= 2; n -= 4) {
+        for (int i = 0; i < 2; i++) {
+            odd1[i] = odd1[i] * v + odd[i];
+            odd[i] = odd[i] * v + term(x, n + i);
+            even1[i] = even1[i] * v + even[i];
+            even[i] = even[i] * v + term(x, n - 2 + i);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        at[i] = even[i] + u * odd[i];
+        by_u[i] = odd[i] + 2 * (u * even1[i] + v * odd1[i]);
+    }
+    put(value, at[0] + t * at[1]);
+    put(slope, at[1] + 2 * t * (by_u[0] + t * by_u[1]));
+}
+
+// Gap, its rate and second derivative from directions, velocities and accelerations of the links.
+KERNEL void gap_of(coefficients x, const bool point, const real s[2], const real c[2],
+                   const real w[2], const real al[2], taylor_instants *at)
+{
+    const real l = term(x, AT_LENGTH), wall_x = term(x, AT_WALL_X), wall_y = term(x, AT_WALL_Y);
+    const real vx = -l * s[0] * w[0], vy = l * c[0] * w[0];
+    const real base_x = l * c[0], base_y = l * s[0], omega = w[1];
+    real ex = -s[1], ey = c[1], off = (real){0}, penetration, convective;
+
+    // a point pushes across the link, a plane across its own surface
+    if (point) {
+        const real dx = wall_x - base_x, dy = wall_y - base_y;
+        off = c[1] * dx + s[1] * dy - l;
+        penetration = s[1] * dx - c[1] * dy;
+        convective = -penetration * omega * omega - 2 * omega * (c[1] * vx + s[1] * vy);
+    } else {
+        ex = -wall_y;
+        ey = wall_x;
+        penetration = ex * (base_x + l * c[1]) + ey * (base_y + l * s[1]);
+        convective = -l * omega * omega * (ex * c[1] + ey * s[1]);
+    }
+    const real lever = off + l * (c[1] * ey - s[1] * ex);
+
+    const real ax = -l * (s[0] * al[0] + c[0] * w[0] * w[0]);
+    const real ay = l * (c[0] * al[0] - s[0] * w[0] * w[0]);
+    put(at->gap, -penetration);
+    put(at->gap_velocity, -(ex * vx + ey * vy + lever * omega));
+    put(at->gap_acceleration, -(ex * ax + ey * ay + lever * al[1] + convective));
+}
+
+// Energies of motion and of bending.
+KERNEL void energies_of(coefficients x, const bool hub_spring, const real s[2], const real c[2],
+                        const real q[3], const real w[3], taylor_instants *at)
+{
+    const real l = term(x, AT_LENGTH), mass = term(x, AT_MASS), inertia = term(x, AT_INERTIA);
+    const int hub = hub_spring ? 0 : 1;
+    real vx = (real){0}, vy = vx, strain = vx;
+    real kinetic = term(x, AT_HUB_INERTIA) * w[hub] * w[hub];
+    for (int k = 0; k < 2; k++) {
+        const real turn = w[k + 1], across_x = -l * s[k] * turn, across_y = l * c[k] * turn;
+        const real cx = vx + across_x / 2, cy = vy + across_y / 2;
+        kinetic += mass * (cx * cx + cy * cy) + inertia * turn * turn;
+        vx += across_x;
+        vy += across_y;
+    }
+    if (hub_spring) {
+        const real bend = q[1] - q[0];
+        strain += term(x, AT_HUB_STIFFNESS) * bend * bend;
+    }
+    const real bend = q[2] - q[1];
+    strain += term(x, AT_STIFFNESS) * bend * bend;
+    put(at->kinetic, kinetic / 2);
+    put(at->strain, strain / 2);
+}
+
+#if LANES == 1
+// What is made of two series at a time fills a vector: the even and the odd terms of both.
+typedef double two __attribute__((vector_size(16)));
+typedef double four __attribute__((vector_size(32)));
+
+#define BOTH(x, y, n) ((four){(x)[n], (x)[(n) + 1], (y)[n], (y)[(n) + 1]})
+
+// derivatives_of for two.
+KERNEL void derivatives_of_both(const double *x, const double *y, int count, double t, double u,
+                                double dx[3], double dy[3])
+{
+    four value = BOTH(x, y, count - 2), first = {0}, second = {0};
+    for (int n = count - 4; n >= 0; n -= 2) {
+        second = second * u + first;
+        first = first * u + value;
+        value = value * u + BOTH(x, y, n);
+    }
+    for (int i = 0; i < 2; i++) {
+        double *d = i == 0 ? dx : dy;
+        const int even = 2 * i, odd = even + 1;
+        d[0] = value[even] + t * value[odd];
+        d[1] = value[odd] + 2 * t * (first[even] + t * first[odd]);
+        d[2] = 2 * first[even] + 6 * t * first[odd] + 8 * u * (second[even] + t * second[odd]);
+    }
+}
+
+// integral_of for two, and value_of for the second.
+KERNEL void integrals_of_both(const double *x, const double *y, int count, double t, double u,
+                              double *of_x, double *of_y, double *y_value)
+{
+    four sum = BOTH(x, y, count - 2) * BOTH(inverse, inverse, count - 1);
+    two value = {y[count - 2], y[count - 1]};
+    for (int n = count - 4; n >= 0; n -= 2) {
+        sum = sum * u + BOTH(x, y, n) * BOTH(inverse, inverse, n + 1);
+        value = value * u + (two){y[n], y[n + 1]};
+    }
+    *of_x = t * (sum[0] + t * sum[1]);
+    *of_y = t * (sum[2] + t * sum[3]);
+    *y_value = value[0] + t * value[1];
+}
+#endif
+
+// Angles, velocities and accelerations; a stuck hub has no motion.
+KERNEL void motion_of(coefficients x, taylor_form form, real t, real u, mask stuck, real q[3],
+                      real w[3], real al[3])
+{
+    const int hub = form.hub_spring ? 0 : 1, count = form.order + 2;
+    const real zero = (real){0};
+    real d[3][3];
+#if LANES == 1
+    derivatives_of_both(x.first + AT_ANGLE_1, x.first + AT_ANGLE_2, count, t, u, d[1], d[2]);
+    if (form.hub_spring) {
+        derivatives_of(from(x, AT_ANGLE_0), count, t, u, d[0]);
+    }
+#else
+    for (int i = hub; i < 3; i++) {
+        derivatives_of(from(x, AT_ANGLE_0 + i * (TAYLOR_MOST + 2)), count, t, u, d[i]);
+    }
+#endif
+    for (int i = hub; i < 3; i++) {
+        q[i] = d[i][0];
+        w[i] = i == hub ? choose(stuck, zero, d[i][1]) : d[i][1];
+        al[i] = i == hub ? choose(stuck, zero, d[i][2]) : d[i][2];
+    }
+}
+
+// What it has lost and pressed.
+KERNEL void losses_of(coefficients x, taylor_form form, real t, real u, mask stuck,
+                      taylor_instants *at)
+{
+    const int order = form.order;
+#if LANES == 1
+    if (form.contact) {
+        integrals_of_both(x.first + AT_HUB_SQUARE, x.first + AT_FORCE, order, t, u, at->hub_square,
+                          at->pressed, at->force);
+    } else {
+        put(at->hub_square, integral_of(from(x, AT_HUB_SQUARE), order, t, u));
+    }
+#else
+    put(at->hub_square, integral_of(from(x, AT_HUB_SQUARE), order, t, u));
+    if (form.contact) {
+        put(at->force, value_of(from(x, AT_FORCE), order, t, u));
+        put(at->pressed, integral_of(from(x, AT_FORCE), order, t, u));
+    }
+#endif
+    if (form.damped) {
+        put(at->dissipated, integral_of(from(x, AT_DISSIPATION), order, t, u));
+        put(at->dissipation, value_of(from(x, AT_DISSIPATION), order, t, u));
+    }
+    if (any(stuck)) {
+        put(at->hold, value_of(from(x, AT_HOLD), order, t, u));
+    }
+}
+
+KERNEL void evaluate(coefficients x, taylor_form form, taylor_instants *at)
+{
+    const real t = lanes_at(at->time), u = t * t, zero = (real){0};
+    const mask stuck = MASK(term(x, AT_FRICTION) == 0);
+    real q[3] = {zero, zero, zero}, w[3] = {zero, zero, zero}, al[3] = {zero, zero, zero};
+
+    // the motion, and what it has lost and pressed
+    motion_of(x, form, t, u, stuck, q, w, al);
+    for (int i = form.hub_spring ? 0 : 1; i < 3; i++) {
+        put(at->angle[i], q[i]);
+        put(at->velocity[i], w[i]);
+        put(at->acceleration[i], al[i]);
+    }
+    losses_of(x, form, t, u, stuck, at);
+
+    // where the links point, and what follows from that
+    real s[2], c[2];
+    sines_cosines(q + 1, s, c);
+    gap_of(x, form.point, s, c, w + 1, al + 1, at);
+    energies_of(x, form.hub_spring, s, c, q, w, at);
+}
+
+void INSTANTS(const double *block, taylor_form form, taylor_instants *at)
+{
+    evaluate((coefficients){block, true}, form, at);
+}
+
+#ifndef ONE_ARM
+void ENDS(const double *block, taylor_form form, taylor_instants *at)
+{
+    evaluate((coefficients){block, false}, form, at);
+}
+
+void PIECES(const double *block, int order, int count, taylor_pieces *pieces)
+{
+    const real width = lanes_at(pieces->width);
+    const coefficients force = from((coefficients){block, false}, AT_FORCE);
+    for (int i = 0; i < count; i++) {
+        glance_of(force, order, (i + 1) * width, pieces->force[i], pieces->slope[i]);
+    }
+}
+#endif

@@ -1,0 +1,136 @@
+// The stiff engine: Radau IIA of seven stages, order 13, for every arm and wall (stiff_step.h).
+//
+// A step is as long as the error of its velocities and angles allows, whatever is asked of it:
+// rows, stops and the end of a run read its polynomials, and the state keeps it (stiff_stride.h). A
+// step within which a watched function falls below zero is taken again up to that instant, so that
+// an event is where a step ends. After an event a step begins anew, short; after a change of torque
+// it is predicted from the step before, as every other one is.
+//
+// How a step is made stands in stiff_control.c, what it tells in stiff_output.c.
+#include <string.h>
+
+#include "src/base/extremes.h"
+#include "src/contact/dense_location.h"
+#include "src/engines/stiff/stiff_stride.h"
+#include "src/engines/pair/taylor_lanes.h"
+
+#define LEAST_LEFT 1e-13 // share of a step that is gone on with
+
+// --- storage -------------------------------------------------------------------------------------
+
+// Hands out room after room; without a place to begin it only adds up what they need.
+static void *room(char **at, size_t *used, size_t size)
+{
+    void *here = *at != NULL ? *at + *used : NULL;
+    *used += (size + 63) / 64 * 64;
+    return here;
+}
+
+// Lays out the memory that begins at `base`; returns its size.
+static size_t lay_out(stiff_stride *s, const arm *a, char *base)
+{
+    const size_t n = (size_t)a->dof, links = (size_t)a->links, modes = (size_t)a->damped_modes;
+    stiff_step *p = &s->step;
+    size_t used = (sizeof *s + 63) / 64 * 64;
+    p->stage = room(&base, &used, n * sizeof *p->stage);
+    p->body = room(&base, &used, links * sizeof *p->body);
+    p->pivot = room(&base, &used, links * sizeof *p->pivot);
+    p->rhs = room(&base, &used, n * sizeof *p->rhs);
+    p->y = room(&base, &used, n * sizeof *p->y);
+    for (size_t i = 0; i <= modes; i++) {
+        p->border[i] = room(&base, &used, n * sizeof *p->y);
+    }
+    p->link = room(&base, &used, links * sizeof *p->link);
+    p->mode = room(&base, &used, (modes * n + 1) * sizeof(double));
+    p->jacobian = room(&base, &used, n * sizeof(double));
+    p->q0 = room(&base, &used, n * sizeof(double));
+    p->w0 = room(&base, &used, n * sizeof(double));
+    p->a0 = room(&base, &used, n * sizeof(double));
+    for (int i = 0; i < 4; i++) {
+        s->scratch[i] = room(&base, &used, 2 * n * sizeof(double));
+    }
+    s->kept = room(&base, &used, (KEPT_COUNT + stiff_kept_size(a)) * sizeof(double));
+    s->end = room(&base, &used, (SLOT_COUNT + 4 * n + QUADRATURE_COUNT) * sizeof(double));
+    return used;
+}
+
+static size_t memory_for(const arm *a)
+{
+    stiff_stride none = {.known = false};
+    return lay_out(&none, a, NULL);
+}
+
+static void open(const arm *a, motion *m)
+{
+    stiff_stride *s = m->memory;
+    memset(s, 0, sizeof *s);
+    lay_out(s, a, m->memory);
+    s->loops = &stiff_loops_1;
+#if defined __x86_64__
+    s->loops = taylor_width() >= 4 ? &stiff_loops_4 : s->loops;
+#endif
+    s->known = false;
+}
+
+// --- a step in hand
+// -------------------------------------------------------------------------------
+
+// Goes on in the step that the state keeps.
+static void take_up(stiff_stride *s, const arm *a, motion *m)
+{
+    const double *kept = state_kept(m, m->state);
+    const size_t from = STIFF_LENGTH,
+                 size = (KEPT_COUNT + stiff_kept_size(a) - from) * sizeof *kept;
+    if (!s->known || m->forgets || memcmp(s->kept + from, kept + from, size) != 0) {
+        memcpy(s->kept, kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
+        s->step.dof = a->dof;
+        s->step.links = a->links;
+        s->step.first = a->first;
+        s->step.length = kept[STIFF_LENGTH];
+        s->ended = false;
+        function_through(&s->force, s->kept + STIFF_FORCE);
+        s->gap.degree = FUNCTION_MOST - 1;
+        memcpy(s->gap.b, s->kept + STIFF_GAPS, sizeof s->gap.b);
+        s->known = true;
+    }
+    s->used = kept[KEPT_USED];
+}
+
+static double begin(const arm *a, motion *m, double remaining, double step)
+{
+    stiff_stride *s = m->memory;
+    const double *kept = state_kept(m, m->state);
+    (void)step;
+    const double left = kept[KEPT_LENGTH] - kept[KEPT_USED];
+    const bool goes_on = m->state[SLOT_JUMPED] == 0 && kept[KEPT_LENGTH] > 0 &&
+                         left > (kept[STIFF_EVENT] != 0 ? 0 : LEAST_LEFT * kept[KEPT_LENGTH]);
+    if (goes_on) {
+        take_up(s, a, m);
+    } else if (!stiff_make_step(s, a, m)) {
+        s->known = false;
+        return 0;
+    }
+    m->forgets = false;
+    memcpy(state_kept(m, m->state), s->kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
+    state_kept(m, m->state)[KEPT_USED] = s->used;
+    return smaller(s->kept[KEPT_LENGTH] - s->used, remaining);
+}
+
+const engine stiff_engine = {.name = "stiff",
+                             .begin = begin,
+                             .state_at = stiff_state_at,
+                             .look = stiff_look,
+                             .bend = stiff_bend,
+                             .bends_from_start = true,
+                             .clear = stiff_clear,
+                             .bounded = stiff_bounded,
+                             .force_at = stiff_force_at,
+                             .gap_at = stiff_gap_at,
+                             .hub_at = stiff_hub_at,
+                             .sense_at = stiff_sense_at,
+                             .parabolas = 32,
+                             .first_event = stiff_first_event,
+                             .peak = dense_search_peak,
+                             .kept_for = stiff_kept_size,
+                             .memory_for = memory_for,
+                             .open = open};

@@ -1,0 +1,221 @@
+// The error of a step of the stiff engine (stiff_step.h), as RADAU5 estimates it: what the embedded
+// formula of order 7 has more than the stages, filtered by the real system.
+#include <math.h>
+
+#include "src/engines/stiff/stiff_stride.h"
+
+#define ANGLE_RATE 20 // that makes an angle's error one of velocity [1/s]
+
+double stiff_momentum(const stiff_stride *stride, const double *w)
+{
+    const stiff_step *s = &stride->step;
+    double v = 0, sum = s->hub_inertia * w[0] * w[0];
+    for (int k = 0; k < s->links; k++) {
+        v += s->link[k].length * w[s->first + k];
+        sum += s->link[k].mass * v * v;
+    }
+    return sqrt(sum);
+}
+
+// (M + ...) v + gamma D x, gamma being 1/g of the real system, into `out`.
+static void inertia_and_damping(stiff_step *s, double gamma, const double *v, const double *x,
+                                double *out, double *fx, double *fy)
+{
+    // outwards
+    double ax = 0, ay = 0, bx = 0, by = 0;
+    for (int k = 0; k < s->links; k++) {
+        const stiff_link *l = &s->link[k];
+        const stiff_pivot *p = &s->pivot[k];
+        const double a = v[s->first + k], b = x[s->first + k], air = gamma * l->air;
+        fx[k] = l->mass * (ax - 0.5 * p->ls * a) + air * (bx - 0.5 * p->ls * b);
+        fy[k] = l->mass * (ay + 0.5 * p->lc * a) + air * (by + 0.5 * p->lc * b);
+        ax -= p->ls * a, ay += p->lc * a;
+        bx -= p->ls * b, by += p->lc * b;
+    }
+
+    // inwards
+    double tx = s->tip_mass * ax, ty = s->tip_mass * ay, outer = 0;
+    for (int k = s->links - 1; k >= 0; k--) {
+        const stiff_link *l = &s->link[k];
+        const stiff_pivot *p = &s->pivot[k];
+        const int i = s->first + k;
+        const double inner = i > 0 ? gamma * l->damping * (x[i] - x[i - 1]) : 0;
+        out[i] = l->inertia * v[i] + p->lc * (ty + 0.5 * fy[k]) - p->ls * (tx + 0.5 * fx[k]) +
+                 inner - outer + gamma * l->turning * x[i];
+        tx += fx[k];
+        ty += fy[k];
+        outer = inner;
+    }
+    if (s->first > 0) {
+        out[0] = -outer;
+    }
+    double damping = s->hub_damping;
+    if (s->drive == STIFF_FOLLOWS) {
+        damping += s->motor->torque_constant * s->motor->back_emf / s->motor->resistance;
+    }
+    out[0] += s->hub_inertia * v[0] + gamma * damping * x[0];
+    for (int i = 0; i < s->modes; i++) {
+        const double *g = s->mode + i * s->dof;
+        double sum = 0;
+        for (int k = 0; k < s->dof; k++) {
+            sum += g[k] * x[k];
+        }
+        for (int k = 0; k < s->dof; k++) {
+            out[k] += gamma * sum * g[k];
+        }
+    }
+    if (s->stuck) {
+        out[0] = 0;
+    }
+}
+
+// y of a right side, in place, by the real system without its borders: solve_bare of
+// stiff_tangent.h for its first lane.
+static void solve_bare(const stiff_step *s, double *y)
+{
+    double fx = 0, fy = 0, t = 0;
+    for (int k = s->links - 1; k >= 0; k--) {
+        const stiff_pivot *p = &s->pivot[k];
+        double *own = &y[s->first + k];
+        *own = (*own - t - (p->lc * fy - p->ls * fx)) * p->inverse.r[0];
+        fx += p->ux.r[0] * *own;
+        fy += p->uy.r[0] * *own;
+        t = -p->kappa.r[0] * *own;
+    }
+    if (s->first > 0) {
+        y[0] = (y[0] - t) * s->hub_inverse.r[0];
+    }
+    double ax = 0, ay = 0, before = y[0];
+    for (int k = 0; k < s->links; k++) {
+        const stiff_pivot *p = &s->pivot[k];
+        double *own = &y[s->first + k];
+        if (s->first + k > 0) {
+            const double base = p->ux.r[0] * ax + p->uy.r[0] * ay;
+            *own += p->share.r[0] * before - base * p->inverse.r[0];
+        }
+        before = *own;
+        ax -= p->ls * before;
+        ay += p->lc * before;
+    }
+}
+
+// The same with the borders, the contact's equation having `target` added to its right side.
+static void solve(const stiff_step *s, double target, double *y)
+{
+    solve_bare(s, y);
+    const int count = s->modes + (s->contact != STIFF_FREE ? 1 : 0);
+    double z[STIFF_BORDERS];
+    for (int i = 0; i < count; i++) {
+        const double *row = i < s->modes ? s->mode + i * s->dof : s->jacobian;
+        double sum = 0;
+        for (int k = 0; k < s->dof; k++) {
+            sum += row[k] * y[k];
+        }
+        z[i] = i < s->modes                ? s->g.r[0] * sum
+               : s->contact == STIFF_GIVES ? target + s->press.r[0] * sum
+                                           : target - sum;
+        for (int j = 0; j < i; j++) {
+            z[i] -= s->corner[i][j].r[0] * z[j];
+        }
+    }
+    for (int i = count - 1; i >= 0; i--) {
+        for (int j = i + 1; j < count; j++) {
+            z[i] -= s->corner[i][j].r[0] * z[j];
+        }
+        z[i] *= s->corner[i][i].r[0];
+    }
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < s->dof; k++) {
+            y[k] += z[i] * s->border[i][k].r[0];
+        }
+    }
+}
+
+// The same of a current that flows through an inductance, as the momentum that its torque gives the
+// arm while an angle's error counts as one of velocity.
+static double current_error(const stiff_step *s, double gamma, bool twice)
+{
+    const motor_model *m = s->motor;
+    const double volts = m->gain * m->voltage - m->back_emf * s->w0[0];
+    double sum = radau_start * (volts - m->resistance * s->current0) / m->inductance;
+    double inertia = s->hub_inertia, reach = 0;
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        sum += radau_difference[i] * s->current_rate.at[i];
+    }
+    for (int k = 0; k < s->links; k++) {
+        reach += s->link[k].length;
+        inertia += s->link[k].mass * reach * reach;
+    }
+    const double filter = 1 + m->resistance / (m->inductance * gamma);
+    const double filtered = s->length * sum / (twice ? filter * filter : filter);
+    return m->torque_constant * filtered / (ANGLE_RATE * sqrt(inertia));
+}
+
+// The same of what the wall gives the arm, as the force's polynomial has it.
+static double impulse_error(const stiff_step *s)
+{
+    double sum = radau_start * s->force0, inertia = s->hub_inertia, reach = 0;
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        sum += radau_difference[i] * s->force.at[i];
+    }
+    for (int k = 0; k < s->links; k++) {
+        reach += s->link[k].length;
+        inertia += s->link[k].mass * reach * reach;
+    }
+    return s->length * sum * reach / sqrt(inertia);
+}
+
+// Filters errors of angles and velocities by the real system, in place: e - g J e is what they are.
+static void filter(stiff_stride *stride, double gamma, double *x, double *w)
+{
+    stiff_step *s = &stride->step;
+    double *y = stride->scratch[2];
+    for (int k = 0; k < s->dof; k++) {
+        w[k] = gamma * (w[k] + gamma * x[k]);
+    }
+    inertia_and_damping(s, gamma, w, x, y, stride->scratch[3], stride->scratch[3] + s->links);
+
+    // with the wall
+    double target = 0;
+    if (s->contact != STIFF_FREE) {
+        double along_x = 0, along_w = 0;
+        for (int k = 0; k < s->dof; k++) {
+            along_x += s->jacobian[k] * x[k];
+            along_w += s->jacobian[k] * w[k];
+        }
+        target = s->contact == STIFF_RIGID
+                     ? gamma * gamma * along_x
+                     : -gamma * s->wall_damping * along_x - s->wall->face_mass * along_w;
+    }
+    solve(s, target, y);
+    for (int k = 0; k < s->dof; k++) {
+        w[k] = y[k] / gamma - gamma * x[k];
+        x[k] = y[k] / (gamma * gamma);
+    }
+}
+
+double stiff_error(stiff_stride *stride, bool twice)
+{
+    // what the embedded formula adds to angles (x) and velocities (w)
+    stiff_step *s = &stride->step;
+    const double h = s->length, gamma = 1 / (h * radau_start);
+    double *x = stride->scratch[0], *w = stride->scratch[1];
+    stride->loops->differences(s, x, w);
+    for (int k = 0; k < s->dof; k++) {
+        x[k] *= h;
+        w[k] *= h;
+    }
+    filter(stride, gamma, x, w);
+    if (twice) {
+        filter(stride, gamma, x, w);
+    }
+
+    // as velocities
+    for (int k = 0; k < s->dof; k++) {
+        x[k] *= ANGLE_RATE;
+    }
+    const double of_w = stiff_momentum(stride, w), of_q = stiff_momentum(stride, x);
+    const double of_i = s->drive == STIFF_FLOWS ? current_error(s, gamma, twice) : 0;
+    const double of_p = s->contact == STIFF_GIVES ? impulse_error(s) : 0;
+    return sqrt(of_w * of_w + of_q * of_q + of_i * of_i + of_p * of_p);
+}

@@ -1,0 +1,216 @@
+// The functions that say when a contact state ends, as polynomials through a step's stages.
+#include <math.h>
+#include <string.h>
+
+#include "src/base/extremes.h"
+#include "src/contact/edge_limits.h"
+#include "src/engines/stiff/stiff_stride.h"
+
+// Of the current, as a share of its limit.
+#define EDGE_CURRENT 1e-10
+// Shares of a function's largest coefficient: of what is rounding at a start, and of what a force
+// that presses at all stages, or a gap that is open at them, may lack there, where it changes
+// faster than the step shows.
+#define FLAT  1e-5
+#define LACKS 1e-3
+// A gap that nowhere in a step exceeds this is followed as it grows [m].
+#define LOW_FLIGHT 1e-9
+
+// The function less what is only rounding at its start (edge_limits.h).
+static void leave_edge(stiff_stride *s, watch w, const double limits[3])
+{
+    double terms[4];
+    function_start(&s->watched[w], terms);
+    const int powers = edge_powers(terms, limits, s->step.length);
+    for (int i = 0; i < powers; i++) {
+        function_divide(&s->watched[w]);
+        s->divided[w] = true;
+    }
+
+    // of one that starts flatter still, what is left at the start is rounding; of a force that
+    // presses at all stages, or a gap that is open at all of them, the step's own error, too
+    double *start = s->watched[w].b;
+    bool holds = (w == WATCH_FORCE && powers > 0) || (w == WATCH_GAP && powers == 3);
+    for (int i = 0; i < RADAU_STAGES && holds; i++) {
+        holds = w == WATCH_FORCE ? s->step.force.at[i] > 0
+                                 : function_at(&s->watched[w], radau_node[i]).value > 0;
+    }
+    const double share = holds ? LACKS : powers == 3 ? FLAT : 0;
+    if (*start < 0 && *start > -share * function_greatest(&s->watched[w])) {
+        *start = -*start;
+    }
+}
+
+// The contact force between the state's own at both ends.
+static void set_force(stiff_stride *s)
+{
+    double nodes[RADAU_LANES];
+    for (int i = 0; i < RADAU_LANES; i++) {
+        nodes[i] = s->kept[STIFF_FORCE + i];
+    }
+    function_through(&s->force, nodes);
+}
+
+// Of an arm in contact with a wall that gives: its depth, and of Hunt and Crossley's law, for the
+// force itself, the factor k + c v of the power. Of Kelvin and Voigt's the force with its own slope
+// at the start, which decides whether the arm stays.
+static void watch_within(stiff_stride *s, const arm *a, const motion *m)
+{
+    double law[RADAU_LANES];
+    s->watched[WATCH_GAP] = s->gap;
+    function_scale(&s->watched[WATCH_GAP], -1, 0);
+    if (a->wall.law == WALL_KELVIN_VOIGT) {
+        const double grows = -a->wall.stiffness * m->state[SLOT_GAP_VELOCITY] -
+                             a->wall.damping * m->state[SLOT_GAP_ACCELERATION];
+        function_through_rising(&s->watched[WATCH_FORCE], s->kept + STIFF_FORCE,
+                                s->step.length * grows);
+        return;
+    }
+    for (int i = 0; i < RADAU_LANES; i++) {
+        law[i] = a->wall.stiffness - a->wall.damping * s->step.rate.at[i];
+    }
+    function_through(&s->watched[WATCH_FORCE], law);
+}
+
+// The gap, from its rates, its acceleration at the start and where it starts [m].
+static void set_gap(stiff_stride *s, const arm *a, const motion *m)
+{
+    const double h = s->step.length;
+    double start = m->state[SLOT_GAP], rates[RADAU_LANES];
+    if (m->state[SLOT_JUMPED] != 0 ? fabs(start) <= EDGE_GAP : s->kept[STIFF_GAP] != 0) {
+        start = m->state[SLOT_JUMPED] != 0 ? 0 : s->kept[STIFF_GAP];
+    }
+    for (int i = 0; i < RADAU_LANES; i++) {
+        rates[i] = s->kept[STIFF_RATES + i];
+        if (state_face_swings(m->state)) {
+            const wall_face face = state_face(m->state);
+            rates[i] += wall_face_after(&a->wall, face, radau_node[i] * h).velocity;
+        }
+    }
+    function_through_rising(&s->gap, rates, h * m->state[SLOT_GAP_ACCELERATION]);
+    function_integrate(&s->gap, start, h);
+    memcpy(s->kept + STIFF_GAPS, s->gap.b, sizeof s->gap.b);
+    const double end = s->gap.b[s->gap.degree];
+    s->kept[STIFF_GAP] = function_greatest(&s->gap) < LOW_FLIGHT ? end : 0;
+}
+
+// A gap or depth that is less than places are known to all through the step says nothing.
+static void ignore_rounding(stiff_function *f)
+{
+    if (function_least(f) > -EDGE_PLACE && function_greatest(f) < EDGE_PLACE) {
+        *f = (stiff_function){.degree = f->degree};
+    }
+}
+
+static void watch_wall(stiff_stride *s, const arm *a, const motion *m, contact_state now)
+{
+    bool at_edge = m->state[SLOT_JUMPED] != 0;
+    set_force(s);
+    set_gap(s, a, m);
+    s->watched[WATCH_FORCE] = s->force;
+    if (m->wall_gives && now.contact) {
+        watch_within(s, a, m);
+    } else if (!now.contact) {
+        stiff_function *distance = &s->watched[WATCH_GAP];
+        *distance = s->gap;
+        if (distance->b[0] < 0 && distance->b[0] > -EDGE_DEPTH && distance->b[1] > distance->b[0]) {
+            distance->b[0] = 0;
+            at_edge = true;
+        }
+    }
+    ignore_rounding(&s->watched[WATCH_GAP]);
+    if (!at_edge) {
+        return;
+    }
+
+    // just after an event they may begin at zero
+    const double stiffness = m->wall_gives ? a->wall.stiffness * EDGE_GAP : 0;
+    const double reaction[] = {EDGE_VALUE + stiffness, EDGE_RATE + stiffness, EDGE_MORE};
+    if (now.contact) {
+        leave_edge(s, WATCH_FORCE, reaction);
+    }
+    if (!now.contact || m->wall_gives) {
+        double gap[3];
+        motion_gap_edges(a, m, gap);
+        leave_edge(s, WATCH_GAP, gap);
+    }
+}
+
+static void watch_hub(stiff_stride *s, const arm *a, const motion *m, contact_state now)
+{
+    const bool jumped = m->state[SLOT_JUMPED] != 0;
+    if (now.friction != HUB_STICK) {
+        double rate[RADAU_LANES];
+        for (int i = 0; i < RADAU_LANES; i++) {
+            rate[i] = now.friction * s->step.stage[0].w[i / 4][i % 4];
+        }
+        function_through(&s->watched[WATCH_HUB], rate);
+        if (jumped) { // it may start at zero
+            const double limits[] = {0, EDGE_RATE * motion_rounding(a, m), EDGE_MORE};
+            function_through_rising(&s->watched[WATCH_HUB], rate,
+                                    now.friction * s->step.length * s->step.a0[0]);
+            leave_edge(s, WATCH_HUB, limits);
+        }
+        return;
+    }
+
+    // the nearer limit of what friction holds, and the farther one
+    stiff_function *near = &s->watched[WATCH_STICTION];
+    function_through(near, s->kept + STIFF_HOLD);
+    const double sign = near->b[0] < 0 ? 1 : -1;
+    s->far_limit = *near;
+    function_scale(near, sign, a->motor.stiction);
+    function_scale(&s->far_limit, -sign, a->motor.stiction);
+    s->holds_more = jumped && fabs(near->b[0]) <= EDGE_VALUE ? EDGE_VALUE - near->b[0] : 0;
+    function_scale(near, 1, s->holds_more);
+}
+
+static void watch_current(stiff_stride *s, const arm *a, const motion *m)
+{
+    const motor_model *motor = &a->motor;
+    const double most = motor->current_limit, side = s->step.limited < 0 ? -1 : 1;
+    double current[RADAU_LANES];
+    for (int i = 0; i < RADAU_LANES; i++) {
+        current[i] = side * s->kept[STIFF_CURRENT + i];
+    }
+    stiff_function *near = &s->watched[WATCH_CURRENT];
+    function_through(near, current);
+    s->far_current = *near;
+    function_scale(&s->far_current, 1, most);
+    function_scale(near, -1, most);
+    if (s->step.drive == STIFF_LIMITED) {
+        for (int i = 0; i < RADAU_LANES; i++) {
+            const double w = s->step.stage[0].w[i / 4][i % 4];
+            current[i] =
+                side * (motor->gain * motor->voltage - motor->back_emf * w) / motor->resistance;
+        }
+        function_through(near, current);
+        function_scale(near, 1, -most);
+    }
+    if (s->turned) {
+        near->b[0] = 0;
+    }
+    const double rounding = EDGE_CURRENT * most;
+    const double rate = motor->inductance > 0 ? motor->resistance / motor->inductance : 0;
+    const double edge[] = {rounding, rounding * rate, 0};
+    leave_edge(s, WATCH_CURRENT, edge);
+    if (s->turned) { // a current that leaves its limit does so without a slope
+        near->b[0] = fabs(near->b[0]);
+    }
+    (void)m;
+}
+
+void stiff_watch(stiff_stride *s, const arm *a, const motion *m)
+{
+    const contact_state now = contact_state_of(m->state);
+    for (int w = 0; w < WATCHES; w++) {
+        s->divided[w] = false;
+    }
+    if (wall_stands(&a->wall)) {
+        watch_wall(s, a, m, now);
+    }
+    watch_hub(s, a, m, now);
+    if (a->motor.electric && a->motor.current_limit < HUGE_VAL) {
+        watch_current(s, a, m);
+    }
+}

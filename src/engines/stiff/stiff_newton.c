@@ -1,0 +1,185 @@
+// Stages of a step: the arm as numbers, Newton's iteration, the error (stiff_step.h).
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/extremes.h"
+#include "src/base/sincos.h"
+#include "src/engines/stiff/stiff_stride.h"
+
+#define FARTHEST    2    // in lengths of a step, to where its polynomials are extrapolated
+#define LEAST_RATE  1e-4 // of the iteration that is believed
+#define SLOW_RATE   0.6  // and from which on a shorter step is cheaper
+#define LEAST_SHARE 1e-14
+#define LAST_DIGITS 1e-14 // of an angle, as corrections that do not converge show them
+#define MOST_LEFT   30    // times what is wanted, of such corrections
+
+enum { MOST_ITERATIONS = 12 };
+
+// --- the arm -------------------------------------------------------------------------------------
+
+// Whether the drive's current is held at its limit, and which way; as the series have it.
+static void choose_drive(stiff_step *s, const motor_model *m, double current, double w,
+                         double acceleration)
+{
+    const double limit = m->current_limit, rounding = 1e-11;
+    const double wanted = (m->gain * m->voltage - m->back_emf * w) / m->resistance;
+    const bool flows = m->inductance > 0;
+    const double side = (flows ? current : wanted) < 0 ? -1 : 1;
+    s->drive = flows ? STIFF_FLOWS : STIFF_FOLLOWS;
+    s->limited = side * limit;
+    if (limit == HUGE_VAL || (flows && fabs(current) < limit * (1 - rounding))) {
+        return;
+    }
+
+    // where the voltage would drive it beyond, or is about to
+    const double beyond = side * wanted - limit, grows = -side * m->back_emf * acceleration;
+    if (fabs(beyond) > rounding * limit ? beyond > 0 : grows > 0) {
+        s->drive = STIFF_LIMITED;
+    }
+}
+
+void stiff_set_arm(stiff_stride *stride, const arm *a, const motion *m)
+{
+    stiff_step *s = &stride->step;
+    const contact_state now = contact_state_of(m->state);
+    s->links = a->links;
+    s->dof = a->dof;
+    s->first = a->first;
+    for (int k = 0; k < a->links; k++) {
+        stiff_link *l = &s->link[k];
+        l->length = arm_link_length(a, k);
+        l->mass = arm_link_mass(a, k);
+        l->inertia = arm_link_inertia(a, k);
+        l->stiffness = arm_joint_stiffness(a, k);
+        l->damping = arm_joint_damping(a, k);
+        l->stiffening = arm_stiffening_torque(a, k, 1);
+        l->air = a->air_drag * l->length;
+        l->turning = l->air * l->length * l->length / 12;
+    }
+    s->stiffens = a->stiffening != 0;
+    s->drags = a->air_drag > 0;
+    s->tip_mass = a->tip_mass;
+
+    // damped modes, in the bodies' velocities
+    s->modes = a->damped_modes;
+    memset(s->mode, 0, (size_t)(s->modes * s->dof) * sizeof *s->mode);
+    for (int i = 0; i < s->modes; i++) {
+        for (int k = a->first > 0 ? 0 : 1; k < a->links; k++) {
+            s->mode[i * s->dof + a->first + k] += a->modal_damping[i][k];
+            s->mode[i * s->dof + a->first + k - 1] -= a->modal_damping[i][k];
+        }
+    }
+
+    // the hub
+    s->hub_inertia = a->hub_inertia;
+    s->hub_damping = a->motor.damping;
+    s->torque = a->motor.torque;
+    const bool held = now.contact && motion_wall_is_rigid(m) && a->dof == 1;
+    s->stuck = now.friction == HUB_STICK && !held;
+    s->friction = held ? 0 : now.friction * a->motor.stiction;
+    s->motor = &a->motor;
+    s->drive = STIFF_DIRECT;
+    if (a->motor.electric) {
+        s->current0 = state_quadratures(m, m->state)[QUADRATURE_CURRENT];
+        choose_drive(s, &a->motor, s->current0, state_velocities(m, m->state)[0],
+                     state_accelerations(m, m->state)[0]);
+    }
+
+    // the wall
+    s->wall = &a->wall;
+    s->contact = !now.contact ? STIFF_FREE : motion_wall_is_rigid(m) ? STIFF_RIGID : STIFF_GIVES;
+}
+
+void stiff_set_start(stiff_stride *stride, motion *m)
+{
+    stiff_step *s = &stride->step;
+    const size_t size = (size_t)s->dof * sizeof(double);
+    memcpy(s->q0, state_angles(m, m->state), size);
+    memcpy(s->w0, state_velocities(m, m->state), size);
+    memcpy(s->a0, state_accelerations(m, m->state), size);
+    s->force0 = m->state[SLOT_FORCE];
+    for (int k = 0; k < s->links; k++) {
+        inline_sincos(s->q0[s->first + k], &s->link[k].sine, &s->link[k].cosine);
+    }
+}
+
+// --- Newton --------------------------------------------------------------------------------------
+
+bool stiff_solve_stages(stiff_stride *stride, bool fresh, double offset, double ratio, double *rate,
+                        double tolerance, double scale)
+{
+    stiff_step *s = &stride->step;
+    _Alignas(32) double weight[RADAU_STAGES][RADAU_LANES] = {{0}};
+    for (int i = 0; i < RADAU_STAGES && !fresh; i++) {
+        double value[RADAU_LANES];
+        radau_values_at(smaller(offset + ratio * radau_node[i], FARTHEST), value);
+        for (int j = 0; j < RADAU_STAGES; j++) {
+            weight[j][i] = value[j];
+        }
+    }
+    stride->loops->predict(s, stiff_accelerations(stride), stride->kept + STIFF_FORCE, weight[0]);
+
+    // with the tangent at the first iterate
+    const double wanted = tolerance * scale;
+    double before = 0;
+    for (int i = 0; i < MOST_ITERATIONS; i++) {
+        if (!stride->loops->residual(s, false)) {
+            return false;
+        }
+        if (i == 0) {
+            stride->loops->factor(s);
+        }
+        const double now = stride->loops->correct(s), theta = i > 0 ? now / before : *rate;
+        if (!(now < 1e3 * (1 + scale))) {
+            return false;
+        }
+        if (i > 0) {
+            *rate = smaller(larger(theta, LEAST_RATE), 0.5);
+        }
+        if (i == 0 ? now * theta < wanted : theta < 1 && now * theta / (1 - theta) < wanted) {
+            return true;
+        }
+        if (now < LEAST_SHARE * scale) {
+            return true;
+        }
+        if (i > 1 && theta > SLOW_RATE) { // as near as the angles' last digits let it come
+            const double rounding = LAST_DIGITS * stiff_momentum(stride, s->q0) / s->length;
+            return now < smaller(rounding, MOST_LEFT * wanted);
+        }
+        before = now;
+    }
+    return false;
+}
+
+void stiff_keep_stages(stiff_stride *stride)
+{
+    const stiff_step *s = &stride->step;
+    double *kept = stride->kept;
+    memcpy(kept + STIFF_FORCE, s->force.at, sizeof s->force.at);
+    memcpy(kept + STIFF_RATES, s->rate.at, sizeof s->rate.at);
+    memcpy(kept + STIFF_HOLD, s->hold.at, sizeof s->hold.at);
+    memcpy(kept + STIFF_VISCOUS, s->viscous.at, sizeof s->viscous.at);
+    memcpy(kept + STIFF_LOST, s->lost.at, sizeof s->lost.at);
+    memcpy(kept + STIFF_WALL_LOST, s->wall_lost.at, sizeof s->wall_lost.at);
+    memcpy(kept + STIFF_ELECTRIC, s->electric.at, sizeof s->electric.at);
+    memcpy(kept + STIFF_CURRENT, s->current.at, sizeof s->current.at);
+    memcpy(kept + STIFF_CURRENT_RATE, s->current_rate.at, sizeof s->current_rate.at);
+    memcpy(stiff_angles(stride), s->q0, (size_t)s->dof * sizeof(double));
+    memcpy(stiff_velocities(stride), s->w0, (size_t)s->dof * sizeof(double));
+    double *a = stiff_accelerations(stride);
+    for (int k = 0; k < s->dof; k++) {
+        memcpy(a + (size_t)RADAU_LANES * (size_t)k, s->stage[k].a, sizeof s->stage[k].a);
+    }
+
+    // what holds one link holds it to the last bit; with the hub stuck too, what joins the two
+    // presses with one force throughout
+    const bool both = s->dof == 2 && s->stuck;
+    if (s->contact == STIFF_RIGID && (s->dof == 1 || both)) {
+        memset(a, 0, (size_t)s->dof * RADAU_LANES * sizeof *a);
+    }
+    for (int i = 0; i < RADAU_LANES && both && s->contact == STIFF_RIGID; i++) {
+        kept[STIFF_FORCE + i] = s->force.at[RADAU_LANES - 1];
+    }
+    kept[STIFF_LENGTH] = s->length;
+}

@@ -1,0 +1,131 @@
+// The step in hand of the stiff engine (stiff_engine.c): how it is taken (stiff_newton.c), what it
+// says of events (stiff_events.c), and what of it a state keeps.
+#pragma once
+
+#include "src/engines/stiff/stiff_function.h"
+#include "src/engines/stiff/stiff_step.h"
+
+// What a state keeps of the step that it lies in or ends, behind KEPT_COUNT: all that its course
+// and the next step depend on. Stages are those of RADAU_LANES.
+enum stiff_kept {
+    STIFF_LENGTH = KEPT_COUNT, // of the stages' step; up to rounding that of an event's end [s]
+    STIFF_EVENT,               // 1 + the watch whose event ends it, or 0
+    STIFF_NEXT,                // length proposed for the next step [s]
+    STIFF_RATE,                // of Newton's iteration
+    STIFF_SCALE,               // largest momentum so far, that errors are a share of [kg^(1/2) m/s]
+    STIFF_LEARNED,             // length of the next step after an event [s]
+    STIFF_GAP,                 // at the step's end, as it grew since it was zero [m]
+    STIFF_DRIVE,               // which of the drive's equations holds
+    STIFF_TIME,                // of the step's start [s]
+    STIFF_WORK,                // SLOT_MOTOR_WORK there [J]
+    STIFF_RUBBED,              // SLOT_FRICTION_LOSS there [J]
+    STIFF_FACE,                // place and velocity of a wall's face there [m], [m/s]
+    STIFF_QUADRATURES = STIFF_FACE + 2,                 // at the step's start
+    STIFF_FORCE = STIFF_QUADRATURES + QUADRATURE_COUNT, // contact force at the stages [N]
+    STIFF_RATES = STIFF_FORCE + RADAU_LANES,            // of the gap [m/s]
+    STIFF_HOLD = STIFF_RATES + RADAU_LANES,             // [N m]
+    STIFF_VISCOUS = STIFF_HOLD + RADAU_LANES,           // [W]
+    STIFF_LOST = STIFF_VISCOUS + RADAU_LANES,           // [W]
+    STIFF_WALL_LOST = STIFF_LOST + RADAU_LANES,         // [W]
+    STIFF_ELECTRIC = STIFF_WALL_LOST + RADAU_LANES,     // [W]
+    STIFF_CURRENT = STIFF_ELECTRIC + RADAU_LANES,       // [A]
+    STIFF_CURRENT_RATE = STIFF_CURRENT + RADAU_LANES,   // [A/s]
+    STIFF_GAPS = STIFF_CURRENT_RATE + RADAU_LANES,      // the gap's Bernstein coefficients [m]
+    STIFF_HEAD = STIFF_GAPS + FUNCTION_MOST
+    // then angles and velocities at the start [dof], accelerations at the stages [dof][RADAU_LANES]
+};
+
+typedef struct stiff_stride {
+    stiff_step step;
+    const stiff_loops *loops;
+    double tolerance; // of a step's error, as a share of STIFF_SCALE
+    double *kept;     // of the step in hand, as a state has it
+    bool known;       // whether there is one
+    double used;      // of it before m->state [s]
+
+    // what the contact machine watches
+    stiff_function watched[WATCHES], far_limit, far_current, force, gap;
+    bool divided[WATCHES];
+    double holds_more; // than stiction, just after an event [N m]
+    double *end;       // state at the step's end, without what it keeps
+    bool ended;        // whether it is that
+    bool turned;       // the step begins where the drive's equation changes
+    int passed;        // 1 + the watch that a search leaves out, or 0
+
+    double *scratch[4]; // [dof]
+} stiff_stride;
+
+static inline double *stiff_angles(const stiff_stride *s)
+{
+    return s->kept + STIFF_HEAD;
+}
+static inline double *stiff_velocities(const stiff_stride *s)
+{
+    return s->kept + STIFF_HEAD + s->step.dof;
+}
+static inline double *stiff_accelerations(const stiff_stride *s)
+{
+    return s->kept + STIFF_HEAD + 2 * s->step.dof;
+}
+
+// Numbers of a state behind KEPT_COUNT, and bytes of it before what it keeps.
+static inline size_t stiff_kept_size(const arm *a)
+{
+    return (size_t)(STIFF_HEAD - KEPT_COUNT) + (size_t)a->dof * (2 + RADAU_LANES);
+}
+static inline size_t stiff_head_size(const motion *m)
+{
+    return (SLOT_COUNT + 4 * (size_t)m->dof + QUADRATURE_COUNT) * sizeof(double);
+}
+
+// --- stiff_newton.c ------------------------------------------------------------------------------
+
+// The arm in its contact state, and the state at the step's start.
+void stiff_set_arm(stiff_stride *s, const arm *a, const motion *m);
+void stiff_set_start(stiff_stride *s, motion *m);
+
+// Solves the stages of a step of s->step.length: with the accelerations that the step kept has at
+// `offset` + `ratio` c of its length, or none where `fresh`. *rate: of the iteration. False if that
+// does not converge.
+bool stiff_solve_stages(stiff_stride *s, bool fresh, double offset, double ratio, double *rate,
+                        double tolerance, double scale);
+
+// Puts the stages into what is kept.
+void stiff_keep_stages(stiff_stride *s);
+
+// --- stiff_error.c -------------------------------------------------------------------------------
+
+// Error of the step, as the embedded formula of order 7 shows it, filtered by the real system; a
+// momentum as STIFF_SCALE is.
+double stiff_error(stiff_stride *s, bool twice);
+
+// Momentum of velocities of the arm stretched out [kg^(1/2) m/s].
+double stiff_momentum(const stiff_stride *s, const double *w);
+
+// --- stiff_events.c ------------------------------------------------------------------------------
+
+// The watched functions of the step, which begins at m->state.
+void stiff_watch(stiff_stride *s, const arm *a, const motion *m);
+
+// --- stiff_control.c -----------------------------------------------------------------------------
+
+// Takes a step from m->state, as long as its error allows or up to its first event. False if none
+// can be made.
+bool stiff_make_step(stiff_stride *s, const arm *a, motion *m);
+
+// --- stiff_output.c ------------------------------------------------------------------------------
+
+// Angles, velocities and what has added up at `time` [s] after the step's start, evaluated.
+void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double time, double *state);
+
+// The engine's functions of these names (engine.h).
+status stiff_state_at(const arm *a, motion *m, double h);
+glance stiff_look(const arm *a, const motion *m, watch w, double h);
+double stiff_bend(const arm *a, const motion *m, watch w, double from, double to);
+bool stiff_clear(const arm *a, motion *m, watch w, double h);
+bool stiff_bounded(const arm *a, motion *m, double h, double most);
+glance stiff_force_at(const arm *a, const motion *m, double h);
+glance stiff_gap_at(const arm *a, const motion *m, double h);
+glance stiff_hub_at(const arm *a, const motion *m, double h);
+void stiff_sense_at(const arm *a, const motion *m, double time, double *state);
+void stiff_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);

@@ -1,0 +1,345 @@
+// Arithmetic in lanes, and the stages of a step of the stiff engine: part of stiff_kernel.h.
+#pragma once
+
+#include <math.h>
+
+#include "src/base/sincos.h"
+#include "src/engines/stiff/stiff_step.h"
+
+// Lanes are handed to inline functions of one file only.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+#define KERNEL static inline __attribute__((always_inline))
+
+// A link may turn by the root of this within a step [rad2].
+#define MOST_TURN_SQUARE 0.5
+
+typedef stiff_lanes lanes;
+typedef stiff_complex complex_lanes;
+typedef long long within_turn __attribute__((vector_size(32)));
+
+// Four numbers of an array that begins with whole vectors.
+typedef double aliasing_lanes __attribute__((vector_size(32), may_alias));
+KERNEL lanes lanes_at(const double *x)
+{
+    return *(const aliasing_lanes *)x;
+}
+KERNEL lanes all(double x)
+{
+    return (lanes){x, x, x, x};
+}
+KERNEL complex_lanes number(double x)
+{
+    return (complex_lanes){all(x), all(0)};
+}
+KERNEL complex_lanes plus(complex_lanes a, complex_lanes b)
+{
+    return (complex_lanes){a.r + b.r, a.i + b.i};
+}
+KERNEL complex_lanes minus(complex_lanes a, complex_lanes b)
+{
+    return (complex_lanes){a.r - b.r, a.i - b.i};
+}
+KERNEL complex_lanes times(complex_lanes a, complex_lanes b)
+{
+    return (complex_lanes){a.r * b.r - a.i * b.i, a.r * b.i + a.i * b.r};
+}
+KERNEL complex_lanes scaled(double s, complex_lanes a)
+{
+    return (complex_lanes){s * a.r, s * a.i};
+}
+KERNEL complex_lanes inverse(complex_lanes a)
+{
+    const lanes d = 1 / (a.r * a.r + a.i * a.i);
+    return (complex_lanes){a.r * d, -a.i * d};
+}
+
+// T^-1 of numbers at the stages.
+KERNEL complex_lanes to_systems(const lanes *stages)
+{
+    complex_lanes sum = number(0);
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        sum.r += lanes_at(radau_to_real[i]) * stages[i / 4][i % 4];
+        sum.i += lanes_at(radau_to_imaginary[i]) * stages[i / 4][i % 4];
+    }
+    return sum;
+}
+
+// T of numbers of the systems, half of the stages.
+KERNEL lanes to_stages(complex_lanes y, int half)
+{
+    lanes sum = y.r[0] * lanes_at(&radau_from_real[0][4 * half]);
+    for (int j = 1; j < RADAU_SYSTEMS; j++) {
+        sum += y.r[j] * lanes_at(&radau_from_real[j][4 * half]);
+        sum += y.i[j] * lanes_at(&radau_from_imaginary[j][4 * half]);
+    }
+    return sum;
+}
+
+// --- the stages ----------------------------------------------------------------------------------
+
+static void predict(stiff_step *s, const double *before, const double *force, const double *weight)
+{
+    // weights of the accelerations for velocities and angles: h a, (h a)^2
+    _Alignas(32) double once[RADAU_STAGES][RADAU_LANES], twice[RADAU_STAGES][RADAU_LANES];
+    const double h = s->length;
+    const complex_lanes root = {lanes_at(radau_root_real), lanes_at(radau_root_imaginary)};
+    s->g = scaled(h, inverse(root));
+    for (int j = 0; j < RADAU_STAGES; j++) {
+        for (int i = 0; i < RADAU_LANES; i++) {
+            double sum = 0;
+            for (int k = 0; k < RADAU_STAGES; k++) {
+                sum += radau_matrix[k][i] * weight[RADAU_LANES * j + k];
+            }
+            once[j][i] = h * sum;
+        }
+        for (int i = 0; i < RADAU_LANES; i++) {
+            double sum = 0;
+            for (int k = 0; k < RADAU_STAGES; k++) {
+                sum += radau_matrix[k][i] * once[j][k];
+            }
+            twice[j][i] = h * sum;
+        }
+    }
+
+    for (int half = 0; half < STIFF_HALVES; half++) {
+        const lanes node = lanes_at(&radau_node[4 * half]);
+        const lanes start = half == 0 ? all(0) : (lanes){0, 0, 0, 1};
+        for (int k = 0; k < s->dof; k++) {
+            stiff_stage *g = &s->stage[k];
+            lanes a = s->a0[k] * start, w = all(s->w0[k]), q = s->q0[k] + h * s->w0[k] * node;
+            for (int j = 0; j < RADAU_STAGES; j++) {
+                const double was = before[RADAU_LANES * k + j];
+                a += was * lanes_at(&weight[RADAU_LANES * j + 4 * half]);
+                w += was * lanes_at(&once[j][4 * half]);
+                q += was * lanes_at(&twice[j][4 * half]);
+            }
+            g->a[half] = a;
+            g->w[half] = w;
+            g->q[half] = q;
+        }
+        lanes f = s->force0 * start;
+        for (int j = 0; j < RADAU_STAGES; j++) {
+            f += force[j] * lanes_at(&weight[RADAU_LANES * j + 4 * half]);
+        }
+        s->force.half[half] = f;
+    }
+    if (s->stuck) {
+        for (int half = 0; half < STIFF_HALVES; half++) {
+            s->stage[0].a[half] = s->stage[0].w[half] = all(0);
+            s->stage[0].q[half] = all(s->q0[0]);
+        }
+    }
+}
+
+// The current at the stages from the hub's velocities there. Through an inductance it solves its
+// own collocation: with g of the systems, (L + g Ra) T^-1 i' = T^-1 (volts - Ra i0 - kB w).
+KERNEL void follow_current(stiff_step *s)
+{
+    const motor_model *m = s->motor;
+    const double volts = m->gain * m->voltage;
+    if (s->drive != STIFF_FLOWS) {
+        for (int half = 0; half < STIFF_HALVES; half++) {
+            s->current.half[half] =
+                s->drive == STIFF_LIMITED
+                    ? all(s->limited)
+                    : (volts - m->back_emf * s->stage[0].w[half]) / m->resistance;
+            s->current_rate.half[half] = all(0);
+        }
+        return;
+    }
+    stiff_nodes drives;
+    for (int half = 0; half < STIFF_HALVES; half++) {
+        drives.half[half] = volts - m->resistance * s->current0 - m->back_emf * s->stage[0].w[half];
+    }
+    const complex_lanes slows = plus(number(m->inductance), scaled(m->resistance, s->g));
+    const complex_lanes rate = times(to_systems(drives.half), inverse(slows));
+    const complex_lanes change = times(rate, s->g);
+    for (int half = 0; half < STIFF_HALVES; half++) {
+        s->current_rate.half[half] = to_stages(rate, half);
+        s->current.half[half] = s->current0 + to_stages(change, half);
+    }
+}
+
+// The force of a wall that gives at a depth and its rates, [N].
+KERNEL lanes law(const stiff_step *s, lanes depth, lanes rate, lanes acceleration)
+{
+    const wall_model *w = s->wall;
+    if (w->law == WALL_KELVIN_VOIGT) {
+        return w->stiffness * depth + w->damping * rate + w->face_mass * acceleration;
+    }
+    lanes force;
+    for (int i = 0; i < 4; i++) {
+        force[i] = wall_force(w, depth[i], rate[i]);
+    }
+    return force;
+}
+
+KERNEL bool sweep(stiff_step *s, int half, bool account)
+{
+    const lanes zero = all(0);
+    lanes ax = zero, ay = zero, vx = zero, vy = zero, x = zero, y = zero, lost = zero;
+    within_turn within = all(0) == zero;
+    lanes bx = zero, by = zero, bvx = zero, bvy = zero, px = zero, py = zero;
+
+    // outwards: directions, accelerations, and the forces that they take
+    for (int k = 0; k < s->links; k++) {
+        const stiff_link *l = &s->link[k];
+        const stiff_stage *g = &s->stage[s->first + k];
+        stiff_body *b = &s->body[k];
+        const lanes z = g->q[half] - s->q0[s->first + k], w = g->w[half], al = g->a[half];
+        const lanes w2 = w * w;
+        lanes sz, cz;
+        SINCOS_NEAR_ZERO(lanes, z, sz, cz);
+        within &= z * z < MOST_TURN_SQUARE;
+        const lanes c = l->cosine * cz - l->sine * sz, sn = l->sine * cz + l->cosine * sz;
+        b->c[half] = c;
+        b->s[half] = sn;
+        bx = ax, by = ay, bvx = vx, bvy = vy, px = x, py = y;
+        const lanes dx = -l->length * (sn * al + c * w2), dy = l->length * (c * al - sn * w2);
+        const lanes dvx = -l->length * sn * w, dvy = l->length * c * w;
+        lanes fx = l->mass * (ax + 0.5 * dx), fy = l->mass * (ay + 0.5 * dy);
+        if (s->drags) {
+            const lanes mx = vx + 0.5 * dvx, my = vy + 0.5 * dvy;
+            fx += l->air * mx;
+            fy += l->air * my;
+            if (account) {
+                lost += l->air * (mx * mx + my * my) + l->turning * w2;
+            }
+        }
+        b->fx[half] = fx;
+        b->fy[half] = fy;
+        ax += dx, ay += dy, vx += dvx, vy += dvy;
+        x += l->length * c, y += l->length * sn;
+    }
+    for (int i = 0; i < 4; i++) {
+        if (!within[i]) {
+            return false;
+        }
+    }
+
+    // the wall: gap, rate and force (wall_contact_at of wall.h, for lanes)
+    const int last = s->links - 1;
+    const stiff_link *tip = &s->link[last];
+    const lanes c = s->body[last].c[half], sn = s->body[last].s[half];
+    const lanes w = s->stage[s->first + last].w[half];
+    lanes ex = zero, ey = zero, lever = zero, force = zero;
+    if (wall_stands(s->wall)) {
+        lanes depth, bends; // bends: what velocities add to the depth's second derivative
+        if (s->wall->kind == WALL_POINT) {
+            const lanes dx = s->wall->x - px, dy = s->wall->y - py;
+            ex = -sn;
+            ey = c;
+            lever = c * dx + sn * dy - tip->length;
+            depth = sn * dx - c * dy;
+            bends = -depth * w * w - 2 * w * (c * bvx + sn * bvy);
+        } else {
+            ex = all(-s->wall->sine);
+            ey = all(s->wall->cosine);
+            depth = ex * (px + tip->length * c) + ey * (py + tip->length * sn);
+            bends = -tip->length * w * w * (ex * c + ey * sn);
+        }
+        const lanes reach = lever + tip->length * (c * ey - sn * ex);
+        const lanes rate = ex * bvx + ey * bvy + reach * w;
+        s->gap.half[half] = -depth;
+        s->rate.half[half] = -rate;
+        if (s->contact == STIFF_GIVES) {
+            const lanes rate2 =
+                ex * bx + ey * by + reach * s->stage[s->first + last].a[half] + bends;
+            s->force.half[half] = law(s, depth, rate, rate2);
+        }
+        if (s->contact == STIFF_FREE) {
+            s->force.half[half] = zero;
+        }
+        force = s->force.half[half];
+        if (account) {
+            s->wall_lost.half[half] = zero;
+        }
+        if (account && s->contact == STIFF_GIVES) {
+            lanes power = s->wall->damping * rate * rate;
+            for (int i = 0; i < 4 && s->wall->law == WALL_HUNT_CROSSLEY; i++) {
+                power[i] = (force[i] - wall_spring_force(s->wall, depth[i])) * rate[i];
+            }
+            s->wall_lost.half[half] = power;
+        }
+    }
+
+    // damped modes: sums of the bends' rates
+    lanes sum[PARAMETER_MODES_MOST];
+    for (int i = 0; i < s->modes; i++) {
+        sum[i] = zero;
+        for (int k = 0; k < s->dof; k++) {
+            sum[i] += s->mode[i * s->dof + k] * s->stage[k].w[half];
+        }
+        if (account) {
+            lost += sum[i] * sum[i];
+        }
+    }
+
+    // inwards: forces, and what each equation lacks
+    lanes fx = s->tip_mass * ax + force * ex, fy = s->tip_mass * ay + force * ey, outer = zero;
+    for (int k = last; k >= 0; k--) {
+        const stiff_link *l = &s->link[k];
+        const stiff_body *b = &s->body[k];
+        stiff_stage *g = &s->stage[s->first + k];
+        const lanes hx = l->length * (fx + 0.5 * b->fx[half]);
+        const lanes hy = l->length * (fy + 0.5 * b->fy[half]);
+        lanes inner = zero;
+        if (k + s->first > 0) {
+            const stiff_stage *before = g - 1;
+            const lanes bend = g->q[half] - before->q[half], rate = g->w[half] - before->w[half];
+            inner = l->stiffness * bend + l->damping * rate;
+            if (s->stiffens) {
+                inner += l->stiffening * bend * bend * bend;
+            }
+            if (account) {
+                lost += l->damping * rate * rate;
+            }
+        }
+        lanes r = l->inertia * g->a[half] + b->c[half] * hy - b->s[half] * hx - outer + inner;
+        if (s->drags) {
+            r += l->turning * g->w[half];
+        }
+        if (k == last) {
+            r += force * lever;
+        }
+        for (int i = 0; i < s->modes; i++) {
+            r += s->mode[i * s->dof + s->first + k] * sum[i];
+        }
+        g->r[half] = r;
+        fx += b->fx[half];
+        fy += b->fy[half];
+        outer = inner;
+    }
+
+    // the hub
+    stiff_stage *hub = &s->stage[0];
+    lanes r = s->first > 0 ? -outer : hub->r[half];
+    r += s->hub_inertia * hub->a[half] + s->hub_damping * hub->w[half] - s->torque;
+    for (int i = 0; i < s->modes && s->first > 0; i++) {
+        r += s->mode[i * s->dof] * sum[i];
+    }
+    if (s->drive != STIFF_DIRECT) {
+        r -= s->motor->torque_constant * s->current.half[half];
+    }
+    hub->r[half] = s->stuck ? zero : r + s->friction;
+    if (account) {
+        s->hold.half[half] = r;
+        s->lost.half[half] = lost;
+        s->viscous.half[half] = s->hub_damping * hub->w[half] * hub->w[half];
+        if (s->drive != STIFF_DIRECT) {
+            s->electric.half[half] =
+                s->motor->torque_constant * s->current.half[half] * hub->w[half];
+        }
+    }
+    return true;
+}
+
+static bool residual(stiff_step *s, bool account)
+{
+    if (s->drive != STIFF_DIRECT) {
+        follow_current(s);
+    }
+    return account ? sweep(s, 0, true) && sweep(s, 1, true)
+                   : sweep(s, 0, false) && sweep(s, 1, false);
+}
