@@ -34,7 +34,7 @@ says out corrected/first-impact
 expect 0 --version
 says out "impactlab "
 expect 0 --help
-for command in list show check run tables figures animate predict modes sweep compare calibrate robust bench converge solve study; do
+for command in list show check run tables figures animate predict modes sweep compare calibrate robust bench converge solve study linear; do
     grep -q "^  $command " out || fail "--help does not name $command"
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
@@ -462,7 +462,7 @@ expect 0 lesson --json -
 says out '"scenario": "lessons/hybrid-law"'
 expect 0 figures 2.4 --format svg -o drawn --json -
 says out '"file": "fig-2-4"'
-for command in list show run predict modes sweep merge compare converge solve study calibrate robust \
+for command in list show run predict modes sweep merge compare converge solve study calibrate robust linear \
     tables bench check lesson figures; do
     expect 0 $command --help
     says out '--json FILE|-'

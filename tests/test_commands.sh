@@ -221,7 +221,7 @@ expect 0 figures 3.4 3.5 -o pictures --format svg --latex all.tex
 # --set, each with what it needs besides; a command that is new has to be added here
 declare -A besides=([run]='' [predict]='' [modes]='' [converge]='' [compare]='hit.yaml' [show]=''
     [sweep]='--vary motor.voltage=1:2:2' [study]='' [robust]='--set control.force=1 --laws hybrid,force-pd --runs 3'
-    [calibrate]='' [solve]='' [animate]='' [lab]='' [lesson]='')
+    [calibrate]='' [linear]='' [solve]='' [animate]='' [lab]='' [lesson]='')
 title_of() { sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' "$1" | head -1; }
 expect 0 help
 for command in $(awk '/^  [a-z]/ { print $1 }' out); do

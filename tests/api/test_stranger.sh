@@ -110,7 +110,7 @@ look() {
 arguments() {
     case $1 in
     list | tables | help) echo ;;
-    show | run | predict | modes | converge | calibrate) echo "$2" ;;
+    show | run | predict | modes | linear | converge | calibrate) echo "$2" ;;
     check) echo "scenarios/$2.yaml" ;;
     sweep) echo "$2 --vary motor.voltage=1,2 --jobs 2" ;;
     solve) echo "$2 motor.voltage=0.5:2 peak_force_N<1 --runs 3 --jobs 2" ;;

@@ -30,6 +30,7 @@
     X(study)                                                                                       \
     X(calibrate)                                                                                   \
     X(robust)                                                                                      \
+    X(linear)                                                                                      \
     X(animate)                                                                                     \
     X(plot)                                                                                        \
     X(tables)                                                                                      \

@@ -123,9 +123,11 @@ typedef struct arguments {
     double tolerance;               // of compare [%]
     const char *laws, *over;        // of robust
     const char *then;               // of predict, "TIME:VOLTS,..."
+    const char *place;              // of linear, --at
+    bool looped;                    // of linear, --law
 
     // files for results
-    const char *json, *csv, *plot, *scene, *output, *db, *markdown, *format;
+    const char *json, *csv, *mat, *plot, *scene, *output, *db, *markdown, *format;
 
     // appearance of pictures
     bool mono, dark, bare, transparent;
