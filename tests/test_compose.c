@@ -120,8 +120,8 @@ static void test_eighty_columns_show_what_a_first_visit_needs(void **state)
     press(&ex, "b");
     assert_has(&ex, 80, 24, "forgets it)");
     press(&ex, "c");
-    assert_has(&ex, 80, 24, "first_pulse_peak_N");
-    assert_has(&ex, 40, 12, "this run    old run     change");
+    assert_has(&ex, 80, 24, "first pulse peak [N]");
+    assert_has(&ex, 40, 12, "now as opened      change");
     press(&ex, "<Esc>:set motor.voltage 0.5");
     assert_has(&ex, 40, 12, ":set motor.voltage 0.5");
     // a long prompt shows its end

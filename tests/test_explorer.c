@@ -92,9 +92,9 @@ static void test_a_lower_voltage_is_compared_with_the_run_before(void **state)
     check_below(ex.state.session.run.summary.peak_force_N,
                 ex.state.session.other.summary.peak_force_N);
     press(&ex, "c");
-    assert_shows(&ex, "this run beside the old one");
+    assert_shows(&ex, "two runs (Esc closes)");
     char line[128];
-    snprintf(line, sizeof line, "%-28s %11.4g %11.4g", "first_pulse_peak_N",
+    snprintf(line, sizeof line, "%-30s %11.4g %11.4g", "first pulse peak [N]",
              ex.state.session.run.summary.first_pulse_peak_N,
              ex.state.session.other.summary.first_pulse_peak_N);
     assert_shows(&ex, line);

@@ -247,9 +247,10 @@ bool act_sweep(explorer_state *st, const char *argument)
         const parameters p = state_parameters(st);
         const double value = parameter_get(&p, parameter);
         snprintf(line, sizeof line, "sweep %s=", parameter_table[parameter].path);
-        if (slider_scale_of(parameter, value, &scale) && scale.logarithmic) {
-            prompt_open(&st->prompt, "%s%g:%g:8:log", line, fmax(scale.low, value / 4),
-                        fmin(scale.high, value * 4));
+        if (slider_scale_of(parameter, value, &scale) && value > 0) {
+            // about the value that it has, of its sign
+            prompt_open(&st->prompt, "%s%g:%g:8%s", line, fmax(scale.low, value / 4),
+                        fmin(scale.high, value * 4), scale.logarithmic ? ":log" : "");
         } else if (slider_scale_of(parameter, value, &scale)) {
             prompt_open(&st->prompt, "%s%g:%g:8", line, scale.low, scale.high);
         } else {

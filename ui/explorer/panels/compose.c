@@ -245,9 +245,13 @@ static int draw_bottom(const explorer_state *st, screen *s)
     count = count < 1 ? 1 : count;
     for (int i = 0; i < count; i++) {
         blank_row(s, s->height - count + i);
-        screen_print(s, 1, s->height - count + i, s->width - 2,
-                     st->message.warning ? INK_WARNING : INK_TEXT, "%.*s", lines[i].bytes,
-                     lines[i].start);
+        const ink shade = st->message.warning ? INK_WARNING : INK_TEXT;
+        if (i == MOST - 1) {
+            screen_words(s, 1, s->height - 1, s->width - 2, shade, lines[i].start);
+        } else {
+            screen_print(s, 1, s->height - count + i, s->width - 2, shade, "%.*s", lines[i].bytes,
+                         lines[i].start);
+        }
     }
     return count;
 }

@@ -291,6 +291,14 @@ static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int 
     const shown_run run = state_run(st, number);
     const pane_look look = pane_look_of(st, p);
 
+    // of a sweep of many runs a few curves, evenly spread, and the chosen one
+    enum { FAN = 5 };
+    const int swept = st->sweep.count, stride = (swept + FAN - 2) / (FAN - 1);
+    if (run.kind == SHOWN_SWEPT && swept > FAN && run.index != st->sweep.selected &&
+        run.index % stride != 0 && run.index != swept - 1) {
+        return;
+    }
+
     // of many runs a pane shows what it is about
     const bool first_only =
         run.kind == SHOWN_SWEPT || (run.kind == SHOWN_PINNED && state_visible_pins(st) > 1);
@@ -303,8 +311,14 @@ static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int 
             extremes_pairs(&st->extremes[number], run.id, run.trace, p->signals[k]);
         set_look(st, &f, &run, &look, k);
 
-        // while a value is adjusted the whole future is shown
+        // while a value is adjusted the whole future is shown, and after a change dimly
         const bool hidden = number == 0 && !st->session.has_ghost;
+        if (hidden && st->session.input_count > 0) {
+            const ink seen = f.colour;
+            f.colour = INK_FRAME;
+            plot_frame_signal(&f, run.trace, p->signals[k], f.to, pairs);
+            f.colour = seen;
+        }
         plot_frame_signal(&f, run.trace, p->signals[k], hidden ? st->session.seen : f.to, pairs);
     }
 }

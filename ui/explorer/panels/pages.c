@@ -240,6 +240,8 @@ const panel info_panel = {.name = "info", .draw = draw_info, .point = page_point
 static bool compare_quantity(const session *e, int index, int width, char *columns, size_t size,
                              bool *differs)
 {
+    // smaller differences are rounding, of numbers near zero too
+    const double relative = 1e-6, absolute = 1e-9;
     double value = summary_value(&e->run.summary, index), other = (double)NAN;
     char one[32], two[32] = "", change[32] = "";
     draw_number(one, sizeof one, value);
@@ -251,16 +253,18 @@ static bool compare_quantity(const session *e, int index, int width, char *colum
         draw_number(change, sizeof change, value - other);
     }
 
-    // two runs differ by more than rounding
     *differs = e->has_other && !(isnan(value) && isnan(other)) &&
-               !(fabs(value - other) <= 1e-6 * fmax(fabs(value), fabs(other)));
+               !(fabs(value - other) <= absolute + relative * fmax(fabs(value), fabs(other)));
+    if (!*differs && e->has_other) {
+        snprintf(change, sizeof change, "-");
+    }
     snprintf(columns, size, "%*s%*s%*s", width, one, width, two, width, change);
     return !summary_table[index].timing && !(isnan(value) && isnan(other));
 }
 
 static void draw_comparison(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    enum { NAMES = 28, WIDE = 12, NARROW = 11 };
+    enum { NAMES = 30, WIDE = 12, NARROW = 11 };
     const session *e = &st->session;
     char columns[128];
     bool differs;
@@ -278,20 +282,26 @@ static void draw_comparison(const explorer_state *st, layout *lay, screen *s, ar
     int room = a.width - 4, shown = a.height - 3;
     int scroll = page_scroll(lay, PANEL_COMPARISON, a, rows * count, 3);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
-                 e->has_other ? "this run beside the old one (Esc closes)"
-                              : "this run (b branches, Esc closes)");
-    screen_print(s, a.x + 2 + names, a.y + 1, room - names, INK_DIM, "%*s%*s%*s", width, "this run",
-                 width, e->has_other ? "old run" : "", width, e->has_other ? "change" : "");
+                 e->has_other ? "two runs (Esc closes)" : "this run (b branches, Esc closes)");
+    screen_print(s, a.x + 2 + names, a.y + 1, room - names, INK_DIM, "%*s", width, "now");
+    if (e->has_other) {
+        // under the name that the legend has
+        const int at = a.x + 3 + names + width;
+        screen_words(s, at, a.y + 1, width - 1, INK_DIM, st->pinned.runs[st->pinned.baseline].name);
+        screen_print(s, at + width - 1, a.y + 1, width, INK_DIM, "%*s", width, "change");
+    }
 
     // the lines that it is scrolled to
     for (int i = 0; i < summary_count; i++) {
         if (!compare_quantity(e, i, width, columns, sizeof columns, &differs)) {
             continue;
         }
-        ink colour = differs ? INK_WARNING : INK_TEXT;
+        const ink colour = differs || !e->has_other ? INK_TEXT : INK_DIM;
+        const summary_info *info = &summary_table[i];
         int y = rows * line++ - scroll, below = y + rows - 1;
         if (y >= 0 && y < shown) {
-            screen_text(s, a.x + 2, a.y + 2 + y, room, colour, summary_table[i].key);
+            screen_print(s, a.x + 2, a.y + 2 + y, room, colour, "%s%s%s%s", info->label,
+                         info->unit[0] ? " [" : "", info->unit, info->unit[0] ? "]" : "");
         }
         if (below >= 0 && below < shown) {
             screen_text(s, a.x + 2 + names, a.y + 2 + below, room - names, colour, columns);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { VALUE = 14, LEAST_CHART = 4 };
+enum { VALUE = 16, LEAST_CHART = 4 };
 enum { FRAME_OF_TITLE = 6 }; // corners, lines and blanks next to it [cells]
 
 // The least and the largest number among the runs; false without any.
@@ -42,6 +42,26 @@ static double share_of(const lab_sweep *sweep, int index)
                              : (value - axis->low) / (axis->high - axis->low);
 }
 
+// A value of the axis in few cells: a real one as the metric is written.
+static void format_value(const lab_sweep *sweep, double value, char text[SWEEP_VALUE_TEXT])
+{
+    sweep_axis_format(&sweep->axis, value, text, SWEEP_VALUE_TEXT);
+    if (sweep_axis_parameter(&sweep->axis)->type == PARAMETER_REAL) {
+        draw_number(text, SWEEP_VALUE_TEXT, value);
+    }
+}
+
+// The first and the last value below the chart.
+static void draw_ends(screen *s, area a, const lab_sweep *sweep)
+{
+    char first[SWEEP_VALUE_TEXT], last[SWEEP_VALUE_TEXT];
+    format_value(sweep, sweep->axis.values[0], first);
+    format_value(sweep, sweep->axis.values[sweep->axis.count - 1], last);
+    screen_words(s, a.x, a.y, a.width / 2, INK_DIM, first);
+    const int length = text_cells(last) < a.width / 2 ? text_cells(last) : a.width / 2;
+    screen_words(s, a.x + a.width - length, a.y, length, INK_DIM, last);
+}
+
 // The metric over the parameter, points joined, the selected one marked.
 static void draw_chart(const explorer_state *st, screen *s, area a)
 {
@@ -55,16 +75,23 @@ static void draw_chart(const explorer_state *st, screen *s, area a)
     draw_number(low, sizeof low, range.low);
     draw_number(high, sizeof high, range.high);
     screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%8s", high);
-    screen_print(s, a.x, a.y + a.height - 1, LABEL_WIDTH, INK_DIM, "%8s", low);
+    screen_print(s, a.x, a.y + a.height - 2, LABEL_WIDTH, INK_DIM, "%8s", low);
 
-    // from point to point
-    const canvas c = {s, a.x + LABEL_WIDTH, a.y, a.width - LABEL_WIDTH, a.height};
+    // from point to point, but words are no numbers
+    const parameter_info *varied = sweep_axis_parameter(&sweep->axis);
+    const bool joined = varied->type == PARAMETER_REAL || varied->type == PARAMETER_INTEGER;
+    const canvas c = {s, a.x + LABEL_WIDTH, a.y, a.width - LABEL_WIDTH, a.height - 1};
+    draw_ends(s, (area){c.x, a.y + c.height, c.width, 1}, sweep);
     double x0 = (double)NAN, y0 = (double)NAN;
     for (int i = 0; i < sweep->count; i++) {
         const double value = summary_value(&sweep->runs[i].run.summary, sweep->metric);
         const double x = share_of(sweep, i) * (2.0 * c.width - 1);
         const double y = (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
-        canvas_line(&c, x0, y0, x, y, INK_SERIES_0);
+        if (joined) {
+            canvas_line(&c, x0, y0, x, y, INK_SERIES_0);
+        } else if (isfinite(y)) {
+            screen_put(s, c.x + (int)(x / 2), c.y + (int)(y / 4), 0x25cb, INK_SERIES_0);
+        }
         x0 = x;
         y0 = y;
     }
@@ -90,15 +117,11 @@ static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
         const int y = a.y + i - first;
         char value[SWEEP_VALUE_TEXT], metric[32];
 
-        // a real value is written like the metric, any other as its axis has it
-        sweep_axis_format(&sweep->axis, r->value, value, sizeof value);
-        if (sweep_axis_parameter(&sweep->axis)->type == PARAMETER_REAL) {
-            draw_number(value, sizeof value, r->value);
-        }
+        format_value(sweep, r->value, value);
         draw_number(metric, sizeof metric, summary_value(&r->run.summary, sweep->metric));
 
         // a run that stopped says so in the unit's place
-        screen_print(s, a.x, y, VALUE, INK_TITLE, "%.12s", value);
+        screen_words(s, a.x, y, VALUE - 1, INK_TITLE, value);
         screen_print(s, a.x + VALUE, y, a.width - VALUE, INK_TEXT, "%10s %s", metric,
                      r->run.summary.status == STATUS_OK ? summary_table[sweep->metric].unit
                                                         : "stopped");
