@@ -124,6 +124,83 @@ static void test_every_step_fits_a_small_screen(void **state)
     explorer_finish(&ex);
 }
 
+// What a step names is on a screen of 80 x 24: when it is asked, or once it is done.
+static void test_what_a_step_names_is_on_the_screen(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *lesson;
+        int step; // from 1
+        bool done;
+        const char *shown;
+    } named[] = {
+        {"impulse-and-force", 1, false, "\u25c6"}, // the diamond
+        {"impulse-and-force", 2, false, "impact at 0.293"},
+        {"impulse-and-force", 2, false, "0.04426 N s"},
+        {"impulse-and-force", 3, true, "force 1.337"},
+        {"impulse-and-force", 4, true, "as opened"},
+        {"impulse-and-force", 5, false, "voltage"},
+        {"two-predictors", 1, true, "energy          1.47"},
+        {"two-predictors", 2, false, "energy          1.47"},
+        {"two-predictors", 3, true, "what came       1.34 N"},
+        {"two-predictors", 3, true, "linearised      1.34 N"},
+        {"two-predictors", 5, false, "k2"},
+        {"step-size", 1, true, "force"},
+        {"step-size", 2, false, "step"},
+        {"step-size", 2, true, "runs, peaks"},
+        {"beta-and-gamma", 1, false, "force 0"},
+        {"beta-and-gamma", 1, false, "resid"},
+        {"beta-and-gamma", 1, true, "runs, peaks"},
+        {"beta-and-gamma", 3, false, "beta"},
+        {"beta-and-gamma", 3, true, "ledger"},
+        {"hybrid-law", 1, true, "approach impact [force]"},
+        {"hybrid-law", 2, false, "force 0.9"},
+        {"hybrid-law", 3, false, "transition_time"},
+        {"hybrid-law", 4, false, "transition_time"},
+        {"what-a-sensor-sees", 1, true, "fsr"},
+        {"what-a-sensor-sees", 1, true, "force"},
+        {"what-a-sensor-sees", 3, false, "fsr_rise_time"},
+        {"what-a-sensor-sees", 5, false, "fsr_rise_time"},
+    };
+    for (size_t n = 0; n < sizeof named / sizeof named[0]; n++) {
+        explorer ex;
+        char name[64];
+        snprintf(name, sizeof name, "lessons/%s", named[n].lesson);
+        open_explorer(&ex, name);
+        const lesson *l = &ex.state.session.base.lesson;
+        for (int i = 0; i < named[n].step - !named[n].done; i++) {
+            for (int k = 0; k < l->steps[i].command_count; k++) {
+                assert_true(explorer_carry_out(&ex, l->steps[i].commands[k]));
+            }
+            if (i < named[n].step - 1) {
+                press(&ex, "y");
+            }
+        }
+        assert_shows_at(&ex, 80, 24, named[n].shown);
+        explorer_finish(&ex);
+    }
+}
+
+// Two keys open the first lesson of the list, which goes by number.
+static void test_the_list_of_lessons_opens_the_first(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":lesson<Enter>");
+    char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE), *at = text;
+    for (int i = 1; i <= 6; i++) {
+        char title[16];
+        snprintf(title, sizeof title, "Lesson %d", i);
+        at = strstr(at, title);
+        assert_non_null(at);
+    }
+    free(text);
+    press(&ex, "<Enter>");
+    assert_string_equal(ex.state.session.base.name, "lessons/impulse-and-force");
+    explorer_finish(&ex);
+}
+
 static void test_wrong_answers_are_not_taken(void **state)
 {
     (void)state;
@@ -158,6 +235,8 @@ int main(void)
         cmocka_unit_test(test_every_lesson_can_be_gone_through),
         cmocka_unit_test(test_a_copy_keeps_its_lesson),
         cmocka_unit_test(test_every_step_fits_a_small_screen),
+        cmocka_unit_test(test_what_a_step_names_is_on_the_screen),
+        cmocka_unit_test(test_the_list_of_lessons_opens_the_first),
         cmocka_unit_test(test_wrong_answers_are_not_taken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -68,6 +68,9 @@ void act_scrub(explorer_state *st, double time);
 void act_zoom_at(explorer_state *st, double factor, double time);
 void act_pan_by(explorer_state *st, double seconds);
 
+// Says what happens at the cursor: an event of the run, else the controller's change of mode.
+bool act_tell_event(explorer_state *st);
+
 // --- pulling the tip --------------------------------------------------------------------------
 
 // Grasps the tip with the pointer at a place [m], moves the pointer, and releases the tip.

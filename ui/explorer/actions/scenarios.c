@@ -83,6 +83,7 @@ bool act_find_scenario(explorer_state *st, const char *argument)
     open_list(st);
     snprintf(st->scenarios.filter, sizeof st->scenarios.filter, "%s", argument);
     st->scenarios.filtering = true;
+    scenario_menu_keep_selection_shown(&st->scenarios);
     return true;
 }
 
@@ -268,6 +269,7 @@ bool act_go_on(explorer_state *st, const char *argument)
         return act_tell(st, "that was the lesson '%s'; :lesson lists the others",
                         st->session.base.title);
     }
+    // a step may ask for what the event at the cursor says
     st->lesson = (lesson_progress){.on = true, .step = st->lesson.step + 1};
-    return act_hush(st);
+    return act_hush(st) && act_tell_event(st);
 }

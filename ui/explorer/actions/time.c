@@ -162,8 +162,7 @@ bool act_step(explorer_state *st, const char *argument)
     return true;
 }
 
-// What happens at the cursor: an event of the run, else the controller's change of mode.
-static bool tell_event(explorer_state *st)
+bool act_tell_event(explorer_state *st)
 {
     const run_log *log = state_run_log(st);
     const event *e = session_event(&st->session);
@@ -199,7 +198,7 @@ bool act_step_event(explorer_state *st, const char *argument)
         return act_refuse(st, "no %s event", back ? "earlier" : "later");
     }
     session_seek(&st->session, time);
-    return tell_event(st);
+    return act_tell_event(st);
 }
 
 // To the last row before a touch, where a prediction can be compared with what comes.

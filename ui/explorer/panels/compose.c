@@ -319,12 +319,17 @@ static bool gives_way(const explorer_state *st, panel_id id)
 // first those without anything to show. Returns the rows that became free.
 static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS], int left)
 {
-    enum { ENOUGH = 8 }; // six lines in a frame
+    enum { SHORT = 14, ENOUGH = 8, LITTLE = 3 }; // rows of all; six lines in a frame, or one
+    int rows_of_all = left;
+    for (int id = 0; id < PANEL_IDS; id++) {
+        rows_of_all += rows[id];
+    }
+    const int enough = rows_of_all < SHORT ? LITTLE : ENOUGH;
     const bool log_is_empty = st->log.count == 0 || st->session.seen <= 0;
     const panel_id order[] = {log_is_empty ? PANEL_LOG : PANEL_NONE, PANEL_PREDICTORS,
                               PANEL_CONTROLLER, PANEL_LOG, PANEL_RUNS};
     int freed = 0;
-    for (size_t i = 0; i < sizeof order / sizeof order[0] && left + freed < ENOUGH; i++) {
+    for (size_t i = 0; i < sizeof order / sizeof order[0] && left + freed < enough; i++) {
         lay->folded[order[i]] = rows[order[i]] > 0 || lay->folded[order[i]];
         freed += rows[order[i]];
         rows[order[i]] = 0;

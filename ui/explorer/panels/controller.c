@@ -107,7 +107,7 @@ static void draw_brief(screen *s, area a, const sample *row, const parameters *p
                  p->control.force);
 }
 
-// Tall enough for its table, or brief, or not at all; the predictors have the first call on rows.
+// Tall enough for its table, or brief, or not at all; before the predictors, which may fold.
 static int rows(const explorer_state *st, screen_size body)
 {
     const panel *predictors = panel_of(PANEL_PREDICTORS);
@@ -115,7 +115,7 @@ static int rows(const explorer_state *st, screen_size body)
     if (panel_fits(predictors, body)) {
         room -= predictors->rows(st, body);
     }
-    return !state_has_law(st) ? 0 : room >= 30 ? TALL : room >= 13 ? BRIEF : 0;
+    return !state_has_law(st) ? 0 : room >= 30 ? TALL : body.height >= 13 ? BRIEF : 0;
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)

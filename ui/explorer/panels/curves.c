@@ -114,6 +114,10 @@ static int draw_legend(const explorer_state *st, layout *lay, screen *s, int ind
             size_t used = strlen(value);
             snprintf(value + used, sizeof value - used, " %s", info->unit);
         }
+        // what is hidden goes first where room is short
+        if (p->hidden >> k & 1 && how >= LEGEND_SYMBOLS) {
+            continue;
+        }
         int width = how == LEGEND_TIGHT ? 6 : how == LEGEND_BARE ? 0 : 8;
         int length =
             snprintf(text, sizeof text, "%s %-*s", how == LEGEND_NAMES ? info->name : info->ascii,

@@ -63,7 +63,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
 
 const panel runs_panel = {.name = "runs",
                           .least_width = SIDE_WIDTH,
-                          .least_body = 18,
+                          .least_body = 12,
                           .rows = rows,
                           .draw = draw,
                           .point = point};

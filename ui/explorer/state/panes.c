@@ -65,6 +65,21 @@ static void show_signal(pane_set *set, int signal)
     }
 }
 
+// Hides what was not requested in the panes that hold something that was.
+static void hide_others(pane_set *set, const pane_wishes *wishes)
+{
+    for (int i = 0; i < PANES; i++) {
+        pane *p = &set->pane[i];
+        unsigned wanted = 0;
+        for (int k = 0; k < p->count; k++) {
+            for (int j = 0; j < wishes->signal_count; j++) {
+                wanted |= (unsigned)(p->signals[k] == wishes->signals[j]) << k;
+            }
+        }
+        p->hidden = wanted != 0 ? ~wanted & ((1u << p->count) - 1) : 0;
+    }
+}
+
 // Shows the requested panes, and the usual ones as far as there is room.
 static void show_panes(pane_set *set, const pane_wishes *wishes)
 {
@@ -80,6 +95,10 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
     for (int i = 0; i < wishes->signal_count; i++) {
         show_signal(set, wishes->signals[i]);
         set->focus = i == 0 ? 0 : set->focus;
+    }
+
+    if (wishes->only) {
+        hide_others(set, wishes);
     }
 
     // then the usual ones

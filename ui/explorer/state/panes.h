@@ -63,7 +63,8 @@ typedef struct pane_wishes {
     bool controlled;    // the run has readings and commands
     const int *signals; // to be shown first, indices in the signal table
     int signal_count;
-    int room; // number of panes that have room on the screen
+    bool only; // nothing but these signals in their panes
+    int room;  // number of panes that have room on the screen
 } pane_wishes;
 
 // Fills the panes with the signals of a run and shows the requested ones, then the usual ones as

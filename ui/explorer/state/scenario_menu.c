@@ -24,6 +24,23 @@ static void ignore_fault(void *context, const char *sentence)
     (void)sentence;
 }
 
+// Puts the lessons, which lie side by side, in the order of the numbers in their titles.
+static void sort_lessons(scenario_menu *menu)
+{
+    for (int i = 1; i < menu->count; i++) {
+        for (int k = i; k > 0 && menu->texts[k].is_lesson && menu->texts[k - 1].is_lesson &&
+                        strcmp(menu->texts[k].title, menu->texts[k - 1].title) < 0;
+             k--) {
+            const menu_text text = menu->texts[k];
+            char *const name = menu->names[k];
+            menu->texts[k] = menu->texts[k - 1];
+            menu->names[k] = menu->names[k - 1];
+            menu->texts[k - 1] = text;
+            menu->names[k - 1] = name;
+        }
+    }
+}
+
 void scenario_menu_read_titles(scenario_menu *menu)
 {
     assert(menu != NULL);
@@ -45,6 +62,9 @@ void scenario_menu_read_titles(scenario_menu *menu)
             scenario_finish(&s);
         }
         loss_unless(code != STATUS_NO_MEMORY);
+    }
+    if (menu->texts != NULL) {
+        sort_lessons(menu);
     }
 }
 

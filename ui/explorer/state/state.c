@@ -26,7 +26,7 @@ static void define_panes(explorer_state *st)
 
     // a lesson leaves little room next to its own panes
     const int least = st->lesson.on ? 2 : FEWEST;
-    const pane_wishes wishes = {state_has_law(st), base->panes, base->pane_count,
+    const pane_wishes wishes = {state_has_law(st), base->panes, base->pane_count, st->lesson.on,
                                 room < least ? least : room};
     panes_define(&st->panes, &wishes);
 }
