@@ -18,6 +18,13 @@ static void differences_are_shares_of_the_larger_value(void **state)
     assert_true(compare_differs(none, 1, 0.05));
 }
 
+static sweep_axis varied_axis(const char *name)
+{
+    sweep_axis axis = {0};
+    assert_int_equal(sweep_axis_find(&axis, name, NULL), STATUS_OK);
+    return axis;
+}
+
 // The row of the impact of 5.4 under a law, named like it.
 static compare_row row_of(scenario *s, const char *name, const char *law)
 {
@@ -86,7 +93,7 @@ static void varied_values_have_columns(void **state)
 {
     (void)state;
     fault f;
-    const int varied[] = {PARAMETER_INDEX(control.force), PARAMETER_INDEX(control.gains)};
+    const sweep_axis varied[] = {varied_axis("control.force"), varied_axis("control.gains")};
     compare_row rows[4], references[2];
     for (int i = 0; i < 4; i++) {
         rows[i] = (compare_row){.scenario = i % 2 ? "b" : "a",
@@ -190,8 +197,8 @@ static void a_gentle_run_is_held_against_its_band(void **state)
 static void a_failed_run_says_so(void **state)
 {
     (void)state;
-    const int varied[] = {PARAMETER_INDEX(printed.spring_counted_twice),
-                          PARAMETER_INDEX(arm.model)};
+    const sweep_axis varied[] = {varied_axis("printed.spring_counted_twice"),
+                                 varied_axis("arm.model")};
     compare_row rows[2] = {{.scenario = "a", .law = "none", .ok = true, .varied = {1, ARM_PRINTED}},
                            {.scenario = "b", .law = "none", .varied = {0, ARM_CORRECTED}}};
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {
@@ -230,7 +237,7 @@ static void forms_are_written_to_the_letter(void **state)
 {
     (void)state;
     fault f;
-    const int varied[] = {PARAMETER_INDEX(control.force), PARAMETER_INDEX(sensor.ideal)};
+    const sweep_axis varied[] = {varied_axis("control.force"), varied_axis("sensor.ideal")};
     compare_row rows[3] = {
         {.scenario = "a", .law = "hybrid", .ok = true, .varied = {0.5, 1}, .values = {1.5}},
         {.scenario = "much longer", .law = "none", .varied = {12.25, 0}, .values = {(double)NAN}},

@@ -10,6 +10,7 @@
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 #include "src/base/shipped.h"
+#include "src/tables/settings.h"
 #include "src/tables/summary.h"
 
 // ==== robust: the distribution of the overshoot
@@ -144,9 +145,7 @@ static char *point_label(const varied *v, size_t i)
     }
 
     // a word of the parameter table
-    parameters p = {0};
-    parameter_set_number(&p, v->axis->parameter, value, NULL);
-    parameter_format(&p, v->axis->parameter, word, sizeof word);
+    sweep_axis_format(v->axis, value, word, sizeof word);
     return text_escape(word);
 }
 
@@ -161,13 +160,14 @@ static char *label_of(sweep_drawing *s, const char *description)
 // The axis of a varied parameter.
 static figure_axis describe_axis(sweep_drawing *s, varied *v, const sweep_axis *axis)
 {
-    const parameter_info *info = &parameter_table[axis->parameter];
+    const parameter_info *info = sweep_axis_parameter(axis);
     *v = (varied){.axis = axis,
                   .words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
 
     figure_axis out = {.name = own(s, g_strdup(axis->name)),
-                       .label = axis->element > 0 ? own(s, text_escape(axis->name))
-                                                  : label_of(s, info->description),
+                       .label = axis->element > 0 || info == &setting_info
+                                    ? own(s, text_escape(axis->name))
+                                    : label_of(s, info->description),
                        .unit = info->unit,
                        .scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR,
                        .room = DOTS_ROOM};

@@ -34,13 +34,12 @@ static char *action_label(const scenario *s, const event *e)
     }
 
     const action *a = &s->actions[e->index];
-    const parameter_info *info = &parameter_table[a->parameter];
-    char value[128], unit[64];
+    char value[128], unit[64], path[ACTION_PATH];
     action_format_value(a, value, sizeof value);
-    text_unit(info->unit, unit, sizeof unit);
+    text_unit(parameter_table[a->parameter].unit, unit, sizeof unit);
 
     // the parameter's last name and its value with its unit
-    const char *dot = strchr(info->path, '.'), *name = dot ? dot + 1 : info->path;
+    const char *name = strchr(action_path(a, path), '.') + 1;
     return g_strdup_printf("%s %s\u2009%s", name, value, unit);
 }
 

@@ -97,15 +97,29 @@ int api_finish_first(impactlab_error *error, const fault_place *at, status code)
     return (int)code;
 }
 
-int api_parameter(const char *path, impactlab_error *error)
+int api_parameter(const char *path, const char **text, char room[PARAMETER_TEXT_SIZE],
+                  impactlab_error *error)
 {
-    fault f = {.code = STATUS_BAD_ARGUMENT, .text = "", .path = ""};
-    int index = parameter_look_up(path, &f);
+    fault f = {.text = "", .path = ""};
+    const int index = settings_look_up_value(path, text, room, &f);
     if (index < 0) {
         f.code = STATUS_BAD_ARGUMENT;
         api_error(error, &f);
     }
     return index;
+}
+
+int api_axis(const char *path, sweep_axis *axis, impactlab_error *error)
+{
+    fault f = {.text = "", .path = ""};
+    const char *name;
+    *axis = (sweep_axis){.parameter = settings_look_up(path, &name, &f)};
+    if (axis->parameter < 0) {
+        f.code = STATUS_BAD_ARGUMENT;
+        return api_error(error, &f);
+    }
+    snprintf(axis->name, sizeof axis->name, "%.*s", SWEEP_NAME - 1, path);
+    return IMPACTLAB_OK;
 }
 
 int api_signal(const char *name, impactlab_error *error)

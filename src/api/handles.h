@@ -5,6 +5,8 @@
 #include "src/base/text_stream.h"
 #include "src/run/loop.h"
 #include "src/run/run.h"
+#include "src/study/sweep_axis.h"
+#include "src/tables/settings.h"
 
 struct impactlab_scenario {
     scenario scenario;
@@ -49,8 +51,13 @@ void api_keep_first(void *context, const char *sentence);
 // returns.
 int api_finish_first(impactlab_error *error, const fault_place *at, status code);
 
-// Index of a parameter as people write it, -1 with an error that names the nearest.
-int api_parameter(const char *path, impactlab_error *error);
+// Index of a parameter as people write it, -1 with an error that names the nearest; *text, what is
+// to give it a value, becomes ".NAME=TEXT" in `room` for one number of control.settings.
+int api_parameter(const char *path, const char **text, char room[PARAMETER_TEXT_SIZE],
+                  impactlab_error *error);
+
+// The same for a number that is read or set: an axis without values, of one parameter.
+int api_axis(const char *path, sweep_axis *axis, impactlab_error *error);
 
 // Index of a signal, likewise.
 int api_signal(const char *name, impactlab_error *error);

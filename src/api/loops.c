@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/api/handles.h"
+#include "src/base/numbers.h"
 
 int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handle, int flags,
                           impactlab_error *error)
@@ -105,11 +106,16 @@ int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double valu
     API_NEEDS(error, loop);
     API_NEEDS(error, path);
     fault f;
-    int index = api_parameter(path, error);
+    char number[NUMBER_TEXT], room[PARAMETER_TEXT_SIZE];
+    const char *text = number;
+    number_format_short(number, value);
+    const int index = api_parameter(path, &text, room, error);
     if (index < 0) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
-    return came_to(loop_set_number(loop->loop, index, value, &f), &f, error);
+    return came_to(text != number ? loop_set_text(loop->loop, index, text, &f)
+                                  : loop_set_number(loop->loop, index, value, &f),
+                   &f, error);
 }
 
 int impactlab_loop_set_text(impactlab_loop *loop, const char *path, const char *text,
@@ -119,7 +125,8 @@ int impactlab_loop_set_text(impactlab_loop *loop, const char *path, const char *
     API_NEEDS(error, path);
     API_NEEDS(error, text);
     fault f;
-    int index = api_parameter(path, error);
+    char room[PARAMETER_TEXT_SIZE];
+    const int index = api_parameter(path, &text, room, error);
     if (index < 0) {
         return IMPACTLAB_BAD_ARGUMENT;
     }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/api/handles.h"
+#include "src/base/numbers.h"
 #include "src/rig/rig.h"
 
 // --- opening ----------------------------------------------------------------------------------
@@ -158,11 +159,12 @@ int impactlab_scenario_number(const impactlab_scenario *handle, const char *path
     API_NEEDS_CALLED(error, handle, "scenario");
     API_NEEDS(error, path);
     API_NEEDS(error, value);
-    int index = api_parameter(path, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
+    sweep_axis axis;
+    const int code = api_axis(path, &axis, error);
+    if (code != IMPACTLAB_OK) {
+        return code;
     }
-    *value = parameter_get(&handle->scenario.parameters, index);
+    *value = sweep_axis_get(&axis, &handle->scenario.parameters);
     return api_done(error);
 }
 
@@ -172,14 +174,24 @@ int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, 
     API_NEEDS_CALLED(error, handle, "scenario");
     API_NEEDS(error, path);
     API_NEEDS(error, text);
-    int index = api_parameter(path, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
+    sweep_axis axis;
+    const int code = api_axis(path, &axis, error);
+    if (code != IMPACTLAB_OK) {
+        return code;
     }
 
     // whole or not at all
     char whole[PARAMETER_TEXT_SIZE];
-    parameter_format(&handle->scenario.parameters, index, whole, sizeof whole);
+    if (settings_name(path) != NULL) {
+        double value;
+        const bool given = settings_get(&handle->scenario.parameters, settings_name(path), &value);
+        snprintf(whole, sizeof whole, "%s", "");
+        if (given) {
+            number_format_short(whole, value);
+        }
+    } else {
+        parameter_format(&handle->scenario.parameters, axis.parameter, whole, sizeof whole);
+    }
     size_t length = strlen(whole) + 1;
     if (length > size) {
         return api_fail(error, STATUS_BAD_ARGUMENT,
@@ -192,8 +204,11 @@ int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, 
 
 int impactlab_scenario_is_set(const impactlab_scenario *handle, const char *path)
 {
-    int index = handle != NULL && path != NULL ? parameter_find(path) : -1;
-    return index >= 0 && handle->scenario.parameters.set[index] != 0;
+    const char *name;
+    double value;
+    int index = handle != NULL && path != NULL ? settings_look_up(path, &name, NULL) : -1;
+    return index >= 0 && handle->scenario.parameters.set[index] != 0 &&
+           (name == NULL || settings_get(&handle->scenario.parameters, name, &value));
 }
 
 int impactlab_scenario_yaml(const impactlab_scenario *handle, char **yaml, impactlab_error *error)
@@ -245,39 +260,47 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     return api_finish_first(error, &handle->scenario.refused, code);
 }
 
-// Sets a parameter from a text, or without one from a number.
-static int set_one(impactlab_scenario *handle, const char *path, const char *text, double number,
-                   impactlab_error *error)
+// Takes over parameters of which one was set, unless `code` says that it could not be.
+static int take(impactlab_scenario *handle, const parameters *p, status code, fault *f,
+                impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
-    API_NEEDS(error, path);
-
-    // on a copy, so that a refused value changes nothing
-    parameters p = handle->scenario.parameters;
-    fault f = {.text = "", .path = ""};
-    int index = api_parameter(path, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
-    }
-    status code = text != NULL ? parameter_set_text(&p, index, text, &f)
-                               : parameter_set_number(&p, index, number, &f);
     if (code == STATUS_OK) {
-        code = scenario_take_parameters(&handle->scenario, &p, &f);
+        code = scenario_take_parameters(&handle->scenario, p, f);
     }
-    return code == STATUS_OK ? retitle(handle, error) : api_error(error, &f);
+    return code == STATUS_OK ? retitle(handle, error) : api_error(error, f);
 }
 
 int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const char *text,
                            impactlab_error *error)
 {
     API_NEEDS(error, text);
-    return set_one(handle, path, text, 0, error);
+    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, path);
+    char room[PARAMETER_TEXT_SIZE];
+    const int index = api_parameter(path, &text, room, error);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+
+    // on a copy, so that a refused value changes nothing
+    parameters p = handle->scenario.parameters;
+    fault f = {.text = "", .path = ""};
+    return take(handle, &p, parameter_set_text(&p, index, text, &f), &f, error);
 }
 
 int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path, double value,
                                   impactlab_error *error)
 {
-    return set_one(handle, path, NULL, value, error);
+    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, path);
+    sweep_axis axis;
+    const int code = api_axis(path, &axis, error);
+    if (code != IMPACTLAB_OK) {
+        return code;
+    }
+    parameters p = handle->scenario.parameters;
+    fault f = {.text = "", .path = ""};
+    return take(handle, &p, sweep_axis_apply(&axis, value, &p, &f), &f, error);
 }
 
 // Room for one more action of the script.
@@ -307,7 +330,8 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
     API_NEEDS(error, path);
     API_NEEDS(error, text);
     scenario *s = &handle->scenario;
-    int index = api_parameter(path, error);
+    char room[PARAMETER_TEXT_SIZE];
+    const int index = api_parameter(path, &text, room, error);
     if (index < 0 || check_instant(s, time, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
@@ -323,14 +347,8 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
         parameter_set_text(&p, index, text, &f) != STATUS_OK) {
         return api_error(error, &f);
     }
-    action a = {.time = time,
-                .kind = ACTION_SET,
-                .parameter = index,
-                .value = parameter_get(&p, index),
-                .added = true};
-    if (parameter_is_text(&parameter_table[index])) {
-        parameter_format(&p, index, a.text, sizeof a.text);
-    }
+    action a = action_of(time, &p, index, text);
+    a.added = true;
 
     if (!make_room(s)) {
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");

@@ -14,9 +14,9 @@ enum { RUNS_A_TURN = 16 * RUN_TOGETHER };
 // A batch in hand.
 typedef struct varied {
     const scenario *base;
-    const int *parameters; // indices of those varied
-    const double *values;  // row by row
-    size_t parameter_count;
+    const sweep_axis *axes; // without values of their own
+    const double *values;   // row by row
+    size_t axis_count;
     size_t first; // of this turn
 } varied;
 
@@ -26,9 +26,8 @@ static status vary(const varied *v, size_t run, scenario *made, fault *f)
     *made = *v->base;
     parameters p = v->base->parameters;
     status code = STATUS_OK;
-    for (size_t k = 0; k < v->parameter_count && code == STATUS_OK; k++) {
-        const double value = v->values[run * v->parameter_count + k];
-        code = parameter_set_number(&p, v->parameters[k], value, f);
+    for (size_t k = 0; k < v->axis_count && code == STATUS_OK; k++) {
+        code = sweep_axis_apply(&v->axes[k], v->values[run * v->axis_count + k], &p, f);
     }
     return code == STATUS_OK ? scenario_take_parameters(made, &p, f) : code;
 }
@@ -102,34 +101,33 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
     jobs = jobs < 1 ? count_processors() : jobs > POOL_MOST_THREADS ? POOL_MOST_THREADS : jobs;
 
     // which parameters
-    int *indices = calloc(path_count + 1, sizeof *indices);
-    if (indices == NULL) {
+    sweep_axis *axes = calloc(path_count + 1, sizeof *axes);
+    if (axes == NULL) {
         return api_fail(error, STATUS_NO_MEMORY, "no memory for a batch");
     }
     for (size_t k = 0; k < path_count; k++) {
-        indices[k] = paths[k] != NULL ? api_parameter(paths[k], error) : -1;
-        if (indices[k] < 0) {
-            free(indices);
-            return paths[k] != NULL ? IMPACTLAB_BAD_ARGUMENT : api_missing(error, "paths[i]");
+        const int code =
+            paths[k] != NULL ? api_axis(paths[k], &axes[k], error) : api_missing(error, "paths[i]");
+        if (code != IMPACTLAB_OK) {
+            free(axes);
+            return code;
         }
     }
 
     // all values before anything is run
-    varied v = {.base = &handle->scenario,
-                .parameters = indices,
-                .values = values,
-                .parameter_count = path_count};
+    varied v = {
+        .base = &handle->scenario, .axes = axes, .values = values, .axis_count = path_count};
     fault f = {.text = "", .path = ""};
     scenario tried;
     for (size_t i = 0; i < count; i++) {
         if (vary(&v, i, &tried, &f) != STATUS_OK) {
-            free(indices);
+            free(axes);
             return api_fail(error, f.code, "run %zu: %.900s", i, f.text);
         }
     }
 
     int code = run_varied(&v, count, jobs, take, context, error);
-    free(indices);
+    free(axes);
     return code;
 }
 

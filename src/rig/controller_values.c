@@ -4,8 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "src/base/numbers.h"
 #include "src/base/words.h"
+#include "src/tables/settings.h"
 
 // Index of control.NAME in the parameter table, -1 if the scenario has no such parameter.
 static int scenario_parameter(const char *name)
@@ -61,22 +61,6 @@ static double scenario_value(const controller_parameter *own, const parameters *
 
 // --- control.settings -----------------------------------------------------------------------
 
-bool controller_next_setting(const char **rest, controller_setting *setting)
-{
-    assert(rest != NULL && *rest != NULL && setting != NULL);
-    const char *word = *rest + strspn(*rest, " ");
-    const size_t length = strcspn(word, " "), name_length = strcspn(word, " =");
-    assert(length < PARAMETER_TEXT_SIZE);
-    *rest = word + length;
-    *setting = (controller_setting){.word = word, .length = length};
-
-    memcpy(setting->name, word, name_length);
-    if (name_length < length) {
-        memcpy(setting->value, word + name_length + 1, length - name_length - 1);
-    }
-    return length > 0;
-}
-
 // Index of the controller's parameter of that name, -1 if it has none.
 static int find_named(const controller *law, const char *name)
 {
@@ -106,8 +90,7 @@ static status refuse_name(const controller *law, const char *name, fault *f)
                      near.best ? "'?" : "");
 }
 
-static status read_setting(const controller *law, const controller_setting *s, double *values,
-                           fault *f)
+static status read_setting(const controller *law, const setting *s, double *values, fault *f)
 {
     int index = find_named(law, s->name);
     if (index < 0) {
@@ -115,10 +98,8 @@ static status read_setting(const controller *law, const controller_setting *s, d
     }
 
     controller_parameter wanted = controller_parameter_at(law, index);
-    const char *end = s->value;
     double value = 0;
-    if (!decimal_read(s->value, &value, &end) || *end != '\0' ||
-        !(value >= wanted.minimum && value <= wanted.maximum)) {
+    if (!setting_number(s, &value) || !(value >= wanted.minimum && value <= wanted.maximum)) {
         return fault_set(f, STATUS_BAD_SCENARIO,
                          "control.settings: '%.*s' is wrong, expected %s=NUMBER from %g to %g%s%s",
                          (int)s->length, s->word, wanted.name, wanted.minimum, wanted.maximum,
@@ -149,9 +130,9 @@ status controller_values(const controller *law, const parameters *p, double *val
     // those that control.settings replaces; a process reads its settings itself
     status code = STATUS_OK;
     const char *rest = p->control.law == LAW_PROCESS ? "" : p->control.settings;
-    controller_setting setting;
-    while (code == STATUS_OK && controller_next_setting(&rest, &setting)) {
-        code = read_setting(law, &setting, values, f);
+    setting s;
+    while (code == STATUS_OK && settings_next(&rest, &s)) {
+        code = read_setting(law, &s, values, f);
     }
     return code;
 }

@@ -17,17 +17,5 @@ controller_parameter controller_parameter_at(const controller *law, int index);
 // or a value out of its range.
 status controller_values(const controller *law, const parameters *p, double *values, fault *f);
 
-// One of the words NAME=VALUE of control.settings, which spaces separate.
-typedef struct controller_setting {
-    const char *word; // where it stands in the settings
-    size_t length;
-    char name[PARAMETER_TEXT_SIZE];  // the whole word if it has no '='
-    char value[PARAMETER_TEXT_SIZE]; // empty without '='
-} controller_setting;
-
-// Reads the first setting of *rest, a text shorter than PARAMETER_TEXT_SIZE, and moves *rest behind
-// it. Returns false if there is none.
-bool controller_next_setting(const char **rest, controller_setting *setting);
-
 // Whether the controller has a parameter of that name.
 bool controller_has_parameter(const controller *law, const char *name);

@@ -167,7 +167,8 @@ static bool tells_anew(const rig *r, const parameters *p)
 {
     const parameters *told = &r->told;
     return group_differs(told, p, "control.") || group_differs(told, p, "belief.") ||
-           told->motor.voltage_limit != p->motor.voltage_limit;
+           told->motor.voltage_limit != p->motor.voltage_limit ||
+           strcmp(told->control.settings, p->control.settings) != 0;
 }
 
 status rig_takes(const rig *r, const parameters *p, fault *f)

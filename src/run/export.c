@@ -5,6 +5,7 @@
 #include "src/base/csv.h"
 #include "src/base/json.h"
 #include "src/base/shipped.h"
+#include "src/tables/settings.h"
 
 static json_t *parameter_value(const parameters *p, int index)
 {
@@ -35,6 +36,18 @@ json_t *export_parameters(const parameters *p)
     json_t *object = json_object();
     for (int i = 0; i < parameter_count; i++) {
         json_put(object, parameter_table[i].path, parameter_value(p, i));
+    }
+
+    // each number of control.settings by its path, too
+    const char *rest = p->control.settings;
+    setting s;
+    while (settings_next(&rest, &s)) {
+        char path[ACTION_PATH];
+        double value;
+        snprintf(path, sizeof path, "%s.%s", setting_info.path, s.name);
+        if (setting_number(&s, &value)) {
+            json_put(object, path, json_number(value));
+        }
     }
     return object;
 }
@@ -76,9 +89,9 @@ static json_t *event_object(const scenario *s, const event *e)
 
     if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
         const action *a = &s->actions[e->index];
-        json_put(object, "parameter", json_string(parameter_table[a->parameter].path));
-        bool text = parameter_is_text(&parameter_table[a->parameter]);
-        json_put(object, "value", text ? json_text(a->text) : json_number(a->value));
+        char path[ACTION_PATH];
+        json_put(object, "parameter", json_text(action_path(a, path)));
+        json_put(object, "value", action_is_text(a) ? json_text(a->text) : json_number(a->value));
     }
     return object;
 }

@@ -252,13 +252,7 @@ status loop_set_text(run_loop *l, int parameter, const char *text, fault *f)
     }
 
     // then it is an action like any other
-    action todo = {.time = loop_time(l),
-                   .kind = ACTION_SET,
-                   .parameter = parameter,
-                   .value = parameter_get(&read, parameter)};
-    if (parameter_is_text(&parameter_table[parameter])) {
-        parameter_format(&read, parameter, todo.text, sizeof todo.text);
-    }
+    const action todo = action_of(loop_time(l), &read, parameter, text);
     return act(l, &todo, f);
 }
 

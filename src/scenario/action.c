@@ -1,9 +1,12 @@
 // The actions of a script: their order, and what they set.
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "src/scenario/scenario.h"
+#include "src/base/numbers.h"
 #include "src/rig/rig.h"
+#include "src/tables/settings.h"
 
 void scenario_insert_action(scenario *s, action a)
 {
@@ -13,6 +16,47 @@ void scenario_insert_action(scenario *s, action a)
         s->actions[i] = s->actions[i - 1];
     }
     s->actions[i] = a;
+}
+
+// Whether it gives one number of control.settings a value.
+static bool is_setting(const action *a)
+{
+    return a->parameter == PARAMETER_INDEX(control.settings) && a->text[0] == '.';
+}
+
+action action_of(double time, const parameters *p, int parameter, const char *text)
+{
+    assert(p != NULL && text != NULL);
+    action a = {.time = time, .kind = ACTION_SET, .parameter = parameter};
+    a.value = parameter_get(p, parameter);
+    if (parameter_is_text(&parameter_table[parameter])) {
+        parameter_format(p, parameter, a.text, sizeof a.text);
+    }
+
+    // one of the settings stays one, whatever the others will be
+    if (parameter == PARAMETER_INDEX(control.settings) && text[0] == '.') {
+        char name[PARAMETER_TEXT_SIZE], number[NUMBER_TEXT];
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(text + 1, "="), text + 1);
+        settings_get(p, name, &a.value);
+        number_format_short(number, a.value);
+        snprintf(a.text, sizeof a.text, ".%.*s=%s", PARAMETER_TEXT_SIZE - NUMBER_TEXT - 3, name,
+                 number);
+    }
+    return a;
+}
+
+const char *action_path(const action *a, char path[ACTION_PATH])
+{
+    assert(a != NULL && a->kind == ACTION_SET && path != NULL);
+    snprintf(path, ACTION_PATH, "%s%.*s", parameter_table[a->parameter].path,
+             is_setting(a) ? (int)strcspn(a->text, "=") : 0, a->text);
+    return path;
+}
+
+bool action_is_text(const action *a)
+{
+    assert(a != NULL && a->kind == ACTION_SET);
+    return parameter_is_text(&parameter_table[a->parameter]) && !is_setting(a);
 }
 
 status action_apply(const action *a, parameters *p, fault *f)
@@ -38,6 +82,11 @@ status action_apply(const action *a, parameters *p, fault *f)
 void action_format_value(const action *a, char *text, size_t size)
 {
     assert(a != NULL && a->kind == ACTION_SET && text != NULL && size > 0);
+
+    if (is_setting(a)) {
+        snprintf(text, size, "%s", strchr(a->text, '=') + 1);
+        return;
+    }
 
     // by way of a parameter, so that it reads as in a scenario file
     parameters p;

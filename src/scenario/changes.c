@@ -7,11 +7,11 @@
 enum { MORE = 20 }; // room for " and 160 more" or ", with 160 changes"
 
 // A parameter with its unit, as a person reads it.
-static void format_value(char *text, size_t size, int parameter, const char *value)
+static void format_value(char *text, size_t size, const char *path, int parameter,
+                         const char *value)
 {
-    const parameter_info *info = &parameter_table[parameter];
-    snprintf(text, size, "%s = %s%s%s", info->path, value, info->unit[0] != '\0' ? " " : "",
-             info->unit);
+    const char *unit = parameter_table[parameter].unit;
+    snprintf(text, size, "%s = %s%s%s", path, value, unit[0] != '\0' ? " " : "", unit);
 }
 
 // Whether a parameter was given another value than the file's; text has room for it in words.
@@ -23,20 +23,20 @@ static bool is_changed(const scenario *s, int index, char *text, size_t size)
     if (!s->parameters.set[index] || strcmp(value, written) == 0) {
         return false;
     }
-    format_value(text, size, index, value);
+    format_value(text, size, parameter_table[index].path, index, value);
     return true;
 }
 
 // An action in words.
 static void format_action(char *text, size_t size, const action *a)
 {
-    char value[PARAMETER_TEXT_SIZE], set[2 * PARAMETER_TEXT_SIZE];
+    char value[PARAMETER_TEXT_SIZE], set[3 * PARAMETER_TEXT_SIZE], path[ACTION_PATH];
     if (a->kind == ACTION_PUSH) {
         snprintf(text, size, "a push of %g N s at %g s", a->value, a->time);
         return;
     }
     action_format_value(a, value, sizeof value);
-    format_value(set, sizeof set, a->parameter, value);
+    format_value(set, sizeof set, action_path(a, path), a->parameter, value);
     snprintf(text, size, "%s at %g s", set, a->time);
 }
 
@@ -54,7 +54,7 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
 
     // the parameters, then what the script does besides; what has no room is counted
     for (int i = 0; i < parameter_count + s->action_count; i++) {
-        char words[3 * PARAMETER_TEXT_SIZE];
+        char words[4 * PARAMETER_TEXT_SIZE];
         const action *a = i < parameter_count ? NULL : &s->actions[i - parameter_count];
         if (a == NULL ? !is_changed(s, i, words, sizeof words) : !a->added) {
             continue;

@@ -10,6 +10,7 @@
 #include "src/base/numbers.h"
 #include "src/base/words.h"
 #include "src/rig/rig.h"
+#include "src/tables/settings.h"
 
 void reader_report_at(reader *r, int line, int column, const char *format, ...)
 {
@@ -256,6 +257,30 @@ static const char *list_text(reader *r, const tree_node *node, int index,
     return list;
 }
 
+// The settings of a law as a map, NAME: NUMBER.
+static void read_settings(reader *r, const tree_node *map)
+{
+    for (const tree_node *child = map->first; child != NULL; child = child->next) {
+        fault f;
+        const char *key = reader_key(r, map, child), *name;
+        char path[PARAMETER_TEXT_SIZE];
+        if (key == NULL) {
+            continue;
+        }
+
+        // a name that can be one, and its number
+        snprintf(path, sizeof path, "control.settings.%s", key);
+        if (settings_look_up(path, &name, &f) < 0) {
+            report_node(r, child->key, "%s", f.text);
+            continue;
+        }
+        const char *text = reader_value_text(r, child, path);
+        if (text != NULL && settings_set_text(&r->s->parameters, name, text, &f) != STATUS_OK) {
+            report_node(r, child, "%s", f.text);
+        }
+    }
+}
+
 void reader_group(reader *r, const tree_node *map, const char *group)
 {
     fault f;
@@ -289,6 +314,11 @@ void reader_group(reader *r, const tree_node *map, const char *group)
 
         // its value, and where it stands
         r->about = parameter_table[index].path;
+        if (index == PARAMETER_INDEX(control.settings) && child->kind == TREE_MAP) {
+            read_settings(r, child);
+            r->given[index] = (place){child->line, child->column};
+            continue;
+        }
         char list[PARAMETER_TEXT_SIZE];
         const char *text = parameter_table[index].type == PARAMETER_LIST
                                ? list_text(r, child, index, list)

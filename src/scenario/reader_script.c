@@ -4,6 +4,7 @@
 
 #include "src/base/words.h"
 #include "src/scenario/reader.h"
+#include "src/tables/settings.h"
 #include "src/tables/summary.h"
 
 static void add_action(reader *r, action a)
@@ -17,11 +18,12 @@ static void add_action(reader *r, action a)
     scenario_insert_action(s, a);
 }
 
-// Index of the parameter that a key of `set` names; -1 after a fault.
-static int find_timed_parameter(reader *r, const tree_node *key)
+// Index of the parameter that a key of `set` names, and what gives it the value; -1 after a fault.
+static int find_timed_parameter(reader *r, const tree_node *key, const char **text,
+                                char room[PARAMETER_TEXT_SIZE])
 {
     fault f;
-    int index = parameter_look_up(key->text, &f);
+    int index = settings_look_up_value(key->text, text, room, &f);
     if (index < 0) {
         report_node(r, key, "%s", f.text);
     } else if (!parameter_table[index].timed) {
@@ -42,9 +44,10 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
     // each parameter by itself, so that one fault does not hide the next
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *path = reader_key(r, map, child);
-        int index = path != NULL ? find_timed_parameter(r, child->key) : -1;
-        const char *text = index >= 0 ? reader_value_text(r, child, path) : NULL;
-        if (text == NULL) {
+        char room[PARAMETER_TEXT_SIZE];
+        const char *text = node_is_scalar(child) && child->text != NULL ? child->text : "";
+        const int index = path != NULL ? find_timed_parameter(r, child->key, &text, room) : -1;
+        if (index < 0 || reader_value_text(r, child, path) == NULL) {
             continue;
         }
 
@@ -57,13 +60,7 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
 
             // in force from the instant on, or from the start
         } else if (timed) {
-            action a = {.time = time,
-                        .kind = ACTION_SET,
-                        .parameter = index,
-                        .value = parameter_get(&scratch, index)};
-            if (parameter_is_text(&parameter_table[index])) {
-                parameter_format(&scratch, index, a.text, sizeof a.text);
-            }
+            const action a = action_of(time, &scratch, index, text);
             if (index == PARAMETER_INDEX(control.lock)) {
                 reader_check_lock(r, &scratch, (place){child->line, child->column});
             }

@@ -6,6 +6,7 @@
 
 #include "src/base/words.h"
 #include "src/rig/rig.h"
+#include "src/tables/settings.h"
 
 void scenario_finish(scenario *s)
 {
@@ -69,7 +70,8 @@ status scenario_copy(scenario *copy, const scenario *s)
 // Gives one parameter of p its value; f holds the sentence without its beginning.
 static status assign(parameters *p, const char *assignment, fault *f)
 {
-    char path[128];
+    char path[128], room[PARAMETER_TEXT_SIZE];
+    const char *value;
     size_t length = strcspn(assignment, "=");
     if (assignment[length] == '\0' || length == 0 || length >= sizeof path) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
@@ -77,9 +79,9 @@ static status assign(parameters *p, const char *assignment, fault *f)
     }
 
     snprintf(path, sizeof path, "%.*s", (int)length, assignment);
-    int index = parameter_look_up(path, f);
-    return index < 0 ? STATUS_BAD_ARGUMENT
-                     : parameter_set_text(p, index, assignment + length + 1, f);
+    value = assignment + length + 1;
+    const int index = settings_look_up_value(path, &value, room, f);
+    return index < 0 ? STATUS_BAD_ARGUMENT : parameter_set_text(p, index, value, f);
 }
 
 // Resolves parameters that were changed, and checks that the scenario's script goes with them.
@@ -181,10 +183,33 @@ static int override_each(scenario *s, char *const *assignments, int count, fault
     return failures;
 }
 
+// The text of all settings beside a path of one of them would mean what their order decides.
+static bool settings_twice(char *const *assignments, int count)
+{
+    static const char path[] = "control.settings";
+    bool whole = false, one = false;
+    for (int i = 0; i < count; i++) {
+        const char *behind = assignments[i] + sizeof path - 1;
+        if (strncmp(assignments[i], path, sizeof path - 1) == 0) {
+            whole = whole || *behind == '=';
+            one = one || *behind == '.';
+        }
+    }
+    return whole && one;
+}
+
 status scenario_override_all(scenario *s, char *const *assignments, int count, fault_handler report,
                              void *context)
 {
     assert(s != NULL && count >= 0 && (count == 0 || assignments != NULL));
+    if (settings_twice(assignments, count)) {
+        s->refused = (fault_place){.path = setting_info.path};
+        if (report != NULL) {
+            report(context, "control.settings and control.settings.NAME are set together, "
+                            "expected the text of all or the path of each");
+        }
+        return STATUS_BAD_ARGUMENT;
+    }
     if (override_together(s, assignments, count)) {
         return STATUS_OK;
     }

@@ -66,9 +66,12 @@ typedef struct action {
     int parameter; // ACTION_SET: index in parameter_table
     double value;  // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the last link,
                    // positive towards growing angle [N s]
-    char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new value
+    char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new value; of
+                                    // one of control.settings ".NAME=VALUE", and `value`
     bool added;                     // not of the scenario's file
 } action;
+
+enum { ACTION_PATH = 192 }; // room for the path that an action sets
 
 // A quantity of the run's summary that the file expects.
 typedef struct expectation {
@@ -106,6 +109,13 @@ typedef struct scenario {
 
 // Inserts an action behind those that are not later. s->actions has room for it.
 void scenario_insert_action(scenario *s, action a);
+
+// The ACTION_SET that gives a parameter the value it has in p, which a text gave it.
+action action_of(double time, const parameters *p, int parameter, const char *text);
+// The path that it sets, of one of control.settings with its NAME.
+const char *action_path(const action *a, char path[ACTION_PATH]);
+// Whether its value is a text, not a number.
+bool action_is_text(const action *a);
 
 // Sets the parameter of an ACTION_SET; other actions change none.
 status action_apply(const action *a, parameters *p, fault *f);

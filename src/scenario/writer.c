@@ -103,9 +103,15 @@ static void write_actions(FILE *stream, const scenario *s)
         // the value as the parameter table writes it
         if (a->kind == ACTION_SET) {
             parameters scratch = s->parameters;
+            char path[ACTION_PATH], value[PARAMETER_TEXT_SIZE];
             action_apply(a, &scratch, NULL);
-            fprintf(stream, "    set: {%s: ", parameter_table[a->parameter].path);
-            write_value(stream, &scratch, a->parameter);
+            fprintf(stream, "    set: {%s: ", action_path(a, path));
+            if (parameter_is_text(&parameter_table[a->parameter]) && !action_is_text(a)) {
+                action_format_value(a, value, sizeof value);
+                fputs(value, stream);
+            } else {
+                write_value(stream, &scratch, a->parameter);
+            }
             fputs("}\n", stream);
         } else {
             number_format(text, a->value);

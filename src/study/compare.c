@@ -10,6 +10,7 @@
 #include "src/base/words.h"
 #include "src/predict/best_stop.h"
 #include "src/predict/least_time.h"
+#include "src/tables/settings.h"
 
 enum {
     PEAK,
@@ -164,9 +165,7 @@ status compare_choose(compare_table *t, const char *keys, fault *f)
 // Value of a row's varied parameter as a scenario file would give it, without its unit.
 static void format_varied(const compare_table *t, int row, int which, char *text, size_t size)
 {
-    parameters scratch = {0};
-    parameter_set_number(&scratch, t->varied[which], t->rows[row].varied[which], NULL);
-    parameter_format(&scratch, t->varied[which], text, size);
+    sweep_axis_format(&t->varied[which], t->rows[row].varied[which], text, size);
 }
 
 // "peak/N", or "peak [N]" for a page.
@@ -180,8 +179,10 @@ static void format_heading(const char *name, const char *unit, bool page, char *
 static void format_varied_heading(const compare_table *t, int which, bool page, char *text,
                                   size_t size)
 {
-    const parameter_info *info = &parameter_table[t->varied[which]];
-    format_heading(strchr(info->path, '.') + 1, info->unit, page, text, size);
+    const sweep_axis *axis = &t->varied[which];
+    const char *own = settings_name(axis->name);
+    format_heading(own != NULL ? own : strchr(axis->name, '.') + 1,
+                   sweep_axis_parameter(axis)->unit, page, text, size);
 }
 
 static int longest(const compare_table *t, bool law)
@@ -280,10 +281,10 @@ static json_t *varied_object(const compare_table *t, int row)
 
     // in JSON's own types where there is one
     for (int v = 0; v < t->varied_count; v++) {
-        const parameter_info *info = &parameter_table[t->varied[v]];
+        const parameter_info *info = sweep_axis_parameter(&t->varied[v]);
         char text[PARAMETER_TEXT_SIZE];
         format_varied(t, row, v, text, sizeof text);
-        json_put(object, info->path,
+        json_put(object, t->varied[v].name,
                  info->type == PARAMETER_CHOICE    ? json_text(text)
                  : info->type == PARAMETER_BOOLEAN ? json_boolean(t->rows[row].varied[v])
                                                    : json_number(t->rows[row].varied[v]));
@@ -345,8 +346,7 @@ void compare_csv(FILE *stream, const compare_table *t)
     csv_heading(&csv, "scenario", "");
     csv_heading(&csv, "law", "");
     for (int v = 0; v < t->varied_count; v++) {
-        const parameter_info *info = &parameter_table[t->varied[v]];
-        csv_heading(&csv, info->path, info->unit);
+        csv_heading(&csv, t->varied[v].name, sweep_axis_parameter(&t->varied[v])->unit);
     }
     csv_heading(&csv, "status", "");
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {

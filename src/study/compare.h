@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "src/run/run.h"
+#include "src/study/sweep_axis.h"
 
 enum { COMPARE_QUANTITIES = 12, COMPARE_MOST_VARIED = 32 };
 
@@ -29,7 +30,7 @@ typedef struct compare_row {
 typedef struct compare_table {
     const compare_row *rows;
     int count;
-    const int *varied; // indices of parameters, as in parameter_table; their values differ by row
+    const sweep_axis *varied; // whose values differ by row
     int varied_count;
     const compare_row *against; // NULL, or references: row i is held against row i / group of these
     int group;                  // at least 1

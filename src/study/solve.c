@@ -9,6 +9,7 @@
 #include "src/base/numbers.h"
 #include "src/run/run.h"
 #include "src/study/pool.h"
+#include "src/tables/settings.h"
 
 // --- the condition --------------------------------------------------------------------------
 
@@ -74,9 +75,10 @@ bool solve_condition_holds(const solve_condition *c, double value)
 status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f)
 {
     assert(axis != NULL && s != NULL);
-    double value = parameter_get(&s->parameters, axis->parameter);
-    if (axis->element > 0 || !parameter_usual_range(axis->parameter, value, &axis->low, &axis->high,
-                                                    &axis->logarithmic)) {
+    double value = sweep_axis_get(axis, &s->parameters);
+    if (sweep_axis_parameter(axis) == &setting_info || axis->element > 0 ||
+        !parameter_usual_range(axis->parameter, value, &axis->low, &axis->high,
+                               &axis->logarithmic)) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "%s needs a range, %s=a:b", axis->name,
                          axis->name);
     }

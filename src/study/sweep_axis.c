@@ -8,18 +8,25 @@
 
 #include "src/base/numbers.h"
 #include "src/base/plain_math.h"
+#include "src/tables/settings.h"
 
 const parameter_info *sweep_axis_parameter(const sweep_axis *axis)
 {
     assert(axis != NULL);
     assert(axis->parameter >= 0 && axis->parameter < parameter_count);
-    return &parameter_table[axis->parameter];
+    return settings_name(axis->name) ? &setting_info : &parameter_table[axis->parameter];
 }
 
 status sweep_axis_find(sweep_axis *axis, const char *name, fault *f)
 {
     assert(axis != NULL && name != NULL);
     char path[SWEEP_NAME];
+    const char *own;
+    if (settings_name(name) != NULL) {
+        axis->parameter = settings_look_up(name, &own, f);
+        snprintf(axis->name, sizeof axis->name, "%.*s", SWEEP_NAME - 1, name);
+        return axis->parameter >= 0 ? STATUS_OK : STATUS_BAD_ARGUMENT;
+    }
     const size_t length = strcspn(name, "[");
     snprintf(path, sizeof path, "%.*s", (int)length, name);
     axis->parameter = parameter_look_up(path, f);
@@ -57,6 +64,10 @@ status sweep_axis_find(sweep_axis *axis, const char *name, fault *f)
 status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fault *f)
 {
     assert(axis != NULL && p != NULL);
+    const char *own = settings_name(axis->name);
+    if (own != NULL) {
+        return settings_set(p, own, value, f);
+    }
     if (axis->element == 0) {
         return parameter_set_number(p, axis->parameter, value, f);
     }
@@ -79,13 +90,32 @@ status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fau
     return parameter_set_text(p, axis->parameter, changed, f);
 }
 
+double sweep_axis_get(const sweep_axis *axis, const parameters *p)
+{
+    assert(axis != NULL && p != NULL);
+    const char *own = settings_name(axis->name);
+    double value = (double)NAN, numbers[PARAMETER_LIST_MOST];
+    if (own != NULL) {
+        return settings_get(p, own, &value) ? value : (double)NAN;
+    }
+    if (axis->element == 0) {
+        return parameter_get(p, axis->parameter);
+    }
+
+    // a number of the list, if it is as long
+    char list[PARAMETER_TEXT_SIZE];
+    parameter_format(p, axis->parameter, list, sizeof list);
+    return axis->element <= parameter_list_numbers(list, numbers) ? numbers[axis->element - 1]
+                                                                  : value;
+}
+
 // A value of a list's number alone, checked as one of them.
 static status check_value(const sweep_axis *axis, double value, fault *f)
 {
     parameters scratch = {0};
     char text[NUMBER_TEXT];
     if (axis->element == 0) {
-        return parameter_set_number(&scratch, axis->parameter, value, f);
+        return sweep_axis_apply(axis, value, &scratch, f);
     }
     number_format(text, value);
     return parameter_set_text(&scratch, axis->parameter, text, f);
@@ -95,6 +125,12 @@ static status check_value(const sweep_axis *axis, double value, fault *f)
 static status read_value(const sweep_axis *axis, const char *text, double *value, fault *f)
 {
     parameters scratch = {0};
+    const char *own = settings_name(axis->name);
+    if (own != NULL) {
+        status read = settings_set_text(&scratch, own, text, f);
+        *value = read == STATUS_OK ? sweep_axis_get(axis, &scratch) : 0;
+        return read;
+    }
     if (axis->element > 0) {
         char list[PARAMETER_TEXT_SIZE];
         double numbers[PARAMETER_LIST_MOST];
@@ -115,7 +151,7 @@ void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t 
 {
     assert(axis != NULL && text != NULL && size > 0);
     parameters scratch = {0};
-    if (axis->element > 0) {
+    if (axis->element > 0 || settings_name(axis->name) != NULL) {
         char digits[NUMBER_TEXT];
         number_format_short(digits, value);
         snprintf(text, size, "%s", digits);
@@ -241,7 +277,7 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
         }
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "%s takes words, which have no range; expected a list such as %s",
-                         sweep_axis_parameter(axis)->path, words);
+                         axis->name, words);
     }
 
     // how many pieces there may be

@@ -5,10 +5,10 @@
 
 enum { SWEEP_MOST_RUNS = 10000000, SWEEP_VALUE_TEXT = 128, SWEEP_NAME = 64 };
 
-// One varied parameter, or one number of a list. Words and truth values are numbers here, as in
-// parameter_get.
+// One varied parameter, or one number of a list or of control.settings. Words and truth values are
+// numbers here, as in parameter_get.
 typedef struct sweep_axis {
-    int parameter;         // index in parameter_table
+    int parameter;         // index in parameter_table, that of control.settings for one of them
     int element;           // the number of a list that is varied, counted from 1; 0: no list
     char name[SWEEP_NAME]; // path of the parameter, of a list's number "arm.joint_stiffness[2]"
     double *values;   // those of a list, or of a range in a grid; NULL for a range to draw from
@@ -19,8 +19,8 @@ typedef struct sweep_axis {
     char *text;       // what is varied, in one way of writing: "1:10:5", "0.1:10:3:log", "a,b"
 } sweep_axis;
 
-// Finds what is varied by its name, PATH or LIST[k], and writes it into an axis of zeroes. On
-// failure f says what was expected.
+// Finds what is varied by its name, PATH, LIST[k] or control.settings.NAME, and writes it into an
+// axis of zeroes. On failure f says what was expected.
 status sweep_axis_find(sweep_axis *axis, const char *name, fault *f);
 
 // Gives the parameters a value of the axis; f says what does not fit, such as a list too short.
@@ -33,8 +33,11 @@ status sweep_axis_parse(sweep_axis *axis, char *text, bool drawn, fault *f);
 
 void sweep_axis_finish(sweep_axis *axis);
 
-// The varied parameter.
+// The varied parameter; setting_info for control.settings.NAME.
 const parameter_info *sweep_axis_parameter(const sweep_axis *axis);
+
+// The value that the parameters have; NaN if they have none, as of a setting that is not given.
+double sweep_axis_get(const sweep_axis *axis, const parameters *p);
 
 // A value of the axis as a scenario file would give it, exact ("newmark", "0.1").
 void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t size);

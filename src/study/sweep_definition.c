@@ -45,7 +45,8 @@ void definition_add(definition *d, const char *key, const char *value)
 static bool is_varied(const sweep *s, int parameter)
 {
     for (int i = 0; i < s->axis_count; i++) {
-        if (s->axes[i].parameter == parameter && s->axes[i].element == 0) {
+        if (s->axes[i].parameter == parameter && s->axes[i].element == 0 &&
+            sweep_axis_parameter(&s->axes[i]) == &parameter_table[parameter]) {
             return true;
         }
     }
@@ -91,9 +92,10 @@ static void define_script(definition *d, const scenario *s)
         char time[NUMBER_TEXT], value[NUMBER_TEXT];
         number_format(time, a->time);
         number_format(value, a->value);
-        bool text_valued = !push && parameter_is_text(&parameter_table[a->parameter]);
+        const bool text_valued = !push && action_is_text(a);
+        char path[ACTION_PATH];
         fprintf(line.stream, "%sat %s %s = %s", i > 0 ? "; " : "", time,
-                push ? "push" : parameter_table[a->parameter].path, text_valued ? a->text : value);
+                push ? "push" : action_path(a, path), text_valued ? a->text : value);
     }
 
     // closing it shows whether there was memory

@@ -6,6 +6,7 @@
 
 #include "src/base/numbers.h"
 #include "src/tables/parameters.h"
+#include "src/tables/settings.h"
 
 #define LEAST 1e-100 // of what is not 0: squares and quotients of it are numbers, too
 
@@ -288,6 +289,19 @@ static status parse_word(const parameter_info *info, const char *word, double *v
     return parse_quantity(info, word, value, f);
 }
 
+// ".NAME=VALUE" gives one number of control.settings a value.
+static status set_setting(parameters *p, const char *text, fault *f)
+{
+    char name[PARAMETER_TEXT_SIZE];
+    const size_t length = strcspn(text, " =");
+    if (length == 1 || length > sizeof name || text[length] != '=') {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, setting_info.path,
+                            "control.settings%.60s is no setting, expected .NAME=NUMBER", text);
+    }
+    snprintf(name, sizeof name, "%.*s", (int)length - 1, text + 1);
+    return settings_set_text(p, name, text + length + 1, f);
+}
+
 status parameter_set_text(parameters *p, int index, const char *text, fault *f)
 {
     assert(p != NULL && text != NULL);
@@ -298,6 +312,9 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
     size_t length = strlen(text);
     while (length > 0 && is_blank(text[length - 1])) {
         length--;
+    }
+    if (info->offset == setting_info.offset && text[0] == '.') {
+        return set_setting(p, text, f);
     }
     if (info->type == PARAMETER_TEXT && length < PARAMETER_TEXT_SIZE) {
         return store_text(p, index, text, length, f);

@@ -187,9 +187,9 @@ const parameter_info parameter_table[] = {
      MEANING("program that is the controller, as a shell takes it (control.law = process)")},
     {PATH(control.answer_time), REAL("s", 0.01, 3600), DEFAULT(10),
      MEANING("for which a process may keep the lab waiting, by the clock, before the run fails")},
-    {PATH(control.settings), TEXT(NULL),
+    {PATH(control.settings), TEXT(NULL), TIMED,
      MEANING("parameters that only this law, plug-in or process has, written name=value and "
-             "separated by spaces")},
+             "separated by spaces; control.settings.NAME is one of them")},
     {PATH(control.lock), TEXT("none"), TIMED,
      MEANING("mode that the law is held in, by its name, or none: the law chooses")},
     {PATH(control.rate), REAL("Hz", 1, 1e5), DEFAULT(200), TIMED, MEANING("samples a second")},

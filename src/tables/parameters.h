@@ -318,7 +318,8 @@ void parameters_restore_defaults(parameters *p);
 
 // Parses text as a value of parameter `index` and stores it, marked as set. A trailing unit equal
 // to the parameter's own is accepted ("0.1 rad"); the numbers of a list stand between commas, in
-// brackets or not ("[10, 12 N m/rad]"). On a wrong type, a value that is not finite or
+// brackets or not ("[10, 12 N m/rad]"). ".NAME=VALUE" gives one number of control.settings a value
+// (src/tables/settings.h). On a wrong type, a value that is not finite or
 // one out of range nothing is stored and f says what was wrong and what was expected.
 status parameter_set_text(parameters *p, int index, const char *text, fault *f);
 

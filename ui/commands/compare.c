@@ -25,7 +25,6 @@ typedef struct comparison {
     compare_row *rows;    // operands of each combination
     compare_row *against; // one of each combination
     int done;             // rows that are computed, the first ones
-    int varied[COMPARE_MOST_VARIED];
     bool failed;
 } comparison;
 
@@ -60,13 +59,6 @@ static int open_sweep(comparison *c, const arguments *a, int i)
     }
 
     c->combinations = (int)c->sweeps[i].run_count;
-    for (int k = 0; k < c->sweeps[i].axis_count; k++) {
-        if (c->sweeps[i].axes[k].element > 0) {
-            return complain("%s: 'sweep' varies a list's number, 'compare' does not",
-                            c->sweeps[i].axes[k].name);
-        }
-        c->varied[k] = c->sweeps[i].axes[k].parameter;
-    }
     return EXIT_DONE;
 }
 
@@ -173,7 +165,7 @@ static int write_results(const arguments *a, const comparison *c, compare_table 
     t->rows = c->rows;
     t->count = c->done;
     t->group = c->operands;
-    t->varied = c->varied;
+    t->varied = c->swept > 0 ? c->sweeps[0].axes : NULL;
     t->varied_count = a->varies.count;
     t->against = a->against != NULL ? c->against : NULL;
 

@@ -9,6 +9,7 @@
 #include "src/rig/rig.h"
 #include "src/study/store/sweep_store.h"
 #include "src/study/robust.h"
+#include "src/tables/settings.h"
 #include "ui/commands/progress.h"
 #include "ui/commands/pictures.h"
 
@@ -236,14 +237,13 @@ static void fit_settings(const robustness *r, int law, control_parameters *contr
 
     // word by word
     const char *rest = control->settings;
-    controller_setting setting;
-    while (controller_next_setting(&rest, &setting)) {
-        bool stays = controller_has_parameter(known, setting.name) ||
-                     !others_have_parameter(r, setting.name);
+    setting s;
+    while (settings_next(&rest, &s)) {
+        bool stays = controller_has_parameter(known, s.name) || !others_have_parameter(r, s.name);
         char *list = stays ? kept : left;
         size_t used = strlen(list);
-        snprintf(list + used, sizeof kept - used, "%s%.*s", used > 0 ? " " : "",
-                 (int)setting.length, setting.word);
+        snprintf(list + used, sizeof kept - used, "%s%.*s", used > 0 ? " " : "", (int)s.length,
+                 s.word);
     }
 
     memcpy(control->settings, kept, sizeof kept);

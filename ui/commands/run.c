@@ -60,10 +60,10 @@ static void print_event(const scenario *s, const event *e)
     } else if (e->kind == EVENT_PUSH) {
         printf("     %.4g N s", e->impulse);
     } else if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
-        char value[128];
+        char value[128], path[ACTION_PATH];
         const action *a = &s->actions[e->index];
         action_format_value(a, value, sizeof value);
-        say("   %s = %s", parameter_table[a->parameter].path, value);
+        say("   %s = %s", action_path(a, path), value);
     }
     printf("\n");
 }

@@ -7,8 +7,11 @@
 #include <unistd.h>
 
 #include "src/base/json.h"
+#include "src/base/numbers.h"
+#include "src/rig/controller_values.h"
+#include "src/rig/rig.h"
 #include "src/run/export.h"
-#include "src/tables/parameters.h"
+#include "src/tables/settings.h"
 #include "src/tables/summary.h"
 #include "ui/commands/answers.h"
 
@@ -227,6 +230,37 @@ static void print_parameter(const parameters *p, int index)
     printf("  %s\n", info->description);
 }
 
+// Each number of control.settings under its path: where the law is known with its unit and range.
+static void print_settings(const scenario *s)
+{
+    const controller *law = controller_of(s->parameters.control.law);
+    for (int i = 0; law != NULL && i < law->parameter_count; i++) {
+        // one that is a parameter of its own stands in the table
+        const controller_parameter c = controller_parameter_at(law, i);
+        char path[PARAMETER_TEXT_SIZE], value[NUMBER_TEXT], range[64];
+        double given;
+        const bool is_given = settings_get(&s->parameters, c.name, &given);
+        snprintf(path, sizeof path, "control.%s", c.name);
+        if (!is_given && parameter_find(path) >= 0) {
+            continue;
+        }
+        snprintf(path, sizeof path, "control.settings.%s", c.name);
+        number_format_short(value, is_given ? given : c.initial);
+        snprintf(range, sizeof range, "%g to %g", c.minimum, c.maximum);
+        say("%-33s %c %18s %-9s  %-29s  %s\n", path, is_given ? '=' : ' ', value, c.unit, range,
+            c.description);
+    }
+
+    // of a controller that is loaded when the run starts what was given
+    const char *rest = law == NULL ? s->parameters.control.settings : "";
+    setting given;
+    while (settings_next(&rest, &given)) {
+        char path[2 * PARAMETER_TEXT_SIZE];
+        snprintf(path, sizeof path, "control.settings.%s", given.name);
+        say("%-33s = %18s %-9s  %-29s  %s\n", path, given.value, "", "", setting_info.description);
+    }
+}
+
 static void print_actions(const scenario *s)
 {
     for (int i = 0; i < s->action_count; i++) {
@@ -234,9 +268,9 @@ static void print_actions(const scenario *s)
         if (a->kind == ACTION_PUSH) {
             printf("  at %g s: push the tip with %g N s\n", a->time, a->value);
         } else {
-            char value[128];
+            char value[128], path[ACTION_PATH];
             action_format_value(a, value, sizeof value);
-            say("  at %g s: %s = %s\n", a->time, parameter_table[a->parameter].path, value);
+            say("  at %g s: %s = %s\n", a->time, action_path(a, path), value);
         }
     }
 }
@@ -287,6 +321,9 @@ static int print_scenario(const arguments *a, scenario *s)
            "value", "unit", "range");
     for (int i = 0; i < parameter_count; i++) {
         print_parameter(&s->parameters, i);
+        if (i == PARAMETER_INDEX(control.settings)) {
+            print_settings(s);
+        }
     }
 
     if (s->action_count > 0) {

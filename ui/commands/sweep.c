@@ -57,7 +57,7 @@ static int write_plot(const sweep_order *o, const double *values)
 static void print_values(const sweep *s, size_t run)
 {
     for (int i = 0; i < s->axis_count; i++) {
-        const parameter_info *info = &parameter_table[s->axes[i].parameter];
+        const parameter_info *info = sweep_axis_parameter(&s->axes[i]);
         char text[128];
         sweep_value_text(s, run, i, text, sizeof text);
         say("%s%s = %s%s%s", i > 0 ? ", " : "", s->axes[i].name, text, info->unit[0] ? " " : "",

@@ -9,8 +9,7 @@
 
 #include "src/base/json.h"
 #include "src/base/text_stream.h"
-#include "src/base/numbers.h"
-#include "src/rig/controller_values.h"
+#include "src/tables/settings.h"
 
 enum { PROTOCOL = 1 }; // of the lines, told in the first one
 
@@ -83,11 +82,10 @@ static json_t *settings_object(const control_parameters *control)
 {
     json_t *object = json_object();
     const char *rest = control->settings;
-    controller_setting s;
-    while (controller_next_setting(&rest, &s)) {
+    setting s;
+    while (settings_next(&rest, &s)) {
         double value;
-        const char *end;
-        bool number = decimal_read(s.value, &value, &end) && *end == '\0';
+        const bool number = setting_number(&s, &value);
         json_put(object, s.name, number ? json_number(value) : json_text(s.value));
     }
     return object;

@@ -118,7 +118,7 @@ static status create_run_table(sweep_database *store, fault *f)
 
     // what is varied
     for (int i = 0; i < s->axis_count; i++) {
-        const parameter_info *info = &parameter_table[s->axes[i].parameter];
+        const parameter_info *info = sweep_axis_parameter(&s->axes[i]);
         sqlite3_str_appendf(sql, ", \"%w\" %s NOT NULL", s->axes[i].name,
                             has_words(info)                   ? "TEXT"
                             : info->type == PARAMETER_INTEGER ? "INTEGER"
@@ -201,7 +201,7 @@ static bool is_number(sqlite3_stmt *row, int column)
 // Whether the row that a statement stands on has in that column what the sweep gives run `run`.
 static bool is_value(const sweep *s, size_t run, int axis, sqlite3_stmt *row, int column)
 {
-    if (has_words(&parameter_table[s->axes[axis].parameter])) {
+    if (has_words(sweep_axis_parameter(&s->axes[axis]))) {
         char text[SWEEP_VALUE_TEXT];
         const char *found = text_at(row, column);
         sweep_value_text(s, run, axis, text, sizeof text);

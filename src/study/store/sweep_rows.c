@@ -54,7 +54,7 @@ static void bind_row(sweep_database *store, size_t run, const summary *result)
     // which run, under which values
     sqlite3_bind_int64(row, column++, (sqlite3_int64)run + 1);
     for (int i = 0; i < s->axis_count; i++) {
-        parameter_type type = parameter_table[s->axes[i].parameter].type;
+        parameter_type type = sweep_axis_parameter(&s->axes[i])->type;
         if (type == PARAMETER_CHOICE || type == PARAMETER_BOOLEAN) {
             char text[128];
             sweep_value_text(s, run, i, text, sizeof text);
@@ -136,7 +136,7 @@ static void write_headings(csv_writer *csv, const sweep *s)
 {
     csv_heading(csv, "run", "");
     for (int i = 0; i < s->axis_count; i++) {
-        const parameter_info *info = &parameter_table[s->axes[i].parameter];
+        const parameter_info *info = sweep_axis_parameter(&s->axes[i]);
         csv_heading(csv, s->axes[i].name, info->unit);
     }
 

@@ -274,8 +274,8 @@ static void draw_changes(const explorer_state *st, screen *s, area line)
             snprintf(text, sizeof text, "push %g", c->value);
         } else {
             action_format_value(c, value, sizeof value);
-            snprintf(text, sizeof text, "%s %s",
-                     strchr(parameter_table[c->parameter].path, '.') + 1, value);
+            char path[ACTION_PATH];
+            snprintf(text, sizeof text, "%s %s", strchr(action_path(c, path), '.') + 1, value);
         }
 
         // what is still to come is hollow and dim

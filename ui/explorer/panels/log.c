@@ -7,9 +7,9 @@ enum { MOST_LATER = 32 }; // changes to come that are listed
 
 static void draw_change(const explorer_state *st, screen *s, area a, const event *v)
 {
-    char value[128], text[256];
+    char value[128], text[384], room[ACTION_PATH];
     const action *c = &st->session.effective.actions[v->index];
-    const char *path = parameter_table[c->parameter].path;
+    const char *path = action_path(c, room);
     action_format_value(c, value, sizeof value);
     int length = snprintf(text, sizeof text, "%s = %s", path, value);
     if (length > a.width) {

@@ -204,13 +204,13 @@ static int write_info(const scenario *base, int width, help_line *lines, int mos
     // what its script does
     for (int i = 0; i < base->action_count && p.count < most; i++) {
         const action *a = &base->actions[i];
-        char value[PARAMETER_TEXT_SIZE];
+        char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH];
         if (a->kind == ACTION_PUSH) {
             snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
         } else {
             action_format_value(a, value, sizeof value);
             snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  %s = %s", a->time,
-                     parameter_table[a->parameter].path, value);
+                     action_path(a, path), value);
         }
     }
     return p.count > 0 && lines[p.count - 1].text[0] == '\0' ? p.count - 1 : p.count;
