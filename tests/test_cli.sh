@@ -468,8 +468,8 @@ for command in list show run predict modes sweep merge compare converge solve st
     says out '--json FILE|-'
 done
 
-expect 2 bench --only predict_su
-says err "did you mean 'predict_us'?"
+expect 2 bench --only tables_z
+says err "did you mean 'tables_s'?"
 expect 2 bench --baseline hit.yaml
 says err "expected what bench --json writes"
 expect 0 converge hit.yaml --set method.name=newmark --json converge.json --plot converge.svg

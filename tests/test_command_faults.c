@@ -182,7 +182,7 @@ static const struct {
     {"robust", "law.yaml --over over.set --runs 2 --jobs 1", USUAL},
     {"robust", "law.yaml --over cases.set --runs 2 --jobs 1 --laws force-pd,hybrid --markdown -",
      ALONE},
-    {"linear", "touch.yaml --csv results/l.csv --mat results/l.mat", USUAL},
+    {"linear", "touch.yaml", USUAL},
     {"animate",
      "hit.yaml --size 320x240 --fps 4 --seconds 0.5 --slow 1 --gl cairo -o results/frames", USUAL},
     {"plot", "recipe.yaml -o results/drawn.svg", USUAL},

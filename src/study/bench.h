@@ -19,7 +19,7 @@ struct benchmark {
     const char *unit;                                               // "us/ms"
     bool more_is_better;                                            // a rate instead of a time
     status (*measure)(const benchmark *b, double *value, fault *f); // once, in `unit`
-    const char *settings; // what is measured: "PATH=VALUE PATH=VALUE ..."
+    const char *settings; // "PATH=VALUE PATH=VALUE ...", or words of the program
     int number;           // and a number that tells it from its like
 };
 
@@ -30,7 +30,7 @@ typedef struct bench_result {
     double wall; // time by the clock for each second of computing time: 1 on an idle machine
 } bench_result;
 
-// The benchmarks of the library; programs add their own.
+// What is measured.
 extern const benchmark bench_table[];
 extern const int bench_count;
 
@@ -63,7 +63,3 @@ double bench_slowdown(const benchmark *b, const bench_result *now, const bench_r
 // Whether that is more than noise: by the medians 15 % slower, and every single measurement slower
 // than the median before.
 bool bench_is_slower(const benchmark *b, const bench_result *now, const bench_result *before);
-
-// Cost of a step of 1 ms of the implicit method (generalised-alpha) on a chain of `links` links:
-// flat wall, 1 V, in free flight and in lasting contact [us].
-status bench_step_cost(int links, double *free_us, double *contact_us, fault *f);
