@@ -238,6 +238,69 @@ static void test_a_signal_is_hidden_by_a_key_or_a_click(void **state)
     explorer_finish(&ex);
 }
 
+// --- what is asked for ------------------------------------------------------------------------
+
+static int count_keys(const char *keys)
+{
+    int count = 0;
+    for (; *keys != '\0'; count++) {
+        const char *close = *keys == '<' ? strchr(keys, '>') : NULL;
+        keys = close != NULL ? close + 1 : keys + 1;
+    }
+    return count;
+}
+
+// How much voltage so that the peak stays below 2 N? At most 25 keys, with completion.
+static void test_a_limit_is_asked_for_in_few_keys(void **state)
+{
+    (void)state;
+    static const char keys[] = ":so<Tab>vo<Tab> pea<Tab>N<lt>2<Enter>";
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":seek 0.3<Enter>");
+    const double before = peak(&ex);
+    assert_true(count_keys(keys) <= 25);
+    press(&ex, keys);
+    for (size_t i = 0; i < SIZES; i++) {
+        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "up to motor.voltage = 1.4441 V: 2.0000 N");
+        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "limit");
+    }
+
+    // the answer is pinned, the present run stays
+    const pinned_run *p = &ex.state.pinned.runs[0];
+    assert_int_equal(ex.state.pinned.count, 1);
+    assert_string_equal(p->name, "voltage 1.4441");
+    check_close(p->run.summary.peak_force_N, 2, 1e-9);
+    assert_true(p->run.summary.peak_force_N < 2);
+    check_close(peak(&ex), before, 0);
+    check_close(ex.state.session.now, 0.3, 1e-12);
+
+    // none, nonsense, and a range of one's own
+    press(&ex, ":solve voltage=0.1:0.2 peak_force_N<lt>2<Enter>");
+    assert_shows(&ex, "no limit of motor.voltage from 0.1 to 0.2 V");
+    press(&ex, ":solve voltage peak_froce_N<lt>2<Enter>");
+    assert_shows(&ex, "did you mean 'peak_force_N'?");
+    press(&ex, ":solve control.law peak_force_N<lt>2<Enter>");
+    assert_true(ex.state.message.warning);
+    press(&ex, ":solve voltage<Enter>");
+    assert_shows(&ex, "solve takes");
+    assert_int_equal(ex.state.pinned.count, 1);
+    explorer_finish(&ex);
+}
+
+// t_f three steps shorter: at most five keys.
+static void test_the_transition_is_three_steps_shorter_in_few_keys(void **state)
+{
+    (void)state;
+    static const char keys[] = "<lt><lt><lt>";
+    explorer ex;
+    open_explorer(&ex, "lessons/hybrid-law");
+    press(&ex, keys);
+    assert_true(count_keys(keys) <= 5);
+    check_close(ex.state.session.effective.parameters.control.transition_time, 0.32, 1e-9);
+    explorer_finish(&ex);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -249,6 +312,8 @@ int main(void)
         cmocka_unit_test(test_sentences_are_whole_and_numbers_short),
         cmocka_unit_test(test_parameters_keep_their_rows),
         cmocka_unit_test(test_a_signal_is_hidden_by_a_key_or_a_click),
+        cmocka_unit_test(test_a_limit_is_asked_for_in_few_keys),
+        cmocka_unit_test(test_the_transition_is_three_steps_shorter_in_few_keys),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

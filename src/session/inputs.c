@@ -110,6 +110,16 @@ status session_change(session *s, int parameter, const char *text, fault *f)
     return add_input(s, &in, f);
 }
 
+status session_change_from_start(session *s, int parameter, const char *text, fault *f)
+{
+    const double now = s->now, seen = s->seen;
+    session_seek(s, 0);
+    const status code = session_change(s, parameter, text, f);
+    session_seek(s, now);
+    s->seen = fmax(seen, s->now);
+    return code;
+}
+
 // The first of several small steps: the run before them is kept as their ghost.
 static status begin_adjusting(session *s, int parameter, const char *text, fault *f)
 {

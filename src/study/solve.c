@@ -86,6 +86,30 @@ status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f)
     return STATUS_OK;
 }
 
+status solve_axis_read(sweep_axis *axis, const char *text, const scenario *s, fault *f)
+{
+    assert(axis != NULL && text != NULL && s != NULL);
+    char name[SWEEP_VALUE_TEXT];
+    const char *range = strchr(text, '=');
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
+    status code = sweep_axis_find(axis, name, f);
+    if (code != STATUS_OK || range == NULL) {
+        return code == STATUS_OK ? solve_usual_range(axis, s, f) : code;
+    }
+
+    // a range of its own; the axis' parser takes the text apart
+    char *copy = strdup(range + 1);
+    if (copy == NULL) {
+        return fault_no_memory(f);
+    }
+    code = sweep_axis_parse(axis, copy, true, f);
+    free(copy);
+    if (code == STATUS_OK && !axis->is_range) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT, "expected a range, %s=a:b", name);
+    }
+    return code;
+}
+
 // --- one run --------------------------------------------------------------------------------
 
 // What one value of the parameter gives.

@@ -49,6 +49,10 @@ bool solve_condition_holds(const solve_condition *c, double value);
 // allows. STATUS_BAD_ARGUMENT where the parameter is not a number.
 status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f);
 
+// Reads PATH or PATH=a:b[:n][:log] into an axis of zeroes, a range about the scenario's value where
+// none is given. sweep_axis_finish in either case.
+status solve_axis_read(sweep_axis *axis, const char *text, const scenario *s, fault *f);
+
 // Finds the limits of the axis (a range) within which the condition holds, in `points` values (at
 // least 2; fewer where fewer whole numbers lie in the range) on `jobs` threads. STATUS_STOPPED if
 // the monitor (may be NULL) asked for it, STATUS_NO_MEMORY; runs that fail are counted as unknown.

@@ -15,32 +15,6 @@ typedef struct question {
     int points;
 } question;
 
-// Reads PATH or PATH=a:b[:n][:log]. To be ended with sweep_axis_finish in either case.
-static status read_axis(question *q, const arguments *a, const scenario *s, fault *f)
-{
-    char name[SWEEP_VALUE_TEXT];
-    char *range = strchr(a->operands[1], '=');
-    snprintf(name, sizeof name, "%.*s",
-             (int)(range != NULL ? range - a->operands[1] : (long)strlen(a->operands[1])),
-             a->operands[1]);
-    status code = sweep_axis_find(&q->axis, name, f);
-    if (code != STATUS_OK || range == NULL) {
-        return code == STATUS_OK ? solve_usual_range(&q->axis, s, f) : code;
-    }
-
-    // a range of its own; the axis' parser takes the text apart
-    char *text = strdup(range + 1);
-    if (text == NULL) {
-        return fault_no_memory(f);
-    }
-    code = sweep_axis_parse(&q->axis, text, true, f);
-    free(text);
-    if (code == STATUS_OK && !q->axis.is_range) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT, "expected a range, %s=a:b", name);
-    }
-    return code;
-}
-
 static const char *sign_of(const solve_condition *c)
 {
     return c->below ? c->equal ? "<=" : "<" : c->equal ? ">=" : ">";
@@ -145,7 +119,7 @@ static int read_and_find(const arguments *a, scenario *s)
     question q = {.points = a->runs > 0 ? (int)a->runs : SOLVE_POINTS};
     fault f = {0};
     status code = solve_condition_read(a->operands[2], &q.condition, &f);
-    code = code == STATUS_OK ? read_axis(&q, a, s, &f) : code;
+    code = code == STATUS_OK ? solve_axis_read(&q.axis, a->operands[1], s, &f) : code;
     int result = code == STATUS_OK ? find_and_report(a, s, &q) : complain_fault(&f);
     sweep_axis_finish(&q.axis);
     return result;

@@ -98,7 +98,9 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
         name = i < parameter_count ? parameter_table[i].path : NULL;
     } else if (strcmp(p->command, "set") == 0) {
         return p->word == 2 && parameter_value(parameter_of_name(p->argument), i, text);
-    } else if (strcmp(p->command, "sweep") == 0) {
+    } else if (strcmp(p->command, "solve") == 0 && p->word == 2) {
+        name = i < summary_count ? summary_table[i].key : NULL;
+    } else if (strcmp(p->command, "sweep") == 0 || strcmp(p->command, "solve") == 0) {
         name = i < parameter_count ? parameter_table[i].path : NULL;
     } else if (strcmp(p->command, "metric") == 0) {
         name = i < summary_count ? summary_table[i].key : NULL;

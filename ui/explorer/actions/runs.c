@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/study/solve.h"
+
 #define LONGEST_SWEPT_RUN 0.3 // that is computed between two pictures [s]
 
 // --- pinned runs ------------------------------------------------------------------------------
@@ -201,6 +203,141 @@ bool act_show_difference(explorer_state *st, const char *argument)
     return act_tell(st,
                     "minus '%s': %s differs by more than %g %s from %.5f s on; D shows the runs",
                     name, signal_table[signal].name, tolerance, signal_table[signal].unit, first);
+}
+
+// --- limits -----------------------------------------------------------------------------------
+
+enum { SOLVE_THREADS = 4 };
+
+// The signal whose values a quantity is one of, -1 if there is none.
+static int signal_of_quantity(int quantity)
+{
+    static const struct {
+        const char *key, *signal;
+    } pairs[] = {{"peak_force_N", "force"},
+                 {"first_pulse_peak_N", "force"},
+                 {"steady_force_N", "force"},
+                 {"largest_command_V", "command"},
+                 {"approach_speed_m_s", "gap_velocity"}};
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        if (strcmp(summary_table[quantity].key, pairs[i].key) == 0) {
+            return signal_find(pairs[i].signal);
+        }
+    }
+    return -1;
+}
+
+// Pins the run at a limit beside the present one, which stays.
+static status pin_limit(explorer_state *st, const sweep_axis *axis, double value, fault *f)
+{
+    char text[PARAMETER_TEXT_SIZE], name[RUN_NAME];
+    parameters p = st->session.effective.parameters;
+    run_origin from;
+    session limit;
+    status code = sweep_axis_apply(axis, value, &p, f);
+    code = code == STATUS_OK ? run_origin_take(&from, &st->session, f) : code;
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // the present run's changes, and the value from the start
+    code = session_reopen(&limit, &from, HUGE_VAL, f);
+    run_origin_finish(&from);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    session_seek(&limit, 0);
+    parameter_format(&p, axis->parameter, text, sizeof text);
+    code = session_change_from_start(&limit, axis->parameter, text, f);
+    snprintf(name, sizeof name, "%s %.5g", strchr(axis->name, '.') + 1, value);
+    code = code == STATUS_OK ? run_list_pin(&st->pinned, &limit, name, f) : code;
+    session_finish(&limit);
+    return code;
+}
+
+// The limit that is nearest to the value the run has.
+static int nearest_limit(const explorer_state *st, const sweep_axis *axis, const solution *found)
+{
+    const double value = parameter_get(&st->session.effective.parameters, axis->parameter);
+    int nearest = 0;
+    for (int i = 1; i < found->count && axis->element == 0; i++) {
+        const double here = fabs(found->limits[i].value - value);
+        nearest = here < fabs(found->limits[nearest].value - value) ? i : nearest;
+    }
+    return nearest;
+}
+
+// Says what was found: the limit that is pinned, and where others are; true if there is one.
+static bool tell_limits(explorer_state *st, const sweep_axis *axis, const solve_condition *c,
+                        const solution *found)
+{
+    const char *unit = sweep_axis_parameter(axis)->unit;
+    const summary_info *quantity = &summary_table[c->quantity];
+    char others[160] = "";
+    if (found->count == 0) {
+        const double low = fmin(axis->low, axis->high), high = fmax(axis->low, axis->high);
+        return act_refuse(st,
+                          "no limit of %s from %g to %g %s: the %s is as asked in %d runs, and not "
+                          "in %d%s%s",
+                          axis->name, low, high, unit, quantity->label, found->holding,
+                          found->failing, found->unknown > 0 ? "; first of the others: " : "",
+                          found->reason);
+    }
+    const int nearest = nearest_limit(st, axis, found);
+    for (int i = 0; i < found->count; i++) {
+        const size_t used = strlen(others);
+        if (i != nearest && used < sizeof others) {
+            snprintf(others + used, sizeof others - used, "%s%.5g",
+                     used == 0 ? "; limits also at " : ", ", found->limits[i].value);
+        }
+    }
+    const solve_limit *l = &found->limits[nearest];
+    return act_tell(st, "%s %s = %#.5g%s%s: %#.5g %s%s%s; that run is pinned",
+                    l->holds_below ? "up to" : "from", axis->name, l->value, unit[0] ? " " : "",
+                    unit, l->reached, quantity->unit, l->jumps ? ", where it jumps" : "", others);
+}
+
+bool act_solve(explorer_state *st, const char *argument)
+{
+    fault f = {0};
+    sweep_axis axis = {0};
+    solve_condition condition;
+    static solution found;
+    char path[LINE_TEXT];
+    const char *rest = argument + strcspn(argument, " ");
+    snprintf(path, sizeof path, "%.*s", (int)strcspn(argument, " "), argument);
+    if (*rest == '\0') {
+        return act_refuse(st, "solve takes a parameter and a condition, such as motor.voltage "
+                              "peak_force_N<2");
+    }
+    if (!act_need_whole_run(st)) {
+        return false;
+    }
+    if (isfinite(st->session.patience) && st->session.run.summary.wall_time_s > LONGEST_SWEPT_RUN) {
+        return act_refuse(st, "a run takes %.1f s here: 'impactlab solve' computes them beside",
+                          st->session.run.summary.wall_time_s);
+    }
+
+    // a parameter may be given by the last part of its path
+    const char *range = strchr(path, '=');
+    char name[LINE_TEXT], whole[2 * LINE_TEXT];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(path, "="), path);
+    const int parameter = parameter_of_name(name);
+    snprintf(whole, sizeof whole, "%s%s", parameter >= 0 ? parameter_table[parameter].path : name,
+             range != NULL ? range : "");
+    status code = solve_condition_read(rest, &condition, &f);
+    const scenario *s = &st->session.effective;
+    code = code == STATUS_OK ? solve_axis_read(&axis, whole, s, &f) : code;
+    code = code == STATUS_OK
+               ? solve(s, &axis, &condition, SOLVE_POINTS, SOLVE_THREADS, NULL, &found, &f)
+               : code;
+    if (code == STATUS_OK && found.count > 0) {
+        st->limit = (solved_limit){signal_of_quantity(condition.quantity), condition.bound};
+        code = pin_limit(st, &axis, found.limits[nearest_limit(st, &axis, &found)].value, &f);
+    }
+    const bool done = act_worked(st, code, &f) && tell_limits(st, &axis, &condition, &found);
+    sweep_axis_finish(&axis);
+    return done && settle_baseline(st);
 }
 
 // --- sweeps -----------------------------------------------------------------------------------

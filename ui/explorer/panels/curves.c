@@ -341,6 +341,13 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
         {"hub_velocity", "control.speed_limit", true},
     };
 
+    // the bound that was asked for, of its signal
+    for (int k = 0; k < p->count; k++) {
+        if (p->signals[k] == st->limit.signal) {
+            plot_frame_level(f, s, st->limit.bound, "limit");
+        }
+    }
+
     // those that belong to a signal of the pane and have a value in the run
     const parameters now = state_parameters(st);
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {

@@ -169,10 +169,13 @@ void plot_frame_cursor(const plot_frame *f, screen *s, double time)
 
 void plot_frame_level(const plot_frame *f, screen *s, double value, const char *name)
 {
-    const int y = f->canvas.y + (int)(lround(plot_y(f, value)) / 4);
-    if (!(value >= f->axis.low && value <= f->axis.high)) {
+    // a run that just reaches the level shows it
+    const double edge = 1e-6 * (f->axis.high - f->axis.low);
+    if (!(value >= f->axis.low - edge && value <= f->axis.high + edge)) {
         return;
     }
+    const double row = fmax(0, fmin(4.0 * f->canvas.height - 1, plot_y(f, value)));
+    const int y = f->canvas.y + (int)(lround(row) / 4);
 
     // the name is at the end
     const int length = (int)strlen(name), end = f->canvas.x + f->canvas.width;

@@ -45,6 +45,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
       act_show_difference)                                                                         \
     X("", "sweep", "[PATH=A:B:N|off]", "runs with other values: a fan of curves and a metric",     \
       act_sweep)                                                                                   \
+    X("", "solve", "PATH[=A:B] KEY<VALUE", "limit of a value for a condition: it is pinned",       \
+      act_solve)                                                                                   \
     X("", "metric", "[KEY]", "what the sweep compares by; alone: the next one", act_set_metric)    \
     X("", "stop", "", "compute no further; Space at its end goes on", act_stop)                    \
     X("", "compare", "", "both runs in numbers", act_compare)                                      \

@@ -84,6 +84,14 @@ status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f);
 
 void lab_sweep_end(lab_sweep *sweep);
 
+// --- a limit ----------------------------------------------------------------------------------
+
+// The condition that was asked for last, drawn in the panes of its signal.
+typedef struct solved_limit {
+    int signal; // index in signal_table, -1: none to draw it at
+    double bound;
+} solved_limit;
+
 // --- the difference ---------------------------------------------------------------------------
 // Between the present run and the one kept beside it, row by row of the present one.
 // Contact, sticking and the controller's mode are those of the present run.

@@ -96,6 +96,7 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
     }
 
     st->visit_count = 1;
+    st->limit.signal = -1;
     st->pinned.baseline = -1;
     st->sweep.metric = SUMMARY_INDEX(peak_force_N);
     st->playback.speed = 0.2;

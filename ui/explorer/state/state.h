@@ -61,6 +61,7 @@ typedef struct explorer_state {
     run_list pinned;
     lab_sweep sweep;
     run_difference difference;
+    solved_limit limit;
     unsigned opened;      // number of scenarios opened
     visit visits[VISITS]; // [present_visit] is empty: it is the session
     int visit_count, present_visit;
