@@ -34,6 +34,8 @@ typedef struct arm {
     double link_inertia;      // about the centre of mass, of an uneven arm the mean [kg m2]
     double hub_inertia;       // I1 [kg m2]
     double tip_mass;          // that the tip carries [kg]
+    double held_angle;        // initial.angle, at which modes take a hub to be held [rad]
+    double gravity;           // g sin(tilt), along the angle -pi/2 [m/s2]
     double hub_stiffness;     // k1 or k2 N, zero with a rigid hub joint [N m/rad]
     double joint_stiffness;   // of each inner joint, k2 N/2, of an uneven arm the largest [N m/rad]
     double hub_joint_damping; // structural damping of the hub spring [N m s/rad]
@@ -54,11 +56,11 @@ typedef struct arm {
 
 // Whether the arm is equal bare links with equal linear joints, damped in proportion to their
 // stiffness or not, with a motor whose current follows at once: what the equations of special
-// engines and predictors are for.
+// engines and predictors are for. In a level plane.
 static inline bool arm_is_plain(const arm *a)
 {
-    return a->tip_mass == 0 && !a->uneven && a->stiffening == 0 && a->air_drag == 0 &&
-           a->damped_modes == 0 && !a->motor.electric;
+    return a->tip_mass == 0 && a->gravity == 0 && !a->uneven && a->stiffening == 0 &&
+           a->air_drag == 0 && a->damped_modes == 0 && !a->motor.electric;
 }
 
 // Length [m], mass [kg] and moment of inertia about the centre of mass [kg m2] of link k, and

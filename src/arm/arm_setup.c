@@ -7,10 +7,13 @@
 
 #include "src/arm/chain.h"
 #include "src/arm/modes.h"
+#include "src/base/sincos.h"
 
 // What a decay counts against a vibration: it dies within a step or two and need not be followed,
 // so that steps may be several times longer.
-#define DECAY_WEIGHT 0.125
+#define DECAY_WEIGHT     0.125
+
+#define STANDARD_GRAVITY 9.80665 // [m/s2]
 
 void arm_set_voltage(arm *a, double volts)
 {
@@ -87,7 +90,7 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     a.motor.electric = false;
     a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping = a.hub_joint_damping = 0;
     memset(a.each.damping, 0, sizeof a.each.damping);
-    a.stiffening = a.air_drag = 0;
+    a.stiffening = a.air_drag = a.gravity = 0;
     a.damped_modes = of_velocities ? a.damped_modes : 0;
     a.wall.kind = WALL_NONE;
     chain_link work[LONGEST];
@@ -216,6 +219,8 @@ void arm_init(arm *a, const parameters *p)
     a->link_inertia = p->arm.link_inertia;
     a->hub_inertia = p->arm.hub_inertia;
     a->tip_mass = p->arm.tip_mass;
+    a->held_angle = p->initial.angle;
+    a->gravity = STANDARD_GRAVITY * inline_sin(p->arm.tilt);
     a->hub_stiffness = a->hub_spring ? p->arm.k1 : 0;
     a->joint_stiffness = p->arm.k2 * a->links / 2;
     set_links(a, &p->arm);

@@ -213,6 +213,26 @@ double chain_strain_energy(const arm *a, const double *q)
     return twice / 2;
 }
 
+double chain_weight(const arm *a, int k)
+{
+    double mass = a->tip_mass + arm_link_mass(a, k) / 2;
+    for (int i = k + 1; i < a->links; i++) {
+        mass += arm_link_mass(a, i);
+    }
+    return a->gravity * mass * arm_link_length(a, k);
+}
+
+double chain_weight_energy(const arm *a, const double *q)
+{
+    double y = 0, moment = 0;
+    for (int k = 0; k < a->links && a->gravity != 0; k++) {
+        const double rise = arm_link_length(a, k) * inline_sin(q[a->first + k]);
+        moment += arm_link_mass(a, k) * (y + rise / 2);
+        y += rise;
+    }
+    return a->gravity * (moment + a->tip_mass * y);
+}
+
 double chain_stiffened(const arm *a, const double *q)
 {
     if (a->stiffening == 0) {

@@ -57,6 +57,11 @@ void chain_tip_response(const arm *a, chain_link *work, const double *q, double 
 // Kinetic energy [J] and strain energy [J].
 double chain_kinetic_energy(const arm *a, const double *q, const double *w);
 double chain_strain_energy(const arm *a, const double *q);
+// Potential energy of the weight in a tilted plane, from the hub's axis on [J].
+double chain_weight_energy(const arm *a, const double *q);
+// The torque of the weight on link k is -weight cos(q_k) [N m]: half of the link's own and all that
+// it carries hang at its end.
+double chain_weight(const arm *a, int k);
 
 // Position of node k = 0..N (0 the hub axis, N the tip) [m].
 void chain_node(const arm *a, const double *q, int k, double *x, double *y);

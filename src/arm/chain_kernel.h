@@ -123,7 +123,7 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     if (loaded) {
         pxx = pyy = a->tip_mass;
         qx = pressed * wall.ex;
-        qy = pressed * wall.ey;
+        qy = pressed * wall.ey + a->tip_mass * a->gravity;
     }
     double ux2 = wall.ex, uy2 = wall.ey; // Q of a unit contact force
     double outer = 0;                    // torque of the joint beyond
@@ -168,8 +168,8 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
         }
         double moment = bare ? torque : torque - l * (c * fy - s * fx);
         double moment2 = 0;
-        if (loaded && tip) {
-            moment -= pressed * wall.lever;
+        if (loaded) {
+            moment -= (tip ? pressed * wall.lever : 0) + half * m * a->gravity * c;
         }
         double drag_x = 0, drag_y = 0; // of air on the link
         if (drags) {
@@ -203,6 +203,9 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
         if (k > 0) {
             qx = fx - m * half * w2 * c + ux * link[k].free;
             qy = fy - m * half * w2 * s + uy * link[k].free;
+            if (loaded) {
+                qy += m * a->gravity;
+            }
             if (drags) {
                 qx += drag_x;
                 qy += drag_y;

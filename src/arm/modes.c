@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/arm/chain.h"
 #include "src/base/dense.h"
+#include "src/base/sincos.h"
 
 void modes_matrices(const arm *a, double *mass, double *stiffness)
 {
@@ -35,8 +37,107 @@ void modes_matrices(const arm *a, double *mass, double *stiffness)
     }
 }
 
+// --- the sag of a tilted arm ---------------------------------------------------------------------
+
+// Angle of the line that a pinned tip stays on, and at which a hub is held [rad].
+static double line_angle(const arm *a, tip_end tip)
+{
+    const bool at_wall = tip == TIP_PINNED && wall_stands(&a->wall);
+    return at_wall ? atan2(a->wall.sine, a->wall.cosine) : a->held_angle;
+}
+
+status modes_sag(const arm *a, tip_end tip, double *q, double *force)
+{
+    enum { LOADS = 8, ITERATIONS = 40 };
+    const double line = line_angle(a, tip);
+    const int n = a->dof, size = n - 1 + (tip == TIP_PINNED), last = size - 1;
+    *force = 0;
+    for (int k = 0; k < n; k++) {
+        q[k] = line;
+    }
+    if (a->gravity == 0 || size < 1 || (tip == TIP_PINNED && n - a->first < 2)) {
+        return STATUS_OK;
+    }
+    double *matrix = malloc((size_t)(size * (size + 1)) * sizeof *matrix);
+    if (matrix == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+
+    // the weight comes on in portions, each by Newton's method in the angles behind the hub
+    double *change = matrix + size * size, most = 1;
+    bool found = true;
+    for (int load = 1; load <= LOADS && found; load++) {
+        most = 1;
+        for (int i = 0; i < ITERATIONS && found && most > 1e-13; i++) {
+            memset(matrix, 0, (size_t)(size * (size + 1)) * sizeof *matrix);
+            for (int k = 1; k < n; k++) {
+                const int own = k - 1, link = k - a->first;
+                const double bend = q[k] - q[k - 1], s = inline_sin(q[k] - line);
+                const double stiffens = arm_stiffening_torque(a, link, 1);
+                const double torque =
+                    (arm_joint_stiffness(a, link) + stiffens * bend * bend) * bend;
+                const double slope = arm_joint_stiffness(a, link) + 3 * stiffens * bend * bend;
+                const double weight = chain_weight(a, link) * load / LOADS;
+                const double reach = arm_link_length(a, link) * inline_cos(q[k] - line);
+                change[own] -= torque + weight * inline_cos(q[k]) + *force * reach;
+                matrix[own * size + own] +=
+                    slope - weight * inline_sin(q[k]) - *force * arm_link_length(a, link) * s;
+                if (own > 0) {
+                    change[own - 1] += torque;
+                    matrix[(own - 1) * size + own - 1] += slope;
+                    matrix[(own - 1) * size + own] = matrix[own * size + own - 1] = -slope;
+                }
+                if (tip == TIP_PINNED) {
+                    matrix[own * size + last] = matrix[last * size + own] = reach;
+                    change[last] -= arm_link_length(a, link) * s;
+                }
+            }
+            found = dense_solve(size, matrix, change);
+            most = 0;
+            for (int k = 1; k < n && found; k++) {
+                q[k] += change[k - 1];
+                most = fmax(most, fabs(change[k - 1]));
+            }
+            *force += tip == TIP_PINNED ? change[last] : 0;
+        }
+        found = found && most < 1e-9;
+    }
+    free(matrix);
+    return found ? STATUS_OK : STATUS_SINGULAR;
+}
+
+// M and K about the sag from those of the straight arm; constraint[n] gets what a pinned tip lets
+// the angles do, sum of constraint x = 0.
+static status add_sag(const arm *a, tip_end tip, double *q, double *mass, double *stiffness,
+                      double *constraint)
+{
+    const int n = a->dof;
+    double force;
+    const status code = modes_sag(a, tip, q, &force);
+    for (int k = a->first; k < n && code == STATUS_OK; k++) {
+        const int link = k - a->first;
+        const double l = arm_link_length(a, link), turned = q[k] - line_angle(a, tip);
+        constraint[k] = l * inline_cos(turned);
+        for (int j = a->first; j < n; j++) {
+            mass[k * n + j] *= inline_cos(q[k] - q[j]);
+        }
+        stiffness[k * n + k] -=
+            chain_weight(a, link) * inline_sin(q[k]) + force * l * inline_sin(turned);
+        if (k > 0) {
+            const double bend = q[k] - q[k - 1];
+            const double more = 3 * arm_stiffening_torque(a, link, 1) * bend * bend;
+            stiffness[(k - 1) * n + k - 1] += more;
+            stiffness[k * n + k] += more;
+            stiffness[(k - 1) * n + k] -= more;
+            stiffness[k * n + k - 1] -= more;
+        }
+    }
+    return code;
+}
+
 // Basis of the angles that hub and tip allow, one column after another; returns how many.
-static int allowed_basis(const arm *a, hub_end hub, tip_end tip, double *basis)
+static int allowed_basis(const arm *a, hub_end hub, tip_end tip, const double *constraint,
+                         double *basis)
 {
     const int n = a->dof, start = hub == HUB_LOCKED ? 1 : 0;
     int columns = 0;
@@ -49,8 +150,7 @@ static int allowed_basis(const arm *a, hub_end hub, tip_end tip, double *basis)
         // a pinned tip moves the last link against each of the others, by their lengths
         basis[columns * n + k] = 1;
         if (tip == TIP_PINNED && link) {
-            basis[columns * n + n - 1] =
-                -arm_link_length(a, k - a->first) / arm_link_length(a, a->links - 1);
+            basis[columns * n + n - 1] = -constraint[k] / constraint[n - 1];
         }
         columns++;
     }
@@ -88,17 +188,23 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
 
     // one block for all matrices and vectors
     size_t square = (size_t)n * (size_t)n;
-    double *block = calloc(5 * square + (size_t)(4 * n), sizeof *block);
+    double *block = calloc(5 * square + (size_t)(6 * n), sizeof *block);
     if (block == NULL) {
         return STATUS_NO_MEMORY;
     }
     double *mass = block, *stiffness = mass + square, *basis = stiffness + square;
     double *k = basis + square, *m = k + square, *product = m + square;
     double *values = product + n, *scratch = values + n;
+    double *constraint = scratch + 2 * n, *sag = constraint + n;
 
     // K x = omega^2 M x on the angles that hub and tip allow
     modes_matrices(a, mass, stiffness);
-    const int columns = allowed_basis(a, hub, tip, basis);
+    const status sags = add_sag(a, tip, sag, mass, stiffness, constraint);
+    if (sags != STATUS_OK) {
+        free(block);
+        return sags;
+    }
+    const int columns = allowed_basis(a, hub, tip, constraint, basis);
     reduce(stiffness, basis, n, columns, product, k);
     reduce(mass, basis, n, columns, product, m);
     *count = columns;

@@ -7,20 +7,27 @@
 typedef enum hub_end { HUB_LOCKED, HUB_FREE } hub_end; // held by the controller, or only by inertia
 typedef enum tip_end { TIP_FREE, TIP_PINNED } tip_end; // in the air, or touching the wall
 
-// Small vibrations about the straight, undeformed arm without damping and friction,
+// Small vibrations about the straight, undeformed arm or, in a tilted plane, about its sag, without
+// damping and friction,
 //
 //     K x = w^2 M x,
 //
 // solved on dense matrices (analysis, not simulation: cost N^3). A pinned tip leaves the angles
-// with sum l_k x_k = 0. count: how many modes there are (at most a->dof), in rising order.
+// with sum l_k x_k = 0. The sag is that with the hub held at initial.angle or, of a pinned tip, at
+// the wall's with the tip on the line from the hub to there; K then has the weight's part, too.
+// count: how many modes there are (at most a->dof), in rising order.
 // frequencies[dof]: w [rad/s]. shapes[dof * dof]: row i holds the angles of mode i at all degrees
-// of freedom, scaled to a largest angle of 1. STATUS_SINGULAR if M is not positive definite,
-// STATUS_NO_MEMORY.
+// of freedom, scaled to a largest angle of 1. STATUS_SINGULAR if M is not positive definite or the
+// weight is more than the arm can bear there, STATUS_NO_MEMORY.
 status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double *frequencies,
                      double *shapes);
 
-// M and K themselves, in absolute angles, added to mass[dof * dof] and stiffness[dof * dof] of
-// zeroes: M_ij = A_ij of chain.h, K tridiagonal [kg m2], [N m/rad].
+// The angles q[dof] of that sag, equilibrium of joints, weight and, of a pinned tip, the force [N]
+// that holds it, returned in *force. STATUS_NO_MEMORY, STATUS_SINGULAR if none is found.
+status modes_sag(const arm *a, tip_end tip, double *q, double *force);
+
+// M and K themselves of the straight arm, in absolute angles, added to mass[dof * dof] and
+// stiffness[dof * dof] of zeroes: M_ij = A_ij of chain.h, K tridiagonal [kg m2], [N m/rad].
 void modes_matrices(const arm *a, double *mass, double *stiffness);
 
 // --- damping of modes -------------------------------------------------------------------------

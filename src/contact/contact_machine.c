@@ -380,6 +380,7 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
     }
 
     m->state[SLOT_LAST_IMPACT] = -1;
+    m->state[SLOT_START_WEIGHT] = chain_weight_energy(a, state_angles(m, m->state));
     m->start_energy =
         chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
         chain_strain_energy(a, state_angles(m, m->state));

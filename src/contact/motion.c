@@ -151,7 +151,7 @@ double motion_energy_residual(const arm *a, const motion *m, double *state)
 {
     const state_energy has = motion_energy(a, m, state);
     const double energy = has.kinetic + has.strain;
-    return motion_unaccounted(m, state, energy + motion_wall_energy(a, m, state));
+    return motion_unaccounted(m, state, energy + motion_held_energy(a, m, state));
 }
 
 // --- a step of smooth motion ----------------------------------------------------------------

@@ -43,6 +43,7 @@ enum motion_slot {
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
     SLOT_FACE,             // how far the face of a wall that gives is pushed in [m]
     SLOT_FACE_VELOCITY,    // [m/s]
+    SLOT_START_WEIGHT,     // energy of the weight at the start [J]
     SLOT_COUNT
 };
 
@@ -374,6 +375,15 @@ static inline double motion_wall_energy(const arm *a, const motion *m, const dou
     return motion_wall_is_rigid(m) ? 0 : wall_face_energy(&a->wall, state_face(state));
 }
 
+// The same with what the weight has gained since the start in a tilted plane [J].
+static inline double motion_held_energy(const arm *a, const motion *m, double *state)
+{
+    const double weight =
+        a->gravity != 0 ? chain_weight_energy(a, state_angles(m, state)) - state[SLOT_START_WEIGHT]
+                        : 0;
+    return motion_wall_energy(a, m, state) + weight;
+}
+
 // Energy of motion and of bending in a state of this motion.
 state_energy motion_energy(const arm *a, const motion *m, double *state);
 
@@ -381,8 +391,8 @@ state_energy motion_energy(const arm *a, const motion *m, double *state);
 // does not account for.
 double motion_energy_residual(const arm *a, const motion *m, double *state);
 
-// The same if the energy of the state is known already: kinetic and strain energy and that of a
-// wall that gives [J].
+// The same if the energy of the state is known already: kinetic and strain energy and what
+// motion_held_energy says [J].
 static inline double motion_unaccounted(const motion *m, double *state, double energy)
 {
     const double *quadrature = state_quadratures(m, state);

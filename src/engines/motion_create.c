@@ -51,6 +51,9 @@ static bool rings_on(const arm *a)
 // on, the stiff engine for all others. It does not depend on the time step.
 static const engine *event_engine(const arm *a)
 {
+    if (a->gravity != 0) {
+        return &stiff_engine;
+    }
     if (taylor_engine_suits(a) && a->fastest_decay <= FASTEST_OF_PAIR) {
         return &taylor_engine;
     }

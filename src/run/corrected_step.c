@@ -259,12 +259,13 @@ static inline status audit(corrected_run *c, state_energy has)
 {
     const motion *m = c->motion;
     summary *s = &c->recording->result->summary;
-    const double held = motion_wall_energy(&c->arm, m, m->state);
+    const double held = motion_held_energy(&c->arm, m, m->state);
     double residual = motion_unaccounted(m, m->state, has.kinetic + has.strain + held);
     s->energy_residual_J = larger(fabs(residual), s->energy_residual_J);
 
     double turned_over = fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
-                         m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN + TINY_ENERGY;
+                         fabs(held) + m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN +
+                         TINY_ENERGY;
     // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
     double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
     if (!isfinite(residual) || !isfinite(turned_over)) {
@@ -288,7 +289,7 @@ static sample row_of(const corrected_run *c, double *state, state_energy has, do
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
     const bool rigid = motion_wall_is_rigid(m);
-    const double held = motion_wall_energy(a, m, state);
+    const double held = motion_held_energy(a, m, state);
     int first = a->first, last = a->dof - 1;
     sample row = {
         // every signal of the table that the corrected model has
@@ -320,8 +321,9 @@ static sample row_of(const corrected_run *c, double *state, state_energy has, do
         .damping_loss = quadrature[QUADRATURE_DAMPING],
         .impact_loss = state[SLOT_IMPACT_LOSS],
         .energy_residual = motion_unaccounted(m, state, has.kinetic + has.strain + held),
-        .wall_energy = rigid ? (double)NAN : held,
+        .wall_energy = rigid ? (double)NAN : motion_wall_energy(a, m, state),
         .wall_loss = rigid ? (double)NAN : quadrature[QUADRATURE_WALL],
+        .weight_energy = a->gravity != 0 ? chain_weight_energy(a, q) : (double)NAN,
         .face_depth = rigid ? (double)NAN : state[SLOT_FACE],
     };
 
@@ -429,7 +431,11 @@ status corrected_record_step(corrected_run *c, bool at_event)
     if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
         r->state.separated = flight_separated(&c->arm, m);
     }
-    r->state.energy_put_in += fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial));
+    const arm *a = &c->arm;
+    r->state.energy_put_in +=
+        fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial)) +
+        fabs(chain_weight_energy(a, state_angles(m, m->state)) -
+             chain_weight_energy(a, state_angles(m, m->trial)));
 
     // an arm held still has the energy it had
     const bool known = m->reached.kinetic >= 0;

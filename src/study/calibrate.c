@@ -153,6 +153,13 @@ status calibrate(const scenario *s, const double *commands, int count, run_monit
                          "there is nothing to press against, wall.kind is none");
     }
 
+    // K2 says how the wall's force alone bends the beam
+    if (s->parameters.arm.tilt != 0) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT, "arm.tilt",
+                            "the weight bends the beam, too, so that force and angle say nothing "
+                            "of its stiffness alone: calibrate in a level plane, arm.tilt = 0");
+    }
+
     // up to the first fault; what was measured before is kept
     status code = STATUS_OK;
     for (int i = 0; i < count && code == STATUS_OK; i++) {

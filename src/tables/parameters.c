@@ -77,6 +77,8 @@ const parameter_info parameter_table[] = {
              "stiffening b^2); of N links the same curvature counts")},
     {PATH(arm.tip_mass), REAL("kg", 0, 1000), DEFAULT(0),
      MEANING("mass that the tip carries, such as a sensor")},
+    {PATH(arm.tilt), REAL("rad", -3.2, 3.2), DEFAULT(0),
+     MEANING("tilt of the arm's plane to the level: g sin(tilt) acts along the angle -pi/2")},
 
     {PATH(motor.voltage), REAL("V", -1000, 1000), DEFAULT(1), TIMED,
      MEANING("command to the amplifier, held constant")},

@@ -43,6 +43,7 @@ typedef struct arm_parameters {
     double k2;            // joint spring of the two-link beam [N m/rad]; N links: k2 N/2 each
     double EI;            // bending stiffness of the beam, k2 length/2 [N m2]
     double damping_ratio; // structural damping ratio of the first clamped-free mode [-]
+    double tilt;          // of the plane to the level [rad]
     double tip_mass;      // of what the tip carries, a sensor [kg]
     double stiffening;    // share by which k2 grows with the square of its bend [1/rad2]
     double air_drag;      // force per length and velocity of the beam [N s/m2]

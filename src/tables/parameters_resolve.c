@@ -109,13 +109,20 @@ static status check_engine(const parameters *p, fault *f)
     const arm_parameters *a = &p->arm;
     const bool electric =
         p->motor.inductance > 0 || (p->motor.current_limit > 0 && p->motor.drive == DRIVE_VOLTAGE);
-    const bool bare = a->tip_mass == 0 && a->stiffening == 0 && a->air_drag == 0 &&
+    const bool bare = a->tip_mass == 0 && a->tilt == 0 && a->stiffening == 0 && a->air_drag == 0 &&
                       a->modal_ratios[0] == '\0' && parameters_even_links(a);
     const bool pair = a->links == 2 && bare && !electric && p->wall.contact == WALL_RIGID;
     if (p->method.engine == ENGINE_PAIR && !pair) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.engine),
-                            "method.engine = pair takes two equal bare links on a rigid wall, with "
+                            "method.engine = pair takes two equal bare links in a level plane on a "
+                            "rigid wall, with "
                             "a motor whose current follows at once; expected auto or stiff");
+    }
+    if (p->method.engine == ENGINE_SERIES && a->tilt != 0) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, method.engine, arm.tilt),
+                            "method.engine = series takes an arm in a level plane, but arm.tilt = "
+                            "%g rad; expected auto or stiff",
+                            a->tilt);
     }
     return STATUS_OK;
 }
@@ -234,6 +241,10 @@ static status check_printed(const parameters *p, fault *f)
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.tip_mass),
                             "the printed model carries nothing, but arm.tip_mass = %g kg",
                             p->arm.tip_mass);
+    }
+    if (p->arm.tilt != 0) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.tilt),
+                            "the printed model lies level, but arm.tilt = %g rad", p->arm.tilt);
     }
     return STATUS_OK;
 }

@@ -50,6 +50,7 @@ typedef struct sample {
     // of a wall that gives; NaN at a rigid one
     double wall_energy; // that its spring and the motion of its face hold [J]
     double wall_loss;   // lost in it [J]
+    double weight_energy; // from the hub's axis on, NaN in a level plane [J]
     double face_depth;  // how far its face is pushed in, NaN in a rigid one [m]
     // on the rig with a limit on the force
     double predicted_force; // largest force if the tip struck now, as of the last sample [N]

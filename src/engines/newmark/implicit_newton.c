@@ -7,7 +7,7 @@ static void forces_between_links(const arm *a, implicit_sweep *link, const doubl
                                  const double *acceleration, double fx, double fy)
 {
     const double l = a->link_length, m = a->link_mass;
-    double ax = 0, ay = 0;
+    double ax = 0, ay = a->gravity; // what weight would take
 
     // accelerations from hub to tip, then the forces that they need from tip to hub
     for (int k = 0; k < a->links; k++) {

@@ -171,15 +171,17 @@ static void bend_to_wall(const arm *a, motion *m)
 // step then have more than one solution.
 static bool makes_energy(const arm *a, const motion *m)
 {
-    double energy[2];
+    double energy[2], weight[2];
     for (int i = 0; i < 2; i++) {
         double *state = i == 0 ? m->state : m->trial;
         const double *q = state_angles(m, state);
         energy[i] =
             chain_kinetic_energy(a, q, state_velocities(m, state)) + chain_strain_energy(a, q);
+        weight[i] = chain_weight_energy(a, q);
     }
     double turned = state_angles(m, m->trial)[0] - state_angles(m, m->state)[0];
-    return energy[1] - energy[0] > fmax(a->motor.torque * turned, 0) + 1e-3 * energy[0] + 1e-9;
+    const double gained = energy[1] - energy[0] + weight[1] - weight[0];
+    return gained > fmax(a->motor.torque * turned, 0) + 1e-3 * energy[0] + 1e-9;
 }
 
 static status step(const arm *a, motion *m, double h)

@@ -60,6 +60,7 @@ void stiff_set_arm(stiff_stride *stride, const arm *a, const motion *m)
     s->stiffens = a->stiffening != 0;
     s->drags = a->air_drag > 0;
     s->tip_mass = a->tip_mass;
+    s->gravity = a->gravity;
 
     // damped modes, in the bodies' velocities
     s->modes = a->damped_modes;

@@ -86,7 +86,7 @@ typedef struct stiff_step {
     stiff_link *link;                            // [links]
     const double (*damped)[PARAMETER_LIST_MOST]; // arm.modal_damping
     double *mode;                                // G [modes][dof]
-    double hub_inertia, hub_damping, torque, friction, tip_mass;
+    double hub_inertia, hub_damping, torque, friction, tip_mass, gravity;
     bool stuck, stiffens, drags;
     stiff_wall contact;
     const wall_model *wall;

@@ -178,11 +178,12 @@ KERNEL lanes law(const stiff_step *s, lanes depth, lanes rate, lanes acceleratio
 KERNEL bool sweep(stiff_step *s, int half, bool account)
 {
     const lanes zero = all(0);
-    lanes ax = zero, ay = zero, vx = zero, vy = zero, x = zero, y = zero, lost = zero;
+    lanes ax = zero, ay = all(s->gravity), vx = zero, vy = zero, x = zero, y = zero, lost = zero;
     within_turn within = all(0) == zero;
     lanes bx = zero, by = zero, bvx = zero, bvy = zero, px = zero, py = zero;
 
-    // outwards: directions, accelerations, and the forces that they take
+    // outwards: directions, accelerations, and the forces that they take; weight is what it would
+    // take to accelerate all upwards
     for (int k = 0; k < s->links; k++) {
         const stiff_link *l = &s->link[k];
         const stiff_stage *g = &s->stage[s->first + k];
@@ -244,8 +245,8 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
         s->gap.half[half] = -depth;
         s->rate.half[half] = -rate;
         if (s->contact == STIFF_GIVES) {
-            const lanes rate2 =
-                ex * bx + ey * by + reach * s->stage[s->first + last].a[half] + bends;
+            const lanes rate2 = ex * bx + ey * (by - s->gravity) +
+                                reach * s->stage[s->first + last].a[half] + bends;
             s->force.half[half] = law(s, depth, rate, rate2);
         }
         if (s->contact == STIFF_FREE) {

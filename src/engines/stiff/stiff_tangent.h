@@ -88,6 +88,7 @@ static void factor(stiff_step *s)
     // from the tip inwards
     complex_lanes pxx = number(s->tip_mass), pxy = number(0), pyy = pxx;
     complex_lanes px = number(0), py = px, tau = px;
+    double carried = s->tip_mass;
     for (int k = s->links - 1; k >= 0; k--) {
         const stiff_link *l = &s->link[k];
         const stiff_stage *at = &s->stage[s->first + k];
@@ -100,6 +101,8 @@ static void factor(stiff_step *s)
             mass = plus(mass, scaled(l->air, g));
             own = plus(own, scaled(l->turning + l->air * square, g));
         }
+        own = minus(own, scaled(s->gravity * (carried + 0.5 * l->mass) * ls, g2));
+        carried += l->mass;
         const complex_lanes ptx = minus(scaled(lc, pxy), scaled(ls, pxx));
         const complex_lanes pty = minus(scaled(lc, pyy), scaled(ls, pxy));
         complex_lanes d = plus(minus(scaled(lc, pty), scaled(ls, ptx)), plus(tau, own));

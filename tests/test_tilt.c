@@ -1,0 +1,154 @@
+// An arm in a tilted plane, whose weight acts along the angle -pi/2: pendulum, sag and frequencies
+// of beams.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/arm/chain.h"
+#include "src/arm/modes.h"
+#include "src/base/dense.h"
+#include "tests/arm_fixture.h"
+#include "tests/passage.h"
+
+#define GRAVITY 9.80665
+
+enum { LINKS = 64 };
+
+static arm beam_of(const char *const *settings)
+{
+    const parameters p = fixture_parameters(settings);
+    arm a;
+    arm_init(&a, &p);
+    return a;
+}
+
+// Deflection of the tip of a clamped beam under its weight w: w L^3/8EI; where the tip is held the
+// wall bears 3/8 of w.
+static void a_level_beam_sags_as_eulers_does(void **state)
+{
+    (void)state;
+    const arm a = beam_of(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1e-3"));
+    const double length = a.link_length * LINKS, weight = a.link_mass * LINKS * a.gravity;
+    const double EI = a.joint_stiffness * a.link_length;
+    double q[LINKS + 1], x, y, force;
+    check_relative(a.gravity, GRAVITY * sin(1e-3), 1e-14);
+
+    assert_int_equal(modes_sag(&a, TIP_FREE, q, &force), STATUS_OK);
+    chain_node(&a, q, LINKS, &x, &y);
+    check_relative(y, -weight * pow(length, 3) / (8 * EI), 1e-3);
+    check_close(force, 0, 0);
+
+    // a propped one, against the wall at the angle 0
+    arm held = a;
+    held.wall.cosine = 1;
+    held.wall.sine = 0;
+    assert_int_equal(modes_sag(&held, TIP_PINNED, q, &force), STATUS_OK);
+    chain_node(&held, q, LINKS, &x, &y);
+    check_close(y, 0, 1e-15);
+    check_relative(-force, 3.0 / 8 * weight, 1e-3);
+}
+
+// The first frequencies of a beam that hangs from a clamp, by Ritz with x^2, x^3, ...: the weight
+// below a place x is a tension there.
+static void frequencies_of_a_hanging_beam(const arm *a, double *frequency, int count)
+{
+    enum { TERMS = 7 };
+    const double length = a->link_length * LINKS, density = a->link_mass / a->link_length;
+    const double EI = a->joint_stiffness * a->link_length;
+    double k[TERMS * TERMS], m[TERMS * TERMS], values[TERMS], scratch[2 * TERMS];
+    for (int i = 0; i < TERMS; i++) {
+        for (int j = 0; j < TERMS; j++) {
+            const double p = i + 2, r = j + 2, both = p * r, sum = p + r;
+            k[i * TERMS + j] = EI / pow(length, 3) * both * (p - 1) * (r - 1) / (sum - 3) +
+                               density * a->gravity * both * (1 / (sum - 1) - 1 / sum);
+            m[i * TERMS + j] = density * length / (sum + 1);
+        }
+    }
+    assert_true(symmetric_eigen_pair(TERMS, k, m, values, scratch));
+    for (int i = 0; i < count; i++) {
+        frequency[i] = sqrt(values[i]);
+    }
+}
+
+static void a_hanging_beam_has_its_frequencies(void **state)
+{
+    (void)state;
+    enum { COUNT = 3 };
+    const arm a = beam_of(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1.5707963267949",
+                                   "initial.angle=-1.5707963267949"));
+    double expected[COUNT];
+    double *w = calloc((LINKS + 1) * (LINKS + 2), sizeof *w);
+    int count;
+    assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, w, w + LINKS + 1), STATUS_OK);
+    frequencies_of_a_hanging_beam(&a, expected, COUNT);
+    for (int i = 0; i < COUNT; i++) {
+        printf("mode %d: %.9g rad/s, the beam's %.9g, off by %.2g\n", i, w[i], expected[i],
+               w[i] / expected[i] - 1);
+        check_relative(w[i], expected[i], i == 0 ? 1e-3 : 2e-3);
+    }
+
+    // the weight counts: level, the first one is lower
+    check_below(3.5160153 *
+                    sqrt(a.joint_stiffness * a.link_length / a.link_mass * a.link_length /
+                         pow(a.link_length * LINKS, 4)) *
+                    1.05,
+                w[0]);
+    free(w);
+}
+
+// One link without friction swings through the lowest point at the speed of its fall.
+static void a_single_link_is_a_pendulum(void **state)
+{
+    (void)state;
+    const parameters p = fixture_parameters(SETTINGS(
+        "arm.links=1", "wall.kind=none", "motor.voltage=0", "motor.stiction=0",
+        "motor.viscous_friction=0", "motor.back_emf=0", "arm.tilt=-0.6", "initial.angle=0.3"));
+    arm a;
+    arm_init(&a, &p);
+    motion *m = motion_create(&a, &p.method);
+    assert_ptr_equal(m->engine, &stiff_engine);
+    motion_start(&a, m, 0.3, 0);
+    const double inertia = a.hub_inertia + a.link_mass * a.link_length * a.link_length / 3;
+    const double torque = a.link_mass * a.link_length / 2 * GRAVITY * sin(0.6);
+    double fastest = 0;
+    while (m->state[SLOT_TIME] < 6) {
+        motion_report report;
+        assert_int_equal(motion_step(&a, m, 6, 1e-3, &report), STATUS_OK);
+        const double q = state_angles(m, m->state)[0], w = state_velocities(m, m->state)[0];
+        check_relative(w * w / 2 * inertia + 1, torque * (sin(q) - sin(0.3)) + 1, 1e-11);
+        check_close(motion_energy_residual(&a, m, m->state), 0, 1e-11);
+        fastest = fmax(fastest, fabs(w));
+    }
+    check_below(0.98 * sqrt(2 * torque * (1 - sin(0.3)) / inertia), fastest);
+    motion_destroy(m);
+}
+
+// What knows no weight says so.
+static void what_knows_no_weight_says_so(void **state)
+{
+    (void)state;
+    static const char *const engines[] = {"pair", "series", NULL}; // NULL: the printed model
+    for (size_t i = 0; i < sizeof engines / sizeof *engines; i++) {
+        fault f = {0};
+        parameters p;
+        parameters_defaults(&p, engines[i] == NULL ? ARM_PRINTED : ARM_CORRECTED);
+        assert_int_equal(parameter_set_text(&p, parameter_find("arm.tilt"), "0.1", &f), STATUS_OK);
+        if (engines[i] != NULL) {
+            const int path = parameter_find("method.engine");
+            assert_int_equal(parameter_set_text(&p, path, engines[i], &f), STATUS_OK);
+        }
+        assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+        assert_non_null(strstr(f.text, "level"));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_level_beam_sags_as_eulers_does),
+        cmocka_unit_test(a_hanging_beam_has_its_frequencies),
+        cmocka_unit_test(a_single_link_is_a_pendulum),
+        cmocka_unit_test(what_knows_no_weight_says_so),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
