@@ -84,7 +84,7 @@ static void a_hanging_beam_has_its_frequencies(void **state)
     for (int i = 0; i < COUNT; i++) {
         printf("mode %d: %.9g rad/s, the beam's %.9g, off by %.2g\n", i, w[i], expected[i],
                w[i] / expected[i] - 1);
-        check_relative(w[i], expected[i], i == 0 ? 1e-3 : 2e-3);
+        check_relative(w[i], expected[i], 1e-3);
     }
 
     // the weight counts: level, the first one is lower

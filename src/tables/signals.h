@@ -48,10 +48,10 @@ typedef struct sample {
     double desired_velocity; // of the hub [rad/s]
     double calculated_force; // what the controller takes the contact force to be [N]
     // of a wall that gives; NaN at a rigid one
-    double wall_energy; // that its spring and the motion of its face hold [J]
-    double wall_loss;   // lost in it [J]
+    double wall_energy;   // that its spring and the motion of its face hold [J]
+    double wall_loss;     // lost in it [J]
     double weight_energy; // from the hub's axis on, NaN in a level plane [J]
-    double face_depth;  // how far its face is pushed in, NaN in a rigid one [m]
+    double face_depth;    // how far its face is pushed in, NaN in a rigid one [m]
     // on the rig with a limit on the force
     double predicted_force; // largest force if the tip struck now, as of the last sample [N]
 } sample;
