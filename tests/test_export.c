@@ -149,6 +149,7 @@ static char *csv_of(int links, double film)
                       .accelerometer = (double)NAN,
                       .wall_energy = (double)NAN,
                       .wall_loss = (double)NAN,
+                      .weight_energy = (double)NAN,
                       .face_depth = (double)NAN,
                       .predicted_force = (double)NAN};
         double angles[] = {0.1, 0.2, 0.3};
