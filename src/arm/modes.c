@@ -7,6 +7,7 @@
 
 #include "src/arm/chain.h"
 #include "src/base/dense.h"
+#include "src/base/plain_math.h"
 #include "src/base/sincos.h"
 
 void modes_matrices(const arm *a, double *mass, double *stiffness)
@@ -43,7 +44,7 @@ void modes_matrices(const arm *a, double *mass, double *stiffness)
 static double line_angle(const arm *a, tip_end tip)
 {
     const bool at_wall = tip == TIP_PINNED && wall_stands(&a->wall);
-    return at_wall ? atan2(a->wall.sine, a->wall.cosine) : a->held_angle;
+    return at_wall ? plain_atan2(a->wall.sine, a->wall.cosine) : a->held_angle;
 }
 
 status modes_sag(const arm *a, tip_end tip, double *q, double *force)
