@@ -23,8 +23,6 @@ for name in $wanted; do
     # what meson knows by itself comes with the compiler
     case $name in
     threads | dl | m) continue ;;
-    # what is left out where it is missing
-    mpi) continue ;;
     esac
     if ! grep -qx -- "$name" <<<"$offered"; then
         echo "dependency('$name') comes from no package of the lab script"

@@ -374,7 +374,7 @@ static int carry_out(const call *c, long k)
         refused_at = k;
         atomic_store(requests, 0);
         tested = true;
-        exit(program_run(c->count, words, NULL));
+        exit(program_run(c->count, words));
     }
     int ended = 0;
     while (child > 0 && waitpid(child, &ended, 0) < 0 && errno == EINTR) {

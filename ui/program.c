@@ -57,22 +57,17 @@ static bool is_lab_option(const char *word)
 }
 
 // Reads what follows the command's name argv[0] and runs it. Returns the exit status.
-static int run_command(const command *c, int argc, char **argv, const rank_group *ranks)
+static int run_command(const command *c, int argc, char **argv)
 {
     arguments a;
     int result;
 
-    // of several ranks all run what they can share, and the first one the rest
-    if (ranks != NULL && ranks->rank > 0 && !c->on_ranks) {
-        return EXIT_DONE;
-    }
     if (!arguments_read(&a, c, argc, argv, &result)) {
         if (result == EXIT_DONE) {
             print_help(stdout, c);
         }
         return result;
     }
-    a.ranks = ranks;
     result = check_results(&a);
     if (result == EXIT_DONE) {
         result = command_run(&a);
@@ -82,7 +77,7 @@ static int run_command(const command *c, int argc, char **argv, const rank_group
 }
 
 // Runs the command that argv asks for. Returns the exit status.
-static int dispatch(int argc, char **argv, const rank_group *ranks)
+static int dispatch(int argc, char **argv)
 {
     fault f = {0};
     const char *word = argc > 1 ? argv[1] : NULL;
@@ -90,10 +85,10 @@ static int dispatch(int argc, char **argv, const rank_group *ranks)
     // without a command, or with options of its own, it is the lab
     if (word == NULL) {
         char *call[] = {"lab", NULL};
-        return terminal_usable(&f) ? run_command(&lab_command, 1, call, ranks) : print_welcome();
+        return terminal_usable(&f) ? run_command(&lab_command, 1, call) : print_welcome();
     }
     if (is_lab_option(word)) {
-        return run_command(&lab_command, argc, argv, ranks);
+        return run_command(&lab_command, argc, argv);
     }
 
     // what is asked of the program as a whole
@@ -106,7 +101,7 @@ static int dispatch(int argc, char **argv, const rank_group *ranks)
         return EXIT_DONE;
     }
     const command *found = command_find(word);
-    return found != NULL ? run_command(found, argc - 1, argv + 1, ranks) : complain_command(word);
+    return found != NULL ? run_command(found, argc - 1, argv + 1) : complain_command(word);
 }
 
 // What was printed must be whole and have arrived, unless its reader went away first (impactlab
@@ -194,7 +189,7 @@ static bool open_missing_descriptors(void)
     return opened >= 0 && close(opened) == 0;
 }
 
-int program_run(int argc, char **argv, const rank_group *ranks)
+int program_run(int argc, char **argv)
 {
     if (!open_missing_descriptors()) {
         complain("/dev/null cannot be opened: %s", strerror(errno));
@@ -208,5 +203,5 @@ int program_run(int argc, char **argv, const rank_group *ranks)
     signal(SIGXFSZ, SIG_IGN);
     catch_endings();
     text_when_giving_up(end_without_picture);
-    return close_output(dispatch(argc, argv, ranks));
+    return close_output(dispatch(argc, argv));
 }

@@ -8,12 +8,9 @@
 
 #include "src/base/clock.h"
 #include "src/run/together.h"
-#include "src/study/pool_ranks.h"
-#include "src/study/sweep_definition.h"
+#include "src/study/pool.h"
 
 #define COMMIT_INTERVAL 0.5 // [s]
-
-enum { PIECES_A_RANK = 4 }; // at least, so that a slow rank holds nobody up
 
 // A sweep being computed; all but what is to be computed, and how, is the calling thread's.
 typedef struct sweep_execution {
@@ -21,10 +18,9 @@ typedef struct sweep_execution {
     sweep_store *store;
     const sweep_options *options;
     sweep_progress *progress;
-    size_t *wanted;               // the runs that are missing, in order; of several ranks all runs
-    size_t count, together;       // of them; so many make a piece of work
-    const unsigned char *present; // runs that are not to be stored
-    double start, committed;      // instants by the clock [s]
+    size_t *wanted;          // the runs that are missing, in order
+    size_t count, together;  // of them; so many make a piece of work
+    double start, committed; // instants by the clock [s]
 } sweep_execution;
 
 // What a thread needs for a piece.
@@ -136,7 +132,7 @@ static status store_piece(void *context, size_t piece, const void *result, fault
     status code = STATUS_OK;
     for (size_t i = 0; i < piece_length(e, piece) && code == STATUS_OK; i++) {
         const size_t run = e->wanted[piece * e->together + i];
-        const bool passed_over = e->present[run] || summaries[i].status == STATUS_STOPPED;
+        const bool passed_over = summaries[i].status == STATUS_STOPPED;
         code = passed_over ? STATUS_OK : store_run(e, run, &summaries[i], f);
     }
     return code;
@@ -211,46 +207,21 @@ static size_t choose_together(const sweep_execution *e, int jobs)
     return share < 1 ? 1 : share < most ? share : most;
 }
 
-// Computes with other processes. They know nothing of what is stored, so a piece is the same runs
-// for all of them, and rank 0 leaves out those that are there as a whole.
-static status compute_on_ranks(sweep_execution *e, const pool_work *work, fault *f)
-{
-    definition d;
-    char digest[SHA256_TEXT];
-    unsigned char *done = calloc(work->count + 1, sizeof *done);
-    status code = definition_init(&d, e->sweep, f);
-    code = code == STATUS_OK && done == NULL ? fault_no_memory(f) : code;
-    if (code == STATUS_OK) {
-        for (size_t piece = 0; piece < work->count; piece++) {
-            const unsigned char *first = e->present + piece * e->together;
-            done[piece] = memchr(first, 0, piece_length(e, piece)) == NULL;
-        }
-        definition_digest(&d, digest);
-        code = pool_run_on_ranks(work, done, e->options->ranks, digest, f);
-    }
-    definition_finish(&d);
-    free(done);
-    return code;
-}
-
 // Computes what is not present.
 static status run_missing(sweep_execution *e, const unsigned char *present, fault *f)
 {
-    const rank_group *ranks = e->options->ranks;
-    const bool shared = ranks != NULL && ranks->count > 1;
-    e->present = present;
     e->wanted = malloc((e->sweep->run_count + 1) * sizeof *e->wanted);
     if (e->wanted == NULL) {
         return fault_no_memory(f);
     }
     for (size_t run = 0; run < e->sweep->run_count; run++) {
-        if (shared || !present[run]) {
+        if (!present[run]) {
             e->wanted[e->count++] = run;
         }
     }
 
     // enough pieces for everybody
-    e->together = choose_together(e, shared ? PIECES_A_RANK * ranks->count : e->options->jobs);
+    e->together = choose_together(e, e->options->jobs);
     const size_t pieces = (e->count + e->together - 1) / e->together;
     const pool_work work = {.context = e,
                             .count = pieces,
@@ -264,8 +235,7 @@ static status run_missing(sweep_execution *e, const unsigned char *present, faul
 
     // no more threads than pieces
     const int jobs = pieces < (size_t)e->options->jobs ? (int)pieces : e->options->jobs;
-    const status code =
-        shared ? compute_on_ranks(e, &work, f) : pool_run(&work, jobs > 0 ? jobs : 1, f);
+    const status code = pool_run(&work, jobs > 0 ? jobs : 1, f);
     free(e->wanted);
     return code;
 }

@@ -5,7 +5,6 @@
 
 #include "src/tables/summary.h"
 #include "src/study/pool.h"
-#include "src/study/pool_ranks.h"
 #include "src/study/sweep.h"
 
 enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };
@@ -45,7 +44,6 @@ typedef struct sweep_share {
 typedef struct sweep_options {
     sweep_share share;
     int jobs;                          // threads that compute, 1 ... SWEEP_MOST_JOBS
-    const rank_group *ranks;           // that compute together instead, NULL or one: only this one
     const volatile sig_atomic_t *stop; // becomes true to end early; NULL if nothing does
     const atomic_bool *abandon;        // the same for the runs in hand, which are not stored then
     void (*report)(void *context, const sweep_progress *p); // about ten times a second, or NULL

@@ -95,7 +95,6 @@ extern const option_table view_options;  // --gl, --camera, --size
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_BAD_ARGUMENTS = 2 };
 
-struct rank_group;
 typedef struct command command;
 
 // The command line after the command's name, checked against the command's options. Texts point
@@ -108,23 +107,22 @@ typedef struct arguments {
     bool fitted; // --fitted
 
     // what is run
-    text_list sets;                 // --set
-    bool allow_code;                // --allow-code
-    text_list varies;               // --vary
-    text_list besides;              // --beside
-    const char *sampling;           // --sample, NULL: grid
-    uint64_t runs, seed;            // --runs (0 if not given), --seed
-    uint64_t jobs;                  // runs at a time, 0 if not given
-    const struct rank_group *ranks; // processes that share the runs; NULL if this is the only one
-    const char *part;               // --part, "K/N"
-    const char *quantity;           // --quantity, a key
-    const char *only, *baseline;    // of bench
-    const char *against, *columns;  // of compare
-    double tolerance;               // of compare [%]
-    const char *laws, *over;        // of robust
-    const char *then;               // of predict, "TIME:VOLTS,..."
-    const char *place;              // of linear, --at
-    bool looped;                    // of linear, --law
+    text_list sets;                // --set
+    bool allow_code;               // --allow-code
+    text_list varies;              // --vary
+    text_list besides;             // --beside
+    const char *sampling;          // --sample, NULL: grid
+    uint64_t runs, seed;           // --runs (0 if not given), --seed
+    uint64_t jobs;                 // runs at a time, 0 if not given
+    const char *part;              // --part, "K/N"
+    const char *quantity;          // --quantity, a key
+    const char *only, *baseline;   // of bench
+    const char *against, *columns; // of compare
+    double tolerance;              // of compare [%]
+    const char *laws, *over;       // of robust
+    const char *then;              // of predict, "TIME:VOLTS,..."
+    const char *place;             // of linear, --at
+    bool looped;                   // of linear, --law
 
     // files for results
     const char *json, *csv, *mat, *plot, *scene, *output, *db, *markdown, *format;
@@ -185,8 +183,7 @@ struct command {
     // other values that an operand may have: the i-th, NULL after the last; NULL if there are none
     const char *(*operand_word)(int i);
     const option_table *options[COMMAND_TABLES]; // ends with NULL; --help is every command's
-    bool on_ranks;                  // every MPI rank runs it (a.ranks), not only rank 0
-    int (*run)(const arguments *a); // returns the exit status
+    int (*run)(const arguments *a);              // returns the exit status
     // instead of it: what is done with the scenario of the first operand; returns the exit status
     int (*use)(const arguments *a, scenario *s);
 };

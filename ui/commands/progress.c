@@ -212,12 +212,6 @@ int many_runs_jobs(const arguments *a)
     return a->jobs > 0 ? (int)a->jobs : processors;
 }
 
-bool many_runs_only_computes(const arguments *a)
-{
-    assert(a != NULL);
-    return a->ranks != NULL && a->ranks->rank > 0;
-}
-
 // --- progress -------------------------------------------------------------------------------
 
 // "0:07", "3:20:00"

@@ -38,9 +38,6 @@ _Noreturn void leave_interrupted(void);
 // The number of threads: --jobs, or the number of processors.
 int many_runs_jobs(const arguments *a);
 
-// Whether this process only computes runs for rank 0, which stores and reports them.
-bool many_runs_only_computes(const arguments *a);
-
 // From now on SIGINT and SIGTERM stop the sweeps of these options: the runs under way are finished,
 // or abandoned after five seconds. A second signal, a second or more later, ends the program.
 void many_runs_catch_signals(sweep_options *o);

@@ -177,29 +177,25 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
     sweep_progress progress = {0};
     bool bar = many_runs_shows_progress(a);
     snprintf(word, sizeof word, "%-16.40s", law);
-    const bool computes = many_runs_only_computes(a);
-    sweep_options options = {.jobs = many_runs_jobs(a),
-                             .ranks = a->ranks,
-                             .report = bar ? many_runs_progress : NULL,
-                             .context = word};
+    sweep_options options = {
+        .jobs = many_runs_jobs(a), .report = bar ? many_runs_progress : NULL, .context = word};
     many_runs_catch_signals(&options);
 
     // the runs
-    status code = a->db != NULL && db == NULL
-                      ? fault_no_memory(&f)
-                      : sweep_store_open(&store, computes ? NULL : db, s, &f);
+    status code =
+        a->db != NULL && db == NULL ? fault_no_memory(&f) : sweep_store_open(&store, db, s, &f);
     code = code == STATUS_OK ? sweep_run(s, store, &options, &progress, &f) : code;
     if (bar) {
         many_runs_clear_progress();
     }
 
     // all of them are there, or what there is stays in the store
-    bool stopped = code == STATUS_OK && !computes && progress.done < progress.total;
+    bool stopped = code == STATUS_OK && progress.done < progress.total;
     const bool tell = progress.failed > 0 && (!a->quiet || progress.failed == progress.total);
-    if (code == STATUS_OK && !computes && tell) {
+    if (code == STATUS_OK && tell) {
         many_runs_tell_failure(&progress);
     }
-    if (code == STATUS_OK && !stopped && !computes) {
+    if (code == STATUS_OK && !stopped) {
         robust_law *found = &r->found[r->judged++];
         code = robust_law_of(found, law, s, store, &f);
         found->case_title = k >= 0 ? r->set.cases[k].title : NULL;
@@ -323,7 +319,7 @@ static int run_case(robustness *r, int k)
     const int first = r->judged, code = take_case(r, k, true);
 
     // its own line is shown only where it was asked for
-    if (code == EXIT_DONE && r->against >= 0 && !many_runs_only_computes(r->arguments)) {
+    if (code == EXIT_DONE && r->against >= 0) {
         double other = r->found[first + r->against].from_start[ROBUST_WORST];
         for (int i = 0; i < r->count; i++) {
             r->found[first + i].against = r->found[first + i].from_start[ROBUST_WORST] / other;
@@ -398,7 +394,7 @@ static int robust(const arguments *a)
     for (int k = begin; k <= last && code == EXIT_DONE; k++) {
         code = run_case(&r, k);
     }
-    code = code == EXIT_DONE && !many_runs_only_computes(a) ? write_results(&r) : code;
+    code = code == EXIT_DONE ? write_results(&r) : code;
     finish(&r);
     return code;
 }
@@ -442,6 +438,5 @@ const command robust_command = {
     .most = 1,
     .takes_scenarios = true,
     .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
-    .on_ranks = true,
     .run = robust,
 };

@@ -250,10 +250,8 @@ static int compute(const sweep_order *o, sweep_store *store)
     fault f = {0};
     sweep_progress progress;
     bool bar = many_runs_shows_progress(o->arguments);
-    sweep_options options = {.share = o->share,
-                             .jobs = o->jobs,
-                             .ranks = o->arguments->ranks,
-                             .report = bar ? many_runs_progress : NULL};
+    sweep_options options = {
+        .share = o->share, .jobs = o->jobs, .report = bar ? many_runs_progress : NULL};
     many_runs_catch_signals(&options);
     status code = sweep_run(&o->sweep, store, &options, &progress, &f);
 
@@ -264,9 +262,6 @@ static int compute(const sweep_order *o, sweep_store *store)
     // what it came to: an error, a stop, the whole sweep or a part of it
     if (code != STATUS_OK) {
         return complain_fault(&f);
-    }
-    if (many_runs_only_computes(o->arguments)) {
-        return EXIT_DONE;
     }
     if (progress.done < progress.total) {
         return many_runs_stopped(o->arguments->db, progress.done, progress.total);
@@ -293,8 +288,7 @@ static int sweep_command_run(const arguments *a)
     }
 
     // the rows, in the file or in memory
-    const char *path = many_runs_only_computes(a) ? NULL : a->db;
-    if (sweep_store_open(&store, path, &o.sweep, &f) == STATUS_OK) {
+    if (sweep_store_open(&store, a->db, &o.sweep, &f) == STATUS_OK) {
         code = compute(&o, store);
         sweep_store_close(store);
     } else {
@@ -342,7 +336,6 @@ const command sweep_command = {
     .takes_scenarios = true,
     .options = {&set_options, &vary_options, &json_options, &options, &quiet_options,
                 &page_options},
-    .on_ranks = true,
     .run = sweep_command_run,
 };
 
