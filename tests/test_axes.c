@@ -127,7 +127,7 @@ static void test_wrong_axes_are_told(void **state)
     open_explorer(&ex, "corrected/first-impact");
     static const char *const wrong[] = {
         "axis",          "axis 2 1",     "axis 1 1",     "axis 1",      "axis nan 2",
-        "axis 0 x 1",    "axis purple",  "axis auto 11", "axis auto 0", "axis 0 2 all more",
+        "axis 0 x 1",    "axis purple",  "axis auto 25", "axis auto 0", "axis 0 2 all more",
         "axis auto 1 2", "axis auto -1", "zoom",         "zoom 1",      "zoom 2 1",
         "zoom 1 2 3",    "pan",          "pan nowhere",  "pan left"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -135,9 +135,9 @@ static void test_wrong_axes_are_told(void **state)
     }
     assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_AUTO);
     carry_out(&ex, "trace impulse");
-    carry_out(&ex, "axis 0 1 0");
-    assert_shows(&ex, "0    N s");
-    check_axis(&ex, PANES - 1, 0, 1);
+    carry_out(&ex, "axis 0 1 10");
+    assert_shows(&ex, "10   N s");
+    check_axis(&ex, PANES_OF_TABLE, 0, 1);
     // signals of several units tell each its own
     carry_out(&ex, "trace gap force");
     assert_shows(&ex, "gap 0.09983 m");
@@ -288,7 +288,7 @@ static void test_ranges_of_long_runs_are_exact(void **state)
                 high, fmax(signal_value(&t->rows[r], velocity), signal_value(&t->rows[r], angle)));
         }
         value_range axis;
-        assert_true(state_pane_axis(&ex.state, PANES - 1, &axis));
+        assert_true(state_pane_axis(&ex.state, PANES_OF_TABLE, &axis));
         if (high - low > 1e-12) {
             check_close(axis.low, low, 0);
             check_close(axis.high, high, 0);

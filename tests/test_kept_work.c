@@ -288,6 +288,35 @@ static void test_a_limit_is_asked_for_in_few_keys(void **state)
     explorer_finish(&ex);
 }
 
+// Panes of one's own, any number: a second one takes at most twelve keys.
+static void test_own_panes_stand_side_by_side(void **state)
+{
+    (void)state;
+    static const char keys[] = ":tr gap<Enter>";
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, ":trace impulse<Enter>");
+    assert_true(count_keys(keys) <= 12);
+    press(&ex, keys);
+    press(&ex, ":spectrum force<Enter>:phase gap force<Enter>:panes 1<Enter>");
+    press(&ex, ":trace 10<Enter>:trace 11<Enter>:trace 12<Enter>:trace 13<Enter>");
+    const pane *own = &ex.state.panes.pane[PANES_OF_TABLE];
+    assert_true(own[0].shown && own[1].shown && own[2].shown && own[3].shown);
+    assert_int_equal(own[0].signals[0], SIGNAL_INDEX(impulse));
+    assert_int_equal(own[1].signals[0], SIGNAL_INDEX(gap));
+    assert_int_equal(own[2].view, VIEW_SPECTRUM);
+    assert_int_equal(own[3].view, VIEW_PHASE);
+    assert_shows_at(&ex, 200, 60, "impulse");
+    assert_shows_at(&ex, 200, 60, "amplitudes of force");
+    assert_shows_at(&ex, 200, 60, "gap over force");
+    for (int i = 0; i < PANES + 5; i++) {
+        press(&ex, ":trace force<Enter>");
+    }
+    press(&ex, ":trace 25<Enter>");
+    assert_shows(&ex, "panes are numbered from 1 to 24");
+    explorer_finish(&ex);
+}
+
 // t_f three steps shorter: at most five keys.
 static void test_the_transition_is_three_steps_shorter_in_few_keys(void **state)
 {
@@ -313,6 +342,7 @@ int main(void)
         cmocka_unit_test(test_parameters_keep_their_rows),
         cmocka_unit_test(test_a_signal_is_hidden_by_a_key_or_a_click),
         cmocka_unit_test(test_a_limit_is_asked_for_in_few_keys),
+        cmocka_unit_test(test_own_panes_stand_side_by_side),
         cmocka_unit_test(test_the_transition_is_three_steps_shorter_in_few_keys),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -58,7 +58,7 @@ static void test_enter_does_what_the_entry_is_for(void **state)
 
     // a signal gets a pane, a scenario opens
     press(&ex, "<C-p>energy_residual<Enter>");
-    assert_int_equal(ex.state.panes.pane[PANES - 1].signals[0], SIGNAL_INDEX(energy_residual));
+    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[0], SIGNAL_INDEX(energy_residual));
     press(&ex, "<C-p>fig-3-4<Enter>");
     assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
     explorer_finish(&ex);

@@ -45,7 +45,7 @@ static void test_a_phase_pane_ends_where_the_signals_end(void **state)
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "<End>:phase force gap<Enter>e");
-    assert_int_equal(ex.state.panes.pane[PANES - 1].signals[1], SIGNAL_INDEX(gap));
+    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[1], SIGNAL_INDEX(gap));
     char *text = picture(&ex, 120, 40, GLYPHS_BRAILLE);
     const trace *t = &ex.state.session.run.trace;
     char wanted[64], number[32];
@@ -67,7 +67,7 @@ static void test_a_phase_pane_ends_where_the_signals_end(void **state)
     }
     check_close(ex.state.session.now, now, 0);
     press(&ex, ":trace force<Enter>");
-    assert_int_equal(ex.state.panes.pane[PANES - 1].view, VIEW_TIME);
+    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE + 1].view, VIEW_TIME);
     explorer_finish(&ex);
 }
 

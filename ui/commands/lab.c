@@ -228,7 +228,12 @@ static int open_explorer(explorer *ex, const arguments *a)
 {
     scenario s;
     fault f = {0};
-    int code = open_scenario(&s, a->operand_count > 0 ? a->operands[0] : first_scenario, a);
+
+    // a session brings its own scenarios: the lab opens, and then it
+    const char *named = a->operand_count > 0 ? a->operands[0] : first_scenario;
+    const size_t length = strlen(named), tail = strlen(".session");
+    const bool is_session = length > tail && strcmp(named + length - tail, ".session") == 0;
+    int code = open_scenario(&s, is_session ? first_scenario : named, a);
     if (code != EXIT_DONE) {
         return code;
     }
@@ -258,6 +263,9 @@ static int open_explorer(explorer *ex, const arguments *a)
         }
     }
 
+    if (code == EXIT_DONE && is_session && !explorer_open_session(&ex->state, named)) {
+        code = complain("%s", ex->state.message.text);
+    }
     if (code != EXIT_DONE) {
         explorer_finish(ex);
     }
@@ -315,7 +323,7 @@ const option_table lab_options = OPTION_TABLE("Options", rows);
 const command lab_command = {
     .name = "lab",
     .group = GROUP_ONE_RUN,
-    .operands = "[SCENARIO]",
+    .operands = "[SCENARIO|FILE.session]",
     .summary = "Explore a run on the terminal",
     .help = "Opens corrected/first-impact if no scenario is named; ? lists the keys. With --keys, "
             "--script or\n--size nothing is shown live: the keys are pressed, then the script's "

@@ -184,6 +184,19 @@ static bool is_remembered(const char *line)
     return length == 0 || line[0] == '#';
 }
 
+bool explorer_look(explorer_state *st, const char *line)
+{
+    static const char *const looking[] = {"panes", "axis",     "zoom",   "mark", "trace",
+                                          "phase", "spectrum", "signal", "lanes"};
+    const size_t length = strcspn(line, " ");
+    for (size_t i = 0; i < sizeof looking / sizeof looking[0]; i++) {
+        if (strlen(looking[i]) == length && strncmp(line, looking[i], length) == 0) {
+            return explorer_execute(st, line);
+        }
+    }
+    return act_refuse(st, "'%.60s' does not belong into a session", line);
+}
+
 // Executes a line of the file; errors are reported with line and column.
 static bool execute_line(explorer_state *st, const char *path, int number, const char *line)
 {
@@ -238,7 +251,7 @@ static void write_axes_and_keys(const explorer_state *st, FILE *stream)
 {
 
     // every pane but the user's own
-    for (int i = 0; i < PANES - 1; i++) {
+    for (int i = 0; i < PANES_OF_TABLE; i++) {
         const pane *p = &st->panes.pane[i];
         if (p->scaling == AXIS_GROW) {
             fprintf(stream, "axis grow %d\n", i + 1);
@@ -269,7 +282,7 @@ static void write_settings(const explorer_state *st, FILE *stream)
 
     // panes that the user did not choose are those that suit the scenario
     fputs(st->panes.chosen ? "panes " : "", stream);
-    for (int i = 0; i < PANES - 1; i++) {
+    for (int i = 0; i < PANES_OF_TABLE; i++) {
         if (st->panes.chosen && st->panes.pane[i].shown) {
             fprintf(stream, "%d", i + 1);
         }

@@ -74,6 +74,15 @@ void explorer_point(explorer *ex, pointer_event e);
 // several; called again it cycles through them.
 bool complete_prompt(explorer_state *st);
 
+// --- sessions ---------------------------------------------------------------------------------
+
+// Opens a session's file: its runs are pinned beside those there are. False, with the message why,
+// and nothing changed, if it cannot be.
+bool explorer_open_session(explorer_state *st, const char *path);
+
+// Carries out a line that says how runs are looked at, and none that does anything else.
+bool explorer_look(explorer_state *st, const char *line);
+
 // --- settings ---------------------------------------------------------------------------------
 
 // Executes the commands of the settings file, if there is one. Faulty lines are reported on the

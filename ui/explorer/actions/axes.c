@@ -114,7 +114,7 @@ static void set_scaling(explorer_state *st, int index, axis_scaling scaling)
 static bool tell_axis(explorer_state *st, int index)
 {
     const pane *p = &st->panes.pane[index];
-    int number = (index + 1) % 10;
+    const int number = index + 1;
     if (p->scaling == AXIS_FIXED) {
         return act_tell(st, "pane %d: from %.4g to %.4g", number, p->fixed.low, p->fixed.high);
     }
@@ -180,7 +180,7 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
         act_shift_axis(st, index, word[0] == 'u' ? 0.25 : -0.25);
     } else {
         return act_refuse(st, "axis takes auto, grow, fixed, in, out, up, down or two limits, "
-                              "then a pane (1 to 9, all)");
+                              "then a pane (its number, or all)");
     }
     return true;
 }
@@ -197,11 +197,11 @@ static bool read_pane(explorer_state *st, const char *word, int *index)
         return true;
     }
 
-    // numbered as the keys are: 0 comes last and is the user's own
-    if (*end != '\0' || end == word || number < 0 || number > PANES) {
-        return act_refuse(st, "'%s' is no pane: 1 to 9, 0 for your own, or all", word);
+    // numbered as the keys are, and on
+    if (*end != '\0' || end == word || number < 1 || number > PANES) {
+        return act_refuse(st, "'%s' is no pane: 1 to %d, or all", word, PANES);
     }
-    *index = (int)(number + PANES - 1) % PANES;
+    *index = (int)number - 1;
 
     // an empty pane has no axis
     if (st->panes.pane[*index].count == 0) {

@@ -2,7 +2,7 @@
 #include "ui/explorer/actions/actions.h"
 
 #include <assert.h>
-#include <ctype.h>
+#include <stdlib.h>
 #include <string.h>
 
 bool act_select_parameter(explorer_state *st, const char *argument)
@@ -106,9 +106,11 @@ void act_settle_filter(explorer_state *st, panel_id panel)
 
 bool act_set_mark(explorer_state *st, const char *argument)
 {
-    (void)argument;
-    st->mark.set = !st->mark.set;
     st->mark.time = st->session.now;
+    if (!act_read_optional(st, argument, &st->mark.time)) {
+        return false;
+    }
+    st->mark.set = argument[0] != '\0' || !st->mark.set;
     return act_tell(st, "%s",
                     st->mark.set
                         ? "mark set: values now show the difference to it, X statistics from "
@@ -153,23 +155,22 @@ static bool read_signals(explorer_state *st, const char *argument, pane *own)
     return true;
 }
 
-// Shows a pane in the place of the user's own.
+// Shows a pane of the user's, beside those there are.
 static bool show_own(explorer_state *st, pane own)
 {
-    own.shown = true;
-    own.grown = value_range_empty;
-    st->panes.pane[PANES - 1] = own;
-    st->panes.chosen = true;
-    st->panes.focus = PANES - 1;
-    return true;
+    const int index = panes_add(&st->panes, &own);
+    return act_tell(st, "pane %d: :trace %d hides it", index + 1, index + 1);
 }
 
 // Shows or hides a pane by number, or makes one of signals by name.
 bool act_trace_pane(explorer_state *st, const char *argument)
 {
     // a pane of the table
-    if (isdigit((unsigned char)argument[0]) && argument[1] == '\0') {
-        int index = (argument[0] - '0' + 9) % 10;
+    if (argument[0] != '\0' && argument[strspn(argument, "0123456789")] == '\0') {
+        const int index = atoi(argument) - 1;
+        if (index < 0 || index >= PANES) {
+            return act_refuse(st, "panes are numbered from 1 to %d", PANES);
+        }
         pane *p = &st->panes.pane[index];
         if (p->count == 0) {
             return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", argument);
@@ -180,7 +181,7 @@ bool act_trace_pane(explorer_state *st, const char *argument)
         return true;
     }
 
-    // the user's own pane, of as many signals as fit
+    // a pane of the user's, of as many signals as fit
     pane own = {.view = VIEW_TIME};
     if (!read_signals(st, argument, &own)) {
         return false;
@@ -226,7 +227,10 @@ bool act_show_panes(explorer_state *st, const char *argument)
     if (argument[strspn(argument, "123456789")] != '\0') {
         return act_refuse(st, "panes takes numbers from 1 to 9, such as 134");
     }
-    for (int i = 0; i < PANES - 1; i++) {
+    for (int i = PANES_OF_TABLE; i < PANES; i++) {
+        st->panes.pane[i].shown = false;
+    }
+    for (int i = 0; i < PANES_OF_TABLE; i++) {
         st->panes.pane[i].shown = st->panes.pane[i].count > 0 && strchr(argument, '1' + i) != NULL;
     }
     st->panes.chosen = true;
@@ -383,7 +387,7 @@ bool act_quit(explorer_state *st, const char *argument)
     }
     st->asked_to_quit = true;
     return act_warn(st,
-                    "%s would be lost: q leaves all the same, :save NAME.yaml keeps this run, Esc "
+                    "%s would be lost: q leaves all the same, :session save FILE keeps all, Esc "
                     "stays",
                     lost);
 }

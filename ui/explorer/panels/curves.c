@@ -147,9 +147,10 @@ static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, in
     int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
 
     // number, unit, and what the axis does
-    screen_print(s, a.x, a.y, 2, focused ? INK_TITLE : INK_DIM, "%s%d", focused ? "\u25b8" : " ",
-                 (index + 1) % 10);
-    screen_print(s, a.x + 2, a.y, LABEL_WIDTH - 2, INK_DIM, "%*s", LABEL_WIDTH - 2, unit_of(p));
+    screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%3d%*s", index + 1, LABEL_WIDTH - 3,
+                 unit_of(p));
+    screen_print(s, a.x, a.y, 3, focused ? INK_TITLE : INK_DIM, "%s%-2d", focused ? "\u25b8" : " ",
+                 index + 1);
     if (p->scaling != AXIS_AUTO && room > 30) {
         room -= 6;
         screen_text(s, x + room + 1, a.y, 5, INK_DIM, axes[p->scaling]);

@@ -52,7 +52,7 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "compare", "", "both runs in numbers", act_compare)                                      \
     X("", "undo", "", "take the last change back", act_undo)                                       \
     X("", "redo", "", "put it in again", act_redo)                                                 \
-    X("Looking", "mark", "", "second cursor: differences to it", act_set_mark)                     \
+    X("Looking", "mark", "[TIME]", "second cursor: differences to it", act_set_mark)               \
     X("", "side", "", "parameters or values on the right", act_other_side)                         \
     X("", "filter", "[WORDS]", "of parameters, values or help: those with all words", act_filter)  \
     X("", "info", "", "what the scenario is about", act_show_info)                                 \
@@ -82,6 +82,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "continue", "", "the next step; before it is done: a hint", act_go_on)                   \
     X("Files", "save", "FILE", ".png .pdf .svg .csv .yaml .txt", act_save)                         \
     X("", "save!", "FILE", "the same over a file that is there", act_save_over)                    \
+    X("", "session", "save|open FILE", "runs, changes, pins and panes, to go on with another day", \
+      act_session)                                                                                 \
     X("", "scene", "FILE.png", "picture of the arm at this instant", act_save_scene)               \
     X("The lab", "palette", "[WORDS]", "find anything by words: commands, values, scenarios",      \
       act_open_palette)                                                                            \

@@ -7,7 +7,7 @@
 #include <string.h>
 
 // Panes of an arm under a script, and of one with sensors and a controller.
-static const char *const scripted_panes[PANES][PANE_SIGNALS] = {
+static const char *const scripted_panes[PANES_OF_TABLE][PANE_SIGNALS] = {
     {"force"},
     {"hub_angle", "first_angle", "last_angle"},
     {"hub_velocity", "first_velocity", "last_velocity"},
@@ -18,7 +18,7 @@ static const char *const scripted_panes[PANES][PANE_SIGNALS] = {
     {"energy_residual"},
     {"motor_torque", "friction_torque"},
 };
-static const char *const controlled_panes[PANES][PANE_SIGNALS] = {
+static const char *const controlled_panes[PANES_OF_TABLE][PANE_SIGNALS] = {
     {"force", "force_reading", "calculated_force"},
     {"hub_angle", "encoder", "desired_angle", "last_angle"},
     {"hub_velocity", "tachometer", "desired_velocity", "last_velocity"},
@@ -45,7 +45,7 @@ void value_range_widen(value_range *r, value_range other)
 // Shows the first pane that has a signal, or the user's own with it if none has.
 static void show_signal(pane_set *set, int signal)
 {
-    pane *own = &set->pane[PANES - 1];
+    pane *own = &set->pane[PANES_OF_TABLE];
 
     // the first pane with it
     for (int i = 0; i < PANES; i++) {
@@ -90,8 +90,7 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
     for (int i = 0; i < PANES; i++) {
         set->pane[i].shown = false;
     }
-    set->pane[PANES - 1].count = 0;
-    set->pane[PANES - 1].view = VIEW_TIME;
+    set->pane[PANES_OF_TABLE] = (pane){.view = VIEW_TIME};
     for (int i = 0; i < wishes->signal_count; i++) {
         show_signal(set, wishes->signals[i]);
         set->focus = i == 0 ? 0 : set->focus;
@@ -119,13 +118,13 @@ void panes_define(pane_set *set, const pane_wishes *wishes)
     set->room = wishes->room;
     for (int i = 0; i < PANES; i++) {
         pane *p = &set->pane[i];
-        const char *const *names = set->controlled ? controlled_panes[i] : scripted_panes[i];
         p->grown = value_range_empty;
 
-        // the user's own has no names here
-        if (names[0] == NULL) {
+        // the user's own have no names here
+        if (i >= PANES_OF_TABLE) {
             continue;
         }
+        const char *const *names = set->controlled ? controlled_panes[i] : scripted_panes[i];
         p->count = 0;
         p->hidden = 0;
         for (int j = 0; j < PANE_SIGNALS && names[j] != NULL; j++) {
@@ -159,6 +158,23 @@ bool pane_has_amounts(const pane *p)
         found = found || !signal_is_state(p->signals[k]);
     }
     return found;
+}
+
+int panes_add(pane_set *set, const pane *own)
+{
+    assert(set != NULL && own != NULL && own->count > 0);
+    int index = PANES - 1;
+    for (int i = PANES - 1; i >= PANES_OF_TABLE; i--) {
+        index = set->pane[i].count == 0 || (!set->pane[i].shown && set->pane[index].count > 0)
+                    ? i
+                    : index;
+    }
+    set->pane[index] = *own;
+    set->pane[index].shown = true;
+    set->pane[index].grown = value_range_empty;
+    set->chosen = true;
+    set->focus = index;
+    return index;
 }
 
 void pane_fix_axis(pane *p, value_range limits)

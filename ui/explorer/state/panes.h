@@ -7,7 +7,8 @@
 #include "src/tables/signals.h"
 #include "src/run/trace.h"
 
-enum { PANES = 10, PANE_SIGNALS = 4 };
+// The panes of the table, and those that users define.
+enum { PANES_OF_TABLE = 9, PANES = 24, PANE_SIGNALS = 4 };
 
 // The range of a pane's axis of values.
 typedef enum axis_scaling {
@@ -50,7 +51,7 @@ typedef struct pane {
 } pane;
 
 typedef struct pane_set {
-    pane pane[PANES]; // the last one is defined by the user
+    pane pane[PANES]; // those of the table come first
     bool controlled;  // they suit a controlled run
     int room;         // the room for panes when they were chosen
     bool chosen;      // chosen by the user: kept for another scenario
@@ -76,6 +77,10 @@ int panes_focused(const pane_set *set);
 
 // Whether a pane has a signal that is an amount: of states alone there is no difference.
 bool pane_has_amounts(const pane *p);
+
+// Adds a pane of the user's and returns its index: one that is not used, else the first that is
+// hidden, else the last.
+int panes_add(pane_set *set, const pane *own);
 
 // Fixes a pane's axis to limits, unless they are not finite, nearly equal or far too wide.
 void pane_fix_axis(pane *p, value_range limits);

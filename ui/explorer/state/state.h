@@ -93,11 +93,12 @@ typedef struct explorer_state {
     prompt prompt;
     palette_view palette;
     key_bindings keys;
-    char last_law[LINE_TEXT];    // the law that was switched off last, "" for none
-    bool settings_broken;        // the settings file contains errors
-    unsigned long saved_version; // the run last saved as a scenario, 0 for none
-    unsigned long kept_pins;     // runs ever pinned when they were last saved in a session
-    bool asked_to_quit;          // the last key asked to quit, and changes would be lost
+    char last_law[LINE_TEXT];     // the law that was switched off last, "" for none
+    bool settings_broken;         // the settings file contains errors
+    unsigned long saved_version;  // the run last saved as a scenario, 0 for none
+    char session_path[LINE_TEXT]; // the session file of this visit, "" for none
+    unsigned long kept_pins;      // runs ever pinned when they were last saved in a session
+    bool asked_to_quit;           // the last key asked to quit, and changes would be lost
     bool quit;
 
     // results derived from the runs, kept until they change

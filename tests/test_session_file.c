@@ -1,0 +1,241 @@
+// A visit to the lab is kept in a file and gone on with; files from elsewhere are checked.
+#include "tests/explorer_on_screen.h"
+
+#include <unistd.h>
+
+#include "src/session/session_file.h"
+
+static char folder[] = "/tmp/impactlab-session-XXXXXX", path[64];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/lab.session", folder);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    unlink(path);
+    return rmdir(folder);
+}
+
+static char *contents(const char *name)
+{
+    static char text[1 << 20];
+    FILE *stream = fopen(name, "r");
+    assert_non_null(stream);
+    text[fread(text, 1, sizeof text - 1, stream)] = '\0';
+    fclose(stream);
+    return text;
+}
+
+static void put(const char *text)
+{
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+}
+
+static void save(explorer *ex)
+{
+    char line[128];
+    unlink(path);
+    snprintf(line, sizeof line, "session save %s", path);
+    if (!explorer_carry_out(ex, line)) {
+        fail_msg("%s", ex->state.message.text);
+    }
+}
+
+// Runs of two scenarios, changes, pushes, pins, panes, axes, zoom and mark come back to the last
+// bit; saved again the file is the same; leaving asks nothing.
+static void test_what_was_done_comes_back(void **state)
+{
+    (void)state;
+    static const char keys[] =
+        "b:open compare/hybrid<Enter>:pin with \u03b8<Enter>:set control.force 1.37<Enter>"
+        ":seek 0.35<Enter>:set control.force 2.1<Enter>:push 0.003<Enter>b:hide 2<Enter>"
+        ":set control.transition_time 0.2<Enter>:trace gap_velocity<Enter>"
+        ":phase gap force<Enter>:axis -1 3 1<Enter>:zoom 0.1 0.9<Enter>:mark 0.3<Enter>"
+        ":seek 0.5<Enter>";
+    explorer ex, again;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, keys);
+    save(&ex);
+    char *first = strdup(contents(path));
+    press(&ex, "q");
+    assert_true(ex.state.quit);
+
+    open_explorer(&again, "corrected/three-links");
+    if (!explorer_open_session(&again.state, path)) {
+        fail_msg("%s", again.state.message.text);
+    }
+    assert_same_trace(&again.state.session.run.trace, &ex.state.session.run.trace);
+    assert_int_equal(again.state.pinned.count, ex.state.pinned.count);
+    assert_int_equal(again.state.pinned.baseline, ex.state.pinned.baseline);
+    for (int i = 0; i < ex.state.pinned.count; i++) {
+        const pinned_run *a = &again.state.pinned.runs[i], *b = &ex.state.pinned.runs[i];
+        assert_same_trace(&a->run.trace, &b->run.trace);
+        assert_string_equal(a->name, b->name);
+        assert_int_equal(a->hidden, b->hidden);
+    }
+    check_close(again.state.session.now, 0.5, 0);
+    check_close(again.state.mark.time, 0.3, 0);
+    for (int i = 0; i < PANES; i++) {
+        assert_int_equal(again.state.panes.pane[i].shown, ex.state.panes.pane[i].shown);
+    }
+    check_close(again.state.panes.pane[0].fixed.high, 3, 0);
+
+    // and again
+    char line[128];
+    snprintf(line, sizeof line, "session save %s", path);
+    assert_true(explorer_carry_out(&again, line));
+    assert_string_equal(contents(path), first);
+
+    // the run is changed and undone as any other; opening it is undone, too
+    press(&again, "uu");
+    assert_int_equal(again.state.session.input_count, ex.state.session.input_count - 2);
+    press(&again, "uuu");
+    assert_string_equal(again.state.session.base.name, "corrected/three-links");
+    free(first);
+    explorer_finish(&again);
+    explorer_finish(&ex);
+}
+
+// No file of others is replaced; the visit's own is.
+static void test_only_the_visits_own_file_is_replaced(void **state)
+{
+    (void)state;
+    explorer ex;
+    char line[128];
+    put("precious");
+    open_explorer(&ex, "corrected/first-impact");
+    snprintf(line, sizeof line, "session save %s", path);
+    assert_false(explorer_carry_out(&ex, line));
+    assert_string_equal(contents(path), "precious");
+    save(&ex);
+    assert_true(explorer_carry_out(&ex, line));
+    snprintf(line, sizeof line, "session open %s/none.session", folder);
+    assert_false(explorer_carry_out(&ex, line));
+    assert_shows(&ex, "cannot be opened");
+    explorer_finish(&ex);
+}
+
+// A session whose law is a program asks before it starts it, and its lines do nothing but look.
+static void test_a_file_from_elsewhere_starts_nothing(void **state)
+{
+    (void)state;
+    char text[512], mark[80];
+    snprintf(mark, sizeof mark, "%s/started", folder);
+    snprintf(text, sizeof text,
+             "impactlab-session: 1\nscenario: mine\n| title: \"mine\"\npresent:\n"
+             "start: 0 control.command touch %s\nstart: 0 control.law process\n"
+             "cursor: 0 0\nbaseline: 0\nview: save %s\nview: allow\n",
+             mark, mark);
+    put(text);
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    explorer_open_session(&ex.state, path);
+    assert_int_equal(ex.state.session.run.summary.status, STATUS_NOT_ALLOWED);
+    assert_shows(&ex, "does not belong into a session");
+    assert_int_equal(access(mark, F_OK), -1);
+    explorer_finish(&ex);
+}
+
+// Each fault is told with its line, and nothing is taken.
+static void test_broken_files_are_refused_with_their_line(void **state)
+{
+    (void)state;
+#define BASE "impactlab-session: 1\nscenario: a\n| title: \"a\"\n"
+    static const struct {
+        const char *text, *says;
+    } cases[] = {
+        {"", "this is no session"},
+        {"title: a\n", ":1:1: this is no session"},
+        {"impactlab-session: 1\n", "ends early"},
+        {BASE, "ends early"},
+        {"impactlab-session: 1\npresent:\n", ":2:1: a run, expected a scenario"},
+        {"impactlab-session: 1\n| title: a\n", ":2:1: text without a scenario"},
+        {BASE "pinned: a\n", ":4:1: expected one present run"},
+        {BASE "present:\npresent:\n", ":5:1: expected one present run"},
+        {BASE "present:\nnonsense\n", ":5:1: no line of a session"},
+        {BASE "present:\nrun: a\n", ":5:1: a line that does not belong"},
+        {BASE "start: 0 motor.voltage 2\n", ":4:1: a change, expected a run"},
+        {BASE "present:\nstart: 0 motor.voltgae 2\n", ":5:1: no change"},
+        {BASE "present:\nstart: -1 motor.voltage 2\n", ":5:1: no change"},
+        {BASE "present:\nstart: 0 motor.voltage lots\n", ":5:1: "},
+        {BASE "present:\nfrom: 0.1 arm.links 5\n", ":5:1: a parameter that does not change"},
+        {BASE "present:\npush: 0.1\n", ":5:1: no push"},
+        {BASE "present:\npush: 0.1 nan\n", ":5:1: no push"},
+        {BASE "present:\ncursor: 1\n", ":5:1: no cursor"},
+        {BASE "present:\nbaseline: 1\n", ":5:1: no baseline"},
+        {BASE "| arm: {k3: 1}\npresent:\n", "k3"},
+    };
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "b:set arm.k2 5<Enter>");
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        put(cases[i].text);
+        if (explorer_open_session(&ex.state, path) ||
+            strstr(ex.state.message.text, cases[i].says) == NULL) {
+            fail_msg("'%s' says '%s'", cases[i].text, ex.state.message.text);
+        }
+        assert_int_equal(ex.state.pinned.count, 1);
+        assert_int_equal(ex.state.session.input_count, 1);
+    }
+
+    // any beginning of a good one is told, or is whole; none crashes
+    save(&ex);
+    char *good = strdup(contents(path));
+    const size_t length = strlen(good);
+    for (size_t cut = 0; cut < length; cut += 37) {
+        char *part = strndup(good, cut);
+        put(part);
+        session_file file;
+        fault f = {0};
+        if (session_file_read(&file, path, &f) == STATUS_OK) {
+            session_file_finish(&file);
+        } else {
+            assert_true(f.text[0] != '\0');
+        }
+        free(part);
+    }
+    free(good);
+    explorer_finish(&ex);
+}
+
+// More pins than there is room for change nothing.
+static void test_pins_without_room_are_refused(void **state)
+{
+    (void)state;
+    explorer ex;
+    char keys[64];
+    open_explorer(&ex, "corrected/first-impact");
+    for (int i = 0; i < 4; i++) {
+        snprintf(keys, sizeof keys, ":set arm.k2 %d<Enter>b", 4 + i);
+        press(&ex, keys);
+    }
+    save(&ex);
+    press(&ex, ":session save<Enter>"); // proposes the visit's own file
+    assert_true(ex.state.prompt.open);
+    press(&ex, "<Esc>");
+    assert_false(explorer_open_session(&ex.state, path));
+    assert_shows(&ex, "have no room");
+    assert_int_equal(ex.state.pinned.count, 4);
+    explorer_finish(&ex);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_what_was_done_comes_back),
+        cmocka_unit_test(test_only_the_visits_own_file_is_replaced),
+        cmocka_unit_test(test_a_file_from_elsewhere_starts_nothing),
+        cmocka_unit_test(test_broken_files_are_refused_with_their_line),
+        cmocka_unit_test(test_pins_without_room_are_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,221 @@
+// Sessions: what one did, kept in a file and gone on with.
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/base/text_stream.h"
+#include "src/base/whole_file.h"
+#include "src/session/session_file.h"
+#include "ui/explorer/explorer.h"
+
+// --- saving -----------------------------------------------------------------------------------
+
+// Adds a line on how the runs are looked at.
+static void add_line(session_file *file, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void add_line(session_file *file, const char *format, ...)
+{
+    char line[LINE_TEXT];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(line, sizeof line, format, list);
+    va_end(list);
+    if (file->line_count < SESSION_FILE_LINES) {
+        file->lines[file->line_count] = strdup(line);
+        loss_unless(file->lines[file->line_count] != NULL);
+        file->line_count += file->lines[file->line_count] != NULL;
+    }
+}
+
+// A pane's own lines; `number` is the one it has where only panes that are shown are defined.
+static void add_pane(const explorer_state *st, session_file *file, int index, int number)
+{
+    static const char *const views[] = {"trace", "phase", "spectrum"};
+    const pane *p = &st->panes.pane[index];
+    char signals[LINE_TEXT] = "";
+    for (int k = 0; k < p->count; k++) {
+        const size_t used = strlen(signals);
+        snprintf(signals + used, sizeof signals - used, " %s", signal_table[p->signals[k]].name);
+    }
+    if (index >= PANES_OF_TABLE && p->shown) {
+        add_line(file, "%s%s", views[p->view], signals);
+    }
+    if (p->scaling == AXIS_FIXED && p->shown && p->count > 0) {
+        add_line(file, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high, number);
+    }
+}
+
+// How the runs are looked at, as the lines that give it again.
+static void add_looks(const explorer_state *st, session_file *file)
+{
+    char shown[PANES + 1] = "";
+    for (int i = 0, n = 0; i < PANES_OF_TABLE; i++) {
+        if (st->panes.pane[i].shown) {
+            shown[n++] = (char)('1' + i);
+            shown[n] = '\0';
+        }
+    }
+    add_line(file, "lanes %s", lane_choice_words[st->looks.lanes]);
+    if (st->panes.chosen) {
+        add_line(file, "panes %s", shown);
+        for (int i = 0, number = 1; i < PANES; i++) {
+            add_pane(st, file, i, number);
+            number += i < PANES_OF_TABLE || st->panes.pane[i].shown;
+        }
+    }
+    if (st->window.to > st->window.from) {
+        add_line(file, "zoom %.17g %.17g", st->window.from, st->window.to);
+    }
+    if (st->mark.set) {
+        add_line(file, "mark %.17g", st->mark.time);
+    }
+}
+
+static status write_session(explorer_state *st, const char *path, fault *f)
+{
+    static session_file file;
+    whole_file whole;
+    const run_list *pins = &st->pinned;
+    file = (session_file){.run_count = 1 + pins->count, .baseline = pins->baseline};
+    status code = run_origin_take(&file.runs[0].from, &st->session, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // the pinned runs stay the list's: nothing of them is freed here
+    for (int i = 0; i < pins->count; i++) {
+        kept_run *k = &file.runs[i + 1];
+        *k = (kept_run){.hidden = pins->runs[i].hidden, .from = pins->runs[i].from};
+        snprintf(k->name, sizeof k->name, "%s", pins->runs[i].name);
+    }
+    add_looks(st, &file);
+    code = whole_file_open(&whole, path, f);
+    if (code == STATUS_OK) {
+        session_file_write(whole.stream, &file);
+        code = whole_file_commit(&whole, f);
+    }
+    file.run_count = 1;
+    session_file_finish(&file);
+    return code;
+}
+
+static bool save_session(explorer_state *st, const char *path)
+{
+    fault f = {0};
+
+    // a file is replaced only if it is the one this visit goes on with
+    if (access(path, F_OK) == 0 && strcmp(path, st->session_path) != 0) {
+        return act_refuse(st, "%.200s is there already: give the session another name", path);
+    }
+    if (!act_need_whole_run(st) || !act_worked(st, write_session(st, path, &f), &f)) {
+        return false;
+    }
+    snprintf(st->session_path, sizeof st->session_path, "%s", path);
+    st->saved_version = state_run_id(st);
+    st->kept_pins = st->pinned.pinned;
+    return act_tell(st, "kept in %.200s: 'impactlab lab %.200s' goes on with it", path, path);
+}
+
+// --- opening ----------------------------------------------------------------------------------
+
+// Computes a pinned run of a file and pins it.
+static status pin_kept(explorer_state *st, const kept_run *k, fault *f)
+{
+    session s;
+    status code = session_reopen(&s, &k->from, HUGE_VAL, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    const int before = st->pinned.count;
+    code = run_list_pin(&st->pinned, &s, k->name, f);
+    if (code == STATUS_OK && st->pinned.count > before) {
+        st->pinned.runs[before].hidden = k->hidden;
+    }
+    session_finish(&s);
+    return code;
+}
+
+// Takes what a file says, all of it or nothing.
+static bool take_session(explorer_state *st, const session_file *file)
+{
+    fault f = {0};
+    session fresh;
+    const int before = st->pinned.count, baseline = st->pinned.baseline;
+    if (before + file->run_count - 1 > PINNED_RUNS) {
+        return act_refuse(st, "its %d pinned runs have no room beside the %d here: R drops some",
+                          file->run_count - 1, before);
+    }
+    status code = session_reopen(&fresh, &file->runs[0].from, st->session.patience, &f);
+    if (code != STATUS_OK) {
+        return act_worked(st, code, &f);
+    }
+    for (int i = 1; i < file->run_count && code == STATUS_OK; i++) {
+        code = pin_kept(st, &file->runs[i], &f);
+    }
+
+    // the baseline is the file's, else the one that was
+    const int kept = file->baseline >= 0 ? before + file->baseline : baseline;
+    st->pinned.baseline = kept < st->pinned.count ? kept : st->pinned.count - 1;
+    code = code == STATUS_OK ? state_take_session(st, &fresh, &f) : code;
+    if (code != STATUS_OK) {
+        while (st->pinned.count > before) {
+            run_list_drop(&st->pinned, st->pinned.count - 1);
+        }
+        st->pinned.baseline = baseline;
+        session_finish(&fresh);
+        return act_worked(st, code, &f);
+    }
+    return true;
+}
+
+bool explorer_open_session(explorer_state *st, const char *path)
+{
+    static session_file file;
+    fault f = {0};
+    if (!act_worked(st, session_file_read(&file, path, &f), &f)) {
+        return false;
+    }
+
+    // then how they are looked at; a line that says nothing of that is told
+    bool done = take_session(st, &file);
+    message_line said = {.text = ""};
+    for (int i = 0; i < file.line_count && done; i++) {
+        if (!explorer_look(st, file.lines[i]) && said.text[0] == '\0') {
+            said = st->message;
+        }
+    }
+    if (done) {
+        snprintf(st->session_path, sizeof st->session_path, "%s", path);
+        st->saved_version = state_run_id(st);
+        st->kept_pins = st->pinned.pinned;
+        act_hush(st);
+        done = said.text[0] != '\0'
+                   ? act_warn(st, "%.200s: %.400s", path, said.text)
+                   : act_tell_failed_run(st) ||
+                         act_tell(st, "%.200s: %d change%s, %d pinned run%s", path,
+                                  st->session.input_count, st->session.input_count == 1 ? "" : "s",
+                                  st->pinned.count, st->pinned.count == 1 ? "" : "s");
+    }
+    session_file_finish(&file);
+    return done;
+}
+
+bool act_session(explorer_state *st, const char *argument)
+{
+    const char *path = argument + strcspn(argument, " ");
+    path += strspn(path, " ");
+    const size_t length = strcspn(argument, " ");
+    const bool saves = length == 4 && strncmp(argument, "save", 4) == 0;
+    if (saves && path[0] == '\0') {
+        prompt_open_value(&st->prompt, "session save ",
+                          st->session_path[0] ? st->session_path : "lab.session");
+        return true;
+    }
+    if ((!saves && !(length == 4 && strncmp(argument, "open", 4) == 0)) || path[0] == '\0') {
+        return act_refuse(st, "session takes save or open, and a file such as lab.session");
+    }
+    return saves ? save_session(st, path) : explorer_open_session(st, path);
+}
