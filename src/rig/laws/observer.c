@@ -6,7 +6,9 @@
 // what the commanded force stops; where the wall is not in doubt, in the least time that ends so.
 // PRESS lets the force rise and regulates round the rest in which
 // the beam presses with it. HOLD keeps that rest with the command in the middle of friction's band.
-// RECOVER looks for the wall again where contact was lost.
+// RECOVER looks for the wall again where contact was lost. A wall that throws the tip back again
+// and again is none that an impact without rebound describes: there CATCH moves the hub, not the
+// tip.
 #include <math.h>
 #include <string.h>
 
@@ -14,8 +16,8 @@
 #include "src/rig/laws/laws.h"
 #include "src/rig/laws/observer_design.h"
 
-enum { TRAVEL, PRESS, HOLD, RECOVER };
-static const char *const mode_names[] = {"travel", "press", "hold", "recover", NULL};
+enum { TRAVEL, PRESS, HOLD, RECOVER, CATCH };
+static const char *const mode_names[] = {"travel", "press", "hold", "recover", "catch", NULL};
 
 enum { FORCE_WANTED, APPROACH_VOLTAGE, THRESHOLD, FORCE_LIMIT, WALL_DOUBT, PARAMETERS };
 static const controller_parameter table[PARAMETERS] = {
@@ -43,6 +45,16 @@ static const controller_parameter table[PARAMETERS] = {
 #define HOLD_SWING      0.1   // share of the force by which it may swing where it is held,
 #define SWING_MEAN      0.04  // over which that is averaged [s]
 
+// Of CATCH.
+#define THROWN_BACK   3    // losses of contact after which it begins
+#define CATCH_SPEED   1.0  // share of its whole way that the hub goes in a second at first,
+#define CATCH_GROWTH  5.0  // what that gains with the way made [1/s],
+#define CATCH_END     0.03 // and the time constant of its end [s]
+#define CATCH_MEAN    0.01 // over which the reading is averaged [s]
+#define INTEGRAL_TIME 0.1  // of the force error [s]
+#define PHASE_LOST    3.0  // inverse of the damping's crossover times the loop's lag
+#define FULL_FRICTION 0.05 // rate from which on friction is compensated whole [rad/s]
+
 typedef struct observer_memory {
     controller_setup rig;
     double p[PARAMETERS];
@@ -55,11 +67,18 @@ typedef struct observer_memory {
     bool started;
     bool felt; // the last reading showed contact
     int readings_without_force;
+    double moved;        // change of the set-point since the sample before [N]
+    double force_rate;   // of a set-point that moves from sample to sample [N/s]
     double correction;   // of the force aimed at: what the estimated force is above the reading [N]
     double held_force;   // mean of the reading while it holds [N]
     double mean_force;   // of the reading, over SWING_MEAN [N]
     double swing;        // its mean square about that [N2]
     double hold_command; // [V]
+    int losses;          // of contacts in a row that were brief
+    double away;         // for how long no force has been felt [s]
+    double touched;      // encoder at the last touch [rad]
+    double way;          // that the hub is to have made since [rad]
+    double integral;     // of the force error [N]
 } observer_memory;
 
 // --- the arms ---------------------------------------------------------------------------------
@@ -94,6 +113,29 @@ static const char *start(void *memory, const controller_setup *setup)
         quickest_touch_init(&m->quickest, design_of(m));
     }
     return refusal;
+}
+
+// Whether two setups describe one arm, motor and loop.
+static bool same_rig(const controller_setup *a, const controller_setup *b)
+{
+    return a->period == b->period && a->delay == b->delay &&
+           a->torque_per_volt == b->torque_per_volt && a->hub_damping == b->hub_damping &&
+           a->stiction == b->stiction && a->hub_inertia == b->hub_inertia &&
+           a->link_mass == b->link_mass && a->k2 == b->k2 && a->wall_angle == b->wall_angle &&
+           a->links == b->links && a->hub_spring == b->hub_spring;
+}
+
+// The force and its limits may change; what the observers are designed for may not.
+static const char *tune(void *memory, const controller_setup *setup)
+{
+    observer_memory *m = memory;
+    if (!same_rig(&m->rig, setup)) {
+        return "it takes its model and its rate at the start only";
+    }
+    m->moved += setup->parameters[FORCE_WANTED] - m->p[FORCE_WANTED];
+    m->rig.voltage_limit = setup->voltage_limit;
+    memcpy(m->p, setup->parameters, sizeof m->p);
+    return NULL;
 }
 
 // --- commands ---------------------------------------------------------------------------------
@@ -193,22 +235,51 @@ static double mode_at_rest(const observer_memory *m, double force)
            arm_observer_square(observer_of(m), 0);
 }
 
-// The first mode's way goes on from where it is.
-static void begin_rise(observer_memory *m, double time)
+// The first mode's way from a coordinate and its rate to a force [N].
+static void plan_rise(observer_memory *m, double time, double coordinate, double rate, double force)
 {
-    const arm_observer *o = observer_of(m);
     const double limit = m->p[FORCE_LIMIT];
     const force_rise_task task = {
-        .coordinate = o->e.z[0],
-        .rate = o->e.z[o->arm.contact.count],
+        .coordinate = coordinate,
+        .rate = rate,
         .divergence = divergence(m),
-        .end = mode_at_rest(m, m->p[FORCE_WANTED]),
-        .least = mode_at_rest(m, OBSERVER_LEAST_FORCE * m->p[FORCE_WANTED]),
+        .end = mode_at_rest(m, force),
+        .least = mode_at_rest(m, OBSERVER_LEAST_FORCE * force),
         .most = limit > 0 ? mode_at_rest(m, limit) : HUGE_VAL,
         .time = time,
     };
     // no force is wanted: nothing rises
     m->rise = task.end > 0 ? force_rise_begin(&task) : (force_rise){.begun = time};
+}
+
+// It goes on from where the mode is.
+static void begin_rise(observer_memory *m, double time)
+{
+    const arm_observer *o = observer_of(m);
+    plan_rise(m, time, o->e.z[0], o->e.z[o->arm.contact.count], m->p[FORCE_WANTED]);
+}
+
+// Follows a set-point that changes in contact. The way goes on from where it is to the new force;
+// of a plan made anew at every sample the force is 2 r/s behind a set-point with the rate r, which
+// is aimed at in advance.
+static void follow_setpoint(observer_memory *m, double time)
+{
+    const double before = m->p[FORCE_WANTED] - m->moved, period = m->rig.period;
+    const bool goes_on = m->moved != 0 && m->force_rate != 0;
+    if (m->moved == 0 && m->force_rate == 0) {
+        return;
+    }
+
+    // one change by itself is a step
+    double way[3] = {mode_at_rest(m, before), 0, 0};
+    if (force_rise_moves(&m->rise, time)) {
+        force_rise_at(&m->rise, time, way);
+    }
+    m->force_rate = m->moved / period;
+    const double ahead = goes_on ? 2 * m->force_rate / divergence(m) : 0;
+    plan_rise(m, time, way[0], way[1], fmax(0, m->p[FORCE_WANTED] + ahead));
+    m->mode = PRESS;
+    m->moved = 0;
 }
 
 // Force with which the beam presses where the hub is [N].
@@ -261,6 +332,45 @@ static double press(const observer_memory *m, const estimator *e, double time)
     return within_force(m, e, torque / m->rig.torque_per_volt + feedback);
 }
 
+// Presses against a wall that throws the tip back. A hub that is moved by a spring and a damper is
+// passive: no wall, however it answers, takes work out of it, and each rebound of the tip loses
+// some to damper and wall. The hub goes slowly to where the arm presses with the wanted force,
+// since a tip thrown back meets the wall again with what the hub has gained; an integral of the
+// force error does the rest. Damper and spring are those of an arm damped at 0.7 of the critical,
+// as far as the lag of the loop leaves them phase.
+static double catch_tip(observer_memory *m, const controller_input *in)
+{
+    const controller_setup *r = &m->rig;
+    const arm_observer *o = observer_of(m);
+    const double h = o->arm.contact.hub[0], length = o->arm.length, force = m->p[FORCE_WANTED];
+    const double inertia = 1 / (h * h), arm = inertia * arm_observer_square(o, 0);
+    const double damping =
+        fmin(2 * sqrt(inertia * arm), inertia / (PHASE_LOST * (r->period + r->delay)));
+    const double spring = fmax(0, fmin(arm, damping * damping / (2 * inertia) - arm));
+
+    // the way, and at its end the integral, which cannot wind up beyond what friction and a wrong
+    // model explain
+    const double end = force * length / arm, left = end - m->way;
+    const double rate = fmin(CATCH_SPEED * end + CATCH_GROWTH * m->way, left / CATCH_END);
+    m->way += rate * r->period;
+    m->mean_force += fmin(1, r->period / CATCH_MEAN) * (fmin(in->force, 2 * force) - m->mean_force);
+    const double off = force - m->mean_force;
+    if (left < 0.1 * end && fabs(off) > HOLD_WITHIN * force + HOLD_LEAST) {
+        const double most = MOST_CORRECTION * force + r->stiction / length;
+        m->integral += r->period / INTEGRAL_TIME * off;
+        m->integral = fmax(-most, fmin(m->integral, most));
+    }
+
+    const double more = length * m->integral;
+    const double angle = m->touched + m->way + more / arm;
+    const double moving = left < 0.1 * end ? in->tachometer : rate;
+    const double torque = arm * m->way + more + r->hub_damping * rate +
+                          r->stiction * fmax(-1, fmin(moving / FULL_FRICTION, 1)) +
+                          spring * (angle - in->encoder) +
+                          fmax(0, damping - r->hub_damping) * (rate - in->tachometer);
+    return limited(m, torque / r->torque_per_volt);
+}
+
 // --- modes ------------------------------------------------------------------------------------
 
 // Where the readings favour another arm, the present mode starts again for that one.
@@ -284,6 +394,7 @@ static void begin_contact(observer_memory *m, double time)
     m->hurries = false;
     m->correction = 0;
     m->readings_without_force = 0;
+    m->touched = observer_of(m)->met;
     begin_rise(m, time);
 }
 
@@ -300,7 +411,17 @@ static void follow_contact(observer_memory *m, const controller_input *in)
 
     // it ends with several readings that do not
     m->readings_without_force = m->felt ? 0 : m->readings_without_force + 1;
-    if (touches && m->readings_without_force >= LOST_AFTER) {
+    m->away = m->felt ? 0 : m->away + m->rig.period;
+    const bool caught = m->mode == CATCH && m->away < design_of(m)->ramp_time;
+    if (touches && m->readings_without_force >= LOST_AFTER && !caught) {
+        const bool brief = in->time - observer_of(m)->since < design_of(m)->ramp_time;
+        m->losses = brief ? m->losses + 1 : 1;
+        if (m->mode != CATCH && m->losses >= THROWN_BACK) {
+            m->mode = CATCH;
+            m->way = in->encoder - m->touched;
+            m->integral = 0;
+            return;
+        }
         observer_arms_leave(&m->arms, in->time);
         smooth_approach_touch(&m->plan, design_of(m));
         m->mode = RECOVER;
@@ -389,17 +510,24 @@ static void sample(void *memory, const controller_input *in, controller_output *
         follow_contact(m, in);
     }
 
+    if (observer_of(m)->touches && m->mode != CATCH) {
+        follow_setpoint(m, in->time);
+    }
+
     // the command, for the state when it takes effect
     const arm_observer *o = observer_of(m);
     estimator ahead = arm_observer_ahead(o, in->voltage);
     double force_now = 0;
     if (o->touches) {
-        choose_hold(m, &ahead, in);
+        if (m->mode != CATCH) {
+            choose_hold(m, &ahead, in);
+        }
         if (m->mode == PRESS) {
             correct_aim(m, in);
         }
-        out->command =
-            m->mode == HOLD ? m->hold_command : press(m, &ahead, in->time + m->rig.delay);
+        out->command = m->mode == CATCH  ? catch_tip(m, in)
+                       : m->mode == HOLD ? m->hold_command
+                                         : press(m, &ahead, in->time + m->rig.delay);
         out->desired_angle = o->wall + o->arm.contact.hub[0] * mode_at_rest(m, m->p[FORCE_WANTED]);
         out->desired_velocity = 0;
         force_now = arm_observer_force(o, &o->e, m->rig.torque_per_volt * in->voltage);
@@ -413,4 +541,4 @@ static void sample(void *memory, const controller_input *in, controller_output *
 }
 
 const controller observer_law = CONTROLLER_LAW("observer", mode_names, table, observer_memory,
-                                               .start = start, .sample = sample);
+                                               .start = start, .sample = sample, .tune = tune);
