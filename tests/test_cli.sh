@@ -34,7 +34,7 @@ says out corrected/first-impact
 expect 0 --version
 says out "impactlab "
 expect 0 --help
-for command in list show check run tables figures animate predict modes sweep compare calibrate robust bench converge solve study linear; do
+for command in list show check run tables figures animate predict modes sweep compare calibrate robust bench converge solve study linear identify; do
     grep -q "^  $command " out || fail "--help does not name $command"
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
@@ -462,7 +462,7 @@ expect 0 lesson --json -
 says out '"scenario": "lessons/hybrid-law"'
 expect 0 figures 2.4 --format svg -o drawn --json -
 says out '"file": "fig-2-4"'
-for command in list show run predict modes sweep merge compare converge solve study calibrate robust linear \
+for command in list show run predict modes sweep merge compare converge solve study calibrate robust linear identify \
     tables bench check lesson figures; do
     expect 0 $command --help
     says out '--json FILE|-'
@@ -477,6 +477,30 @@ says out "first contact"
 grep -q '"order": 2' converge.json || grep -q '"order": 1.9' converge.json ||
     fail "converge finds no second order"
 [ -s converge.svg ] || fail "converge draws nothing"
+
+# --- parameters from recorded traces
+expect 0 run hit.yaml --set control.law=open-loop --set control.rate=1000 --set method.step=0.0005 --set arm.hub_inertia=0.006 \
+    --csv recorded.csv
+rig='--set control.law=open-loop --set control.rate=1000'
+expect 0 identify hit.yaml $rig --data recorded.csv --fit arm.hub_inertia --json fit.json --plot fit.svg -o fit.yaml \
+    --cases fit.set --validate recorded.csv --links 2,3
+says out "arm.hub_inertia"
+says out "with 3 links"
+grep -q '"determined": true' fit.json && grep -q '"standard_error"' fit.json || fail "identify --json has not the keys of a fit"
+[ -s fit.svg ] && [ "$(grep -c ^case fit.set)" = 200 ] || fail "identify draws nothing or writes no cases"
+expect 0 check fit.yaml
+expect 0 robust hit.yaml --set control.force=1 --laws force-pd --over fit.set --runs 1
+printf 'time[s],command[V],encoder[rad]\n0,1,0\n0.1,1,nan\n' >bad.csv
+expect 2 identify hit.yaml $rig --data bad.csv --fit arm.k2
+says err "bad.csv:3:3: 'nan'"
+expect 2 identify hit.yaml $rig --data recorded.csv --fit arm.k2 --column 'encoder=turn[rad]'
+says err "there is no column 'turn[rad]'"
+expect 2 identify hit.yaml $rig --data recorded.csv --fit arm.links
+says err "no real value"
+expect 2 identify hit.yaml $rig --data recorded.csv --fit sensor.fsr_offset
+says err "expected a range to search"
+expect 2 identify hit.yaml $rig --fit arm.k2
+says err "needs a recorded trace"
 
 # --- the limit of a parameter for a condition
 expect 0 solve hit.yaml motor.voltage=0.5:5 'peak_force_N<2' --json solved.json

@@ -182,6 +182,7 @@ static const struct {
     {"robust", "law.yaml --over over.set --runs 2 --jobs 1", USUAL},
     {"robust", "law.yaml --over cases.set --runs 2 --jobs 1 --laws force-pd,hybrid --markdown -",
      ALONE},
+    {"identify", "touch.yaml --data recorded.csv --fit arm.k2 --starts 1 --jobs 1", USUAL},
     {"linear", "touch.yaml", USUAL},
     {"animate",
      "hit.yaml --size 320x240 --fps 4 --seconds 0.5 --slow 1 --gl cairo -o results/frames", USUAL},
@@ -475,6 +476,8 @@ static void write_text(const char *path, const char *text)
 static void prepare(void)
 {
     write_text("hit.yaml", "title: An impact\nmotor: {voltage: 2 V}\nrun: {duration: 0.05 s}\n");
+    write_text("recorded.csv", "time[s],command[V],encoder[rad]\n0,1,0\n0.005,1,0\n0.01,1,0\n"
+                               "0.015,1,0\n0.02,1,0.001\n0.025,1,0.002\n");
     write_text("touch.yaml", "title: A touch\nmotor: {voltage: 2 V}\nwall: {angle: 0.01}\n"
                              "run: {duration: 0.12 s}\n");
     write_text("acted.yaml", "title: Much happens\ndescription: Of all that may be shown.\n"

@@ -17,6 +17,7 @@ near() {
         exit !(a != "" && b != "" && (d < 0 ? -d : d) <= share * m) }' || fail "$1 and $2 differ by more than $3"
 }
 
+printf 'time[s],command[V],encoder[rad]\n0,1,0\n0.005,1,0.001\n0.01,1,0.004\n0.015,1,0.009\n0.02,1,0.016\n0.025,1,0.025\n0.03,1,0.036\n0.035,1,0.049\n0.04,1,0.064\n0.045,1,0.081\n0.05,1,0.1\n0.055,1,0.121\n' >recorded.csv
 cat >hit.yaml <<'END'
 title: An impact
 motor: {voltage: 2 V}
@@ -221,7 +222,7 @@ expect 0 figures 3.4 3.5 -o pictures --format svg --latex all.tex
 # --set, each with what it needs besides; a command that is new has to be added here
 declare -A besides=([run]='' [predict]='' [modes]='' [converge]='' [compare]='hit.yaml' [show]=''
     [sweep]='--vary motor.voltage=1:2:2' [study]='' [robust]='--set control.force=1 --laws hybrid,force-pd --runs 3'
-    [calibrate]='' [linear]='' [solve]='' [animate]='' [lab]='' [lesson]='')
+    [calibrate]='' [linear]='' [identify]='--data recorded.csv --fit arm.k2' [solve]='' [animate]='' [lab]='' [lesson]='')
 title_of() { sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' "$1" | head -1; }
 expect 0 help
 for command in $(awk '/^  [a-z]/ { print $1 }' out); do

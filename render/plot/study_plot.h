@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/plot/plot.h"
+#include "src/study/identify.h"
 #include "src/study/robust.h"
 #include "src/study/sweep.h"
 
@@ -35,3 +36,9 @@ status sweep_plot_check(const sweep *s, const char *path, fault *f);
 // Describes the picture, to be freed with owned_figure_destroy. The sweep and the values are
 // borrowed.
 owned_figure *sweep_figure_create(const sweep_picture *p);
+
+// --- identify: what the fit leaves of the readings
+
+// Describes the picture: a panel for each trace, the residuals of every channel over time in
+// standard deviations. At most FIGURE_PANELS traces. To be freed with owned_figure_destroy.
+owned_figure *identify_figure_create(const identification *id);

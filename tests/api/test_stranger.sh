@@ -66,6 +66,7 @@ runs:
 panels:
   - signals: [force]
 END
+printf 'time[s],command[V],encoder[rad]\n0,1,0\n0.005,1,0\n0.01,1,0\n0.015,1,0\n0.02,1,0\n0.025,1,0\n' >recorded.csv
 printf 'control.force=0.5:2\n' >draws.set
 
 trace=
@@ -113,6 +114,7 @@ arguments() {
     show | run | predict | modes | linear | converge | calibrate) echo "$2" ;;
     check) echo "scenarios/$2.yaml" ;;
     sweep) echo "$2 --vary motor.voltage=1,2 --jobs 2" ;;
+    identify) echo "$2 --data recorded.csv --fit arm.k2 --starts 1 --jobs 2" ;;
     solve) echo "$2 motor.voltage=0.5:2 peak_force_N<1 --runs 3 --jobs 2" ;;
     merge) echo "scenarios/$2.yaml" ;;
     compare) echo "$2 corrected/first-impact" ;;

@@ -238,6 +238,7 @@ static int option_store(arguments *a, const option_row *o, char *text)
         number_list *list = place;
         return read_number(o, text, &list->items[list->count++]);
     }
+    case OPTION_FILES:
     case OPTION_PARAMETERS: {
         text_list *list = place;
         list->items[list->count++] = text;
@@ -353,7 +354,7 @@ static int row_of(const command *self, int found)
 
 static bool is_repeated(const option_row *o)
 {
-    return o->type == OPTION_NUMBERS || o->type == OPTION_PARAMETERS;
+    return o->type == OPTION_NUMBERS || option_is_text_list(o->type);
 }
 
 // Adds a word to the command line that pictures remember, in quotes where a shell needs them.
@@ -465,7 +466,7 @@ static bool prepare(arguments *a, int argc)
     // lists have room for all that the command line could hold
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         void *place = option_place(a, o);
-        if (o->type == OPTION_PARAMETERS) {
+        if (option_is_text_list(o->type)) {
             text_list *list = place;
             list->items = calloc((size_t)argc + 1, sizeof *list->items);
             room = room && list->items != NULL;
@@ -516,7 +517,7 @@ void arguments_finish(arguments *a)
 {
     const option_row *o;
     for (int i = 0; a->command != NULL && (o = command_option(a->command, i)) != NULL; i++) {
-        if (o->type == OPTION_PARAMETERS) {
+        if (option_is_text_list(o->type)) {
             free(((text_list *)option_place(a, o))->items);
         } else if (o->type == OPTION_NUMBERS) {
             free(((number_list *)option_place(a, o))->items);

@@ -28,6 +28,7 @@
     X(converge)                                                                                    \
     X(solve)                                                                                       \
     X(study)                                                                                       \
+    X(identify)                                                                                    \
     X(calibrate)                                                                                   \
     X(robust)                                                                                      \
     X(linear)                                                                                      \

@@ -33,6 +33,7 @@ typedef enum option_type {
     OPTION_WHOLE,      // a whole number from `low` to `high`; uint64_t
     OPTION_SIZE,       // WIDTHxHEIGHT, each from 1 to `high`; grid_size
     OPTION_NUMBERS,    // may be repeated; number_list, in the order of the command line
+    OPTION_FILES,      // as OPTION_FILE, may be repeated; text_list
     OPTION_PARAMETERS, // PATH=..., may be repeated; text_list, in the order of the command line
 } option_type;
 
@@ -40,6 +41,12 @@ typedef struct text_list {
     char **items;
     int count;
 } text_list;
+
+// Whether the option's place is such a list.
+static inline bool option_is_text_list(option_type type)
+{
+    return type == OPTION_FILES || type == OPTION_PARAMETERS;
+}
 
 typedef struct number_list {
     double *items;
@@ -107,22 +114,26 @@ typedef struct arguments {
     bool fitted; // --fitted
 
     // what is run
-    text_list sets;                // --set
-    bool allow_code;               // --allow-code
-    text_list varies;              // --vary
-    text_list besides;             // --beside
-    const char *sampling;          // --sample, NULL: grid
-    uint64_t runs, seed;           // --runs (0 if not given), --seed
-    uint64_t jobs;                 // runs at a time, 0 if not given
-    const char *part;              // --part, "K/N"
-    const char *quantity;          // --quantity, a key
-    const char *only, *baseline;   // of bench
-    const char *against, *columns; // of compare
-    double tolerance;              // of compare [%]
-    const char *laws, *over;       // of robust
-    const char *then;              // of predict, "TIME:VOLTS,..."
-    const char *place;             // of linear, --at
-    bool looped;                   // of linear, --law
+    text_list sets;                 // --set
+    bool allow_code;                // --allow-code
+    text_list varies;               // --vary
+    text_list besides;              // --beside
+    text_list data, fits, headings; // of identify: --data, --fit, --column
+    const char *validate, *cases;   // of identify
+    const char *links;              // of identify, "2,4,8"
+    uint64_t starts;                // of identify, 0 if not given
+    const char *sampling;           // --sample, NULL: grid
+    uint64_t runs, seed;            // --runs (0 if not given), --seed
+    uint64_t jobs;                  // runs at a time, 0 if not given
+    const char *part;               // --part, "K/N"
+    const char *quantity;           // --quantity, a key
+    const char *only, *baseline;    // of bench
+    const char *against, *columns;  // of compare
+    double tolerance;               // of compare [%]
+    const char *laws, *over;        // of robust
+    const char *then;               // of predict, "TIME:VOLTS,..."
+    const char *place;              // of linear, --at
+    bool looped;                    // of linear, --law
 
     // files for results
     const char *json, *csv, *mat, *plot, *scene, *output, *db, *markdown, *format;

@@ -26,6 +26,7 @@ static offer offer_of(const option_row *o)
     case OPTION_WORD:
         return OFFER_WORDS;
     case OPTION_FILE:
+    case OPTION_FILES:
     case OPTION_RESULT:
     case OPTION_PICTURE:
     case OPTION_PLACE:
@@ -212,7 +213,7 @@ static void put_zsh_option(FILE *stream, const option_row *o)
         [OFFER_QUANTITIES] = "_impactlab_quantities",
     };
 
-    bool repeats = o->type == OPTION_PARAMETERS || o->type == OPTION_NUMBERS;
+    bool repeats = option_is_text_list(o->type) || o->type == OPTION_NUMBERS;
 
     // the short form, then the long one
     for (int form = o->letter != 0 ? 0 : 1; form < 2; form++) {

@@ -1,0 +1,136 @@
+// Parameters of an arm from recorded traces, with their errors.
+//
+// Each trace is simulated with the command that was recorded, and its readings are compared with
+// the recorded ones, each by its own standard deviation: noise of its channel and step of its
+// converter. The sum of squares is minimised by Levenberg and Marquardt's method (MINPACK's lmder),
+// the Jacobian by central differences, all its runs in one batch. Readings within IDENTIFY_GUARD of
+// a touch or release are left out; the instants of touches are residuals of their own. Every trace
+// has a time shift and an encoder offset of its own and the state that it starts with; they are
+// fitted too, and what they explain is nothing that the parameters are judged by.
+#pragma once
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "src/run/run_result.h"
+#include "src/scenario/scenario.h"
+#include "src/study/sweep_axis.h"
+
+#define IDENTIFY_GUARD 0.01 // [s]
+
+enum {
+    IDENTIFY_PATHS = 12,  // that are fitted, at most
+    IDENTIFY_TRACES = 12, // at most
+    IDENTIFY_STARTS = 16, // parameter values that a search begins with, unless it is told
+    IDENTIFY_CASES = 200, // of a set drawn from the covariance
+    IDENTIFY_LAGS = 20    // of the autocorrelation
+};
+
+// The signals that a trace may have besides time and command.
+enum {
+    CHANNEL_ENCODER,
+    CHANNEL_TACHOMETER,
+    CHANNEL_FSR,
+    CHANNEL_PIEZO,
+    CHANNEL_FILM,
+    CHANNEL_ACCELEROMETER,
+    CHANNELS
+};
+extern const int identify_signals[CHANNELS]; // indices in signal_table
+
+// What a trace has of its own, besides the parameters.
+enum { OWN_SHIFT, OWN_OFFSET, OWN_ANGLE, OWN_VELOCITY, OWNS };
+
+typedef struct recorded_trace {
+    char *file;
+    size_t rows;                 // one for each sample of the rig
+    double *time;                // since the first [s]
+    double *command;             // [V]
+    double *reading[CHANNELS];   // in the signal's unit, NULL: not recorded
+    double *deviation[CHANNELS]; // standard deviation of each in its residual's unit, 0: left out
+    double *contacts; // instants of touches after a flight of at least IDENTIFY_GUARD [s]
+    int contact_count;
+    size_t residuals;     // how many it has
+    double own[OWNS];     // shift [s], offset [rad], angle [rad], velocity [rad/s]
+    bool fits_velocity;   // it does not start from rest
+    double contact_error; // largest, of the fitted arm [s]; NaN without a touch
+    double peak_error;    // of the largest force reading, as a share; NaN without one
+    double rms[CHANNELS]; // of the residuals, in standard deviations; NaN where there are none
+    double whiteness[CHANNELS]; // Ljung and Box's statistic as a normal number; NaN where none
+} recorded_trace;
+
+typedef struct fitted_parameter {
+    sweep_axis axis;                         // its path, and the range if one was given
+    double start;                            // of the scenario
+    double low_most, high_most;              // between which it is searched
+    double value, standard_error, low, high; // 95 % interval; NaN if it is not determined
+    bool determined;
+} fitted_parameter;
+
+typedef struct identification {
+    const scenario *base; // borrowed
+    fitted_parameter fit[IDENTIFY_PATHS];
+    int count;
+    recorded_trace traces[IDENTIFY_TRACES];
+    int trace_count;
+    int starts, jobs;
+    unsigned long seed;
+    run_monitor *monitor; // NULL: nobody looks on
+
+    // what comes out
+    double *residual;             // of all traces one behind the other, in standard deviations
+    size_t residuals;             //
+    int unknowns;                 // parameters, and what the traces have of their own
+    double chi_square;            // their sum of squares
+    double aic;                   // Akaike's criterion, chi_square + 2 unknowns
+    bool white;                   // no channel's residuals are correlated
+    double scale[IDENTIFY_PATHS]; // of the parameters, in which what follows is given
+    double covariance[IDENTIFY_PATHS * IDENTIFY_PATHS];
+    double singular[IDENTIFY_PATHS];                   // values of the Jacobian, rising
+    double direction[IDENTIFY_PATHS * IDENTIFY_PATHS]; // row k belongs to singular[k]
+    int undetermined;                                  // the first so many directions are
+} identification;
+
+// Whether this program was built with MINPACK; else a sentence in f.
+status identify_available(fault *f);
+
+// Reads PATH or PATH=a:b and adds it. STATUS_BAD_ARGUMENT with a sentence: no such parameter, one
+// that has no real value, a range that is none, a value of 0 without a range.
+status identify_add_path(identification *id, const char *text, fault *f);
+
+// Reads a trace: `time`, `command` and at least one reading, headed as in signal_table or as
+// columns[] say ("SIGNAL=HEADER[unit]"). Of rows between two samples of the rig the first counts.
+// Fails as csv_table_read does.
+status identify_add_trace(identification *id, const char *file, char *const *columns, int count,
+                          fault *f);
+void identify_finish(identification *id);
+
+// Fits parameters and what the traces have of their own. Without parameters only the latter, which
+// is a validation. STATUS_STOPPED where the monitor asks for it; what stopped the run if there is
+// none with the scenario's values; STATUS_NO_MEMORY.
+status identify_fit(identification *id, fault *f);
+
+// The parameters of the scenario with the fitted values, only those that are determined if so
+// asked for.
+status identify_parameters(const identification *id, bool determined, parameters *p, fault *f);
+
+// A combination that the data do not determine, in words, k < undetermined. Returns text.
+const char *identify_words(const identification *id, int k, char *text, size_t size);
+
+// {"scenario", "fit": [{"path", "value", "standard_error", "low", "high", "determined"}],
+// "correlation", "singular_values", "undetermined", "chi_square", "residuals", "aic", "white",
+// "traces"}. NULL without memory.
+json_t *identify_json(const identification *id);
+json_t *identify_traces_json(const identification *id);
+
+// A set of IDENTIFY_CASES arms drawn from the covariance, for robust --over.
+void identify_write_set(FILE *stream, const identification *id);
+
+// --- for the parts of identify
+
+// Residuals of a trace (its own number of them) under parameters p and what it has of its own.
+// Returns what stopped the run, with a sentence in f, and residuals of 1e3 each.
+status identify_residuals(const identification *id, recorded_trace *t, const parameters *p,
+                          const double own[OWNS], bool judge, double *residual, fault *f);
+// Judges the result: Jacobian column by column, jacobian[unknowns * residuals].
+status identify_judge(identification *id, const double *jacobian, fault *f);

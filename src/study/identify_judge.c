@@ -1,0 +1,321 @@
+// How well parameters are known, whether the model is one, and the result as JSON and as a set.
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/dense.h"
+#include "src/base/json.h"
+#include "src/base/numbers.h"
+#include "src/base/plain_math.h"
+#include "src/base/random.h"
+#include "src/study/identify.h"
+
+#define QUANTILE    1.959963984540054 // of 95 %
+#define LEAST_KNOWN 1.0   // singular value below which a combination is off by all its value
+#define HAS_A_PART  1e-6  // of a direction: smaller ones do not make a parameter undetermined
+#define NO_SAY      1e-12 // share of the largest eigenvalue below which there is none
+#define WHITE       3.5   // standard normal deviate that white residuals exceed once in 4000
+
+enum { MOST = IDENTIFY_PATHS + IDENTIFY_TRACES * OWNS };
+
+// --- whiteness --------------------------------------------------------------------------------
+
+// Ljung and Box's statistic of a series in which 0 deviations are gaps, as a number that is
+// standard normal for white noise (Wilson and Hilferty's transformation of chi square).
+static double whiteness_of(const double *series, const double *deviation, size_t rows, double *rms)
+{
+    double squares = 0, q = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < rows; i++) {
+        squares += series[i] * series[i];
+        count += deviation[i] > 0;
+    }
+    *rms = count > 0 ? sqrt(squares / (double)count) : (double)NAN;
+    if (count < 5 * IDENTIFY_LAGS || squares == 0) {
+        return (double)NAN;
+    }
+    for (size_t lag = 1; lag <= IDENTIFY_LAGS; lag++) {
+        double product = 0;
+        for (size_t i = lag; i < rows; i++) {
+            product += series[i] * series[i - lag];
+        }
+        q += product / squares * (product / squares) / (double)(count - lag);
+    }
+    q *= (double)count * (double)(count + 2);
+    const double k = IDENTIFY_LAGS, spread = 2 / (9 * k);
+    return (plain_pow(q / k, 1.0 / 3) - (1 - spread)) / sqrt(spread);
+}
+
+// Of every channel; that of an encoder, whose steps are no noise, counts where it is alone.
+static status judge_whiteness(identification *id, fault *f)
+{
+    const double *residual = id->residual;
+    id->white = true;
+    for (int k = 0; k < id->trace_count; k++) {
+        recorded_trace *t = &id->traces[k];
+        double *series = calloc(t->rows, sizeof *series);
+        if (series == NULL) {
+            return fault_no_memory(f);
+        }
+        const bool alone = t->reading[CHANNEL_TACHOMETER] == NULL;
+        for (int c = 0; c < CHANNELS; c++) {
+            t->rms[c] = t->whiteness[c] = (double)NAN;
+            for (size_t i = 0; t->reading[c] != NULL && i < t->rows; i++) {
+                series[i] = t->deviation[c][i] > 0 ? *residual++ : 0;
+            }
+            if (t->reading[c] != NULL) {
+                t->whiteness[c] = whiteness_of(series, t->deviation[c], t->rows, &t->rms[c]);
+                const bool counts = c != CHANNEL_ENCODER || alone;
+                id->white = id->white && !(counts && t->whiteness[c] > WHITE);
+            }
+        }
+        residual += t->contact_count;
+        free(series);
+    }
+    return STATUS_OK;
+}
+
+// --- errors -----------------------------------------------------------------------------------
+
+// What the parameters' columns say that the traces' own cannot: the Schur complement of the normal
+// equations, those of the traces inverted where they say anything. information[p * p].
+static bool project(const identification *id, const double *jacobian, double *information)
+{
+    const int n = id->unknowns, p = id->count, q = n - p;
+    double normal[MOST][MOST], size[MOST], own[MOST * MOST], values[MOST], scratch[2 * MOST];
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= i; j++) {
+            double sum = 0;
+            const double *a = jacobian + (size_t)i * id->residuals,
+                         *b = jacobian + (size_t)j * id->residuals;
+            for (size_t r = 0; r < id->residuals; r++) {
+                sum += a[r] * b[r];
+            }
+            normal[i][j] = normal[j][i] = sum;
+        }
+    }
+    for (int i = 0; i < q; i++) {
+        size[i] = normal[p + i][p + i] > 0 ? sqrt(normal[p + i][p + i]) : 1;
+    }
+    for (int i = 0; i < q; i++) {
+        for (int j = 0; j < q; j++) {
+            own[i * q + j] = normal[p + i][p + j] / (size[i] * size[j]);
+        }
+    }
+    for (int i = 0; i < p; i++) {
+        for (int j = 0; j < p; j++) {
+            information[i * p + j] = normal[i][j];
+        }
+    }
+    if (q > 0 && !symmetric_eigen(q, own, values, scratch)) {
+        return false;
+    }
+    for (int k = 0; k < q; k++) {
+        double along[IDENTIFY_PATHS];
+        if (values[k] < NO_SAY * values[q - 1]) {
+            continue;
+        }
+        for (int i = 0; i < p; i++) {
+            along[i] = 0;
+            for (int j = 0; j < q; j++) {
+                along[i] += normal[i][p + j] / size[j] * own[k * q + j];
+            }
+        }
+        for (int i = 0; i < p; i++) {
+            for (int j = 0; j < p; j++) {
+                information[i * p + j] -= along[i] * along[j] / values[k];
+            }
+        }
+    }
+    return true;
+}
+
+status identify_judge(identification *id, const double *jacobian, fault *f)
+{
+    assert(id != NULL && jacobian != NULL);
+    const int p = id->count;
+    double scratch[2 * IDENTIFY_PATHS];
+    id->chi_square = 0;
+    for (size_t i = 0; i < id->residuals; i++) {
+        id->chi_square += id->residual[i] * id->residual[i];
+    }
+    id->aic = id->chi_square + 2 * id->unknowns;
+    status code = judge_whiteness(id, f);
+    if (code != STATUS_OK || p == 0) {
+        return code;
+    }
+    if (!project(id, jacobian, id->direction) ||
+        !symmetric_eigen(p, id->direction, id->singular, scratch)) {
+        return fault_set(f, STATUS_SINGULAR, "the parameters' errors cannot be computed");
+    }
+
+    // what the model does not explain makes errors larger, by as much
+    const double misfit =
+        fmax(1, id->chi_square / (double)(id->residuals - (size_t)(id->unknowns + p)));
+    id->undetermined = 0;
+    memset(id->covariance, 0, sizeof id->covariance);
+    for (int k = 0; k < p; k++) {
+        id->singular[k] = sqrt(fmax(id->singular[k] / misfit, 0));
+        id->undetermined += id->singular[k] < LEAST_KNOWN;
+        for (int i = 0; i < p && id->singular[k] >= LEAST_KNOWN; i++) {
+            for (int j = 0; j < p; j++) {
+                id->covariance[i * p + j] += id->direction[k * p + i] * id->direction[k * p + j] /
+                                             (id->singular[k] * id->singular[k]);
+            }
+        }
+    }
+    for (int i = 0; i < p; i++) {
+        fitted_parameter *fit = &id->fit[i];
+        double part = 0;
+        for (int k = 0; k < id->undetermined; k++) {
+            part += id->direction[k * p + i] * id->direction[k * p + i];
+        }
+        fit->determined = part < HAS_A_PART;
+        fit->standard_error =
+            fit->determined ? id->scale[i] * sqrt(id->covariance[i * p + i]) : (double)NAN;
+        fit->low = fit->value - QUANTILE * fit->standard_error;
+        fit->high = fit->value + QUANTILE * fit->standard_error;
+    }
+    return STATUS_OK;
+}
+
+// --- words and files --------------------------------------------------------------------------
+
+const char *identify_words(const identification *id, int k, char *text, size_t size)
+{
+    const double *part = id->direction + k * id->count;
+    int largest = 0;
+    for (int i = 1; i < id->count; i++) {
+        largest = fabs(part[i]) > fabs(part[largest]) ? i : largest;
+    }
+    const char *joint = "";
+    size_t used = 0;
+    text[0] = '\0';
+    for (int sign = 1; sign >= -1; sign -= 2) {
+        bool first = true;
+        for (int i = 0; i < id->count && used + 1 < size; i++) {
+            const double share = part[i] / part[largest] * sign;
+            if (share * share < HAS_A_PART) {
+                continue;
+            }
+            if (share > 0) {
+                used += (size_t)decimal_print(text + used, size - used, "%s%s%s by %.3g %%", joint,
+                                              first ? sign > 0 ? "raising " : "lowering " : "",
+                                              id->fit[i].axis.name, 10 * share);
+                joint = " and ";
+                first = false;
+            }
+        }
+        joint = used > 0 ? " while " : "";
+    }
+    if (used < size) {
+        snprintf(text + used, size - used, " changes no reading by more than its noise");
+    }
+    return text;
+}
+
+json_t *identify_traces_json(const identification *id)
+{
+    json_t *traces = json_array();
+    for (int k = 0; k < id->trace_count; k++) {
+        const recorded_trace *t = &id->traces[k];
+        json_t *line = json_object(), *channels = json_array();
+        json_put(line, "file", json_text(t->file));
+        json_put(line, "time_shift_s", json_number(t->own[OWN_SHIFT]));
+        json_put(line, "encoder_offset_rad", json_number(t->own[OWN_OFFSET]));
+        json_put(line, "initial_angle_rad", json_number(t->own[OWN_ANGLE]));
+        json_put(line, "initial_velocity_rad_s", json_number(t->own[OWN_VELOCITY]));
+        json_put(line, "contacts", json_integer(t->contact_count));
+        json_put(line, "contact_error_s", json_number(t->contact_error));
+        json_put(line, "peak_error_percent", json_number(100 * t->peak_error));
+        for (int c = 0; c < CHANNELS; c++) {
+            if (t->reading[c] != NULL) {
+                json_t *channel = json_object();
+                json_put(channel, "signal", json_text(signal_table[identify_signals[c]].name));
+                json_put(channel, "rms_over_deviation", json_number(t->rms[c]));
+                json_put(channel, "whiteness", json_number(t->whiteness[c]));
+                json_add(channels, channel);
+            }
+        }
+        json_put(line, "residuals", channels);
+        json_add(traces, line);
+    }
+    return traces;
+}
+
+json_t *identify_json(const identification *id)
+{
+    json_t *object = json_object(), *fit = json_array(), *rows = json_array(),
+           *words = json_array();
+    const int p = id->count;
+    json_put(object, "scenario", json_text(id->base->name));
+    for (int i = 0; i < p; i++) {
+        const fitted_parameter *of = &id->fit[i];
+        json_t *line = json_object();
+        double row[IDENTIFY_PATHS];
+        json_put(line, "path", json_text(of->axis.name));
+        json_put(line, "value", json_number(of->value));
+        json_put(line, "standard_error", json_number(of->standard_error));
+        json_put(line, "low", json_number(of->low));
+        json_put(line, "high", json_number(of->high));
+        json_put(line, "determined", json_boolean(of->determined));
+        json_add(fit, line);
+        for (int j = 0; j < p; j++) {
+            const double size = sqrt(id->covariance[i * p + i]) * sqrt(id->covariance[j * p + j]);
+            row[j] = of->determined && id->fit[j].determined ? id->covariance[i * p + j] / size
+                                                             : (double)NAN;
+        }
+        json_add(rows, json_numbers(row, p));
+    }
+    for (int k = 0; k < id->undetermined; k++) {
+        char text[1024];
+        json_add(words, json_text(identify_words(id, k, text, sizeof text)));
+    }
+    json_put(object, "fit", fit);
+    json_put(object, "correlation", rows);
+    json_put(object, "singular_values", json_numbers(id->singular, p));
+    json_put(object, "undetermined", words);
+    json_put(object, "chi_square", json_number(id->chi_square));
+    json_put(object, "residuals", json_integer((json_int_t)id->residuals - p));
+    json_put(object, "aic", json_number(id->aic));
+    json_put(object, "white", json_boolean(id->white));
+    json_put(object, "traces", identify_traces_json(id));
+    return object;
+}
+
+void identify_write_set(FILE *stream, const identification *id)
+{
+    const int p = id->count;
+    random_generator random;
+    random_seed(&random, id->seed);
+    fprintf(stream, "# %d arms drawn from the covariance of a fit\ncontrol.seed=1:1000000\n",
+            IDENTIFY_CASES);
+    for (int n = 0; n < IDENTIFY_CASES; n++) {
+        double drawn[IDENTIFY_PATHS] = {0};
+
+        // along each direction that is determined, by a normal number
+        for (int k = 0; k < p; k++) {
+            double sum = -6;
+            for (int i = 0; i < 12; i++) {
+                sum += random_uniform(&random);
+            }
+            for (int i = 0; i < p && k >= id->undetermined; i++) {
+                drawn[i] += sum / id->singular[k] * id->direction[k * p + i] * id->scale[i];
+            }
+        }
+        fprintf(stream, "case arm %d:", n + 1);
+        bool first = true;
+        for (int i = 0; i < p; i++) {
+            const fitted_parameter *fit = &id->fit[i];
+            if (fit->determined) {
+                char text[NUMBER_TEXT];
+                number_format(text,
+                              fmin(fmax(fit->value + drawn[i], fit->low_most), fit->high_most));
+                fprintf(stream, "%s %s=%s", first ? "" : ";", fit->axis.name, text);
+                first = false;
+            }
+        }
+        fputc('\n', stream);
+    }
+}

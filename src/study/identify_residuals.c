@@ -1,0 +1,425 @@
+// What of a recorded trace is compared with a run, and how.
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/csv_table.h"
+#include "src/rig/rig.h"
+#include "src/run/run.h"
+#include "src/study/identify.h"
+
+#define FAILED_RUN      1e3  // residual of a run that fails, in standard deviations
+#define SAME_INSTANT    1e-6 // of a sampling period
+#define NEAR_RANGE      5.0  // standard deviations from the end of a converter's range
+#define LEAST_DEVIATION 1e-6 // of an ideal channel, in its unit
+
+const int identify_signals[CHANNELS] = {SIGNAL_INDEX(encoder),       SIGNAL_INDEX(tachometer),
+                                        SIGNAL_INDEX(force_reading), SIGNAL_INDEX(piezo_force),
+                                        SIGNAL_INDEX(film),          SIGNAL_INDEX(accelerometer)};
+
+// --- reading ----------------------------------------------------------------------------------
+
+// A column under the heading that the user gives for a signal, else under the signal's name; NULL
+// in *values where it need not be there and is not.
+static status read_column(const csv_table *t, const char *signal, const char *unit, bool needed,
+                          char *const *columns, int count, double **values, fault *f)
+{
+    const char *heading = signal;
+    const size_t length = strlen(signal);
+    for (int i = 0; i < count; i++) {
+        if (strncmp(columns[i], signal, length) == 0 && columns[i][length] == '=') {
+            heading = columns[i] + length + 1;
+            needed = true;
+        }
+    }
+    *values = NULL;
+    if (!needed && csv_table_find(t, heading) < 0) {
+        return STATUS_OK;
+    }
+    return strcmp(signal, "time") == 0 ? csv_table_times(t, heading, values, f)
+                                       : csv_table_numbers(t, heading, unit, values, f);
+}
+
+// Keeps what each sample read: of several rows within a sampling period, which show what the rig
+// holds, the last one's values and the first one's time.
+static void keep_samples(recorded_trace *t, double rate)
+{
+    size_t kept = 0;
+    double last = -1;
+    const double begin = t->time[0];
+    for (size_t i = 0; i < t->rows; i++) {
+        const double number = floor((t->time[i] - begin) * rate + SAME_INSTANT);
+        if (number > last) {
+            t->time[kept++] = t->time[i] - begin;
+            last = number;
+        }
+        t->command[kept - 1] = t->command[i];
+        for (int c = 0; c < CHANNELS; c++) {
+            if (t->reading[c] != NULL) {
+                t->reading[c][kept - 1] = t->reading[c][i];
+            }
+        }
+    }
+    t->rows = kept;
+}
+
+// What a residual is made of: volts of the FSR, whose noise is even there, else the reading.
+static double residual_of(const sensor_parameters *s, int channel, double reading)
+{
+    return channel == CHANNEL_FSR ? fsr_volts(s, reading) : reading;
+}
+
+// Standard deviation of noise and converter's step, in the residual's unit; *range: the largest
+// magnitude that can be read, in that unit; *dithered: noise covers the steps.
+static double deviation_of(const sensor_parameters *s, int channel, double *range, bool *dithered)
+{
+    const struct {
+        double noise, gain; // volts, volts per unit
+    } channels[CHANNELS] = {
+        [CHANNEL_TACHOMETER] = {s->tachometer_noise, s->tachometer_gain},
+        [CHANNEL_FSR] = {s->fsr_noise, 1},
+        [CHANNEL_PIEZO] = {s->piezo_noise, s->piezo_gain},
+        [CHANNEL_FILM] = {s->film_noise, s->film_gain},
+        [CHANNEL_ACCELEROMETER] = {s->accelerometer_noise, s->accelerometer_gain},
+    };
+    double step = converter_of(s->adc_bits, s->adc_range).step;
+    double noise = channels[channel].noise, gain = channels[channel].gain;
+    *range = s->adc_range / gain;
+    if (channel == CHANNEL_ENCODER) {
+        step = s->encoder_counts > 0 ? 2 * M_PI / s->encoder_counts : 0;
+        gain = 1;
+        *range = HUGE_VAL;
+    }
+    if (s->ideal) {
+        step = noise = 0;
+        *range = HUGE_VAL;
+    }
+    if (channel == CHANNEL_FSR) {
+        *range = fmin(*range, fsr_volts(s, s->fsr_saturation));
+    }
+    *dithered = noise >= step / 2;
+    return fmax(sqrt(noise * noise + step * step / 12) / gain, LEAST_DEVIATION);
+}
+
+// Finds touches and releases in the force that was recorded, and says what counts: nothing near
+// them, forces in contact, and what is within its range. A reading that stays within a step of
+// its converter for some samples is one reading.
+static status weigh(recorded_trace *t, const parameters *p, fault *f)
+{
+    const double *force =
+        t->reading[CHANNEL_FSR] != NULL ? t->reading[CHANNEL_FSR] : t->reading[CHANNEL_PIEZO];
+    unsigned char *near = calloc(t->rows, 1);
+    t->contacts = calloc(t->rows, sizeof *t->contacts);
+    if (near == NULL || t->contacts == NULL) {
+        free(near);
+        return fault_no_memory(f);
+    }
+
+    double released = -HUGE_VAL;
+    for (size_t i = 1; force != NULL && i < t->rows; i++) {
+        const bool was = force[i - 1] > p->control.contact_threshold,
+                   is = force[i] > p->control.contact_threshold;
+        if (was == is) {
+            continue;
+        }
+        const double at = (t->time[i - 1] + t->time[i]) / 2;
+        if (is && at - released > IDENTIFY_GUARD) {
+            t->contacts[t->contact_count++] = at;
+        }
+        released = at;
+        for (size_t k = i; k-- > 0 && at - t->time[k] <= IDENTIFY_GUARD;) {
+            near[k] = 1;
+        }
+        for (size_t k = i; k < t->rows && t->time[k] - at <= IDENTIFY_GUARD; k++) {
+            near[k] = 1;
+        }
+    }
+
+    t->residuals = (size_t)t->contact_count;
+    for (int c = 0; c < CHANNELS; c++) {
+        double range;
+        bool dithered;
+        const double deviation = deviation_of(&p->sensor, c, &range, &dithered);
+        const double *read = t->reading[c];
+        if (read == NULL) {
+            continue;
+        }
+        t->deviation[c] = calloc(t->rows, sizeof *t->deviation[c]);
+        if (t->deviation[c] == NULL) {
+            free(near);
+            return fault_no_memory(f);
+        }
+        for (size_t i = 0, end; i < t->rows; i = end) {
+            for (end = i + 1; !dithered && end < t->rows && read[end] == read[i];) {
+                end++;
+            }
+            end = dithered ? i + 1 : end;
+            for (size_t k = i; k < end; k++) {
+                const bool counts =
+                    !near[k] &&
+                    fabs(residual_of(&p->sensor, c, read[k])) < range - NEAR_RANGE * deviation &&
+                    (c != CHANNEL_FSR || read[k] > p->control.contact_threshold);
+                t->deviation[c][k] = counts ? deviation * sqrt((double)(end - i)) : 0;
+                t->residuals += counts;
+            }
+        }
+    }
+    free(near);
+    return STATUS_OK;
+}
+
+// The state that the trace starts with, as far as its first readings tell.
+static void guess_start(recorded_trace *t, const parameters *p)
+{
+    const double *encoder = t->reading[CHANNEL_ENCODER], *speed = t->reading[CHANNEL_TACHOMETER];
+    double range;
+    bool dithered;
+    t->own[OWN_ANGLE] = p->initial.angle;
+    t->own[OWN_VELOCITY] = p->initial.velocity;
+    if (encoder != NULL) {
+        t->own[OWN_ANGLE] =
+            (encoder[0] - p->sensor.encoder_offset) / (1 + p->sensor.encoder_gain_error);
+    }
+    const double noise = deviation_of(&p->sensor, CHANNEL_TACHOMETER, &range, &dithered);
+    t->fits_velocity = p->initial.velocity != 0;
+    if (speed != NULL && fabs(speed[0] - p->initial.velocity) > NEAR_RANGE * noise) {
+        t->own[OWN_VELOCITY] = speed[0];
+        t->fits_velocity = true;
+    }
+}
+
+status identify_add_trace(identification *id, const char *file, char *const *columns, int count,
+                          fault *f)
+{
+    assert(id != NULL && file != NULL && id->trace_count <= IDENTIFY_TRACES);
+    if (id->trace_count == IDENTIFY_TRACES) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "more than %d traces", IDENTIFY_TRACES);
+    }
+    const parameters *p = &id->base->parameters;
+    recorded_trace *t = &id->traces[id->trace_count++];
+    csv_table table;
+    *t = (recorded_trace){.file = strdup(file)};
+    status code = t->file != NULL ? csv_table_read(&table, file, 2, f) : fault_no_memory(f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    t->rows = table.rows;
+    code = read_column(&table, "time", "s", true, columns, count, &t->time, f);
+    if (code == STATUS_OK) {
+        code = read_column(&table, "command", "V", true, columns, count, &t->command, f);
+    }
+    int readings = 0;
+    for (int c = 0; c < CHANNELS && code == STATUS_OK; c++) {
+        const signal_info *signal = &signal_table[identify_signals[c]];
+        code = read_column(&table, signal->name, signal->unit, false, columns, count,
+                           &t->reading[c], f);
+        readings += t->reading[c] != NULL;
+    }
+    csv_table_finish(&table);
+    if (code == STATUS_OK && readings == 0) {
+        code = fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
+                               "%.300s:1: no reading to compare with, expected a column such as "
+                               "encoder[rad], tachometer[rad/s] or force_reading[N]",
+                               file);
+    }
+    if (code == STATUS_OK && !(t->time[t->rows - 1] > t->time[0])) {
+        code = fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
+                               "%.300s:2: no time passes from the first row to the last", file);
+    }
+    if (code == STATUS_OK) {
+        keep_samples(t, p->control.rate);
+        guess_start(t, p);
+        code = weigh(t, p, f);
+    }
+    return code;
+}
+
+// --- a run under the recorded command ---------------------------------------------------------
+
+typedef struct playback_memory {
+    const recorded_trace *trace;
+} playback_memory;
+
+static void play_back(void *memory, const controller_input *in, controller_output *out)
+{
+    const recorded_trace *t = ((const playback_memory *)memory)->trace;
+    out->command = csv_table_at(t->time, t->command, t->rows, in->time + 1e-9, false);
+}
+
+static const controller playback = {.interface = CONTROLLER_INTERFACE,
+                                    .name = "the recorded command",
+                                    .modes = (const char *const[]){"playback", NULL},
+                                    .memory_size = sizeof(playback_memory),
+                                    .sample = play_back};
+
+// The scenario as it is run: the sensors' lags, curves and ripple stay, noise and steps are what
+// residuals are measured by.
+static status make_run(const identification *id, const recorded_trace *t, const parameters *p,
+                       const double own[OWNS], scenario *made, fault *f)
+{
+    const sensor_parameters *sensor = &p->sensor;
+    const struct {
+        int parameter;
+        double value;
+    } changes[] = {
+        {PARAMETER_INDEX(sensor.encoder_counts), 0},
+        {PARAMETER_INDEX(sensor.adc_bits), 0},
+        {PARAMETER_INDEX(sensor.tachometer_noise), 0},
+        {PARAMETER_INDEX(sensor.fsr_noise), 0},
+        {PARAMETER_INDEX(sensor.piezo_noise), 0},
+        {PARAMETER_INDEX(sensor.film_noise), 0},
+        {PARAMETER_INDEX(sensor.accelerometer_noise), 0},
+        {PARAMETER_INDEX(sensor.piezo), sensor->piezo || t->reading[CHANNEL_PIEZO] != NULL},
+        {PARAMETER_INDEX(sensor.film), sensor->film || t->reading[CHANNEL_FILM] != NULL},
+        {PARAMETER_INDEX(sensor.accelerometer),
+         sensor->accelerometer || t->reading[CHANNEL_ACCELEROMETER] != NULL},
+        {PARAMETER_INDEX(control.law), LAW_OPEN_LOOP},
+        {PARAMETER_INDEX(control.jitter), 0},
+        {PARAMETER_INDEX(control.force_amplitude), 0},
+        {PARAMETER_INDEX(control.force_limit), 0},
+        {PARAMETER_INDEX(initial.angle), own[OWN_ANGLE]},
+        {PARAMETER_INDEX(initial.velocity), own[OWN_VELOCITY]},
+        {PARAMETER_INDEX(run.duration), t->time[t->rows - 1] + 3 / p->control.rate},
+    };
+    parameters m = *p;
+    *made = *id->base;
+    made->action_count = 0;
+    status code = parameter_set_text(&m, PARAMETER_INDEX(control.settings), "", f);
+    code =
+        code == STATUS_OK ? parameter_set_text(&m, PARAMETER_INDEX(control.lock), "none", f) : code;
+    for (size_t i = 0; i < sizeof changes / sizeof *changes && code == STATUS_OK; i++) {
+        code = parameter_set_number(&m, changes[i].parameter, changes[i].value, f);
+    }
+    return code == STATUS_OK ? scenario_take_parameters(made, &m, f) : code;
+}
+
+// Between two rows a quantity is the cubic through its values and rates.
+static double between(const sample *a, const sample *b, double time, double from, double to,
+                      double from_rate, double to_rate)
+{
+    const double h = b->time - a->time, u = h > 0 ? (time - a->time) / h : 1, v = 1 - u;
+    return v * v * (1 + 2 * u) * from + u * u * (3 - 2 * u) * to +
+           h * u * v * (v * from_rate - u * to_rate);
+}
+
+// What the sensors read at an instant; the hub's angle and velocity from the motion itself, what
+// lags between two samples on a straight line.
+static double reading_at(const trace *run, sensors *eyes, int channel, double time, double period)
+{
+    const size_t last = run->row_count - 1, at = trace_row_at(run, time);
+    if (channel == CHANNEL_ENCODER || channel == CHANNEL_TACHOMETER) {
+        const sample *a = &run->rows[at], *b = &run->rows[at < last ? at + 1 : last];
+        const double when = fmax(time, a->time);
+        const sensed_motion now = {.angle = between(a, b, when, a->hub_angle, b->hub_angle,
+                                                    a->hub_velocity, b->hub_velocity),
+                                   .velocity = between(a, b, when, a->hub_velocity, b->hub_velocity,
+                                                       a->hub_acceleration, b->hub_acceleration)};
+        const sensor_reading r = sensors_read(eyes, &now);
+        return channel == CHANNEL_ENCODER ? r.encoder : r.tachometer;
+    }
+
+    // a sample's reading stands in the row before the next sample acts
+    const double whole = floor(time / period + SAME_INSTANT), share = time / period - whole;
+    double value[2];
+    for (int i = 0; i < 2; i++) {
+        size_t row = trace_row_at(run, (whole + i + 1 - SAME_INSTANT) * period);
+        row += row < last;
+        value[i] = signal_value(&run->rows[row], identify_signals[channel]);
+    }
+    return share > SAME_INSTANT ? (1 - share) * value[0] + share * value[1] : value[0];
+}
+
+// The touch of the run that is nearest to an instant [s]; the run's end if there is none.
+static double nearest_touch(const trace *run, double time)
+{
+    double released = -HUGE_VAL, best = run->rows[run->row_count - 1].time;
+    bool any = false;
+    for (size_t i = 0; i < run->event_count; i++) {
+        const event *e = &run->events[i];
+        const bool touches = e->kind == EVENT_IMPACT || e->kind == EVENT_CONTACT;
+        if (touches && e->time - released > IDENTIFY_GUARD) {
+            best = !any || fabs(e->time - time) < fabs(best - time) ? e->time : best;
+            any = true;
+        }
+
+        // an impact alone sends the arm off again
+        if (touches || e->kind == EVENT_RELEASE) {
+            released = e->kind == EVENT_CONTACT ? HUGE_VAL : e->time;
+        }
+    }
+    return best;
+}
+
+// What a run comes to beside its residuals.
+static void judge_run(recorded_trace *t, const trace *run, double period, const double *own)
+{
+    const int channel = t->reading[CHANNEL_FSR] != NULL ? CHANNEL_FSR : CHANNEL_PIEZO;
+    double recorded = 0, computed = 0;
+    for (size_t i = 0; t->reading[channel] != NULL && i < t->rows; i++) {
+        const double time = fmax(t->time[i] - own[OWN_SHIFT], 0);
+        recorded = fmax(recorded, t->reading[channel][i]);
+        computed = fmax(computed, reading_at(run, NULL, channel, time, period));
+    }
+    t->peak_error = t->contact_count > 0 && recorded > 0 ? computed / recorded - 1 : (double)NAN;
+    t->contact_error = t->contact_count > 0 ? 0 : (double)NAN;
+    for (int i = 0; i < t->contact_count; i++) {
+        const double at = t->contacts[i] - own[OWN_SHIFT];
+        t->contact_error = fmax(t->contact_error, fabs(nearest_touch(run, at) - at));
+    }
+}
+
+static void compare(const recorded_trace *t, const trace *run, const parameters *p,
+                    const double own[OWNS], double *residual)
+{
+    sensors eyes;
+    const double period = 1 / p->control.rate;
+    sensors_init(&eyes, &p->sensor, 0);
+    for (int c = 0; c < CHANNELS; c++) {
+        for (size_t i = 0; t->reading[c] != NULL && i < t->rows; i++) {
+            if (t->deviation[c][i] > 0) {
+                const double time = fmax(t->time[i] - own[OWN_SHIFT], 0);
+                const double offset = c == CHANNEL_ENCODER ? own[OWN_OFFSET] : 0;
+                *residual++ =
+                    (residual_of(&p->sensor, c, t->reading[c][i]) -
+                     residual_of(&p->sensor, c, reading_at(run, &eyes, c, time, period) + offset)) /
+                    t->deviation[c][i];
+            }
+        }
+    }
+    for (int i = 0; i < t->contact_count; i++) {
+        const double at = t->contacts[i] - own[OWN_SHIFT];
+        *residual++ = (at - nearest_touch(run, at)) / (period / sqrt(12));
+    }
+}
+
+status identify_residuals(const identification *id, recorded_trace *t, const parameters *p,
+                          const double own[OWNS], bool judge, double *residual, fault *f)
+{
+    scenario made;
+    run_result result = {0};
+    const given_law law = {&playback, (void *)t};
+    const run_options options = {.keep_trace = true, .law = &law, .monitor = NULL};
+    status code = make_run(id, t, p, own, &made, f);
+    if (code == STATUS_OK) {
+        code = run_scenario_with(&made, &options, &result);
+        if (code != STATUS_OK) {
+            fault_set(f, code, "the run of '%.200s' failed: %.700s", t->file,
+                      result.summary.message);
+        }
+    }
+
+    // one that cannot be made is as far off as can be
+    if (code == STATUS_OK) {
+        compare(t, &result.trace, &made.parameters, own, residual);
+    }
+    for (size_t i = 0; i < t->residuals; i++) {
+        residual[i] = code == STATUS_OK && isfinite(residual[i]) ? residual[i] : FAILED_RUN;
+    }
+    if (code == STATUS_OK && judge) {
+        judge_run(t, &result.trace, 1 / made.parameters.control.rate, own);
+    }
+    run_finish(&result);
+    return code;
+}

@@ -1,0 +1,255 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/plot/study_plot.h"
+#include "src/base/json.h"
+#include "src/base/numbers.h"
+#include "src/study/identify.h"
+#include "ui/commands/pictures.h"
+#include "ui/commands/progress.h"
+
+enum { MOST_LINKS = 8 };
+
+// The fit, its validation, and what other numbers of links make of the same data.
+typedef struct outcome {
+    identification fit;
+    identification validation; // no traces: none was asked for
+    scenario written;          // with the fitted values
+    int links[MOST_LINKS], link_count;
+    double aic[MOST_LINKS];
+    bool white[MOST_LINKS];
+} outcome;
+
+// Reads what is fitted to what.
+static status set_up(const arguments *a, const scenario *s, identification *id, fault *f)
+{
+    *id = (identification){.base = s,
+                           .jobs = many_runs_jobs(a),
+                           .seed = a->seed,
+                           .starts = a->starts > 0 ? (int)a->starts : IDENTIFY_STARTS};
+    status code = identify_available(f);
+    for (int i = 0; i < a->fits.count && code == STATUS_OK; i++) {
+        code = identify_add_path(id, a->fits.items[i], f);
+    }
+    for (int i = 0; i < a->data.count && code == STATUS_OK; i++) {
+        code = identify_add_trace(id, a->data.items[i], a->headings.items, a->headings.count, f);
+    }
+    return code;
+}
+
+// Another trace under the fitted values: only what is its own is fitted.
+static status validate(const arguments *a, outcome *o, fault *f)
+{
+    o->validation = (identification){
+        .base = &o->written, .jobs = o->fit.jobs, .starts = 1, .monitor = o->fit.monitor};
+    status code =
+        identify_add_trace(&o->validation, a->validate, a->headings.items, a->headings.count, f);
+    return code == STATUS_OK ? identify_fit(&o->validation, f) : code;
+}
+
+// The numbers of --links.
+static status read_links(const char *text, outcome *o, fault *f)
+{
+    while (text != NULL && *text != '\0') {
+        double value;
+        const char *rest;
+        if (o->link_count == MOST_LINKS || !decimal_read(text, &value, &rest) ||
+            (*rest != ',' && *rest != '\0') || value != floor(value) || value < 1 || value > 64) {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             "--links takes up to %d numbers of links from 1 to 64, such as 2,4,8",
+                             MOST_LINKS);
+        }
+        o->links[o->link_count++] = (int)value;
+        text = *rest == ',' ? rest + 1 : rest;
+    }
+    return STATUS_OK;
+}
+
+// The same data with other numbers of links, from the fitted values on.
+static status compare_links(const arguments *a, outcome *o, fault *f)
+{
+    status code = STATUS_OK;
+    for (int i = 0; i < o->link_count && code == STATUS_OK; i++) {
+        scenario other = o->written;
+        parameters p = other.parameters;
+        identification id = {0};
+        code = parameter_set_number(&p, PARAMETER_INDEX(arm.links), o->links[i], f);
+        code = code == STATUS_OK ? scenario_take_parameters(&other, &p, f) : code;
+        code = code == STATUS_OK ? set_up(a, &other, &id, f) : code;
+        id.starts = 1;
+        id.monitor = o->fit.monitor;
+        code = code == STATUS_OK ? identify_fit(&id, f) : code;
+        o->aic[i] = id.aic;
+        o->white[i] = id.white;
+        identify_finish(&id);
+    }
+    return code;
+}
+
+// --- results ----------------------------------------------------------------------------------
+
+static json_t *answer(const outcome *o)
+{
+    json_t *object = identify_json(&o->fit), *links = json_array();
+    for (int i = 0; i < o->link_count; i++) {
+        json_t *line = json_object();
+        json_put(line, "links", json_integer(o->links[i]));
+        json_put(line, "aic", json_number(o->aic[i]));
+        json_put(line, "white", json_boolean(o->white[i]));
+        json_add(links, line);
+    }
+    json_put(object, "links", links);
+    json_put(object, "validation", identify_traces_json(&o->validation));
+    return object;
+}
+
+static void print_traces(const identification *id, const char *what)
+{
+    for (int k = 0; k < id->trace_count; k++) {
+        const recorded_trace *t = &id->traces[k];
+        say("  %s %s: shifted by %.3g ms, encoder by %.3g rad;", what, t->file,
+            1e3 * t->own[OWN_SHIFT], t->own[OWN_OFFSET]);
+        for (int c = 0; c < CHANNELS; c++) {
+            if (!isnan(t->rms[c])) {
+                say(" %s %.3g", signal_table[identify_signals[c]].name, t->rms[c]);
+            }
+        }
+        say(" of their noise");
+        if (t->contact_count > 0) {
+            say("; %d contact%s within %.3g ms, largest force off by %.3g %%", t->contact_count,
+                t->contact_count == 1 ? "" : "s", 1e3 * t->contact_error, 100 * t->peak_error);
+        }
+        say("\n");
+    }
+}
+
+static void print_answer(const scenario *s, const outcome *o)
+{
+    const identification *id = &o->fit;
+    say_title(s);
+    say("\n  %-26s %12s %12s   %s\n", "parameter", "value", "error", "95 % interval");
+    for (int i = 0; i < id->count; i++) {
+        const fitted_parameter *fit = &id->fit[i];
+        const char *unit = sweep_axis_parameter(&fit->axis)->unit;
+        if (fit->determined) {
+            say("  %-26s %12.6g %12.3g   %.6g to %.6g %s\n", fit->axis.name, fit->value,
+                fit->standard_error, fit->low, fit->high, unit);
+        } else {
+            say("  %-26s %12s %12s   not determined\n", fit->axis.name, "-", "-");
+        }
+    }
+    for (int k = 0; k < id->undetermined; k++) {
+        char words[1024];
+        say("\n  not determined: %s\n", identify_words(id, k, words, sizeof words));
+    }
+    say("\n  %zu readings, chi square %.4g, AIC %.6g; the residuals are %s\n",
+        id->residuals - (size_t)id->count, id->chi_square, id->aic,
+        id->white ? "white" : "correlated: the model lacks something that the data show");
+    print_traces(id, "trace");
+    print_traces(&o->validation, "validation");
+    for (int i = 0; i < o->link_count; i++) {
+        say("  with %d links: AIC %.6g, residuals %s\n", o->links[i], o->aic[i],
+            o->white[i] ? "white" : "correlated");
+    }
+}
+
+static void write_fitted(FILE *stream, const void *what)
+{
+    scenario_write(stream, what);
+}
+
+static void write_cases(FILE *stream, const void *what)
+{
+    identify_write_set(stream, what);
+}
+
+static int report(const arguments *a, const scenario *s, outcome *o)
+{
+    int result = o->fit.undetermined == 0 ? EXIT_DONE : EXIT_FAILED;
+    if (a->json != NULL) {
+        result = worse(result, write_json(a->json, answer(o)));
+    }
+    result = worse(result, write_file(a->output, write_fitted, &o->written));
+    result = worse(result, write_file(a->cases, write_cases, &o->fit));
+    if (a->plot != NULL) {
+        owned_figure *drawn = identify_figure_create(&o->fit);
+        result = worse(result, publish_figure(a, &drawn->figure));
+        owned_figure_destroy(drawn);
+    }
+    if (summary_wanted(a)) {
+        print_answer(s, o);
+    }
+    return result;
+}
+
+static int identify_and_report(const arguments *a, scenario *s)
+{
+    fault f = {0};
+    outcome o = {0};
+    if (a->data.count == 0 || a->fits.count == 0) {
+        return complain("identify needs a recorded trace, --data FILE.csv, and what is to be "
+                        "found, --fit PATH");
+    }
+    status code = read_links(a->links, &o, &f);
+    code = code == STATUS_OK ? set_up(a, s, &o.fit, &f) : code;
+    if (code == STATUS_OK) {
+        // the number of runs is not known before they are through
+        o.fit.monitor = work_begin(a, "runs", 1000);
+        code = identify_fit(&o.fit, &f);
+        parameters p;
+        o.written = *s;
+        code = code == STATUS_OK ? identify_parameters(&o.fit, true, &p, &f) : code;
+        code = code == STATUS_OK ? scenario_take_parameters(&o.written, &p, &f) : code;
+        code = code == STATUS_OK && a->validate != NULL ? validate(a, &o, &f) : code;
+        code = code == STATUS_OK ? compare_links(a, &o, &f) : code;
+        work_end();
+    }
+    if (code == STATUS_STOPPED) {
+        leave_interrupted();
+    }
+    const int result = code == STATUS_OK ? report(a, s, &o) : complain_fault(&f);
+    identify_finish(&o.fit);
+    identify_finish(&o.validation);
+    return result;
+}
+
+static const option_row rows[] = {
+    OPTION(FILES, "data", "FILE.csv", "a recorded trace (may be repeated)", PLACE(data)),
+    OPTION(PARAMETERS, "fit", "PATH[=a:b]", "a parameter to be found (may be repeated)",
+           PLACE(fits)),
+    OPTION(PARAMETERS, "column", "SIGNAL=HEADER[unit]",
+           "where a trace has a signal under another heading (may be repeated)", PLACE(headings)),
+    OPTION(FILE, "validate", "FILE.csv", "a trace that is not fitted, to judge the result by",
+           PLACE(validate)),
+    OPTION(TEXT, "links", "N,N,...", "fit these numbers of links too, and compare", PLACE(links)),
+    OPTION(RESULT, "output", "FILE|-", "write the scenario with the values that are determined",
+           PLACE(output), .letter = 'o'),
+    OPTION(RESULT, "cases", "FILE.set", "write 200 arms drawn from the covariance, for robust",
+           PLACE(cases)),
+    OPTION(WHOLE, "starts", "N", "values that the search begins with (16)", PLACE(starts), .low = 1,
+           .high = 10000),
+    SEED_OPTION,
+    JOBS_OPTION,
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
+const command identify_command = {
+    .name = "identify",
+    .group = GROUP_CONTROL,
+    .operands = "SCENARIO",
+    .summary = "Find parameters of an arm, and their errors, from recorded traces",
+    .help =
+        "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit motor.stiction\n"
+        "simulates each trace with the command that was recorded and fits the parameters until\n"
+        "the readings agree, each judged by its noise. Columns are headed as run --csv heads\n"
+        "them: time[s], command[V] and any of encoder, tachometer, force_reading, piezo_force,\n"
+        "film, accelerometer. Each trace has a time shift, an encoder offset and an initial\n"
+        "state of its own. A combination that the data do not determine is named and not\n"
+        "written, and the exit status is 1.\n",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &json_options, &options, &drawn_options, &quiet_options,
+                &page_options},
+    .use = identify_and_report,
+};
