@@ -1,0 +1,435 @@
+// identify against recordings whose parameters are known: coverage of its intervals and the bound
+// of Cramer and Rao, which is computed here by differences of loops that are stepped; what it
+// refuses, what it finds undetermined or unexplained.
+//
+//   test_identify SEEDS
+#include "src/study/identify.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/base/dense.h"
+#include "src/rig/sensors.h"
+#include "src/run/loop.h"
+#include "tests/rig_fixture.h"
+
+enum { SAMPLES = 1501, READINGS = 3, FITTED = 5, OWN = 3, RECORDINGS = 3 };
+#define PERIOD 1e-3
+
+static int seeds = 2;
+
+static const char *const paths[FITTED] = {"arm.k2", "arm.hub_inertia", "motor.stiction",
+                                          "motor.torque_constant", "motor.viscous_friction"};
+static const double truth[FITTED] = {5.3, 0.0058, 0.052, 2.3, 0.007};
+
+// A recording: how it is made, and what came of it.
+typedef struct recording_made {
+    const char *law;
+    double angle, voltage;
+    bool reverses, no_wall;
+    char file[64];
+    double command[SAMPLES];
+} recording_made;
+
+// The rig of all recordings, at its start.
+static scenario rig_scenario(const recording_made *r, const double *values, int seed)
+{
+    static action reversals[3];
+    char text[13][64];
+    const char *settings[14] = {0};
+    snprintf(text[0], 64, "control.law=%s", r->law);
+    snprintf(text[1], 64, "control.rate=1000");
+    snprintf(text[2], 64, "method.step=0.0005");
+    snprintf(text[3], 64, "initial.angle=%g", r->angle);
+    snprintf(text[4], 64, "control.approach_voltage=%g", r->voltage);
+    snprintf(text[5], 64, "control.seed=%d", seed);
+    snprintf(text[6], 64, "control.force=1");
+    snprintf(text[7], 64, "wall.kind=%s", r->no_wall ? "none" : "point");
+    int count = 8;
+    for (int i = 0; i < FITTED && values != NULL; i++) {
+        snprintf(text[count++], 64, "%s=%.17g", paths[i], values[i]);
+    }
+    for (int i = 0; i < count; i++) {
+        settings[i] = text[i];
+    }
+    scenario s = {.parameters = rig_parameters(settings), .actions = reversals};
+    s.name = (char *)"rig";
+    for (int i = 0; i < 3 && r->reverses; i++) {
+        reversals[i] = (action){.time = 0.25 + 0.4 * i,
+                                .kind = ACTION_SET,
+                                .parameter = PARAMETER_INDEX(control.approach_voltage),
+                                .value = i % 2 == 0 ? -r->voltage : r->voltage};
+        s.action_count = 3;
+    }
+    return s;
+}
+
+// Runs a recording with the true values and writes what its sensors read.
+static void record(recording_made *r, const double *values, int seed, int links)
+{
+    run_result run;
+    fault f;
+    scenario s = rig_scenario(r, values, seed);
+    parameters p = s.parameters;
+    assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, &f), STATUS_OK);
+    assert_int_equal(scenario_take_parameters(&s, &p, &f), STATUS_OK);
+    assert_int_equal(run_scenario(&s, true, &run), STATUS_OK);
+    snprintf(r->file, sizeof r->file, "/tmp/test_identify.XXXXXX");
+    FILE *file = fdopen(mkstemp(r->file), "w");
+    assert_non_null(file);
+    fputs("time[ms],command[V],encoder[rad],tachometer[rad/s],force_reading[N]\n", file);
+    for (int k = 0; k < SAMPLES - 1; k++) {
+        // the row in the middle of the period shows what the sample at its beginning read
+        const sample *row = &run.trace.rows[trace_row_at(&run.trace, (k + 0.6) * PERIOD)];
+        r->command[k] = row->command;
+        fprintf(file, "%d,%.17g,%.17g,%.17g,%.17g\n", k, row->command, row->encoder,
+                row->tachometer, row->force_reading);
+    }
+    assert_int_equal(fclose(file), 0);
+    run_finish(&run);
+}
+
+static void set_up(identification *id, const scenario *base, recording_made *made, int count,
+                   int fitted)
+{
+    fault f = {.text = ""};
+    *id = (identification){.base = base, .jobs = 2, .starts = 1};
+    for (int i = 0; i < fitted; i++) {
+        assert_int_equal(identify_add_path(id, paths[i], &f), STATUS_OK);
+    }
+    for (int i = 0; i < count; i++) {
+        if (identify_add_trace(id, made[i].file, NULL, 0, &f) != STATUS_OK) {
+            fail_msg("%s", f.text);
+        }
+    }
+}
+
+static void fit(identification *id)
+{
+    fault f = {.text = ""};
+    if (identify_fit(id, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+}
+
+// --- the bound --------------------------------------------------------------------------------
+
+// What ideal converters without noise read under the recorded command, and the first touch.
+static void read_exactly(const recording_made *r, const double *values, double angle,
+                         double read[READINGS][SAMPLES], double *touch)
+{
+    recording_made here = *r;
+    here.angle = angle;
+    here.reverses = false;
+    scenario s = rig_scenario(&here, values, 1);
+    s.parameters.sensor.encoder_counts = s.parameters.sensor.adc_bits = 0;
+    s.parameters.sensor.tachometer_noise = s.parameters.sensor.fsr_noise = 0;
+    const loop_options options = {.commanded = true};
+    run_loop *loop;
+    fault f;
+    assert_int_equal(loop_create(&loop, &s, &options, &f), STATUS_OK);
+    for (int k = 0; k < SAMPLES - 1; k++) {
+        sensor_reading now;
+        assert_true(loop_sense(loop, &now));
+        read[0][k] = now.encoder;
+        read[1][k] = now.tachometer;
+        read[2][k] = fsr_volts(&s.parameters.sensor, now.force_reading);
+        loop_command(loop, r->command[k]);
+        assert_int_equal(loop_step(loop, &f), STATUS_OK);
+    }
+    const summary sum = loop_summary(loop);
+    *touch = sum.first_contact_s;
+    loop_destroy(loop);
+}
+
+// Standard deviations that no unbiased estimate goes below: Fisher's information of all readings
+// more than 10 ms from a touch or release and of the first touch, each recording's shift, offset
+// and start being unknown too. A standing encoder says its value once.
+static void bound(const recording_made *made, int count, int fitted, double *deviations)
+{
+    enum { MOST = FITTED + RECORDINGS * OWN };
+    static double exact[READINGS][SAMPLES], low[READINGS][SAMPLES], high[READINGS][SAMPLES],
+        slope[MOST][READINGS][SAMPLES];
+    double information[MOST * MOST] = {0}, unit[MOST * MOST] = {0};
+    const sensor_parameters sensor = rig_scenario(made, truth, 1).parameters.sensor;
+    const double adc = 20.0 / 4096, step = 2 * M_PI / sensor.encoder_counts;
+    const double variance[READINGS] = {step * step / 12, (1e-4 + adc * adc / 12) / 4,
+                                       4e-4 + adc * adc / 12};
+    const int n = fitted + count * OWN;
+
+    for (int r = 0; r < count; r++) {
+        double touch, before, after, touch_slope[MOST] = {0};
+        const int own = fitted + r * OWN;
+        memset(slope, 0, sizeof slope);
+        read_exactly(&made[r], truth, made[r].angle, exact, &touch);
+        for (int i = 0; i <= fitted; i++) {
+            // the parameters, and the angle of the start
+            double values[FITTED];
+            const double h = i < fitted ? 1e-4 * truth[i] : 1e-5;
+            memcpy(values, truth, sizeof values);
+            const int column = i < fitted ? i : own + 2;
+            values[i < fitted ? i : 0] += i < fitted ? h : 0;
+            read_exactly(&made[r], values, made[r].angle + (i < fitted ? 0 : h), high, &after);
+            values[i < fitted ? i : 0] -= i < fitted ? 2 * h : 0;
+            read_exactly(&made[r], values, made[r].angle - (i < fitted ? 0 : h), low, &before);
+            touch_slope[column] = (after - before) / (2 * h);
+            for (int c = 0; c < READINGS; c++) {
+                for (int k = 0; k < SAMPLES - 1; k++) {
+                    slope[column][c][k] = (high[c][k] - low[c][k]) / (2 * h);
+                }
+            }
+        }
+        touch_slope[own] = 1;
+        for (int c = 0; c < READINGS; c++) {
+            for (int k = 1; k < SAMPLES - 2; k++) {
+                slope[own][c][k] = -(exact[c][k + 1] - exact[c][k - 1]) / (2 * PERIOD);
+                slope[own + 1][c][k] = c == 0;
+            }
+        }
+
+        const double threshold = fsr_volts(&sensor, 0.05);
+        int quiet = 0, standing = 1; // samples since the last touch or release
+        for (int k = 1; k < SAMPLES - 2; k++) {
+            bool turns = false;
+            for (int j = k > 10 ? k - 10 : 1; j <= k + 10 && j < SAMPLES - 1; j++) {
+                turns |= (exact[2][j] > threshold) != (exact[2][j - 1] > threshold);
+            }
+            quiet = turns ? 0 : quiet + 1;
+            standing = 1;
+            for (int way = -1; way <= 1; way += 2) {
+                for (int j = k; j > 0 && j < SAMPLES - 1 &&
+                                floor(exact[0][j] / step + 0.5) == floor(exact[0][k] / step + 0.5);
+                     j += way) {
+                    standing += j != k;
+                }
+            }
+            for (int c = 0; c < READINGS && quiet > 0; c++) {
+                if (c == 2 && exact[2][k] <= threshold) {
+                    continue;
+                }
+                const double weight = 1 / (variance[c] * (c == 0 ? standing : 1));
+                for (int i = 0; i < n; i++) {
+                    for (int j = 0; j < n; j++) {
+                        information[i * n + j] += weight * slope[i][c][k] * slope[j][c][k];
+                    }
+                }
+            }
+        }
+        for (int i = 0; i < n && isfinite(touch); i++) {
+            for (int j = 0; j < n; j++) {
+                information[i * n + j] += 12 / (PERIOD * PERIOD) * touch_slope[i] * touch_slope[j];
+            }
+        }
+    }
+
+    // what nothing says of an offset in free flight is not asked for
+    for (int i = fitted; i < n; i++) {
+        information[i * n + i] *= 1 + 1e-9;
+    }
+    for (int i = 0; i < n; i++) {
+        unit[i * n + i] = 1;
+    }
+    assert_true(dense_solve_columns(n, n, information, unit));
+    for (int i = 0; i < fitted; i++) {
+        deviations[i] = sqrt(unit[i * n + i]);
+    }
+}
+
+// --- many seeds -------------------------------------------------------------------------------
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void study(recording_made *made, int count, int fitted, bool bounded)
+{
+    double(*errors)[FITTED] = calloc((size_t)seeds, sizeof *errors), least[FITTED];
+    double *sorted = calloc((size_t)seeds, sizeof *sorted);
+    int covered[FITTED] = {0}, white = 0;
+    double values[FITTED];
+    assert_true(errors != NULL && sorted != NULL);
+    memcpy(values, truth, sizeof values);
+    for (int seed = 0; seed < seeds; seed++) {
+        // not fitted means known
+        const scenario base = rig_scenario(&made[1], NULL, 1);
+        values[4] = fitted > 4 ? truth[4] : base.parameters.motor.viscous_friction;
+        for (int r = 0; r < count; r++) {
+            record(&made[r], values, 1 + 10 * seed + r, 2);
+        }
+        identification id;
+        set_up(&id, &base, made, count, fitted);
+        fit(&id);
+        for (int i = 0; i < fitted; i++) {
+            assert_true(id.fit[i].determined);
+            covered[i] += id.fit[i].low <= values[i] && values[i] <= id.fit[i].high;
+            errors[seed][i] = id.fit[i].standard_error;
+        }
+        white += id.white;
+        identify_finish(&id);
+        for (int r = 0; r < count; r++) {
+            unlink(made[r].file);
+        }
+    }
+
+    bound(made, count, fitted, least);
+    for (int i = 0; i < fitted; i++) {
+        for (int s = 0; s < seeds; s++) {
+            sorted[s] = errors[s][i];
+        }
+        qsort(sorted, (size_t)seeds, sizeof *sorted, compare_doubles);
+        const double median = sorted[seeds / 2];
+        print_message("%-24s covered %d of %d, error %.3g of %.4g, bound %.3g, ratio %.3g\n",
+                      paths[i], covered[i], seeds, median, values[i], least[i], median / least[i]);
+        // four standard deviations of a binomial number below 95 %, or 90 % of many
+        const double spread = 4 * sqrt(0.95 * 0.05 * seeds);
+        assert_true(covered[i] >= (seeds >= 200 ? 0.9 * seeds : 0.95 * seeds - spread));
+        assert_true(seeds < 200 || covered[i] <= 0.99 * seeds);
+        if (bounded) {
+            check_below(median, 1.5 * least[i]);
+        }
+    }
+    print_message("white in %d of %d\n", white, seeds);
+    free(errors);
+    free(sorted);
+}
+
+static const recording_made three[RECORDINGS] = {
+    {.law = "open-loop", .angle = -1.5, .voltage = 3, .reverses = true},
+    {.law = "open-loop", .angle = -0.3, .voltage = 1},
+    {.law = "open-loop", .angle = -0.3, .voltage = 3},
+};
+
+static void intervals_cover_and_errors_are_near_the_bound(void **state)
+{
+    (void)state;
+    recording_made made[RECORDINGS];
+    memcpy(made, three, sizeof made);
+    study(made, RECORDINGS, 4, true);
+}
+
+static void so_they_do_with_viscous_friction(void **state)
+{
+    (void)state;
+    recording_made made[RECORDINGS];
+    memcpy(made, three, sizeof made);
+    study(made, RECORDINGS, 5, false);
+}
+
+static void so_they_do_in_a_closed_loop(void **state)
+{
+    (void)state;
+    recording_made made[RECORDINGS];
+    memcpy(made, three, sizeof made);
+    made[1].law = made[2].law = "hybrid";
+    made[2].voltage = 2;
+    study(made, RECORDINGS, 4, true);
+}
+
+// --- what the data do not say -----------------------------------------------------------------
+
+static void one_combination_is_named(void **state)
+{
+    (void)state;
+    recording_made made = {.law = "open-loop", .angle = -2.9, .voltage = 3, .no_wall = true};
+    char words[512];
+    fault f;
+    const scenario base = rig_scenario(&made, NULL, 1);
+    record(&made, truth, 1, 2);
+    identification id = {.base = &base, .jobs = 1, .starts = 1};
+    for (int i = 2; i < 5; i++) {
+        assert_int_equal(identify_add_path(&id, paths[i], &f), STATUS_OK);
+    }
+    assert_int_equal(identify_add_trace(&id, made.file, NULL, 0, &f), STATUS_OK);
+    fit(&id);
+    assert_int_equal(id.undetermined, 1);
+    identify_words(&id, 0, words, sizeof words);
+    for (int i = 0; i < 3; i++) {
+        assert_false(id.fit[i].determined);
+        assert_non_null(strstr(words, paths[i + 2]));
+    }
+
+    // nothing of it is written
+    parameters p;
+    assert_int_equal(identify_parameters(&id, true, &p, &f), STATUS_OK);
+    check_close(p.motor.torque_constant, base.parameters.motor.torque_constant, 0);
+    identify_finish(&id);
+    unlink(made.file);
+}
+
+static void two_links_leave_eight_unexplained(void **state)
+{
+    (void)state;
+    int rejected = 0;
+    recording_made made[RECORDINGS];
+    memcpy(made, three, sizeof made);
+    const scenario base = rig_scenario(&made[1], NULL, 1);
+    for (int seed = 1; seed <= seeds; seed++) {
+        record(&made[0], truth, seed, 8);
+        identification id;
+        set_up(&id, &base, made, 1, 4);
+        fit(&id);
+        rejected += !id.white;
+        identify_finish(&id);
+        unlink(made[0].file);
+    }
+    print_message("whiteness rejected in %d of %d\n", rejected, seeds);
+    assert_true(rejected >= 0.95 * seeds);
+}
+
+static void another_trace_is_foretold(void **state)
+{
+    (void)state;
+    recording_made made[RECORDINGS], other = {.law = "open-loop", .angle = -0.2, .voltage = 2};
+    memcpy(made, three, sizeof made);
+    const scenario base = rig_scenario(&made[1], NULL, 1);
+    double values[FITTED];
+    memcpy(values, truth, sizeof values);
+    values[4] = base.parameters.motor.viscous_friction;
+    for (int r = 0; r < RECORDINGS; r++) {
+        record(&made[r], values, 40 + r, 2);
+    }
+    record(&other, values, 50, 2);
+
+    identification id, judged;
+    set_up(&id, &base, made, RECORDINGS, 4);
+    id.starts = 8;
+    fit(&id);
+    scenario fitted = base;
+    fault f;
+    parameters p;
+    assert_int_equal(identify_parameters(&id, true, &p, &f), STATUS_OK);
+    assert_int_equal(scenario_take_parameters(&fitted, &p, &f), STATUS_OK);
+    set_up(&judged, &fitted, &other, 1, 0);
+    fit(&judged);
+    assert_true(judged.traces[0].contact_count > 0);
+    check_close(judged.traces[0].contact_error, 0, 2e-3);
+    check_close(judged.traces[0].peak_error, 0, 0.05);
+    identify_finish(&id);
+    identify_finish(&judged);
+    for (int r = 0; r < RECORDINGS; r++) {
+        unlink(made[r].file);
+    }
+    unlink(other.file);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(intervals_cover_and_errors_are_near_the_bound),
+        cmocka_unit_test(so_they_do_with_viscous_friction),
+        cmocka_unit_test(so_they_do_in_a_closed_loop),
+        cmocka_unit_test(one_combination_is_named),
+        cmocka_unit_test(two_links_leave_eight_unexplained),
+        cmocka_unit_test(another_trace_is_foretold),
+    };
+    fault f;
+    seeds = argc > 1 ? atoi(argv[1]) : seeds;
+    if (identify_available(&f) != STATUS_OK) {
+        return 77;
+    }
+    cmocka_set_test_filter(argc > 2 ? argv[2] : NULL);
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
