@@ -10,7 +10,7 @@ set -euo pipefail
 cd "$1"
 
 rooms="src/base src/tables src/arm src/thesis src/contact src/engines src/engines/pair src/engines/newmark
-    src/engines/series src/engines/stiff src/predict src/rig/controller src/rig/external
+    src/engines/stiff src/predict src/rig/controller src/rig/external
     src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/study/linear
     src/study/store src/exchange src/api/impactlab src/api
     render/page render/plot render/scene render/figures

@@ -369,15 +369,15 @@ static void every_engine_carries_the_mass_of_a_stiff_chain(void **state)
 {
     (void)state;
     const double first = beam_with_mass(0.1) * beam_with_mass(0.1);
-    const char *const methods[] = {"method.engine=series", "method.engine=stiff",
-                                   "method.name=newmark", "method.name=generalized-alpha"};
-    for (int i = 0; i < 8; i++) {
-        const int links = i < 4 ? 8 : 16;
-        const bool implicit = i % 4 >= 2;
+    const char *const methods[] = {"method.engine=stiff", "method.name=newmark",
+                                   "method.name=generalized-alpha"};
+    for (int i = 0; i < 6; i++) {
+        const int links = i < 3 ? 8 : 16;
+        const bool implicit = i % 3 >= 1;
         char n[32];
         snprintf(n, sizeof n, "arm.links=%d", links);
         parameters p =
-            fixture_parameters(SETTINGS(n, methods[i % 4], "arm.hub_joint=beam", "arm.k2=2e4",
+            fixture_parameters(SETTINGS(n, methods[i % 3], "arm.hub_joint=beam", "arm.k2=2e4",
                                         "motor.stiction=1000", "motor.voltage=0", "wall.kind=none",
                                         implicit ? "method.step=1e-5" : "method.step=1e-3"));
         arm a;
@@ -386,7 +386,7 @@ static void every_engine_carries_the_mass_of_a_stiff_chain(void **state)
         arm_init(&a, &p);
         const double beam = first * sqrt(p.arm.EI / p.arm.mass);
         const double found = swing(&a, &p.method, beam);
-        print_message("%d links, %s: %.6f of the beam's frequency\n", links, methods[i % 4],
+        print_message("%d links, %s: %.6f of the beam's frequency\n", links, methods[i % 3],
                       found / beam);
         // the chain is stiffer or softer than the beam by the square of a link's length
         check_close(found / beam, 1, 0.5 / (links * links));

@@ -1,5 +1,6 @@
 // Chains of many links with decaying fast modes: long strides for any bend of the arm, bounces that
-// do not depend on the recorded rows, and arbitrarily small motions.
+// do not depend on the recorded rows, and arbitrarily small motions. Numbers stated are those of
+// power series of the chain of order 32.
 #include <math.h>
 #include <stdlib.h>
 
@@ -69,29 +70,26 @@ static bounces bounces_of(const parameters *p, const engine *by, double gap, dou
 }
 
 // Strongly damped chains bounce ever lower, to flights of 1e-9 s and 1e-13 m, and what is left of
-// their speed makes the peak force. By the stiff engine that is as by series, however long the run
-// is.
-static void low_bounces_are_those_of_the_series(void **state)
+// their speed makes the peak force, however long the run is.
+static void low_bounces_are_those_of_power_series(void **state)
 {
     (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=18", "arm.damping_ratio=0.9149", "arm.k2=50.78", "arm.mass=1.48",
                  "arm.hub_inertia=0.02198", "motor.voltage=2.55", "motor.stiction=0",
                  "wall.kind=plane", "wall.angle=0.1", "wall.restitution=0.2228783812"));
-    const bounces series = bounces_of(&p, &series_engine, 1e-4, 0.65, 1.6e-4);
-    assert_int_equal(series.impacts, 7);
     for (int i = 1; i <= 4; i++) {
         const bounces stiff = bounces_of(&p, &stiff_engine, 1e-4, 0.65, 1.6e-4 * i * i);
-        assert_int_equal(stiff.impacts, series.impacts);
-        check_relative(stiff.slowest, series.slowest, 1e-6);
-        check_relative(stiff.peak, series.peak, 1e-6);
-        check_close(stiff.peak_time, series.peak_time, 1e-12);
+        assert_int_equal(stiff.impacts, 7);
+        check_relative(stiff.slowest, 4.79033149495e-5, 1e-6);
+        check_relative(stiff.peak, 14126.0309154, 1e-6);
+        check_close(stiff.peak_time, 1.5419102067582e-4, 1e-12);
     }
 }
 
 // With a rest speed of 1e-7 m/s flights become as short as 4e-14 s and as low as 1e-22 m, which is
 // less than what angles are rounded to. None of them regains any speed.
-static void flights_lower_than_any_rounding_are_those_of_the_series(void **state)
+static void flights_lower_than_any_rounding_are_those_of_power_series(void **state)
 {
     (void)state;
     static const char *const arms[2][10] = {
@@ -101,18 +99,20 @@ static void flights_lower_than_any_rounding_are_those_of_the_series(void **state
         {"arm.links=19", "arm.hub_joint=beam", "arm.damping_ratio=0.340306", "wall.kind=plane",
          "wall.restitution=0.162903", "motor.voltage=0.624174", "arm.k2=8.1031",
          "arm.mass=0.276462", "arm.hub_inertia=0.00200183"}};
+    static const bounces found[2] = {
+        {13, 0, 3.39641719194e-8, 85014.2093903, 1.0022161819222e-4},
+        {11, 0, 3.34583094563e-8, 7835.73135493, 1.0048643781657e-4},
+    };
     for (int i = 0; i < 2; i++) {
         parameters p = fixture_parameters(arms[i]);
         p.wall.angle = 0.1;
         p.method.rest_speed = 1e-7;
         const double velocity = 3.6, gap = 1e-4 * velocity, until = 1.1e-4;
-        const bounces series = bounces_of(&p, &series_engine, gap, velocity, until);
         const bounces stiff = bounces_of(&p, &stiff_engine, gap, velocity, until);
-        assert_in_range(series.impacts, 10, 20);
-        assert_int_equal(stiff.impacts, series.impacts);
-        check_relative(stiff.slowest, series.slowest, 1e-4);
-        check_relative(stiff.peak, series.peak, 1e-6);
-        check_close(stiff.peak_time, series.peak_time, 1e-12);
+        assert_int_equal(stiff.impacts, found[i].impacts);
+        check_relative(stiff.slowest, found[i].slowest, 1e-4);
+        check_relative(stiff.peak, found[i].peak, 1e-6);
+        check_close(stiff.peak_time, found[i].peak_time, 1e-12);
     }
 }
 
@@ -125,12 +125,14 @@ static void a_slow_arm_meets_its_wall_in_time(void **state)
         SETTINGS("arm.links=11", "arm.hub_joint=beam", "arm.damping_ratio=0.1", "arm.k2=15",
                  "arm.mass=0.28", "arm.hub_inertia=1.4e-4", "motor.voltage=4e-6",
                  "motor.stiction=3e-7", "wall.angle=1e-5", "method.rest_speed=1e-8"));
+    static const double first[] = {4.0014973e-4,  7.9890865e-4,  1.19090023e-3, 1.57891664e-3,
+                                   1.96957387e-3, 2.36983598e-3, 2.78682441e-3, 3.22850009e-3,
+                                   3.70475134e-3, 4.22916186e-3};
     for (int i = 1; i <= 10; i++) {
         const double gap = 5e-11 * i, velocity = 1.25e-7;
-        const bounces series = bounces_of(&p, &series_engine, gap, velocity, 5e-3);
         const bounces stiff = bounces_of(&p, &stiff_engine, gap, velocity, 5e-3);
-        assert_true(series.impacts > 0 && stiff.impacts > 0);
-        check_close(stiff.first, series.first, 1e-6);
+        assert_true(stiff.impacts > 0);
+        check_close(stiff.first, first[i - 1], 1e-6);
     }
 }
 
@@ -209,8 +211,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_chain_that_bends_keeps_its_strides),
         cmocka_unit_test(a_strongly_damped_chain_that_bounces_keeps_its_strides),
-        cmocka_unit_test(low_bounces_are_those_of_the_series),
-        cmocka_unit_test(flights_lower_than_any_rounding_are_those_of_the_series),
+        cmocka_unit_test(low_bounces_are_those_of_power_series),
+        cmocka_unit_test(flights_lower_than_any_rounding_are_those_of_power_series),
         cmocka_unit_test(a_slow_arm_meets_its_wall_in_time),
         cmocka_unit_test(a_small_motion_slips_as_a_larger_one),
         cmocka_unit_test(small_arms_close_the_ledger)};

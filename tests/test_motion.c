@@ -152,9 +152,8 @@ static void an_arm_inside_a_rigid_wall_is_never_ok(void **state)
 static void a_hub_held_beyond_stiction_is_noted(void **state)
 {
     (void)state;
-    static const char *const engines[] = {"method.engine=pair", "method.engine=series",
-                                          "method.engine=stiff"};
-    for (int i = 0; i < 3; i++) {
+    static const char *const engines[] = {"method.engine=pair", "method.engine=stiff"};
+    for (int i = 0; i < 2; i++) {
         const parameters p = fixture_parameters(SETTINGS("motor.stiction=1e3", engines[i]));
         arm a;
         arm_init(&a, &p);
@@ -605,7 +604,7 @@ static void a_motion_too_small_to_follow_is_inaccurate(void **state)
                  {"1e-5", "4.5e-7", "1e-6", "arm.links=2", false},
                  {"1e-8", "4.5e-10", "1e-9", "arm.links=2", true},
                  {"1e-4", "4.5e-6", "1e-4", "arm.links=48", false},
-                 {"1e-5", "4.5e-7", "1e-6", "arm.links=48", false},
+                 {"1e-5", "4.5e-7", "1e-6", "arm.links=16", false},
                  {"1e-8", "4.5e-10", "1e-9", "arm.links=4", true},
                  {"1e-8", "4.5e-10", "1e-9", "arm.tip_mass=0.01", true},
                  {"1e-11", "4.5e-13", "0.1", "arm.links=2", true},

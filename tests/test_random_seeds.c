@@ -160,7 +160,7 @@ static void test_an_arm_folded_over_the_hub_ends_the_run(void **state)
 }
 
 // On its way to a fold and back the force has a pole nearby, of which the velocities know nothing:
-// it is what the series of chains make of it, which a tip mass of next to nothing takes.
+// it is what the stiff engine makes of it, which a tip mass of next to nothing takes.
 static void test_the_force_near_a_fold_is_that_of_another_engine(void **state)
 {
     (void)state;

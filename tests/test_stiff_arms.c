@@ -23,17 +23,17 @@ static void each_arm_has_its_engine(void **state)
         {{NULL}, &taylor_engine},
         {{"arm.damping_ratio=0.3", "wall.restitution=0.5"}, &taylor_engine},
         {{"arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02"}, &stiff_engine},
-        {{"arm.tip_mass=0.1"}, &series_engine},
-        {{"motor.current_limit=0.2"}, &series_engine},
+        {{"arm.tip_mass=0.1"}, &stiff_engine},
+        {{"motor.current_limit=0.2"}, &stiff_engine},
         {{"motor.inductance=1e-3"}, &stiff_engine},
-        {{"wall.contact=kelvin-voigt", "wall.damping=0"}, &series_engine},
+        {{"wall.contact=kelvin-voigt", "wall.damping=0"}, &stiff_engine},
         {{"wall.contact=kelvin-voigt", "wall.damping=50"}, &stiff_engine},
         {{"wall.contact=hunt-crossley", "wall.damping=0"}, &stiff_engine},
 
         // other chains
-        {{"arm.links=3"}, &series_engine},
-        {{"arm.links=64", "wall.restitution=0.9"}, &series_engine},
-        {{"arm.links=16", "wall.contact=kelvin-voigt", "wall.damping=50"}, &series_engine},
+        {{"arm.links=3"}, &stiff_engine},
+        {{"arm.links=64", "wall.restitution=0.9"}, &stiff_engine},
+        {{"arm.links=16", "wall.contact=kelvin-voigt", "wall.damping=50"}, &stiff_engine},
         {{"arm.links=16", "wall.contact=kelvin-voigt", "wall.damping=1e4"}, &stiff_engine},
         {{"arm.links=3", "arm.damping_ratio=1e-4"}, &stiff_engine},
         {{"arm.links=3", "arm.modal_ratios=0.01"}, &stiff_engine},
@@ -104,7 +104,7 @@ static void an_arm_made_stiff_changes_its_engine(void **state)
         arm_init(&after, &p);
         assert_true(after.fastest_decay > 1e6);
         motion_rebind(&before, &after, m);
-        assert_ptr_not_equal(m->engine, soft);
+        assert_int_equal(m->engine != soft, links == 2);
         motion *copy = motion_create(&after, &p.method);
         assert_ptr_equal(copy->engine, m->engine);
         memcpy(copy->state, m->state, (size_t)m->size * sizeof(double));

@@ -1,5 +1,7 @@
 // Events within strides of the stiff engine: what a motion meets there is what the explicit formula
-// and the series meet, down to bounces lower than rounding.
+// meets, down to bounces lower than rounding. Where
+// the formula itself tells a touch too coarsely (1e-12 m), numbers are those of power series of the
+// chain of order 32.
 #include <math.h>
 
 #include "src/contact/contact_machine.h"
@@ -18,6 +20,7 @@ typedef struct meetings {
 static meetings meetings_by(const parameters *p, const engine *by, double angle, double velocity,
                             double until)
 {
+    const double step = by == &explicit_engine ? 1e-5 : p->method.step;
     arm a;
     arm_init(&a, p);
     motion *m = motion_create_by(&a, &p->method, by);
@@ -27,7 +30,7 @@ static meetings meetings_by(const parameters *p, const engine *by, double angle,
     meetings all = {0};
     while (m->state[SLOT_TIME] < until) {
         motion_report r;
-        assert_int_equal(motion_step(&a, m, until, p->method.step, &r), STATUS_OK);
+        assert_int_equal(motion_step(&a, m, until, step, &r), STATUS_OK);
         if (r.event != MOTION_REACHED) {
             assert_in_range(all.count, 0, MOST_MEETINGS - 1);
             all.event[all.count] = r.event;
@@ -100,7 +103,6 @@ static void events_within_a_stride_are_the_formulas(void **state)
         // by the stiff engine, and by the formula
         const double angle = cases[i].angle, velocity = cases[i].velocity, until = cases[i].until;
         meetings stiff = meetings_by(&p, NULL, angle, velocity, until);
-        p.method.step = 1e-5;
         meetings formula = meetings_by(&p, &explicit_engine, angle, velocity, until);
 
         // the same events at the same times
@@ -118,7 +120,7 @@ static void events_within_a_stride_are_the_formulas(void **state)
 }
 
 // An arm of 1e-7 rad with bounces down to 1e-9 m/s: the stiff engine resolves them as far as the
-// series do, and what comes afterwards is the same.
+// formula does, and what comes afterwards is the same.
 static void bounces_end_where_no_engine_tells_them(void **state)
 {
     (void)state;
@@ -128,9 +130,9 @@ static void bounces_end_where_no_engine_tells_them(void **state)
                  "motor.voltage=5.7081e-6", "arm.k2=4.64501", "arm.k1=211.051", "arm.mass=0.12368",
                  "arm.hub_inertia=0.050495", "motor.stiction=0", "method.rest_speed=8.56e-10"));
     const meetings stiff = meetings_by(&p, &stiff_engine, 1.20397e-7, 1.24542e-6, 0.00753);
-    const meetings series = meetings_by(&p, &series_engine, 1.20397e-7, 1.24542e-6, 0.00753);
-    assert_int_equal(stiff.count, series.count);
-    check_close(stiff.peak, series.peak, 1e-4 * series.peak);
+    const meetings formula = meetings_by(&p, &explicit_engine, 1.20397e-7, 1.24542e-6, 0.00753);
+    assert_int_equal(stiff.count, formula.count);
+    check_close(stiff.peak, formula.peak, 1e-4 * formula.peak);
 }
 
 // An arm that strikes at 3e-7 m/s and comes to rest in some microseconds: an impact that is a
@@ -144,9 +146,9 @@ static void slow_impacts_are_in_time(void **state)
         "arm.k2=6.35355", "arm.mass=0.290645", "arm.k1=230.417", "arm.hub_inertia=2.04816e-4",
         "motor.stiction=8.7131e-9", "method.rest_speed=1e-13"));
     const meetings stiff = meetings_by(&p, &stiff_engine, 1.02316e-7, 3.07823e-7, 0.003);
-    const meetings series = meetings_by(&p, &series_engine, 1.02316e-7, 3.07823e-7, 0.003);
-    assert_int_equal(stiff.count, series.count);
-    check_close(stiff.peak, series.peak, 1e-5 * series.peak);
+    assert_int_equal(stiff.count, 7);
+    check_close(stiff.time[6], 1.3360170227229612e-3, 1e-10);
+    check_relative(stiff.peak, 1.19929837665e-4, 1e-5);
 }
 
 // An arm that comes to the wall at 7e-9 m/s: first contact is no later for the tolerance of the
@@ -160,10 +162,9 @@ static void a_slow_arm_touches_in_time(void **state)
                  "arm.mass=0.14437", "arm.hub_inertia=0.042581", "motor.stiction=5.1311e-8",
                  "method.rest_speed=1.66e-10"));
     const meetings stiff = meetings_by(&p, &stiff_engine, 7.88542e-7, 6.75857e-9, 0.01);
-    const meetings series = meetings_by(&p, &series_engine, 7.88542e-7, 6.75857e-9, 0.01);
-    assert_true(stiff.count > 0 && series.count > 0);
-    assert_int_equal(stiff.event[0], series.event[0]);
-    check_close(stiff.time[0], series.time[0], 1e-7);
+    assert_true(stiff.count > 0);
+    assert_int_equal(stiff.event[0], MOTION_IMPACT);
+    check_close(stiff.time[0], 3.7711674825279e-3, 1e-7);
 }
 
 // An arm that presses with 5e-7 N leaves the wall where the force is zero to a share of what it
@@ -177,14 +178,12 @@ static void a_slow_arm_leaves_in_time(void **state)
                  "arm.k1=19.0639", "arm.mass=0.10088", "arm.hub_inertia=0.0012667",
                  "motor.stiction=4.1505e-8", "method.rest_speed=9.31e-10"));
     const meetings stiff = meetings_by(&p, &stiff_engine, 5.1118e-8, 2.19239e-9, 0.0065);
-    const meetings series = meetings_by(&p, &series_engine, 5.1118e-8, 2.19239e-9, 0.0065);
-    assert_int_equal(stiff.count, series.count);
-    assert_int_equal(stiff.event[stiff.count - 1], MOTION_RELEASE);
-    for (int i = 0; i < stiff.count; i++) {
-        assert_int_equal(stiff.event[i], series.event[i]);
-        check_close(stiff.time[i], series.time[i], 1e-9);
-    }
-    check_close(stiff.peak, series.peak, 1e-6 * series.peak);
+    assert_int_equal(stiff.count, 2);
+    assert_int_equal(stiff.event[0], MOTION_IMPACT);
+    assert_int_equal(stiff.event[1], MOTION_RELEASE);
+    check_close(stiff.time[0], 2.92238891368e-3, 1e-9);
+    check_close(stiff.time[1], 5.87357456518e-3, 1e-9);
+    check_relative(stiff.peak, 3.17925033672e-8, 1e-6);
 }
 
 // Between bounces of some 1e-9 s the tip flies 1e-13 m high, and the motor presses: no impact is

@@ -10,7 +10,7 @@
 // One without a mass that is left behind by less [m], or returns within less [s], has not been.
 #define LEAST_DEPTH  1e-12
 #define LEAST_RETURN 1e-14
-// A bounce slower than this counts as no bounce [m/s]: half of it is what the series take for
+// A bounce slower than this counts as no bounce [m/s]: half of it is what the engines take for
 // rounding of a rate just after an impact (EDGE_RATE in edge_limits.h).
 #define LEAST_REBOUND 2e-9
 // Below this square of a phase or decay sine and its kin are their series, to the last bit.

@@ -154,7 +154,6 @@ typedef struct engine {
 extern const engine newmark_engine;           // implicit, stepping
 extern const engine generalized_alpha_engine; // the same step with other coefficients
 
-extern const engine series_engine; // power series of chains; dense
 extern const engine taylor_engine; // power series of the two-link arm; dense
 extern const engine stiff_engine;  // Radau IIA of seven stages for every arm; dense
 

@@ -38,6 +38,14 @@ static bool is_of_wall(motion_event event)
     return event == MOTION_IMPACT || event == MOTION_TOUCH || event == MOTION_RELEASE;
 }
 
+// Whether the fastest mode vibrates on and on, and is what steps follow.
+static bool rings_on(const arm *a, const motion *m)
+{
+    const bool damped = arm_joint_damping(a, a->links - 1) > 0 || a->damped_modes > 0;
+    return !damped && a->fastest_decay <= a->highest_frequency && motion_wall_is_rigid(m) &&
+           a->motor.inductance == 0;
+}
+
 void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *text, size_t size)
 {
     assert(a != NULL && m != NULL && text != NULL);
@@ -64,7 +72,7 @@ void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *tex
         decimal_print(text, size,
                       "it bounces off the wall, which a smaller wall.restitution or a larger "
                       "method.rest_speed ends sooner");
-    } else if (m->engine == &series_engine) {
+    } else if (rings_on(a, m)) {
         decimal_print(
             text, size,
             "an undamped arm is followed as fast as its fastest mode vibrates, %.3g "

@@ -17,47 +17,18 @@
 // The engine asked for by name, NULL where the arm is to decide.
 static const engine *named_engine(engine_kind name)
 {
-    static const engine *const named[] = {[ENGINE_AUTO] = NULL,
-                                          [ENGINE_PAIR] = &taylor_engine,
-                                          [ENGINE_STIFF] = &stiff_engine,
-                                          [ENGINE_SERIES] = &series_engine};
+    static const engine *const named[] = {
+        [ENGINE_AUTO] = NULL, [ENGINE_PAIR] = &taylor_engine, [ENGINE_STIFF] = &stiff_engine};
     return named[name];
 }
 
-// Whether the wall's force is one that the series follow in strides no shorter than the arm's: with
-// a power series at the touch, and a damper that slows the tip of the free last link (a mass m/4)
-// and what moves with it no faster than the arm vibrates.
-static bool wall_suits_series(const arm *a)
-{
-    const wall_model *w = &a->wall;
-    const double tip = arm_link_mass(a, a->links - 1) / 4 + a->tip_mass + w->face_mass;
-    const bool slow = w->damping <= 2 * a->highest_frequency * tip;
-    return !wall_stands(w) || !wall_gives(w) || (w->law == WALL_KELVIN_VOIGT && slow);
-}
-
-// Whether vibrations of the arm go on for ever but for what motor and wall take: nothing else damps
-// them. An engine that controls its error then has steps as short as the strides of the series,
-// which are exact and up to three times cheaper.
-static bool rings_on(const arm *a)
-{
-    bool damped = a->damped_modes > 0 || a->air_drag > 0 || a->fastest_decay > a->highest_frequency;
-    for (int k = 0; k < a->links && !damped; k++) {
-        damped = arm_joint_damping(a, k) > 0;
-    }
-    return !damped && a->stiffening == 0 && a->motor.inductance == 0;
-}
-
-// The event method's engine: series of two equal links on a rigid wall, series of chains that ring
-// on, the stiff engine for all others. It does not depend on the time step.
+// The event method's engine: series of two equal links on a rigid wall, the stiff engine for all
+// others. It does not depend on the time step.
 static const engine *event_engine(const arm *a)
 {
-    if (a->gravity != 0) {
-        return &stiff_engine;
-    }
-    if (taylor_engine_suits(a) && a->fastest_decay <= FASTEST_OF_PAIR) {
-        return &taylor_engine;
-    }
-    return rings_on(a) && wall_suits_series(a) ? &series_engine : &stiff_engine;
+    const bool pair =
+        taylor_engine_suits(a) && a->fastest_decay <= FASTEST_OF_PAIR && a->gravity == 0;
+    return pair ? &taylor_engine : &stiff_engine;
 }
 
 static void choose_engine(const arm *a, motion *m, const method_parameters *method,

@@ -142,9 +142,9 @@ const parameter_info parameter_table[] = {
     {PATH(method.residual_bound), REAL("", 0, 1), DEFAULT(EVENT_RESIDUAL_BOUND),
      MEANING("share of the energy put in that the ledger may lack before a run counts as "
              "inaccurate (event 1e-6, newmark and generalized-alpha 1e-2)")},
-    {PATH(method.engine), CHOICE(3, "auto|pair|stiff|series"), DEFAULT(ENGINE_AUTO),
+    {PATH(method.engine), CHOICE(2, "auto|pair|stiff"), DEFAULT(ENGINE_AUTO),
      MEANING("what the event method integrates with: the arm decides, power series of two equal "
-             "links on a rigid wall, a stiff formula of order 13, power series of any chain")},
+             "links on a rigid wall, a stiff formula of order 13 for any arm")},
     {PATH(method.tolerance), REAL("", 1e-13, 1e-3), DEFAULT(1e-10),
      MEANING("error of the stiff engine's steps as its embedded formula of order 7 sees it, as a "
              "share of the arm's largest momentum; ten times that where decays are faster than "

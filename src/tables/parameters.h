@@ -17,7 +17,7 @@ typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
 typedef enum wall_law { WALL_RIGID, WALL_KELVIN_VOIGT, WALL_HUNT_CROSSLEY } wall_law;
 typedef enum motor_drive { DRIVE_VOLTAGE, DRIVE_CURRENT } motor_drive;
 typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
-typedef enum engine_kind { ENGINE_AUTO, ENGINE_PAIR, ENGINE_STIFF, ENGINE_SERIES } engine_kind;
+typedef enum engine_kind { ENGINE_AUTO, ENGINE_PAIR, ENGINE_STIFF } engine_kind;
 typedef enum listing_reevaluation {
     REEVALUATE_RHS,
     REEVALUATE_LISTING,

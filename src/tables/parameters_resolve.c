@@ -118,12 +118,6 @@ static status check_engine(const parameters *p, fault *f)
                             "rigid wall, with "
                             "a motor whose current follows at once; expected auto or stiff");
     }
-    if (p->method.engine == ENGINE_SERIES && a->tilt != 0) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, method.engine, arm.tilt),
-                            "method.engine = series takes an arm in a level plane, but arm.tilt = "
-                            "%g rad; expected auto or stiff",
-                            a->tilt);
-    }
     return STATUS_OK;
 }
 

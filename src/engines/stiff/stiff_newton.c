@@ -18,7 +18,7 @@ enum { MOST_ITERATIONS = 12 };
 
 // --- the arm -------------------------------------------------------------------------------------
 
-// Whether the drive's current is held at its limit, and which way; as the series have it.
+// Whether the drive's current is held at its limit, and which way.
 static void choose_drive(stiff_step *s, const motor_model *m, double current, double w,
                          double acceleration)
 {
