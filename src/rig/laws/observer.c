@@ -34,6 +34,7 @@ static const controller_parameter table[PARAMETERS] = {
 };
 
 // The numbers of the law, derived in docs/explanation/control-design.md.
+#define GUARD_TIME      0.07  // in which a wall that is nearer than believed is looked for [s]
 #define BIAS_TIME       0.1   // over which the error of the estimated force is averaged [s]
 #define MOST_CORRECTION 0.3   // that it may add to the force aimed at, a share
 #define LOST_AFTER      2     // readings without force that mean lost contact
@@ -290,7 +291,8 @@ static double resting_force(const observer_memory *m, const estimator *e)
 }
 
 // Friction to overcome in contact. At rest it is proportional to the force wanted there, within the
-// band that friction holds: its full step would change the force by several per cent at once.
+// band that friction holds: its full step would change the force by several per cent at once. Half
+// of what is wanted is by the reading, which hub sensors that err do not touch.
 static double friction_pressing(const observer_memory *m, const estimator *e, double aim,
                                 double hub_rate, bool moves)
 {
@@ -298,8 +300,8 @@ static double friction_pressing(const observer_memory *m, const estimator *e, do
     if (moves || fabs(rate) > REST) {
         return friction_ahead(m, rate, hub_rate);
     }
-    double off = (aim - resting_force(m, e)) / (HOLD_WITHIN * force + HOLD_LEAST);
-    return m->rig.stiction * fmax(-1, fmin(off, 1));
+    const double off = (aim - resting_force(m, e) + force - m->mean_force) / 2;
+    return m->rig.stiction * fmax(-1, fmin(off / (HOLD_WITHIN * force + HOLD_LEAST), 1));
 }
 
 // Keeps the arm to the rise and then at rest: the first mode on its way, the others as its torque
@@ -498,8 +500,10 @@ static void sample(void *memory, const controller_input *in, controller_output *
         if (m->hurries) {
             observer_arms_know_wall(&m->arms, m->rig.wall_angle);
         }
-        m->plan = (smooth_approach){.period = m->rig.period,
-                                    .guarded = m->rig.wall_angle - m->p[WALL_DOUBT]};
+        m->plan = (smooth_approach){
+            .period = m->rig.period,
+            .guarded =
+                m->rig.wall_angle - fmin(m->p[WALL_DOUBT], GUARD_TIME * design_of(m)->touch_speed)};
         smooth_approach_begin(&m->plan, design_of(m), in->encoder);
     } else {
         // the first reading of a contact shows its impulse
