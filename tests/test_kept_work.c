@@ -288,6 +288,23 @@ static void test_a_limit_is_asked_for_in_few_keys(void **state)
     explorer_finish(&ex);
 }
 
+// Why a run is as it is, whole at every size.
+static void test_why_is_answered_on_the_screen(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "W");
+    for (size_t i = 0; i < SIZES; i++) {
+        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "Driven by 1 V the arm touches");
+        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "controller");
+        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "0.3662");
+    }
+    press(&ex, "<Esc>");
+    assert_hides(&ex, "Driven by");
+    explorer_finish(&ex);
+}
+
 // Panes of one's own, any number: a second one takes at most twelve keys.
 static void test_own_panes_stand_side_by_side(void **state)
 {
@@ -342,6 +359,7 @@ int main(void)
         cmocka_unit_test(test_parameters_keep_their_rows),
         cmocka_unit_test(test_a_signal_is_hidden_by_a_key_or_a_click),
         cmocka_unit_test(test_a_limit_is_asked_for_in_few_keys),
+        cmocka_unit_test(test_why_is_answered_on_the_screen),
         cmocka_unit_test(test_own_panes_stand_side_by_side),
         cmocka_unit_test(test_the_transition_is_three_steps_shorter_in_few_keys),
     };

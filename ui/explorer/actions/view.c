@@ -258,6 +258,12 @@ bool act_show_info(explorer_state *st, const char *argument)
     return toggle_page(st, PANEL_INFO);
 }
 
+bool act_show_why(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return act_need_whole_run(st) && toggle_page(st, PANEL_WHY);
+}
+
 bool act_compare(explorer_state *st, const char *argument)
 {
     (void)argument;

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "src/session/account.h"
 #include "ui/explorer/state/command_list.h"
 #include "ui/terminal/screen.h"
 
@@ -232,6 +233,26 @@ static void draw_info(const explorer_state *st, layout *lay, screen *s, area bod
 }
 
 const panel info_panel = {.name = "info", .draw = draw_info, .point = page_point, .key = page_key};
+
+// --- the account of the run -------------------------------------------------------------------
+
+static void draw_why(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    enum { MOST = 48, WIDTH = 84 };
+    static help_line lines[MOST];
+    char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE];
+    area a = page_area(body, WIDTH, body.height);
+    page p = {.lines = lines, .most = MOST, .width = a.width - 4};
+    const int count = run_account(&st->session.effective, &st->session.run, sentences);
+    for (int i = 0; i < count; i++) {
+        add_text(&p, 0, sentences[i], NULL);
+    }
+    a = page_area(body, WIDTH, p.count + 2);
+    const int scroll = page_scroll(lay, PANEL_WHY, a, p.count, 2);
+    draw_lines(s, a, "why (Esc closes)", lines + scroll, p.count - scroll);
+}
+
+const panel why_panel = {.name = "why", .draw = draw_why, .point = page_point, .key = page_key};
 
 // --- the comparison ---------------------------------------------------------------------------
 

@@ -1,0 +1,216 @@
+#include "src/session/account.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct account {
+    const scenario *scenario;
+    const run_result *run;
+    char (*sentences)[ACCOUNT_SENTENCE];
+    int count;
+} account;
+
+static void say(account *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void say(account *a, const char *format, ...)
+{
+    assert(a->count < ACCOUNT_SENTENCES);
+    va_list list;
+    va_start(list, format);
+    vsnprintf(a->sentences[a->count++], ACCOUNT_SENTENCE, format, list);
+    va_end(list);
+}
+
+// The first event of a kind not before an instant, NULL if there is none.
+static const event *event_from(const trace *t, event_kind kind, double time)
+{
+    for (size_t i = 0; i < t->event_count; i++) {
+        if (t->events[i].kind == kind && t->events[i].time >= time) {
+            return &t->events[i];
+        }
+    }
+    return NULL;
+}
+
+// The last row before an instant.
+static size_t row_before(const trace *t, double time)
+{
+    size_t r = trace_row_at(t, time);
+    while (r > 0 && t->rows[r].time >= time) {
+        r--;
+    }
+    return r;
+}
+
+// --- the sentences ----------------------------------------------------------------------------
+
+// What drives the arm.
+static void write_drive(const scenario *s, char *text, size_t size)
+{
+    const parameters *p = &s->parameters;
+    char law[64];
+    if (p->control.law == LAW_NONE) {
+        snprintf(text, size, "%g V", p->motor.voltage);
+        return;
+    }
+    parameter_format(p, PARAMETER_INDEX(control.law), law, sizeof law);
+    snprintf(text, size, "the law '%s'", law);
+}
+
+// How it comes to the wall; false if it does not.
+static bool say_approach(account *a)
+{
+    const trace *t = &a->run->trace;
+    const double touch = a->run->summary.first_contact_s;
+    char drive[96];
+    write_drive(a->scenario, drive, sizeof drive);
+    if (isnan(touch)) {
+        double nearest = (double)INFINITY;
+        for (size_t r = 0; r < t->row_count; r++) {
+            nearest = fmin(nearest, t->rows[r].gap);
+        }
+        const double end = t->rows[t->row_count - 1].time;
+        if (isfinite(nearest)) {
+            say(a,
+                "Driven by %s the arm does not touch the wall in %.4g s: %.3g mm are left at its "
+                "nearest.",
+                drive, end, 1e3 * nearest);
+        } else {
+            say(a, "Driven by %s the arm moves for %.4g s, and nothing is in its way.", drive, end);
+        }
+        return false;
+    }
+    const sample *before = &t->rows[row_before(t, touch)];
+    if (before->contact != 0) {
+        say(a, "Driven by %s the arm starts on the wall.", drive);
+        return true;
+    }
+    if (isnan(before->kinetic_energy) || isnan(before->gap_velocity)) {
+        say(a, "Driven by %s the arm touches the wall at %.4g s.", drive, touch);
+        return true;
+    }
+    say(a,
+        "Driven by %s the arm touches the wall at %.4g s, its tip at %.3g m/s, with %.3g J of "
+        "motion.",
+        drive, touch, fabs(before->gap_velocity), before->kinetic_energy);
+    return true;
+}
+
+// What the blow takes, if there is one.
+static void say_blow(account *a)
+{
+    const event *impact = event_from(&a->run->trace, EVENT_IMPACT, 0);
+    if (impact == NULL) {
+        return;
+    }
+    const sample *before = &a->run->trace.rows[row_before(&a->run->trace, impact->time)];
+    say(a,
+        "What has to stop at once takes an impulse of %.3g N s and %.2g %% of that energy: it "
+        "is lost, whatever comes.",
+        impact->impulse, 100 * impact->loss / before->kinetic_energy);
+}
+
+// The pulse: where its force comes from, and the hub's reversal in it.
+static void say_pulse(account *a, double touch, double end)
+{
+    const trace *t = &a->run->trace;
+    const summary *m = &a->run->summary;
+    if (isnan(m->first_pulse_peak_N) || isnan(m->first_pulse_time_to_peak_s)) {
+        return;
+    }
+    const double peak = touch + m->first_pulse_time_to_peak_s;
+    const sample *at_peak = &t->rows[trace_row_at(t, peak)];
+    char turn[96] = "the hub goes on turning";
+    for (size_t i = t->event_count; i-- > 0;) {
+        const event *e = &t->events[i];
+        if (e->time > touch && e->time <= end &&
+            (e->kind == EVENT_REVERSAL || e->kind == EVENT_STICK)) {
+            snprintf(turn, sizeof turn, "the hub %s at %.4g s",
+                     e->kind == EVENT_REVERSAL ? "reverses" : "comes to rest", e->time);
+        }
+    }
+    say(a,
+        "The rest bends the arm against the wall: the force is largest at %.4g s, %.4g N, when "
+        "the springs hold %.3g J; %s.",
+        peak, m->first_pulse_peak_N, at_peak->strain_energy, turn);
+}
+
+// How the pulse ends: what the springs give back lets the arm go, or it stays.
+static void say_release(account *a, double touch)
+{
+    const trace *t = &a->run->trace;
+    const summary *m = &a->run->summary;
+    if (isnan(m->first_pulse_s)) {
+        say(a, "What the springs give back is too little to lift the arm off: it stays on the "
+               "wall.");
+        return;
+    }
+    const double end = touch + m->first_pulse_s;
+    const double delay = isnan(m->first_pulse_time_to_peak_s) ? 0 : m->first_pulse_time_to_peak_s;
+    const sample *at_peak = &t->rows[trace_row_at(t, touch + delay)];
+    const sample *after = &t->rows[trace_row_at(t, end)];
+    if (!(delay > 0) || !(at_peak->strain_energy > 0) || !(end > touch)) {
+        say(a, "The arm lets go at %.4g s%s.", end, m->impacts > 1 ? ", and comes back" : "");
+        return;
+    }
+    say(a,
+        "The springs give back %.2g %% of that as motion away from the wall: so it lets go at "
+        "%.4g s%s.",
+        100 * after->kinetic_energy / at_peak->strain_energy, end,
+        m->impacts > 1 ? ", and comes back" : "");
+}
+
+// What it ends with, and what would change that.
+static void say_end(account *a)
+{
+    const trace *t = &a->run->trace;
+    const summary *m = &a->run->summary;
+    const sample *last = &t->rows[t->row_count - 1];
+    if (a->scenario->parameters.control.law != LAW_NONE) {
+        say(a, "The law wants %.3g N and gets %.4g at the end%s; its peak is %.3g N above that.",
+            m->force_command_N, m->steady_force_N,
+            last->sticking != 0 ? ", where the hub sticks" : "", m->force_over_command_N);
+    } else if (last->contact != 0) {
+        say(a,
+            "At the end the motor's %.3g N m press with %.3g N%s; a controller would choose that "
+            "force and damp the pulse (:law).",
+            last->motor_torque, last->force,
+            last->sticking != 0 ? ", the hub held by friction" : "");
+    } else {
+        say(a,
+            "At the end the arm is off the wall by %.3g mm; a controller would hold it there or "
+            "bring it back (:law).",
+            1e3 * last->gap);
+    }
+}
+
+int run_account(const scenario *s, const run_result *run,
+                char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE])
+{
+    assert(s != NULL && run != NULL && run->trace.row_count > 0 && sentences != NULL);
+    account a = {.scenario = s, .run = run, .sentences = sentences};
+    if (run->summary.status != STATUS_OK) {
+        say(&a, "The run stops at %.4g s: %.200s.", run->trace.rows[run->trace.row_count - 1].time,
+            run->summary.message[0] ? run->summary.message : status_text(run->summary.status));
+        return a.count;
+    }
+    if (!say_approach(&a)) {
+        return a.count;
+    }
+
+    // the printed model has no energies in its rows: its account is shorter
+    const double touch = run->summary.first_contact_s;
+    const double length = run->summary.first_pulse_s;
+    const double end =
+        isnan(length) ? run->trace.rows[run->trace.row_count - 1].time : touch + length;
+    if (s->parameters.arm.model == ARM_CORRECTED) {
+        say_blow(&a);
+        say_pulse(&a, touch, end);
+        say_release(&a, touch);
+    }
+    say_end(&a);
+    return a.count;
+}
