@@ -468,6 +468,26 @@ for command in list show run predict modes sweep merge compare converge solve st
     says out '--json FILE|-'
 done
 
+# poles with and without a loop, and what cannot be closed
+expect 0 linear corrected/first-impact --at free --json - --mat poles.mat
+says out '"imaginary_rad_per_s": 34.3'
+[ "$(head -c 19 poles.mat)" = "MATLAB 5.0 MAT-file" ] || fail "linear writes no MAT file"
+expect 0 linear compare/hybrid --law --json - --csv poles.csv
+says out '"z_real"' && says out '"phase_deg"' && says out '"stable": true'
+grep -q '^zero,loop,' poles.csv || fail "linear --csv has no zeros of the loop"
+expect 0 linear compare/sampling-rate --set sensor.ideal=true --vary control.rate=150:250:3 --json - --plot limits.svg
+says out '"of": "runs"' && says out '"value": 193.'
+expect 0 linear compare/hybrid --vary control.rate=100:200:3 --vary control.delay_periods=0:1:3 --plot map.svg
+expect 0 linear compare/hybrid --law --plot bode.svg --nyquist nyquist.svg
+[ -s map.svg ] && [ -s bode.svg ] && [ -s nyquist.svg ] || fail "linear draws nothing"
+expect 2 linear corrected/first-impact --nyquist nyquist.svg
+expect 2 linear corrected/first-impact --vary motor.voltage=1:2:2
+expect 2 linear corrected/first-impact --law
+says err "needs a control law"
+expect 0 linear compare/hybrid --at free --law
+expect 2 linear compare/hybrid --at free --law --inject
+says err "not free"
+
 expect 2 bench --only tables_z
 says err "did you mean 'tables_s'?"
 expect 2 bench --baseline hit.yaml

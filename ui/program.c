@@ -11,6 +11,7 @@
 
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
+#include "src/study/linear/linear.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/base/shipped.h"
@@ -136,15 +137,15 @@ static void end_without_picture(const char *reason)
     _exit(EXIT_FAILED);
 }
 
-// A crash: no half-written file, and a sentence. In the libraries that draw it is for want of
+// A crash: no half-written file, and a sentence. In libraries it is for want of
 // memory, which is no fault of ours and ends the program as everywhere else.
 static void end_crashed(int number)
 {
     static const char drawing[] =
-        "impactlab: a library that draws crashed, as it does where it finds no memory\n";
+        "impactlab: a library crashed, as it does where it finds no memory\n";
     static const char own[] = "impactlab: crashed, for want of memory in a library or by a "
                               "fault of its own; no half-written file is left\n";
-    const bool in_libraries = text_in_fonts() || picture_is_stroking();
+    const bool in_libraries = text_in_fonts() || picture_is_stroking() || linear_is_loading();
     ssize_t ignored = in_libraries ? write(STDERR_FILENO, drawing, sizeof drawing - 1)
                                    : write(STDERR_FILENO, own, sizeof own - 1);
     (void)ignored;

@@ -133,10 +133,10 @@ typedef struct arguments {
     const char *laws, *over;        // of robust
     const char *then;               // of predict, "TIME:VOLTS,..."
     const char *place;              // of linear, --at
-    bool looped;                    // of linear, --law
+    bool looped, injects;           // of linear, --law and --inject
 
     // files for results
-    const char *json, *csv, *mat, *plot, *scene, *output, *db, *markdown, *format;
+    const char *json, *csv, *mat, *plot, *nyquist, *scene, *output, *db, *markdown, *format;
 
     // appearance of pictures
     bool mono, dark, bare, transparent;

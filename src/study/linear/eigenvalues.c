@@ -2,6 +2,7 @@
 #include <assert.h>
 #include <dlfcn.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,14 +17,23 @@ typedef void (*eigenvalue_routine)(const char *left, const char *right, const in
                                    const int *ldvl, double *vr, const int *ldvr, double *work,
                                    const int *size, int *info, size_t, size_t);
 
+static volatile sig_atomic_t loading;
+
+bool linear_is_loading(void)
+{
+    return loading;
+}
+
 // Loads the routine, once; NULL without LAPACK.
 static eigenvalue_routine find_routine(void)
 {
     static eigenvalue_routine found;
     if (found == NULL) {
+        loading = true;
         void *library = dlopen("liblapack.so.3", RTLD_NOW | RTLD_LOCAL);
         void *symbol = library != NULL ? dlsym(library, "dgeev_") : NULL;
         memcpy(&found, &symbol, sizeof found);
+        loading = false;
     }
     return found;
 }

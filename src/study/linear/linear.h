@@ -10,7 +10,7 @@
 
 #include <complex.h>
 
-#include "src/scenario/scenario.h"
+#include "src/study/sweep.h"
 
 typedef enum linear_place { LINEAR_FREE, LINEAR_CONTACT, LINEAR_STUCK } linear_place;
 
@@ -63,6 +63,9 @@ status linear_arm_init(linear_arm *arm, const parameters *p, linear_place place,
 // too, with a sentence in f where there is no LAPACK.
 status linear_eigenvalues(int n, double *matrix, double complex *values, fault *f);
 
+// Whether LAPACK is being loaded: Fortran's library crashes where it finds no memory. For signals.
+bool linear_is_loading(void);
+
 // Poles of a system, values[states].
 status linear_poles(const linear_system *s, double complex *values, fault *f);
 
@@ -73,3 +76,87 @@ status linear_zeros(const linear_system *s, int output, int *count, double compl
 
 // Damping ratio of a pole or zero; 1 of a decaying real one, NaN at the origin.
 double linear_damping(double complex s);
+
+// --- sampled ----------------------------------------------------------------------------------
+
+// What a law reads, in this order.
+enum {
+    LINEAR_READ_ENCODER,
+    LINEAR_READ_TACHOMETER,
+    LINEAR_READ_FORCE,   // of the sensor that sensor.force names
+    LINEAR_READ_VOLTAGE, // command in effect
+    LINEAR_READ_PIEZO,
+    LINEAR_READ_FILM,
+    LINEAR_READ_ACCELEROMETER,
+    LINEAR_READINGS
+};
+
+// The arm with its sensors' lags from sample to sample, x_k+1 = A x_k + B u_k, y_k = C x_k, with
+// the delay of commands, whole periods and what is left, in it: exact for a command that is held.
+// A sensor that is not fitted reads nothing. To be freed with linear_system_finish.
+status linear_sample(linear_system *sampled, const linear_arm *arm, const parameters *p, fault *f);
+
+// The loop cut at the command: from the command u_k to what the law answers to the readings that
+// follow from it. The law's answers to a pulse in each reading at the place of rest are its linear
+// form if they scale and obey one recurrence, else STATUS_UNSTABLE with a sentence in f: the loop
+// of such a law is measured (linear_inject). The closed loop is that with u_k = y_k.
+status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f);
+void linear_close(linear_system *loop);
+
+// C (point - A)^-1 B + D of an output; NaN at a pole.
+double complex linear_answer(const linear_system *s, int output, double complex point,
+                             double complex *scratch); // [states * (states + 1)]
+
+// Loop gains L(w), negative feedback, over rising frequencies w [rad/s].
+typedef struct linear_response {
+    int count;
+    double *frequency;
+    double complex *gain; // NaN: not known
+} linear_response;
+
+// Of a loop sampled with a period [s], up to half its rate. To be freed by the caller: frequency
+// and gain are one block, `frequency`.
+status linear_loop_response(const linear_system *loop, double period, linear_response *r, fault *f);
+
+// Of the arm alone from its command to an output, C (iw - A)^-1 B + D, from a hundredth of its
+// slowest part to ten times its fastest part; freed likewise.
+status linear_arm_response(const linear_system *s, int output, linear_response *r, fault *f);
+
+// Distances of a stable loop from instability, over all crossings; infinite where nothing crosses.
+typedef struct linear_margins {
+    double gain_db, gain_down_db; // the gain may grow by the one and fall by the other [dB]
+    double phase_deg;             // either way [degrees]
+    double delay_s;               // further delay that it takes [s]
+    double disk;                  // 2 min |1 + L|/|1 - L|: gain and phase together
+} linear_margins;
+linear_margins linear_margins_of(const linear_response *r);
+
+// --- measured ---------------------------------------------------------------------------------
+
+// The loop gain of any law in a run of its scenario: once the run has come to its end the arm is
+// left as it is, a small sine is added to the command, and
+//
+//     L = -(law's part)/(whole command)
+//
+// at that frequency, at frequencies that are dense where |L| or its phase cross what margins ask
+// for. Friction, noise and counts have their part in it. STATUS_UNSTABLE, with a sentence in f, if
+// the arm does not press or loses the wall on the way. r->frequency is to be freed.
+status linear_inject(const scenario *s, const linear_arm *arm, linear_response *r, fault *f);
+
+// The least impulse at the tip [N s], across the last link and against the wall or away from it,
+// after which the arm of the scenario's run, pressing at its end, loses contact (a gap above 1 um)
+// within half a second; NaN if none of up to 10 N s does or the arm does not press.
+status linear_contact_margin(const scenario *s, double *impulse, fault *f);
+
+// --- limits -----------------------------------------------------------------------------------
+
+// How fast the slowest part of a closed loop of linear form grows [1/s], below zero of a stable
+// one; and, with friction and all else, the settling time [s] of the scenario's own run, NaN where
+// it does not settle.
+status linear_growth(const scenario *s, linear_place place, double *growth, fault *f);
+status linear_settling(const scenario *s, double *settling, fault *f);
+
+// Where the one, or by_runs the other, changes between stable and not, between two values of the
+// axis of a sweep of one.
+status linear_limit(const sweep *s, linear_place place, bool by_runs, double from, double to,
+                    double *limit, fault *f);

@@ -1,0 +1,230 @@
+// The loop of a control law about the arm's place of rest, from the law's answers to pulses.
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/dense.h"
+#include "src/rig/rig.h"
+#include "src/study/linear/linear.h"
+
+// A pulse in a reading, in the reading's unit, and what a linear law's answers may lack.
+#define PULSE      1e-3
+#define NOT_LINEAR 1e-7
+
+enum { ANSWERS = 64, MOST_ORDER = 6, MOST_SETTLING = 200000 };
+
+#define SETTLING 2.0 // that a law is left at rest, besides its own transition [s]
+
+// The answers h_k to a unit pulse in each reading, and their recurrence: from k = 1 on
+// h_k+order = sum of recurrence[i] h_k+i.
+typedef struct linear_law {
+    double h[LINEAR_READINGS][ANSWERS];
+    double recurrence[MOST_ORDER];
+    int order;
+} linear_law;
+
+// The readings at rest, with a pulse.
+static controller_input rest_input(const linear_arm *arm, const parameters *p, int reading,
+                                   double pulse)
+{
+    const double add[LINEAR_READINGS] = {[LINEAR_READ_ENCODER] = arm->hub_angle,
+                                         [LINEAR_READ_FORCE] = arm->force,
+                                         [LINEAR_READ_VOLTAGE] = arm->voltage,
+                                         [LINEAR_READ_PIEZO] = arm->force,
+                                         [LINEAR_READ_FILM] = arm->bending};
+    double at[LINEAR_READINGS];
+    for (int i = 0; i < LINEAR_READINGS; i++) {
+        at[i] = add[i] + (i == reading ? pulse : 0);
+    }
+    const bool film = p->sensor.film, acceleration = p->sensor.accelerometer;
+    return (controller_input){
+        .encoder = at[LINEAR_READ_ENCODER],
+        .tachometer = at[LINEAR_READ_TACHOMETER],
+        .force = at[LINEAR_READ_FORCE],
+        .voltage = at[LINEAR_READ_VOLTAGE],
+        .piezo_force = p->sensor.piezo ? at[LINEAR_READ_PIEZO] : (double)NAN,
+        .film = film ? at[LINEAR_READ_FILM] : (double)NAN,
+        .accelerometer = acceleration ? at[LINEAR_READ_ACCELEROMETER] : (double)NAN,
+        .predicted_force = (double)NAN,
+    };
+}
+
+// The law's commands after a pulse at the end of a time at rest.
+static status answer(const linear_arm *arm, const parameters *p, int reading, double pulse,
+                     double *commands, fault *f)
+{
+    rig *r;
+    const status code = rig_create(&r, p, NULL, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (r->withheld) {
+        rig_destroy(r);
+        return fault_set(f, STATUS_NOT_ALLOWED,
+                         "the loop of a program or plug-in needs --allow-code");
+    }
+    const double settling = (p->control.transition_time + SETTLING) * p->control.rate;
+    const int before = (int)fmin(settling, MOST_SETTLING);
+    for (int k = 0; k < before + ANSWERS; k++) {
+        controller_input in = rest_input(arm, p, k == before ? reading : -1, pulse);
+        controller_output out = {.command = (double)NAN};
+        in.time = k * r->period;
+        in.wanted_mode = r->lock;
+        r->law->sample(r->memory, &in, &out);
+        if (k >= before) {
+            commands[k - before] = out.command;
+        }
+    }
+    rig_destroy(r);
+    return STATUS_OK;
+}
+
+static double largest(const double *numbers, int count)
+{
+    double most = 0;
+    for (int i = 0; i < count; i++) {
+        most = fmax(most, fabs(numbers[i]));
+    }
+    return most;
+}
+
+// The answers to a pulse in one reading. STATUS_UNSTABLE if they do not scale.
+static status learn_reading(linear_law *law, const linear_arm *arm, const parameters *p,
+                            int reading, const double *rest, fault *f)
+{
+    double up[ANSWERS], down[ANSWERS], *h = law->h[reading], even = 0;
+    status code = answer(arm, p, reading, PULSE, up, f);
+    code = code == STATUS_OK ? answer(arm, p, reading, -PULSE, down, f) : code;
+    for (int k = 0; k < ANSWERS && code == STATUS_OK; k++) {
+        h[k] = (up[k] - down[k]) / (2 * PULSE);
+        even = fmax(even, fabs(up[k] + down[k] - 2 * rest[k]) / (2 * PULSE));
+    }
+    if (code == STATUS_OK && !(even <= NOT_LINEAR * fmax(largest(h, ANSWERS), 1))) {
+        code = STATUS_UNSTABLE;
+    }
+
+    // rounding of the commands is no answer
+    const double rounding = 1e-11 * fmax(largest(rest, ANSWERS), 1) / PULSE;
+    for (int k = 0; k < ANSWERS; k++) {
+        h[k] = fabs(h[k]) < rounding * 1e-2 ? 0 : h[k];
+    }
+    return code;
+}
+
+// The recurrence of an order by least squares; false if it leaves more than rounding.
+static bool fit_recurrence(linear_law *law, int order)
+{
+    double matrix[MOST_ORDER * MOST_ORDER] = {0}, right[MOST_ORDER] = {0};
+    for (int pass = 0; pass < 2; pass++) {
+        for (int j = 0; j < LINEAR_READINGS; j++) {
+            const double *h = law->h[j], size = largest(h, ANSWERS);
+            for (int k = 1; k + order < ANSWERS && size > 0; k++) {
+                double left = h[k + order] / size;
+                for (int i = 0; i < order; i++) {
+                    if (pass == 0) {
+                        right[i] += h[k + i] * h[k + order] / size / size;
+                        for (int m = 0; m < order; m++) {
+                            matrix[i * order + m] += h[k + i] * h[k + m] / size / size;
+                        }
+                    } else {
+                        left -= law->recurrence[i] * h[k + i] / size;
+                    }
+                }
+                if (pass == 1 && !(fabs(left) < NOT_LINEAR)) {
+                    return false;
+                }
+            }
+        }
+        if (pass == 0 && order > 0 && !dense_solve(order, matrix, right)) {
+            return false;
+        }
+        memcpy(law->recurrence, right, sizeof right);
+    }
+    law->order = order;
+    return true;
+}
+
+static status learn(linear_law *law, const linear_arm *arm, const parameters *p, fault *f)
+{
+    double rest[ANSWERS];
+    status code = answer(arm, p, -1, 0, rest, f);
+    bool steady = code == STATUS_OK;
+    for (int k = 1; k < ANSWERS && steady; k++) {
+        steady = fabs(rest[k] - rest[0]) < 1e-9 * fmax(1, fabs(rest[0]));
+    }
+    if (code == STATUS_OK && !steady) {
+        code = STATUS_UNSTABLE;
+    }
+    for (int j = 0; j < LINEAR_READINGS && code == STATUS_OK; j++) {
+        code = learn_reading(law, arm, p, j, rest, f);
+    }
+    // one that answers nothing at all is asleep at rest, or feeds nothing back
+    if (code == STATUS_OK && arm->force > 0 && largest(law->h[0], LINEAR_READINGS * ANSWERS) == 0) {
+        code = STATUS_UNSTABLE;
+    }
+    if (code == STATUS_OK) {
+        int order = 0;
+        while (order <= MOST_ORDER && !fit_recurrence(law, order)) {
+            order++;
+        }
+        code = order <= MOST_ORDER ? STATUS_OK : STATUS_UNSTABLE;
+    }
+    return code != STATUS_UNSTABLE
+               ? code
+               : fault_set(f, code,
+                           "the law '%s' has no linear form where the arm rests: its answers to "
+                           "small readings do not scale or settle, or there are none",
+                           control_law_table[p->control.law].word);
+}
+
+status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f)
+{
+    assert(loop != NULL && arm != NULL && p != NULL && p->control.law != LAW_NONE);
+    linear_system plant;
+    linear_law law = {.order = 0};
+    *loop = (linear_system){0};
+    status code = learn(&law, arm, p, f);
+    code = code == STATUS_OK ? linear_sample(&plant, arm, p, f) : code;
+    if (code != STATUS_OK) {
+        return code;
+    }
+    const int n = plant.states, states = n + law.order;
+    code = linear_system_init(loop, states, 1, f);
+    if (code != STATUS_OK) {
+        linear_system_finish(&plant);
+        return code;
+    }
+
+    // the law's states are the answers that are still to come
+    for (int i = 0; i < n; i++) {
+        memcpy(loop->a + i * states, plant.a + i * n, (size_t)n * sizeof *loop->a);
+        loop->b[i] = plant.b[i];
+        for (int k = 0; k <= law.order; k++) {
+            double *to = k == 0 ? loop->c : loop->a + (n + k - 1) * states;
+            for (int j = 0; j < LINEAR_READINGS; j++) {
+                to[i] += law.h[j][k] * plant.c[j * n + i];
+            }
+        }
+    }
+    for (int k = 0; k < law.order; k++) {
+        loop->a[(states - 1) * states + n + k] = law.recurrence[k];
+        if (k + 1 < law.order) {
+            loop->a[(n + k) * states + n + k + 1] = 1;
+        }
+    }
+    if (law.order > 0) {
+        loop->c[n] = 1;
+    }
+    linear_system_finish(&plant);
+    return STATUS_OK;
+}
+
+void linear_close(linear_system *loop)
+{
+    for (int i = 0; i < loop->states; i++) {
+        for (int j = 0; j < loop->states; j++) {
+            loop->a[i * loop->states + j] += loop->b[i] * loop->c[j];
+        }
+    }
+}

@@ -1,0 +1,248 @@
+// Sampled loops: limits of stability, margins, loop gains measured in runs, pushes that lose
+// contact.
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/arm/chain.h"
+#include "src/run/run.h"
+#include "src/study/linear/linear.h"
+#include "tests/check.h"
+
+#define IDEAL "motor.stiction=0 sensor.ideal=true "
+
+// A shipped scenario with changes, "PATH=VALUE ..." between blanks.
+static scenario opened(const char *name, const char *changes)
+{
+    scenario s;
+    char copy[512], *items[32], *rest = NULL;
+    int count = 0;
+    snprintf(copy, sizeof copy, "%s", changes);
+    for (char *item = strtok_r(copy, " ", &rest); item != NULL; item = strtok_r(NULL, " ", &rest)) {
+        items[count++] = item;
+    }
+    assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
+    if (scenario_override_all(&s, items, count, NULL, NULL) != STATUS_OK) {
+        fail_msg("%s", changes);
+    }
+    return s;
+}
+
+// Its loop; the caller finishes both.
+static linear_system loop_of(const scenario *s, linear_arm *l)
+{
+    fault f = {.text = ""};
+    linear_system loop;
+    if (linear_arm_init(l, &s->parameters, LINEAR_CONTACT, &f) != STATUS_OK ||
+        linear_loop(&loop, l, &s->parameters, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    return loop;
+}
+
+// The largest pole of the closed loop.
+static double spectral_radius(const char *name, const char *changes, const char *path, double value)
+{
+    scenario s = opened(name, changes);
+    char text[64];
+    fault f = {.text = ""};
+    snprintf(text, sizeof text, "%s=%.12g", path, value);
+    char *const items[] = {text};
+    assert_int_equal(scenario_override_all(&s, items, 1, NULL, NULL), STATUS_OK);
+    linear_arm l;
+    linear_system loop = loop_of(&s, &l);
+    double complex poles[64];
+    linear_close(&loop);
+    assert_int_equal(linear_poles(&loop, poles, &f), STATUS_OK);
+    const double radius = cabs(poles[loop.states - 1]);
+    linear_system_finish(&loop);
+    linear_system_finish(&l.system);
+    scenario_finish(&s);
+    return radius;
+}
+
+// Where the radius passes 1 between two values.
+static double limit(const char *name, const char *changes, const char *path, double from, double to)
+{
+    const bool grows = spectral_radius(name, changes, path, from) < 1;
+    assert_true(grows != (spectral_radius(name, changes, path, to) < 1));
+    for (int i = 0; i < 30; i++) {
+        const double middle = (from + to) / 2;
+        *(grows == (spectral_radius(name, changes, path, middle) < 1) ? &from : &to) = middle;
+    }
+    return from;
+}
+
+// Limits that another program found, on a grid of half a hertz and for the straight arm.
+static void limits_are_those_found_otherwise(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *changes, *path;
+        double from, to, known;
+    } cases[] = {
+        {"compare/sampling-rate", IDEAL, "control.rate", 150, 250, 193.5},
+        {"compare/sampling-rate", IDEAL "control.delay_periods=0", "control.rate", 40, 60, 45.5},
+        {"compare/sampling-rate", IDEAL "control.delay_periods=0", "control.rate", 60, 120, 88.5},
+        {"compare/force-pd", "control.rate=200", "control.force_gain", 1, 8, 4.12},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        check_relative(
+            limit(cases[i].name, cases[i].changes, cases[i].path, cases[i].from, cases[i].to),
+            cases[i].known, 1e-2);
+    }
+}
+
+// A gain margin is the factor, a delay margin the delay, at which a pole reaches the unit circle.
+static void margins_are_met_by_the_poles(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"compare/force-pd", IDEAL "control.rate=200 control.force_gain=2 control.kv=0"},
+        {"compare/force-integral", IDEAL "control.rate=100"},
+        {"compare/sampling-rate", IDEAL},
+        {"compare/hybrid", IDEAL "control.rate=300 control.delay=0.002"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        scenario s = opened(cases[i][0], cases[i][1]);
+        linear_arm l;
+        linear_system loop = loop_of(&s, &l);
+        linear_response r;
+        fault f = {.text = ""};
+        const double period = 1 / s.parameters.control.rate;
+        assert_int_equal(linear_loop_response(&loop, period, &r, &f), STATUS_OK);
+        const linear_margins m = linear_margins_of(&r);
+
+        // the gain at its margin puts a pole on the circle
+        double complex poles[64];
+        const double factor = pow(10, m.gain_db / 20);
+        for (int k = 0; k < loop.states; k++) {
+            loop.c[k] *= factor;
+        }
+        linear_close(&loop);
+        assert_int_equal(linear_poles(&loop, poles, &f), STATUS_OK);
+        check_close(cabs(poles[loop.states - 1]), 1, 2e-4);
+        assert_true(m.disk <= 2 * (factor - 1) / (factor + 1) * (1 + 1e-6));
+        assert_true(m.disk <= 4 * tan(m.phase_deg * acos(-1) / 360) + 1e-6);
+
+        // and so does the delay
+        if (m.delay_s + s.parameters.control.delay < 4 * period) {
+            char delay[256];
+            snprintf(delay, sizeof delay, "%s control.delay=%.12g", cases[i][1],
+                     s.parameters.control.delay + m.delay_s);
+            check_close(spectral_radius(cases[i][0], delay, "control.kp", s.parameters.control.kp),
+                        1, 2e-2);
+        }
+        free(r.frequency);
+        linear_system_finish(&loop);
+        linear_system_finish(&l.system);
+        scenario_finish(&s);
+    }
+}
+
+// Small sines in a run meet what the matrices say.
+static void measured_loops_are_the_exact_ones(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"compare/force-pd", "compare/hybrid", "compare/impedance"};
+    for (int i = 0; i < 3; i++) {
+        scenario s = opened(names[i], IDEAL);
+        linear_arm l;
+        linear_system loop = loop_of(&s, &l);
+        linear_response r;
+        fault f = {.text = ""};
+        if (linear_inject(&s, &l, &r, &f) != STATUS_OK) {
+            fail_msg("%s: %s", names[i], f.text);
+        }
+        const double period = 1 / s.parameters.control.rate;
+        double complex scratch[64 * 65];
+        int compared = 0;
+        for (int k = 0; k < r.count; k++) {
+            const double turn = r.frequency[k] * period;
+            if (turn <= 0.8 * acos(-1)) {
+                const double complex point = CMPLX(cos(turn), sin(turn));
+                const double complex ratio = r.gain[k] / -linear_answer(&loop, 0, point, scratch);
+                check_close(20 * log10(cabs(ratio)), 0, 0.1);
+                check_close(carg(ratio) * 180 / acos(-1), 0, 1);
+                compared++;
+            }
+        }
+        assert_true(compared > 20);
+        free(r.frequency);
+        linear_system_finish(&loop);
+        linear_system_finish(&l.system);
+        scenario_finish(&s);
+    }
+}
+
+// The observer law, which has no linear form, fails in runs with about the further delay that its
+// measured loop gain bears.
+static void measured_margins_are_those_of_runs(void **state)
+{
+    (void)state;
+    scenario s = opened("compare/observer", IDEAL "run.duration=3");
+    linear_arm l;
+    linear_system loop;
+    linear_response r;
+    fault f = {.text = ""};
+    assert_int_equal(linear_arm_init(&l, &s.parameters, LINEAR_CONTACT, &f), STATUS_OK);
+    assert_int_equal(linear_loop(&loop, &l, &s.parameters, &f), STATUS_UNSTABLE);
+    assert_int_equal(linear_inject(&s, &l, &r, &f), STATUS_OK);
+    const double margin = linear_margins_of(&r).delay_s;
+    free(r.frequency);
+    linear_system_finish(&l.system);
+    scenario_finish(&s);
+
+    // the law is not told of the delay, which is five periods at most
+    for (int more = 0; more < 2; more++) {
+        const double delay = more ? fmin(1.1 * margin, 0.0249) : 0.9 * margin;
+        char changes[256];
+        snprintf(changes, sizeof changes,
+                 IDEAL "run.duration=3 control.delay=%.6g belief.delay_error=-%.6g", delay, delay);
+        run_result result;
+        s = opened("compare/observer", changes);
+        assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+        assert_true((result.summary.settling_time_s < 1) == !more);
+        run_finish(&result);
+        scenario_finish(&s);
+    }
+}
+
+// A push away from a rigid wall throws the arm off with p C, C = J M^-1 J', and the force f brings
+// it back after (p C)^2/(2 f C): a micrometre is a separation.
+static void the_least_push_lifts_the_arm_by_a_micrometre(void **state)
+{
+    (void)state;
+    scenario s = opened("corrected/first-impact", "motor.stiction=0 run.duration=4");
+    linear_arm l;
+    fault f = {.text = ""};
+    double push;
+    assert_int_equal(linear_arm_init(&l, &s.parameters, LINEAR_CONTACT, &f), STATUS_OK);
+    assert_int_equal(linear_contact_margin(&s, &push, &f), STATUS_OK);
+
+    arm a;
+    chain_link work[2];
+    double q[2], response[2], compliance;
+    run_result result;
+    assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+    const double force = result.summary.steady_force_N;
+    run_finish(&result);
+    arm_init(&a, &s.parameters);
+    q[0] = l.hub_angle;
+    q[1] = l.hub_angle + l.bending;
+    chain_contact_response(&a, work, q, false, response, &compliance);
+    check_relative(push, sqrt(2e-6 * force / compliance), 0.02);
+    linear_system_finish(&l.system);
+    scenario_finish(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(limits_are_those_found_otherwise),
+        cmocka_unit_test(margins_are_met_by_the_poles),
+        cmocka_unit_test(measured_loops_are_the_exact_ones),
+        cmocka_unit_test(measured_margins_are_those_of_runs),
+        cmocka_unit_test(the_least_push_lifts_the_arm_by_a_micrometre),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
