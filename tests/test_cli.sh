@@ -34,7 +34,7 @@ says out corrected/first-impact
 expect 0 --version
 says out "impactlab "
 expect 0 --help
-for command in list show check run tables figures animate predict modes sweep compare calibrate robust bench converge solve study linear identify; do
+for command in list show check run tables figures animate predict modes sweep compare calibrate robust bench converge solve study linear identify tune; do
     grep -q "^  $command " out || fail "--help does not name $command"
     "$lab" $command --help >help 2>err || fail "$command --help fails"
     grep -q "^impactlab $command" help || fail "$command --help does not say how to call it"
@@ -439,6 +439,36 @@ says err "2 of 2 runs failed; run 1: at t = 0.1 s: a push of 1e+300 N s"
 expect 2 robust compare/observer --laws nonsense
 expect 2 robust compare/observer --over press.yaml
 expect 2 robust corrected/first-impact
+
+# --- tune: the same bytes with any number of threads and after any stop, and always a whole scenario
+printf 'belief.k2_factor=0.8:1.2\ncontrol.seed=1:1000\n' >beliefs.set
+tuning=(tune compare/hybrid --set run.duration=0.8 --vary control.transition_time=0.05:0.35
+    --vary control.kv=0.2:2 --minimise 'max(overshoot_worst_percent/100, settling_nine_tenths_s/0.2)'
+    --over beliefs.set --runs 400 --quiet)
+expect 0 "${tuning[@]}" --jobs 1 -o one.yaml --json tune1.json --plot tune.svg
+expect 0 "${tuning[@]}" --jobs 4 -o four.yaml --json tune4.json
+cmp one.yaml four.yaml && cmp tune1.json tune4.json || fail "tune gives other bytes with other --jobs"
+cp one.yaml best.yaml
+for ((i = 0; i < ${KILLS:-5}; i++)); do
+    "$lab" "${tuning[@]}" --jobs 1 --db tune.sqlite -o best.yaml >/dev/null 2>&1 &
+    sleep "0.$((RANDOM % 3))$((RANDOM % 10))"
+    kill -9 $! 2>/dev/null || true
+    wait $! 2>/dev/null || true
+    "$lab" show best.yaml >/dev/null 2>err || fail "tune, killed, leaves no scenario: $(cat err)"
+done
+expect 0 "${tuning[@]}" --jobs 2 --db tune.sqlite -o best.yaml --json tune5.json
+cmp one.yaml best.yaml && cmp tune1.json tune5.json || fail "tune finds something else after it was killed"
+expect 2 "${tuning[@]}" --db tune.sqlite --seed 4
+says err "seed was 0, now it is 4"
+expect 1 "${tuning[@]}" --subject 'overshoot_worst_percent<=0-1'
+says err "none of the 20 evaluations meets --subject"
+expect 2 tune compare/hybrid --minimise steps
+expect 2 tune compare/hybrid --vary control.kv=1:2
+expect 2 tune compare/hybrid --vary control.kv=1:2 --minimise 'max(steps, seps)'
+says err "column 12"
+expect 2 tune corrected/first-impact --vary arm.k2=4:5 --minimise failed --over beliefs.set
+expect 2 tune compare/hybrid --vary control.kv=1:2 --minimise failed --over two.set
+says err "has cases"
 expect 2 run nosuch
 says err "impactlab: 'nosuch' is neither a scenario nor a file"
 expect 2 run press.yaml --set "control.k2_table=1:0"
@@ -462,7 +492,7 @@ expect 0 lesson --json -
 says out '"scenario": "lessons/hybrid-law"'
 expect 0 figures 2.4 --format svg -o drawn --json -
 says out '"file": "fig-2-4"'
-for command in list show run predict modes sweep merge compare converge solve study calibrate robust linear identify \
+for command in list show run predict modes sweep merge compare converge solve study calibrate robust linear identify tune \
     tables bench check lesson figures; do
     expect 0 $command --help
     says out '--json FILE|-'

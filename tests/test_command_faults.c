@@ -180,6 +180,7 @@ static const struct {
     {"study", "methods hit.yaml", TIMED},
     {"calibrate", "touch.yaml --vary control.approach_voltage=1:2:2", USUAL},
     {"robust", "law.yaml --over over.set --runs 2 --jobs 1", USUAL},
+    {"tune", "law.yaml --vary control.kp=5:9 --minimise steps --runs 4 --jobs 1", USUAL},
     {"robust", "law.yaml --over cases.set --runs 2 --jobs 1 --laws force-pd,hybrid --markdown -",
      ALONE},
     {"identify", "touch.yaml --data recorded.csv --fit arm.k2 --starts 1 --jobs 1", USUAL},

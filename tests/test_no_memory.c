@@ -203,7 +203,9 @@ static status sweep_over(scenario *s, FILE *out)
         code = code == STATUS_OK ? sweep_run(&made_sweep, store, &options, &progress, &f) : code;
         code = code == STATUS_OK ? sweep_store_csv(store, out, &f) : code;
         code = code == STATUS_OK ? sweep_store_json(store, out, &f) : code;
-        code = code == STATUS_OK ? robust_law_of(&law, "none", &made_sweep, store, &f) : code;
+        code = code == STATUS_OK
+                   ? robust_law_of(&law, "none", &made_sweep, (sweep_share){0}, store, &f)
+                   : code;
         robust_law_finish(&law);
         sweep_store_close(store);
         sweep_finish(&made_sweep);

@@ -202,7 +202,7 @@ static char *judged(int law, char *const *lines, int count, size_t runs, int job
     assert_int_equal(sweep_store_open(&store, NULL, &s, &f), STATUS_OK);
     sweep_options options = {.jobs = jobs};
     assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_OK);
-    assert_int_equal(robust_law_of(found, "law", &s, store, &f), STATUS_OK);
+    assert_int_equal(robust_law_of(found, "law", &s, (sweep_share){0}, store, &f), STATUS_OK);
 
     robust_table table = {"test", found, 1, NULL};
     json_t *json = robust_json(&table);

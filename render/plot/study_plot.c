@@ -444,3 +444,49 @@ owned_figure *sweep_figure_create(const sweep_picture *p)
     describe(&s, p);
     return s.drawn;
 }
+
+// ==== tune: how the search went
+
+owned_figure *tune_figure_create(const tuning *t, const char *changes)
+{
+    assert(t != NULL);
+    owned_figure *o = g_new(owned_figure, 1);
+    owned_figure_init(o, NULL, 1);
+    double *number = owned_figure_keep(o, g_new(double, t->done + 1)),
+           *value = owned_figure_keep(o, g_new(double, t->done + 1)),
+           *least = owned_figure_keep(o, g_new(double, t->done + 1));
+    for (size_t i = 0; i < t->done; i++) {
+        number[i] = (double)i + 1;
+        value[i] = t->ranks[i] < TUNE_REFUSED ? t->ranks[i] : (double)NAN;
+        least[i] = i > 0 ? fmin(least[i - 1], value[i]) : value[i];
+    }
+
+    o->series[0][0] = (figure_series){.name = "value",
+                                      .label = "an evaluation",
+                                      .x = number,
+                                      .y = value,
+                                      .count = t->done,
+                                      .no_line = true,
+                                      .marker = MARKER_CIRCLE,
+                                      .radius = marker_radius(t->done),
+                                      .colour = palette_slot(0)};
+    o->series[0][1] = (figure_series){.name = "least",
+                                      .label = "the least so far",
+                                      .x = number,
+                                      .y = least,
+                                      .count = t->done,
+                                      .colour = palette_slot(1)};
+    o->panels[0].series_count = 2;
+    o->panels[0].weight = PANEL_WEIGHT;
+    o->panels[0].y = (figure_axis){.name = "value",
+                                   .label = owned_figure_keep(o, text_escape(t->asked.minimise)),
+                                   .room = 0.05};
+    o->figure.x = (figure_axis){.name = "evaluation", .label = "Evaluation", .room = 0.02};
+    o->figure.title =
+        owned_figure_keep(o, g_strdup_printf("%s: tuned%s", t->asked.base->name, changes));
+    o->figure.caption = owned_figure_keep(
+        o, g_strdup_printf("%zu evaluations of %zu runs. What fails, or is not allowed, has no "
+                           "point. impactlab %s.",
+                           t->done, t->each, lab_version()));
+    return o;
+}

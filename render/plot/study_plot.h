@@ -5,6 +5,7 @@
 #include "src/study/identify.h"
 #include "src/study/robust.h"
 #include "src/study/sweep.h"
+#include "src/study/tune.h"
 
 // --- robust: the distribution of the overshoot, a curve for each law
 
@@ -15,6 +16,10 @@ enum { ROBUST_MOST_CURVES = 8 };
 // ends with what was changed of the scenario. The table is borrowed; at most ROBUST_MOST_CURVES
 // laws. To be freed with owned_figure_destroy.
 owned_figure *robust_figure_create(const robust_table *t, const char *changes);
+
+// --- tune: what each evaluation came to, and the least so far, over the evaluations. The title
+// ends with what was changed of the scenario. To be freed with owned_figure_destroy.
+owned_figure *tune_figure_create(const tuning *t, const char *changes);
 
 // --- Pictures of a sweep: one quantity over one or two varied parameters.
 //

@@ -293,6 +293,7 @@ enum {
     SEPARATIONS,
     APPROACH,
     BACK,
+    STEPS, // that every run has which did not fail
     QUANTITIES
 };
 static const char *const keys[QUANTITIES] = {
@@ -306,6 +307,7 @@ static const char *const keys[QUANTITIES] = {
     [SEPARATIONS] = "separations",
     [APPROACH] = "approach_speed_m_s",
     [BACK] = "return_speed_m_s",
+    [STEPS] = "steps",
 };
 
 // Instant of the script's last push, 0 without one [s].
@@ -319,9 +321,9 @@ static double last_push(const scenario *s)
 }
 
 // Judges the runs, whose quantities stand one behind the other; what is sorted is overwritten.
-static void judge(robust_law *out, const sweep *s, double *values)
+static void judge(robust_law *out, const sweep *s, sweep_share share, double *values)
 {
-    const size_t n = s->run_count;
+    const size_t n = out->runs;
     double *of[QUANTITIES];
     size_t settled = 0, separated = 0, exceeded = 0;
     double pushed = last_push(s->base);
@@ -332,13 +334,14 @@ static void judge(robust_law *out, const sweep *s, double *values)
     // each run
     for (size_t i = 0; i < n; i++) {
         scenario derived;
-        bool known = sweep_scenario(s, i, &derived, NULL) == STATUS_OK;
+        bool known = sweep_scenario(s, sweep_share_run(share, i), &derived, NULL) == STATUS_OK;
         bool many = known && derived.parameters.arm.links > 2;
         double command = of[COMMAND][i];
         double allowed = known && derived.parameters.control.force_limit > 0
                              ? derived.parameters.control.force_limit
                              : ROBUST_EXCESS * command;
 
+        out->failed += isnan(of[STEPS][i]);
         settled += !isnan(of[SETTLING][i]);
         separated += of[SEPARATIONS][i] > 0;
         exceeded += (many ? of[SMOOTHED][i] + command : of[PEAK][i]) > allowed;
@@ -369,22 +372,30 @@ static void judge(robust_law *out, const sweep *s, double *values)
     find_quantiles(of[BACK], n, out->back);
 }
 
-status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_store *store, fault *f)
+status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_share share,
+                     sweep_store *store, fault *f)
 {
     assert(out != NULL && law != NULL && s != NULL && store != NULL && s->run_count > 0);
-    *out = (robust_law){.law = law, .runs = s->run_count, .against = (double)NAN};
+    const size_t n = sweep_share_count(share, s->run_count);
+    *out = (robust_law){.law = law, .runs = n, .against = (double)NAN};
 
-    // a column of the store for each quantity
-    double *values = calloc(QUANTITIES * s->run_count, sizeof *values);
-    out->overshoots = calloc(s->run_count, sizeof *out->overshoots);
-    status code = values != NULL && out->overshoots != NULL ? STATUS_OK : fault_no_memory(f);
+    // a column of the store for each quantity, and of it the runs of the share
+    double *column = calloc(s->run_count, sizeof *column);
+    double *values = calloc(QUANTITIES * n, sizeof *values);
+    out->overshoots = calloc(n, sizeof *out->overshoots);
+    status code = column != NULL && values != NULL && out->overshoots != NULL ? STATUS_OK
+                                                                              : fault_no_memory(f);
     for (int q = 0; q < QUANTITIES && code == STATUS_OK; q++) {
-        code = store->quantity(store, keys[q], values + (size_t)q * s->run_count, &out->failed, f);
+        code = store->quantity(store, keys[q], column, NULL, f);
+        for (size_t i = 0; i < n; i++) {
+            values[(size_t)q * n + i] = column[sweep_share_run(share, i)];
+        }
     }
 
     if (code == STATUS_OK) {
-        judge(out, s, values);
+        judge(out, s, share, values);
     }
+    free(column);
     free(values);
     return code;
 }

@@ -88,15 +88,19 @@ typedef struct robust_law {
     double *overshoots;             // of all runs, ascending, NaN last; owned [%]
 } robust_law;
 
-// Judges the runs of a law in a store of its sweep, all of which are there. STATUS_NO_MEMORY or
-// what the store says. robust_law_finish in any case.
-status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_store *store,
-                     fault *f);
+// Judges a share of the runs of a law in a store of its sweep, all of which are there.
+// STATUS_NO_MEMORY or what the store says. robust_law_finish in any case.
+status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_share share,
+                     sweep_store *store, fault *f);
 void robust_law_finish(robust_law *law);
 
 // Which `overshoot` is: "peak", "smoothed", or "peak and smoothed" where the number of links is
 // drawn.
 const char *robust_overshoot_of(const robust_law *law);
+
+// The numbers of a law under their keys of robust_json: the i-th key, NULL after the last.
+const char *robust_key(int i);
+double robust_value(const robust_law *law, int i);
 
 // Laws to be shown together.
 typedef struct robust_table {

@@ -124,6 +124,26 @@ static void values_of(const robust_law *law, double *values)
     }
 }
 
+// Two counts, then the columns but the one that another law is needed for.
+static int column_of(int i)
+{
+    return i - 2 + (i - 2 >= AGAINST);
+}
+
+const char *robust_key(int i)
+{
+    assert(i >= 0);
+    return i == 0 ? "runs" : i == 1 ? "failed" : i <= COLUMNS ? columns[column_of(i)].key : NULL;
+}
+
+double robust_value(const robust_law *law, int i)
+{
+    double values[COLUMNS];
+    assert(law != NULL && i >= 0 && i <= COLUMNS);
+    values_of(law, values);
+    return i == 0 ? (double)law->runs : i == 1 ? (double)law->failed : values[column_of(i)];
+}
+
 // A law's cell in a column that people see; its values are values_of it.
 static void format_cell(char *text, size_t size, const robust_law *law, const double *values,
                         int which)

@@ -25,7 +25,9 @@ typedef struct sweep {
     sweep_sampling sampling;
     uint64_t seed;
     size_t run_count;
-    double *drawn; // random, latin: axis_count values a run; NULL for a grid
+    double *drawn; // random, latin: axis_count values a run, NaN where one is still free; NULL for
+                   // a grid
+    const char *chosen_by; // borrowed: by what free values are chosen, part of the definition; NULL
 } sweep;
 
 // What is asked for.

@@ -172,6 +172,10 @@ status definition_init(definition *d, const sweep *s, fault *f)
         define(d, key, "%s=%s", s->axes[i].name, s->axes[i].text);
     }
 
+    if (s->chosen_by != NULL) {
+        define(d, "chosen by", "%s", s->chosen_by);
+    }
+
     // what stays
     define_script(d, s->base);
     define_parameters(d, s);

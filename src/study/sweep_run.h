@@ -41,6 +41,17 @@ typedef struct sweep_share {
     int part, parts; // 0, 0: all runs
 } sweep_share;
 
+// Number of the i-th run of a share, and how many of `total` runs it has.
+static inline size_t sweep_share_run(sweep_share share, size_t i)
+{
+    return share.parts > 0 ? i * (size_t)share.parts + (size_t)share.part - 1 : i;
+}
+static inline size_t sweep_share_count(sweep_share share, size_t total)
+{
+    return share.parts > 0 ? (total + (size_t)(share.parts - share.part)) / (size_t)share.parts
+                           : total;
+}
+
 typedef struct sweep_options {
     sweep_share share;
     int jobs;                          // threads that compute, 1 ... SWEEP_MOST_JOBS

@@ -32,6 +32,7 @@
     X(calibrate)                                                                                   \
     X(robust)                                                                                      \
     X(linear)                                                                                      \
+    X(tune)                                                                                        \
     X(animate)                                                                                     \
     X(plot)                                                                                        \
     X(tables)                                                                                      \

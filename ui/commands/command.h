@@ -131,6 +131,7 @@ typedef struct arguments {
     const char *against, *columns;  // of compare
     double tolerance;               // of compare [%]
     const char *laws, *over;        // of robust
+    const char *minimise, *subject; // of tune
     const char *then;               // of predict, "TIME:VOLTS,..."
     const char *place;              // of linear, --at
     bool looped, injects;           // of linear, --law and --inject

@@ -197,7 +197,7 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
     }
     if (code == STATUS_OK && !stopped) {
         robust_law *found = &r->found[r->judged++];
-        code = robust_law_of(found, law, s, store, &f);
+        code = robust_law_of(found, law, s, (sweep_share){0}, store, &f);
         found->case_title = k >= 0 ? r->set.cases[k].title : NULL;
     }
     sweep_store_close(store);

@@ -207,8 +207,9 @@ static bool is_value(const sweep *s, size_t run, int axis, sqlite3_stmt *row, in
         sweep_value_text(s, run, axis, text, sizeof text);
         return found != NULL && strcmp(found, text) == 0;
     }
+    const double planned = sweep_value(s, run, axis);
     return is_number(row, column) &&
-           sqlite3_column_double(row, column) == sweep_value(s, run, axis);
+           (isnan(planned) || sqlite3_column_double(row, column) == planned);
 }
 
 // Whether that column, of the outcome, has what this program writes there: how the run ended, a

@@ -1,0 +1,367 @@
+#include "src/study/tune.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef WITH_NLOPT
+#include <nlopt.h>
+#endif
+
+#include "src/base/words.h"
+#include "src/study/expression.h"
+
+// --- judging --------------------------------------------------------------------------------
+
+// What an expression is of: a law's runs, or a run's quantities.
+typedef struct judged {
+    const robust_law *law; // NULL: a run
+    const double *run;     // summary_count numbers
+} judged;
+
+static bool find_key(void *context, const char *name, double *value, const char **near)
+{
+    const judged *of = context;
+    nearest_word nearest = nearest_begin(name);
+    for (int i = 0; of->law != NULL ? robust_key(i) != NULL : i < summary_count; i++) {
+        const char *key = of->law != NULL ? robust_key(i) : summary_table[i].key;
+        if (strcmp(key, name) == 0 && (of->law != NULL || !summary_table[i].timing)) {
+            *value = of->law != NULL ? robust_value(of->law, i) : of->run[i];
+            return true;
+        }
+        nearest_try(&nearest, key);
+    }
+    *near = nearest.best;
+    return false;
+}
+
+// By how much the condition is missed, as a share of its bound; not above 0: it is met.
+static status read_subject(const char *text, judged *of, double *excess, fault *f)
+{
+    const char *sign = strpbrk(text, "<>");
+    char left[512];
+    double a = 0, b = 0;
+    if (sign == NULL || sign[1] != '=' || sign - text >= (long)sizeof left) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%.100s' is no condition, expected EXPR<=X or EXPR>=X", text);
+    }
+    snprintf(left, sizeof left, "%.*s", (int)(sign - text), text);
+    status code = expression_evaluate(left, find_key, of, &a, f);
+    code = code == STATUS_OK ? expression_evaluate(sign + 2, find_key, of, &b, f) : code;
+    *excess = (*sign == '<' ? a - b : b - a) / fmax(fabs(b), 1e-300);
+    return code;
+}
+
+// What cannot be judged ranks by how many of its runs never settle.
+static status judge(const tune_request *asked, judged *of, tune_result *out, fault *f)
+{
+    fault why = {.path = ""};
+    double excess = 0;
+    const char *option = "minimise";
+    status code = expression_evaluate(asked->minimise, find_key, of, &out->value, &why);
+    if (code == STATUS_OK && asked->subject != NULL) {
+        option = "subject";
+        code = read_subject(asked->subject, of, &excess, &why);
+    }
+    if (code != STATUS_OK) {
+        return fault_set(f, code, "--%s %.900s", option, why.text);
+    }
+    out->rank = !isfinite(out->value) || isnan(excess)
+                    ? TUNE_REFUSED * 1e100 * (2 - (of->law != NULL ? of->law->settled : 0))
+                : excess > 0 ? TUNE_REFUSED * (1 + fmin(excess, 1e90))
+                             : out->value;
+    return STATUS_OK;
+}
+
+status tune_evaluate(tuning *t, size_t evaluation, const double *values, const char *name,
+                     sweep_store *store, const sweep_options *options, tune_result *out, fault *f)
+{
+    assert(t != NULL && evaluation < t->most && values != NULL && out != NULL);
+    const tune_request *asked = &t->asked;
+    char word[48];
+    sweep_options only = *options;
+    sweep_progress progress;
+    double run[SUMMARY_NUMBERS], *column = calloc(t->plan.run_count, sizeof *column);
+    *out = (tune_result){.rank = INFINITY};
+    snprintf(word, sizeof word, "%zu of %zu:", evaluation + 1, t->most);
+    only.context = word; // of the progress line
+    only.share = (sweep_share){(int)evaluation + 1, (int)t->most};
+    for (size_t i = 0; i < t->each; i++) {
+        memcpy(t->plan.drawn + sweep_share_run(only.share, i) * (size_t)t->plan.axis_count, values,
+               (size_t)asked->vary_count * sizeof *values);
+    }
+    status code =
+        column != NULL ? sweep_run(&t->plan, store, &only, &progress, f) : fault_no_memory(f);
+    if (code == STATUS_OK && progress.done < progress.total) {
+        code = fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
+    }
+
+    // a store that another search has filled
+    for (int k = 0; k < asked->vary_count && code == STATUS_OK; k++) {
+        code = store->quantity(store, t->plan.axes[k].name, column, NULL, f);
+        if (code == STATUS_OK && !isnan(column[evaluation]) && column[evaluation] != values[k]) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT,
+                             "the database is of another search: run %zu has %s = %g, not %g",
+                             evaluation + 1, t->plan.axes[k].name, column[evaluation], values[k]);
+        }
+    }
+
+    // what came out
+    judged of = {.law = asked->over != NULL ? &out->law : NULL, .run = run};
+    if (code == STATUS_OK && of.law != NULL) {
+        code = robust_law_of(&out->law, name, &t->plan, only.share, store, f);
+    }
+    for (int q = 0; q < summary_count && of.law == NULL && code == STATUS_OK; q++) {
+        code = store->quantity(store, summary_table[q].key, column, NULL, f);
+        run[q] = column[evaluation];
+    }
+    free(column);
+    return code == STATUS_OK ? judge(asked, &of, out, f) : code;
+}
+
+// --- what is asked for ----------------------------------------------------------------------
+
+// Whether everything but what is varied can be right.
+static status check(const tune_request *asked, fault *f)
+{
+    const double run[SUMMARY_NUMBERS] = {0};
+    const robust_law law = {.runs = 1};
+    const robust_set *over = asked->over;
+    judged of = {.law = over != NULL ? &law : NULL, .run = run};
+    tune_result unused;
+#ifndef WITH_NLOPT
+    return fault_set(f, STATUS_BAD_ARGUMENT,
+                     "this program was built without NLopt, whose minimisers tune needs");
+#endif
+    if (over != NULL && over->case_count > 0) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%.200s' has cases, expected lines PATH=a:b or PATH=v1,v2 only",
+                         over->file);
+    }
+    if (over != NULL && asked->base->parameters.control.law == LAW_NONE) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%s has no control law, and runs over a set are judged by one",
+                         asked->base->name);
+    }
+    return judge(asked, &of, &unused, f);
+}
+
+// The sweep of all evaluations: the varied parameters, whose values are free, and in each
+// evaluation the same draws.
+static status make_plan(tuning *t, uint64_t seed, fault *f)
+{
+    const tune_request *asked = &t->asked;
+    const int varied = asked->vary_count, drawn = asked->over != NULL ? asked->over->count : 0;
+    char *lines[2 * SWEEP_MOST_AXES];
+    sweep draws = {0};
+    sweep_request request = {.vary = lines,
+                             .vary_count = varied + drawn,
+                             .sampling = SWEEP_LATIN,
+                             .runs = t->each * t->most,
+                             .seed = seed};
+    if (varied > SWEEP_MOST_AXES || drawn > SWEEP_MOST_AXES) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "at most %d parameters can be varied",
+                         SWEEP_MOST_AXES);
+    }
+    memcpy(lines, asked->vary, (size_t)varied * sizeof *lines);
+    if (drawn > 0) {
+        const sweep_request set = {
+            asked->over->lines,       drawn, SWEEP_LATIN, t->each, seed, asked->over->file,
+            asked->over->line_numbers};
+        memcpy(lines + varied, asked->over->lines, (size_t)drawn * sizeof *lines);
+        const status code = sweep_init(&draws, asked->base, &set, f);
+        if (code != STATUS_OK) {
+            return code;
+        }
+    }
+
+    status code = sweep_plan(&t->plan, &request, f);
+    for (int i = 0; i < varied && code == STATUS_OK; i++) {
+        if (!t->plan.axes[i].is_range) {
+            code = fault_set(f, STATUS_BAD_ARGUMENT, "--vary %.200s: expected a range, %s=a:b",
+                             asked->vary[i], t->plan.axes[i].name);
+            sweep_finish(&t->plan);
+        }
+    }
+    for (size_t i = 0; code == STATUS_OK && i < request.runs * (size_t)(varied + drawn); i++) {
+        const size_t run = i / (size_t)(varied + drawn);
+        const int axis = (int)(i % (size_t)(varied + drawn));
+        t->plan.drawn[i] =
+            axis < varied ? (double)NAN : sweep_value(&draws, run / t->most, axis - varied);
+    }
+    t->plan.base = asked->base;
+    t->plan.chosen_by = t->chosen_by;
+    sweep_finish(&draws);
+    return code;
+}
+
+status tune_init(tuning *t, const tune_request *asked, fault *f)
+{
+    assert(t != NULL && asked != NULL && asked->base != NULL && asked->minimise != NULL);
+    assert(asked->runs >= 1 && asked->runs <= TUNE_MOST_RUNS);
+    int version[3] = {0};
+    *t = (tuning){.asked = *asked, .best.rank = INFINITY};
+    status code = check(asked, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+#ifdef WITH_NLOPT
+    nlopt_version(&version[0], &version[1], &version[2]);
+#endif
+
+    // as many evaluations as runs of each
+    t->each = asked->over != NULL ? (size_t)sqrt((double)asked->runs) : 1;
+    t->most = asked->runs / t->each;
+    t->ranks = calloc(t->most, sizeof *t->ranks);
+    if (asprintf(&t->chosen_by,
+                 "tune --minimise '%s' --subject '%s', %zu runs each, NLopt %d.%d.%d",
+                 asked->minimise, asked->subject != NULL ? asked->subject : "", t->each, version[0],
+                 version[1], version[2]) < 0) {
+        t->chosen_by = NULL;
+    }
+    code = t->ranks != NULL && t->chosen_by != NULL ? make_plan(t, asked->seed, f)
+                                                    : fault_no_memory(f);
+    if (code != STATUS_OK) {
+        tune_finish(t);
+    }
+    return code;
+}
+
+status tune_unseen(tuning *unseen, const tuning *t, size_t evaluations, fault *f)
+{
+    assert(unseen != NULL && t != NULL && evaluations > 0);
+    *unseen = (tuning){.asked = t->asked, .most = evaluations, .each = 1};
+    if (t->asked.over != NULL) {
+        unseen->each = TUNE_UNSEEN;
+    } else {
+        unseen->other = *t->asked.base;
+        unseen->other.parameters.control.seed ^= 1;
+        unseen->asked.base = &unseen->other;
+    }
+    return make_plan(unseen, ~t->asked.seed, f);
+}
+
+void tune_finish(tuning *t)
+{
+    if (t != NULL) {
+        sweep_finish(&t->plan);
+        robust_law_finish(&t->best.law);
+        free(t->chosen_by);
+        free(t->ranks);
+        *t = (tuning){.done = 0};
+    }
+}
+
+// --- the search -----------------------------------------------------------------------------
+
+#ifdef WITH_NLOPT
+typedef struct search {
+    tuning *t;
+    sweep_store *store;
+    const sweep_options *options;
+    nlopt_opt minimiser;          // the one at work
+    double best[SWEEP_MOST_AXES]; // shares of the ranges
+    status code;
+    fault *fault;
+} search;
+
+// Rank of the values at these shares of the ranges, for NLopt; what was evaluated before is looked
+// up.
+static double rank_of(unsigned n, const double *shares, double *gradient, void *context)
+{
+    search *s = context;
+    tuning *t = s->t;
+    double values[SWEEP_MOST_AXES];
+    tune_result found;
+    (void)gradient;
+    if (t->done == t->most || s->code != STATUS_OK) {
+        nlopt_force_stop(s->minimiser);
+        return INFINITY;
+    }
+    for (unsigned i = 0; i < n; i++) {
+        const double share = fmin(fmax(shares[i], 0), nextafter(1, 0));
+        values[i] = sweep_axis_value_at(&t->plan.axes[i], share);
+    }
+    for (size_t e = 0; e < t->done; e++) {
+        if (memcmp(t->plan.drawn + e * (size_t)t->plan.axis_count, values, n * sizeof *values) ==
+            0) {
+            return t->ranks[e];
+        }
+    }
+
+    s->code = tune_evaluate(t, t->done, values, "tuned", s->store, s->options, &found, s->fault);
+    const bool better = s->code == STATUS_OK && found.rank < t->best.rank;
+    if (better) {
+        const tune_result before = t->best;
+        t->best = found;
+        found = before;
+        memcpy(t->found, values, n * sizeof *values);
+        memcpy(s->best, shares, n * sizeof *shares);
+    }
+    robust_law_finish(&found.law);
+    if (s->code == STATUS_OK) {
+        t->ranks[t->done++] = better ? t->best.rank : found.rank;
+    }
+    if (better && t->improved != NULL) {
+        s->code = t->improved(t->context, t, s->fault);
+    }
+    return t->ranks[t->done > 0 ? t->done - 1 : 0];
+}
+
+// Lets a method of NLopt begin at the best so far, with steps of that share of the ranges, for so
+// many evaluations.
+static void minimise(search *s, nlopt_algorithm method, double step, size_t most)
+{
+    double start[SWEEP_MOST_AXES], least;
+    memcpy(start, s->best, sizeof start);
+    s->minimiser = nlopt_create(method, (unsigned)s->t->asked.vary_count);
+    if (s->minimiser == NULL || nlopt_set_min_objective(s->minimiser, rank_of, s) < 0 ||
+        nlopt_set_lower_bounds1(s->minimiser, 0) < 0 ||
+        nlopt_set_upper_bounds1(s->minimiser, 1) < 0 ||
+        nlopt_set_initial_step1(s->minimiser, step) < 0 ||
+        nlopt_set_maxeval(s->minimiser, (int)most) < 0 ||
+        nlopt_optimize(s->minimiser, start, &least) == NLOPT_OUT_OF_MEMORY) {
+        s->code = fault_no_memory(s->fault);
+    }
+    nlopt_destroy(s->minimiser);
+}
+
+status tune_run(tuning *t, sweep_store *store, const sweep_options *options, fault *f)
+{
+    assert(t != NULL && store != NULL && options != NULL && t->done == 0);
+    search s = {.t = t, .store = store, .options = options, .fault = f};
+
+    // from the scenario as it is
+    for (int i = 0; i < t->asked.vary_count; i++) {
+        const sweep_axis *axis = &t->plan.axes[i];
+        const double given = sweep_axis_get(axis, &t->asked.base->parameters);
+        double low = 0, high = 1;
+        for (int k = 0; k < 50; k++) {
+            const double middle = (low + high) / 2;
+            *(sweep_axis_value_at(axis, middle) < given ? &low : &high) = middle;
+        }
+        s.best[i] = high;
+    }
+
+    rank_of((unsigned)t->asked.vary_count, s.best, NULL, &s);
+
+    // over the whole ranges, then down from the best, in smaller and smaller steps
+    if (s.code == STATUS_OK) {
+        minimise(&s, NLOPT_GN_DIRECT_L, 0.25, t->most / 2);
+    }
+    double step = 0.1;
+    for (int i = 0; i < 50 && s.code == STATUS_OK && t->done < t->most; i++) {
+        minimise(&s, NLOPT_LN_NELDERMEAD, step, t->most - t->done);
+        step /= 2;
+    }
+    return s.code;
+}
+#else
+status tune_run(tuning *t, sweep_store *store, const sweep_options *options, fault *f)
+{
+    (void)t, (void)store, (void)options;
+    return fault_set(f, STATUS_BAD_ARGUMENT, "this program was built without NLopt");
+}
+#endif

@@ -1,0 +1,208 @@
+// Tuning: expressions, and that the search finds what is known otherwise.
+#include "src/study/tune.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/study/expression.h"
+#include "src/study/store/sweep_store.h"
+#include "tests/rig_fixture.h"
+
+// --- expressions ----------------------------------------------------------------------------
+
+static bool find(void *context, const char *name, double *value, const char **near)
+{
+    (void)context;
+    *value = 7;
+    *near = "seven";
+    return strcmp(name, "seven") == 0;
+}
+
+static void expressions_are_arithmetic(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        double value;
+    } right[] = {
+        {"1", 1},
+        {" 2 + 3 * 4 ", 14},
+        {"(2+3)*4", 20},
+        {"8/4/2", 1},
+        {"10-4-3", 3},
+        {"-2*-3", 6},
+        {"seven/2", 3.5},
+        {"max(1, seven)", 7},
+        {"max(3,max(1,2),-5)-1e-1", 2.9},
+        {"2*(max(1,2)+seven)", 18},
+    };
+    for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
+        double value;
+        fault f = {0};
+        assert_int_equal(expression_evaluate(right[i].text, find, NULL, &value, &f), STATUS_OK);
+        assert_true(fabs(value - right[i].value) <= 1e-14);
+    }
+
+    // what cannot be judged stays so
+    double value;
+    assert_int_equal(expression_evaluate("max(1,(1-1)/(1-1))", find, NULL, &value, NULL),
+                     STATUS_OK);
+    assert_true(isnan(value));
+}
+
+static void faults_of_expressions_name_the_column(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        int column;
+        const char *says;
+    } wrong[] = {
+        {"", 1, "expected a key"},       {"1 +", 4, "expected a key"},
+        {"(1 + 2", 7, "expected ')'"},   {"1 + sevn", 5, "did you mean 'seven'?"},
+        {"1 2", 3, "an operator"},       {"max(1)", 6, "expected ','"},
+        {"max(1,2", 8, "expected ')'"},  {"seven seven", 7, "an operator"},
+        {"nan", 1, "no quantity 'nan'"}, {"max 1", 1, "no quantity 'max'"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        double value;
+        fault f = {0};
+        assert_int_equal(expression_evaluate(wrong[i].text, find, NULL, &value, &f),
+                         STATUS_BAD_ARGUMENT);
+        if (f.column != wrong[i].column || strstr(f.text, wrong[i].says) == NULL) {
+            fail_msg("'%s': column %d, %s", wrong[i].text, f.column, f.text);
+        }
+    }
+
+    // as many brackets as anybody wants, and no stack without end
+    char deep[100001];
+    memset(deep, '(', sizeof deep - 1);
+    deep[sizeof deep - 1] = '\0';
+    double value;
+    assert_int_equal(expression_evaluate(deep, find, NULL, &value, NULL), STATUS_BAD_ARGUMENT);
+}
+
+// --- the search -----------------------------------------------------------------------------
+
+// Searches, and returns what was found; t is to be finished.
+static void search(tuning *t, const tune_request *asked, int jobs)
+{
+    fault f = {0};
+    sweep_store *store;
+    if (tune_init(t, asked, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    assert_int_equal(sweep_store_open(&store, NULL, &t->plan, &f), STATUS_OK);
+    const sweep_options options = {.jobs = jobs};
+    if (tune_run(t, store, &options, &f) != STATUS_OK) {
+        fail_msg("%s", f.text);
+    }
+    sweep_store_close(store);
+}
+
+// The force of a stiff arm that strikes is proportional to the voltage's effect on its speed: a
+// peak is asked for, and that voltage is sought which the search by halves finds, too.
+static void one_parameter_is_that_of_bisection(void **state)
+{
+    (void)state;
+    char *vary[] = {"motor.voltage=0.5:3"};
+    scenario base = {.name = "touch", .parameters = rig_parameters(NULL)};
+    base.parameters.run.duration = 0.3;
+    const tune_request asked = {.base = &base,
+                                .vary = vary,
+                                .vary_count = 1,
+                                .minimise = "max(peak_force_N - 2, 2 - peak_force_N)",
+                                .runs = 80,
+                                .seed = 3};
+    tuning t;
+    search(&t, &asked, 2);
+    assert_true(t.done > 20 && t.done <= 80);
+
+    double low = 0.5, high = 3;
+    for (int i = 0; i < 40; i++) {
+        const double middle = (low + high) / 2;
+        scenario s = base;
+        run_result r;
+        s.parameters.motor.voltage = middle;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        *(r.summary.peak_force_N < 2 ? &low : &high) = middle;
+        run_finish(&r);
+    }
+    assert_true(fabs(t.found[0] - high) <= 1e-3 * high);
+    tune_finish(&t);
+}
+
+// What is not allowed ranks behind all that is.
+static void a_condition_binds(void **state)
+{
+    (void)state;
+    char *vary[] = {"motor.voltage=0.5:3"};
+    scenario base = {.name = "touch", .parameters = rig_parameters(NULL)};
+    base.parameters.run.duration = 0.3;
+    tune_request asked = {.base = &base,
+                          .vary = vary,
+                          .vary_count = 1,
+                          .minimise = "first_contact_s",
+                          .subject = "peak_force_N <= 2",
+                          .runs = 80};
+    tuning t;
+    search(&t, &asked, 1);
+    scenario s = base;
+    run_result r;
+    s.parameters.motor.voltage = t.found[0];
+    assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+    assert_true(r.summary.peak_force_N <= 2 && r.summary.peak_force_N > 1.98);
+    run_finish(&r);
+    tune_finish(&t);
+
+    // one that nothing meets: the nearest, refused
+    asked.subject = "peak_force_N <= 0-1";
+    search(&t, &asked, 1);
+    assert_true(t.best.rank >= TUNE_REFUSED);
+    assert_true(t.found[0] < 1);
+    tune_finish(&t);
+}
+
+static void what_cannot_be_asked_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *vary, *minimise, *subject, *says;
+    } wrong[] = {
+        {"motor.voltage=1,2", "steps", NULL, "expected a range, motor.voltage=a:b"},
+        {"motor.volt=1:2", "steps", NULL, "motor.volt"},
+        {"motor.voltage=1:2", "stepss", NULL, "--minimise 'stepss', column 1: "},
+        {"motor.voltage=1:2", "cpu_time_s", NULL, "--minimise 'cpu_time_s', column 1: "},
+        {"motor.voltage=1:2", "steps", "steps<3", "--subject 'steps<3' is no condition"},
+        {"motor.voltage=1:2", "steps", "steps<=", "--subject '', column 1: "},
+        {"motor.voltage=1:2", "settled_percent", NULL, "there is no quantity 'settled_percent'"},
+    };
+    scenario base = {.name = "touch", .parameters = rig_parameters(NULL)};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        char *vary = (char *)wrong[i].vary;
+        const tune_request asked = {.base = &base,
+                                    .vary = &vary,
+                                    .vary_count = 1,
+                                    .minimise = wrong[i].minimise,
+                                    .subject = wrong[i].subject,
+                                    .runs = 10};
+        tuning t;
+        fault f = {0};
+        assert_int_equal(tune_init(&t, &asked, &f), STATUS_BAD_ARGUMENT);
+        if (strstr(f.text, wrong[i].says) == NULL) {
+            fail_msg("%s: %s", wrong[i].says, f.text);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(expressions_are_arithmetic),
+        cmocka_unit_test(faults_of_expressions_name_the_column),
+        cmocka_unit_test(one_parameter_is_that_of_bisection),
+        cmocka_unit_test(a_condition_binds),
+        cmocka_unit_test(what_cannot_be_asked_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

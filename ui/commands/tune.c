@@ -1,0 +1,261 @@
+// impactlab tune: values of parameters that make an expression of results smallest.
+#include "ui/commands/command.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/plot/study_plot.h"
+#include "src/base/json.h"
+#include "src/study/store/sweep_store.h"
+#include "src/study/tune.h"
+#include "ui/commands/pictures.h"
+#include "ui/commands/progress.h"
+
+// What is judged on draws that the search did not see: the values as given, those found, and these
+// with one number a tenth lower and higher.
+enum { GIVEN, TUNED, CHANGED, ROWS = CHANGED + 2 * SWEEP_MOST_AXES };
+
+typedef struct tuner {
+    const arguments *arguments;
+    const scenario *scenario;
+    tuning tuning;
+    tune_result rows[ROWS];
+    int count; // of rows
+} tuner;
+
+static void write_best(FILE *stream, const void *what)
+{
+    const tuning *t = what;
+    scenario best = *t->asked.base;
+    parameters p = best.parameters;
+    status code = STATUS_OK;
+    for (int i = 0; i < t->asked.vary_count && code == STATUS_OK; i++) {
+        code = sweep_axis_apply(&t->plan.axes[i], t->found[i], &p, NULL);
+    }
+    if (code == STATUS_OK && scenario_take_parameters(&best, &p, NULL) == STATUS_OK) {
+        scenario_write(stream, &best);
+    }
+}
+
+// Writes the best so far; the standard output gets it once, at the end.
+static status keep_best(void *context, const tuning *t, fault *f)
+{
+    const char *path = context;
+    whole_file file;
+    status code = STATUS_OK;
+    if (path != NULL && strcmp(path, "-") != 0 &&
+        (code = whole_file_open(&file, path, f)) == STATUS_OK) {
+        write_best(file.stream, t);
+        code = whole_file_commit(&file, f);
+    }
+    return code;
+}
+
+static double given_value(const tuner *t, int axis)
+{
+    return sweep_axis_get(&t->tuning.plan.axes[axis], &t->scenario->parameters);
+}
+
+static status judge_rows(tuner *t, const sweep_options *options, fault *f)
+{
+    const int varied = t->tuning.asked.vary_count, rows = CHANGED + 2 * varied;
+    tuning unseen;
+    sweep_store *store = NULL;
+    status code = tune_unseen(&unseen, &t->tuning, (size_t)rows, f);
+    code = code == STATUS_OK ? sweep_store_open(&store, NULL, &unseen.plan, f) : code;
+    while (code == STATUS_OK && t->count < rows) {
+        const int i = t->count++;
+        double values[SWEEP_MOST_AXES];
+        for (int k = 0; k < varied; k++) {
+            values[k] = i == GIVEN ? given_value(t, k) : t->tuning.found[k];
+        }
+        if (i >= CHANGED) {
+            values[(i - CHANGED) / 2] *= i % 2 == CHANGED % 2 ? 0.9 : 1.1;
+        }
+        code = tune_evaluate(&unseen, (size_t)i, values, i == GIVEN ? "given" : "tuned", store,
+                             options, &t->rows[i], f);
+    }
+    sweep_store_close(store);
+    tune_finish(&unseen);
+    return code;
+}
+
+// Given and tuned as laws, side by side.
+static robust_table compared(const tuner *t, robust_law *laws)
+{
+    laws[GIVEN] = t->rows[GIVEN].law;
+    laws[TUNED] = t->rows[TUNED].law;
+    return (robust_table){.scenario = t->scenario->name, .laws = laws, .count = CHANGED};
+}
+
+static json_t *answer(const tuner *t)
+{
+    const tuning *found = &t->tuning;
+    robust_law laws[CHANGED];
+    const robust_table table = compared(t, laws);
+    json_t *object = found->asked.over != NULL ? robust_json(&table) : json_object(),
+           *numbers = json_array();
+    for (int i = 0; i < found->asked.vary_count; i++) {
+        const tune_result *changed = &t->rows[CHANGED + 2 * i];
+        json_t *number = json_object();
+        json_put(number, "path", json_text(found->plan.axes[i].name));
+        json_put(number, "given", json_number(given_value(t, i)));
+        json_put(number, "value", json_number(found->found[i]));
+        json_put(number, "tenth_lower", json_number(changed[0].value));
+        json_put(number, "tenth_higher", json_number(changed[1].value));
+        json_add(numbers, number);
+    }
+    json_put(object, "scenario", json_text(t->scenario->name));
+    json_put(object, "minimise", json_text(found->asked.minimise));
+    json_put(object, "evaluations", json_integer((json_int_t)found->done));
+    json_put(object, "runs_each", json_integer((json_int_t)found->each));
+    json_put(object, "least", json_number(found->best.value));
+    json_put(object, "unseen_given", json_number(t->rows[GIVEN].value));
+    json_put(object, "unseen_tuned", json_number(t->rows[TUNED].value));
+    json_put(object, "tune", numbers);
+    return object;
+}
+
+static void print_answer(const tuner *t)
+{
+    const tuning *found = &t->tuning;
+    robust_law laws[CHANGED];
+    say_title(t->scenario);
+    say("%s\n%.6g in %zu evaluations of %zu run%s\n\n  %-34s%13s%13s%13s%13s\n",
+        found->asked.minimise, found->best.value, found->done, found->each,
+        found->each == 1 ? "" : "s", "", "given", "tuned", "-10 % gives", "+10 % gives");
+    for (int i = 0; i < found->asked.vary_count; i++) {
+        say("  %-34s", found->plan.axes[i].name);
+        print_cell(12, "%.6g", given_value(t, i));
+        print_cell(12, "%.6g", found->found[i]);
+        print_cell(12, "%.5g", t->rows[CHANGED + 2 * i].value);
+        print_cell(12, "%.5g", t->rows[CHANGED + 2 * i + 1].value);
+        say("\n");
+    }
+    say("  %-34s", "on draws that it did not see");
+    print_cell(12, "%.5g", t->rows[GIVEN].value);
+    print_cell(12, "%.5g", t->rows[TUNED].value);
+    say("\n");
+    if (found->asked.over != NULL) {
+        const robust_table table = compared(t, laws);
+        say("\n");
+        robust_text(stdout, &table);
+    }
+}
+
+static int write_results(const tuner *t)
+{
+    const arguments *a = t->arguments;
+    const tuning *found = &t->tuning;
+    int code = write_file(a->output, write_best, found);
+    if (a->json != NULL) {
+        code = worse(code, write_json(a->json, answer(t)));
+    }
+    if (a->plot != NULL) {
+        char changes[SCENARIO_CHANGES];
+        owned_figure *drawn = tune_figure_create(found, scenario_changes(t->scenario, changes));
+        code = worse(code, publish_figure(a, &drawn->figure));
+        owned_figure_destroy(drawn);
+    }
+    if (summary_wanted(a)) {
+        print_answer(t);
+    }
+    if (found->best.rank >= TUNE_REFUSED) {
+        complain("none of the %zu evaluations %s", found->done,
+                 isfinite(found->best.value) ? "meets --subject"
+                                             : "can be judged: in each, runs fail or never settle");
+        code = worse(code, EXIT_FAILED);
+    }
+    return code;
+}
+
+static int search(tuner *t)
+{
+    const arguments *a = t->arguments;
+    fault f = {0};
+    sweep_store *store = NULL;
+    const bool bar = many_runs_shows_progress(a);
+    sweep_options options = {.jobs = many_runs_jobs(a), .report = bar ? many_runs_progress : NULL};
+    many_runs_catch_signals(&options);
+    t->tuning.improved = keep_best;
+    t->tuning.context = (void *)a->output;
+
+    status code = sweep_store_open(&store, a->db, &t->tuning.plan, &f);
+    code = code == STATUS_OK ? tune_run(&t->tuning, store, &options, &f) : code;
+    sweep_store_close(store);
+    code = code == STATUS_OK ? judge_rows(t, &options, &f) : code;
+    if (bar) {
+        many_runs_clear_progress();
+    }
+    return code == STATUS_OK ? write_results(t)
+           : code == STATUS_STOPPED
+               ? many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count)
+               : complain_fault(&f);
+}
+
+static int tune(const arguments *a, scenario *s)
+{
+    tuner t = {.arguments = a, .scenario = s};
+    robust_set set = {0};
+    fault f = {0};
+    if (a->varies.count == 0 || a->minimise == NULL) {
+        return complain("tune: expected --vary PATH=a:b and --minimise EXPR");
+    }
+    const size_t usual = a->over != NULL ? TUNE_RUNS : TUNE_RUNS_ALONE;
+    const tune_request asked = {.base = s,
+                                .vary = a->varies.items,
+                                .vary_count = a->varies.count,
+                                .minimise = a->minimise,
+                                .subject = a->subject,
+                                .over = a->over != NULL ? &set : NULL,
+                                .runs = a->runs > 0 ? (size_t)a->runs : usual,
+                                .seed = a->seed};
+    status code = a->over != NULL ? robust_set_read(&set, a->over, &f) : STATUS_OK;
+    code = code == STATUS_OK ? tune_init(&t.tuning, &asked, &f) : code;
+    int result = code == STATUS_OK ? search(&t) : complain_fault(&f);
+    for (int i = 0; i < t.count; i++) {
+        robust_law_finish(&t.rows[i].law);
+    }
+    tune_finish(&t.tuning);
+    robust_set_finish(&set);
+    return result;
+}
+
+static const option_row rows[] = {
+    OPTION(TEXT, "minimise", "EXPR", "what is to be small", PLACE(minimise)),
+    OPTION(TEXT, "subject", "EXPR<=X", "what has to hold; or >=", PLACE(subject)),
+    OPTION(FILE, "over", "SET", "file of what is drawn for each run, a line PATH=a:b each",
+           PLACE(over)),
+    OPTION(WHOLE, "runs", "N", "number of runs in all (4000 over a set, else 200)", PLACE(runs),
+           .low = 1, .high = TUNE_MOST_RUNS),
+    SEED_OPTION,
+    JOBS_OPTION,
+    DB_OPTION("keep every run in a database; go on where it ends"),
+    OPTION(RESULT, "output", "FILE|-", "write the scenario with the best values so far",
+           PLACE(output), .letter = 'o'),
+    PLOT_OPTION("draw what each evaluation came to, and the least so far"),
+};
+static const option_table options = OPTION_TABLE("Options", rows);
+
+const command tune_command = {
+    .name = "tune",
+    .group = GROUP_CONTROL,
+    .operands = "SCENARIO",
+    .summary = "Values of parameters that make an expression of results smallest",
+    .help =
+        "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over those of robust "
+        "--json, else those of\nrun --json. --vary PATH=a:b (or a:b:log) says what may be "
+        "changed within which range. Over a set an\nevaluation is a batch of runs with the same "
+        "draws each time, as many runs as there are evaluations.\nWhat is not allowed or fails "
+        "ranks last.\n\nThe result is judged on 200 draws that the search did not see, also with "
+        "each number a tenth lower and\nhigher. The file of -o is whole at every instant; with "
+        "--db the same command goes on where a search\nwas stopped. The exit status is 1 if no "
+        "values meet --subject.\n",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
+    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options,
+                &page_options},
+    .use = tune,
+};
