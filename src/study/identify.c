@@ -421,6 +421,20 @@ static int compare_beginnings(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+// The scenario's values; where a trace starts is what its encoder says, or, with an encoder that
+// counts from anywhere, what the scenario says.
+static void begin_with(const identification *id, bool counted, double *x)
+{
+    identification other = *id;
+    for (int k = 0; k < id->trace_count && counted; k++) {
+        recorded_trace *t = &other.traces[k];
+        const double angle = id->base->parameters.initial.angle;
+        t->own[OWN_OFFSET] += t->own[OWN_ANGLE] - angle;
+        t->own[OWN_ANGLE] = angle;
+    }
+    to_unknowns(&other, x);
+}
+
 static status draw_beginnings(identification *id, beginning *all, int n, fault *f)
 {
     const size_t m = id->residuals;
@@ -431,8 +445,8 @@ static status draw_beginnings(identification *id, beginning *all, int n, fault *
     random_seed(&random, id->seed);
     for (int s = 0; s < id->starts && code == STATUS_OK; s++) {
         double *here = x + (size_t)s * (size_t)n;
-        to_unknowns(id, here);
-        for (int i = 0; i < id->count && s > 0; i++) {
+        begin_with(id, s % 2 != 0, here);
+        for (int i = 0; i < id->count && s > 1; i++) {
             const fitted_parameter *fit = &id->fit[i];
             const double u = random_uniform(&random);
             here[i] = fit->axis.is_range ? sweep_axis_value_at(&fit->axis, u) / id->scale[i]
@@ -462,7 +476,7 @@ status identify_fit(identification *id, fault *f)
     for (int k = 0; k < id->trace_count; k++) {
         id->residuals += id->traces[k].residuals;
     }
-    id->starts = id->count == 0 || id->starts < 1 ? 1 : id->starts;
+    id->starts = id->count == 0 || id->starts < 2 ? 2 : id->starts;
     const size_t m = id->residuals;
     if (m <= (size_t)(n + id->count) || m > 10000000) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
