@@ -305,6 +305,33 @@ static void test_why_is_answered_on_the_screen(void **state)
     explorer_finish(&ex);
 }
 
+// F1 explains what one stands on; the palette knows other words for it.
+static void test_help_is_where_one_stands(void **state)
+{
+    (void)state;
+    explorer ex;
+    open_explorer(&ex, "corrected/first-impact");
+    press(&ex, "<End>NNNN<Home>n<F1>");
+    for (size_t i = 0; i < SIZES; i++) {
+        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "motor.voltage");
+        assert_shows_at(&ex, sizes[i][0], sizes[i][1], ":sweep and :solve vary it");
+        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "the event at the cursor");
+    }
+    press(&ex, "<Esc>");
+    static const char *const words[][2] = {
+        {"export", ":save"}, {"picture", ":scene"}, {"bounce", "wall.restitution"},
+        {"goal", ":solve"},  {"below", ":solve"},
+    };
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        char keys[64];
+        snprintf(keys, sizeof keys, "<C-p>%s", words[i][0]);
+        press(&ex, keys);
+        assert_shows(&ex, words[i][1]);
+        press(&ex, "<Esc>");
+    }
+    explorer_finish(&ex);
+}
+
 // Panes of one's own, any number: a second one takes at most twelve keys.
 static void test_own_panes_stand_side_by_side(void **state)
 {
@@ -360,6 +387,7 @@ int main(void)
         cmocka_unit_test(test_a_signal_is_hidden_by_a_key_or_a_click),
         cmocka_unit_test(test_a_limit_is_asked_for_in_few_keys),
         cmocka_unit_test(test_why_is_answered_on_the_screen),
+        cmocka_unit_test(test_help_is_where_one_stands),
         cmocka_unit_test(test_own_panes_stand_side_by_side),
         cmocka_unit_test(test_the_transition_is_three_steps_shorter_in_few_keys),
     };

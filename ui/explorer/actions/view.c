@@ -258,6 +258,12 @@ bool act_show_info(explorer_state *st, const char *argument)
     return toggle_page(st, PANEL_INFO);
 }
 
+bool act_explain(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return toggle_page(st, PANEL_EXPLAIN);
+}
+
 bool act_show_why(explorer_state *st, const char *argument)
 {
     (void)argument;

@@ -234,6 +234,68 @@ static void draw_info(const explorer_state *st, layout *lay, screen *s, area bod
 
 const panel info_panel = {.name = "info", .draw = draw_info, .point = page_point, .key = page_key};
 
+// --- what one stands on -----------------------------------------------------------------------
+
+// The selected parameter: what it is, in which range, why it has no effect.
+static void explain_parameter(const explorer_state *st, page *p)
+{
+    const int index = st->parameters.parameter;
+    const parameter_info *info = &parameter_table[index];
+    const char *inert = state_inert_reason(st, index);
+    char text[3 * LINE_TEXT];
+    add_heading(p, info->path);
+    if (info->choices != NULL) {
+        snprintf(text, sizeof text, "%s. One of %s.", info->description, info->choices);
+    } else if (info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER) {
+        snprintf(text, sizeof text, "%s. From %g to %g %s.", info->description, info->minimum,
+                 info->maximum, info->unit);
+    } else {
+        snprintf(text, sizeof text, "%s.", info->description);
+    }
+    add_text(p, 0, text, NULL);
+    if (inert != NULL) {
+        snprintf(text, sizeof text, "Without effect here: %s.", inert);
+        add_text(p, 0, text, NULL);
+    }
+    add_text(p, 0, "Enter edits it, < and > nudge it, :sweep and :solve vary it.", NULL);
+}
+
+static void draw_explain(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    enum { MOST = 48, WIDTH = 84 };
+    static help_line lines[MOST];
+    area a = page_area(body, WIDTH, body.height);
+    page p = {.lines = lines, .most = MOST, .width = a.width - 4};
+    const int focused = panes_focused(&st->panes);
+    const event *e = session_event(&st->session);
+    char text[2 * LINE_TEXT];
+    explain_parameter(st, &p);
+
+    // the signals in focus, their symbols spelled out, then the event at the cursor
+    for (int k = 0; focused >= 0 && k < st->panes.pane[focused].count; k++) {
+        const signal_info *info = &signal_table[st->panes.pane[focused].signals[k]];
+        if (k == 0) {
+            add_heading(&p, "signals of the pane in focus (w: next pane)");
+        }
+        snprintf(text, sizeof text, "%s (%s%s%s): %s.", info->name, info->ascii,
+                 info->unit[0] ? ", in " : "", info->unit, info->description);
+        add_text(&p, 0, text, NULL);
+    }
+    if (e != NULL) {
+        add_heading(&p, "the event at the cursor");
+        snprintf(text, sizeof text, "%s: %s.", event_name(e->kind),
+                 event_description((int)e->kind));
+        add_text(&p, 0, text, NULL);
+    }
+    a = page_area(body, WIDTH, p.count + 2);
+    const int scroll = page_scroll(lay, PANEL_EXPLAIN, a, p.count, 2);
+    draw_lines(s, a, "what is here (? lists keys and commands, Esc closes)", lines + scroll,
+               p.count - scroll);
+}
+
+const panel explain_panel = {
+    .name = "explain", .draw = draw_explain, .point = page_point, .key = page_key};
+
 // --- the account of the run -------------------------------------------------------------------
 
 static void draw_why(const explorer_state *st, layout *lay, screen *s, area body)

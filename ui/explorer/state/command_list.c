@@ -142,7 +142,7 @@ static const binding bindings[] = {{"Space", "play"},
                                    {"C-p", "palette"},
                                    {"C-l", "redraw"},
                                    {"?", "help"},
-                                   {"F1", "help"},
+                                   {"F1", "explain"},
                                    {"q", "quit"},
                                    {"C-c", "interrupt"}};
 enum { BINDINGS = sizeof bindings / sizeof bindings[0] };

@@ -50,6 +50,7 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "metric", "[KEY]", "what the sweep compares by; alone: the next one", act_set_metric)    \
     X("", "stop", "", "compute no further; Space at its end goes on", act_stop)                    \
     X("", "compare", "", "both runs in numbers", act_compare)                                      \
+    X("", "explain", "", "what is selected, in focus and at the cursor", act_explain)              \
     X("", "why", "", "the run's course, from its events and energies", act_show_why)               \
     X("", "undo", "", "take the last change back", act_undo)                                       \
     X("", "redo", "", "put it in again", act_redo)                                                 \

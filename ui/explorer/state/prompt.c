@@ -141,6 +141,32 @@ palette_text palette_describe(const scenario_menu *menu, const key_bindings *key
     return text;
 }
 
+// Other words by which people look for a thing, "" for none.
+static const char *synonyms_of(const char *name)
+{
+    static const struct {
+        const char *name, *words;
+    } table[] = {{"save", "export picture image plot"},
+                 {"scene", "picture image 3d"},
+                 {"solve", "goal below above limit target threshold"},
+                 {"control.force", "goal target setpoint"},
+                 {"wall.restitution", "bounce rebound"},
+                 {"sweep", "vary several values"},
+                 {"law", "controller control"},
+                 {"touch", "bounce hit impact"},
+                 {"push", "hit kick"},
+                 {"branch", "keep compare copy"},
+                 {"why", "explain cause reason"},
+                 {"session", "store load keep"},
+                 {"quit", "exit leave"}};
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        if (strcmp(table[i].name, name) == 0) {
+            return table[i].words;
+        }
+    }
+    return "";
+}
+
 // How well a thing fits: its name is that, its name or a part of it begins so, its name has it,
 // what is said of it has it; -1 if it does not fit.
 static int rank_of(const palette_text *text, const char *words)
@@ -154,7 +180,8 @@ static int rank_of(const palette_text *text, const char *words)
     }
 
     // the best one first
-    snprintf(all, sizeof all, "%s %s %s", text->name, text->keys, text->about);
+    snprintf(all, sizeof all, "%s %s %s %s", text->name, text->keys, text->about,
+             synonyms_of(text->name));
     if (strcasecmp(text->name, words) == 0) {
         return IS_NAME;
     }

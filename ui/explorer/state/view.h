@@ -42,6 +42,7 @@ typedef enum panel_place {
     X(PANEL_CHANGES, PLACE_PAGE, changes_panel)                                                    \
     X(PANEL_RUN_LIST, PLACE_PAGE, run_list_panel)                                                  \
     X(PANEL_INFO, PLACE_PAGE, info_panel)                                                          \
+    X(PANEL_EXPLAIN, PLACE_PAGE, explain_panel)                                                    \
     X(PANEL_WHY, PLACE_PAGE, why_panel)                                                            \
     X(PANEL_PALETTE, PLACE_PROMPT, palette_panel)
 
