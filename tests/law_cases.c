@@ -9,7 +9,7 @@
 // it, and 5 % steady error; first contact at most 1.5 times as late as open-loop's. A push p on a
 // tip that presses on a wall is p/5 ms of force whatever a law does, 12 N at 0.06 N s: the
 // overshoot is that of the same case without the push. Exit status 1 if fewer than LEAST cases are
-// within them at a command, or one is beyond 120 % or 0.8 s.
+// within them at a command. Beyond the last ones: over 120 % or 0.8 s.
 #include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
