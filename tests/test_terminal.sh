@@ -183,7 +183,7 @@ mux send-keys "export TERM=xterm-256color" Enter
 start
 mux send-keys Space Home
 await "t 0.00000 s"
-mux send-keys -l $'\033[<0;45;30M\033[<0;45;30m'
+mux send-keys -l $'\033[<0;45;33M\033[<0;45;33m'
 await "t 0.53906 s"
 # what is pasted presses no keys: neither quits nor opens anything, and in the prompt it is text
 mux set-buffer $'q\nqy:quit\n'
