@@ -224,9 +224,9 @@ check_given_back "suspended with a mouse"
 start
 mux send-keys Space Home
 await "t 0.00000 s"
-mux send-keys -l $'\033[<0;45;30M'
-mux send-keys -l $'\033[<32;60;30M'
-mux send-keys -l $'\033[<0;60;30m'
+mux send-keys -l $'\033[<0;45;33M'
+mux send-keys -l $'\033[<32;60;33M'
+mux send-keys -l $'\033[<0;60;33m'
 await "t 0.77"
 mux send-keys -l $'\033[<64;60;30M'
 await "0.8 s"
