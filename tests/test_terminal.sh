@@ -228,7 +228,7 @@ mux send-keys -l $'\033[<0;45;33M'
 mux send-keys -l $'\033[<32;60;33M'
 mux send-keys -l $'\033[<0;60;33m'
 await "t 0.77"
-mux send-keys -l $'\033[<64;60;30M'
+mux send-keys -l $'\033[<64;60;33M'
 await "0.8 s"
 mux send-keys -l $'\033[1;2D'
 await "f follows the cursor again"

@@ -475,6 +475,10 @@ static bool point(explorer_state *st, const panel_gesture *g)
     case PART_VIEW:
         return true;
     case PART_LEGEND:
+        // the wheel zooms there as in the curves
+        if (pointer_wheel(g->event) != 0) {
+            return point_at_plot(st, g);
+        }
         return g->event.kind == POINTER_PRESS &&
                act_toggle_signal(st, g->hit.index / PANE_SIGNALS, g->hit.index % PANE_SIGNALS);
     case PART_LANES:
