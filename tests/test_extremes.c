@@ -151,7 +151,7 @@ static void give_up(void *context, const sweep_progress *p)
 static void runs_without_an_end_are_abandoned_and_not_stored(void **state)
 {
     (void)state;
-    static const char text[] = "title: Nearly for ever\nmotor: {voltage: 0.001 V}\n"
+    static const char text[] = "title: Nearly for ever\ninitial: {velocity: 0.01 rad/s}\n"
                                "wall: {angle: 3 rad}\narm: {links: 24}\nrun: {duration: 90000 s}\n";
     char *vary[] = {"motor.voltage=0.001:0.002:3"};
     const sweep_request request = {.vary = vary, .vary_count = 1};

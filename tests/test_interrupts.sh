@@ -6,10 +6,12 @@ set -u
 # shellcheck source=tests/expect.sh
 . "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/expect.sh"
 
-# runs that would take hours: nothing but the interrupt ends them
+# runs that would take hours, of a chain that nothing damps and that vibrates on a stuck hub:
+# nothing but the interrupt ends them
 cat >endless.yaml <<'END'
 title: Free and nearly for ever
 motor: {voltage: 0.001 V}
+initial: {velocity: 0.01 rad/s}
 wall: {angle: 3 rad}
 arm: {links: 24, damping_ratio: 0}
 run: {duration: 90000 s}
