@@ -14,7 +14,8 @@ rooms="src/base src/tables src/arm src/thesis src/contact src/engines src/engine
     src/rig/estimation src/rig/laws src/rig src/scenario src/run src/session src/study src/study/linear
     src/study/store src/exchange src/api/impactlab src/api
     render/page render/plot render/scene render/figures
-    ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/manual ui/commands ui"
+    ui/terminal ui/explorer/state ui/explorer/actions ui/explorer/panels ui/explorer ui/manual ui/commands
+    ui/commands/studies ui"
 
 # the room of a file; what a controller is stands below all that the rig is made of
 room_of() {

@@ -4,7 +4,7 @@
 
 #include "src/base/csv.h"
 #include "src/base/json.h"
-#include "ui/commands/linear_pictures.h"
+#include "ui/commands/studies/linear_pictures.h"
 
 enum { MOST_LIMITS = 32 };
 

@@ -1,4 +1,4 @@
-#include "ui/commands/linear_pictures.h"
+#include "ui/commands/studies/linear_pictures.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "src/base/json.h"
 #include "src/base/plain_math.h"
 #include "src/exchange/mat_file.h"
-#include "ui/commands/linear_pictures.h"
+#include "ui/commands/studies/linear_pictures.h"
 #include "ui/commands/pictures.h"
 
 // Outputs whose zeros are told.
