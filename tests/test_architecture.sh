@@ -78,6 +78,13 @@ if grep -rnE --include='*.[ch]' "(^|[^A-Za-z_0-9])($functions)\\(" src | grep -v
     exit 1
 fi
 
+# GLib's functions that print into memory return nothing, or leave the text out, where that is refused
+if grep -rnE --include='*.[ch]' 'g_(strdup_v?printf|string_(append_)?v?printf|markup_printf_escaped)\(' \
+    src render ui; then
+    echo "render/page/text.h has text_printf and text_append, which lose nothing"
+    exit 1
+fi
+
 # places that the manual names exist ("NAME" and "*" stand for something)
 lost=0
 while IFS=: read -r page place; do

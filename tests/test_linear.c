@@ -193,7 +193,7 @@ static void mat_files_are_read_element_by_element(void **state)
 {
     (void)state;
     const double values[6] = {1, 2, 3, 4, 5, 6};
-    const double complex roots[2] = {CMPLX(1, 2), CMPLX(3, -4)};
+    const double complex roots[2] = {complex_of(1, 2), complex_of(3, -4)};
     char *bytes = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&bytes, &size);

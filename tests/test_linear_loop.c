@@ -31,7 +31,7 @@ static scenario opened(const char *name, const char *changes)
 static linear_system loop_of(const scenario *s, linear_arm *l)
 {
     fault f = {.text = ""};
-    linear_system loop;
+    linear_system loop = {0};
     if (linear_arm_init(l, &s->parameters, LINEAR_CONTACT, &f) != STATUS_OK ||
         linear_loop(&loop, l, &s->parameters, &f) != STATUS_OK) {
         fail_msg("%s", f.text);
@@ -159,7 +159,7 @@ static void measured_loops_are_the_exact_ones(void **state)
         for (int k = 0; k < r.count; k++) {
             const double turn = r.frequency[k] * period;
             if (turn <= 0.8 * acos(-1)) {
-                const double complex point = CMPLX(cos(turn), sin(turn));
+                const double complex point = complex_of(cos(turn), sin(turn));
                 const double complex ratio = r.gain[k] / -linear_answer(&loop, 0, point, scratch);
                 check_close(20 * log10(cabs(ratio)), 0, 0.1);
                 check_close(carg(ratio) * 180 / acos(-1), 0, 1);

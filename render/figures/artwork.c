@@ -75,14 +75,14 @@ status artwork_write(const artwork *a, const figure_options *options, const char
 
     // every form of the picture
     for (int i = 0; formats[i] != NULL && code == STATUS_OK; i++) {
-        char *path = g_strdup_printf("%s/%s.%s", folder, file, formats[i]);
+        char *path = text_printf("%s/%s.%s", folder, file, formats[i]);
         code = picture_write(&p, path, f);
         g_free(path);
     }
 
     // and its numbers
     if (code == STATUS_OK) {
-        char *path = g_strdup_printf("%s/%s.csv", folder, file);
+        char *path = text_printf("%s/%s.csv", folder, file);
         code = a->write_csv(a->what, path, f);
         g_free(path);
     }
@@ -156,7 +156,7 @@ static void append_plain(GString *out, const char *before, const char *markup)
 {
     if (markup != NULL && markup[0] != '\0') {
         char *plain = text_plain(markup);
-        g_string_append_printf(out, "%s%s", before, plain);
+        text_append(out, "%s%s", before, plain);
         g_free(plain);
     }
 }
@@ -167,7 +167,7 @@ static void append_axis(GString *out, const char *before, const figure_axis *a)
     if (a->unit != NULL && a->unit[0] != '\0') {
         char unit[64];
         text_unit(a->unit, unit, sizeof unit);
-        g_string_append_printf(out, " in %s", unit);
+        text_append(out, " in %s", unit);
     }
 }
 
@@ -175,7 +175,7 @@ static void append_axis(GString *out, const char *before, const figure_axis *a)
 static char *describe_figure(const figure *fig)
 {
     GString *out = g_string_new(fig->title != NULL ? fig->title : "Figure");
-    g_string_append_printf(out, ". %d panel%s", fig->panel_count, fig->panel_count == 1 ? "" : "s");
+    text_append(out, ". %d panel%s", fig->panel_count, fig->panel_count == 1 ? "" : "s");
     append_axis(out, " over ", &fig->x);
 
     // panel by panel: its axis, heading, colours and curves
@@ -401,15 +401,15 @@ static char *beside(const char *file, const char *ending)
 {
     const char *slash = strrchr(file, '/'), *dot = strrchr(slash ? slash : file, '.');
     size_t length = dot != NULL ? (size_t)(dot - file) : strlen(file);
-    return g_strdup_printf("%.*s%s", (int)length, file, ending);
+    return text_printf("%.*s%s", (int)length, file, ending);
 }
 
 status caption_write(const artwork *a, const char *file, fault *f)
 {
     assert(a != NULL && file != NULL);
     char *caption = text_plain(a->caption != NULL ? a->caption : ""), *path = beside(file, ".txt");
-    char *text = g_strdup_printf("%s%s%s\n", a->title != NULL ? a->title : "",
-                                 caption[0] != '\0' ? "\n\n" : "", caption);
+    char *text = text_printf("%s%s%s\n", a->title != NULL ? a->title : "",
+                             caption[0] != '\0' ? "\n\n" : "", caption);
     status code = write_text(path, text, f);
     g_free(text);
     g_free(path);

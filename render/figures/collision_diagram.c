@@ -53,7 +53,7 @@ static void write_value(sketch *s, point at, double ax, const char *symbol, doub
 {
     char *number = text_number(value, 3), shown[32];
     text_unit(unit, shown, sizeof shown);
-    char *text = g_strdup_printf("%s = %s\u2009%s", symbol, number, shown);
+    char *text = text_printf("%s = %s\u2009%s", symbol, number, shown);
     sketch_text(s, at, (anchor){ax, 0.5}, text, SKETCH_SMALL);
     g_free(text);
     g_free(number);

@@ -91,7 +91,7 @@ static void draw_angle(sketch *s, point at, double radius, double to, const char
 static char *force_text(const char *symbol, double force)
 {
     char *quantity = text_quantity(force, 3, "N");
-    char *text = g_strdup_printf("%s = %s", symbol, quantity);
+    char *text = text_printf("%s = %s", symbol, quantity);
     g_free(quantity);
     return text;
 }

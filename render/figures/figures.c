@@ -172,7 +172,7 @@ static void add_facts(signal_figure *s, const thesis_figure *which, const figure
     figure *fig = &s->figure.traces.figure;
     GString *caption = g_string_new(fig->caption);
     if (which->note != NULL) {
-        g_string_append_printf(caption, " %s", which->note);
+        text_append(caption, " %s", which->note);
     }
     if (which->steps) {
         g_string_append(caption, " Dots: the steps of the method.");
@@ -230,10 +230,10 @@ static status open_signals(const thesis_figure *which, const char *title, const 
 static char *title_of(const thesis_figure *which)
 {
     if (g_ascii_isdigit(which->id[0])) {
-        return g_strdup_printf("Fig. %s  %s", which->id, which->caption);
+        return text_printf("Fig. %s  %s", which->id, which->caption);
     }
     if (which->id[0] == 'T') {
-        return g_strdup_printf("Table %s  %s", which->id + 1, which->caption);
+        return text_printf("Table %s  %s", which->id + 1, which->caption);
     }
     return g_strdup(which->caption);
 }
@@ -272,7 +272,7 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
 
     // picture, numbers, caption and what LaTeX needs
     if (code == STATUS_OK) {
-        char *first = g_strdup_printf("%s/%s.%s", folder, which->file, list[0]);
+        char *first = text_printf("%s/%s.%s", folder, which->file, list[0]);
         code = artwork_write(&drawn, o, folder, which->file, list, f);
         if (code == STATUS_OK && o->look.bare) {
             code = caption_write(&drawn, first, f);

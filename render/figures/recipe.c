@@ -6,6 +6,7 @@
 #include "render/figures/artwork.h"
 #include "render/figures/recipe_parts.h"
 #include "render/figures/run_figure.h"
+#include "render/page/text.h"
 #include "render/plot/trace_plot.h"
 
 static void release(void *owner)
@@ -129,7 +130,7 @@ static char *parameters_of(const recipe_figure *fig)
     for (int i = 0; i < fig->recipe.source_count; i++) {
         if (fig->sources[i].ran) {
             char *line = parameters_line(&fig->sources[i].run.scenario);
-            g_string_append_printf(out, "%s%s", out->len > 0 ? "; " : "", line);
+            text_append(out, "%s%s", out->len > 0 ? "; " : "", line);
             g_free(line);
         }
     }

@@ -184,15 +184,15 @@ static void add_signal(recipe_figure *fig, int panel, int source, int signal, in
         const opened_source *first = &fig->sources[0];
         char *symbol = trace_symbol(data ? &first->run.scenario : run.scenario, index);
         label = owned_figure_keep(&fig->plot, fig->recipe.source_count > 1
-                                                  ? g_strdup_printf("%s %s", label, symbol)
+                                                  ? text_printf("%s %s", label, symbol)
                                                   : g_strdup(symbol));
         g_free(symbol);
     }
 
     // measured data are points without a line
     out->label = label;
-    out->name = owned_figure_keep(&fig->plot,
-                                  g_strdup_printf("%s %s", from->name, signal_table[index].name));
+    out->name =
+        owned_figure_keep(&fig->plot, text_printf("%s %s", from->name, signal_table[index].name));
     out->style = LINE_SOLID;
     out->colour = data ? 6 : colour_of(p->series_count);
     out->no_line = data;
@@ -240,11 +240,10 @@ static void describe_axis(recipe_figure *fig, int panel)
             from->signal_count == 1
                 ? owned_figure_keep(&fig->plot, g_strconcat(from->of >= 0 ? "Δ" : "", symbol, NULL))
                 : NULL;
-        y->label = owned_figure_keep(&fig->plot,
-                                     from->of >= 0 ? g_strdup_printf("Difference of %s", symbol)
-                                     : from->signal_count == 1
-                                         ? g_strdup_printf("%s %s", signal->quantity, symbol)
-                                         : g_strdup(signal->quantity));
+        y->label = owned_figure_keep(
+            &fig->plot, from->of >= 0             ? text_printf("Difference of %s", symbol)
+                        : from->signal_count == 1 ? text_printf("%s %s", signal->quantity, symbol)
+                                                  : g_strdup(signal->quantity));
         g_free(symbol);
     } else if (from->source_count > 0) {
         const recipe_source *table = &fig->recipe.sources[from->sources[0]];

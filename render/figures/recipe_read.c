@@ -69,9 +69,8 @@ static const char *heading_of(recipe_context *c, const multiples *m, int index)
     // the name of the parameter says what a number without any unit is
     const char *dot = strrchr(info->path, '.');
     bool bare = rest[0] == '\0' && unit[0] == '\0';
-    char *heading = bare
-                        ? g_strdup_printf("%s = %s", dot != NULL ? dot + 1 : info->path, escaped)
-                        : g_strdup_printf("%s%s%s", escaped, unit[0] != '\0' ? "\u2009" : "", unit);
+    char *heading = bare ? text_printf("%s = %s", dot != NULL ? dot + 1 : info->path, escaped)
+                         : text_printf("%s%s%s", escaped, unit[0] != '\0' ? "\u2009" : "", unit);
     g_free(escaped);
     return keep(c, heading);
 }
@@ -84,9 +83,8 @@ static bool add_run(recipe_context *c, const multiples *m, int index, recipe_sou
         return false;
     }
     run.label = run.label != NULL ? run.label : run.name;
-    run.name = keep(c, g_strdup_printf("%s %s", run.name, m->value[index]));
-    run.change[run.change_count++] =
-        keep(c, g_strdup_printf("%s=%s", m->parameter, m->value[index]));
+    run.name = keep(c, text_printf("%s %s", run.name, m->value[index]));
+    run.change[run.change_count++] = keep(c, text_printf("%s=%s", m->parameter, m->value[index]));
     r->sources[r->source_count++] = run;
     return true;
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "render/figures/recipe_parts.h"
+#include "render/page/text.h"
 #include "src/base/words.h"
 
 // ==== values, with faults that name their place
@@ -176,7 +177,7 @@ TAKE(take_set, source)
             report_node(&c->reader, child, "%s is %s, expected a value", path,
                         node_kind_name(child));
         } else {
-            char *change = g_strdup_printf("%s=%s", path, child->text);
+            char *change = text_printf("%s=%s", path, child->text);
             g_ptr_array_add(c->recipe->owned, change);
             s->change[s->change_count++] = change;
         }
@@ -215,7 +216,7 @@ static void check_source(recipe_context *c, const tree_node *node, recipe_source
     if (s->label == NULL && s->name == NULL && s->change_count > 0 && needed != NULL) {
         GString *label = g_string_new(needed);
         for (int i = 0; i < s->change_count; i++) {
-            g_string_append_printf(label, "%s%s", i == 0 ? ", with " : ", ", s->change[i]);
+            text_append(label, "%s%s", i == 0 ? ", with " : ", ", s->change[i]);
         }
         g_ptr_array_add(c->recipe->owned, label->str);
         s->label = g_string_free(label, FALSE);

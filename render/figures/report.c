@@ -56,12 +56,12 @@ static void put_text(cairo_t *cr, PangoContext *context, const char *markup, dou
 static void put_facts(cairo_t *cr, PangoContext *context, const report_item *item, double y)
 {
     GString *facts = g_string_new(NULL);
-    g_string_printf(facts, "Model: %s.", item->model);
+    text_append(facts, "Model: %s.", item->model);
     if (item->scenario != NULL) {
-        g_string_append_printf(facts, "  Scenario: %s.", item->scenario);
+        text_append(facts, "  Scenario: %s.", item->scenario);
     }
     if (item->command != NULL) {
-        g_string_append_printf(facts, "  Again: <b>%s</b>", item->command);
+        text_append(facts, "  Again: <b>%s</b>", item->command);
     }
     put_text(cr, context, facts->str, 7, false, PAGE_MARGIN + SKETCH_MARGIN, y);
     g_string_free(facts, TRUE);
@@ -79,7 +79,7 @@ static void put_title_page(cairo_t *cr, PangoContext *context, const report *r)
     for (guint i = 0; i < r->items->len; i++, y += step) {
         const report_item *item = report_item_at(r, i);
         char *title = text_escape(item->drawn.title), page[16];
-        char *target = g_strdup_printf("dest='item-%u'", i);
+        char *target = text_printf("dest='item-%u'", i);
         g_snprintf(page, sizeof page, "%d", item->page);
         cairo_tag_begin(cr, CAIRO_TAG_LINK, target);
         put_text(cr, context, title, fmin(8, 0.7 * step), false, PAGE_MARGIN, y);
@@ -94,8 +94,8 @@ static void put_title_page(cairo_t *cr, PangoContext *context, const report *r)
 static void mark_item(cairo_t *cr, const report_item *item, guint index)
 {
     cairo_surface_t *surface = cairo_get_target(cr);
-    char *place = g_strdup_printf("name='item-%u'", index);
-    char *target = g_strdup_printf("dest='item-%u'", index);
+    char *place = text_printf("name='item-%u'", index);
+    char *target = text_printf("dest='item-%u'", index);
     cairo_tag_begin(cr, CAIRO_TAG_DEST, place);
     cairo_tag_end(cr, CAIRO_TAG_DEST);
     if (cairo_surface_get_type(surface) == CAIRO_SURFACE_TYPE_PDF) {
@@ -204,7 +204,7 @@ static status add_figures(report *r, fault *f)
             return code;
         }
 
-        item.command = g_strdup_printf("impactlab figures %s", which->id);
+        item.command = text_printf("impactlab figures %s", which->id);
         g_array_append_val(r->items, item);
         code = report_item_done(r, f);
         if (code != STATUS_OK) {
@@ -232,7 +232,7 @@ static void add_parameter_row(table_page *t, const parameter_info *info, int ind
 static table_page *new_parameter_table(const char *group, size_t length)
 {
     table_page *t = g_new0(table_page, 1);
-    char *title = g_strdup_printf("Parameters: %.*s", (int)length, group);
+    char *title = text_printf("Parameters: %.*s", (int)length, group);
     table_begin(t, title);
     table_add_column(t, "Parameter", 3.7, TEXT_LEFT);
     table_add_column(t, "Corrected", 1.1, TEXT_LEFT);
@@ -332,7 +332,7 @@ static status open_scenario(report_item *item, const char *name, run_monitor *mo
     bool printed = own->run.scenario.parameters.arm.model == ARM_PRINTED;
     item->scenario = own->run.scenario.name;
     item->model = printed ? "printed" : "corrected";
-    item->command = g_strdup_printf("impactlab run %s --plot FILE.pdf", name);
+    item->command = text_printf("impactlab run %s --plot FILE.pdf", name);
     item->drawn = artwork_of_figure(&own->figure.traces.figure, own, release_run);
     return STATUS_OK;
 }
@@ -346,7 +346,7 @@ static status open_recipe(report_item *item, const char *path, fault *f)
         return first.code != STATUS_OK ? fault_set(f, code, "%s", first.text) : code;
     }
     item->model = "as the recipe says";
-    item->command = g_strdup_printf("impactlab plot %s -o FILE.pdf", path);
+    item->command = text_printf("impactlab plot %s -o FILE.pdf", path);
     return STATUS_OK;
 }
 

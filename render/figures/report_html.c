@@ -167,7 +167,7 @@ static void add_contents(const report *r, GString *html)
     g_string_append(html, "<nav><ol>\n");
     for (guint i = 0; i < r->items->len; i++) {
         char *title = text_escape(report_item_at(r, i)->drawn.title);
-        g_string_append_printf(html, "<li><a href=\"#item-%u\">%s</a></li>\n", i, title);
+        text_append(html, "<li><a href=\"#item-%u\">%s</a></li>\n", i, title);
         g_free(title);
     }
     g_string_append(html, "</ol></nav>\n");
@@ -190,8 +190,7 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
     status code = picture_write(p, name, f);
     if (code == STATUS_OK && g_file_get_contents(name, &bytes, &length, NULL)) {
         char *text = g_base64_encode((const guchar *)bytes, length);
-        g_string_append_printf(html, "<img alt=\"%s\" src=\"data:image/png;base64,%s\">\n",
-                               alternative, text);
+        text_append(html, "<img alt=\"%s\" src=\"data:image/png;base64,%s\">\n", alternative, text);
         g_free(text);
     }
     unlink(name);
@@ -210,7 +209,7 @@ static status add_svg(GString *html, const picture *p, guint index, GHashTable *
     }
 
     // then smaller: fewer bytes, and letters shared with the other figures
-    char *prefix = g_strdup_printf("i%u-", index);
+    char *prefix = text_printf("i%u-", index);
     char *root = strstr(svg, "<svg"), *own = svg_prefix_ids(root ? root : svg, prefix);
     char *small = svg_compact(own), *shared = svg_share_symbols(small, letters);
     g_string_append(html, shared);
@@ -274,11 +273,11 @@ static void add_json_series(GString *out, const figure_panel *panel)
         // in bytes, for the script that compares it with the strokes of the drawing
         const colour c = palette_series(THEME_COLOUR, s->colour, i);
         bool dashed = s->secondary || s->style != LINE_SOLID;
-        g_string_append_printf(out,
-                               "%s{&quot;ink&quot;:[%d,%d,%d],&quot;dashed&quot;:%s,"
-                               "&quot;label&quot;:",
-                               before, (int)(255 * c.red + 0.5), (int)(255 * c.green + 0.5),
-                               (int)(255 * c.blue + 0.5), dashed ? "true" : "false");
+        text_append(out,
+                    "%s{&quot;ink&quot;:[%d,%d,%d],&quot;dashed&quot;:%s,"
+                    "&quot;label&quot;:",
+                    before, (int)(255 * c.red + 0.5), (int)(255 * c.green + 0.5),
+                    (int)(255 * c.blue + 0.5), dashed ? "true" : "false");
         add_json_text(out, s->label != NULL ? s->label : s->name);
         g_string_append_c(out, '}');
         before = ",";
@@ -301,9 +300,9 @@ static void add_panels(GString *out, const figure *fig, const figure_report *see
         g_string_append(out, text);
         add_json_axis(out, "x", range->x_low, range->x_high);
         add_json_axis(out, "y", range->y_low, range->y_high);
-        g_string_append_printf(out, "&quot;xlog&quot;:%s,&quot;ylog&quot;:%s,&quot;xname&quot;:",
-                               range->x_logarithmic ? "true" : "false",
-                               range->y_logarithmic ? "true" : "false");
+        text_append(out, "&quot;xlog&quot;:%s,&quot;ylog&quot;:%s,&quot;xname&quot;:",
+                    range->x_logarithmic ? "true" : "false",
+                    range->y_logarithmic ? "true" : "false");
 
         // what stands beside the values
         add_json_text(out, fig->x.name);
@@ -325,15 +324,17 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
     p.dpi = SCREEN_DPI; // of what has too many cells for paths
     char *alternative = text_escape(p.alternative != NULL ? p.alternative : drawn->title);
     bool map = drawn->plotted != NULL && drawn->plotted->panels[0].map != NULL;
-    g_string_append_printf(html, "<figure role=\"img\" aria-label=\"%s\"", alternative);
+    text_append(html, "<figure role=\"img\" aria-label=\"%s\"", alternative);
 
     // where its panels are is known once it has been painted
+    status code = STATUS_OK;
     if (drawn->plotted != NULL && !map) {
         figure_report *seen = g_new0(figure_report, 1);
         cairo_surface_t *nowhere = cairo_recording_surface_create(CAIRO_CONTENT_COLOR, NULL);
         cairo_t *cr = cairo_create(nowhere);
-        status code = drawn->paint(cr, drawn->what, seen, NULL);
-        if (picture_end_drawing(cr, code, NULL) == STATUS_OK) {
+        code = drawn->paint(cr, drawn->what, seen, f);
+        code = picture_end_drawing(cr, code, f);
+        if (code == STATUS_OK) {
             add_panels(html, drawn->plotted, seen);
         }
         cairo_surface_destroy(nowhere);
@@ -342,7 +343,9 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
 
     g_string_append(html, ">\n");
     bool heavy = map || drawn->cells;
-    status code = heavy ? add_png(html, &p, alternative, f) : add_svg(html, &p, index, letters, f);
+    if (code == STATUS_OK) {
+        code = heavy ? add_png(html, &p, alternative, f) : add_svg(html, &p, index, letters, f);
+    }
     g_string_append(html, "</figure>\n");
     g_free(alternative);
     return code;
@@ -354,7 +357,7 @@ static status add_section(const report *r, guint index, GString *html, GHashTabl
     status code = STATUS_OK;
     const report_item *item = report_item_at(r, index);
     char *title = text_escape(item->drawn.title);
-    g_string_append_printf(html, "<section id=\"item-%u\">\n<h2>%s</h2>\n", index, title);
+    text_append(html, "<section id=\"item-%u\">\n<h2>%s</h2>\n", index, title);
 
     // the item itself
     if (item->drawn.table != NULL) {
@@ -364,12 +367,12 @@ static status add_section(const report *r, guint index, GString *html, GHashTabl
     }
 
     // what it is made of, and how
-    g_string_append_printf(html, "<p class=\"facts\">Model: %s.", item->model);
+    text_append(html, "<p class=\"facts\">Model: %s.", item->model);
     if (item->scenario != NULL) {
-        g_string_append_printf(html, " Scenario: %s.", item->scenario);
+        text_append(html, " Scenario: %s.", item->scenario);
     }
     if (item->command != NULL) {
-        g_string_append_printf(html, " Again: <code>%s</code>", item->command);
+        text_append(html, " Again: <code>%s</code>", item->command);
     }
 
     g_string_append(html, "</p>\n</section>\n");
@@ -385,7 +388,7 @@ status report_write_html(const report *r, const char *path, fault *f)
     GHashTable *letters = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
 
     // the whole page first: nothing is written of one that fails
-    g_string_append_printf(html, page_head, r->heading, r->heading, r->preface);
+    text_append(html, page_head, r->heading, r->heading, r->preface);
     add_contents(r, html);
     for (guint i = 0; i < r->items->len && code == STATUS_OK; i++) {
         code = add_section(r, i, html, letters, f);
@@ -393,8 +396,8 @@ status report_write_html(const report *r, const char *path, fault *f)
             code = report_item_done(r, f);
         }
     }
-    g_string_append_printf(html, "<script>\n%s%s</script>\n</body>\n</html>\n",
-                           report_script_curves, report_script_pointer);
+    text_append(html, "<script>\n%s%s</script>\n</body>\n</html>\n", report_script_curves,
+                report_script_pointer);
 
     if (code == STATUS_OK) {
         code = whole_file_open(&file, path, f);

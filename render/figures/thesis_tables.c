@@ -65,7 +65,7 @@ static void add_motor_row(table_page *t, const parameters *p, const char *symbol
     text_unit(info->unit, unit, sizeof unit);
     char *used =
         text_printf("%.6g\u2009%s", parameter_get(p, index), strcmp(unit, "ohm") == 0 ? "Ω" : unit);
-    char *name = g_strdup_printf("%s: %s", path, info->description);
+    char *name = text_printf("%s: %s", path, info->description);
     if (t->column_count == 3) {
         table_add_group(t, name);
     }
@@ -265,7 +265,7 @@ static void add_model(table_page *t, const table_row *row, double scale, const c
     for (int i = 0; i < TABLE_VOLTAGES; i++) {
         difference[i] = row->computed[i] / row->printed[i] - 1;
     }
-    char *name = g_strdup_printf("%s model", row->model);
+    char *name = text_printf("%s model", row->model);
     add_values(t, name, row->computed, scale, format);
     add_values(t, "  difference (%)", difference, 100, "%.1f");
     g_free(name);
@@ -309,7 +309,7 @@ static status open_predictions(const char *table, const char *title, const figur
         "meant to agree. –: the arm swings away as it touches, there is no pulse.",
         4.92 * computed_row(all, table, "printed", "max_force_energy")->k2_factor);
 
-    t->parameters = g_strdup_printf("table=%s", table);
+    t->parameters = text_printf("table=%s", table);
     *out = artwork_of_table(t);
     return STATUS_OK;
 }

@@ -89,8 +89,8 @@ char *text_translate(const char *markup, double size, double scale)
         if (lowered || raised) {
             // in 1/1024 of a point, which every version of Pango understands
             double small = text_index_letters(size * scale) / scale;
-            g_string_append_printf(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
-                                   (int)((raised ? 0.35 : -0.2) * size * 1024));
+            text_append(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
+                        (int)((raised ? 0.35 : -0.2) * size * 1024));
             in_tag = false;
             c += 5;
         } else if (strncmp(c, "</sub>", 6) == 0 || strncmp(c, "</sup>", 6) == 0) {
@@ -152,7 +152,7 @@ char *text_quantity(double value, int digits, const char *unit)
         number[length - 1] = '\0';
     }
     text_unit(unit, shown, sizeof shown);
-    return g_strdup_printf("%s%s\u2009%s", value < 0 ? "\u2212" : "", number, shown);
+    return text_printf("%s%s\u2009%s", value < 0 ? "\u2212" : "", number, shown);
 }
 
 char *text_number(double value, int digits)
@@ -163,15 +163,15 @@ char *text_number(double value, int digits)
     decimal_print(number, sizeof number, "%.*g", digits, fabs(value));
     char *exponent = strchr(number, 'e');
     if (exponent == NULL) {
-        return g_strdup_printf("%s%s", sign, number);
+        return text_printf("%s%s", sign, number);
     }
 
     // mantissa and power of ten; a mantissa of 1 goes without saying
     int power = atoi(exponent + 1);
     *exponent = '\0';
     bool one = strcmp(number, "1") == 0;
-    return g_strdup_printf("%s%s%s10<sup>%s%d</sup>", sign, one ? "" : number, one ? "" : "\u00b7",
-                           power < 0 ? "\u2212" : "", abs(power));
+    return text_printf("%s%s%s10<sup>%s%d</sup>", sign, one ? "" : number, one ? "" : "\u00b7",
+                       power < 0 ? "\u2212" : "", abs(power));
 }
 
 char *text_label(const char *description)
@@ -217,7 +217,8 @@ char *text_escape(const char *bytes)
     return escaped;
 }
 
-// Without memory GLib ends the program, and so does this.
+// Without memory GLib ends the program, and so does this; GLib's own printing leaves the text out
+// and says nothing.
 __attribute__((format(printf, 2, 0))) static void append_list(GString *text, const char *format,
                                                               va_list list)
 {

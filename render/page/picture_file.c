@@ -193,7 +193,7 @@ const char *picture_software(void)
     // made by whichever thread comes first
     static gsize software;
     if (g_once_init_enter(&software)) {
-        char *named = g_strdup_printf("impactlab %s", lab_version());
+        char *named = text_printf("impactlab %s", lab_version());
         g_once_init_leave(&software, (gsize)g_intern_string(named));
         g_free(named);
     }
@@ -350,7 +350,7 @@ static void add_element(GString *out, const char *indent, const char *name, cons
 {
     if (content != NULL) {
         char *escaped = text_escape(content);
-        g_string_append_printf(out, "%s<%s>%s</%s>\n", indent, name, escaped, name);
+        text_append(out, "%s<%s>%s</%s>\n", indent, name, escaped, name);
         g_free(escaped);
     }
 }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/page/text.h"
 #include "src/base/numbers.h"
 
 // Length of the id that begins at `text`: all up to the quote or bracket that ends it.
@@ -20,7 +21,7 @@ static size_t id_length(const char *text)
 static char *new_name(const char *id, GHashTable *names)
 {
     size_t letters = strcspn(id, "0123456789");
-    return g_strdup_printf("%.*s%u", (int)letters, id, g_hash_table_size(names));
+    return text_printf("%.*s%u", (int)letters, id, g_hash_table_size(names));
 }
 
 // Collects all ids; the numbers follow the order in the file.
@@ -65,7 +66,7 @@ static char *rename_ids(const char *svg, GHashTable *names, const char *prefix)
         svg += length;
         char *id = g_strndup(svg, id_length(svg));
         const char *name = names != NULL ? g_hash_table_lookup(names, id) : NULL;
-        g_string_append_printf(out, "%s%s", name ? "" : prefix, name ? name : id);
+        text_append(out, "%s%s", name ? "" : prefix, name ? name : id);
         svg += strlen(id);
         g_free(id);
     }
@@ -172,8 +173,8 @@ static const char *add_colour(GString *out, const char *at)
     }
 
     // a byte each, which is all that a screen shows
-    g_string_append_printf(out, "#%02x%02x%02x", (unsigned)(2.55 * share[0] + 0.5),
-                           (unsigned)(2.55 * share[1] + 0.5), (unsigned)(2.55 * share[2] + 0.5));
+    text_append(out, "#%02x%02x%02x", (unsigned)(2.55 * share[0] + 0.5),
+                (unsigned)(2.55 * share[1] + 0.5), (unsigned)(2.55 * share[2] + 0.5));
     return rest + 1;
 }
 
@@ -196,13 +197,16 @@ static void add_tenths(GString *out, long tenths)
     char last = out->str[out->len - 1];
     bool letter = g_ascii_isalpha(last);
     long size = labs(tenths);
-    g_string_append(out, tenths < 0 ? "-" : letter ? "" : " ");
+    char whole[24] = "", fraction[4] = "";
     if (size >= 10 || size == 0) {
-        g_string_append_printf(out, "%ld", size / 10);
+        g_snprintf(whole, sizeof whole, "%ld", size / 10);
     }
     if (size % 10 != 0) {
-        g_string_append_printf(out, ".%ld", size % 10);
+        g_snprintf(fraction, sizeof fraction, ".%d", (int)(size % 10));
     }
+    g_string_append(out, tenths < 0 ? "-" : letter ? "" : " ");
+    g_string_append(out, whole);
+    g_string_append(out, fraction);
 }
 
 // The data of a path of lines alone, up to its quote: to a tenth of a point, lines relative to

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/page/text.h"
 #include "src/base/csv.h"
 #include "src/base/whole_file.h"
 
@@ -312,8 +313,8 @@ status table_write_csv(const table_page *t, const char *path, fault *f)
 static void add_html_cell(GString *html, const char *tag, text_align align, const char *markup)
 {
     // Pango's <span> and <sub> are HTML's; its colours and sizes are not used in cells
-    g_string_append_printf(html, "<%s%s>%s</%s>", tag,
-                           align == TEXT_LEFT ? "" : " class=\"number\"", markup, tag);
+    text_append(html, "<%s%s>%s</%s>", tag, align == TEXT_LEFT ? "" : " class=\"number\"", markup,
+                tag);
 }
 
 void table_add_html(const table_page *t, GString *html)
@@ -331,8 +332,8 @@ void table_add_html(const table_page *t, GString *html)
 
         // a group's heading spans all columns
         if (table_row_is_group(t, row)) {
-            g_string_append_printf(html, "<tr><th class=\"group\" colspan=\"%d\">%s</th></tr>\n",
-                                   t->column_count, cells[0]);
+            text_append(html, "<tr><th class=\"group\" colspan=\"%d\">%s</th></tr>\n",
+                        t->column_count, cells[0]);
             continue;
         }
 
@@ -345,6 +346,6 @@ void table_add_html(const table_page *t, GString *html)
 
     g_string_append(html, "</tbody>\n</table>\n");
     if (t->caption != NULL) {
-        g_string_append_printf(html, "<p class=\"note\">%s</p>\n", t->caption);
+        text_append(html, "<p class=\"note\">%s</p>\n", t->caption);
     }
 }

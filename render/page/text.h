@@ -36,7 +36,8 @@ char *text_plain(const char *markup);
 // the result with g_free.
 char *text_escape(const char *bytes);
 
-// As g_strdup_printf and g_string_append_printf, with a decimal point in every locale.
+// As g_strdup_printf and g_string_append_printf, with a decimal point in every locale; a refused
+// request for memory ends the program, where those leave the text out.
 char *text_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void text_append(GString *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

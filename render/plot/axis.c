@@ -226,8 +226,7 @@ static char *unit_markup(const char *unit, int exponent)
     const char *power = has_unit && factor[0] ? factor + strlen("\u00d7") : factor;
     // Pango would break the line after a slash
     char **parts = g_strsplit(shown, "/", -1), *unbroken = g_strjoinv("\u2060/\u2060", parts);
-    char *whole =
-        g_strdup_printf("(%s%s%s)", power, has_unit && factor[0] ? "\u2009" : "", unbroken);
+    char *whole = text_printf("(%s%s%s)", power, has_unit && factor[0] ? "\u2009" : "", unbroken);
     g_strfreev(parts);
     g_free(unbroken);
     return whole;

@@ -3,6 +3,7 @@
 #include <assert.h>
 
 #include "render/page/palette.h"
+#include "render/page/text.h"
 
 owned_figure *identify_figure_create(const identification *id)
 {
@@ -49,8 +50,8 @@ owned_figure *identify_figure_create(const identification *id)
 
     char changes[SCENARIO_CHANGES];
     o->figure.title =
-        owned_figure_keep(o, g_strdup_printf("%s: what the fit leaves of the readings%s",
-                                             id->base->name, scenario_changes(id->base, changes)));
+        owned_figure_keep(o, text_printf("%s: what the fit leaves of the readings%s",
+                                         id->base->name, scenario_changes(id->base, changes)));
     o->figure.x = (figure_axis){.name = "time", .label = "Time", .symbol = "t", .unit = "s"};
     return o;
 }

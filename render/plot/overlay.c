@@ -1,4 +1,5 @@
 #include "render/plot/trace_plot.h"
+#include "render/page/text.h"
 #include "src/base/numbers.h"
 
 #include <assert.h>
@@ -186,7 +187,7 @@ static status read_rows(trace *t, const char *text, const overlay_spec *spec,
     // line by line
     status code = columns > 0 ? STATUS_OK : STATUS_BAD_ARGUMENT;
     for (int i = 1; code == STATUS_OK && lines[i] != NULL; i++) {
-        char *where = g_strdup_printf("%s:%d", spec->path, i + 1);
+        char *where = text_printf("%s:%d", spec->path, i + 1);
         if (g_strstrip(lines[i])[0] != '\0') {
             code = read_line(t, lines[i], signals, columns, where, &numbers, f);
         }
@@ -222,7 +223,7 @@ static status read_file(trace *t, const overlay_spec *spec, const trace_panel *p
 
     // named by its file
     char *file = g_path_get_basename(spec->path);
-    *name = spec->column != NULL ? g_strdup_printf("%s: %s", file, spec->column) : g_strdup(file);
+    *name = spec->column != NULL ? text_printf("%s: %s", file, spec->column) : g_strdup(file);
 
     status code = read_rows(t, content, spec, panels, panel_count, f);
     g_free(file);

@@ -50,12 +50,12 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 
     // the page
     o->figure.title =
-        owned_figure_keep(o, g_strdup_printf("%s: what the laws make of what they were not told%s",
-                                             t->scenario, changes));
+        owned_figure_keep(o, text_printf("%s: what the laws make of what they were not told%s",
+                                         t->scenario, changes));
     o->figure.caption = owned_figure_keep(
-        o, g_strdup_printf("%zu runs a law. Overshoot of the force: %s%s. impactlab %s.",
-                           t->laws[0].runs, robust_overshoot_of(&t->laws[0]),
-                           t->laws[0].by_smoothed > 0 ? " (mean over 5 ms)" : "", lab_version()));
+        o, text_printf("%zu runs a law. Overshoot of the force: %s%s. impactlab %s.",
+                       t->laws[0].runs, robust_overshoot_of(&t->laws[0]),
+                       t->laws[0].by_smoothed > 0 ? " (mean over 5 ms)" : "", lab_version()));
     o->figure.x = (figure_axis){.name = "overshoot",
                                 .label = "Overshoot over the commanded force",
                                 .unit = "%",
@@ -352,18 +352,17 @@ static char *caption_of(const sweep_picture *p, size_t missing)
     const sweep *s = p->sweep;
     GString *out = g_string_new("Varied: ");
     for (int i = 0; i < s->axis_count; i++) {
-        g_string_append_printf(out, "%s%s", i > 0 ? ", " : "", s->axes[i].name);
+        text_append(out, "%s%s", i > 0 ? ", " : "", s->axes[i].name);
     }
 
     if (missing > 0) {
-        g_string_append_printf(out, "; %zu %s without a value%s", missing,
-                               missing == 1 ? "run" : "runs",
-                               s->axis_count == 1          ? ""
-                               : s->sampling == SWEEP_GRID ? " (hatched, or a gap)"
-                                                           : " (empty)");
+        text_append(out, "; %zu %s without a value%s", missing, missing == 1 ? "run" : "runs",
+                    s->axis_count == 1          ? ""
+                    : s->sampling == SWEEP_GRID ? " (hatched, or a gap)"
+                                                : " (empty)");
     }
 
-    g_string_append_printf(out, ". impactlab %s.", lab_version());
+    text_append(out, ". impactlab %s.", lab_version());
     return g_string_free(out, FALSE);
 }
 
@@ -372,9 +371,9 @@ static char *title_of(const sweep_picture *p, const char *quantity)
     static const char *const how[] = {
         [SWEEP_GRID] = "", [SWEEP_RANDOM] = " at random", [SWEEP_LATIN] = " of a Latin hypercube"};
     char changes[SCENARIO_CHANGES];
-    return g_strdup_printf("%s: %s of %zu runs%s%s", p->sweep->base->name, quantity,
-                           p->sweep->run_count, how[p->sweep->sampling],
-                           scenario_changes(p->sweep->base, changes));
+    return text_printf("%s: %s of %zu runs%s%s", p->sweep->base->name, quantity,
+                       p->sweep->run_count, how[p->sweep->sampling],
+                       scenario_changes(p->sweep->base, changes));
 }
 
 // What was varied, as on the command line.
@@ -382,8 +381,7 @@ static char *command_of(const sweep *s)
 {
     GString *out = g_string_new(NULL);
     for (int i = 0; i < s->axis_count; i++) {
-        g_string_append_printf(out, "%s--vary %s=%s", i > 0 ? " " : "", s->axes[i].name,
-                               s->axes[i].text);
+        text_append(out, "%s--vary %s=%s", i > 0 ? " " : "", s->axes[i].name, s->axes[i].text);
     }
     return g_string_free(out, FALSE);
 }
@@ -483,10 +481,10 @@ owned_figure *tune_figure_create(const tuning *t, const char *changes)
                                    .room = 0.05};
     o->figure.x = (figure_axis){.name = "evaluation", .label = "Evaluation", .room = 0.02};
     o->figure.title =
-        owned_figure_keep(o, g_strdup_printf("%s: tuned%s", t->asked.base->name, changes));
+        owned_figure_keep(o, text_printf("%s: tuned%s", t->asked.base->name, changes));
     o->figure.caption = owned_figure_keep(
-        o, g_strdup_printf("%zu evaluations of %zu runs. What fails, or is not allowed, has no "
-                           "point. impactlab %s.",
-                           t->done, t->each, lab_version()));
+        o, text_printf("%zu evaluations of %zu runs. What fails, or is not allowed, has no "
+                       "point. impactlab %s.",
+                       t->done, t->each, lab_version()));
     return o;
 }

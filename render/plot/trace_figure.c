@@ -220,7 +220,7 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         } else if (!alone && !named) {
             // the first of its signals speaks for the other run
             char *symbol = trace_series_symbol(s, index), *run_name = text_escape(runs[run].name);
-            out->label = trace_keep(texts, g_strdup_printf("%s  %s", symbol, run_name));
+            out->label = trace_keep(texts, text_printf("%s  %s", symbol, run_name));
             named = true;
             g_free(symbol);
             g_free(run_name);
@@ -358,8 +358,8 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     figure *fig = &t->figure;
     fig->title = title ? title : trace_keep(texts, scenario_title(runs[0].scenario));
 
-    char *shading = mode != NULL ? g_strdup_printf("%s mode", mode)
-                                 : g_strdup(modes ? "second mode" : "contact");
+    char *shading =
+        mode != NULL ? text_printf("%s mode", mode) : g_strdup(modes ? "second mode" : "contact");
     fig->caption = trace_keep(texts, trace_caption(runs, run_count, shading));
     g_free(shading);
     fig->x.name = "time";

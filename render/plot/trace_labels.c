@@ -21,10 +21,10 @@ static char *symbol_markup(const scenario *s, const signal_info *signal)
         return g_strdup(symbol);
     }
     if (signal->body == BODY_LAST_LINK) {
-        return g_strdup_printf("<i>%.*s</i><sub>%d</sub>", (int)letters, symbol,
-                               s->parameters.arm.links + 1);
+        return text_printf("<i>%.*s</i><sub>%d</sub>", (int)letters, symbol,
+                           s->parameters.arm.links + 1);
     }
-    return g_strdup_printf("<i>%.*s</i>%s", (int)letters, symbol, symbol + letters);
+    return text_printf("<i>%.*s</i>%s", (int)letters, symbol, symbol + letters);
 }
 
 bool trace_hub_is_first_link(const scenario *s)
@@ -59,13 +59,13 @@ char *trace_series_label(const scenario *s, int index, bool joined)
 
     if (twin >= 0) {
         char *other = symbol_markup(s, &signal_table[twin]);
-        label = g_strdup_printf("%s = %s  hub and first link", symbol, other);
+        label = text_printf("%s = %s  hub and first link", symbol, other);
         g_free(other);
     } else {
         // what belongs to no body is described as a whole
-        label = g_strdup_printf("%s  %s", symbol,
-                                signal->body != BODY_NONE ? signal_body_name(signal->body)
-                                                          : signal->description);
+        label = text_printf("%s  %s", symbol,
+                            signal->body != BODY_NONE ? signal_body_name(signal->body)
+                                                      : signal->description);
     }
 
     g_free(symbol);
@@ -78,7 +78,7 @@ char *trace_series_symbol(const scenario *s, int index)
     char *symbol = symbol_markup(s, &signal_table[index]);
     if (twin >= 0) {
         char *other = symbol_markup(s, &signal_table[twin]), *own = symbol;
-        symbol = g_strdup_printf("%s = %s", own, other);
+        symbol = text_printf("%s = %s", own, other);
         g_free(other);
         g_free(own);
     }
@@ -88,7 +88,7 @@ char *trace_series_symbol(const scenario *s, int index)
 char *trace_axis_label(const scenario *s, const signal_info *signal)
 {
     char *symbol = symbol_markup(s, signal);
-    char *label = g_strdup_printf("%s %s", signal->quantity, symbol);
+    char *label = text_printf("%s %s", signal->quantity, symbol);
     g_free(symbol);
     return label;
 }
@@ -147,7 +147,7 @@ static void add_printed_constants(GString *out, const parameters *p)
     if (p->arm.model == ARM_PRINTED) {
         char *inertia = text_number(p->arm.link_inertia, 3);
         text_append(out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = ", p->arm.k1);
-        g_string_append_printf(out, "%s\u2009kg·m²", inertia);
+        text_append(out, "%s\u2009kg·m²", inertia);
         g_free(inertia);
     }
 }
@@ -161,14 +161,13 @@ static void add_shading(GString *out, const trace_run *runs, int run_count, cons
         full += !runs[i].points;
     }
     if (full < 2 || runs[0].name == NULL) {
-        g_string_append_printf(out, "Shaded: %s.", shaded);
+        text_append(out, "Shaded: %s.", shaded);
         return;
     }
 
     // several could be meant, so it is named
     char *name = text_escape(runs[0].name);
-    g_string_append_printf(out, "Shaded: %s of the first run (%s), whose marks are shown.", shaded,
-                           name);
+    text_append(out, "Shaded: %s of the first run (%s), whose marks are shown.", shaded, name);
     g_free(name);
 }
 
@@ -182,8 +181,8 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     // the arm and what drives it
     GString *out = g_string_new(p->arm.model == ARM_PRINTED ? "Printed model" : "Corrected model");
     char *step = duration_text(p->method.step);
-    g_string_append_printf(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
-                           hub_texts[p->arm.hub_joint]);
+    text_append(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
+                hub_texts[p->arm.hub_joint]);
     add_printed_constants(out, p);
     add_drive(out, p);
 
@@ -194,16 +193,16 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     } else if (p->method.name == METHOD_GENERALIZED_ALPHA) {
         text_append(out, "generalised α, <i>ρ</i><sub>∞</sub> = %g", p->method.spectral_radius);
     } else {
-        g_string_append_printf(out, "%s engine, located events", run->result->summary.method);
+        text_append(out, "%s engine, located events", run->result->summary.method);
     }
-    g_string_append_printf(out, located ? ", a row every %s. " : ", <i>h</i> = %s. ", step);
+    text_append(out, located ? ", a row every %s. " : ", <i>h</i> = %s. ", step);
     add_shading(out, runs, run_count, shaded);
-    g_string_append_printf(out, " impactlab %s.", lab_version());
+    text_append(out, " impactlab %s.", lab_version());
 
     // what went wrong
     if (run->result->summary.status != STATUS_OK) {
         char *why = text_escape(run->result->summary.message);
-        g_string_append_printf(out, " <b>The run failed:</b> %s", why);
+        text_append(out, " <b>The run failed:</b> %s", why);
         g_free(why);
     }
 
@@ -230,11 +229,11 @@ char *parameters_line(const scenario *s)
 {
     assert(s != NULL);
     GString *out = g_string_new(NULL);
-    g_string_printf(out, "scenario=%s", s->name);
+    text_append(out, "scenario=%s", s->name);
     for (int i = 0; i < parameter_count; i++) {
         char value[128];
         parameter_format(&s->parameters, i, value, sizeof value);
-        g_string_append_printf(out, " %s=%s", parameter_table[i].path, value);
+        text_append(out, " %s=%s", parameter_table[i].path, value);
     }
     return g_string_free(out, FALSE);
 }

@@ -40,13 +40,13 @@ static char *action_label(const scenario *s, const event *e)
 
     // the parameter's last name and its value with its unit
     const char *name = strchr(action_path(a, path), '.') + 1;
-    return g_strdup_printf("%s %s\u2009%s", name, value, unit);
+    return text_printf("%s %s\u2009%s", name, value, unit);
 }
 
 static char *mode_label(const char *name, double mode)
 {
     char *escaped = name != NULL ? text_escape(name) : text_printf("%g", mode);
-    char *label = g_strdup_printf(name != NULL ? "%s mode" : "mode %s", escaped);
+    char *label = text_printf(name != NULL ? "%s mode" : "mode %s", escaped);
     g_free(escaped);
     return label;
 }

@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "render/page/text.h"
 #include "src/base/whole_file.h"
 
 extern char **environ;
@@ -92,9 +93,9 @@ static char **list_arguments(const film_format *format, const film_facts *facts,
 
     // raw frames from the pipe
     add_words(list, "ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo -pix_fmt bgr0 -s");
-    g_ptr_array_add(list, g_strdup_printf("%dx%d", facts->width, facts->height));
+    g_ptr_array_add(list, text_printf("%dx%d", facts->width, facts->height));
     g_ptr_array_add(list, g_strdup("-r"));
-    g_ptr_array_add(list, g_strdup_printf("%d", facts->frames_per_second));
+    g_ptr_array_add(list, text_printf("%d", facts->frames_per_second));
 
     add_words(list, "-i pipe:0 -an");
     add_words(list, format->codec);
@@ -103,7 +104,7 @@ static char **list_arguments(const film_format *format, const film_facts *facts,
         const png_note *note = &facts->notes[i];
         if (note->text != NULL) {
             g_ptr_array_add(list, g_strdup("-metadata"));
-            g_ptr_array_add(list, g_strdup_printf("%s=%s", key_of(note->keyword), note->text));
+            g_ptr_array_add(list, text_printf("%s=%s", key_of(note->keyword), note->text));
         }
     }
 

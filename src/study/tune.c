@@ -84,7 +84,7 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     sweep_options only = *options;
     sweep_progress progress;
     double run[SUMMARY_NUMBERS], *column = calloc(t->plan.run_count, sizeof *column);
-    *out = (tune_result){.rank = INFINITY};
+    *out = (tune_result){.rank = (double)INFINITY};
     snprintf(word, sizeof word, "%zu of %zu:", evaluation + 1, t->most);
     only.context = word; // of the progress line
     only.share = (sweep_share){(int)evaluation + 1, (int)t->most};
@@ -202,7 +202,7 @@ status tune_init(tuning *t, const tune_request *asked, fault *f)
     assert(t != NULL && asked != NULL && asked->base != NULL && asked->minimise != NULL);
     assert(asked->runs >= 1 && asked->runs <= TUNE_MOST_RUNS);
     int version[3] = {0};
-    *t = (tuning){.asked = *asked, .best.rank = INFINITY};
+    *t = (tuning){.asked = *asked, .best.rank = (double)INFINITY};
     status code = check(asked, f);
     if (code != STATUS_OK) {
         return code;
@@ -278,7 +278,7 @@ static double rank_of(unsigned n, const double *shares, double *gradient, void *
     (void)gradient;
     if (t->done == t->most || s->code != STATUS_OK) {
         nlopt_force_stop(s->minimiser);
-        return INFINITY;
+        return (double)INFINITY;
     }
     for (unsigned i = 0; i < n; i++) {
         const double share = fmin(fmax(shares[i], 0), nextafter(1, 0));

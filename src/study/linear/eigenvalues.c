@@ -78,7 +78,7 @@ status linear_eigenvalues(int n, double *matrix, double complex *values, fault *
     dgeev("N", "N", &n, matrix, &n, real, imaginary, unused, &one, unused, &one, work, &size, &info,
           1, 1);
     for (int i = 0; i < n; i++) {
-        values[i] = CMPLX(real[i], imaginary[i]);
+        values[i] = complex_of(real[i], imaginary[i]);
     }
     free(work);
     if (info != 0) {

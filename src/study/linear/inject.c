@@ -47,9 +47,9 @@ static void sample_with_sine(void *memory, const controller_input *in, controlle
     const double answer = out->command;
     inline_sincos(i->turn * (double)i->sample++, &s, &c);
     out->command += i->amplitude * s;
-    i->law += answer * CMPLX(c, -s);
-    i->command += out->command * CMPLX(c, -s);
-    i->force += in->force * CMPLX(c, -s);
+    i->law += answer * complex_of(c, -s);
+    i->command += out->command * complex_of(c, -s);
+    i->force += in->force * complex_of(c, -s);
 }
 
 // The inner law was started with its rig, which was told the same.
@@ -100,7 +100,7 @@ static status measure(run_loop *l, injector *i, double *hertz, double complex *g
     *hertz = cycles / (samples * period);
     i->turn = 2 * pi * cycles / samples;
     i->amplitude = i->first;
-    *gain = CMPLX((double)NAN, 0);
+    *gain = complex_of((double)NAN, 0);
 
     // window after window until the transient is gone
     status code = STATUS_OK;

@@ -12,6 +12,12 @@
 
 #include "src/study/sweep.h"
 
+// C11's CMPLX, which not every compiler's library has.
+static inline double complex complex_of(double real, double imaginary)
+{
+    return real + imaginary * (double complex)I;
+}
+
 typedef enum linear_place { LINEAR_FREE, LINEAR_CONTACT, LINEAR_STUCK } linear_place;
 
 // A system of one input, matrices row by row.

@@ -60,7 +60,7 @@ status linear_loop_response(const linear_system *loop, double period, linear_res
         for (int i = 0; i < r->count; i++) {
             double s, c;
             inline_sincos(r->frequency[i] * period, &s, &c);
-            r->gain[i] = -linear_answer(loop, 0, CMPLX(c, s), scratch);
+            r->gain[i] = -linear_answer(loop, 0, complex_of(c, s), scratch);
         }
     } else {
         free(block);
@@ -92,7 +92,7 @@ status linear_arm_response(const linear_system *s, int output, linear_response *
     *r = (linear_response){EVEN, block, (double complex *)(block + EVEN)};
     for (int i = 0; i < EVEN; i++) {
         block[i] = 0.01 * low * plain_pow(1000 * high / low, i / (EVEN - 1.0));
-        r->gain[i] = linear_answer(s, output, CMPLX(0, block[i]), scratch);
+        r->gain[i] = linear_answer(s, output, complex_of(0, block[i]), scratch);
     }
     free(scratch);
     return STATUS_OK;

@@ -143,7 +143,7 @@ static void finish(analysis *x)
 // A root as one of s; of a sampled system s = log(z)/period.
 static double complex in_time(const analysis *x, double complex root)
 {
-    return x->period > 0 ? CMPLX(plain_log(cabs(root)), carg(root)) / x->period : root;
+    return x->period > 0 ? complex_of(plain_log(cabs(root)), carg(root)) / x->period : root;
 }
 
 static void add_roots(json_t *array, const analysis *x, const root_set *set)

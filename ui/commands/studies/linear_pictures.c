@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "render/page/text.h"
 #include "src/base/plain_math.h"
 #include "ui/commands/pictures.h"
 
@@ -15,7 +16,7 @@ enum { MOST_CURVES = 3, CIRCLE = 121 };
 static char *title_of(const scenario *s, const char *what)
 {
     char changes[SCENARIO_CHANGES];
-    return g_strdup_printf("%s: %s%s", s->name, what, scenario_changes(s, changes));
+    return text_printf("%s: %s%s", s->name, what, scenario_changes(s, changes));
 }
 
 // --- Bode -------------------------------------------------------------------------------------
