@@ -73,11 +73,17 @@ is_prompted() {
     picture | grep -v '^ *$' | tail -n 1 | grep -q '^ready> *$'
 }
 
-# starts the lab; afterwards its exit status and the terminal's settings go to files
+# starts the lab; afterwards its exit status and the terminal's settings go to files. On a busy
+# machine keys that follow a signal at once are lost: they are sent again where the prompt still waits
 start() {
+    local end=$((SECONDS + LIMIT)) patience=5
     rm -f "$folder/after" "$folder/pid"
-    until_true is_prompted || fail "the shell has no prompt"
-    mux send-keys "clear; lab $*" Enter
+    while [ $SECONDS -lt $end ]; do
+        until_true is_prompted || fail "the shell has no prompt"
+        mux send-keys "clear; lab $*" Enter
+        LIMIT=$patience until_true test -s "$folder/pid" && break
+        patience=$((2 * patience))
+    done
     await "Space run/pause"
 }
 

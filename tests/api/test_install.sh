@@ -91,7 +91,7 @@ if command -v pkg-config >/dev/null; then
     fi
     if [ -e "$library/libimpactlab.a" ]; then
         eval "${CC:-cc} -std=c17 -o peak_static peak.c $(flags --cflags) '$library/libimpactlab.a' \
-            $(pkg-config --libs yaml-0.1 jansson) -lm -ldl -lpthread" ||
+            $(pkg-config --libs $(pkg-config --print-requires-private impactlab)) -lm -ldl -lpthread" ||
             fail "peak.c does not link statically"
         expect "the program linked statically" \
             "$(IMPACTLAB_SCENARIOS=$prefix/share/impactlab/scenarios ./peak_static corrected/first-impact)"
