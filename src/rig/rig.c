@@ -109,6 +109,9 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
 {
     const control_parameters *c = &p->control;
     r->law = controller_of(c->law);
+    if (c->law == LAW_PLAYBACK) {
+        return playback_create(&r->recorded, c, f);
+    }
     if (r->law != NULL) {
         return STATUS_OK;
     }
@@ -163,7 +166,10 @@ status rig_create(rig **created, const parameters *p, const rig_options *o, faul
     } else {
         s = open_law(r, p, o, f);
         asked = (given_law){r->law, r->process};
-        given = r->process != NULL ? &asked : NULL;
+        if (r->recorded != NULL) {
+            asked.context = r->recorded;
+        }
+        given = asked.context != NULL ? &asked : NULL;
     }
     r->lock = -1;
     s = s == STATUS_OK && !r->withheld ? rig_lock(r, p->control.lock, f) : s;
@@ -190,6 +196,7 @@ void rig_destroy(rig *r)
         free(r->values);
         plugin_close(&r->plugin);
         process_destroy(r->process);
+        playback_destroy(r->recorded);
         free(r);
     }
 }

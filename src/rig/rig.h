@@ -8,6 +8,7 @@
 
 #include "src/rig/controller.h"
 #include "src/rig/external/plugin.h"
+#include "src/rig/external/playback.h"
 #include "src/rig/external/process.h"
 #include "src/rig/sensors.h"
 #include "src/rig/estimation/touch_forecast.h"
@@ -29,11 +30,12 @@ typedef struct rig_options {
 
 typedef struct rig {
     const controller *law;
-    bool withheld;    // the law may not be loaded or started: the first sample fails
-    plugin plugin;    // the law comes from, else empty
-    process *process; // that the law asks, else NULL
-    void *memory;     // the controller's
-    double *values;   // of the controller's parameters
+    bool withheld;              // the law may not be loaded or started: the first sample fails
+    plugin plugin;              // the law comes from, else empty
+    process *process;           // that the law asks, else NULL
+    recorded_command *recorded; // that the law plays, else NULL
+    void *memory;               // the controller's
+    double *values;             // of the controller's parameters
     sensors sensors;
     double period, delay, jitter; // [s]
     double voltage_limit;         // [V]

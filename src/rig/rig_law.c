@@ -18,7 +18,8 @@
 const controller *controller_of(int law)
 {
 #define LAW(name, prefix, word, description) [LAW_##name] = &prefix##_law,
-    static const controller *const built_in[LAW_COUNT] = {CONTROL_LAWS(LAW)};
+    static const controller *const built_in[LAW_COUNT] = {CONTROL_LAWS(LAW)[LAW_PLAYBACK] =
+                                                              &playback_law};
 #undef LAW
     assert(law >= 0 && law < LAW_COUNT);
     return built_in[law];

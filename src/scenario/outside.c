@@ -13,6 +13,7 @@
 const outside_source outside_table[] = {
     {PATH(control.plugin), PATH(control.law), LAW_PLUGIN, OUTSIDE_LIBRARY},
     {PATH(control.command), PATH(control.law), LAW_PROCESS, OUTSIDE_COMMAND},
+    {PATH(control.playback_file), PATH(control.law), LAW_PLAYBACK, OUTSIDE_FILE},
 };
 const int outside_count = sizeof outside_table / sizeof outside_table[0];
 
@@ -143,8 +144,9 @@ bool outside_is_told(const outside_source *source, const parameters *p)
     assert(source != NULL && p != NULL);
     char value[PARAMETER_TEXT_SIZE];
     parameter_format(p, parameter_at(source->parameter), value, sizeof value);
-    return source->kind == OUTSIDE_COMMAND ? value[strspn(value, plain)] == '\0'
-                                           : strchr(value, '/') != NULL;
+    return source->kind == OUTSIDE_COMMAND   ? value[strspn(value, plain)] == '\0'
+           : source->kind == OUTSIDE_LIBRARY ? strchr(value, '/') != NULL
+                                             : true;
 }
 
 status outside_digest(const outside_source *source, const parameters *p, char digest[SHA256_TEXT],

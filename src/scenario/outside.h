@@ -9,7 +9,8 @@
 
 typedef enum outside_kind {
     OUTSIDE_LIBRARY, // the path of a shared object, with a slash
-    OUTSIDE_COMMAND  // words: the files that they name, and the programs that PATH finds
+    OUTSIDE_COMMAND, // words: the files that they name, and the programs that PATH finds
+    OUTSIDE_FILE     // the path of a file
 } outside_kind;
 
 // A parameter that names something outside; it is read where another one has a certain value.

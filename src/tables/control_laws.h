@@ -41,12 +41,13 @@ typedef enum control_law {
 #undef LAW
         LAW_PLUGIN, // a controller of one's own, from control.plugin
     LAW_PROCESS,    // a program of one's own, control.command
+    LAW_PLAYBACK,   // a recorded command, from control.playback_file
     LAW_COUNT
 } control_law;
 
-// The choices of control.law in the order of the enumeration, "none|open-loop|...|plugin|process".
+// The choices of control.law in the order of the enumeration, "none|open-loop|...|playback".
 #define CONTROL_LAW_WORD(name, prefix, word, description) "|" word
-#define CONTROL_LAW_CHOICES                               "none" CONTROL_LAWS(CONTROL_LAW_WORD) "|plugin|process"
+#define CONTROL_LAW_CHOICES                               "none" CONTROL_LAWS(CONTROL_LAW_WORD) "|plugin|process|playback"
 
 typedef struct control_law_info {
     const char *word;        // in scenarios

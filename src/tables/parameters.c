@@ -181,7 +181,7 @@ const parameter_info parameter_table[] = {
 
     {PATH(run.duration), REAL("s", 1e-6, 1e5), DEFAULT(1), MEANING("simulated time")},
 
-    {PATH(control.law), CHOICE(LAW_PROCESS, CONTROL_LAW_CHOICES), DEFAULT(LAW_NONE),
+    {PATH(control.law), CHOICE(LAW_PLAYBACK, CONTROL_LAW_CHOICES), DEFAULT(LAW_NONE),
      MEANING("control law on the rig, or none: the bare arm under motor.voltage")},
     {PATH(control.plugin), TEXT(NULL),
      MEANING("shared object with a controller of one's own (control.law = plugin)")},
@@ -189,6 +189,16 @@ const parameter_info parameter_table[] = {
      MEANING("program that is the controller, as a shell takes it (control.law = process)")},
     {PATH(control.answer_time), REAL("s", 0.01, 3600), DEFAULT(10),
      MEANING("for which a process may keep the lab waiting, by the clock, before the run fails")},
+    {PATH(control.playback_file), TEXT(NULL),
+     MEANING("CSV with the command to play back and its times in a column t or time "
+             "(control.law = playback)")},
+    {PATH(control.playback_column), TEXT("command"),
+     MEANING("heading of the command's column there, name or name[unit]; V without a unit")},
+    {PATH(control.playback_shift), REAL("s", -1e5, 1e5), DEFAULT(0),
+     MEANING("by which the command comes later than it was recorded")},
+    {PATH(control.playback_hold), CHOICE(PLAYBACK_LINEAR, "hold|linear"), DEFAULT(PLAYBACK_HOLD),
+     MEANING("between two rows the earlier one's command, or on the straight line; outside the "
+             "recording that of the first or last row")},
     {PATH(control.settings), TEXT(NULL), TIMED,
      MEANING("parameters that only this law, plug-in or process has, written name=value and "
              "separated by spaces; control.settings.NAME is one of them")},
@@ -441,6 +451,7 @@ const control_law_info control_law_table[LAW_COUNT] = {
     [LAW_NONE] = {"none", "no rig: the bare arm under motor.voltage"},
     [LAW_PLUGIN] = {"plugin", "a controller of one's own"},
     [LAW_PROCESS] = {"process", "a program of one's own, in any language"},
+    [LAW_PLAYBACK] = {"playback", "a recorded command, from a CSV file"},
 #define LAW(name, prefix, word, description) [LAW_##name] = {word, description},
     CONTROL_LAWS(LAW)
 #undef LAW

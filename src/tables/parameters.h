@@ -31,6 +31,8 @@ enum {
     PARAMETER_MODES_MOST = 16    // of arm.modal_ratios
 };
 
+typedef enum playback_hold { PLAYBACK_HOLD, PLAYBACK_LINEAR } playback_hold;
+
 typedef struct arm_parameters {
     int model;            // arm_model_kind
     int links;            // number of links of the beam, N
@@ -114,10 +116,14 @@ typedef struct run_parameters {
 } run_parameters;
 
 typedef struct control_parameters {
-    int law;                            // control_law
-    char plugin[PARAMETER_TEXT_SIZE];   // file of a shared object
-    char command[PARAMETER_TEXT_SIZE];  // of a program, as a shell takes it
-    double answer_time;                 // that the program has for each answer [s]
+    int law;                                   // control_law
+    char plugin[PARAMETER_TEXT_SIZE];          // file of a shared object
+    char command[PARAMETER_TEXT_SIZE];         // of a program, as a shell takes it
+    double answer_time;                        // that the program has for each answer [s]
+    char playback_file[PARAMETER_TEXT_SIZE];   // CSV with the command to play back
+    char playback_column[PARAMETER_TEXT_SIZE]; // heading of its column
+    double playback_shift;                     // by which it comes later than recorded [s]
+    int playback_hold;                         // playback_hold: between rows
     char settings[PARAMETER_TEXT_SIZE]; // "name=value name=value", a plug-in's own parameters
     char lock[PARAMETER_TEXT_SIZE];     // mode in which the law is held, "none" if free
     double rate;                        // samples a second [Hz]

@@ -137,6 +137,10 @@ static status check_control(const parameters *p, fault *f)
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, control.law, control.command),
                             "control.law = process needs the program to start in control.command");
     }
+    if (c->law == LAW_PLAYBACK && c->playback_file[0] == '\0') {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, control.law, control.playback_file),
+                            "control.law = playback needs a CSV file in control.playback_file");
+    }
     k2_table table;
     if (k2_table_read(&table, c->k2_table, f) != STATUS_OK) {
         return STATUS_BAD_SCENARIO;

@@ -299,6 +299,9 @@ static const char *reason_of_control(const parameters *p, int parameter)
     if (IS_OF(parameter, control.command) || IS_OF(parameter, control.answer_time)) {
         return p->control.law == LAW_PROCESS ? NULL : "it belongs to control.law = process";
     }
+    if (strncmp(name, "playback_", 9) == 0) {
+        return p->control.law == LAW_PLAYBACK ? NULL : "it belongs to control.law = playback";
+    }
     if (law == NULL || IS_AMONG(parameter, every_law)) {
         return NULL;
     }

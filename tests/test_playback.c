@@ -1,0 +1,140 @@
+// control.law = playback: a recorded command is the input of another run.
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/run/export.h"
+#include "tests/rig_fixture.h"
+
+static const char *const recorded_csv = "recorded.csv";
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+// Runs settings and keeps the trace as the lab's own CSV.
+static summary record(const char *const *settings)
+{
+    run_result r = rig_run(settings, true);
+    FILE *file = fopen(recorded_csv, "w");
+    assert_non_null(file);
+    export_csv(file, &r.trace, 2);
+    assert_int_equal(fclose(file), 0);
+    const summary s = r.summary;
+    run_finish(&r);
+    return s;
+}
+
+// What a run plays back is the run, to the last bit, where its samples are those that were
+// recorded. Under a delay the voltage is the command of a delay earlier.
+static void a_run_plays_back_its_own_csv(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *law, *rate, *delay, *column, *shift;
+    } cases[] = {
+        {"control.law=open-loop", "control.rate=200", "control.delay=0", "command", "0"},
+        {"control.law=hybrid", "control.rate=200", "control.delay=0", "command", "0"},
+        {"control.law=hybrid", "control.rate=333", "control.jitter=0.0003", "command", "0"},
+        {"control.law=observer", "control.rate=1000", "control.delay=0", "voltage[V]", "0"},
+        {"control.law=hybrid", "control.rate=333", "control.delay=0.0007", "voltage", "-0.0007"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char column[64], shift[64];
+        snprintf(column, sizeof column, "control.playback_column=%s", cases[i].column);
+        snprintf(shift, sizeof shift, "control.playback_shift=%s", cases[i].shift);
+        const summary was = record(SETTINGS(cases[i].law, cases[i].rate, cases[i].delay));
+        const summary is =
+            rig_summary(SETTINGS("control.law=playback", "control.playback_file=recorded.csv",
+                                 column, shift, cases[i].rate, cases[i].delay));
+        assert_true(was.peak_force_N > 0);
+        check_close(is.first_contact_s, was.first_contact_s, 0);
+        check_close(is.peak_force_N, was.peak_force_N, 0);
+        check_close(is.steady_force_N, was.steady_force_N, 0);
+        check_close(is.motor_work_J, was.motor_work_J, 0);
+    }
+    unlink(recorded_csv);
+}
+
+// What goes out at an instant: between rows, beyond them, and shifted.
+static void a_command_is_held_or_goes_straight(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *hold, *shift;
+        double time, volts;
+    } cases[] = {
+        {"hold", "0", 0.15, 1},     {"linear", "0", 0.15, 1.5}, {"hold", "0", 0.2, 2},
+        {"hold", "0", 0.05, 1},     {"linear", "0", 0.05, 1},   {"hold", "0", 0.4, 3},
+        {"linear", "0", 0.4, 3},    {"hold", "0.1", 0.25, 1},   {"linear", "0.1", 0.25, 1.5},
+        {"linear", "-0.1", 0.1, 2},
+    };
+    write_file("u.csv", "\"t[ms]\",u[mV]\n100,1000\n200,2000\n300,3000\n");
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char hold[64], shift[64];
+        snprintf(hold, sizeof hold, "control.playback_hold=%s", cases[i].hold);
+        snprintf(shift, sizeof shift, "control.playback_shift=%s", cases[i].shift);
+        run_result r =
+            rig_run(SETTINGS("control.law=playback", "control.playback_file=u.csv",
+                             "control.playback_column=u", hold, shift, "control.rate=1000",
+                             "sensor.ideal=true", "run.duration=0.45", "wall.kind=none"),
+                    true);
+        const size_t row = trace_rows_until(&r.trace, cases[i].time) - 1;
+        check_close(r.trace.rows[row].voltage, cases[i].volts, 1e-9);
+        run_finish(&r);
+    }
+    unlink("u.csv");
+}
+
+static void a_file_with_faults_is_told_with_its_place(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sentence;
+    } cases[] = {
+        {"t[s],command[V]\n0,1\n0.1,nan\n", "bad.csv:3:2: 'nan'"},
+        {"t[s],command[V]\n0.2,1\n0.1,2\n", "bad.csv:3:1: the time"},
+        {"t[s],u[V]\n0,1\n", "there is no column 'command'"},
+        {"x[s],command[V]\n0,1\n", "there is no column 'time'"},
+        {"t[s],command[furlong]\n0,1\n", "bad.csv:1:2: the unit [furlong]"},
+        {"t[s],command[V]\n", "0 rows"},
+        {"t[s],command[V]\n0\n", "bad.csv:2"},
+        {"", "bad.csv"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        write_file("bad.csv", cases[i].text);
+        check_refused(SETTINGS("control.law=playback", "control.playback_file=bad.csv"),
+                      cases[i].sentence);
+    }
+    unlink("bad.csv");
+    check_refused(SETTINGS("control.law=playback", "control.playback_file=bad.csv"),
+                  "cannot be opened");
+
+    // without a file there is nothing to play
+    parameters p = rig_parameters(NULL);
+    fault f = {0};
+    p.control.law = LAW_PLAYBACK;
+    p.set[PARAMETER_INDEX(control.law)] = 1;
+    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+    assert_string_equal(f.text, "control.law = playback needs a CSV file in control.playback_file");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_run_plays_back_its_own_csv),
+        cmocka_unit_test(a_command_is_held_or_goes_straight),
+        cmocka_unit_test(a_file_with_faults_is_told_with_its_place),
+    };
+    char folder[] = "/tmp/playback-XXXXXX";
+    if (mkdtemp(folder) == NULL || chdir(folder) != 0) {
+        return 1;
+    }
+    const int failures = cmocka_run_group_tests(tests, NULL, NULL);
+    rmdir(folder);
+    return failures;
+}
