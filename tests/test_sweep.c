@@ -8,6 +8,7 @@
 #include "src/run/run.h"
 #include "src/engines/pair/taylor_lanes.h"
 #include "src/study/store/sweep_store.h"
+#include "src/study/sweep_definition.h"
 #include "src/study/sweep_run.h"
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
@@ -195,6 +196,49 @@ static void lists_have_an_end(void **state)
     free(text);
 }
 
+// Values that are drawn together stay pairs, through a database's definition too.
+static void values_drawn_together_stay_pairs(void **state)
+{
+    (void)state;
+    fault f = {.text = ""};
+    for (sweep_sampling how = SWEEP_RANDOM; how <= SWEEP_LATIN; how++) {
+        sweep s, again;
+        must_sweep(&s, how, 60, "arm.k2=1,2,3", "with arm.mass=0.1,0.2,0.2");
+        definition d = {0};
+        assert_int_equal(definition_init(&d, &s, &f), STATUS_OK);
+        assert_int_equal(definition_plan(&d, "here", &again, &f), STATUS_OK);
+        bool seen[4] = {false};
+        for (size_t run = 0; run < 60; run++) {
+            const double k2 = sweep_value(&s, run, 0), mass = sweep_value(&s, run, 1);
+            seen[(int)k2] = true;
+            check_close(mass, k2 < 1.5 ? 0.1 : 0.2, 0);
+            check_close(sweep_value(&again, run, 0), k2, 0);
+            check_close(sweep_value(&again, run, 1), mass, 0);
+        }
+        assert_true(seen[1] && seen[2] && seen[3]);
+        definition_finish(&d);
+        sweep_finish(&again);
+        sweep_finish(&s);
+    }
+
+    static const struct {
+        sweep_sampling how;
+        const char *first, *second, *says;
+    } refused[] = {
+        {SWEEP_GRID, "arm.k2=1,2", "with arm.mass=0.1,0.2", "goes with drawn values"},
+        {SWEEP_LATIN, "with arm.k2=1,2", "arm.mass=0.1,0.2", "behind those"},
+        {SWEEP_LATIN, "arm.k2=1,2", "with arm.mass=0.1,0.2,0.3", "as many values: 2, not 3"},
+        {SWEEP_LATIN, "arm.k2=1:2", "with arm.mass=0.1,0.2", "as many values"},
+    };
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        sweep s;
+        assert_int_equal(sweep_of(&s, refused[i].how, refused[i].how == SWEEP_GRID ? 0 : 4, 1, &f,
+                                  refused[i].first, refused[i].second),
+                         STATUS_BAD_ARGUMENT);
+        assert_non_null(strstr(f.text, refused[i].says));
+    }
+}
+
 // A name that begins with a colon is a file like any other.
 static void a_colon_begins_a_name(void **state)
 {
@@ -358,6 +402,7 @@ int main(void)
         cmocka_unit_test(a_changed_script_is_another_sweep),
         cmocka_unit_test(a_script_goes_with_every_run),
         cmocka_unit_test(lists_have_an_end),
+        cmocka_unit_test(values_drawn_together_stay_pairs),
         cmocka_unit_test(a_colon_begins_a_name),
         cmocka_unit_test(more_axes_than_there_may_be_are_refused),
         cmocka_unit_test(rows_that_are_no_runs_are_refused),

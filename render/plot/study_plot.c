@@ -381,7 +381,8 @@ static char *command_of(const sweep *s)
 {
     GString *out = g_string_new(NULL);
     for (int i = 0; i < s->axis_count; i++) {
-        text_append(out, "%s--vary %s=%s", i > 0 ? " " : "", s->axes[i].name, s->axes[i].text);
+        text_append(out, "%s--vary %s%s=%s", i > 0 ? " " : "", s->axes[i].together ? "with " : "",
+                    s->axes[i].name, s->axes[i].text);
     }
     return g_string_free(out, FALSE);
 }

@@ -123,7 +123,8 @@ const char *identify_words(const identification *id, int k, char *text, size_t s
 json_t *identify_json(const identification *id);
 json_t *identify_traces_json(const identification *id);
 
-// A set of IDENTIFY_CASES arms drawn from the covariance, for robust --over.
+// A set of IDENTIFY_CASES arms drawn from the covariance, for robust and tune --over. The law is
+// told the fitted values: belief.*_factor go with the parameters.
 void identify_write_set(FILE *stream, const identification *id);
 
 // --- for the parts of identify

@@ -284,38 +284,80 @@ json_t *identify_json(const identification *id)
     return object;
 }
 
-void identify_write_set(FILE *stream, const identification *id)
+// An arm of the covariance: along each direction that is determined a normal number.
+static void draw_arm(const identification *id, random_generator *random, double *drawn)
 {
     const int p = id->count;
+    for (int i = 0; i < p; i++) {
+        drawn[i] = id->fit[i].value;
+    }
+    for (int k = 0; k < p; k++) {
+        double sum = -6;
+        for (int i = 0; i < 12; i++) {
+            sum += random_uniform(random);
+        }
+        for (int i = 0; i < p && k >= id->undetermined; i++) {
+            drawn[i] += sum / id->singular[k] * id->direction[k * p + i] * id->scale[i];
+        }
+    }
+    for (int i = 0; i < p; i++) {
+        drawn[i] = fmin(fmax(drawn[i], id->fit[i].low_most), id->fit[i].high_most);
+    }
+}
+
+// One line of a set: numbers of all arms.
+static void write_line(FILE *stream, const char *path, bool first, const double *numbers)
+{
+    fprintf(stream, "%s%s=", first ? "" : "with ", path);
+    for (int n = 0; n < IDENTIFY_CASES; n++) {
+        char text[NUMBER_TEXT];
+        number_format(text, numbers[n]);
+        fprintf(stream, "%s%s", n > 0 ? "," : "", text);
+    }
+    fputc('\n', stream);
+}
+
+void identify_write_set(FILE *stream, const identification *id)
+{
+    // what a law is told of a parameter, as a factor of the true value
+    const struct {
+        int parameter, belief;
+    } told[] = {{PARAMETER_INDEX(arm.k2), PARAMETER_INDEX(belief.k2_factor)},
+                {PARAMETER_INDEX(arm.mass), PARAMETER_INDEX(belief.mass_factor)},
+                {PARAMETER_INDEX(arm.hub_inertia), PARAMETER_INDEX(belief.inertia_factor)},
+                {PARAMETER_INDEX(motor.torque_constant), PARAMETER_INDEX(belief.torque_factor)},
+                {PARAMETER_INDEX(motor.stiction), PARAMETER_INDEX(belief.friction_factor)}};
+    double drawn[IDENTIFY_CASES][IDENTIFY_PATHS], numbers[IDENTIFY_CASES];
     random_generator random;
     random_seed(&random, id->seed);
-    fprintf(stream, "# %d arms drawn from the covariance of a fit\ncontrol.seed=1:1000000\n",
-            IDENTIFY_CASES);
     for (int n = 0; n < IDENTIFY_CASES; n++) {
-        double drawn[IDENTIFY_PATHS] = {0};
+        draw_arm(id, &random, drawn[n]);
+    }
 
-        // along each direction that is determined, by a normal number
-        for (int k = 0; k < p; k++) {
-            double sum = -6;
-            for (int i = 0; i < 12; i++) {
-                sum += random_uniform(&random);
-            }
-            for (int i = 0; i < p && k >= id->undetermined; i++) {
-                drawn[i] += sum / id->singular[k] * id->direction[k * p + i] * id->scale[i];
+    fprintf(stream,
+            "# %d arms drawn from the covariance of a fit; the law is told the fitted one\n"
+            "control.seed=1:1000000\n",
+            IDENTIFY_CASES);
+    bool first = true;
+    for (int i = 0; i < id->count; i++) {
+        const fitted_parameter *fit = &id->fit[i];
+        if (!fit->determined) {
+            continue;
+        }
+        for (int n = 0; n < IDENTIFY_CASES; n++) {
+            numbers[n] = drawn[n][i];
+        }
+        write_line(stream, fit->axis.name, first, numbers);
+        first = false;
+        for (size_t k = 0; k < sizeof told / sizeof *told; k++) {
+            if (strcmp(parameter_table[told[k].parameter].path, fit->axis.name) == 0) {
+                const double before = parameter_get(&id->base->parameters, told[k].belief);
+                for (int n = 0; n < IDENTIFY_CASES; n++) {
+                    const double factor = drawn[n][i] != 0 ? fit->value / drawn[n][i] : 1;
+                    numbers[n] = fmin(fmax(before * factor, 0.01), 100);
+                }
+                write_line(stream, parameter_table[told[k].belief].path, false, numbers);
             }
         }
-        fprintf(stream, "case arm %d:", n + 1);
-        bool first = true;
-        for (int i = 0; i < p; i++) {
-            const fitted_parameter *fit = &id->fit[i];
-            if (fit->determined) {
-                char text[NUMBER_TEXT];
-                number_format(text,
-                              fmin(fmax(fit->value + drawn[i], fit->low_most), fit->high_most));
-                fprintf(stream, "%s %s=%s", first ? "" : ";", fit->axis.name, text);
-                first = false;
-            }
-        }
-        fputc('\n', stream);
     }
 }

@@ -13,6 +13,7 @@
 // What impactlab robust draws from, and the cases it looks at one by one: a file of lines.
 //
 //     PATH=a:b  PATH=v1,v2             drawn for every run, as a sweep takes them
+//     with PATH=v1,v2                  drawn together with the line before: first with first
 //     case TITLE: PATH=VALUE; ...      what differs in a case; push=IMPULSE@TIME [N s]@[s] too
 //
 // Empty lines and those that begin with # are ignored. Without cases the runs are drawn over the

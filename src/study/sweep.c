@@ -29,14 +29,32 @@ static status find_parameter(const sweep *s, sweep_axis *axis, const char *path,
     return code;
 }
 
+// An axis whose values go with those of the axis before it, one each.
+static status check_together(const sweep *s, const sweep_axis *axis, fault *f)
+{
+    const sweep_axis *before = axis - 1;
+    if (s->sampling == SWEEP_GRID || axis == s->axes) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'with' goes with drawn values, behind those that they are drawn with");
+    }
+    if (axis->is_range || before->is_range || axis->count != before->count) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%s is drawn with %s, expected as many values: %zu, not %zu", axis->name,
+                         before->name, before->count, axis->count);
+    }
+    return STATUS_OK;
+}
+
 // Reads one --vary into the next axis.
 static status read_axis(sweep *s, const char *given, fault *f)
 {
+    static const char with[] = "with ";
     if (s->axis_count == SWEEP_MOST_AXES) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "at most %d parameters can be varied",
                          SWEEP_MOST_AXES);
     }
-    char *text = strdup(given);
+    const bool together = strncmp(given, with, strlen(with)) == 0;
+    char *text = strdup(together ? given + strlen(with) : given);
     if (text == NULL) {
         return fault_no_memory(f);
     }
@@ -56,19 +74,25 @@ static status read_axis(sweep *s, const char *given, fault *f)
     if (code == STATUS_OK) {
         code = sweep_axis_parse(axis, values, s->sampling != SWEEP_GRID, f);
     }
+    if (code == STATUS_OK && together) {
+        axis->together = true;
+        code = check_together(s, axis, f);
+    }
     free(text);
     return code;
 }
 
 // --- which values a run has -----------------------------------------------------------------
 
-// Every value of every run on its own.
+// Every value of every run on its own, or at the share of the one before.
 static void draw_random(sweep *s, random_generator *g)
 {
     for (size_t run = 0; run < s->run_count; run++) {
+        double share = 0;
         for (int i = 0; i < s->axis_count; i++) {
+            share = s->axes[i].together ? share : random_uniform(g);
             s->drawn[run * (size_t)s->axis_count + (size_t)i] =
-                sweep_axis_value_at(&s->axes[i], random_uniform(g));
+                sweep_axis_value_at(&s->axes[i], share);
         }
     }
 }
@@ -78,21 +102,30 @@ static void draw_random(sweep *s, random_generator *g)
 static status draw_latin(sweep *s, random_generator *g, fault *f)
 {
     size_t *part = malloc(s->run_count * sizeof *part);
-    if (part == NULL) {
+    double *share = malloc(s->run_count * sizeof *share);
+    if (part == NULL || share == NULL) {
+        free(part);
+        free(share);
         return fault_no_memory(f);
     }
 
     for (int i = 0; i < s->axis_count; i++) {
-        random_permutation(g, part, s->run_count);
+        if (!s->axes[i].together) {
+            random_permutation(g, part, s->run_count);
+        }
         for (size_t run = 0; run < s->run_count; run++) {
-            double u = ((double)part[run] + random_uniform(g)) / (double)s->run_count;
-            // the sum may round up to the next part
-            double above = (double)(part[run] + 1) / (double)s->run_count;
+            if (!s->axes[i].together) {
+                const double u = ((double)part[run] + random_uniform(g)) / (double)s->run_count;
+                // the sum may round up to the next part
+                const double above = (double)(part[run] + 1) / (double)s->run_count;
+                share[run] = fmin(u, nextafter(above, 0));
+            }
             s->drawn[run * (size_t)s->axis_count + (size_t)i] =
-                sweep_axis_value_at(&s->axes[i], fmin(u, nextafter(above, 0)));
+                sweep_axis_value_at(&s->axes[i], share[run]);
         }
     }
     free(part);
+    free(share);
     return STATUS_OK;
 }
 

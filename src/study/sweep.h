@@ -32,8 +32,8 @@ typedef struct sweep {
 
 // What is asked for.
 typedef struct sweep_request {
-    char *const
-        *vary; // "PATH=a:b:n", "PATH=a:b:n:log", "PATH=v1,v2,v3"; n may be left out if drawn
+    char *const *vary; // "PATH=a:b:n", "PATH=a:b:n:log", "PATH=v1,v2,v3"; n may be left out if
+                       // drawn, and "with PATH=v1,v2,v3" is drawn together with the one before
     int vary_count;
     sweep_sampling sampling;
     size_t runs; // random, latin: number of runs; 0 for a grid, which is as large as it is

@@ -310,7 +310,7 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
 }
 
 // Reads "v1,v2,v3".
-static status read_list(sweep_axis *axis, char *text, fault *f)
+static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
 {
     enum { MOST_VALUES = 20000 }; // each is compared with those before it
     size_t most = 1;
@@ -329,11 +329,11 @@ static status read_list(sweep_axis *axis, char *text, fault *f)
     status code = pieces && axis->values && axis->text ? STATUS_OK : fault_no_memory(f);
     axis->count = code == STATUS_OK ? split(text, ',', pieces, most) : 0;
 
-    // each value once
+    // in a grid each value once
     char *end = axis->text;
     for (size_t i = 0; i < axis->count && code == STATUS_OK; i++) {
         code = read_value(axis, pieces[i], &axis->values[i], f);
-        for (size_t j = 0; j < i && code == STATUS_OK; j++) {
+        for (size_t j = 0; !drawn && j < i && code == STATUS_OK; j++) {
             if (axis->values[i] == axis->values[j]) {
                 code = fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s' stands there twice", pieces[i]);
             }
@@ -355,7 +355,7 @@ status sweep_axis_parse(sweep_axis *axis, char *text, bool drawn, fault *f)
     // a list cannot hold ranges: with a comma it is read as a list, and a value with a colon is
     // refused
     bool range = strchr(text, ':') != NULL && strchr(text, ',') == NULL;
-    return range ? read_range(axis, text, drawn, f) : read_list(axis, text, f);
+    return range ? read_range(axis, text, drawn, f) : read_list(axis, text, drawn, f);
 }
 
 void sweep_axis_finish(sweep_axis *axis)

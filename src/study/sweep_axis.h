@@ -15,6 +15,7 @@ typedef struct sweep_axis {
     size_t count;     // of values
     double low, high; // of a range, as given; low may be the larger one
     bool is_range;
+    bool together;    // drawn at the share of the axis before it, so that the values go in pairs
     bool logarithmic; // a range spaced evenly in the logarithm
     char *text;       // what is varied, in one way of writing: "1:10:5", "0.1:10:3:log", "a,b"
 } sweep_axis;
@@ -27,8 +28,8 @@ status sweep_axis_find(sweep_axis *axis, const char *name, fault *f);
 status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fault *f);
 
 // Reads the values "a:b:n", "a:b:n:log" or "v1,v2,v3" of the axis, whose parameter is set; n may be
-// left out if values are drawn from a range. Changes the text. On failure f says what was expected;
-// sweep_axis_finish in either case.
+// left out if values are drawn from a range, and a list to draw from may have a value several
+// times. Changes the text. On failure f says what was expected; sweep_axis_finish in either case.
 status sweep_axis_parse(sweep_axis *axis, char *text, bool drawn, fault *f);
 
 void sweep_axis_finish(sweep_axis *axis);

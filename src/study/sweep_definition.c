@@ -169,7 +169,8 @@ status definition_init(definition *d, const sweep *s, fault *f)
     for (int i = 0; i < s->axis_count; i++) {
         char key[16];
         snprintf(key, sizeof key, "vary %d", i + 1);
-        define(d, key, "%s=%s", s->axes[i].name, s->axes[i].text);
+        define(d, key, "%s%s=%s", s->axes[i].together ? "with " : "", s->axes[i].name,
+               s->axes[i].text);
     }
 
     if (s->chosen_by != NULL) {
