@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/arm/chain.h"
+#include "src/run/loop.h"
 #include "src/run/run.h"
 #include "src/study/linear/linear.h"
 #include "tests/check.h"
@@ -109,7 +110,7 @@ static void margins_are_met_by_the_poles(void **state)
         linear_response r;
         fault f = {.text = ""};
         const double period = 1 / s.parameters.control.rate;
-        assert_int_equal(linear_loop_response(&loop, period, &r, &f), STATUS_OK);
+        assert_int_equal(linear_respond(&loop, 0, period, &r, &f), STATUS_OK);
         const linear_margins m = linear_margins_of(&r);
 
         // the gain at its margin puts a pole on the circle
@@ -150,11 +151,11 @@ static void measured_loops_are_the_exact_ones(void **state)
         linear_system loop = loop_of(&s, &l);
         linear_response r;
         fault f = {.text = ""};
-        if (linear_inject(&s, &l, &r, &f) != STATUS_OK) {
+        if (linear_inject(&s, &r, &f) != STATUS_OK) {
             fail_msg("%s: %s", names[i], f.text);
         }
         const double period = 1 / s.parameters.control.rate;
-        double complex scratch[64 * 65];
+        double complex scratch[64 * 67];
         int compared = 0;
         for (int k = 0; k < r.count; k++) {
             const double turn = r.frequency[k] * period;
@@ -174,8 +175,57 @@ static void measured_loops_are_the_exact_ones(void **state)
     }
 }
 
-// The observer law, which has no linear form, fails in runs with about the further delay that its
-// measured loop gain bears.
+// A law whose command deviates `factor` times as far from that at rest, under a sine that keeps it
+// from falling asleep, from 3 s on.
+typedef struct scaled {
+    rig *inner;
+    double factor, rest; // NaN until then
+} scaled;
+
+static void sample_scaled(void *memory, const controller_input *in, controller_output *out)
+{
+    scaled *s;
+    memcpy(&s, memory, sizeof s);
+    s->inner->law->sample(s->inner->memory, in, out);
+    if (in->time >= 3) {
+        s->rest = isnan(s->rest) ? out->command : s->rest;
+        out->command =
+            s->rest + s->factor * (out->command - s->rest) + 0.3 * sin(8 * (in->time - 3));
+    }
+}
+
+static const char *start_scaled(void *memory, const controller_setup *setup)
+{
+    (void)memory, (void)setup;
+    return NULL;
+}
+
+// How often the arm loses contact with the loop gain so many times larger.
+static double losses_with(double factor)
+{
+    scenario s = opened("compare/observer", IDEAL "run.duration=6");
+    scaled scale = {.factor = factor, .rest = (double)NAN};
+    fault f = {.text = ""};
+    run_loop *l;
+    assert_int_equal(rig_create(&scale.inner, &s.parameters, NULL, &f), STATUS_OK);
+    controller law = *scale.inner->law;
+    law.memory_size = sizeof(scaled *);
+    law.start = start_scaled;
+    law.sample = sample_scaled;
+    law.tune = NULL;
+    assert_int_equal(loop_create(&l, &s, &(loop_options){.law = {&law, &scale}}, &f), STATUS_OK);
+    assert_int_equal(loop_until(l, 3, &f), STATUS_OK);
+    const double before = loop_summary(l).separations;
+    assert_int_equal(loop_until(l, 6, &f), STATUS_OK);
+    const double after = loop_summary(l).separations;
+    loop_destroy(l);
+    rig_destroy(scale.inner);
+    scenario_finish(&s);
+    return after - before;
+}
+
+// The observer law, which has no linear form, fails in runs within a tenth of the loop gain and of
+// the further delay that its measured loop bears.
 static void measured_margins_are_those_of_runs(void **state)
 {
     (void)state;
@@ -186,15 +236,18 @@ static void measured_margins_are_those_of_runs(void **state)
     fault f = {.text = ""};
     assert_int_equal(linear_arm_init(&l, &s.parameters, LINEAR_CONTACT, &f), STATUS_OK);
     assert_int_equal(linear_loop(&loop, &l, &s.parameters, &f), STATUS_UNSTABLE);
-    assert_int_equal(linear_inject(&s, &l, &r, &f), STATUS_OK);
-    const double margin = linear_margins_of(&r).delay_s;
+    assert_int_equal(linear_inject(&s, &r, &f), STATUS_OK);
+    const linear_margins m = linear_margins_of(&r);
     free(r.frequency);
     linear_system_finish(&l.system);
     scenario_finish(&s);
+    const double factor = pow(10, m.gain_db / 20);
+    assert_true(losses_with(0.9 * factor) == 0);
+    assert_true(losses_with(1.1 * factor) > 0);
 
     // the law is not told of the delay, which is five periods at most
     for (int more = 0; more < 2; more++) {
-        const double delay = more ? fmin(1.1 * margin, 0.0249) : 0.9 * margin;
+        const double delay = more ? fmin(1.1 * m.delay_s, 0.0249) : 0.9 * m.delay_s;
         char changes[256];
         snprintf(changes, sizeof changes,
                  IDEAL "run.duration=3 control.delay=%.6g belief.delay_error=-%.6g", delay, delay);

@@ -214,11 +214,16 @@ static double *drawn_places(sweep_drawing *s, const sweep *from, int axis)
     return places;
 }
 
-// The axis of the quantity itself.
-static figure_axis quantity_axis(sweep_drawing *s, const char *key)
+static const summary_info *info_of(const sweep_picture *p)
 {
-    const summary_info *info = &summary_table[summary_index(key)];
-    return (figure_axis){.name = key, .label = label_of(s, info->label), .unit = info->unit};
+    return p->info != NULL ? p->info : &summary_table[summary_index(p->key)];
+}
+
+// The axis of the quantity itself.
+static figure_axis quantity_axis(sweep_drawing *s, const sweep_picture *p)
+{
+    const summary_info *info = info_of(p);
+    return (figure_axis){.name = p->key, .label = label_of(s, info->label), .unit = info->unit};
 }
 
 // ---- layers
@@ -252,7 +257,7 @@ static void describe_line(sweep_drawing *s, const sweep_picture *p)
                         .marker = joined && count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE,
                         .radius = marker_radius(count)};
 
-    s->drawn->panels[0].y = quantity_axis(s, p->key);
+    s->drawn->panels[0].y = quantity_axis(s, p);
     s->drawn->panels[0].y.room = LINE_ROOM;
     s->drawn->panels[0].series_count = 1;
 }
@@ -284,7 +289,7 @@ static void describe_words(sweep_drawing *s, const sweep_picture *p, int words, 
                                                  .radius = marker_radius(number->count)};
     }
 
-    s->drawn->panels[0].y = quantity_axis(s, p->key);
+    s->drawn->panels[0].y = quantity_axis(s, p);
     s->drawn->panels[0].y.room = LINE_ROOM;
     s->drawn->panels[0].series_count = (int)word->count;
 }
@@ -306,7 +311,7 @@ static void describe_map(sweep_drawing *s, const sweep_picture *p)
     const sweep *from = p->sweep;
     const varied *x = &s->varied[0], *y = &s->varied[1];
     figure_colours *colours = own(s, g_new(figure_colours, 1));
-    *colours = (figure_colours){.axis = quantity_axis(s, p->key), .bar = true};
+    *colours = (figure_colours){.axis = quantity_axis(s, p), .bar = true};
     s->drawn->panels[0].colours = colours;
 
     // values that were drawn are dots
@@ -416,8 +421,7 @@ static void describe(sweep_drawing *s, const sweep_picture *p)
 
     // the page
     figure *fig = &s->drawn->figure;
-    const summary_info *quantity = &summary_table[summary_index(p->key)];
-    fig->title = own(s, title_of(p, quantity->label));
+    fig->title = own(s, title_of(p, info_of(p)->label));
     fig->caption = own(s, caption_of(p, missing));
     s->drawn->panels[0].weight = PANEL_WEIGHT;
     fig->parameters = own(s, command_of(from));

@@ -3,6 +3,7 @@
 
 #include "render/plot/plot.h"
 #include "src/study/identify.h"
+#include "src/study/linear/linear.h"
 #include "src/study/robust.h"
 #include "src/study/sweep.h"
 #include "src/study/tune.h"
@@ -29,8 +30,9 @@ owned_figure *tune_figure_create(const tuning *t, const char *changes);
 
 typedef struct sweep_picture {
     const sweep *sweep;
-    const char *key;      // of the summary, "peak_force_N"
-    const double *values; // of each run, NaN where there is none
+    const char *key;          // of the summary, "peak_force_N"
+    const summary_info *info; // of a quantity that the summary does not have; NULL: the key's
+    const double *values;     // of each run, NaN where there is none
 } sweep_picture;
 
 // Checks in advance whether a picture of the sweep can be written to path: STATUS_BAD_ARGUMENT if
@@ -47,3 +49,15 @@ owned_figure *sweep_figure_create(const sweep_picture *p);
 // Describes the picture: a panel for each trace, the residuals of every channel over time in
 // standard deviations. At most FIGURE_PANELS traces. To be freed with owned_figure_destroy.
 owned_figure *identify_figure_create(const identification *id);
+
+// --- linear: answers over frequency, and a loop gain in the plane
+
+typedef struct linear_curve {
+    const char *name;
+    linear_response response;
+} linear_curve;
+
+// Describe gain and phase of at most FIGURE_PANELS curves, and the loop gain with the points of
+// size 1 and -1; the title ends with what was changed. To be freed with owned_figure_destroy.
+owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, int count);
+owned_figure *nyquist_figure_create(const scenario *s, const linear_response *loop);

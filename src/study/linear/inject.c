@@ -10,32 +10,30 @@
 #include "src/study/linear/linear.h"
 
 // Frequencies of the first pass, and passes that halve the intervals with a crossing.
-enum { FIRST = 28, PASSES = 4, MOST_POINTS = 160 };
+enum { FIRST = 28, PASSES = 4, MOST_POINTS = 160, MOST_WINDOWS = 40, PUSHES = 28 };
 
 #define LOWEST      0.5  // [Hz]
-#define OF_NYQUIST  0.98 // the highest
 #define WINDOW      0.5  // in which a sine is measured, at least [s]
 #define CYCLES      3    // at least
 #define AGREE       1e-4 // of one window with the two before
-#define SHARE       0.02 // of the holding command that the sine begins with
-#define SWING       0.1  // of the force that it is to make: laws may sleep where less moves
+#define SHARE       0.02 // of the holding command that a sine begins with
 #define MOST_SINE   0.2  // of the largest command
 #define NOTHING     1e-9 // of the command: the law does not answer
 #define FOLLOWED    0.5  // after a push [s]
 #define MOST_PUSHED 10.0 // [N s]
 
-enum { MOST_WINDOWS = 40, PUSHES = 28 };
-
 static const double pi = 3.14159265358979323846;
 
-// The law with a sine behind it. `inner` holds the law itself, its memory and, of a process, the
-// program.
+// The law with sines behind it: the one that is measured, and another that keeps the law awake.
+// `inner` holds the law itself, its memory and, of a process, the program.
 typedef struct injector {
     rig *inner;
-    double first, amplitude;            // of the sine, at each frequency first and at present [V]
-    double turn;                        // of the sine from sample to sample [rad]
+    double amplitude[2], turn[2];       // [V], [rad] from sample to sample
+    double first, wanted;               // amplitude that one begins with [V], swing of force [N]
+    double awake, awake_hertz;          // the smallest that a law answered [V]
     long sample;                        // since the window began
-    double complex law, command, force; // sums over the window
+    double complex law, command, force; // sums over the window, with the sine that is measured
+    double mean[3];                     // sums of command, force and its square
 } injector;
 
 static void sample_with_sine(void *memory, const controller_input *in, controller_output *out)
@@ -45,11 +43,17 @@ static void sample_with_sine(void *memory, const controller_input *in, controlle
     memcpy(&i, memory, sizeof i);
     i->inner->law->sample(i->inner->memory, in, out);
     const double answer = out->command;
-    inline_sincos(i->turn * (double)i->sample++, &s, &c);
-    out->command += i->amplitude * s;
+    for (int k = 1; k >= 0; k--) { // the one that is measured last; begun at 45 degrees
+        inline_sincos(i->turn[k] * (double)i->sample, &s, &c);
+        out->command += i->amplitude[k] * sqrt(0.5) * (s + c);
+    }
+    i->sample++;
     i->law += answer * complex_of(c, -s);
     i->command += out->command * complex_of(c, -s);
     i->force += in->force * complex_of(c, -s);
+    i->mean[0] += out->command;
+    i->mean[1] += in->force;
+    i->mean[2] += in->force * in->force;
 }
 
 // The inner law was started with its rig, which was told the same.
@@ -76,71 +80,99 @@ static status begin(run_loop **loop, const scenario *s, const loop_options *opti
     return code == STATUS_OK ? loop_until(*loop, s->parameters.run.duration, f) : code;
 }
 
-// Whether the arm presses, and has not let go since there were so many separations.
-static status presses(run_loop *l, double separations, fault *f)
-{
-    if (loop_row(l).force > 0 && loop_summary(l).separations <= separations) {
-        return STATUS_OK;
-    }
-    return fault_set(f, STATUS_UNSTABLE,
-                     "at t = %.4g s the arm does not press on the wall: what happens about rest "
-                     "cannot be measured",
-                     loop_time(l));
-}
-
 // --- sines ------------------------------------------------------------------------------------
 
-// The loop gain at about `*hertz`, which becomes the frequency with whole cycles in whole samples.
-static status measure(run_loop *l, injector *i, double *hertz, double complex *gain, double wanted,
-                      fault *f)
+// A window of samples, in which the arm has to press and not to let go.
+static status pass_window(run_loop *l, injector *i, double samples, fault *f)
 {
-    const double period = i->inner->period, separations = loop_summary(l).separations;
-    const double cycles = fmax(CYCLES, ceil(WINDOW * *hertz));
-    const double samples = round(cycles / (*hertz * period));
-    *hertz = cycles / (samples * period);
-    i->turn = 2 * pi * cycles / samples;
-    i->amplitude = i->first;
-    *gain = complex_of((double)NAN, 0);
-
-    // window after window until the transient is gone
+    const double separations = loop_summary(l).separations;
     status code = STATUS_OK;
-    double complex before;
-    int agreed = 0;
-    for (int w = 0; w < MOST_WINDOWS && code == STATUS_OK; w++) {
-        i->sample = 0;
-        i->law = i->command = i->force = 0;
-        while (i->sample < (long)samples && code == STATUS_OK) {
-            code = loop_step(l, f);
-        }
-        code = code == STATUS_OK ? presses(l, separations, f) : code;
-        before = *gain;
-        *gain = cabs(i->law) > NOTHING * cabs(i->command) ? -i->law / i->command : 0;
-
-        // the sine grows until the force swings enough, or shrinks at once
-        const double swing = 2 * cabs(i->force) / samples,
-                     most = MOST_SINE * i->inner->voltage_limit;
-        const double factor = fmax(0.1, fmin(3, wanted / fmax(swing, 1e-12)));
-        const double amplitude = fmin(most, i->amplitude * factor);
-        const bool steady = fabs(amplitude - i->amplitude) < 0.2 * i->amplitude;
-        agreed = steady && cabs(*gain - before) <= AGREE * cabs(*gain) ? agreed + 1 : 0;
-        if (agreed == 2) {
-            break;
-        }
-        i->amplitude = steady ? i->amplitude : amplitude;
+    i->sample = 0;
+    i->law = i->command = i->force = i->mean[0] = i->mean[1] = i->mean[2] = 0;
+    while (i->sample < (long)samples && code == STATUS_OK) {
+        code = loop_step(l, f);
+    }
+    if (code == STATUS_OK &&
+        !(loop_row(l).force > 0 && loop_summary(l).separations <= separations)) {
+        code = fault_set(f, STATUS_UNSTABLE,
+                         "at t = %.4g s the arm does not press on the wall: what happens about "
+                         "rest cannot be measured",
+                         loop_time(l));
     }
     return code;
 }
 
-// Puts a point in its place.
-static void insert(linear_response *r, double w, double complex gain)
+// How large a sine may be: its force swings as far above the noise of the reading as it stays below
+// the force that holds the contact, in equal ratios, from a tenth of that force (laws may sleep
+// where less moves) to half of it. It begins larger than the steps of the D/A converter.
+static status size_sine(run_loop *l, injector *i, fault *f)
 {
+    const double samples = ceil(WINDOW / i->inner->period);
+    const status code = pass_window(l, i, samples, f);
+    const double force = i->mean[1] / samples,
+                 noise = sqrt(fmax(0, i->mean[2] / samples - force * force));
+    i->wanted = fmin(fmax(sqrt(noise * force), 0.1 * force), 0.5 * force);
+    i->first = fmax(SHARE * fabs(i->mean[0] / samples), 5 * i->inner->dac.step);
+    return code;
+}
+
+// The loop gain at about *hertz, which becomes the frequency with whole cycles in whole samples.
+static status measure(run_loop *l, injector *i, double *hertz, double complex *gain, fault *f)
+{
+    const double period = i->inner->period, most = MOST_SINE * i->inner->voltage_limit;
+    const double cycles = fmax(CYCLES, ceil(WINDOW * *hertz));
+    const double samples = round(cycles / (*hertz * period));
+    double complex law = 0, command = 0, before;
+    status code = STATUS_OK;
+    *hertz = cycles / (samples * period);
+    i->turn[0] = 2 * pi * cycles / samples;
+    i->turn[1] = 2 * pi * fmax(1, round(i->awake_hertz * samples * period)) / samples;
+    i->amplitude[0] = i->first;
+    i->amplitude[1] = 0;
+    *gain = complex_of((double)NAN, 0);
+
+    // window after window until the transient is gone; of a noisy one the mean of the later half
+    int agreed = 0;
+    for (int w = 0; w < MOST_WINDOWS && agreed < 2 && code == STATUS_OK; w++) {
+        code = pass_window(l, i, samples, f);
+        law += w < MOST_WINDOWS / 2 ? 0 : i->law;
+        command += w < MOST_WINDOWS / 2 ? 0 : i->command;
+        before = *gain;
+        *gain = -i->law / i->command;
+
+        // the sine grows until the force swings enough, or shrinks at once
+        const double swing = 2 * cabs(i->force) / samples;
+        const double factor = fmax(0.1, fmin(3, i->wanted / fmax(swing, 1e-12)));
+        const double amplitude = fmin(most, i->amplitude[0] * factor);
+        const bool steady = fabs(amplitude - i->amplitude[0]) < 0.2 * i->amplitude[0];
+        const bool answers = cabs(*gain) > NOTHING;
+        agreed = steady && cabs(*gain - before) <= AGREE * cabs(*gain) ? agreed + 1 : 0;
+        i->amplitude[0] = steady ? i->amplitude[0] : amplitude;
+        if (steady && !answers && i->amplitude[1] == 0 && i->turn[1] != i->turn[0]) {
+            i->amplitude[1] = i->awake;
+            agreed = 0;
+        } else if (agreed == 2 && answers && !(i->awake <= i->amplitude[0])) {
+            i->awake = i->amplitude[0];
+            i->awake_hertz = *hertz;
+        }
+    }
+    *gain = agreed < 2 && command != 0 ? -law / command : *gain;
+    return code;
+}
+
+// Measures at about a frequency, and puts the point in its place.
+static status add(run_loop *l, injector *i, double hertz, linear_response *r, fault *f)
+{
+    double complex gain;
+    const status code = measure(l, i, &hertz, &gain, f);
     int at = r->count++;
-    for (; at > 0 && r->frequency[at - 1] > w; at--) {
+    for (; at > 0 && r->frequency[at - 1] > 2 * pi * hertz; at--) {
         r->frequency[at] = r->frequency[at - 1];
         r->gain[at] = r->gain[at - 1];
     }
-    r->frequency[at] = w;
+    r->frequency[at] = 2 * pi * hertz;
     r->gain[at] = gain;
+    return code;
 }
 
 // Whether size one or a negative real gain lies between two points.
@@ -149,42 +181,35 @@ static bool crosses(double complex a, double complex b)
     return (cabs(a) - 1) * (cabs(b) - 1) < 0 || (cimag(a) * cimag(b) < 0 && creal(a + b) < 0);
 }
 
-static status measure_all(run_loop *l, injector *i, double force, linear_response *r, fault *f)
+static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f)
 {
-    const double highest = OF_NYQUIST / (2 * i->inner->period);
-    const double lowest = fmin(LOWEST, highest / 10);
-    status code = STATUS_OK;
+    const double highest = 1 / (2 * i->inner->period), lowest = fmin(LOWEST, highest / 10);
+    status code = size_sine(l, i, f);
     for (int k = 0; k < FIRST && code == STATUS_OK; k++) {
-        double complex gain;
-        double hertz = lowest * plain_pow(highest / lowest, k / (FIRST - 1.0));
-        code = measure(l, i, &hertz, &gain, SWING * force, f);
-        insert(r, 2 * pi * hertz, gain);
+        code = add(l, i, lowest * plain_pow(highest / lowest, k / (FIRST - 1.0)), r, f);
     }
 
     // where something crosses, between
     for (int pass = 0; pass < PASSES; pass++) {
-        const int count = r->count;
         double middles[MOST_POINTS];
         int wanted = 0;
-        for (int k = 0; k + 1 < count; k++) {
-            if (crosses(r->gain[k], r->gain[k + 1]) && count + wanted < MOST_POINTS) {
+        for (int k = 0; k + 1 < r->count && r->count + wanted < MOST_POINTS; k++) {
+            if (crosses(r->gain[k], r->gain[k + 1])) {
                 middles[wanted++] = sqrt(r->frequency[k] * r->frequency[k + 1]) / (2 * pi);
             }
         }
         for (int k = 0; k < wanted && code == STATUS_OK; k++) {
-            double complex gain;
-            code = measure(l, i, &middles[k], &gain, SWING * force, f);
-            insert(r, 2 * pi * middles[k], gain);
+            code = add(l, i, middles[k], r, f);
         }
     }
     return code;
 }
 
-status linear_inject(const scenario *s, const linear_arm *arm, linear_response *r, fault *f)
+status linear_inject(const scenario *s, linear_response *r, fault *f)
 {
-    assert(s != NULL && arm != NULL && r != NULL && s->parameters.control.law != LAW_NONE);
+    assert(s != NULL && r != NULL && s->parameters.control.law != LAW_NONE);
     *r = (linear_response){0};
-    injector i = {.inner = NULL};
+    injector i = {.awake = (double)INFINITY};
     run_loop *l = NULL;
     double *block = calloc(3 * MOST_POINTS, sizeof *block);
     status code =
@@ -201,13 +226,9 @@ status linear_inject(const scenario *s, const linear_arm *arm, linear_response *
         law.sample = sample_with_sine;
         law.tune = law.tune != NULL ? tune : NULL;
         const loop_options options = {.law = {&law, &i}};
-        code = begin(&l, s, &options, f);
-        code = code == STATUS_OK ? presses(l, HUGE_VAL, f) : code;
-
-        // larger than the steps of the D/A converter
-        i.first = fmax(SHARE * fabs(arm->voltage), 5 * i.inner->dac.step);
         *r = (linear_response){0, block, (double complex *)(block + MOST_POINTS)};
-        code = code == STATUS_OK ? measure_all(l, &i, arm->force, r, f) : code;
+        code = begin(&l, s, &options, f);
+        code = code == STATUS_OK ? measure_all(l, &i, r, f) : code;
         loop_destroy(l);
     }
     rig_destroy(i.inner);

@@ -24,30 +24,27 @@ typedef struct linear_law {
     int order;
 } linear_law;
 
-// The readings at rest, with a pulse.
+// The readings at rest, with a pulse in one.
 static controller_input rest_input(const linear_arm *arm, const parameters *p, int reading,
                                    double pulse)
 {
-    const double add[LINEAR_READINGS] = {[LINEAR_READ_ENCODER] = arm->hub_angle,
-                                         [LINEAR_READ_FORCE] = arm->force,
-                                         [LINEAR_READ_VOLTAGE] = arm->voltage,
-                                         [LINEAR_READ_PIEZO] = arm->force,
-                                         [LINEAR_READ_FILM] = arm->bending};
-    double at[LINEAR_READINGS];
-    for (int i = 0; i < LINEAR_READINGS; i++) {
-        at[i] = add[i] + (i == reading ? pulse : 0);
-    }
-    const bool film = p->sensor.film, acceleration = p->sensor.accelerometer;
-    return (controller_input){
-        .encoder = at[LINEAR_READ_ENCODER],
-        .tachometer = at[LINEAR_READ_TACHOMETER],
-        .force = at[LINEAR_READ_FORCE],
-        .voltage = at[LINEAR_READ_VOLTAGE],
-        .piezo_force = p->sensor.piezo ? at[LINEAR_READ_PIEZO] : (double)NAN,
-        .film = film ? at[LINEAR_READ_FILM] : (double)NAN,
-        .accelerometer = acceleration ? at[LINEAR_READ_ACCELEROMETER] : (double)NAN,
-        .predicted_force = (double)NAN,
-    };
+    const sensor_parameters *fitted = &p->sensor;
+    double at[LINEAR_READINGS + 1] = {arm->hub_angle,
+                                      0,
+                                      arm->force,
+                                      arm->voltage,
+                                      fitted->piezo ? arm->force : (double)NAN,
+                                      fitted->film ? arm->bending : (double)NAN,
+                                      fitted->accelerometer ? 0 : (double)NAN};
+    at[reading < 0 ? LINEAR_READINGS : reading] += pulse;
+    return (controller_input){.encoder = at[READ_ENCODER],
+                              .tachometer = at[READ_TACHOMETER],
+                              .force = at[READ_FORCE],
+                              .voltage = at[READ_VOLTAGE],
+                              .piezo_force = at[READ_PIEZO],
+                              .film = at[READ_FILM],
+                              .accelerometer = at[READ_ACCELEROMETER],
+                              .predicted_force = (double)NAN};
 }
 
 // The law's commands after a pulse at the end of a time at rest.
@@ -115,67 +112,61 @@ static status learn_reading(linear_law *law, const linear_arm *arm, const parame
 // The recurrence of an order by least squares; false if it leaves more than rounding.
 static bool fit_recurrence(linear_law *law, int order)
 {
-    double matrix[MOST_ORDER * MOST_ORDER] = {0}, right[MOST_ORDER] = {0};
+    double matrix[MOST_ORDER * MOST_ORDER] = {0}, right[MOST_ORDER] = {0}, most = 0;
     for (int pass = 0; pass < 2; pass++) {
         for (int j = 0; j < LINEAR_READINGS; j++) {
-            const double *h = law->h[j], size = largest(h, ANSWERS);
+            const double *h = law->h[j], size = largest(h, ANSWERS), unit = size * size;
             for (int k = 1; k + order < ANSWERS && size > 0; k++) {
-                double left = h[k + order] / size;
+                double left = h[k + order];
                 for (int i = 0; i < order; i++) {
-                    if (pass == 0) {
-                        right[i] += h[k + i] * h[k + order] / size / size;
-                        for (int m = 0; m < order; m++) {
-                            matrix[i * order + m] += h[k + i] * h[k + m] / size / size;
-                        }
-                    } else {
-                        left -= law->recurrence[i] * h[k + i] / size;
+                    left -= law->recurrence[i] * h[k + i];
+                    right[i] += h[k + i] * h[k + order] / unit;
+                    for (int m = 0; m < order; m++) {
+                        matrix[i * order + m] += h[k + i] * h[k + m] / unit;
                     }
                 }
-                if (pass == 1 && !(fabs(left) < NOT_LINEAR)) {
-                    return false;
-                }
+                most = fmax(most, pass == 1 ? fabs(left) / size : 0);
             }
         }
         if (pass == 0 && order > 0 && !dense_solve(order, matrix, right)) {
             return false;
         }
-        memcpy(law->recurrence, right, sizeof right);
+        if (pass == 0) {
+            memcpy(law->recurrence, right, sizeof right);
+        }
     }
     law->order = order;
-    return true;
+    return most < NOT_LINEAR;
 }
 
 static status learn(linear_law *law, const linear_arm *arm, const parameters *p, fault *f)
 {
-    double rest[ANSWERS];
+    double rest[ANSWERS], moves = 0;
     status code = answer(arm, p, -1, 0, rest, f);
-    bool steady = code == STATUS_OK;
-    for (int k = 1; k < ANSWERS && steady; k++) {
-        steady = fabs(rest[k] - rest[0]) < 1e-9 * fmax(1, fabs(rest[0]));
+    for (int k = 1; k < ANSWERS && code == STATUS_OK; k++) {
+        moves = fmax(moves, fabs(rest[k] - rest[0]));
     }
-    if (code == STATUS_OK && !steady) {
+    if (code == STATUS_OK && !(moves < 1e-9 * fmax(1, fabs(rest[0])))) {
         code = STATUS_UNSTABLE;
     }
     for (int j = 0; j < LINEAR_READINGS && code == STATUS_OK; j++) {
         code = learn_reading(law, arm, p, j, rest, f);
     }
+
     // one that answers nothing at all is asleep at rest, or feeds nothing back
-    if (code == STATUS_OK && arm->force > 0 && largest(law->h[0], LINEAR_READINGS * ANSWERS) == 0) {
-        code = STATUS_UNSTABLE;
+    const bool silent = largest(law->h[0], LINEAR_READINGS * ANSWERS) == 0;
+    int order = 0;
+    while (code == STATUS_OK && order <= MOST_ORDER && !fit_recurrence(law, order)) {
+        order++;
     }
-    if (code == STATUS_OK) {
-        int order = 0;
-        while (order <= MOST_ORDER && !fit_recurrence(law, order)) {
-            order++;
-        }
-        code = order <= MOST_ORDER ? STATUS_OK : STATUS_UNSTABLE;
+    if (code == STATUS_UNSTABLE || order > MOST_ORDER ||
+        (code == STATUS_OK && arm->force > 0 && silent)) {
+        return fault_set(f, STATUS_UNSTABLE,
+                         "the law '%s' has no linear form where the arm rests: its answers to "
+                         "small readings do not scale or settle, or there are none",
+                         control_law_table[p->control.law].word);
     }
-    return code != STATUS_UNSTABLE
-               ? code
-               : fault_set(f, code,
-                           "the law '%s' has no linear form where the arm rests: its answers to "
-                           "small readings do not scale or settle, or there are none",
-                           control_law_table[p->control.law].word);
+    return code;
 }
 
 status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f)

@@ -4,8 +4,7 @@
 //
 // about the arm at rest: free, pressing on the wall, or pressing with the hub held by friction.
 // Coulomb friction itself has no linear part. Back EMF, viscous friction, damping, the wall's law
-// and the bend under the force are in A. Eigenvalues are LAPACK's, which is loaded by the first
-// call that needs it.
+// and the bend under the force are in A. LAPACK is loaded by the first call that needs it.
 #pragma once
 
 #include <complex.h>
@@ -40,10 +39,7 @@ enum {
     LINEAR_FORCE,
     LINEAR_OUTPUTS
 };
-typedef struct linear_output_info {
-    const char *name, *unit;
-} linear_output_info;
-extern const linear_output_info linear_output_table[LINEAR_OUTPUTS];
+extern const char *const linear_output_names[LINEAR_OUTPUTS];
 
 enum { LINEAR_MOST_LINKS = 64 };
 
@@ -62,38 +58,59 @@ typedef struct linear_arm {
 // such place of rest. To be freed with linear_system_finish(&arm->system).
 status linear_arm_init(linear_arm *arm, const parameters *p, linear_place place, fault *f);
 
-// --- eigenvalues and answers ------------------------------------------------------------------
+// --- poles, zeros, answers --------------------------------------------------------------------
 
-// Eigenvalues of matrix[n * n], which is overwritten, in rising order of their size; a pair has its
-// positive imaginary part first. STATUS_SINGULAR if the iteration does not end, STATUS_SINGULAR,
-// too, with a sentence in f where there is no LAPACK.
-status linear_eigenvalues(int n, double *matrix, double complex *values, fault *f);
-
-// Whether LAPACK is being loaded: Fortran's library crashes where it finds no memory. For signals.
-bool linear_is_loading(void);
-
-// Poles of a system, values[states].
+// Poles of a system, values[states], in rising order of their size; of a pair the upper one comes
+// first. STATUS_SINGULAR, with a sentence in f, without LAPACK or where its iteration does not end.
 status linear_poles(const linear_system *s, double complex *values, fault *f);
 
-// Zeros from its input to an output, of which there are *count, at most states. A system whose
+// Zeros from the input to an output, likewise; there are *count, at most states. A system whose
 // output does not see the input has none.
 status linear_zeros(const linear_system *s, int output, int *count, double complex *values,
                     fault *f);
 
+// Whether LAPACK is being loaded: Fortran's library crashes where it finds no memory. For signals.
+bool linear_is_loading(void);
+
 // Damping ratio of a pole or zero; 1 of a decaying real one, NaN at the origin.
 double linear_damping(double complex s);
 
-// --- sampled ----------------------------------------------------------------------------------
+// C (point - A)^-1 B + D of an output; NaN at a pole and without LAPACK.
+double complex linear_answer(const linear_system *s, int output, double complex point,
+                             double complex *scratch); // [states * (states + 2) + 1]
 
-// What a law reads, in this order.
+// Answers over rising frequencies w [rad/s]; of a loop its gain L with negative feedback.
+typedef struct linear_response {
+    int count;
+    double *frequency;    // one block with gain, to be freed
+    double complex *gain; // NaN: not known
+} linear_response;
+
+// The loop gain -y/u of a loop that is sampled with a period [s], up to half its rate; with period
+// 0 the answer y/u of an arm, from a hundredth of its slowest part to ten times its fastest.
+status linear_respond(const linear_system *s, int output, double period, linear_response *r,
+                      fault *f);
+
+// Distances of a stable loop from instability, over all crossings; infinite where nothing crosses.
+typedef struct linear_margins {
+    double gain_db, gain_down_db; // the gain may grow by the one and fall by the other [dB]
+    double phase_deg;             // either way [degrees]
+    double delay_s;               // further delay that it takes [s]
+    double disk;                  // 2 min |1 + L|/|1 - L|: gain and phase together
+} linear_margins;
+linear_margins linear_margins_of(const linear_response *r);
+
+// --- loops ------------------------------------------------------------------------------------
+
+// What a law reads, in this order. READ_FORCE: of the sensor that sensor.force names.
 enum {
-    LINEAR_READ_ENCODER,
-    LINEAR_READ_TACHOMETER,
-    LINEAR_READ_FORCE,   // of the sensor that sensor.force names
-    LINEAR_READ_VOLTAGE, // command in effect
-    LINEAR_READ_PIEZO,
-    LINEAR_READ_FILM,
-    LINEAR_READ_ACCELEROMETER,
+    READ_ENCODER,
+    READ_TACHOMETER,
+    READ_FORCE,
+    READ_VOLTAGE, // command in effect
+    READ_PIEZO,
+    READ_FILM,
+    READ_ACCELEROMETER,
     LINEAR_READINGS
 };
 
@@ -109,36 +126,6 @@ status linear_sample(linear_system *sampled, const linear_arm *arm, const parame
 status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f);
 void linear_close(linear_system *loop);
 
-// C (point - A)^-1 B + D of an output; NaN at a pole.
-double complex linear_answer(const linear_system *s, int output, double complex point,
-                             double complex *scratch); // [states * (states + 1)]
-
-// Loop gains L(w), negative feedback, over rising frequencies w [rad/s].
-typedef struct linear_response {
-    int count;
-    double *frequency;
-    double complex *gain; // NaN: not known
-} linear_response;
-
-// Of a loop sampled with a period [s], up to half its rate. To be freed by the caller: frequency
-// and gain are one block, `frequency`.
-status linear_loop_response(const linear_system *loop, double period, linear_response *r, fault *f);
-
-// Of the arm alone from its command to an output, C (iw - A)^-1 B + D, from a hundredth of its
-// slowest part to ten times its fastest part; freed likewise.
-status linear_arm_response(const linear_system *s, int output, linear_response *r, fault *f);
-
-// Distances of a stable loop from instability, over all crossings; infinite where nothing crosses.
-typedef struct linear_margins {
-    double gain_db, gain_down_db; // the gain may grow by the one and fall by the other [dB]
-    double phase_deg;             // either way [degrees]
-    double delay_s;               // further delay that it takes [s]
-    double disk;                  // 2 min |1 + L|/|1 - L|: gain and phase together
-} linear_margins;
-linear_margins linear_margins_of(const linear_response *r);
-
-// --- measured ---------------------------------------------------------------------------------
-
 // The loop gain of any law in a run of its scenario: once the run has come to its end the arm is
 // left as it is, a small sine is added to the command, and
 //
@@ -146,23 +133,20 @@ linear_margins linear_margins_of(const linear_response *r);
 //
 // at that frequency, at frequencies that are dense where |L| or its phase cross what margins ask
 // for. Friction, noise and counts have their part in it. STATUS_UNSTABLE, with a sentence in f, if
-// the arm does not press or loses the wall on the way. r->frequency is to be freed.
-status linear_inject(const scenario *s, const linear_arm *arm, linear_response *r, fault *f);
+// the arm does not press or loses the wall on the way.
+status linear_inject(const scenario *s, linear_response *r, fault *f);
 
 // The least impulse at the tip [N s], across the last link and against the wall or away from it,
 // after which the arm of the scenario's run, pressing at its end, loses contact (a gap above 1 um)
 // within half a second; NaN if none of up to 10 N s does or the arm does not press.
 status linear_contact_margin(const scenario *s, double *impulse, fault *f);
 
-// --- limits -----------------------------------------------------------------------------------
+// Where a loop is stable: by_runs, a run of the scenario settles, with friction and all else, and
+// *number is its settling time [s] or NaN; else its linear form decays: *number is how fast its
+// slowest part grows [1/s], below zero of a stable one.
+status linear_stability(const scenario *s, linear_place place, bool by_runs, double *number,
+                        bool *stable, fault *f);
 
-// How fast the slowest part of a closed loop of linear form grows [1/s], below zero of a stable
-// one; and, with friction and all else, the settling time [s] of the scenario's own run, NaN where
-// it does not settle.
-status linear_growth(const scenario *s, linear_place place, double *growth, fault *f);
-status linear_settling(const scenario *s, double *settling, fault *f);
-
-// Where the one, or by_runs the other, changes between stable and not, between two values of the
-// axis of a sweep of one.
+// Where that changes between two values of the axis of a sweep of one.
 status linear_limit(const sweep *s, linear_place place, bool by_runs, double from, double to,
                     double *limit, fault *f);

@@ -1,4 +1,4 @@
-// Loop gain over frequency, and how far it stays from -1.
+// Answers over frequency, how far a loop gain stays from -1, and where a loop is stable.
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -6,11 +6,13 @@
 
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
+#include "src/run/run.h"
 #include "src/study/linear/linear.h"
 
-// Frequencies: so many in equal ratios over so many decades below half the rate, and so many about
-// each vibration, out to where it no longer shows.
-enum { EVEN = 1500, DECADES = 4, ABOUT = 40, MOST_FREQUENCIES = 20000 };
+// Frequencies: so many in equal ratios, of a loop over so many decades below half its rate, and so
+// many about each vibration, out to where it no longer shows.
+enum { EVEN = 1500, ABOUT = 40, MOST_FREQUENCIES = 20000, BISECTIONS = 40, RUN_BISECTIONS = 12 };
+#define DECADES 1e4
 
 static const double pi = 3.14159265358979323846;
 
@@ -22,21 +24,29 @@ static int rising(const void *a, const void *b)
     return (one > other) - (one < other);
 }
 
-// Puts the frequencies of a loop with the given poles in order; returns how many.
+// Puts frequencies for a system with the given poles in order; returns how many.
 static int choose_frequencies(const double complex *poles, int states, double period, double *w)
 {
-    const double most = pi / period;
+    double low = pi / period / DECADES, high = pi / period;
     int count = 0;
-    for (int i = 0; i < EVEN; i++) {
-        w[count++] = most * plain_exp(-DECADES * plain_log(10) * (EVEN - 1 - i) / (EVEN - 1.0));
+    if (period == 0) {
+        low = high = 1;
+        for (int i = states - 1; i >= 0; i--) { // the fastest first
+            low = cabs(poles[i]) > 1e-6 ? cabs(poles[i]) : low;
+        }
+        high = 10 * fmax(high, states > 0 ? cabs(poles[states - 1]) : 0);
+        low *= 0.01;
     }
-    for (int i = 0; i < states; i++) {
+    for (int i = 0; i < EVEN; i++) {
+        w[count++] = high * plain_pow(low / high, (EVEN - 1 - i) / (EVEN - 1.0));
+    }
+    for (int i = 0; i < states && period > 0; i++) {
         const double size = cabs(poles[i]), at = size > 0 ? carg(poles[i]) / period : 0;
         const double width = size > 0 ? fabs(plain_log(size)) / period : 0;
         for (int k = -ABOUT / 2; k <= ABOUT / 2 && at > 0 && count < MOST_FREQUENCIES; k++) {
             const double off = fmax(width, 1e-9 * at) * (plain_exp(0.3 * abs(k)) - 1);
             const double near = k < 0 ? at - off : at + off;
-            if (near > 0 && near < most) {
+            if (near > 0 && near < high) {
                 w[count++] = near;
             }
         }
@@ -45,22 +55,24 @@ static int choose_frequencies(const double complex *poles, int states, double pe
     return count;
 }
 
-status linear_loop_response(const linear_system *loop, double period, linear_response *r, fault *f)
+status linear_respond(const linear_system *s, int output, double period, linear_response *r,
+                      fault *f)
 {
-    assert(loop != NULL && period > 0 && r != NULL);
-    const size_t n = (size_t)loop->states;
+    assert(s != NULL && period >= 0 && r != NULL);
+    const size_t n = (size_t)s->states;
     *r = (linear_response){0};
     double *block = calloc(3 * MOST_FREQUENCIES, sizeof *block);
-    double complex *scratch = calloc(n * (n + 1) + n + 1, sizeof *scratch);
+    double complex *scratch = calloc(n * (n + 2) + 1, sizeof *scratch);
     status code = block != NULL && scratch != NULL ? STATUS_OK : fault_no_memory(f);
-    code = code == STATUS_OK ? linear_poles(loop, scratch, f) : code;
+    code = code == STATUS_OK ? linear_poles(s, scratch, f) : code;
     if (code == STATUS_OK) {
-        *r = (linear_response){choose_frequencies(scratch, loop->states, period, block), block,
+        *r = (linear_response){choose_frequencies(scratch, s->states, period, block), block,
                                (double complex *)(block + MOST_FREQUENCIES)};
         for (int i = 0; i < r->count; i++) {
-            double s, c;
-            inline_sincos(r->frequency[i] * period, &s, &c);
-            r->gain[i] = -linear_answer(loop, 0, complex_of(c, s), scratch);
+            double sine, cosine;
+            inline_sincos(r->frequency[i] * period, &sine, &cosine);
+            r->gain[i] = period > 0 ? -linear_answer(s, output, complex_of(cosine, sine), scratch)
+                                    : linear_answer(s, output, complex_of(0, block[i]), scratch);
         }
     } else {
         free(block);
@@ -69,49 +81,14 @@ status linear_loop_response(const linear_system *loop, double period, linear_res
     return code;
 }
 
-status linear_arm_response(const linear_system *s, int output, linear_response *r, fault *f)
-{
-    const size_t n = (size_t)s->states;
-    *r = (linear_response){0};
-    double *block = calloc(3 * EVEN, sizeof *block);
-    double complex *scratch = calloc(n * (n + 1) + n + 1, sizeof *scratch);
-    status code = block != NULL && scratch != NULL ? STATUS_OK : fault_no_memory(f);
-    code = code == STATUS_OK ? linear_poles(s, scratch, f) : code;
-    if (code != STATUS_OK) {
-        free(block);
-        free(scratch);
-        return code;
-    }
-
-    // poles come in rising order of their size
-    double low = 1, high = 1;
-    for (size_t i = n; i-- > 0;) {
-        low = cabs(scratch[i]) > 1e-6 ? cabs(scratch[i]) : low;
-        high = fmax(high, cabs(scratch[i]));
-    }
-    *r = (linear_response){EVEN, block, (double complex *)(block + EVEN)};
-    for (int i = 0; i < EVEN; i++) {
-        block[i] = 0.01 * low * plain_pow(1000 * high / low, i / (EVEN - 1.0));
-        r->gain[i] = linear_answer(s, output, complex_of(0, block[i]), scratch);
-    }
-    free(scratch);
-    return STATUS_OK;
-}
-
-static double decibels(double ratio)
-{
-    return 20 * plain_log(ratio) / plain_log(10);
-}
+// --- margins ----------------------------------------------------------------------------------
 
 // Takes in a place at which the loop gain is real and negative.
 static void cross_phase(linear_margins *m, double gain)
 {
-    const double db = decibels(1 / gain);
-    if (db >= 0) {
-        m->gain_db = fmin(m->gain_db, db);
-    } else {
-        m->gain_down_db = fmin(m->gain_down_db, -db);
-    }
+    const double db = 20 * plain_log(1 / gain) / plain_log(10);
+    double *least = db >= 0 ? &m->gain_db : &m->gain_down_db;
+    *least = fmin(*least, fabs(db));
 }
 
 // And one at which its size is one.
@@ -132,12 +109,10 @@ linear_margins linear_margins_of(const linear_response *r)
 
         // at both ends a sampled loop gain is real, up to rounding
         const bool real = fabs(cimag(here)) < 1e-9 * cabs(here);
-        if (i + 1 >= r->count || i == 0) {
-            if (real && creal(here) < 0) {
-                cross_phase(&m, -creal(here));
-            }
+        if ((i + 1 == r->count || i == 0) && real && creal(here) < 0) {
+            cross_phase(&m, -creal(here));
         }
-        if (i + 1 >= r->count) {
+        if (i + 1 == r->count) {
             break;
         }
 
@@ -157,4 +132,73 @@ linear_margins linear_margins_of(const linear_response *r)
         }
     }
     return m;
+}
+
+// --- where a loop is stable -------------------------------------------------------------------
+
+static status growth_of(const scenario *s, linear_place place, double *growth, fault *f)
+{
+    linear_arm arm;
+    linear_system loop = {0};
+    status code = linear_arm_init(&arm, &s->parameters, place, f);
+    code = code == STATUS_OK ? linear_loop(&loop, &arm, &s->parameters, f) : code;
+    double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
+    if (code == STATUS_OK) {
+        linear_close(&loop);
+        code = poles != NULL ? linear_poles(&loop, poles, f) : fault_no_memory(f);
+    }
+    if (code == STATUS_OK) {
+        *growth = plain_log(cabs(poles[loop.states - 1])) * s->parameters.control.rate;
+    }
+    free(poles);
+    linear_system_finish(&loop);
+    linear_system_finish(&arm.system);
+    return code;
+}
+
+status linear_stability(const scenario *s, linear_place place, bool by_runs, double *number,
+                        bool *stable, fault *f)
+{
+    assert(s != NULL && number != NULL && stable != NULL);
+    status code;
+    *number = (double)NAN;
+    if (by_runs) {
+        run_result result;
+        code = run_scenario(s, false, &result);
+        *number = result.summary.settling_time_s;
+        if (code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED) {
+            summary_fault(&result.summary, f);
+        } else {
+            code = STATUS_OK;
+        }
+        run_finish(&result);
+    } else {
+        code = growth_of(s, place, number, f);
+    }
+    *stable = by_runs ? isfinite(*number) : *number < 0;
+    return code;
+}
+
+status linear_limit(const sweep *s, linear_place place, bool by_runs, double from, double to,
+                    double *limit, fault *f)
+{
+    assert(s != NULL && s->axis_count == 1 && limit != NULL);
+    bool at_start = false, here;
+    status code = STATUS_OK;
+    for (int i = -1; i < (by_runs ? RUN_BISECTIONS : BISECTIONS) && code == STATUS_OK; i++) {
+        const double value = i < 0 ? from : (from + to) / 2;
+        parameters p = s->base->parameters;
+        scenario derived = *s->base; // borrows all but its parameters
+        double number;
+        code = sweep_axis_apply(&s->axes[0], value, &p, f);
+        code = code == STATUS_OK ? scenario_take_parameters(&derived, &p, f) : code;
+        code = code == STATUS_OK ? linear_stability(&derived, place, by_runs, &number, &here, f)
+                                 : code;
+        at_start = i < 0 && code == STATUS_OK ? here : at_start;
+        if (code == STATUS_OK) {
+            *(here == at_start ? &from : &to) = value;
+        }
+    }
+    *limit = (from + to) / 2;
+    return code;
 }

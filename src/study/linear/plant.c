@@ -12,16 +12,10 @@
 #include "src/base/dense.h"
 #include "src/study/linear/linear.h"
 
-const linear_output_info linear_output_table[LINEAR_OUTPUTS] = {
-    [LINEAR_HUB_ANGLE] = {"hub_angle", "rad"},
-    [LINEAR_HUB_VELOCITY] = {"hub_velocity", "rad/s"},
-    [LINEAR_HUB_ACCELERATION] = {"hub_acceleration", "rad/s2"},
-    [LINEAR_BENDING] = {"bending", "rad"},
-    [LINEAR_TIP] = {"tip", "m"},
-    [LINEAR_FORCE] = {"force", "N"},
-};
+const char *const linear_output_names[LINEAR_OUTPUTS] = {
+    "hub_angle", "hub_velocity", "hub_acceleration", "bending", "tip", "force"};
 
-enum { MOST_BODIES = LINEAR_MOST_LINKS + 1, NEWTON_STEPS = 60 };
+enum { MOST_BODIES = LINEAR_MOST_LINKS + 1, NEWTON_STEPS = 60, EDGE = 2 * MOST_BODIES + 2 };
 
 // Steps of the differences: of angles, over the number of links, by which they bend; and of all
 // else, in which motions are straight lines or parabolas.
@@ -49,65 +43,59 @@ void linear_system_finish(linear_system *s)
     *s = (linear_system){0};
 }
 
-// An instant of the arm: angles, rates, the motor's current, its command, and what they give.
-typedef struct instant {
-    double z[2 * MOST_BODIES + 2];
-    double alpha[MOST_BODIES], force, tip;
-} instant;
-
+// An instant z: angles, their rates, the motor's current, its command. What it gives: the angles'
+// accelerations, then the force and the tip's place across the line from the hub.
 typedef struct workshop {
     arm arm;
     contact_state mode;
     chain_link links[MOST_BODIES];
-    int n;              // dof
-    bool rigid;         // contact with a wall that does not give
-    double across[2];   // direction across the line from hub to tip
-    double step;        // of the differences
-    double wanted;      // force [N], NaN: the command is given
-    double wanted_volt; // [V]
-    instant rest;
+    int n;            // dof
+    bool rigid;       // contact with a wall that does not give
+    double across[2]; // that direction
+    double step;      // of the differences of angles
+    double wanted;    // force [N], NaN: the command is given
+    double command;   // [V]
+    double rest[EDGE];
 } workshop;
 
-static void evaluate(workshop *w, instant *at)
+static void evaluate(workshop *w, const double *z, double *out)
 {
-    const int n = w->n;
     double x, y;
-    arm_set_voltage(&w->arm, at->z[2 * n + 1]);
-    w->mode.current = at->z[2 * n];
     chain_reaction r;
-    chain_accelerations(&w->arm, w->links, at->z, at->z + n, w->mode, at->alpha, &r);
-    chain_node(&w->arm, at->z, w->arm.links, &x, &y);
-    at->force = r.force;
-    at->tip = x * w->across[0] + y * w->across[1];
+    arm_set_voltage(&w->arm, z[2 * w->n + 1]);
+    w->mode.current = z[2 * w->n];
+    chain_accelerations(&w->arm, w->links, z, z + w->n, w->mode, out, &r);
+    chain_node(&w->arm, z, w->arm.links, &x, &y);
+    out[w->n] = r.force;
+    out[w->n + 1] = x * w->across[0] + y * w->across[1];
 }
 
 // --- rest -------------------------------------------------------------------------------------
 
-static void jacobian(const workshop *w, const double *q, double *j)
+static void jacobian(const workshop *w, double *j)
 {
     double unit[MOST_BODIES] = {0};
     for (int k = 0; k < w->n; k++) {
         unit[k] = 1;
-        j[k] = chain_penetration_rate(&w->arm, q, unit);
+        j[k] = chain_penetration_rate(&w->arm, w->rest, unit);
         unit[k] = 0;
     }
 }
 
-// What is to vanish at angles and command t[n + 1]: accelerations, on a rigid wall with the
-// penetration along J, which accelerations do not have; and what the force or the command lack.
-static void missing(workshop *w, const double *t, double *residual)
+// What is to vanish at w->rest: accelerations, on a rigid wall with the penetration along J, which
+// accelerations do not have; and what the force or the command lack.
+static void missing(workshop *w, double *residual)
 {
     const int n = w->n;
-    instant at = {.z = {0}};
-    memcpy(at.z, t, (size_t)n * sizeof *t);
-    at.z[2 * n + 1] = t[n];
-    at.z[2 * n] = w->arm.motor.gain * t[n] / fmax(w->arm.motor.resistance, 1e-300);
-    evaluate(w, &at);
-    memcpy(residual, at.alpha, (size_t)n * sizeof *residual);
+    const double volts = w->rest[2 * n + 1];
+    double out[MOST_BODIES + 2], j[MOST_BODIES], g, square = 0;
+    w->rest[2 * n] = w->arm.motor.gain * volts / fmax(w->arm.motor.resistance, 1e-300);
+    evaluate(w, w->rest, out);
+    memcpy(residual, out, (size_t)n * sizeof *residual);
+    residual[n] = isnan(w->wanted) ? volts - w->command : out[n] - w->wanted;
     if (w->rigid) {
-        double j[MOST_BODIES], g, square = 0;
-        jacobian(w, t, j);
-        chain_penetration(&w->arm, t, at.z + n, &g, NULL);
+        jacobian(w, j);
+        chain_penetration(&w->arm, w->rest, w->rest + n, &g, NULL);
         for (int k = 0; k < n; k++) {
             square += j[k] * j[k];
         }
@@ -115,31 +103,27 @@ static void missing(workshop *w, const double *t, double *residual)
             residual[k] += 1e4 * g * j[k] / square;
         }
     }
-    residual[n] = isnan(w->wanted) ? t[n] - w->wanted_volt : at.force - w->wanted;
-    w->rest = at;
 }
 
-// Newton's iteration from the straight arm at the wall.
-static status find_rest(workshop *w, const parameters *p, fault *f)
+// Newton's iteration from the straight arm at the wall; slopes by differences, no further than a
+// wall that gives is deep.
+static status find_rest(workshop *w, fault *f)
 {
-    enum { EDGE = MOST_BODIES + 1 };
     const int size = w->n + 1;
-    double t[EDGE], residual[EDGE], shifted[2][EDGE], matrix[EDGE * EDGE], change = 1;
-    for (int k = 0; k < w->n; k++) {
-        t[k] = p->wall.angle;
-    }
-    t[w->n] = w->wanted_volt;
-
+    const double e = fmin(1e-5, w->step);
+    double residual[MOST_BODIES + 1], shifted[2][MOST_BODIES + 1], change = 1;
+    double matrix[(MOST_BODIES + 1) * (MOST_BODIES + 1)];
+    w->rest[2 * w->n + 1] = w->command;
     for (int step = 0; step < NEWTON_STEPS && change > 1e-14; step++) {
-        // slopes by differences, no further than a wall that gives is deep
-        missing(w, t, residual);
+        missing(w, residual);
         for (int j = 0; j < size; j++) {
-            const double kept = t[j], e = fmin(1e-5, w->step);
+            double *at = &w->rest[j < w->n ? j : 2 * w->n + 1];
+            const double kept = *at;
             for (int side = 0; side < 2; side++) {
-                t[j] = kept + (side == 0 ? e : -e);
-                missing(w, t, shifted[side]);
+                *at = kept + (side == 0 ? e : -e);
+                missing(w, shifted[side]);
             }
-            t[j] = kept;
+            *at = kept;
             for (int i = 0; i < size; i++) {
                 matrix[i * size + j] = (shifted[0][i] - shifted[1][i]) / (2 * e);
             }
@@ -149,109 +133,81 @@ static status find_rest(workshop *w, const parameters *p, fault *f)
         }
         change = 0;
         for (int j = 0; j < size; j++) {
-            t[j] -= residual[j];
+            w->rest[j < w->n ? j : 2 * w->n + 1] -= residual[j];
             change = fmax(change, fabs(residual[j]));
         }
     }
-    missing(w, t, residual);
-    if (!(change < 1e-9)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "the arm has no place of rest on the wall under this force or command");
-    }
-    return STATUS_OK;
+    missing(w, residual);
+    return change < 1e-9 ? STATUS_OK
+                         : fault_set(f, STATUS_BAD_ARGUMENT,
+                                     "the arm has no place of rest on the wall under this force "
+                                     "or command");
 }
 
 // --- linearised -------------------------------------------------------------------------------
 
-// Derivatives of accelerations, force and tip by element j of z, by sixth-order differences.
-static void differentiate(workshop *w, int j, double *slopes)
+// Derivatives of what an instant gives along a direction of z, by sixth-order differences.
+static void differentiate(workshop *w, const double *direction, double step, double *slopes)
 {
     static const double weight[3] = {0.75, -0.15, 1.0 / 60};
-    const int n = w->n;
-    const double step = j < n ? w->step : OTHER_STEP;
-    memset(slopes, 0, (size_t)(n + 2) * sizeof *slopes);
-    for (int k = -3; k <= 3; k++) {
-        instant at = w->rest;
-        at.z[j] += k * step;
-        if (k == 0) {
-            continue;
+    double ends[2][MOST_BODIES + 2], z[EDGE];
+    memset(slopes, 0, (size_t)(w->n + 2) * sizeof *slopes);
+    for (int k = 0; k < 3; k++) {
+        for (int side = 0; side < 2; side++) {
+            for (int i = 0; i < 2 * w->n + 2; i++) {
+                z[i] = w->rest[i] + (side == 0 ? k + 1 : -k - 1) * step * direction[i];
+            }
+            evaluate(w, z, ends[side]);
         }
-        evaluate(w, &at);
-        const double share = (k > 0 ? weight[k - 1] : -weight[-k - 1]) / step;
-        for (int i = 0; i < n; i++) {
-            slopes[i] += share * at.alpha[i];
-        }
-        slopes[n] += share * at.force;
-        slopes[n + 1] += share * at.tip;
-    }
-}
-
-// The angles left: those from `first` to the one before `end`, the one at `end` following them on
-// a rigid wall.
-typedef struct freedom {
-    int first, end;
-    double follows[MOST_BODIES]; // angle at `end` for one of each other
-} freedom;
-
-static freedom freedom_of(const workshop *w)
-{
-    double j[MOST_BODIES];
-    freedom left = {.first = w->mode.friction == HUB_STICK ? 1 : 0, .end = w->n};
-    if (w->rigid) {
-        jacobian(w, w->rest.z, j);
-        left.end--;
-        for (int k = 0; k < left.end; k++) {
-            left.follows[k] = -j[k] / j[left.end];
+        for (int i = 0; i < w->n + 2; i++) {
+            slopes[i] += weight[k] / step * (ends[0][i] - ends[1][i]);
         }
     }
-    return left;
 }
 
 static status linearise(workshop *w, linear_system *s, fault *f)
 {
-    const int n = w->n;
-    const freedom left = freedom_of(w);
+    // the angles left: from `first` to the one before `end`, which follows them on a rigid wall
+    const int n = w->n, first = w->mode.friction == HUB_STICK ? 1 : 0, end = n - w->rigid;
     const motor_model *m = &w->arm.motor;
     const bool flows = m->electric && m->inductance > 0;
-    const int angles = left.end > left.first ? left.end - left.first : 0;
-    const int states = 2 * angles + flows;
+    const int angles = end > first ? end - first : 0, states = 2 * angles + flows;
     const status code = linear_system_init(s, states, LINEAR_OUTPUTS, f);
     if (code != STATUS_OK) {
         return code;
     }
 
-    // one column of (A, B; C, D) after the other, the command's last
-    double slopes[MOST_BODIES + 2], more[MOST_BODIES + 2];
+    // one column of (A, B; C, D) after the other, the command's last: a vector of its own
+    double slopes[MOST_BODIES + 2], j[MOST_BODIES];
+    jacobian(w, j);
     for (int column = 0; column <= states; column++) {
+        double z[EDGE] = {0};
         const int group = column < 2 * angles ? column / angles : 2;
-        const int k = left.first + (group < 2 ? column % angles : 0);
-        const int j = group < 2 ? group * n + k : column < states ? 2 * n : 2 * n + 1;
-        differentiate(w, j, slopes);
-        if (group < 2 && left.end < n) {
-            differentiate(w, group * n + left.end, more);
-            for (int i = 0; i < n + 2; i++) {
-                slopes[i] += left.follows[k] * more[i];
+        double *moved = z + group * n;
+        if (group == 2) {
+            moved[column < states ? 0 : 1] = 1;
+        } else {
+            moved[first + column % angles] = 1;
+            if (end < n) {
+                moved[end] = -j[first + column % angles] / j[end];
             }
         }
+        differentiate(w, z, group == 0 ? w->step : OTHER_STEP, slopes);
 
-        // where the column lies: input columns are vectors of their own
         double *a = column < states ? s->a + column : s->b,
                *c = column < states ? s->c + column : s->d;
         const int row = column < states ? states : 1;
         for (int i = 0; i < angles; i++) {
-            a[(angles + i) * row] = slopes[left.first + i];
+            a[(angles + i) * row] = slopes[first + i];
         }
         if (group == 1) {
             a[(column - angles) * row] = 1;
         }
-        const double hub = left.first == 0 && k == 0 ? 1 : 0;
-        const double first = k == w->arm.first, last = k == n - 1 ? 1 : left.follows[k];
-        const bool bends = group == 0 && w->arm.links > 1;
-        c[LINEAR_HUB_ANGLE * row] = group == 0 ? hub : 0;
-        c[LINEAR_HUB_VELOCITY * row] = group == 1 ? hub : 0;
-        c[LINEAR_HUB_ACCELERATION * row] = left.first == 0 ? slopes[0] : 0;
-        c[LINEAR_BENDING * row] = bends ? last - first : 0;
-        c[LINEAR_TIP * row] = group == 0 ? slopes[n + 1] : 0;
+        c[LINEAR_HUB_ANGLE * row] = z[0];
+        c[LINEAR_HUB_VELOCITY * row] = z[n];
+        c[LINEAR_HUB_ACCELERATION * row] = first == 0 ? slopes[0] : 0;
+        c[LINEAR_BENDING * row] = z[n - 1] - z[w->arm.first];
+        c[LINEAR_TIP * row] = slopes[n + 1];
         c[LINEAR_FORCE * row] = slopes[n];
     }
 
@@ -260,7 +216,7 @@ static status linearise(workshop *w, linear_system *s, fault *f)
         const int i = states - 1;
         s->a[i * states + i] = -m->resistance / m->inductance;
         s->b[i] = m->gain / m->inductance;
-        if (left.first == 0) {
+        if (first == 0 && angles > 0) {
             s->a[i * states + angles] = -m->back_emf / m->inductance;
         }
     }
@@ -274,43 +230,33 @@ static const char *refusal(const parameters *p, linear_place place, double force
                ? "the printed equations have no linear form that conserves energy, try --set "
                  "arm.model=corrected"
            : p->arm.links > LINEAR_MOST_LINKS ? "the linear arm has at most 64 links"
-           : place != LINEAR_FREE && p->wall.kind == WALL_NONE ? "there is no wall to press on"
+           : place == LINEAR_FREE             ? NULL
+           : p->wall.kind == WALL_NONE        ? "there is no wall to press on"
            : force < 0 ? "the arm does not press on the wall under this command"
-           : force == 0 && p->wall.contact == WALL_HUNT_CROSSLEY && place != LINEAR_FREE
+           : force == 0 && p->wall.contact == WALL_HUNT_CROSSLEY
                ? "a Hunt-Crossley wall has no stiffness without a force"
                : NULL;
 }
 
-// Linearises with the workshop prepared.
+// Rest, its numbers, and the slopes there, with the workshop prepared.
 static status linearise_at(workshop *w, linear_arm *out, const parameters *p, linear_place place,
                            fault *f)
 {
-    status code = STATUS_OK;
-    for (int k = 0; k < w->n; k++) {
-        w->rest.z[k] = p->wall.angle;
+    double x, y, there[MOST_BODIES + 2];
+    const status code = place != LINEAR_FREE ? find_rest(w, f) : STATUS_OK;
+    evaluate(w, w->rest, there);
+    out->force = place != LINEAR_FREE ? there[w->n] : 0;
+    const char *why = refusal(p, place, out->force < -1e-12 ? -1 : 1);
+    if (code != STATUS_OK || why != NULL) {
+        return code != STATUS_OK ? code : fault_set(f, STATUS_BAD_ARGUMENT, "%s", why);
     }
-    if (place != LINEAR_FREE) {
-        code = find_rest(w, p, f);
-    }
-    const double force = place != LINEAR_FREE && code == STATUS_OK ? w->rest.force : 0;
-    const char *why = code == STATUS_OK ? refusal(p, place, force < -1e-12 ? -1 : 1) : NULL;
-    if (why != NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "%s", why);
-    }
-    if (code != STATUS_OK) {
-        return code;
-    }
-
-    // its numbers there, then its slopes
-    double x, y;
-    chain_node(&w->arm, w->rest.z, w->arm.links, &x, &y);
+    chain_node(&w->arm, w->rest, w->arm.links, &x, &y);
     const double distance = sqrt(x * x + y * y);
     w->across[0] = -y / distance;
     w->across[1] = x / distance;
-    out->voltage = w->rest.z[2 * w->n + 1];
-    out->force = force;
-    out->hub_angle = w->rest.z[0];
-    out->bending = w->rest.z[w->n - 1] - w->rest.z[w->arm.first];
+    out->voltage = w->rest[2 * w->n + 1];
+    out->hub_angle = w->rest[0];
+    out->bending = w->rest[w->n - 1] - w->rest[w->arm.first];
     w->mode.friction = place == LINEAR_STUCK ? HUB_STICK : HUB_FORWARD;
     return linearise(w, &out->system, f);
 }
@@ -319,7 +265,7 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
 {
     assert(out != NULL && p != NULL);
     *out = (linear_arm){.force = 0};
-    const bool held = p->control.law != LAW_NONE;
+    const bool touches = place != LINEAR_FREE, held = touches && p->control.law != LAW_NONE;
     const char *why = refusal(p, place, held ? p->control.force : p->motor.voltage);
     if (why != NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "%s", why);
@@ -336,14 +282,17 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
     smooth.motor.current_limit = 0;
     arm_init(&w->arm, &smooth);
     w->n = w->arm.dof;
-    w->mode = (contact_state){.contact = place != LINEAR_FREE, .friction = HUB_FORWARD};
-    w->rigid = place != LINEAR_FREE && p->wall.contact == WALL_RIGID;
-    w->wanted = held && place != LINEAR_FREE ? p->control.force : (double)NAN;
-    w->wanted_volt = held || place == LINEAR_FREE ? 0 : p->motor.voltage;
+    w->mode = (contact_state){.contact = touches, .friction = HUB_FORWARD};
+    w->rigid = touches && p->wall.contact == WALL_RIGID;
+    w->wanted = held ? p->control.force : (double)NAN;
+    w->command = held || !touches ? 0 : p->motor.voltage;
+    for (int k = 0; k < w->n; k++) {
+        w->rest[k] = p->wall.angle;
+    }
 
     // a spring that stiffens with its depth is followed for a small part of it
     w->step = ANGLE_STEP / p->arm.links;
-    if (p->wall.contact == WALL_HUNT_CROSSLEY && place != LINEAR_FREE) {
+    if (p->wall.contact == WALL_HUNT_CROSSLEY && touches) {
         const double torque = motor_torque_per_volt(&p->motor) * p->motor.voltage;
         const double force = held ? p->control.force : torque / p->arm.length;
         const double depth = plain_pow(force / p->wall.stiffness, 1 / p->wall.exponent);

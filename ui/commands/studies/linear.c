@@ -1,33 +1,32 @@
+// impactlab linear: poles, zeros and margins of the arm near rest, and where its loop is stable.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/plot/study_plot.h"
 #include "src/base/csv.h"
 #include "src/base/json.h"
 #include "src/base/plain_math.h"
 #include "src/exchange/mat_file.h"
-#include "ui/commands/studies/linear_pictures.h"
 #include "ui/commands/pictures.h"
 
-// Outputs whose zeros are told.
-static const int zero_outputs[] = {LINEAR_HUB_ANGLE, LINEAR_TIP, LINEAR_FORCE};
 #define TWO_PI (2 * 3.14159265358979323846)
-enum { ZERO_SETS = sizeof zero_outputs / sizeof zero_outputs[0] };
+
+enum { POLES, HUB_ZEROS, END_ZEROS, SETS, MOST_LIMITS = 32 };
 
 // Poles, or zeros, one behind the other.
 typedef struct root_set {
-    const char *output; // of zeros, else NULL
+    const char *kind, *output;
     int count;
-    double complex *values; // [1/s]
+    double complex *values; // [1/s], sampled ones as numbers
 } root_set;
 
-// What is computed of a scenario.
 typedef struct analysis {
     const scenario *scenario;
-    const char *place;
+    const char *word; // of the place
+    linear_place place;
     linear_arm arm;
-    root_set poles, zeros[ZERO_SETS];
-    int zero_sets;
+    root_set sets[SETS];
 
     // with --law the poles are those of the closed loop, the zeros those of the loop gain
     double period; // of its samples, 0: of none [s]
@@ -36,109 +35,82 @@ typedef struct analysis {
     linear_margins margins; // of a stable loop
     bool stable, measured;
     double least_push; // that loses contact [N s]
+
+    // with --vary: of each value, by poles and by runs, growth [1/s] and settling time [s]
+    sweep sweep;
+    double *numbers[2];
+    bool *holds[2];
+    struct {
+        double value;
+        int by_runs;
+    } limits[MOST_LIMITS];
+    int limit_count;
 } analysis;
 
-// --- computing --------------------------------------------------------------------------------
+// --- one arm ----------------------------------------------------------------------------------
 
-static bool make_room(root_set *set, int count)
+// Poles of a system, or zeros to an output of it if that has a name.
+static status find_roots(root_set *set, const linear_system *s, const char *name, int output,
+                         fault *f)
 {
-    set->values = calloc((size_t)count + 1, sizeof *set->values);
-    set->count = set->values != NULL ? count : 0;
-    return set->values != NULL;
+    *set = (root_set){name != NULL ? "zero" : "pole", name != NULL ? name : "", s->states,
+                      calloc((size_t)s->states + 1, sizeof *set->values)};
+    return set->values == NULL ? fault_no_memory(f)
+           : name != NULL      ? linear_zeros(s, output, &set->count, set->values, f)
+                               : linear_poles(s, set->values, f);
 }
 
 // Zeros and closed poles of the sampled loop, and its margins.
-static status analyse_loop(analysis *x, linear_place place, fault *f)
+static status analyse_loop(analysis *x, fault *f)
 {
     const parameters *p = &x->scenario->parameters;
+    const bool contact = x->place == LINEAR_CONTACT;
     if (p->control.law == LAW_NONE) {
         return fault_set_at(f, STATUS_BAD_ARGUMENT, "control.law",
                             "--law needs a control law, such as --set control.law=hybrid");
     }
-    if (x->measured && place != LINEAR_CONTACT) {
+    if (x->measured && !contact) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "--inject measures the arm in contact, not %s",
-                         x->place);
+                         x->word);
     }
     status code = x->measured ? STATUS_UNSTABLE : linear_loop(&x->loop, &x->arm, p, f);
-    if (code == STATUS_UNSTABLE && place == LINEAR_CONTACT) {
-        x->measured = x->stable = true;
-        code = linear_inject(x->scenario, &x->arm, &x->response, f);
-        x->margins = code == STATUS_OK ? linear_margins_of(&x->response) : x->margins;
-        return code;
+    x->measured = x->stable = code == STATUS_UNSTABLE && contact;
+    if (x->measured) {
+        code = linear_inject(x->scenario, &x->response, f);
+    } else if (code == STATUS_OK) {
+        x->period = 1 / p->control.rate;
+        code = linear_respond(&x->loop, 0, x->period, &x->response, f);
+        code = code == STATUS_OK ? find_roots(&x->sets[HUB_ZEROS], &x->loop, "loop", 0, f) : code;
+        linear_close(&x->loop);
+        code = code == STATUS_OK ? find_roots(&x->sets[POLES], &x->loop, NULL, 0, f) : code;
+        const int last = x->sets[POLES].count - 1;
+        x->stable = code == STATUS_OK && cabs(x->sets[POLES].values[last]) < 1;
     }
-    if (code != STATUS_OK) {
-        return code;
-    }
-    if (!make_room(&x->poles, x->loop.states) || !make_room(&x->zeros[0], x->loop.states)) {
-        return fault_no_memory(f);
-    }
-    x->zero_sets = 1;
-    x->zeros[0].output = "loop";
-    x->period = 1 / p->control.rate;
-    code = linear_loop_response(&x->loop, x->period, &x->response, f);
-    code = code == STATUS_OK ? linear_zeros(&x->loop, 0, &x->zeros[0].count, x->zeros[0].values, f)
-                             : code;
-    linear_close(&x->loop);
-    code = code == STATUS_OK ? linear_poles(&x->loop, x->poles.values, f) : code;
-    x->stable = true;
-    for (int i = 0; i < x->poles.count; i++) {
-        x->stable = x->stable && cabs(x->poles.values[i]) < 1;
-    }
-    if (code == STATUS_OK && x->stable) {
-        x->margins = linear_margins_of(&x->response);
-    }
+    x->margins = linear_margins_of(&x->response);
     return code;
 }
 
-static status analyse(analysis *x, linear_place place, bool looped, fault *f)
+static status analyse(analysis *x, bool looped, fault *f)
 {
-    status code = linear_arm_init(&x->arm, &x->scenario->parameters, place, f);
     const linear_system *s = &x->arm.system;
-    if (code == STATUS_OK && place != LINEAR_FREE &&
-        x->scenario->parameters.control.law != LAW_NONE) {
-        code = linear_contact_margin(x->scenario, &x->least_push, f);
+    status code = linear_arm_init(&x->arm, &x->scenario->parameters, x->place, f);
+    if (x->place != LINEAR_FREE && x->scenario->parameters.control.law != LAW_NONE) {
+        code = code == STATUS_OK ? linear_contact_margin(x->scenario, &x->least_push, f) : code;
     }
-    if (code == STATUS_OK && looped) {
-        code = analyse_loop(x, place, f);
-        looped = !x->measured;
-    }
-    if (code != STATUS_OK || looped) {
+    code = code == STATUS_OK && looped ? analyse_loop(x, f) : code;
+    if (code != STATUS_OK || x->period > 0) {
         return code;
     }
-    if (!make_room(&x->poles, s->states)) {
-        return fault_no_memory(f);
-    }
-    code = linear_poles(s, x->poles.values, f);
 
     // a tip on the wall has no zeros, nor a force without one
-    for (int i = 0; i < ZERO_SETS && code == STATUS_OK; i++) {
-        const int output = zero_outputs[i];
-        root_set *set = &x->zeros[x->zero_sets];
-        if ((output == LINEAR_TIP) != (place == LINEAR_FREE) && output != LINEAR_HUB_ANGLE) {
-            continue;
-        }
-        if (!make_room(set, s->states)) {
-            return fault_no_memory(f);
-        }
-        set->output = linear_output_table[output].name;
-        x->zero_sets++;
-        code = linear_zeros(s, output, &set->count, set->values, f);
-    }
-    return code;
+    const int end = x->place == LINEAR_FREE ? LINEAR_TIP : LINEAR_FORCE;
+    const char *const *names = linear_output_names;
+    code = find_roots(&x->sets[POLES], s, NULL, 0, f);
+    code = code == STATUS_OK
+               ? find_roots(&x->sets[HUB_ZEROS], s, names[LINEAR_HUB_ANGLE], LINEAR_HUB_ANGLE, f)
+               : code;
+    return code == STATUS_OK ? find_roots(&x->sets[END_ZEROS], s, names[end], end, f) : code;
 }
-
-static void finish(analysis *x)
-{
-    linear_system_finish(&x->arm.system);
-    linear_system_finish(&x->loop);
-    free(x->response.frequency);
-    free(x->poles.values);
-    for (int i = 0; i < x->zero_sets; i++) {
-        free(x->zeros[i].values);
-    }
-}
-
-// --- files ------------------------------------------------------------------------------------
 
 // A root as one of s; of a sampled system s = log(z)/period.
 static double complex in_time(const analysis *x, double complex root)
@@ -146,261 +118,404 @@ static double complex in_time(const analysis *x, double complex root)
     return x->period > 0 ? complex_of(plain_log(cabs(root)), carg(root)) / x->period : root;
 }
 
-static void add_roots(json_t *array, const analysis *x, const root_set *set)
+// The matrices, and how files name them.
+typedef struct matrix {
+    const char *name;
+    int rows, columns;
+    const double *values;
+} matrix;
+enum { MATRICES = 4 };
+
+static void list_matrices(const linear_system *s, matrix *list)
 {
-    for (int i = 0; i < set->count; i++) {
-        json_t *root = json_object();
-        const double complex s = in_time(x, set->values[i]);
-        if (set->output != NULL) {
-            json_put(root, "output", json_string(set->output));
-        }
-        json_put(root, "real_per_s", json_number(creal(s)));
-        json_put(root, "imaginary_rad_per_s", json_number(cimag(s)));
-        json_put(root, "damping", json_number(linear_damping(s)));
-        if (x->period > 0) {
-            json_put(root, "z_real", json_number(creal(set->values[i])));
-            json_put(root, "z_imaginary", json_number(cimag(set->values[i])));
-        }
-        json_add(array, root);
-    }
+    list[0] = (matrix){"A", s->states, s->states, s->a};
+    list[1] = (matrix){"B", s->states, 1, s->b};
+    list[2] = (matrix){"C", s->outputs, s->states, s->c};
+    list[3] = (matrix){"D", s->outputs, 1, s->d};
 }
 
-static json_t *matrix(const double *values, int rows, int columns)
+static void put_numbers(json_t *object, const char *const *keys, const double *numbers, int count)
 {
-    json_t *array = json_array();
-    for (int i = 0; i < rows; i++) {
-        json_add(array, json_numbers(values + (size_t)i * (size_t)columns, columns));
+    for (int i = 0; i < count; i++) {
+        json_put(object, keys[i], json_number(numbers[i]));
     }
-    return array;
-}
-
-static json_t *margins(const linear_margins *m)
-{
-    json_t *object = json_object();
-    json_put(object, "gain_db", json_number(m->gain_db));
-    json_put(object, "gain_down_db", json_number(m->gain_down_db));
-    json_put(object, "phase_deg", json_number(m->phase_deg));
-    json_put(object, "delay_s", json_number(m->delay_s));
-    json_put(object, "disk", json_number(m->disk));
-    return object;
-}
-
-static json_t *loop_gain(const linear_response *r)
-{
-    json_t *array = json_array();
-    for (int i = 0; i < r->count; i++) {
-        json_t *entry = json_object();
-        json_put(entry, "frequency_Hz", json_number(r->frequency[i] / TWO_PI));
-        json_put(entry, "gain_db", json_number(20 * plain_log(cabs(r->gain[i])) / plain_log(10)));
-        json_put(entry, "phase_deg", json_number(carg(r->gain[i]) * 360 / TWO_PI));
-        json_add(array, entry);
-    }
-    return array;
 }
 
 static json_t *as_json(const analysis *x)
 {
-    const linear_system *s = &x->arm.system;
-    json_t *object = json_object(), *poles = json_array(), *zeros = json_array();
-    json_t *outputs = json_array();
+    static const char *const rest_keys[] = {"force_N", "command_V", "hub_angle_rad",
+                                            "contact_margin_Ns"};
+    static const char *const root_keys[] = {"real_per_s", "imaginary_rad_per_s", "damping",
+                                            "z_real", "z_imaginary"};
+    static const char *const gain_keys[] = {"frequency_Hz", "gain_db", "phase_deg"};
+    static const char *const margin_keys[] = {"gain_db", "gain_down_db", "phase_deg", "delay_s",
+                                              "disk"};
+    json_t *object = json_object(), *roots[2] = {json_array(), json_array()};
+    const double rest[] = {x->arm.force, x->arm.voltage, x->arm.hub_angle, x->least_push};
     json_put(object, "scenario", json_text(x->scenario->name));
-    json_put(object, "at", json_string(x->place));
-    json_put(object, "force_N", json_number(x->arm.force));
-    json_put(object, "command_V", json_number(x->arm.voltage));
-    json_put(object, "hub_angle_rad", json_number(x->arm.hub_angle));
-    add_roots(poles, x, &x->poles);
-    json_put(object, "poles", poles);
-    for (int i = 0; i < x->zero_sets; i++) {
-        add_roots(zeros, x, &x->zeros[i]);
+    json_put(object, "at", json_string(x->word));
+    put_numbers(object, rest_keys, rest, 4);
+    for (int set = 0; set < SETS; set++) {
+        for (int i = 0; i < x->sets[set].count; i++) {
+            const double complex z = x->sets[set].values[i], s = in_time(x, z);
+            const double numbers[] = {creal(s), cimag(s), linear_damping(s), creal(z), cimag(z)};
+            json_t *root = json_object();
+            if (set != POLES) {
+                json_put(root, "output", json_string(x->sets[set].output));
+            }
+            put_numbers(root, root_keys, numbers, x->period > 0 ? 5 : 3);
+            json_add(roots[set != POLES], root);
+        }
     }
-    json_put(object, "zeros", zeros);
+    json_put(object, "poles", roots[0]);
+    json_put(object, "zeros", roots[1]);
 
-    if (x->response.count > 0) {
+    // the loop
+    const linear_response *r = &x->response;
+    if (r->count > 0) {
+        const linear_margins *m = &x->margins;
+        const double numbers[] = {m->gain_db, m->gain_down_db, m->phase_deg, m->delay_s, m->disk};
+        json_t *margins = x->stable ? json_object() : json_null(), *loop = json_array();
+        if (x->stable) {
+            put_numbers(margins, margin_keys, numbers, 5);
+        }
+        for (int i = 0; i < r->count; i++) {
+            const double gain[] = {r->frequency[i] / TWO_PI,
+                                   20 * plain_log(cabs(r->gain[i])) / plain_log(10),
+                                   carg(r->gain[i]) * 360 / TWO_PI};
+            json_t *entry = json_object();
+            put_numbers(entry, gain_keys, gain, 3);
+            json_add(loop, entry);
+        }
         json_put(object, "stable", json_boolean(x->stable));
         json_put(object, "measured", json_boolean(x->measured));
-        json_put(object, "margins", x->stable ? margins(&x->margins) : json_null());
-        json_put(object, "loop", loop_gain(&x->response));
+        json_put(object, "margins", margins);
+        json_put(object, "loop", loop);
     }
-    json_put(object, "contact_margin_Ns", json_number(x->least_push));
 
     // the matrices, row by row
+    matrix list[MATRICES];
+    json_t *outputs = json_array();
+    list_matrices(&x->arm.system, list);
     for (int i = 0; i < LINEAR_OUTPUTS; i++) {
-        json_add(outputs, json_string(linear_output_table[i].name));
+        json_add(outputs, json_string(linear_output_names[i]));
     }
     json_put(object, "outputs", outputs);
-    json_put(object, "A", matrix(s->a, s->states, s->states));
-    json_put(object, "B", matrix(s->b, s->states, 1));
-    json_put(object, "C", matrix(s->c, s->outputs, s->states));
-    json_put(object, "D", matrix(s->d, s->outputs, 1));
-    return object;
-}
-
-static void write_roots(csv_writer *w, const char *kind, const analysis *x, const root_set *set)
-{
-    for (int i = 0; i < set->count; i++) {
-        const double complex s = in_time(x, set->values[i]);
-        csv_text(w, kind);
-        csv_text(w, set->output != NULL ? set->output : "");
-        csv_number(w, creal(s));
-        csv_number(w, cimag(s));
-        csv_number(w, linear_damping(s));
-        csv_end_row(w);
+    for (int k = 0; k < MATRICES; k++) {
+        json_t *rows = json_array();
+        for (int i = 0; i < list[k].rows; i++) {
+            json_add(rows, json_numbers(list[k].values + i * list[k].columns, list[k].columns));
+        }
+        json_put(object, list[k].name, rows);
     }
+    return object;
 }
 
 static void write_csv(FILE *stream, const void *what)
 {
+    static const char *const headings[][2] = {
+        {"kind", ""}, {"output", ""}, {"real", "1/s"}, {"imaginary", "rad/s"}, {"damping", ""}};
     const analysis *x = what;
     csv_writer w = csv_begin(stream);
-    csv_heading(&w, "kind", "");
-    csv_heading(&w, "output", "");
-    csv_heading(&w, "real", "1/s");
-    csv_heading(&w, "imaginary", "rad/s");
-    csv_heading(&w, "damping", "");
+    for (int i = 0; i < 5; i++) {
+        csv_heading(&w, headings[i][0], headings[i][1]);
+    }
     csv_end_row(&w);
-    write_roots(&w, "pole", x, &x->poles);
-    for (int i = 0; i < x->zero_sets; i++) {
-        write_roots(&w, "zero", x, &x->zeros[i]);
+    for (const root_set *set = x->sets; set < x->sets + SETS; set++) {
+        for (int i = 0; i < set->count; i++) {
+            const double complex s = in_time(x, set->values[i]);
+            csv_text(&w, set->kind);
+            csv_text(&w, set->output);
+            csv_number(&w, creal(s));
+            csv_number(&w, cimag(s));
+            csv_number(&w, linear_damping(s));
+            csv_end_row(&w);
+        }
     }
 }
 
 static void write_mat(FILE *stream, const void *what)
 {
     const analysis *x = what;
-    const linear_system *s = &x->arm.system;
+    matrix list[MATRICES];
+    list_matrices(&x->arm.system, list);
     mat_file_begin(stream);
-    mat_file_matrix(stream, "A", s->states, s->states, s->a);
-    mat_file_matrix(stream, "B", s->states, 1, s->b);
-    mat_file_matrix(stream, "C", s->outputs, s->states, s->c);
-    mat_file_matrix(stream, "D", s->outputs, 1, s->d);
-    mat_file_complex(stream, "poles", x->poles.count, x->poles.values);
-    for (int i = 0; i < x->zero_sets; i++) {
+    for (int i = 0; i < MATRICES; i++) {
+        mat_file_matrix(stream, list[i].name, list[i].rows, list[i].columns, list[i].values);
+    }
+    for (const root_set *set = x->sets; set < x->sets + SETS; set++) {
         char name[64];
-        snprintf(name, sizeof name, "zeros_%s", x->zeros[i].output);
-        mat_file_complex(stream, name, x->zeros[i].count, x->zeros[i].values);
-    }
-}
-
-// --- for people -------------------------------------------------------------------------------
-
-static void print_roots(const char *title, const analysis *x, const root_set *set)
-{
-    printf("\n  %-24s %14s %14s %10s\n", title, "real [1/s]", "imag. [rad/s]", "damping");
-    for (int i = 0; i < set->count; i++) {
-        const double complex root = in_time(x, set->values[i]);
-        if (cimag(root) < 0) {
-            continue; // with the one before
+        snprintf(name, sizeof name, set == x->sets ? "poles" : "zeros_%s", set->output);
+        if (set->values != NULL) {
+            mat_file_complex(stream, name, set->count, set->values);
         }
-        printf("  %22s  ", "");
-        print_cell(14, "%.6g", creal(root));
-        print_cell(14, cimag(root) > 0 ? "±%.6g" : "%.6g", cimag(root));
-        print_cell(10, "%.4g", linear_damping(root));
-        printf("\n");
-    }
-    if (set->count == 0) {
-        printf("  none\n");
     }
 }
 
 static void print_analysis(const analysis *x)
 {
+    const linear_margins *m = &x->margins;
     say_title(x->scenario);
-    printf("linear arm, %s, %d states", x->place, x->arm.system.states);
-    if (strcmp(x->place, "free") != 0) {
+    printf("linear arm, %s, %d states", x->word, x->arm.system.states);
+    if (x->place != LINEAR_FREE) {
         printf(", pressing with %.4g N under %.4g V", x->arm.force, x->arm.voltage);
     }
     printf("\n");
-    print_roots(x->period > 0 ? "poles, loop closed" : "poles", x, &x->poles);
-    for (int i = 0; i < x->zero_sets; i++) {
+    for (const root_set *set = x->sets; set < x->sets + SETS && set->values != NULL; set++) {
         char title[64];
-        snprintf(title, sizeof title, "zeros, motor to %s", x->zeros[i].output);
-        print_roots(title, x, &x->zeros[i]);
+        snprintf(title, sizeof title, set > x->sets ? "zeros, motor to %s" : "poles%s",
+                 set > x->sets   ? set->output
+                 : x->period > 0 ? ", loop closed"
+                                 : "");
+        printf("\n  %-24s %14s %14s %10s\n", title, "real [1/s]", "imag. [rad/s]", "damping");
+        for (int i = 0; i < set->count; i++) {
+            const double complex root = in_time(x, set->values[i]);
+            if (cimag(root) >= 0) { // the other one of a pair is with it
+                printf("  %22s  ", "");
+                print_cell(14, "%.6g", creal(root));
+                print_cell(14, cimag(root) > 0 ? "±%.6g" : "%.6g", cimag(root));
+                print_cell(10, "%.4g", linear_damping(root));
+                printf("\n");
+            }
+        }
+        printf(set->count == 0 ? "  none\n" : "");
     }
-}
-
-static void print_margins(const analysis *x)
-{
-    const linear_margins *m = &x->margins;
-    if (!x->stable) {
+    if (x->response.count > 0 && x->stable) {
+        printf("\n  margins%s: gain %.3g dB up, %.3g dB down; phase %.3g degrees; delay %.3g ms; "
+               "disk %.3g\n",
+               x->measured ? ", measured" : "", m->gain_db, m->gain_down_db, m->phase_deg,
+               1e3 * m->delay_s, m->disk);
+    } else if (x->response.count > 0) {
         printf("\n  the loop is unstable\n");
-        return;
     }
-    printf("\n  margins%s: gain %.3g dB up, %.3g dB down; phase %.3g degrees; delay %.3g ms; disk "
-           "%.3g\n",
-           x->measured ? ", measured" : "", m->gain_db, m->gain_down_db, m->phase_deg,
-           1e3 * m->delay_s, m->disk);
+    if (!isnan(x->least_push)) {
+        printf("  least impulse at the tip that loses contact: %.4g mN s\n", 1e3 * x->least_push);
+    }
 }
 
-// --- the command ------------------------------------------------------------------------------
+static int publish(const arguments *a, const char *path, owned_figure *o)
+{
+    arguments there = *a;
+    there.plot = path;
+    const int code = publish_figure(&there, &o->figure);
+    owned_figure_destroy(o);
+    return code;
+}
 
 // The loop gain, or the arm from the command to the hub's velocity, and to force or tip.
 static int plot(const arguments *a, const analysis *x)
 {
-    const linear_system *s = &x->arm.system;
     const int outputs[] = {LINEAR_HUB_VELOCITY, x->arm.force > 0 ? LINEAR_FORCE : LINEAR_TIP};
-    linear_response drawn[2] = {{0}};
-    linear_curve curves[2] = {{"loop gain", &x->response}};
-    int result = EXIT_DONE, count = 1;
-    if (x->response.count == 0) {
-        fault f = {.code = STATUS_OK};
-        for (count = 0; count < 2 && result == EXIT_DONE; count++) {
-            curves[count] = (linear_curve){linear_output_table[outputs[count]].name, &drawn[count]};
-            result = linear_arm_response(s, outputs[count], &drawn[count], &f) == STATUS_OK
-                         ? EXIT_DONE
-                         : complain_fault(&f);
-        }
+    linear_curve curves[2] = {{"loop gain", x->response}};
+    if (x->response.count > 0) {
+        return publish(a, a->plot, bode_figure_create(x->scenario, curves, 1));
     }
-    result = result == EXIT_DONE ? plot_bode(a, x->scenario, curves, count) : result;
-    free(drawn[0].frequency);
-    free(drawn[1].frequency);
+    fault f = {.code = STATUS_OK};
+    status code = STATUS_OK;
+    for (int i = 0; i < 2 && code == STATUS_OK; i++) {
+        curves[i].name = linear_output_names[outputs[i]];
+        code = linear_respond(&x->arm.system, outputs[i], 0, &curves[i].response, &f);
+    }
+    const int result = code == STATUS_OK
+                           ? publish(a, a->plot, bode_figure_create(x->scenario, curves, 2))
+                           : complain_fault(&f);
+    free(curves[0].response.frequency);
+    free(curves[1].response.frequency);
     return result;
 }
 
 static int report(const arguments *a, const analysis *x)
 {
-    int result = EXIT_DONE;
-    if (a->json != NULL) {
-        result = worse(result, write_json(a->json, as_json(x)));
-    }
-    if (a->plot != NULL) {
-        result = worse(result, plot(a, x));
-    }
+    int result = a->json != NULL ? write_json(a->json, as_json(x)) : EXIT_DONE;
+    result = worse(result, a->plot != NULL ? plot(a, x) : EXIT_DONE);
     if (a->nyquist != NULL) {
         result =
-            worse(result, x->response.count > 0 ? plot_nyquist(a, x->scenario, &x->response)
-                                                : complain("--nyquist draws the loop of --law"));
+            worse(result, publish(a, a->nyquist, nyquist_figure_create(x->scenario, &x->response)));
     }
     result = worse(result, write_file(a->csv, write_csv, x));
     result = worse(result, write_file(a->mat, write_mat, x));
     if (summary_wanted(a)) {
         print_analysis(x);
-        if (x->response.count > 0) {
-            print_margins(x);
+    }
+    return result;
+}
+
+// --- many -------------------------------------------------------------------------------------
+
+// What is told of each value, by poles and by runs.
+static const summary_info told[2] = {
+    {.key = "growth_per_s", .name = "growth", .label = "growth without friction", .unit = "1/s"},
+    {.key = "settling_time_s", .name = "settling_time", .label = "settling time", .unit = "s"}};
+
+static status survey(analysis *x, fault *f)
+{
+    const sweep *s = &x->sweep;
+    status code = STATUS_OK;
+    for (size_t i = 0; i < s->run_count && code == STATUS_OK; i++) {
+        scenario derived;
+        code = sweep_scenario(s, i, &derived, f);
+        for (int k = 0; k < 2 && code == STATUS_OK; k++) {
+            code = linear_stability(&derived, x->place, k, &x->numbers[k][i], &x->holds[k][i], f);
+
+            // the limit between neighbours of which one is stable
+            if (code == STATUS_OK && s->axis_count == 1 && i > 0 && x->limit_count < MOST_LIMITS &&
+                x->holds[k][i] != x->holds[k][i - 1]) {
+                const double *values = s->axes[0].values + i - 1;
+                x->limits[x->limit_count].by_runs = k;
+                code = linear_limit(s, x->place, k, values[0], values[1],
+                                    &x->limits[x->limit_count++].value, f);
+            }
         }
-        if (!isnan(x->least_push)) {
-            printf("  least impulse at the tip that loses contact: %.4g mN s\n",
-                   1e3 * x->least_push);
+    }
+    return code;
+}
+
+static json_t *survey_json(const analysis *x)
+{
+    const sweep *s = &x->sweep;
+    json_t *object = json_object(), *points = json_array(), *limits = json_array();
+    json_put(object, "scenario", json_text(s->base->name));
+    json_put(object, "at", json_string(x->word));
+    for (size_t i = 0; i < s->run_count; i++) {
+        json_t *entry = json_object(), *values = json_object();
+        for (int axis = 0; axis < s->axis_count; axis++) {
+            json_put(values, s->axes[axis].name, json_number(sweep_value(s, i, axis)));
+        }
+        json_put(entry, "values", values);
+        json_put(entry, told[0].key, json_number(x->numbers[0][i]));
+        json_put(entry, "stable", json_boolean(x->holds[0][i]));
+        json_put(entry, told[1].key, json_number(x->numbers[1][i]));
+        json_add(points, entry);
+    }
+    for (int i = 0; i < x->limit_count; i++) {
+        json_t *line = json_object();
+        json_put(line, "path", json_text(s->axes[0].name));
+        json_put(line, "value", json_number(x->limits[i].value));
+        json_put(line, "of", json_string(x->limits[i].by_runs ? "runs" : "poles"));
+        json_add(limits, line);
+    }
+    json_put(object, "varied", points);
+    json_put(object, "limits", limits);
+    return object;
+}
+
+static void write_survey(FILE *stream, const void *what)
+{
+    const analysis *x = what;
+    const sweep *s = &x->sweep;
+    csv_writer w = csv_begin(stream);
+    for (int axis = 0; axis < s->axis_count; axis++) {
+        csv_heading(&w, s->axes[axis].name, sweep_axis_parameter(&s->axes[axis])->unit);
+    }
+    csv_heading(&w, told[0].name, told[0].unit);
+    csv_heading(&w, told[1].name, told[1].unit);
+    csv_end_row(&w);
+    for (size_t i = 0; i < s->run_count; i++) {
+        for (int axis = 0; axis < s->axis_count; axis++) {
+            csv_number(&w, sweep_value(s, i, axis));
+        }
+        csv_number(&w, x->numbers[0][i]);
+        csv_number(&w, x->numbers[1][i]);
+        csv_end_row(&w);
+    }
+}
+
+// Growth and settling time, one picture above the other.
+static int plot_survey(const arguments *a, const analysis *x)
+{
+    owned_figure *both[2];
+    for (int k = 0; k < 2; k++) {
+        const sweep_picture shown = {&x->sweep, told[k].key, &told[k], x->numbers[k]};
+        both[k] = sweep_figure_create(&shown);
+    }
+    both[0]->panels[0].y.with_zero = x->sweep.axis_count == 1;
+    both[0]->panels[1] = both[1]->panels[0];
+    both[0]->panels[0].heading = "linear, without friction: unstable above zero";
+    both[0]->panels[1].heading = "runs, with friction: where one has a value it settles";
+    both[0]->figure.panel_count = 2;
+    const int code = publish(a, a->plot, both[0]);
+    owned_figure_destroy(both[1]);
+    return code;
+}
+
+static int report_survey(const arguments *a, const analysis *x)
+{
+    const sweep *s = &x->sweep;
+    size_t stable = 0, settle = 0;
+    int result = a->json != NULL ? write_json(a->json, survey_json(x)) : EXIT_DONE;
+    result = worse(result, write_file(a->csv, write_survey, x));
+    result = worse(result, a->plot != NULL ? plot_survey(a, x) : EXIT_DONE);
+    for (size_t i = 0; i < s->run_count; i++) {
+        stable += x->holds[0][i];
+        settle += x->holds[1][i];
+    }
+    if (summary_wanted(a)) {
+        say_title(s->base);
+        printf("%zu of %zu loops are stable without friction, %zu of the runs settle\n", stable,
+               s->run_count, settle);
+        for (int i = 0; i < x->limit_count; i++) {
+            say("  limit %s = %.6g %s, %s\n", s->axes[0].name, x->limits[i].value,
+                sweep_axis_parameter(&s->axes[0])->unit,
+                x->limits[i].by_runs ? "of runs, with friction" : "of poles, without friction");
         }
     }
     return result;
 }
 
-static int analyse_and_report(const arguments *a, scenario *s)
+static int look_around(const arguments *a, analysis *x)
+{
+    const sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
+    fault f = {.code = STATUS_OK};
+    status code = a->plot != NULL && a->varies.count > 2
+                      ? fault_set(&f, STATUS_BAD_ARGUMENT,
+                                  "--plot shows one or two varied parameters, but %d are varied",
+                                  a->varies.count)
+                      : sweep_init(&x->sweep, x->scenario, &request, &f);
+    if (code == STATUS_OK) {
+        const size_t count = x->sweep.run_count;
+        x->numbers[0] = calloc(2 * count, sizeof *x->numbers[0] + sizeof *x->holds[0]);
+        x->numbers[1] = x->numbers[0] + count;
+        x->holds[0] = (bool *)(x->numbers[0] + 2 * count);
+        x->holds[1] = x->holds[0] + count;
+        code = x->numbers[0] != NULL ? survey(x, &f) : fault_no_memory(&f);
+    }
+    const int result = code == STATUS_OK ? report_survey(a, x) : complain_fault(&f);
+    free(x->numbers[0]);
+    sweep_finish(&x->sweep);
+    return result;
+}
+
+// --- the command ------------------------------------------------------------------------------
+
+static int linear(const arguments *a, scenario *s)
 {
     fault f = {.code = STATUS_OK};
     analysis x = {.scenario = s,
-                  .place = a->place != NULL ? a->place : "contact",
+                  .word = a->place != NULL ? a->place : "contact",
                   .measured = a->injects,
                   .least_push = (double)NAN};
-    const linear_place place = strcmp(x.place, "free") == 0      ? LINEAR_FREE
-                               : strcmp(x.place, "contact") == 0 ? LINEAR_CONTACT
-                                                                 : LINEAR_STUCK;
-    if (a->varies.count > 0) {
-        return survey_stability(a, s, place, x.place);
+    x.place = strcmp(x.word, "free") == 0      ? LINEAR_FREE
+              : strcmp(x.word, "contact") == 0 ? LINEAR_CONTACT
+                                               : LINEAR_STUCK;
+    if (a->varies.count > 0 && (a->mat != NULL || a->nyquist != NULL || a->injects)) {
+        return complain("--mat, --nyquist and --inject are of one loop, not of --vary");
     }
-    const int result =
-        analyse(&x, place, a->looped, &f) == STATUS_OK ? report(a, &x) : complain_fault(&f);
-    finish(&x);
+    if (a->varies.count > 0 && s->parameters.control.law == LAW_NONE) {
+        return complain("--vary needs a control law, such as --set control.law=hybrid");
+    }
+    if ((a->nyquist != NULL || a->injects) && !a->looped) {
+        return complain("--nyquist and --inject are of the loop of --law");
+    }
+    if (a->varies.count > 0) {
+        return look_around(a, &x);
+    }
+    const int result = analyse(&x, a->looped, &f) == STATUS_OK ? report(a, &x) : complain_fault(&f);
+    linear_system_finish(&x.arm.system);
+    linear_system_finish(&x.loop);
+    free(x.response.frequency);
+    for (int i = 0; i < SETS; i++) {
+        free(x.sets[i].values);
+    }
     return result;
 }
 
@@ -438,5 +553,5 @@ const command linear_command = {
     .takes_scenarios = true,
     .options = {&set_options, &vary_options, &json_options, &options, &quiet_options,
                 &page_options},
-    .use = analyse_and_report,
+    .use = linear,
 };
