@@ -148,10 +148,10 @@ static status measure(run_loop *l, injector *i, double *hertz, double complex *g
         const bool answers = cabs(*gain) > NOTHING;
         agreed = steady && cabs(*gain - before) <= AGREE * cabs(*gain) ? agreed + 1 : 0;
         i->amplitude[0] = steady ? i->amplitude[0] : amplitude;
-        if (steady && !answers && i->amplitude[1] == 0 && i->turn[1] != i->turn[0]) {
+        if (steady && !answers && i->amplitude[1] == 0 && isfinite(i->awake)) {
             i->amplitude[1] = i->awake;
             agreed = 0;
-        } else if (agreed == 2 && answers && !(i->awake <= i->amplitude[0])) {
+        } else if (steady && answers && i->amplitude[1] == 0 && i->amplitude[0] < i->awake) {
             i->awake = i->amplitude[0];
             i->awake_hertz = *hertz;
         }
