@@ -23,11 +23,11 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define STIFFNESS    0.25   // share by which the stiffness may be wrong
 #define MOVES        0.05   // a slower hub tells nothing of what arm it is [rad/s]
 #define TAILS        4.0    // degrees of freedom of the distribution that misses of readings have
-#define STIFF_MEMORY                                                                               \
-    0.5 // over which readings count for the stiffness, and as what the nominal one does [s]
-#define LEAST_STIFF 0.2  // share of it that the arm has at least
-#define OUTLIER     4.0  // readings further off, in standard deviations, are worth less
-#define REST        0.01 // a slower hub counts as at rest [rad/s]
+#define STIFF_MEMORY 0.5    // over which readings count for the stiffness [s],
+#define STIFF_GUESS  0.15   // and as what the nominal one does [s]
+#define LEAST_STIFF  0.2    // share of it that the arm has at least
+#define OUTLIER      4.0    // readings further off, in standard deviations, are worth less
+#define REST         0.01   // a slower hub counts as at rest [rad/s]
 
 // The modes of the present state.
 static const mode_set *modes_of(const arm_observer *o)
@@ -99,7 +99,7 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup, do
     o->stiction = setup->stiction;
     o->period = setup->period;
     o->delay = fmin(setup->delay, setup->period);
-    o->stiff_nominal = STIFF_MEMORY * force * force;
+    o->stiff_nominal = STIFF_GUESS * force * force;
     for (int k = 0; k < 2; k++) {
         double h = k == 0 ? o->delay : o->period - o->delay;
         sample_model(o, &o->arm.free, 2 * o->arm.free.count, h, &o->free_model[k]);

@@ -47,9 +47,9 @@ static const controller_parameter table[PARAMETERS] = {
 #define SWING_MEAN      0.04  // over which that is averaged [s]
 
 // Of CATCH.
-#define THROWN_BACK   3    // losses of contact after which it begins
+#define THROWN_BACK   4    // losses of contact after which it begins
 #define CATCH_SPEED   1.0  // share of its whole way that the hub goes in a second at first,
-#define CATCH_GROWTH  5.0  // what that gains with the way made [1/s],
+#define CATCH_GROWTH  7.0  // what that gains with the way made [1/s],
 #define CATCH_END     0.03 // and the time constant of its end [s]
 #define CATCH_MEAN    0.01 // over which the reading is averaged [s]
 #define INTEGRAL_TIME 0.1  // of the force error [s]
@@ -219,7 +219,7 @@ static double within_force(const observer_memory *m, const estimator *e, double 
     const arm_observer *o = observer_of(m);
     double per_volt = arm_observer_force_per_torque(o) * m->rig.torque_per_volt;
     double stopping = stopping_force(m, e), wanted = m->p[FORCE_WANTED];
-    double least = OBSERVER_LEAST_FORCE * wanted;
+    double least = fmax(0, fmin(OBSERVER_LEAST_FORCE * wanted, stopping / 2));
     double most = m->p[FORCE_LIMIT] > 0 ? m->p[FORCE_LIMIT] : HUGE_VAL;
     most = stopping > most ? 2 * stopping - wanted : most;
     if (-per_volt * m->rig.voltage_limit > least) {
@@ -239,13 +239,13 @@ static double mode_at_rest(const observer_memory *m, double force)
 // The first mode's way from a coordinate and its rate to a force [N].
 static void plan_rise(observer_memory *m, double time, double coordinate, double rate, double force)
 {
-    const double limit = m->p[FORCE_LIMIT];
+    const double limit = m->p[FORCE_LIMIT], stopped = coordinate + rate / divergence(m);
     const force_rise_task task = {
         .coordinate = coordinate,
         .rate = rate,
         .divergence = divergence(m),
         .end = mode_at_rest(m, force),
-        .least = mode_at_rest(m, OBSERVER_LEAST_FORCE * force),
+        .least = fmax(0, fmin(mode_at_rest(m, OBSERVER_LEAST_FORCE * force), stopped / 2)),
         .most = limit > 0 ? mode_at_rest(m, limit) : HUGE_VAL,
         .time = time,
     };
@@ -396,6 +396,7 @@ static void begin_contact(observer_memory *m, double time)
     m->hurries = false;
     m->correction = 0;
     m->readings_without_force = 0;
+    m->away = 0;
     m->touched = observer_of(m)->met;
     begin_rise(m, time);
 }
@@ -425,7 +426,8 @@ static void follow_contact(observer_memory *m, const controller_input *in)
             return;
         }
         observer_arms_leave(&m->arms, in->time);
-        smooth_approach_touch(&m->plan, design_of(m));
+        smooth_approach_touch(&m->plan, design_of(m),
+                              brief ? design_of(m)->soft_speed : design_of(m)->touch_speed);
         m->mode = RECOVER;
     }
 }
@@ -500,10 +502,10 @@ static void sample(void *memory, const controller_input *in, controller_output *
         if (m->hurries) {
             observer_arms_know_wall(&m->arms, m->rig.wall_angle);
         }
-        m->plan = (smooth_approach){
-            .period = m->rig.period,
-            .guarded =
-                m->rig.wall_angle - fmin(m->p[WALL_DOUBT], GUARD_TIME * design_of(m)->touch_speed)};
+        const double doubt = fmin(m->p[WALL_DOUBT], GUARD_TIME * design_of(m)->arrival_speed);
+        m->plan = (smooth_approach){.period = m->rig.period,
+                                    .guarded = m->rig.wall_angle - doubt,
+                                    .passed = m->rig.wall_angle + doubt};
         smooth_approach_begin(&m->plan, design_of(m), in->encoder);
     } else {
         // the first reading of a contact shows its impulse

@@ -11,6 +11,8 @@
 
 // The numbers of the design, derived in docs/explanation/control-design.md.
 #define TRAVEL_TIME  0.05 // in which the arm takes up a wanted speed [s]
+#define SOFT_SPEED   0.25 // of a soft touch, for every newton wanted [rad/s/N],
+#define LEAST_SPEED  0.15 // but no less, so as to come in time [rad/s]
 #define LEAST_MARGIN 0.05 // of p h over 1, below which the force does not run away with the motion
 
 // Modal coordinates and rates of one state over a period, under a command that gives so much torque
@@ -130,6 +132,11 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
                          plain_exp(-s * (setup->period + setup->delay));
         d->touch_speed = fmin(d->touch_speed, share * stopped);
     }
+
+    // a wall that throws back is met softly; more links than two vibrate off under the small
+    // force that a soft touch begins with
+    d->soft_speed = fmin(d->touch_speed, fmax(LEAST_SPEED, SOFT_SPEED * task->force));
+    d->arrival_speed = arm->free.count > 2 ? d->touch_speed : d->soft_speed;
 
     d->ramp_edge = arm->free.count > 2 ? 2 * PI / sqrt(arm->free.square[2]) : 0;
     d->ramp_time = 2 * PI / sqrt(arm->free.square[1]) + d->ramp_edge;

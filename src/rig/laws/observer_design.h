@@ -12,7 +12,8 @@ typedef struct observer_design {
     arm_observer observer;
     double travel_gain[ESTIMATOR_STATES]; // in flight [V per unit of state]
     double press_gain[ESTIMATOR_STATES];  // in contact [V per unit of state]
-    double touch_speed, top_speed;        // of the rotation [rad/s]
+    double touch_speed, top_speed;        // of the rotation [rad/s],
+    double soft_speed, arrival_speed;     // of a touch after a bounce, of the first [rad/s]
     double ramp_time;                     // of a change of speed that leaves no vibration [s],
     double ramp_edge;                     // of which its acceleration rises, and falls [s]
     double divergence;                    // s, with which a wrong force in contact runs away [1/s]

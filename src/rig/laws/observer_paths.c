@@ -9,14 +9,18 @@
 
 // --- an approach that leaves no vibration ----------------------------------------------------
 
-// Rotation of the plan at a speed, without vibration.
-static void plan_rotation(smooth_approach *p, const observer_design *d, double speed)
+#define OVERLAP 0.7 // share of a change of speed after which the next one may begin
+
+// The plan from a rotation at a speed, without vibration, all changes still to be made.
+static void plan_from(smooth_approach *p, const observer_design *d, double speed)
 {
     const mode_set *set = &d->observer.arm.free;
     memset(p->state, 0, sizeof p->state);
     for (int i = 0; i < set->count; i++) {
         p->state[set->count + i] = set->momentum[i] * speed;
     }
+    p->from = speed;
+    p->changing[0] = p->changing[1] = 0;
 }
 
 double smooth_approach_speed(const smooth_approach *p, const observer_design *d)
@@ -26,34 +30,12 @@ double smooth_approach_speed(const smooth_approach *p, const observer_design *d)
     return p->state[set->count] / set->momentum[0];
 }
 
-// From now on the plan takes up another speed [rad/s].
-static void change_speed(smooth_approach *p, const observer_design *d, double speed)
-{
-    p->speed_before = smooth_approach_speed(p, d);
-    p->planned_change = speed - p->speed_before;
-    p->changing = 0;
-}
-
-void smooth_approach_begin(smooth_approach *p, const observer_design *d, double angle)
-{
-    assert(p != NULL && d != NULL && p->period > 0);
-    double way = p->guarded - angle;
-    double room = (way - d->touch_speed * d->ramp_time / 2) / d->ramp_time;
-
-    // from rest to the cruising speed
-    p->start_angle = angle;
-    p->cruise_speed = fmax(d->touch_speed, fmin(d->top_speed, room));
-    p->slows = !(p->cruise_speed > d->touch_speed);
-    plan_rotation(p, d, 0);
-    change_speed(p, d, p->cruise_speed);
-}
-
-void smooth_approach_touch(smooth_approach *p, const observer_design *d)
+void smooth_approach_touch(smooth_approach *p, const observer_design *d, double speed)
 {
     assert(p != NULL && d != NULL);
-    plan_rotation(p, d, d->touch_speed);
-    change_speed(p, d, d->touch_speed);
-    p->slows = true;
+    plan_from(p, d, speed);
+    p->change[0] = p->change[1] = 0;
+    p->slows = p->searches = true;
 }
 
 // Share of a change of speed that is made after a time: the integral of a trapezoid, which is one
@@ -74,8 +56,13 @@ double smooth_approach_follow(smooth_approach *p, const observer_design *d)
     assert(p != NULL && d != NULL);
 
     // the mean over the period
-    double share = share_changed(d, p->changing + p->period) - share_changed(d, p->changing);
-    double torque = share * p->planned_change / p->period * d->observer.arm.inertia;
+    double torque = 0;
+    for (int i = 0; i < 1 + p->slows; i++) {
+        double before = share_changed(d, p->changing[i]);
+        p->changing[i] += p->period;
+        torque += (share_changed(d, p->changing[i]) - before) * p->change[i];
+    }
+    torque *= d->observer.arm.inertia / p->period;
 
     // the arm under that
     double next[ESTIMATOR_STATES];
@@ -87,34 +74,77 @@ double smooth_approach_follow(smooth_approach *p, const observer_design *d)
         }
     }
     memcpy(p->state, next, (size_t)model->n * sizeof next[0]);
-    p->changing += p->period;
     return torque;
+}
+
+// How far the tip goes at most beyond where a change of the rotation's speed by -1 rad/s to rest
+// ends, as the beam bends on [s].
+static double swing_beyond(const smooth_approach *p, const observer_design *d)
+{
+    const mode_set *set = &d->observer.arm.free;
+    smooth_approach stop = {.period = p->period, .change = {-1}};
+    double most = -HUGE_VAL, tip = 0;
+    plan_from(&stop, d, 1);
+    while (stop.changing[0] < d->ramp_time) {
+        smooth_approach_follow(&stop, d);
+        tip = 0;
+        for (int i = 0; i < set->count; i++) {
+            tip += set->tip[i] * stop.state[i];
+        }
+        most = fmax(most, tip);
+    }
+    return most - tip;
+}
+
+void smooth_approach_begin(smooth_approach *p, const observer_design *d, double angle)
+{
+    assert(p != NULL && d != NULL && p->period > 0);
+    const double T = d->ramp_time, soft = d->arrival_speed, beyond = swing_beyond(p, d);
+    const double room = p->guarded - angle - soft * (T / 2 - beyond);
+
+    // from rest to the cruising speed
+    p->start_angle = angle;
+    p->change[0] = fmax(soft, fmin(d->top_speed, room / (OVERLAP * T + beyond)));
+    p->change[1] = 0;
+    p->beyond = beyond * (p->change[0] - soft);
+    p->slows = !(p->change[0] > soft);
+    plan_from(p, d, 0);
 }
 
 void smooth_approach_slow(smooth_approach *p, const observer_design *d, double tip)
 {
     assert(p != NULL && d != NULL);
-    double left = p->guarded - tip;
-    double slowing = (p->cruise_speed + d->touch_speed) / 2 * d->ramp_time;
-    if (!p->slows && p->changing >= d->ramp_time && left <= slowing) {
-        p->slows = true;
-        change_speed(p, d, d->touch_speed);
+    const double T = d->ramp_time, cruise = p->change[0], soft = d->arrival_speed;
+    if (!p->slows && p->changing[0] >= OVERLAP * T) {
+        const double unmade = fmax(0, T - p->changing[0]);
+        const double way = cruise * (T - unmade * unmade / (2 * T)) + (soft - cruise) * T / 2;
+        if (p->guarded - p->beyond - tip <= way) {
+            p->slows = true;
+            p->change[1] = soft - cruise;
+        }
+    } else if (p->slows && !p->searches && tip > p->passed && p->changing[1] >= T) {
+        // the wall is further than believed
+        p->searches = true;
+        p->from = soft;
+        p->change[0] = d->touch_speed - soft;
+        p->change[1] = p->changing[0] = p->changing[1] = 0;
     }
 }
 
 void smooth_approach_again(smooth_approach *p, const observer_design *d)
 {
     assert(p != NULL && d != NULL);
-    double under_way = p->changing;
-    if (p->slows) {
-        plan_rotation(p, d, p->speed_before);
-        change_speed(p, d, d->touch_speed);
-    } else {
+    const double first = p->changing[0], second = p->changing[1];
+    const bool slows = p->slows;
+    if (!slows) {
         smooth_approach_begin(p, d, p->start_angle);
     }
-    while (p->changing < under_way) {
+    plan_from(p, d, p->from);
+    while (p->changing[0] < first) {
+        p->slows = slows && p->changing[0] > first - second - p->period / 2;
         smooth_approach_follow(p, d);
     }
+    p->slows = slows;
 }
 
 // --- the quickest touch ----------------------------------------------------------------------

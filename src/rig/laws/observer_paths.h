@@ -8,33 +8,36 @@
 
 // --- an approach that leaves no vibration -----------------------------------------------------
 
-// The approach that leaves no vibration behind: from rest to a cruising speed, and from that to the
-// speed of the touch before a guarded angle, each change of speed a box of one free vibration's
-// period as acceleration, convolved with one of the next vibration's.
+// The approach that leaves no vibration behind: from rest to a cruising speed, from that to the
+// speed of a soft touch before a guarded angle, and faster again where no wall was, each change of
+// speed a box of one free vibration's period as acceleration, convolved with one of the next
+// vibration's.
 
 typedef struct smooth_approach {
     double period;                  // between samples [s]
-    double guarded;                 // tip angle from which on the wall may be felt [rad]
+    double guarded, passed;         // tip angles between which the wall is probably felt [rad]
     double state[ESTIMATOR_STATES]; // planned: free coordinates and rates
     double start_angle;             // [rad]
-    double cruise_speed;            // between its two changes of speed [rad/s]
-    double speed_before;            // the present change of speed [rad/s]
-    double planned_change;          // of speed, the present one [rad/s]
-    double changing;                // how long it has been under way [s]
-    bool slows;                     // it has begun to slow down for the touch
+    double from;                    // the rotation's speed before both changes of it [rad/s],
+    double beyond;                  // by which the tip swings beyond the end of slowing down [rad]
+    double change[2];               // which may overlap [rad/s],
+    double changing[2];             // and how long each has been under way [s]
+    bool slows;                     // the second has begun, to the speed of the touch
+    bool searches;                  // the wall was not where it is probable
 } smooth_approach;
 
-// Begins at rest at an angle [rad], period and guarded angle being set; the cruising speed leaves
-// room to slow down in.
+// Begins at rest at an angle [rad], period and both angles of the wall being set; the cruising
+// speed leaves room to slow down in.
 void smooth_approach_begin(smooth_approach *p, const observer_design *d, double angle);
 
-// Goes on with the speed of the touch.
-void smooth_approach_touch(smooth_approach *p, const observer_design *d);
+// Goes on with a speed [rad/s].
+void smooth_approach_touch(smooth_approach *p, const observer_design *d, double speed);
 
-// The plan as it would be, had the present change of speed been begun for the design of now.
+// The plan as it would be, had the present changes of speed been begun for the design of now.
 void smooth_approach_again(smooth_approach *p, const observer_design *d);
 
-// Begins to slow down where the tip [rad] comes near the guarded angle.
+// Begins to slow down where the tip [rad] comes near the guarded angle; beyond the other, to
+// search.
 void smooth_approach_slow(smooth_approach *p, const observer_design *d, double tip);
 
 // Planned speed of the rotation [rad/s].
