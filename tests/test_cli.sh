@@ -518,6 +518,13 @@ expect 0 linear compare/hybrid --at free --law
 expect 2 linear compare/hybrid --at free --law --inject
 says err "not free"
 
+# without LAPACK a sentence; runs do not need it
+mkdir -p no_lapack
+echo >no_lapack/liblapack.so.3
+LD_LIBRARY_PATH=$PWD/no_lapack expect 1 linear compare/hybrid
+says err "need LAPACK"
+LD_LIBRARY_PATH=$PWD/no_lapack expect 0 run compare/hybrid --quiet
+
 expect 2 bench --only tables_z
 says err "did you mean 'tables_s'?"
 expect 2 bench --baseline hit.yaml

@@ -1,5 +1,6 @@
 // Sampled loops: limits of stability, margins, loop gains measured in runs, pushes that lose
 // contact.
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -140,21 +141,44 @@ static void margins_are_met_by_the_poles(void **state)
     }
 }
 
-// Small sines in a run meet what the matrices say.
+static const char *plugin_path, *program_path;
+
+// Small sines in a run meet what the matrices say, also of laws that are not the lab's.
 static void measured_loops_are_the_exact_ones(void **state)
 {
     (void)state;
-    static const char *const names[] = {"compare/force-pd", "compare/hybrid", "compare/impedance"};
-    for (int i = 0; i < 3; i++) {
-        scenario s = opened(names[i], IDEAL);
+    char loaded[1024];
+    snprintf(loaded, sizeof loaded,
+             IDEAL "control.law=plugin control.settings=rise_time=0.05 control.plugin=%s",
+             plugin_path);
+    const char *const cases[][2] = {
+        {"compare/force-pd", IDEAL},  {"compare/hybrid", IDEAL},   {"compare/impedance", IDEAL},
+        {"compare/force-pd", loaded}, {"compare/force-pd", IDEAL},
+    };
+    for (int i = 0; i < 5; i++) {
+        scenario s = opened(cases[i][0], cases[i][1]);
+        parameters *p = &s.parameters;
+        p->code_allowed = i >= 3;
+        if (i == 4) {
+            p->control.law = LAW_PROCESS;
+            snprintf(p->control.command, sizeof p->control.command, "python3 %s", program_path);
+        }
+
+        // one that does not hold the force is asked for that which it comes to
+        for (int k = 0; k < 6 && i >= 3; k++) {
+            run_result result;
+            assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+            p->control.force = result.summary.steady_force_N;
+            run_finish(&result);
+        }
         linear_arm l;
         linear_system loop = loop_of(&s, &l);
         linear_response r;
         fault f = {.text = ""};
         if (linear_inject(&s, &r, &f) != STATUS_OK) {
-            fail_msg("%s: %s", names[i], f.text);
+            fail_msg("%s: %s", cases[i][1], f.text);
         }
-        const double period = 1 / s.parameters.control.rate;
+        const double period = 1 / p->control.rate;
         double complex scratch[64 * 67];
         int compared = 0;
         for (int k = 0; k < r.count; k++) {
@@ -288,8 +312,11 @@ static void the_least_push_lifts_the_arm_by_a_micrometre(void **state)
     scenario_finish(&s);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    assert(argc == 3);
+    plugin_path = argv[1];
+    program_path = argv[2];
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(limits_are_those_found_otherwise),
         cmocka_unit_test(margins_are_met_by_the_poles),
