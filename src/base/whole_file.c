@@ -14,6 +14,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "src/base/text_stream.h"
@@ -32,6 +33,7 @@ enum { MOST_LINKS = 40 }; // followed one after the other, as the kernel does
 // and one without a place is merely not cleaned up after a signal.
 enum { MOST_UNFINISHED = 8 };
 static _Atomic(char *) unfinished[MOST_UNFINISHED];
+static atomic_bool ending; // of the program: other threads create no more of them
 
 static void remember_unfinished(char *name)
 {
@@ -68,11 +70,16 @@ void whole_file_remove_unfinished(void)
     if (process > 0) {
         kill(process, SIGKILL);
     }
-    for (int i = 0; i < MOST_UNFINISHED; i++) {
-        char *name = atomic_load(&unfinished[i]);
-        if (name != NULL) {
-            unlink(name);
+    // a thread that is just creating one is given time to have done so
+    atomic_store(&ending, true);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < MOST_UNFINISHED; i++) {
+            char *name = atomic_load(&unfinished[i]);
+            if (name != NULL) {
+                unlink(name);
+            }
         }
+        nanosleep(&(struct timespec){.tv_nsec = pass == 0 ? 1000000 : 0}, NULL);
     }
 }
 
@@ -306,12 +313,15 @@ static int create_temporary(whole_file *w, mode_t mode)
         }
 
         // creating it tells whether the name is free
-        int descriptor = open(w->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        remember_unfinished(w->temporary);
+        const bool ends = atomic_load(&ending);
+        int descriptor =
+            ends ? -1 : open(w->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        errno = ends ? ECANCELED : errno;
         if (descriptor >= 0 && !lock_temporary(descriptor)) {
             close(descriptor);
             errno = EEXIST;
         } else if (descriptor >= 0) {
-            remember_unfinished(w->temporary);
             if (mode != 0) {
                 // not owning the old file is no reason to write nothing
                 (void)!fchmod(descriptor, mode);
@@ -319,6 +329,7 @@ static int create_temporary(whole_file *w, mode_t mode)
             return descriptor;
         }
 
+        forget_unfinished(w->temporary);
         free(w->temporary);
         w->temporary = NULL;
         if (errno != EEXIST) {
