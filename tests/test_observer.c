@@ -260,17 +260,49 @@ static void overshoot_is_small_when_told_the_truth(void **state)
 static void wrong_beliefs_do_no_harm(void **state)
 {
     (void)state;
-    const char *const beliefs[] = {
-        "belief.mass_factor=0.85",    "belief.mass_factor=1.15",     "belief.friction_factor=0.7",
-        "belief.friction_factor=1.3", "belief.wall_error=0.03",      "belief.wall_error=-0.03",
-        "belief.k2_factor=0.75",      "belief.k2_factor=1.25",       "belief.torque_factor=0.85",
-        "belief.torque_factor=1.15",  "initial.angle=-0.6",          "wall.kind=plane",
-        "wall.restitution=0.3",       "belief.hub_spring_factor=10", "sensor.fsr_noise=0.06"};
+    const char *const beliefs[] = {"belief.mass_factor=0.85",
+                                   "belief.mass_factor=1.15",
+                                   "belief.friction_factor=0.7",
+                                   "belief.friction_factor=1.3",
+                                   "belief.wall_error=0.03",
+                                   "belief.wall_error=-0.03",
+                                   "belief.k2_factor=0.75",
+                                   "belief.k2_factor=1.25",
+                                   "belief.torque_factor=0.85",
+                                   "belief.torque_factor=1.15",
+                                   "initial.angle=-0.6",
+                                   "wall.kind=plane",
+                                   "wall.restitution=0.3",
+                                   "belief.hub_spring_factor=10",
+                                   "sensor.fsr_noise=0.06",
+                                   "sensor.tachometer_offset=0.02",
+                                   "sensor.tachometer_offset=-0.02"};
     for (size_t i = 0; i < sizeof beliefs / sizeof beliefs[0]; i++) {
         summary s = rig_summary(SETTINGS("control.law=observer", "run.duration=2", beliefs[i]));
         check_below(s.force_over_command_N, 0.3);
         assert_false(isnan(s.settling_time_s));
         check_close(s.steady_error_N, 0, 0.05);
+    }
+}
+
+// A tip thrown back is met softly: the second meeting is no harder than the command allows.
+static void walls_that_throw_back_are_met_softly(void **state)
+{
+    (void)state;
+    static const char *const walls[][2] = {{"wall.restitution=0.1"},
+                                           {"wall.restitution=0.2"},
+                                           {"wall.contact=kelvin-voigt", "wall.stiffness=1000"},
+                                           {"wall.contact=kelvin-voigt", "wall.stiffness=5000"}};
+    for (size_t i = 0; i < sizeof walls / sizeof walls[0]; i++) {
+        for (int newtons = 1; newtons <= 3; newtons += 2) {
+            char force[32];
+            snprintf(force, sizeof force, "control.force=%d", newtons);
+            summary s = rig_summary(SETTINGS("control.law=observer", "run.duration=2", force,
+                                             walls[i][0], walls[i][1]));
+            check_below(s.smoothed_over_command_N, 0.3 * newtons);
+            check_below(s.settling_time_s, 0.3);
+            check_below(s.first_contact_s, 1.5 * 0.293); // open-loop's
+        }
     }
 }
 
@@ -631,6 +663,7 @@ int main(void)
         cmocka_unit_test(a_touch_loses_energy),
         cmocka_unit_test(overshoot_is_small_when_told_the_truth),
         cmocka_unit_test(wrong_beliefs_do_no_harm),
+        cmocka_unit_test(walls_that_throw_back_are_met_softly),
         cmocka_unit_test(a_delay_untold_does_no_harm),
         cmocka_unit_test(it_settles_on_many_links),
         cmocka_unit_test(a_hub_on_a_spring_does_not_swing),

@@ -25,6 +25,7 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define TAILS        4.0    // degrees of freedom of the distribution that misses of readings have
 #define STIFF_MEMORY 0.5    // over which readings count for the stiffness [s],
 #define STIFF_GUESS  0.15   // and as what the nominal one does [s]
+#define OFFSET_TIME  0.1    // for which the tachometer counts as one without an offset [s]
 #define LEAST_STIFF  0.2    // share of it that the arm has at least
 #define OUTLIER      4.0    // readings further off, in standard deviations, are worth less
 #define REST         0.01   // a slower hub counts as at rest [rad/s]
@@ -130,6 +131,19 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
     o->stiff_force = o->stiff_bend = 0;
     o->last_voltage = in->voltage;
     o->tip_before = o->tip_now = in->encoder;
+    o->turned = in->encoder;
+    o->rate_before = in->tachometer;
+    o->observed = 0;
+}
+
+// Offset of the tachometer: how much further the hub has turned by it than by the encoder, over the
+// time of that [rad/s].
+static double tachometer_offset(arm_observer *o, const controller_input *in)
+{
+    o->turned += (o->rate_before + in->tachometer) / 2 * o->period;
+    o->rate_before = in->tachometer;
+    o->observed += o->period;
+    return (o->turned - in->encoder) / (o->observed + OFFSET_TIME);
 }
 
 void arm_observer_know_wall(arm_observer *o, double angle)
@@ -402,8 +416,10 @@ void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes
     o->last_voltage = in->voltage;
 
     // what the sensors say
+    controller_input read = *in;
+    read.tachometer -= tachometer_offset(o, in);
     o->moves = fabs(in->tachometer) > MOVES;
-    take_motion(o, in);
+    take_motion(o, &read);
     if (o->touches && takes_force) {
         learn_stiffness(o, in, take_force(o, in));
     }

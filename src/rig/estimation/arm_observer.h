@@ -21,6 +21,8 @@ typedef struct arm_observer {
     sampled_model free_model[2], contact_model[2];
     bool touches;
     estimator e;
+    double turned, rate_before; // angle by the tachometer, its last reading [rad], [rad/s]
+    double observed;            // for how long [s]
     double last_voltage;        // in effect at the sample before [V]
     double since;               // when the contact or the flight began [s]
     double wall, wall_variance; // as last known [rad], [rad2]
