@@ -116,6 +116,7 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
     quadrature[QUADRATURE_DAMPING] = m->state[SLOT_DAMPING_POWER];
     quadrature[QUADRATURE_FORCE] = m->state[SLOT_FORCE];
     quadrature[QUADRATURE_WALL] = m->state[SLOT_WALL_POWER];
+    quadrature[QUADRATURE_PUSHED] = m->state[SLOT_WALL_WORK];
 
 #pragma GCC unroll 12
     for (int stage = 1; stage <= stages; stage++) {
@@ -136,7 +137,12 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
         double *k = rate + stage * length;
         mode.current = loaded && m->electric ? y[current] : 0;
         if (loaded) { // general, and seldom worth its place between the stages
-            chain_accelerations(a, m->links, y, y + n, mode, k + n, &reaction);
+            double node = 0;
+            for (int j = 0; j < stage; j++) {
+                node += weights[stage][j];
+            }
+            const arm *now = motion_arm_at(a, m, m->state[SLOT_TIME] + node * h);
+            chain_accelerations(now, m->links, y, y + n, mode, k + n, &reaction);
         } else {
             chain_sweep(a, a->links, a->hub_spring, contact, false, m->links, y, y + n, mode, k + n,
                         &reaction);
@@ -152,6 +158,7 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
         k[2 * n + QUADRATURE_DAMPING] = reaction.damping_power;
         k[2 * n + QUADRATURE_FORCE] = reaction.force;
         k[2 * n + QUADRATURE_WALL] = reaction.wall_power;
+        k[2 * n + QUADRATURE_PUSHED] = reaction.wall_work;
     }
 }
 

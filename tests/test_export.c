@@ -149,6 +149,8 @@ static char *csv_of(int links, double film)
                       .accelerometer = (double)NAN,
                       .wall_energy = (double)NAN,
                       .wall_loss = (double)NAN,
+                      .wall_place = (double)NAN,
+                      .wall_work = (double)NAN,
                       .weight_energy = (double)NAN,
                       .face_depth = (double)NAN,
                       .predicted_force = (double)NAN};

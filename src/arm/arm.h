@@ -56,11 +56,11 @@ typedef struct arm {
 
 // Whether the arm is equal bare links with equal linear joints, damped in proportion to their
 // stiffness or not, with a motor whose current follows at once: what the equations of special
-// engines and predictors are for. In a level plane.
+// engines and predictors are for. In a level plane, the wall at rest.
 static inline bool arm_is_plain(const arm *a)
 {
-    return a->tip_mass == 0 && a->gravity == 0 && !a->uneven && a->stiffening == 0 &&
-           a->air_drag == 0 && a->damped_modes == 0 && !a->motor.electric;
+    return !wall_moves(&a->wall) && a->tip_mass == 0 && a->gravity == 0 && !a->uneven &&
+           a->stiffening == 0 && a->air_drag == 0 && a->damped_modes == 0 && !a->motor.electric;
 }
 
 // Length [m], mass [kg] and moment of inertia about the centre of mass [kg m2] of link k, and

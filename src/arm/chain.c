@@ -1,5 +1,6 @@
 #include "src/arm/chain.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -82,6 +83,10 @@ void chain_penetration(const arm *a, const double *q, const double *w, double *g
     }
     if (rate != NULL) {
         *rate = chain_penetration_rate(a, q, w);
+        if (wall_moves(&a->wall)) {
+            const wall_contact at = contact_of(a, q, w, &vx, &vy);
+            *rate += wall_comes(&a->wall, at.ex, at.ey);
+        }
     }
 }
 
@@ -102,6 +107,8 @@ double chain_penetration_change(const arm *a, const double *q, const double *tur
         of_s = 2 * inline_cos(middle) * half;
         of_c = -2 * inline_sin(middle) * half;
     }
+
+    assert(!wall_moves(&a->wall));
 
     // of the point's distance from the last link's line, or the tip's from the plane
     if (a->wall.kind == WALL_POINT) {

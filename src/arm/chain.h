@@ -37,7 +37,7 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
 #define CHAIN_FOLDED 1e-3
 bool chain_is_folded(const arm *a, const double *q);
 
-// Penetration g [m], its rate [m/s] (either may be NULL).
+// Penetration g [m], its rate [m/s], seen from a wall that moves (either may be NULL).
 void chain_penetration(const arm *a, const double *q, const double *w, double *g, double *rate);
 
 // How much larger g is at angles q + turn than at q [m], to all digits of turn[dof].

@@ -82,7 +82,8 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     if (gives && mode.contact) {
         double lever = wall_last_lever(&wall, l_last, link[N - 1].c, link[N - 1].s);
         double depth = wall.penetration;
-        double rate = wall_penetration_rate(&wall, vx, vy, lever, omega[N - 1]);
+        double rate = wall_penetration_rate(&wall, vx, vy, lever, omega[N - 1]) +
+                      wall_comes(&a->wall, wall.ex, wall.ey);
         if (face) {
             held_back = wall_force(&a->wall, depth, rate);
             wall_power = a->wall.damping * rate * rate;
@@ -249,6 +250,9 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
         last = wall_last_lever(&wall, l_last, link[N - 1].c, link[N - 1].s);
         rate2 = wall.ex * ax + wall.ey * ay + last * out[N - 1] + wall.convective;
     }
+    const double comes = loaded ? wall_comes(&a->wall, wall.ex, wall.ey) : 0;
+    const double comes_faster = loaded ? wall_comes_faster(&a->wall, wall.ex, wall.ey) : 0;
+    rate2 += face ? 0 : comes_faster; // the mass of a face feels the acceleration in space
     if (constrained) {
         const double yields = wall.ex * bx + wall.ey * by + last * link[N - 1].unit;
         force = -rate2 / yields;
@@ -261,11 +265,13 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
         }
         rate2 = face ? rate2 + force * yields : 0;
     }
+    rate2 += face ? comes_faster : 0;
     reaction->force = force;
     if (gap) {
         reaction->gap_acceleration = -rate2;
         reaction->gap = wall_stands(&a->wall) ? -wall.penetration : HUGE_VAL;
-        reaction->gap_velocity = -wall_penetration_rate(&wall, vx, vy, last, omega[N - 1]);
+        reaction->gap_velocity =
+            -(wall_penetration_rate(&wall, vx, vy, last, omega[N - 1]) + comes);
     }
     reaction->friction = sliding;
     if (hub_spring) {
@@ -280,6 +286,7 @@ KERNEL void chain_sweep_loaded(const arm *a, int N, bool hub_spring, bool contac
     reaction->viscous_power = a->motor.damping * w[0] * w[0];
     reaction->damping_power = damping_power;
     reaction->wall_power = wall_power;
+    reaction->wall_work = force * comes;
     reaction->motor_torque = motor_torque;
 }
 

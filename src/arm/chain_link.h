@@ -29,5 +29,6 @@ typedef struct chain_reaction {
     double viscous_power;     // lost to back EMF and viscous friction [W]
     double damping_power;     // lost in the springs' structural damping [W]
     double wall_power;        // lost in a wall that gives [W]
+    double wall_work;         // power of a wall that moves [W]
     double motor_torque;      // of the current of an electric drive, else 0 [N m]
 } chain_reaction;

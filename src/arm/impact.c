@@ -8,9 +8,12 @@ impact_result impact_velocity_increments(const arm *a, chain_link *work, const d
     double compliance;
     chain_contact_response(a, work, q, false, increment, &compliance);
     compliance += wall_has_face(&a->wall) ? 1 / a->wall.face_mass : 0;
-    result.speed = chain_penetration_rate(a, q, w) - face;
+    chain_penetration(a, q, w, NULL, &result.speed);
+    const double comes = result.speed - chain_penetration_rate(a, q, w);
+    result.speed -= face;
     result.impulse = (1 + restitution) * result.speed / compliance;
     result.loss = 0.5 * result.impulse * (1 - restitution) * result.speed;
+    result.work = result.impulse * comes;
     for (int i = 0; i < a->dof; i++) {
         increment[i] *= result.impulse;
     }

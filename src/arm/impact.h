@@ -6,7 +6,8 @@
 typedef struct impact_result {
     double speed;   // approach speed of the contact point to the wall's face, J w [m/s]
     double impulse; // p of the wall [N s]
-    double loss;    // kinetic energy lost [J]
+    double loss;    // energy lost [J]
+    double work;    // of a wall that moves [J]
 } impact_result;
 
 // Instantaneous velocity increments, (4.10)-(4.17) for N links. While the impulse acts, angles and
@@ -21,6 +22,9 @@ typedef struct impact_result {
 //
 // is never negative. A wall's face of mass M_f gains the velocity p/M_f: J w is then replaced by
 // the relative speed (J w less the face's velocity), and J M^-1 J^T by J M^-1 J^T + 1/M_f.
+//
+// On a wall that moves, J w is the speed relative to it, too; it then does the work of the impulse
+// at its own speed.
 //
 // q[dof], w[dof]: the state before; face: velocity of the wall's face [m/s], 0 without a mass;
 // work: links elements of scratch; increment[dof]: dw [rad/s].

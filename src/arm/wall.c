@@ -28,7 +28,8 @@ void wall_init(wall_model *w, const parameters *p)
                       .stiffness = p->wall.stiffness,
                       .damping = p->wall.damping,
                       .exponent = p->wall.contact == WALL_HUNT_CROSSLEY ? p->wall.exponent : 1,
-                      .face_mass = p->wall.mass};
+                      .face_mass = p->wall.mass,
+                      .motion = wall_motion_of(&p->wall)};
     w->x = p->arm.length * w->cosine;
     w->y = p->arm.length * w->sine;
 }

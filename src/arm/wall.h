@@ -6,6 +6,9 @@
 //   point: the link's line runs against the point (a, b),
 //          g = -t'd (3.9),   dg/dt = s_c w + t'v (3.12),   s_c = r'd,
 //          d2g/dt2 = s_c alpha + t'a - g w^2 - 2 w r'v (3.13)
+// Of a wall that moves by u towards the arm x, v and a are those relative to it: with n of the
+// wall's direction, x + u n, v + u' n and a + u" n.
+//
 //   plane: the tip runs against the plane through the hub's axis,
 //          g = n'tip,   n = (-sin, cos) of the wall's direction
 //
@@ -50,6 +53,7 @@
 #include <stdbool.h>
 
 #include "src/tables/parameters.h"
+#include "src/arm/wall_motion.h"
 #include "src/base/plain_math.h"
 
 typedef struct wall_model {
@@ -63,9 +67,11 @@ typedef struct wall_model {
     double damping;   // c [N s/m], Hunt-Crossley [N s/m^(n+1)]
     double exponent;  // n, 1 for Kelvin-Voigt [-]
     double face_mass; // M, 0: the face has none [kg]
+    wall_motion motion;
+    wall_shift shift; // of a wall that moves, at the instant that the model is for
 } wall_model;
 
-// How the wall's face moves.
+// How the wall's face moves, in front of a foundation that may move itself.
 typedef struct wall_face {
     double position; // x, into the wall [m]
     double velocity; // [m/s]
@@ -86,6 +92,23 @@ void wall_init(wall_model *w, const parameters *p);
 // a sequence of ever smaller bounces ends in contact, nor where it would bounce at less than 2e-9
 // m/s, which the engines could not tell from rest.
 double wall_restitution(const wall_model *w, double approach_speed);
+
+// Whether it moves.
+static inline bool wall_moves(const wall_model *w)
+{
+    return w->motion.kind != MOTION_NONE;
+}
+
+// The velocity with which a wall that moves comes towards the arm along e, and the acceleration
+// [m/s], [m/s2].
+static inline double wall_comes(const wall_model *w, double ex, double ey)
+{
+    return w->shift.velocity * (w->cosine * ey - w->sine * ex);
+}
+static inline double wall_comes_faster(const wall_model *w, double ex, double ey)
+{
+    return w->shift.acceleration * (w->cosine * ey - w->sine * ex);
+}
 
 // Whether there is a wall at all.
 static inline bool wall_stands(const wall_model *w)
@@ -176,6 +199,12 @@ wall_contact_at(const wall_model *w, double l, double x, double y, double vx, do
                 double s, double omega)
 {
     wall_contact at;
+
+    // seen from a wall that moves, the arm is shifted the other way
+    x -= w->shift.place * w->sine;
+    y += w->shift.place * w->cosine;
+    vx -= w->shift.velocity * w->sine;
+    vy += w->shift.velocity * w->cosine;
 
     // a point pushes across the link, a plane across its own surface
     if (w->kind == WALL_POINT) {

@@ -142,7 +142,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     const bool backwards =
         breaks_away ? state[SLOT_FRICTION] == HUB_BACKWARD : state[SLOT_FRICTION_TORQUE] > 0;
     const hub_friction *at_rest = slides ? sliding_first[backwards] : sticking_first;
-    if (touching && m->dof == 1 && motion_wall_is_rigid(m)) {
+    if (touching && m->dof == 1 && motion_wall_is_rigid(m) && !m->wall_moves) {
         state_velocities(m, state)[0] = 0; // but for rounding it is
     }
     double hub_velocity = state_velocities(m, state)[0];
@@ -254,7 +254,9 @@ static void impact(const arm *a, motion *m, motion_report *report)
     const double face = m->state[SLOT_FACE_VELOCITY];
 
     // the wall's coefficient of restitution
-    double e = wall_restitution(&a->wall, chain_penetration_rate(a, q, w) - face);
+    double e, comes;
+    chain_penetration(a, q, w, NULL, &comes);
+    e = wall_restitution(&a->wall, comes - face);
     if (chatters(a, m)) {
         m->state[SLOT_SHORT_FLIGHTS] = 0;
         report->chatter = e > 0;
@@ -278,6 +280,7 @@ static void impact(const arm *a, motion *m, motion_report *report)
     }
 
     m->state[SLOT_IMPACT_LOSS] += result.loss;
+    state_quadratures(m, m->state)[QUADRATURE_PUSHED] += result.work;
     for (int i = 0; i < m->dof; i++) {
         w[i] += increment[i];
     }
@@ -339,6 +342,8 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL);
 
+    a = motion_arm_at(a, m, m->state[SLOT_TIME]);
+
     // the transition that belongs to the event
     switch (report->event) {
     case MOTION_REACHED:
@@ -373,6 +378,7 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
 void motion_start(const arm *a, motion *m, double angle, double velocity)
 {
     assert(a != NULL && m != NULL && isfinite(angle) && isfinite(velocity));
+    a = motion_arm_at(a, m, 0);
     memset(m->state, 0, (size_t)m->size * sizeof(double));
     for (int i = 0; i < m->dof; i++) {
         state_angles(m, m->state)[i] = angle;
@@ -411,6 +417,7 @@ bool motion_starts_in_contact(const motion *m)
 void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
 {
     assert(a != NULL && m != NULL && report != NULL && isfinite(impulse));
+    a = motion_arm_at(a, m, m->state[SLOT_TIME]);
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     bool contact = m->state[SLOT_CONTACT] != 0;
     double *response = m->scratch, before = chain_kinetic_energy(a, q, w);
@@ -426,7 +433,9 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
     if (m->wall_gives) {
         resolve(a, m, contact && face_follows(a, m), MOTION_REACHED);
     } else {
-        const double speed = chain_penetration_rate(a, q, w) - m->state[SLOT_FACE_VELOCITY];
+        double speed;
+        chain_penetration(a, q, w, NULL, &speed);
+        speed -= m->state[SLOT_FACE_VELOCITY];
         if (contact && speed > TOUCH_SPEED) {
             report->event = MOTION_IMPACT;
             impact(a, m, report);
@@ -481,6 +490,7 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
     motion_note_change(m);
     motion_follow_arm(after, m);
     m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
+    after = motion_arm_at(after, m, m->state[SLOT_TIME]);
     const bool contact = m->state[SLOT_CONTACT] != 0;
     resolve(after, m, contact && (!m->wall_gives || face_follows(after, m)), MOTION_REACHED);
     check_invariants(after, m);

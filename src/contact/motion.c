@@ -17,8 +17,21 @@
 // slow soft arm.
 #define LAST_BITS 4e-4
 
+const arm *motion_arm_at(const arm *a, motion *m, double time)
+{
+    if (m->moved == NULL) {
+        return a;
+    }
+    if (a != m->moved) {
+        *m->moved = *a;
+    }
+    m->moved->wall.shift = wall_motion_at(&a->wall.motion, time);
+    return m->moved;
+}
+
 void motion_evaluate(const arm *a, motion *m, double *state)
 {
+    a = motion_arm_at(a, m, state[SLOT_TIME]);
     chain_reaction r;
     contact_state mode = contact_state_of(state);
     mode.current = state_quadratures(m, state)[QUADRATURE_CURRENT];
@@ -33,6 +46,7 @@ void motion_evaluate(const arm *a, motion *m, double *state)
     state[SLOT_VISCOUS_POWER] = r.viscous_power;
     state[SLOT_DAMPING_POWER] = r.damping_power;
     state[SLOT_WALL_POWER] = r.wall_power;
+    state[SLOT_WALL_WORK] = r.wall_work;
 
     // the wall's face goes with the arm in contact, else the gap is that to it
     if (mode.contact && !motion_wall_is_rigid(m)) {
@@ -59,7 +73,8 @@ force_bounds motion_force_bounds(const arm *a, const motion *m, double *state)
 {
     assert(a != NULL && m != NULL && state != NULL);
     const contact_state now = contact_state_of(state);
-    const bool single = m->dof == 1 && wall_stands(&a->wall) && motion_wall_is_rigid(m);
+    const bool single =
+        m->dof == 1 && !m->wall_moves && wall_stands(&a->wall) && motion_wall_is_rigid(m);
     const bool near = state[SLOT_GAP] <= RESTING_GAP && now.friction == HUB_STICK;
     const bool rests = single && state_velocities(m, state)[0] == 0 && (now.contact || near);
     return rests ? motion_held_forces(a, m, state)
@@ -115,6 +130,7 @@ double motion_decay_length(const arm *a, double reach, double since)
 double motion_wall_compliance(const arm *a, motion *m, double *state)
 {
     double compliance;
+    a = motion_arm_at(a, m, state[SLOT_TIME]);
     const bool locked = contact_state_of(state).friction == HUB_STICK && m->dof > 1;
     chain_contact_response(a, m->links, state_angles(m, state), locked, m->scratch, &compliance);
     return compliance / (1 + a->wall.face_mass * compliance); // both masses on the spring
@@ -158,10 +174,12 @@ double motion_energy_residual(const arm *a, const motion *m, double *state)
 
 bool motion_project(const arm *a, motion *m, double *state)
 {
-    bool locked = contact_state_of(state).friction == HUB_STICK;
-    if (m->dof == 1 || !motion_drifted(state[SLOT_GAP], state[SLOT_GAP_VELOCITY])) {
+    const bool locked = contact_state_of(state).friction == HUB_STICK && m->dof > 1;
+    if ((m->dof == 1 && !m->wall_moves) ||
+        !motion_drifted(state[SLOT_GAP], state[SLOT_GAP_VELOCITY])) {
         return false;
     }
+    a = motion_arm_at(a, m, state[SLOT_TIME]);
     double compliance, *response = m->scratch;
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     chain_contact_response(a, m->links, q, locked, response, &compliance);
@@ -171,7 +189,9 @@ bool motion_project(const arm *a, motion *m, double *state)
     for (int i = 0; i < m->dof; i++) {
         q[i] += shift * response[i];
     }
-    double jump = chain_penetration_rate(a, q, w) / compliance;
+    double rate;
+    chain_penetration(a, q, w, NULL, &rate);
+    const double jump = rate / compliance;
     for (int i = 0; i < m->dof; i++) {
         w[i] += jump * response[i];
     }
@@ -195,7 +215,8 @@ static void let_time_pass(motion *m, double h)
 // The parts of a state, `h` after another one, that need no evaluation.
 static void set_slots(const arm *a, const motion *m, double *from, double h, double *state)
 {
-    static const int kept[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR};
+    static const int kept[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR,
+                               QUADRATURE_PUSHED};
     memcpy(state, from, SLOT_COUNT * sizeof(double));
     state[SLOT_TIME] += h;
     state[SLOT_JUMPED] = state[SLOT_IMPULSE] = 0;

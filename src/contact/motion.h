@@ -43,6 +43,7 @@ enum motion_slot {
     SLOT_SHORT_FLIGHTS,    // in a row up to that impact
     SLOT_FACE,             // how far the face of a wall that gives is pushed in [m]
     SLOT_FACE_VELOCITY,    // [m/s]
+    SLOT_WALL_WORK,        // power of a wall that moves, at this state [W]
     SLOT_START_WEIGHT,     // energy of the weight at the start [J]
     SLOT_COUNT
 };
@@ -56,6 +57,7 @@ enum motion_quadrature {
                      // [J]
     QUADRATURE_CURRENT, // current of an electric drive, where it is a state: enters the motion [A]
     QUADRATURE_MOTOR,   // work of an electric drive's torque [J]
+    QUADRATURE_PUSHED,  // work of a wall that moves [J]
     QUADRATURE_COUNT
 };
 
@@ -98,6 +100,7 @@ struct motion {
     bool wall_gives;     // contact is no constraint
     bool wall_has_face;  // contact ties the arm to a mass on a spring
     bool electric;       // the motor's current is followed
+    bool wall_moves;     // nothing rests for long
     bool starved;        // no memory for the engine that a changed arm asks for
     double cut;          // where a step ends early, its course before unchanged [s]; HUGE_VAL: none
     double aim; // the instant where a state is wanted, if it is to be met to the last bit [s]
@@ -108,6 +111,7 @@ struct motion {
     double *between; // states within the last step: MOTION_TOGETHER of a dense engine, else one
     double *scratch; // vectors of length dof
     chain_link *links;
+    arm *moved;   // the arm with its wall at an instant, where that moves, else NULL
     void *sweeps; // the implicit solver's scratch, one element a link
     void *memory; // the engine's own: the stride it is in
     bool forgets; // that stride may be another arm's: only what the state keeps of it is valid
@@ -262,6 +266,10 @@ static inline void motion_note_force(motion *m, double time, double force)
     }
 }
 
+// The arm with a wall that moves where it is at an instant [s]; good until the next call. `a`
+// itself where it does not.
+const arm *motion_arm_at(const arm *a, motion *m, double time);
+
 // Evaluates accelerations, reactions and gap of a state in its own contact state.
 void motion_evaluate(const arm *a, motion *m, double *state);
 
@@ -275,7 +283,8 @@ static inline bool motion_wall_is_rigid(const motion *m)
 static inline bool state_is_held_still(const motion *m, const double *state)
 {
     // a sliding hub is the usual case
-    if ((state[SLOT_FRICTION] != HUB_STICK && m->dof > 1) || m->dof > 2 || m->electric) {
+    if ((state[SLOT_FRICTION] != HUB_STICK && m->dof > 1) || m->dof > 2 || m->electric ||
+        m->wall_moves) {
         return false;
     }
     const contact_state now = contact_state_of(state);
@@ -397,7 +406,8 @@ static inline double motion_unaccounted(const motion *m, double *state, double e
 {
     const double *quadrature = state_quadratures(m, state);
     const double stored = energy - m->start_energy;
-    const double work = motion_motor_work(m, state) + state[SLOT_EXTERNAL_WORK];
+    const double work =
+        motion_motor_work(m, state) + state[SLOT_EXTERNAL_WORK] + quadrature[QUADRATURE_PUSHED];
     const double lost = state[SLOT_FRICTION_LOSS] + state[SLOT_IMPACT_LOSS] +
                         quadrature[QUADRATURE_VISCOUS] + quadrature[QUADRATURE_DAMPING] +
                         quadrature[QUADRATURE_WALL];

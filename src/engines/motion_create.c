@@ -26,8 +26,8 @@ static const engine *named_engine(engine_kind name)
 // others. It does not depend on the time step.
 static const engine *event_engine(const arm *a)
 {
-    const bool pair =
-        taylor_engine_suits(a) && a->fastest_decay <= FASTEST_OF_PAIR && a->gravity == 0;
+    const bool pair = taylor_engine_suits(a) && a->fastest_decay <= FASTEST_OF_PAIR &&
+                      a->gravity == 0 && !wall_moves(&a->wall);
     return pair ? &taylor_engine : &stiff_engine;
 }
 
@@ -36,6 +36,7 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
 {
     double rho = method->spectral_radius;
     m->electric = a->motor.electric;
+    m->wall_moves = wall_moves(&a->wall);
     m->wall_has_face = wall_stands(&a->wall) && wall_has_face(&a->wall);
     m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall) && !m->wall_has_face;
 
@@ -104,6 +105,7 @@ static void lay_out_motion(const arm *a, motion *m, layout *l)
     m->trial = add_part(l, state);
     m->scratch = add_part(l, 4 * (size_t)a->dof * sizeof(double));
     m->links = add_part(l, (size_t)a->links * sizeof(chain_link));
+    m->moved = m->wall_moves ? add_part(l, sizeof *m->moved) : NULL;
 }
 
 // Allocates the engine's storage; false, with nothing allocated, if out of memory.
@@ -192,6 +194,7 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
                    .between = m->between,
                    .scratch = m->scratch,
                    .links = m->links,
+                   .moved = m->moved,
                    .sweeps = m->sweeps,
                    .memory = m->memory,
                    .forgets = true,
@@ -200,7 +203,7 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
     choose_engine(a, &next, method, NULL);
     next.most_size = most_size(a, &next);
     if (next.engine != m->engine || next.engine->memory_for != NULL ||
-        next.most_size > m->most_size) {
+        next.most_size > m->most_size || next.wall_moves != m->wall_moves) {
         motion_destroy(m);
         return motion_create(a, method);
     }

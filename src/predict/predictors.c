@@ -113,6 +113,9 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     if (which != PREDICTOR_LINEARISED && p->wall.contact != WALL_RIGID) {
         return PREDICTION_RIGID_WALL_ONLY;
     }
+    if (p->wall.motion != MOTION_NONE && p->wall.kind != WALL_NONE) {
+        return PREDICTION_STILL_WALL_ONLY;
+    }
     if (p->arm.tilt != 0) {
         return PREDICTION_LEVEL_ONLY;
     }

@@ -28,6 +28,7 @@ typedef enum predictor {
     X(PREDICTION_CORRECTED_ONLY, "for the corrected model only")                                   \
     X(PREDICTION_RIGID_WALL_ONLY, "for a rigid wall only")                                         \
     X(PREDICTION_NO_FACE_ONLY, "for a wall whose face has no mass only")                           \
+    X(PREDICTION_STILL_WALL_ONLY, "for a wall at rest only")                                       \
     X(PREDICTION_LEVEL_ONLY, "for an arm in a level plane only")                                   \
     X(PREDICTION_BARE_TIP_ONLY, "for a tip that carries nothing only")                             \
     X(PREDICTION_EQUAL_LINKS_ONLY, "for equal links with equal linear joints only")                \

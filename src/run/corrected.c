@@ -67,6 +67,12 @@ static status begin(corrected_run *c, fault *f)
 
     r->state.earlier_peak = -1;
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
+    if (m->wall_moves && m->state[SLOT_GAP] < -DEEPEST) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, "wall.motion",
+                            "at t = 0 the wall has moved %.4g m past the arm, which must start in "
+                            "front of it (initial.angle)",
+                            -m->state[SLOT_GAP]);
+    }
     failed = corrected_begin_in_contact(c);
     return failed == STATUS_OK ? failed : fault_no_memory(f);
 }

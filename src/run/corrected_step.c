@@ -264,8 +264,8 @@ static inline status audit(corrected_run *c, state_energy has)
     s->energy_residual_J = larger(fabs(residual), s->energy_residual_J);
 
     double turned_over = fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
-                         fabs(held) + m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN +
-                         TINY_ENERGY;
+                         fabs(held) + fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED]) +
+                         m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN + TINY_ENERGY;
     // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
     double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
     if (!isfinite(residual) || !isfinite(turned_over)) {
@@ -323,6 +323,9 @@ static sample row_of(const corrected_run *c, double *state, state_energy has, do
         .energy_residual = motion_unaccounted(m, state, has.kinetic + has.strain + held),
         .wall_energy = rigid ? (double)NAN : motion_wall_energy(a, m, state),
         .wall_loss = rigid ? (double)NAN : quadrature[QUADRATURE_WALL],
+        .wall_place = wall_moves(&a->wall) ? wall_motion_at(&a->wall.motion, state[SLOT_TIME]).place
+                                           : (double)NAN,
+        .wall_work = wall_moves(&a->wall) ? quadrature[QUADRATURE_PUSHED] : (double)NAN,
         .weight_energy = a->gravity != 0 ? chain_weight_energy(a, q) : (double)NAN,
         .face_depth = rigid ? (double)NAN : state[SLOT_FACE],
     };
@@ -432,8 +435,11 @@ status corrected_record_step(corrected_run *c, bool at_event)
         r->state.separated = flight_separated(&c->arm, m);
     }
     const arm *a = &c->arm;
+    const double pushed[] = {state_quadratures(m, m->trial)[QUADRATURE_PUSHED],
+                             state_quadratures(m, m->state)[QUADRATURE_PUSHED]};
     r->state.energy_put_in +=
         fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial)) +
+        fabs(pushed[1] - pushed[0]) +
         fabs(chain_weight_energy(a, state_angles(m, m->state)) -
              chain_weight_energy(a, state_angles(m, m->trial)));
 

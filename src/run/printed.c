@@ -131,6 +131,8 @@ sample printed_sample(const printed_run *p)
         .impact_loss = (double)NAN,
         .wall_energy = (double)NAN,
         .wall_loss = (double)NAN,
+        .wall_place = (double)NAN,
+        .wall_work = (double)NAN,
         .weight_energy = (double)NAN,
         .face_depth = (double)NAN,
         .energy_residual = (double)NAN,

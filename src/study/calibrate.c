@@ -153,6 +153,12 @@ status calibrate(const scenario *s, const double *commands, int count, run_monit
                          "there is nothing to press against, wall.kind is none");
     }
 
+    if (s->parameters.wall.motion != MOTION_NONE) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT, "wall.motion",
+                            "force and angle come to rest on a wall at rest only: calibrate with "
+                            "wall.motion = none");
+    }
+
     // K2 says how the wall's force alone bends the beam
     if (s->parameters.arm.tilt != 0) {
         return fault_set_at(f, STATUS_BAD_ARGUMENT, "arm.tilt",

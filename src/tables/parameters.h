@@ -15,6 +15,12 @@ typedef enum arm_model_kind { ARM_CORRECTED, ARM_PRINTED } arm_model_kind;
 typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING, HUB_BEAM } hub_joint_kind;
 typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
 typedef enum wall_law { WALL_RIGID, WALL_KELVIN_VOIGT, WALL_HUNT_CROSSLEY } wall_law;
+typedef enum wall_motion_kind {
+    MOTION_NONE,
+    MOTION_SINE,
+    MOTION_STEP,
+    MOTION_FILE
+} wall_motion_kind;
 typedef enum motor_drive { DRIVE_VOLTAGE, DRIVE_CURRENT } motor_drive;
 typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
 typedef enum engine_kind { ENGINE_AUTO, ENGINE_PAIR, ENGINE_STIFF } engine_kind;
@@ -71,14 +77,18 @@ typedef struct motor_parameters {
 } motor_parameters;
 
 typedef struct wall_parameters {
-    int kind;           // wall_kind
-    double angle;       // direction of the contact point (or the flat wall) from the hub [rad]
-    double restitution; // coefficient of restitution e of rigid wall or face [-]
-    int contact;        // wall_law
-    double stiffness;   // k of the wall that gives [N/m], Hunt-Crossley [N/m^n]
-    double damping;     // its c [N s/m], Hunt-Crossley [N s/m^(n+1)]
-    double exponent;    // n, Hunt-Crossley [-]
-    double mass;        // of the face of a Kelvin-Voigt wall, 0: none [kg]
+    int kind;                // wall_kind
+    double angle;            // direction of the contact point (or the flat wall) from the hub [rad]
+    double restitution;      // coefficient of restitution e of rigid wall or face [-]
+    int contact;             // wall_law
+    double stiffness;        // k of the wall that gives [N/m], Hunt-Crossley [N/m^n]
+    double damping;          // its c [N s/m], Hunt-Crossley [N s/m^(n+1)]
+    double exponent;         // n, Hunt-Crossley [-]
+    double mass;             // of the face of a Kelvin-Voigt wall, 0: none [kg]
+    int motion;              // wall_motion_kind
+    double motion_amplitude; // towards the arm [m]
+    double motion_frequency; // [Hz]
+    double motion_time;      // [s]
 } wall_parameters;
 
 typedef struct method_parameters {

@@ -82,6 +82,27 @@ static status resolve_wall(parameters *p, fault *f)
                             LEAST_FACE);
     }
 
+    // what a wall that moves cannot be combined with
+    if (w->motion != MOTION_NONE && w->kind != WALL_NONE) {
+        if (p->method.name != METHOD_EVENT) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.motion, method.name),
+                                "a wall that moves (wall.motion) runs with method.name = event "
+                                "only");
+        }
+        if (w->mass > 0) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.motion, wall.mass),
+                                "a wall that moves (wall.motion) shakes a face with a mass, which "
+                                "no equation here follows: expected wall.mass = 0");
+        }
+        if (p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID && w->contact == WALL_RIGID &&
+            p->motor.stiction > 0) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.motion, motor.stiction),
+                                "a rigid wall that moves would drive a single link against the "
+                                "hub's stiction, whose force is not determined: expected "
+                                "motor.stiction = 0, more links or a wall that gives");
+        }
+    }
+
     // what a wall that gives cannot be combined with
     if (w->contact == WALL_RIGID) {
         return STATUS_OK;
@@ -109,8 +130,9 @@ static status check_engine(const parameters *p, fault *f)
     const arm_parameters *a = &p->arm;
     const bool electric =
         p->motor.inductance > 0 || (p->motor.current_limit > 0 && p->motor.drive == DRIVE_VOLTAGE);
-    const bool bare = a->tip_mass == 0 && a->tilt == 0 && a->stiffening == 0 && a->air_drag == 0 &&
-                      a->modal_ratios[0] == '\0' && parameters_even_links(a);
+    const bool moves = p->wall.motion != MOTION_NONE && p->wall.kind != WALL_NONE;
+    const bool bare = !moves && a->tip_mass == 0 && a->tilt == 0 && a->stiffening == 0 &&
+                      a->air_drag == 0 && a->modal_ratios[0] == '\0' && parameters_even_links(a);
     const bool pair = a->links == 2 && bare && !electric && p->wall.contact == WALL_RIGID;
     if (p->method.engine == ENGINE_PAIR && !pair) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.engine),

@@ -50,6 +50,8 @@ typedef struct sample {
     // of a wall that gives; NaN at a rigid one
     double wall_energy;   // that its spring and the motion of its face hold [J]
     double wall_loss;     // lost in it [J]
+    double wall_place;    // of a wall that moves, towards the arm; else NaN [m]
+    double wall_work;     // that it does; else NaN [J]
     double weight_energy; // from the hub's axis on, NaN in a level plane [J]
     double face_depth;    // how far its face is pushed in, NaN in a rigid one [m]
     // on the rig with a limit on the force

@@ -100,6 +100,7 @@ void stiff_set_start(stiff_stride *stride, motion *m)
     memcpy(s->w0, state_velocities(m, m->state), size);
     memcpy(s->a0, state_accelerations(m, m->state), size);
     s->force0 = m->state[SLOT_FORCE];
+    s->time = m->state[SLOT_TIME];
     for (int k = 0; k < s->links; k++) {
         inline_sincos(s->q0[s->first + k], &s->link[k].sine, &s->link[k].cosine);
     }
@@ -118,6 +119,12 @@ bool stiff_solve_stages(stiff_stride *stride, bool fresh, double offset, double 
         for (int j = 0; j < RADAU_STAGES; j++) {
             weight[j][i] = value[j];
         }
+    }
+    for (int i = 0; i < RADAU_LANES && wall_moves(s->wall); i++) {
+        const double part = i < RADAU_STAGES ? radau_node[i] : 0;
+        const wall_shift at = wall_motion_at(&s->wall->motion, s->time + part * s->length);
+        s->shift[0].at[i] = at.place;
+        s->shift[1].at[i] = at.velocity;
     }
     stride->loops->predict(s, stiff_accelerations(stride), stride->kept + STIFF_FORCE, weight[0]);
 
@@ -164,6 +171,7 @@ void stiff_keep_stages(stiff_stride *stride)
     memcpy(kept + STIFF_LOST, s->lost.at, sizeof s->lost.at);
     memcpy(kept + STIFF_WALL_LOST, s->wall_lost.at, sizeof s->wall_lost.at);
     memcpy(kept + STIFF_ELECTRIC, s->electric.at, sizeof s->electric.at);
+    memcpy(kept + STIFF_PUSHED, s->pushed.at, sizeof s->pushed.at);
     memcpy(kept + STIFF_CURRENT, s->current.at, sizeof s->current.at);
     memcpy(kept + STIFF_CURRENT_RATE, s->current_rate.at, sizeof s->current_rate.at);
     memcpy(stiff_angles(stride), s->q0, (size_t)s->dof * sizeof(double));
@@ -175,8 +183,8 @@ void stiff_keep_stages(stiff_stride *stride)
 
     // what holds one link holds it to the last bit; with the hub stuck too, what joins the two
     // presses with one force throughout
-    const bool both = s->dof == 2 && s->stuck;
-    if (s->contact == STIFF_RIGID && (s->dof == 1 || both)) {
+    const bool both = s->dof == 2 && s->stuck && !wall_moves(s->wall);
+    if (s->contact == STIFF_RIGID && ((s->dof == 1 && !wall_moves(s->wall)) || both)) {
         memset(a, 0, (size_t)s->dof * RADAU_LANES * sizeof *a);
     }
     for (int i = 0; i < RADAU_LANES && both && s->contact == STIFF_RIGID; i++) {

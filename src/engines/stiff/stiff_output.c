@@ -16,7 +16,8 @@ static void add_quadratures(const stiff_stride *s, const motion *m, const double
     static const int of[][2] = {
         {QUADRATURE_VISCOUS, STIFF_VISCOUS},      {QUADRATURE_DAMPING, STIFF_LOST},
         {QUADRATURE_FORCE, STIFF_FORCE},          {QUADRATURE_WALL, STIFF_WALL_LOST},
-        {QUADRATURE_CURRENT, STIFF_CURRENT_RATE}, {QUADRATURE_MOTOR, STIFF_ELECTRIC}};
+        {QUADRATURE_CURRENT, STIFF_CURRENT_RATE}, {QUADRATURE_MOTOR, STIFF_ELECTRIC},
+        {QUADRATURE_PUSHED, STIFF_PUSHED}};
     double *after = state_quadratures(m, state);
     for (int i = 0; i < (int)(sizeof of / sizeof *of); i++) {
         double sum = 0;
@@ -54,6 +55,7 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
     }
 
     // what follows from them
+    state[SLOT_TIME] = s->kept[STIFF_TIME] + (time > DBL_MIN ? time : 0);
     const wall_face start = {s->kept[STIFF_FACE], s->kept[STIFF_FACE + 1]};
     const bool swings = state[SLOT_CONTACT] == 0 && (start.position != 0 || start.velocity != 0);
     if (swings) {
@@ -72,7 +74,6 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
     state[SLOT_MOTOR_WORK] = s->kept[STIFF_WORK] + a->motor.torque * (q[0] - q0[0]);
     state[SLOT_FRICTION_LOSS] =
         s->kept[STIFF_RUBBED] + state[SLOT_FRICTION] * a->motor.stiction * (q[0] - q0[0]);
-    state[SLOT_TIME] = s->kept[STIFF_TIME] + (time > DBL_MIN ? time : 0);
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
            (size_t)m->dof * sizeof(double));
 }

@@ -101,7 +101,10 @@ typedef struct stiff_step {
     stiff_stage *stage; // [dof]
     stiff_body *body;   // [links]
     stiff_nodes force, gap, rate, current, current_rate;
-    stiff_nodes hold, viscous, lost, wall_lost, electric; // [N m], powers [W]
+    stiff_nodes hold, viscous, lost, wall_lost, electric, pushed; // [N m], powers [W]
+    double time;                                                  // of its start [s]
+    // of a wall that moves, else zeros: place and velocity [m], [m/s]
+    stiff_nodes shift[2];
 
     // the tangent
     stiff_complex g; // h/root

@@ -226,6 +226,9 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
     const lanes w = s->stage[s->first + last].w[half];
     lanes ex = zero, ey = zero, lever = zero, force = zero;
     if (wall_stands(s->wall)) {
+        const lanes comes = s->shift[1].half[half];
+        px -= s->wall->sine * s->shift[0].half[half];
+        py += s->wall->cosine * s->shift[0].half[half];
         lanes depth, bends; // bends: what velocities add to the depth's second derivative
         if (s->wall->kind == WALL_POINT) {
             const lanes dx = s->wall->x - px, dy = s->wall->y - py;
@@ -233,7 +236,9 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
             ey = c;
             lever = c * dx + sn * dy - tip->length;
             depth = sn * dx - c * dy;
-            bends = -depth * w * w - 2 * w * (c * bvx + sn * bvy);
+            bends =
+                -depth * w * w -
+                2 * w * (c * (bvx - s->wall->sine * comes) + sn * (bvy + s->wall->cosine * comes));
         } else {
             ex = all(-s->wall->sine);
             ey = all(s->wall->cosine);
@@ -241,7 +246,8 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
             bends = -tip->length * w * w * (ex * c + ey * sn);
         }
         const lanes reach = lever + tip->length * (c * ey - sn * ex);
-        const lanes rate = ex * bvx + ey * bvy + reach * w;
+        const lanes along = s->wall->cosine * ey - s->wall->sine * ex; // of the wall's normal, e
+        const lanes rate = ex * bvx + ey * bvy + reach * w + comes * along;
         s->gap.half[half] = -depth;
         s->rate.half[half] = -rate;
         if (s->contact == STIFF_GIVES) {
@@ -254,6 +260,7 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
         }
         force = s->force.half[half];
         if (account) {
+            s->pushed.half[half] = force * comes * along;
             s->wall_lost.half[half] = zero;
         }
         if (account && s->contact == STIFF_GIVES) {

@@ -65,6 +65,8 @@ KERNEL void find_jacobian(stiff_step *s, int half, int lane)
         y += s->pivot[k].ls;
     }
     const stiff_pivot *p = &s->pivot[last];
+    x -= s->wall->sine * s->shift[0].half[half][lane];
+    y += s->wall->cosine * s->shift[0].half[half][lane];
     const double l = s->link[last].length;
     const double c = s->body[last].c[half][lane], sn = s->body[last].s[half][lane];
     const bool point = s->wall->kind == WALL_POINT;
