@@ -70,6 +70,7 @@ chain_outcome chain_outcome_of(const chain_start *start)
         motion_report r;
         const double before_contact = m->state[SLOT_CONTACT];
         const double before = m->state[SLOT_TIME], work = motion_motor_work(m, m->state);
+        const double pushed = state_quadratures(m, m->state)[QUADRATURE_PUSHED];
         o.status =
             events < MOST_EVENTS ? motion_step(&a, m, end, p->method.step, &r) : STATUS_NO_PROGRESS;
         if (o.status != STATUS_OK) {
@@ -78,7 +79,8 @@ chain_outcome chain_outcome_of(const chain_start *start)
 
         // momentum and ledger, then the event
         take_samples(&a, m, before, impulses, &o);
-        o.put_in += fabs(motion_motor_work(m, m->state) - work);
+        o.put_in += fabs(motion_motor_work(m, m->state) - work) +
+                    fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED] - pushed);
         o.residual = fmax(o.residual, fabs(motion_energy_residual(&a, m, m->state)));
         const double now = m->state[SLOT_TIME], speed = -m->state[SLOT_GAP_VELOCITY];
         if (r.event != MOTION_REACHED) {
@@ -113,9 +115,9 @@ chain_outcome chain_outcome_of(const chain_start *start)
     o.peak = m->pulse_peak;
     o.peak_time = m->dof > 1 ? m->pulse_peak_time : 0;
     const double *quadrature = state_quadratures(m, m->state);
-    const double lost[] = {m->state[SLOT_FRICTION_LOSS], m->state[SLOT_IMPACT_LOSS],
+    const double lost[] = {m->state[SLOT_FRICTION_LOSS],   m->state[SLOT_IMPACT_LOSS],
                            quadrature[QUADRATURE_VISCOUS], quadrature[QUADRATURE_DAMPING],
-                           quadrature[QUADRATURE_WALL]};
+                           quadrature[QUADRATURE_WALL],    -quadrature[QUADRATURE_PUSHED]};
     memcpy(o.lost, lost, sizeof o.lost);
     motion_destroy(m);
     return o;

@@ -18,7 +18,8 @@ typedef struct chain_outcome {
     double residual, put_in; // the ledger's largest; energy and work that went in [J]
     double peak, peak_time;  // of the force in contact; when, of an arm that it does not hold still
                              // [N], [s]
-    double lost[5]; // to friction, impacts, viscous friction, structural damping, the wall [J]
+    double lost[6]; // to friction, impacts, viscous friction, structural damping, the wall, and
+                    // what a wall that moves took [J]
     int impacts, samples;                    // samples: of momentum
     int contacts;                            // that began in flight (chain_outcome_note)
     double contact_times[OUTCOME_CONTACTS];  // [s]

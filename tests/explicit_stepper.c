@@ -278,6 +278,7 @@ static double longest_step(const arm *a, motion *m, double rate, double remainin
     longest = pressed ? graded(a, m, rate, longest) : longest;
     longest = state_face_swings(m->state) ? graded_face(a, m, longest) : longest;
     longest = m->electric ? graded_current(a, m, rate, longest) : longest;
+    longest = fmin(longest, wall_motion_lasts(&a->wall.motion, m->state[SLOT_TIME]));
 
     return remaining < longest * (1 + 1e-9) ? remaining : longest;
 }

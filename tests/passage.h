@@ -23,9 +23,11 @@ static inline passage move_on(const arm *a, motion *m, double until, int most_st
     while (m->state[SLOT_TIME] < until) {
         motion_report r;
         const double work = m->state[SLOT_MOTOR_WORK], pushed = m->state[SLOT_EXTERNAL_WORK];
+        const double moved = state_quadratures(m, m->state)[QUADRATURE_PUSHED];
         assert_int_equal(motion_step(a, m, until, 1e-3, &r), STATUS_OK);
         assert_true(++p.steps <= most_steps);
-        put_in += fabs(m->state[SLOT_MOTOR_WORK] - work) + fabs(pushed);
+        put_in += fabs(m->state[SLOT_MOTOR_WORK] - work) + fabs(pushed) +
+                  fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED] - moved);
         p.open = fmax(p.open, fabs(motion_energy_residual(a, m, m->state)));
         if (r.event == MOTION_IMPACT || r.event == MOTION_TOUCH) {
             check_close(m->state[SLOT_GAP], 0, 1e-9);

@@ -14,6 +14,9 @@
 //         place=near                             near: links soon meet a wall at 0.1 rad; whole:
 //                                                half of them one link, walls by decades and at any
 //                                                angle, starts to both of their sides
+//         moves=0                                1: walls that move, arms in tilted planes, or
+//         both,
+//                                                beside one to three features
 //         cost=0                                 1: processor time of both, and their ratio
 //
 // Arm i is made of its own number. A limit is the stated one, or ten times what a mass of 1e-12
@@ -53,7 +56,7 @@ enum { MOST_SETTINGS = 24, LONGEST = 2400, LONGEST_LIST = 20 };
 typedef struct options {
     int count, first, least, most;
     char engine[32], by[32];
-    bool strict, cost, whole;
+    bool strict, cost, whole, moves;
     double damping;
 } options;
 
@@ -201,6 +204,23 @@ static void place_anywhere(random_arm *r, random_generator *g)
     set(r, "initial.angle=%.17g", r->angle);
 }
 
+// A wall that moves, from which the arm starts as far as from its place, a tilted plane, or both.
+static void set_moving(random_arm *r, random_generator *g)
+{
+    const bool moves = chance(g, 0.8);
+    if (moves) {
+        const double amplitude = between(g, 1e-6, 3e-3) * (chance(g, 0.5) ? 1 : -1);
+        set(r, "wall.motion=%s", chance(g, 0.5) ? "sine" : "step");
+        set(r, "wall.motion_amplitude=%.17g", amplitude);
+        set(r, "wall.motion_frequency=%.17g", between(g, 1, 300));
+        set(r, "wall.motion_time=%.17g", 0.1 * random_uniform(g));
+        r->angle -= 1.01 * fabs(amplitude);
+    }
+    if (!moves || chance(g, 0.5)) {
+        set(r, "arm.tilt=%.17g", (chance(g, 0.5) ? 1 : -1) * between(g, 1e-3, 1.5));
+    }
+}
+
 // Whether a feature can be had beside those that there are, with so many links and joints.
 static bool goes_with(const bool *has, feature f, int links, int joints)
 {
@@ -244,7 +264,8 @@ static void make_arm(random_arm *r, int number, const options *o)
 
     // two to five different features that go together
     bool has[FEATURES] = {false};
-    for (int wanted = 2 + (int)random_below(&g, 4); wanted > 0;) {
+    const int most = o->moves ? 1 + (int)random_below(&g, 3) : 2 + (int)random_below(&g, 4);
+    for (int wanted = most; wanted > 0;) {
         const feature f = (feature)random_below(&g, FEATURES);
         if (!has[f]) {
             has[f] = goes_with(has, f, links, links - (beam ? 0 : 1));
@@ -258,6 +279,9 @@ static void make_arm(random_arm *r, int number, const options *o)
         if (has[f]) {
             add_feature(r, &g, (feature)f, links, !beam, k2, o);
         }
+    }
+    if (o->moves) {
+        set_moving(r, &g);
     }
 }
 
@@ -472,6 +496,8 @@ static bool take_option(options *o, const char *text)
         o->whole = strcmp(value, "whole") == 0;
     } else if (strcmp(name, "cost") == 0) {
         o->cost = value[0] == '1';
+    } else if (strcmp(name, "moves") == 0) {
+        o->moves = value[0] == '1';
     } else if (strcmp(name, "damping") == 0) {
         o->damping = atof(value);
     } else {
@@ -483,7 +509,7 @@ static bool take_option(options *o, const char *text)
 // Counts of what came of the arms.
 typedef struct tally {
     int compared, wrong, said, unsure, behind, refused;
-    double largest, most_cost;
+    double largest, most_cost, open;
 } tally;
 
 // Whether the implicit reference finds what the run did: the explicit one takes a touch to 1e-12 m,
@@ -493,7 +519,7 @@ static bool implicit_agrees(const random_arm *r, const options *o, const chain_o
 {
     options other = *o;
     strcpy(other.by, "implicit");
-    if (!can_follow(r, &other)) {
+    if (o->moves || !can_follow(r, &other)) {
         return false;
     }
     const chain_outcome finer = by_reference(r, &other, 0, 2);
@@ -528,6 +554,8 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         return;
     }
 
+    char what[300];
+
     // failed or open: said
     t->compared++;
     const bool closes = mine.residual <= (o->strict ? 1e-9 : 1e-7) * fmax(mine.put_in, LEAST_WORK);
@@ -535,13 +563,15 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         mine.residual > r->parameters.method.residual_bound * fmax(mine.put_in, LEAST_WORK)) {
         t->said++;
         t->wrong += mine.status == STATUS_NO_PROGRESS; // which is no limit of these arms
-        describe(r, number, status_text(mine.status));
+        snprintf(what, sizeof what, "%s, ledger %.3g of %.3g J", status_text(mine.status),
+                 mine.residual, mine.put_in);
+        describe(r, number, what);
         return;
     }
     distances d = distances_of(r, &truth, &mine);
     const distances none = {0};
     double worst = worst_of(&d, &none, &may);
-    char what[300];
+
     if (!d.same || worst > 1 || !closes) {
         const chain_outcome again = by_reference(r, o, 0, 2);
         const chain_outcome heavier = by_reference(r, o, NEXT_TO_NONE, 1);
@@ -574,6 +604,7 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         }
     }
     t->largest = fmax(t->largest, worst);
+    t->open = fmax(t->open, mine.residual / fmax(mine.put_in, LEAST_WORK));
     if (o->cost) {
         printf("%d: %d links, %.1f us, %.1f us, ratio %.3g\n", number, r->parameters.arm.links,
                1e6 * cost, 1e6 * reference_cost, cost / reference_cost);
@@ -582,7 +613,7 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
 
 int main(int argc, char **argv)
 {
-    options o = {200, 0, 1, 8, "auto", "explicit", false, false, false, 1};
+    options o = {200, 0, 1, 8, "auto", "explicit", .damping = 1};
     for (int i = 1; i < argc; i++) {
         if (!take_option(&o, argv[i])) {
             fprintf(stderr, "random_arms: %s is no option\n", argv[i]);
@@ -597,7 +628,8 @@ int main(int argc, char **argv)
     }
     printf("%d compared, %d wrong, %d with an open ledger or failed, %d of which the reference is "
            "not sure, "
-           "%d not tried, %d refused behind their wall; of the rest at most %.2g of what may be\n",
-           t.compared, t.wrong, t.said, t.unsure, t.refused, t.behind, t.largest);
+           "%d not tried, %d refused behind their wall; of the rest at most %.2g of what may be, "
+           "ledgers to %.1e\n",
+           t.compared, t.wrong, t.said, t.unsure, t.refused, t.behind, t.largest, t.open);
     return t.wrong > 0 || t.compared == 0 || (o.whole && t.compared < t.refused);
 }

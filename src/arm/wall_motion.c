@@ -40,10 +40,12 @@ wall_shift wall_motion_at(const wall_motion *m, double time)
     return (wall_shift){0};
 }
 
-double wall_motion_rate(const wall_motion *m)
+double wall_motion_rate(const wall_motion *m, double time)
 {
     assert(m != NULL);
-    return m->kind == MOTION_SINE ? 2 * M_PI * m->frequency : 0;
+    const double rate = 2 * M_PI * m->frequency, passed = 2 * m->frequency * (time - m->time);
+    const bool rises = m->kind == MOTION_STEP && passed > -SAME_INSTANT && passed < 1;
+    return m->kind == MOTION_SINE || rises ? rate : 0;
 }
 
 double wall_motion_lasts(const wall_motion *m, double time)

@@ -40,8 +40,8 @@ wall_motion wall_motion_of(const wall_parameters *p);
 
 wall_shift wall_motion_at(const wall_motion *m, double time);
 
-// How fast it changes [1/s], 0 for pieces of polynomials.
-double wall_motion_rate(const wall_motion *m);
+// How fast it changes from an instant on [1/s], 0 at rest.
+double wall_motion_rate(const wall_motion *m, double time);
 
 // How long after an instant it stays analytic [s].
 double wall_motion_lasts(const wall_motion *m, double time);

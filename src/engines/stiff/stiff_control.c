@@ -25,7 +25,8 @@
 #define LEAST_TURN   1e-2  // what the motor does in this turn is the least energy of a scale [rad]
 #define AT_EVENT     1e-6  // share of a step by which it may miss its event
 #define SAME_INSTANT 1e-14 // [s]
-#define FACE_PHASE   1.5   // of a face that swings or a wall that moves, in a step
+#define FACE_PHASE   1.5   // of a face that swings, in a step
+#define WALL_PHASE   0.4   // of a wall that moves: where it leads all that can move, no error shows
 
 enum { MOST_ATTEMPTS = 100, MOST_ENDS = 10 };
 
@@ -155,8 +156,8 @@ static double first_try(const arm *a, motion *m, bool fresh)
         h = smaller(h, wall_face_lasts(&a->wall, face));
     }
     if (m->wall_moves) {
-        const double rate = wall_motion_rate(&a->wall.motion);
-        h = rate > 0 ? smaller(h, FACE_PHASE / rate) : h;
+        const double rate = wall_motion_rate(&a->wall.motion, m->state[SLOT_TIME]);
+        h = rate > 0 ? smaller(h, WALL_PHASE / rate) : h;
         h = smaller(h, wall_motion_lasts(&a->wall.motion, m->state[SLOT_TIME]));
     }
     return h;
