@@ -41,39 +41,6 @@ static linear_system loop_of(const scenario *s, linear_arm *l)
     return loop;
 }
 
-// The largest pole of the closed loop.
-static double spectral_radius(const char *name, const char *changes, const char *path, double value)
-{
-    scenario s = opened(name, changes);
-    char text[64];
-    fault f = {.text = ""};
-    snprintf(text, sizeof text, "%s=%.12g", path, value);
-    char *const items[] = {text};
-    assert_int_equal(scenario_override_all(&s, items, 1, NULL, NULL), STATUS_OK);
-    linear_arm l;
-    linear_system loop = loop_of(&s, &l);
-    double complex poles[64];
-    linear_close(&loop);
-    assert_int_equal(linear_poles(&loop, poles, &f), STATUS_OK);
-    const double radius = cabs(poles[loop.states - 1]);
-    linear_system_finish(&loop);
-    linear_system_finish(&l.system);
-    scenario_finish(&s);
-    return radius;
-}
-
-// Where the radius passes 1 between two values.
-static double limit(const char *name, const char *changes, const char *path, double from, double to)
-{
-    const bool grows = spectral_radius(name, changes, path, from) < 1;
-    assert_true(grows != (spectral_radius(name, changes, path, to) < 1));
-    for (int i = 0; i < 30; i++) {
-        const double middle = (from + to) / 2;
-        *(grows == (spectral_radius(name, changes, path, middle) < 1) ? &from : &to) = middle;
-    }
-    return from;
-}
-
 // Limits that another program found, on a grid of half a hertz and for the straight arm.
 static void limits_are_those_found_otherwise(void **state)
 {
@@ -88,9 +55,19 @@ static void limits_are_those_found_otherwise(void **state)
         {"compare/force-pd", "control.rate=200", "control.force_gain", 1, 8, 4.12},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        check_relative(
-            limit(cases[i].name, cases[i].changes, cases[i].path, cases[i].from, cases[i].to),
-            cases[i].known, 1e-2);
+        scenario s = opened(cases[i].name, cases[i].changes);
+        char range[64], *vary[] = {range};
+        sweep between;
+        fault f = {.text = ""};
+        double limit;
+        snprintf(range, sizeof range, "%s=%g:%g:2", cases[i].path, cases[i].from, cases[i].to);
+        assert_int_equal(sweep_init(&between, &s, &(sweep_request){vary, 1}, &f), STATUS_OK);
+        assert_int_equal(
+            linear_limit(&between, LINEAR_CONTACT, false, cases[i].from, cases[i].to, &limit, &f),
+            STATUS_OK);
+        check_relative(limit, cases[i].known, 1e-2);
+        sweep_finish(&between);
+        scenario_finish(&s);
     }
 }
 
@@ -131,8 +108,13 @@ static void margins_are_met_by_the_poles(void **state)
             char delay[256];
             snprintf(delay, sizeof delay, "%s control.delay=%.12g", cases[i][1],
                      s.parameters.control.delay + m.delay_s);
-            check_close(spectral_radius(cases[i][0], delay, "control.kp", s.parameters.control.kp),
-                        1, 2e-2);
+            scenario late = opened(cases[i][0], delay);
+            double growth;
+            bool stable;
+            assert_int_equal(linear_stability(&late, LINEAR_CONTACT, false, &growth, &stable, &f),
+                             STATUS_OK);
+            check_close(growth * period, 0, 2e-2);
+            scenario_finish(&late);
         }
         free(r.frequency);
         linear_system_finish(&loop);
