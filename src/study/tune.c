@@ -12,6 +12,7 @@
 
 #include "src/base/words.h"
 #include "src/study/expression.h"
+#include "src/study/linear/linear.h"
 
 // --- judging --------------------------------------------------------------------------------
 
@@ -19,12 +20,21 @@
 typedef struct judged {
     const robust_law *law; // NULL: a run
     const double *run;     // summary_count numbers
+    double growth;         // of the loop's slowest part, by its poles [1/s]
 } judged;
+
+// The one key that no run has.
+static const char growth_key[] = "growth_per_s";
 
 static bool find_key(void *context, const char *name, double *value, const char **near)
 {
     const judged *of = context;
     nearest_word nearest = nearest_begin(name);
+    nearest_try(&nearest, growth_key);
+    if (strcmp(name, growth_key) == 0) {
+        *value = of->growth;
+        return true;
+    }
     for (int i = 0; of->law != NULL ? robust_key(i) != NULL : i < summary_count; i++) {
         const char *key = of->law != NULL ? robust_key(i) : summary_table[i].key;
         if (strcmp(key, name) == 0 && (of->law != NULL || !summary_table[i].timing)) {
@@ -75,6 +85,29 @@ static status judge(const tune_request *asked, judged *of, tune_result *out, fau
     return STATUS_OK;
 }
 
+status tune_apply(const tuning *t, const double *values, scenario *s, fault *f)
+{
+    parameters p = t->asked.base->parameters;
+    status code = STATUS_OK;
+    *s = *t->asked.base;
+    for (int k = 0; k < t->asked.vary_count && code == STATUS_OK; k++) {
+        code = sweep_axis_apply(&t->plan.axes[k], values[k], &p, f);
+    }
+    return code == STATUS_OK ? scenario_take_parameters(s, &p, f) : code;
+}
+
+// Finds the growth where an expression asks for it; the loop alone, not what is drawn.
+static status find_growth(const tune_request *asked, const scenario *s, double *growth, fault *f)
+{
+    bool stable;
+    const bool wanted = strstr(asked->minimise, growth_key) != NULL ||
+                        (asked->subject != NULL && strstr(asked->subject, growth_key) != NULL);
+    return wanted && s->parameters.control.law == LAW_NONE
+               ? fault_set(f, STATUS_BAD_ARGUMENT, "'%s' needs a control law", growth_key)
+           : wanted ? linear_stability(s, LINEAR_CONTACT, false, growth, &stable, f)
+                    : STATUS_OK;
+}
+
 status tune_evaluate(tuning *t, size_t evaluation, const double *values, const char *name,
                      sweep_store *store, const sweep_options *options, tune_result *out, fault *f)
 {
@@ -109,7 +142,12 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     }
 
     // what came out
-    judged of = {.law = asked->over != NULL ? &out->law : NULL, .run = run};
+    judged of = {asked->over != NULL ? &out->law : NULL, run, (double)NAN};
+    scenario derived;
+    code = code == STATUS_OK ? tune_apply(t, values, &derived, f) : code;
+    if (code == STATUS_OK && find_growth(asked, &derived, &of.growth, NULL) == STATUS_NO_MEMORY) {
+        code = fault_no_memory(f);
+    }
     if (code == STATUS_OK && of.law != NULL) {
         code = robust_law_of(&out->law, name, &t->plan, only.share, store, f);
     }
@@ -129,7 +167,7 @@ static status check(const tune_request *asked, fault *f)
     const double run[SUMMARY_NUMBERS] = {0};
     const robust_law law = {.runs = 1};
     const robust_set *over = asked->over;
-    judged of = {.law = over != NULL ? &law : NULL, .run = run};
+    judged of = {over != NULL ? &law : NULL, run, 0};
     tune_result unused;
 #ifndef WITH_NLOPT
     return fault_set(f, STATUS_BAD_ARGUMENT,
@@ -145,7 +183,8 @@ static status check(const tune_request *asked, fault *f)
                          "%s has no control law, and runs over a set are judged by one",
                          asked->base->name);
     }
-    return judge(asked, &of, &unused, f);
+    const status code = judge(asked, &of, &unused, f);
+    return code == STATUS_OK ? find_growth(asked, asked->base, &of.growth, f) : code;
 }
 
 // The sweep of all evaluations: the varied parameters, whose values are free, and in each

@@ -17,7 +17,8 @@ typedef struct tune_request {
     const scenario *base;
     char *const *vary; // "PATH=a:b" or "PATH=a:b:log"
     int vary_count;
-    const char *minimise;   // an expression of keys of robust --json, of run --json without a set
+    const char *minimise;   // an expression of keys of robust --json, of run --json without a set,
+                            // and growth_per_s of linear: of the loop as it is, nothing drawn
     const char *subject;    // "EXPR<=EXPR", or with >=; NULL: everything is allowed
     const robust_set *over; // what is drawn, without cases; NULL: nothing
     size_t runs;            // at most, 1 ... TUNE_MOST_RUNS
@@ -53,6 +54,9 @@ status tune_init(tuning *t, const tune_request *asked, fault *f);
 // sensors have another seed. No search is made of it.
 status tune_unseen(tuning *unseen, const tuning *t, size_t evaluations, fault *f);
 void tune_finish(tuning *t);
+
+// The scenario with values of the varied parameters; it borrows all but its parameters.
+status tune_apply(const tuning *t, const double *values, scenario *s, fault *f);
 
 // Evaluates values of the varied parameters, unless the store of t->plan has their runs; `name` is
 // the law's in the result, which is to be finished in any case. STATUS_STOPPED if it was stopped.

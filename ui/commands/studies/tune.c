@@ -27,13 +27,8 @@ typedef struct tuner {
 static void write_best(FILE *stream, const void *what)
 {
     const tuning *t = what;
-    scenario best = *t->asked.base;
-    parameters p = best.parameters;
-    status code = STATUS_OK;
-    for (int i = 0; i < t->asked.vary_count && code == STATUS_OK; i++) {
-        code = sweep_axis_apply(&t->plan.axes[i], t->found[i], &p, NULL);
-    }
-    if (code == STATUS_OK && scenario_take_parameters(&best, &p, NULL) == STATUS_OK) {
+    scenario best;
+    if (tune_apply(t, t->found, &best, NULL) == STATUS_OK) {
         scenario_write(stream, &best);
     }
 }
@@ -245,7 +240,8 @@ const command tune_command = {
     .summary = "Values of parameters that make an expression of results smallest",
     .help =
         "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over those of robust "
-        "--json, else those of\nrun --json. --vary PATH=a:b (or a:b:log) says what may be "
+        "--json, else those of\nrun --json; growth_per_s "
+        "is that of linear --vary. --vary PATH=a:b (or a:b:log) says what may be "
         "changed within which range. Over a set an\nevaluation is a batch of runs with the same "
         "draws each time, as many runs as there are evaluations.\nWhat is not allowed or fails "
         "ranks last.\n\nThe result is judged on 200 draws that the search did not see, also with "
