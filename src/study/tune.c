@@ -12,7 +12,6 @@
 
 #include "src/base/words.h"
 #include "src/study/expression.h"
-#include "src/study/linear/linear.h"
 
 // --- judging --------------------------------------------------------------------------------
 
@@ -96,15 +95,14 @@ status tune_apply(const tuning *t, const double *values, scenario *s, fault *f)
     return code == STATUS_OK ? scenario_take_parameters(s, &p, f) : code;
 }
 
-// Finds the growth where an expression asks for it; the loop alone, not what is drawn.
+// Finds the growth where an expression asks for it; of the scenario, nothing drawn.
 static status find_growth(const tune_request *asked, const scenario *s, double *growth, fault *f)
 {
-    bool stable;
     const bool wanted = strstr(asked->minimise, growth_key) != NULL ||
                         (asked->subject != NULL && strstr(asked->subject, growth_key) != NULL);
-    return wanted && s->parameters.control.law == LAW_NONE
+    return wanted && (asked->growth == NULL || s->parameters.control.law == LAW_NONE)
                ? fault_set(f, STATUS_BAD_ARGUMENT, "'%s' needs a control law", growth_key)
-           : wanted ? linear_stability(s, LINEAR_CONTACT, false, growth, &stable, f)
+           : wanted ? asked->growth(s, growth, f)
                     : STATUS_OK;
 }
 

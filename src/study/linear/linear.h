@@ -147,6 +147,9 @@ status linear_contact_margin(const scenario *s, double *impulse, fault *f);
 status linear_stability(const scenario *s, linear_place place, bool by_runs, double *number,
                         bool *stable, fault *f);
 
-// Where that changes between two values of the axis of a sweep of one.
+// How fast the slowest part of the linear form grows in contact [1/s]; NaN on failure.
+status linear_growth(const scenario *s, double *growth, fault *f);
+
+// Where stability changes between two values of the axis of a sweep of one.
 status linear_limit(const sweep *s, linear_place place, bool by_runs, double from, double to,
                     double *limit, fault *f);

@@ -140,6 +140,7 @@ static status growth_of(const scenario *s, linear_place place, double *growth, f
 {
     linear_arm arm;
     linear_system loop = {0};
+    *growth = (double)NAN;
     status code = linear_arm_init(&arm, &s->parameters, place, f);
     code = code == STATUS_OK ? linear_loop(&loop, &arm, &s->parameters, f) : code;
     double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
@@ -177,6 +178,11 @@ status linear_stability(const scenario *s, linear_place place, bool by_runs, dou
     }
     *stable = by_runs ? isfinite(*number) : *number < 0;
     return code;
+}
+
+status linear_growth(const scenario *s, double *growth, fault *f)
+{
+    return growth_of(s, LINEAR_CONTACT, growth, f);
 }
 
 status linear_limit(const sweep *s, linear_place place, bool by_runs, double from, double to,

@@ -8,6 +8,7 @@
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"
 #include "src/study/store/sweep_store.h"
+#include "src/study/linear/linear.h"
 #include "src/study/tune.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
@@ -205,7 +206,8 @@ static int tune(const arguments *a, scenario *s)
                                 .subject = a->subject,
                                 .over = a->over != NULL ? &set : NULL,
                                 .runs = a->runs > 0 ? (size_t)a->runs : usual,
-                                .seed = a->seed};
+                                .seed = a->seed,
+                                .growth = linear_growth};
     status code = a->over != NULL ? robust_set_read(&set, a->over, &f) : STATUS_OK;
     code = code == STATUS_OK ? tune_init(&t.tuning, &asked, &f) : code;
     int result = code == STATUS_OK ? search(&t) : complain_fault(&f);
