@@ -140,5 +140,8 @@ status linear_sample(linear_system *sampled, const linear_arm *arm, const parame
     code = code == STATUS_OK ? fill(sampled, &l.system, l.states, held, period, part * period, f)
                              : code;
     linear_system_finish(&l.system);
+    if (code != STATUS_OK) {
+        linear_system_finish(sampled);
+    }
     return code;
 }

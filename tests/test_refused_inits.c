@@ -1,0 +1,265 @@
+// What was refused may be finished: after each initialisation that fails, for want of memory or by
+// its arguments, the caller's next call, its finish, frees nothing twice and leaves nothing. The
+// sanitizers see what it does.
+#include <unistd.h>
+
+#include "src/base/csv_table.h"
+#include "src/run/loop.h"
+#include "src/session/session.h"
+#include "src/session/session_file.h"
+#include "src/study/identify.h"
+#include "src/study/linear/linear.h"
+#include "src/study/robust.h"
+#include "src/study/store/sweep_store.h"
+#include "src/study/sweep_definition.h"
+#include "src/study/tune.h"
+#include "tests/refused_requests.h"
+
+static char folder[] = "/tmp/refused-inits-XXXXXX";
+
+static const char *put(const char *name, const char *text)
+{
+    static char path[64];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+// Each takes what it is about, makes one, and finishes it whatever came of it.
+
+static status table(const char *text, FILE *out)
+{
+    (void)out;
+    csv_table t = {0};
+    fault f = {0};
+    double *times = NULL;
+    status code = csv_table_read(&t, put("t.csv", text), 1, &f);
+    if (code == STATUS_OK) {
+        code = csv_table_times(&t, "time", &times, &f);
+    }
+    free(times);
+    csv_table_finish(&t);
+    csv_table_finish(&t);
+    return code;
+}
+
+static status set(const char *text, FILE *out)
+{
+    (void)out;
+    robust_set s = {0};
+    fault f = {0};
+    const status code = robust_set_read(&s, put("a.set", text), &f);
+    robust_set_finish(&s);
+    return code;
+}
+
+static status session_of_lines(const char *text, FILE *out)
+{
+    (void)out;
+    session_file s = {0};
+    fault f = {0};
+    const status code = session_file_read(&s, put("a.session", text), &f);
+    session_file_finish(&s);
+    return code;
+}
+
+static void ignore(void *context, const char *sentence)
+{
+    (void)context;
+    (void)sentence;
+}
+
+static status parsed(const char *text, FILE *out)
+{
+    (void)out;
+    scenario s = {0};
+    const status code = scenario_parse(&s, text, strlen(text), "p.yaml", NULL, ignore, NULL);
+    scenario_finish(&s);
+    return code;
+}
+
+// Axes of a sweep, blanks between them.
+static status plan_of(const char *text, sweep_sampling how, bool tuned)
+{
+    char all[256], *rest = NULL, *vary[SWEEP_MOST_AXES];
+    int count = 0;
+    scenario s;
+    fault f = {0};
+    status code = make_scenario(&s, "control.law=force-pd");
+    if (code != STATUS_OK) {
+        return code;
+    }
+    snprintf(all, sizeof all, "%s", text);
+    for (char *one = strtok_r(all, ";", &rest); one != NULL; one = strtok_r(NULL, ";", &rest)) {
+        vary[count++] = one;
+    }
+    if (tuned) {
+        tuning t = {0};
+        const tune_request asked = {
+            .base = &s, .vary = vary, .vary_count = count, .minimise = "peak_force_N", .runs = 4};
+        code = tune_init(&t, &asked, &f);
+        tune_finish(&t);
+    } else {
+        sweep w = {0};
+        sweep again = {0};
+        definition d = {0};
+        sweep_store *store = NULL;
+        const sweep_request request = {
+            .vary = vary, .vary_count = count, .sampling = how, .runs = how == SWEEP_GRID ? 0 : 3};
+        code = sweep_init(&w, &s, &request, &f);
+        if (code == STATUS_OK) {
+            code = definition_init(&d, &w, &f);
+        }
+        if (code == STATUS_OK) {
+            code = definition_plan(&d, "here", &again, &f);
+        }
+        if (code == STATUS_OK) {
+            code = sweep_store_open(&store, NULL, &w, &f);
+        }
+        sweep_store_close(store);
+        sweep_finish(&again);
+        definition_finish(&d);
+        sweep_finish(&w);
+    }
+    scenario_finish(&s);
+    return code;
+}
+
+static status grid(const char *text, FILE *out)
+{
+    (void)out;
+    return plan_of(text, SWEEP_GRID, false);
+}
+
+static status drawn(const char *text, FILE *out)
+{
+    (void)out;
+    return plan_of(text, SWEEP_LATIN, false);
+}
+
+static status tuned(const char *text, FILE *out)
+{
+    (void)out;
+    return plan_of(text, SWEEP_LATIN, true);
+}
+
+static status fitted(const char *text, FILE *out)
+{
+    (void)out;
+    scenario s;
+    fault f = {0};
+    status code = make_scenario(&s, "control.law=open-loop control.rate=1000");
+    if (code != STATUS_OK) {
+        return code;
+    }
+    identification id = {.base = &s};
+    code = identify_add_path(&id, text, &f);
+    if (code == STATUS_OK) {
+        code = identify_add_trace(&id,
+                                  put("r.csv", "time[s],command[V],encoder[rad]\n0,1,0\n"
+                                               "0.001,1,0\n0.002,1,0.001\n"),
+                                  NULL, 0, &f);
+    }
+    identify_finish(&id);
+    scenario_finish(&s);
+    return code;
+}
+
+static status looped(scenario *s, FILE *out)
+{
+    (void)out;
+    fault f = {0};
+    run_loop *l = NULL;
+    const status code = loop_create(&l, s, &(loop_options){.keep_trace = true}, &f);
+    loop_destroy(l);
+    return code;
+}
+
+static status linearised(scenario *s, FILE *out)
+{
+    (void)out;
+    fault f = {0};
+    linear_arm arm = {0};
+    linear_system loop = {0};
+    status code = linear_arm_init(&arm, &s->parameters, LINEAR_CONTACT, &f);
+    if (code == STATUS_OK) {
+        code = linear_loop(&loop, &arm, &s->parameters, &f);
+    }
+    linear_system_finish(&loop);
+    linear_system_finish(&arm.system);
+    return code;
+}
+
+// --- for want of memory, and by the arguments
+// ------------------------------------------------------
+
+static void what_is_refused_for_want_of_memory_is_finished(void **state)
+{
+    (void)state;
+    try_all(table, "time[s],a[V]\n0,1\n1,2\n");
+    try_all(set, "belief.k2_factor=0.9:1.1\ncase softer: arm.k2=5; push=-0.01@0.2\n");
+    try_all(parsed, "title: A\nmotor: {voltage: 2 V}\n");
+    try_all(grid, "motor.voltage=1,2;arm.k2=4:5:2");
+    try_all(drawn, "arm.k2=1,2,3;with arm.mass=0.1,0.2,0.3");
+    try_all(tuned, "control.kp=1:2");
+    try_all(fitted, "arm.k2=4:6");
+    try_with_scenario(looped, "control.law=hybrid");
+    try_with_scenario(linearised, "control.law=force-pd control.force=1");
+}
+
+static void what_is_refused_by_its_arguments_is_finished(void **state)
+{
+    (void)state;
+    static const struct {
+        work *does;
+        const char *about[8];
+    } refused[] = {
+        {table, {"", "time[s]\n", "time[s],a[V]\n1,2\n0,1\n", "time[s]\nx\n", "time[m]\n1\n"}},
+        {set, {"", "case x\n", "case : a=b\n", "case a: push=1\n"}},
+        {session_of_lines, {"", "x\n", "session 999\n"}},
+        {parsed, {"", "- a", "motor: {voltage: x}", "script: [{at: -1}]", "title: A\nlesson: 3"}},
+        {grid, {"arm.k2", "arm.k2=1:2", "arm.k2=1,1", "arm.k2=1,2;arm.k2=3,4", "with arm.k2=1,2"}},
+        {drawn, {"arm.k2=1,2;with arm.mass=0.1", "x=1:2", "arm.k2=1:2;with arm.mass=1:2"}},
+        {tuned, {"control.kp=1", "control.kp=1,2", "x=1:2", "control.law=none,hybrid"}},
+        {fitted, {"arm.k2=", "arm.links", "x", "arm.k2=5:5", "control.law"}},
+    };
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        for (int k = 0; k < 8 && refused[i].about[k] != NULL; k++) {
+            const status code = refused[i].does(refused[i].about[k], NULL);
+            if (code == STATUS_OK || code == STATUS_NO_MEMORY) {
+                fail_msg("%zu '%s': %s", i, refused[i].about[k], status_text(code));
+            }
+        }
+    }
+}
+
+static int begin(void **state)
+{
+    scenario_text = "title: A\nrun: {duration: 0.02 s}\n";
+    return mkdtemp(folder) == NULL || use_refusing_allocators(state);
+}
+
+static int end(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"t.csv", "a.set", "a.session", "r.csv"};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "%s/%s", folder, files[i]);
+        unlink(path);
+    }
+    return rmdir(folder);
+}
+
+int main(int count, char **words)
+{
+    everywhere = count > 1 && strcmp(words[1], "everywhere") == 0;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_refused_for_want_of_memory_is_finished),
+        cmocka_unit_test(what_is_refused_by_its_arguments_is_finished),
+    };
+    return cmocka_run_group_tests(tests, begin, end);
+}
