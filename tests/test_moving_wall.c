@@ -1,10 +1,14 @@
-// A wall that moves: driven arms and impacts in closed form.
+// A wall that moves: driven arms and impacts in closed form, walls moved at once by a script, and a
+// law that holds its force on one.
 #include <math.h>
 #include <stdlib.h>
 
 #include "src/arm/impact.h"
 #include "src/contact/engine.h"
+#include "src/run/loop.h"
 #include "tests/passage.h"
+#include "tests/rig_fixture.h"
+#include "tests/scenario_fixture.h"
 
 // One link without friction, pressed by its weight against a flat wall at the angle 0.
 #define PRESSED_LINK                                                                               \
@@ -127,12 +131,128 @@ static void only_the_relative_velocity_counts_at_an_impact(void **state)
     }
 }
 
+// --- walls that a script moves -------------------------------------------------------------------
+
+static run_result run_of(const char *wall, double from, double time, double to, status expected)
+{
+    char text[300];
+    const char *script = "script:\n  - {at: %.17g, set: {wall.angle: %g}}\n";
+    int at =
+        snprintf(text, sizeof text, "wall: {%s, angle: %.17g}\nrun: {duration: 0.6}\n", wall, from);
+    snprintf(text + at, sizeof text - (size_t)at, script, time, to);
+    scenario s = good(text);
+    run_result r;
+    run_scenario(&s, true, &r);
+    scenario_finish(&s);
+    if (r.summary.status != expected) {
+        fail_msg("%s: %s", text, r.summary.message);
+    }
+    return r;
+}
+
+static const char *const walls[] = {
+    "kind: point", "kind: plane, restitution: 0.4", "kind: point, contact: kelvin-voigt",
+    "kind: plane, contact: hunt-crossley", "kind: point, contact: kelvin-voigt, mass: 0.05"};
+
+// Moved while the arm flies, it is as if it had always been there.
+static void a_wall_moved_in_flight_is_where_it_was_put(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
+        run_result moved = run_of(walls[i], 0.1, 0.05, 0.07, STATUS_OK);
+        run_result there = run_of(walls[i], 0.07, 0, 0.07, STATUS_OK);
+        check_close(moved.summary.first_contact_s, there.summary.first_contact_s, 1e-11);
+        check_relative(moved.summary.motor_work_J, there.summary.motor_work_J, 1e-8);
+        check_relative(moved.summary.peak_force_N, there.summary.peak_force_N, 1e-6);
+        run_finish(&moved);
+        run_finish(&there);
+    }
+}
+
+// Taken away from an arm that presses on it, it lets go at once and costs no energy; moved into the
+// arm it is refused.
+static void a_wall_moved_in_contact_lets_go_or_is_refused(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
+        run_result r = run_of(walls[i], 0.1, 0, 0.1, STATUS_OK);
+        const trace *t = &r.trace;
+        double pressed = 0;
+        for (size_t k = 0; k < t->row_count && pressed == 0; k++) {
+            pressed =
+                t->rows[k].force > 0.01 && t->rows[k].contact != 0 ? t->rows[k].time + 4e-4 : 0;
+        }
+        assert_true(pressed > 0);
+        run_finish(&r);
+
+        r = run_of(walls[i], 0.1, pressed, 0.15, STATUS_OK);
+        size_t change = 0;
+        while (r.trace.events[change].kind != EVENT_CHANGE) {
+            assert_true(++change < r.trace.event_count);
+        }
+        assert_int_equal(r.trace.events[change + 1].kind, EVENT_RELEASE);
+        check_close(r.trace.events[change + 1].time, pressed, 0);
+        assert_true(r.summary.energy_residual_J < 1e-10 * r.summary.motor_work_J);
+        run_finish(&r);
+
+        r = run_of(walls[i], 0.1, pressed, 0.099, STATUS_BAD_SCENARIO);
+        assert_non_null(strstr(r.summary.message, "behind the wall"));
+        run_finish(&r);
+    }
+}
+
+// A loop goes on after a wall was refused as if nothing had been asked.
+static void a_refused_wall_changes_nothing(void **state)
+{
+    (void)state;
+    double end[2];
+    for (int asked = 0; asked < 2; asked++) {
+        scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=0.5"))};
+        run_loop *l;
+        fault f;
+        assert_int_equal(loop_create(&l, &s, &(loop_options){0}, &f), STATUS_OK);
+        assert_int_equal(loop_until(l, 0.3, &f), STATUS_OK);
+        if (asked) {
+            assert_int_equal(loop_set_number(l, PARAMETER_INDEX(wall.angle), 0.05, &f),
+                             STATUS_BAD_SCENARIO);
+            assert_non_null(strstr(f.text, "behind the wall"));
+        }
+        assert_int_equal(loop_until(l, 0.5, &f), STATUS_OK);
+        end[asked] = loop_state(l, &(int){0})[0];
+        loop_destroy(l);
+    }
+    assert_true(end[0] == end[1]);
+}
+
+// On walls that come and go by a millimetre a second the law holds its force.
+static void the_observer_holds_its_force_on_a_moving_wall(void **state)
+{
+    (void)state;
+    static const char *const on[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
+    for (size_t i = 0; i < 2; i++) {
+        run_result r = rig_run(SETTINGS("control.law=observer", "control.force=1",
+                                        "control.approach_voltage=1", "run.duration=3",
+                                        "wall.motion=sine", on[i]),
+                               true);
+        for (size_t k = 0; k < r.trace.row_count; k++) {
+            if (r.trace.rows[k].time > 1) {
+                check_close(r.trace.rows[k].force, 1, 0.1);
+            }
+        }
+        run_finish(&r);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_driven_spring_has_its_amplitude_and_phase),
         cmocka_unit_test(a_rigid_wall_leads_the_tip),
         cmocka_unit_test(only_the_relative_velocity_counts_at_an_impact),
+        cmocka_unit_test(a_wall_moved_in_flight_is_where_it_was_put),
+        cmocka_unit_test(a_wall_moved_in_contact_lets_go_or_is_refused),
+        cmocka_unit_test(a_refused_wall_changes_nothing),
+        cmocka_unit_test(the_observer_holds_its_force_on_a_moving_wall),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

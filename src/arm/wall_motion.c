@@ -33,7 +33,6 @@ wall_shift wall_motion_at(const wall_motion *m, double time)
                             m->amplitude * rate * 30 * x * x * y * y,
                             m->amplitude * rate * rate * 60 * x * y * (y - x)};
     }
-    case MOTION_FILE:
     case MOTION_NONE:
         break;
     }

@@ -4,7 +4,6 @@
 //     sine: u = A sin(2 pi f (t - t0)), at all times
 //     step: u = A S((t - t0)/T), S(x) = x^3 (10 - 15 x + 6 x^2) for x from 0 to 1: at rest before
 //           and after, the acceleration without a jump; T = 1/(2 f)
-//     file: the natural cubic spline through recorded places, its times moved by t0
 //
 // so that an arm in contact is never struck by the wall's motion itself. In between what it is at
 // instants where a derivative jumps the motion is analytic; steps end there.
@@ -21,18 +20,11 @@ typedef struct wall_shift {
     double acceleration; // [m/s2]
 } wall_shift;
 
-// Recorded places with the second derivatives of their spline.
-typedef struct wall_record {
-    size_t count;
-    double *time, *place, *bend; // [count] [s], [m], [m/s2]
-} wall_record;
-
 typedef struct wall_motion {
     wall_motion_kind kind;
-    double amplitude;          // A [m]
-    double frequency;          // f [Hz]
-    double time;               // t0 [s]
-    const wall_record *record; // of a file
+    double amplitude; // A [m]
+    double frequency; // f [Hz]
+    double time;      // t0 [s]
 } wall_motion;
 
 // The motion of resolved parameters.

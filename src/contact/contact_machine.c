@@ -58,6 +58,7 @@
 #include "src/contact/locate.h"
 
 #define SHORT_FLIGHT 0.01  // of the arm's shortest period, a flight that says nothing by itself
+#define SAME_PLACE   1e-12 // as that of the wall's face, but for rounding [m]
 #define AT_REST      1e-20 // velocities all of which are below it are rounding of rest [rad/s]
 
 // --- what holds at an instant -----------------------------------------------------------------
@@ -483,6 +484,15 @@ void motion_retorque(const arm *a, motion *m, double before)
     state[SLOT_JUMPED] = 1;
 }
 
+double motion_gap_with(const arm *a, motion *m)
+{
+    assert(a != NULL && m != NULL);
+    double depth;
+    chain_penetration(motion_arm_at(a, m, m->state[SLOT_TIME]), state_angles(m, m->state),
+                      state_velocities(m, m->state), &depth, NULL);
+    return m->state[SLOT_FACE] - depth;
+}
+
 void motion_rebind(const arm *before, const arm *after, motion *m)
 {
     assert(before != NULL && after != NULL && m != NULL && after->dof == m->dof);
@@ -490,8 +500,16 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
     motion_note_change(m);
     motion_follow_arm(after, m);
     m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
+    const bool turned =
+        after->wall.cosine != before->wall.cosine || after->wall.sine != before->wall.sine;
+    bool contact = m->state[SLOT_CONTACT] != 0;
+    if (contact && turned && motion_gap_with(after, m) > SAME_PLACE) {
+        contact = false;
+        if (m->wall_gives) {
+            leave_face(after, m);
+        }
+    }
     after = motion_arm_at(after, m, m->state[SLOT_TIME]);
-    const bool contact = m->state[SLOT_CONTACT] != 0;
     resolve(after, m, contact && (!m->wall_gives || face_follows(after, m)), MOTION_REACHED);
     check_invariants(after, m);
 }

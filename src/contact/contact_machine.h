@@ -77,8 +77,13 @@ void motion_apply(const arm *a, motion *m, motion_report *report);
 // wall answers; *report is then an impact, else MOTION_REACHED.
 void motion_push(const arm *a, motion *m, double impulse, motion_report *report);
 
+// How far the arm would be from the wall's face [m] with the wall that `a` has, a face that is
+// pushed in moving with its wall.
+double motion_gap_with(const arm *a, motion *m);
+
 // To be called after the constants of the arm changed under a motion (`before` is the old arm): the
-// change of strain energy is booked as external work and the contact state found anew.
+// change of strain energy is booked as external work and the contact state found anew. A wall that
+// was moved is in front of the arm.
 void motion_rebind(const arm *before, const arm *after, motion *m);
 
 // To be called after nothing but the motor's torque changed from `before` [N m]: accelerations and

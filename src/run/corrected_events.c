@@ -297,6 +297,27 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
 
 // --- the script -------------------------------------------------------------------------------
 
+// Whether the wall stays in front of the arm, if the action moves it.
+static status check_wall(const corrected_run *c, const action *todo, fault *f)
+{
+    motion *m = c->motion;
+    parameters p = c->recording->now;
+    if (todo->parameter != PARAMETER_INDEX(wall.angle) || todo->value == p.wall.angle ||
+        p.wall.kind == WALL_NONE) {
+        return STATUS_OK;
+    }
+    const status code = action_apply(todo, &p, f);
+    arm after = c->arm;
+    wall_init(&after.wall, &p);
+    const double gap = motion_gap_with(&after, m), least = m->state[SLOT_CONTACT] != 0 ? -1e-12 : 0;
+    return code != STATUS_OK || gap >= least
+               ? code
+               : fault_set_at(f, STATUS_BAD_SCENARIO, "wall.angle",
+                              "at t = %.9g s wall.angle = %.9g rad would leave the arm %.4g m "
+                              "behind the wall, expected one in front of it",
+                              m->state[SLOT_TIME], p.wall.angle, -gap);
+}
+
 // Sets a parameter, under which the arm goes on in its present state.
 static status set_parameter(corrected_run *c, const action *todo, fault *f)
 {
@@ -328,7 +349,8 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
     event e = {.time = m->state[SLOT_TIME], .kind = EVENT_CHANGE, .index = index};
     const double work = m->state[SLOT_EXTERNAL_WORK];
     const contact_state before = contact_state_of(m->state);
-    status failed = corrected_record_row(c, m->state, 0);
+    status failed = todo->kind == ACTION_SET ? check_wall(c, todo, f) : STATUS_OK;
+    failed = failed == STATUS_OK ? corrected_record_row(c, m->state, 0) : failed;
     if (failed != STATUS_OK) {
         return failed;
     }

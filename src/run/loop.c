@@ -226,7 +226,13 @@ static status act(run_loop *l, const action *todo, fault *f)
         code = code == STATUS_OK ? rig_takes(on, &tried, f) : code;
     }
     if (code == STATUS_OK) {
-        code = l->failed = l->run.model->act(&l->run, todo, &l->fault);
+        code = l->run.model->act(&l->run, todo, &l->fault);
+        if (code == STATUS_BAD_SCENARIO) { // a wall that would be behind the arm
+            *f = l->fault;
+            l->fault = (fault){0};
+            return code;
+        }
+        l->failed = code;
         return stay_failed(l, f);
     }
     return code;

@@ -110,7 +110,7 @@ const parameter_info parameter_table[] = {
     {PATH(wall.kind), CHOICE(2, "point|plane|none"), DEFAULT(WALL_POINT),
      MEANING("a fixed point the last link's line may not pass, a flat wall the tip may not pass, "
              "or none")},
-    {PATH(wall.angle), REAL("rad", -3, 3), DEFAULT(0.1),
+    {PATH(wall.angle), REAL("rad", -3, 3), DEFAULT(0.1), TIMED,
      MEANING("direction of contact point or flat wall as seen from the hub axis")},
     {PATH(wall.restitution), REAL("", 0, 1), DEFAULT(0), TIMED,
      MEANING("coefficient of restitution e of an impact on a rigid wall or a face with a mass (0: "

@@ -127,7 +127,10 @@ status parameter_may_change(const parameters *p, int index, fault *f)
     const char *path = parameter_table[index].path;
     const bool bending = index == PARAMETER_INDEX(arm.k2) || index == PARAMETER_INDEX(arm.EI);
     if (p->arm.model == ARM_PRINTED) {
-        return STATUS_OK;
+        return index != PARAMETER_INDEX(wall.angle)
+                   ? STATUS_OK
+                   : fault_set_at(f, STATUS_BAD_SCENARIO, path,
+                                  "the wall of the printed model does not move during a run");
     }
     if (index == PARAMETER_INDEX(arm.k1) && p->arm.hub_joint == HUB_BEAM) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, path,
