@@ -68,24 +68,16 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
     return t;
 }
 
-// The engine's bound on the second derivative; `known` if that is what it was for an interval that
-// this one is part of and the engine's is no tighter here, else HUGE_VAL.
-static double bend_between(const arm *a, const motion *m, watch w, point lo, point hi, double known)
-{
-    return isfinite(known) && m->engine->bends_from_start
-               ? known
-               : m->engine->bend(a, m, w, lo.time, hi.time);
-}
-
-// The first fall below zero from `lo` to `hi`, both known; negative if there is none. Intervals in
-// which the bound on the second derivative excludes a fall are skipped; those in which it excludes
-// a rising slope have exactly one root; all others are bisected. Where the function is not finite
+// The first fall below zero from `lo` to `hi`, at both of which the function is known, as `known`
+// is a bound on its second derivative, or infinite; negative if there is none. Intervals in which
+// the bound on the second derivative excludes a fall are skipped; those in which it excludes a
+// rising slope have exactly one root; all others are bisected. Where the function is not finite
 // nothing is found: the state at the step's end reports that.
 static double first_fall(const arm *a, const motion *m, watch w, point lo, point hi, int cuts,
                          double known)
 {
     const double length = hi.time - lo.time;
-    const double bend = bend_between(a, m, w, lo, hi, known);
+    const double bend = isfinite(known) ? known : m->engine->bend(a, m, w, lo.time, hi.time);
     const double room = bend * length * length / 8;
     if (fmin(lo.at.value, hi.at.value) > room || !isfinite(room)) {
         return -1;
@@ -109,15 +101,6 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
     return first >= 0 ? first : first_fall(a, m, w, middle, hi, cuts - 1, bend);
 }
 
-void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
-{
-    if (m->engine->first_event != NULL) {
-        m->engine->first_event(a, m, h, first, any);
-    } else {
-        dense_search_event(a, m, h, first, any);
-    }
-}
-
 void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any)
 {
     *any = false;
@@ -125,7 +108,7 @@ void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *
 
     // each function that is watched, as far as the first fall so far
     for (watch w = WATCH_GAP; w < WATCHES; w++) {
-        if (!watch_active(a, m, w) || (m->engine->clear != NULL && m->engine->clear(a, m, w, *h))) {
+        if (!watch_active(a, m, w) || m->engine->clear(a, m, w, *h)) {
             continue;
         }
         point start = {0, m->engine->look(a, m, w, 0)}, end = {*h, m->engine->look(a, m, w, *h)};
@@ -177,7 +160,8 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
 {
     // no larger force is possible here, or the slope keeps its sign
     const double length = hi.time - lo.time;
-    const double bend = bend_between(a, m, WATCH_FORCE, lo, hi, known);
+    const double bend =
+        isfinite(known) ? known : m->engine->bend(a, m, WATCH_FORCE, lo.time, hi.time);
     const double most = fmax(lo.at.value, hi.at.value) + bend * length * length / 8;
     const double change = bend * length / 2; // of the slope from the nearer end
     if (most <= m->pulse_peak * (1 + SAME_PEAK) || fmin(lo.at.slope, hi.at.slope) > change ||
@@ -200,15 +184,6 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
     raise_peak(a, m, middle, hi, cuts - 1, bend);
 }
 
-void dense_peak(const arm *a, motion *m, double h)
-{
-    if (m->engine->peak != NULL) {
-        m->engine->peak(a, m, h);
-    } else {
-        dense_search_peak(a, m, h);
-    }
-}
-
 // The gap to the wall at rest and its rate at h in the stride.
 static glance rest_gap_at(const arm *a, const motion *m, double h)
 {
@@ -224,9 +199,6 @@ static glance rest_gap_at(const arm *a, const motion *m, double h)
 void dense_deepest(const arm *a, motion *m, double h)
 {
     enum { PIECES = 8 };
-    if (m->engine->gap_at == NULL) {
-        return;
-    }
     point lo = {0, rest_gap_at(a, m, 0)};
     for (int i = 1; i <= PIECES; i++) {
         const double time = i * h / PIECES;
@@ -248,10 +220,10 @@ void dense_deepest(const arm *a, motion *m, double h)
     }
 }
 
-void dense_search_peak(const arm *a, motion *m, double h)
+void dense_peak(const arm *a, motion *m, double h)
 {
     enum { CUTS = 4 };
-    if (m->engine->bounded != NULL && m->engine->bounded(a, m, h, m->pulse_peak)) {
+    if (m->engine->bounded(a, m, h, m->pulse_peak)) {
         return;
     }
 

@@ -8,8 +8,9 @@
 #include "src/contact/motion.h"
 
 // The first instant in [0, *h] of the stride at which a function that is watched leaves its
-// admissible side: *any, *first and *h as locate_first_event has them; m->trial is left alone.
-void dense_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);
+// admissible side, by the engine's look, bend and clear: *any, *first and *h as locate_first_event
+// has them; m->trial is left alone.
+void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any);
 
 // Raises m->pulse_peak to the largest force in [0, h] of a stride in contact.
 void dense_peak(const arm *a, motion *m, double h);
@@ -17,8 +18,3 @@ void dense_peak(const arm *a, motion *m, double h);
 // Raises m->largest_penetration to the deepest point in [0, h] of a stride within a wall that
 // gives, or above a face that the arm has left and that is pushed in.
 void dense_deepest(const arm *a, motion *m, double h);
-
-// The general search behind dense_first_event and dense_peak, for engines without one of their own:
-// by the engine's look, bend, clear and bounded.
-void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any);
-void dense_search_peak(const arm *a, motion *m, double h);

@@ -81,11 +81,11 @@ typedef struct engine {
 
     // Dense engines: a bound on the magnitude of the second derivative by time of what `look` gives
     // for h from `from` to `to`. With it, the function is nowhere in between below the lower of its
-    // ends less bend (to - from)^2 / 8. For stiction the bound is that of the friction torque.
+    // ends less bend (to - from)^2 / 8. For stiction the bound is that of the friction torque. It
+    // is expensive, and over a part of an interval hardly tighter.
     double (*bend)(const arm *a, const motion *m, watch w, double from, double to);
-    bool bends_from_start; // over a part of the stride that bound is hardly tighter, and expensive
 
-    // Dense engines, or NULL: cheap tests after which most strides need no search. `clear`: the
+    // Dense engines: cheap tests after which most strides need no search. `clear`: the
     // watched function certainly stays above zero up to h; `bounded`: the contact force certainly
     // stays at or below `most` [N]. False means that the test cannot tell.
     bool (*clear)(const arm *a, motion *m, watch w, double h);
@@ -98,12 +98,11 @@ typedef struct engine {
     // stride of length h [s], into at[count + 1].
     void (*forces_at)(const arm *a, const motion *m, double h, int count, glance *at);
 
-    // Dense engines, or NULL: the gap [m] and its rate [m/s] in free flight and within walls that
+    // Dense engines: the gap [m] and its rate [m/s] in free flight and within walls that
     // give, never divided by a power of h.
     glance (*gap_at)(const arm *a, const motion *m, double h);
 
-    // Dense engines whose strides outlive steps, or NULL: the hub's angle [rad] and velocity
-    // [rad/s].
+    // Dense engines: the hub's angle [rad] and velocity [rad/s].
     glance (*hub_at)(const arm *a, const motion *m, double h);
 
     // Dense engines, or NULL: into `state`, at an instant [s] of the last step, what sensors and
@@ -124,10 +123,8 @@ typedef struct engine {
     // constraint or is not finite.
     bool (*move_to)(const arm *a, motion *m, double h, state_energy *has);
 
-    // Dense engines with event and peak location of their own, else NULL; the contracts are those
-    // of dense_first_event and dense_peak (dense_location.h).
+    // Dense engines: the first event, as dense_search_event (dense_location.h) has it.
     void (*first_event)(const arm *a, motion *m, double *h, watch *first, bool *any);
-    void (*peak)(const arm *a, motion *m, double h);
 
     // Engines that can do so without evaluating the state, else NULL: adds to accelerations and
     // reactions of m->state the immediate effect of a change of the motor's torque [N m], while the

@@ -188,7 +188,7 @@ static void look_ahead(const arm *a, motion *m, double until, double far, double
     // to the first event, the cut or the stride's end; an event at the instant of the cut is before
     // it
     if (begun) {
-        dense_first_event(a, m, &h, &first, &any);
+        m->engine->first_event(a, m, &h, &first, &any);
         if (now + h > m->cut) {
             h = m->cut - now;
             any = false;
