@@ -26,13 +26,13 @@ static inline passage move_on(const arm *a, motion *m, double until, int most_st
         const double moved = state_quadratures(m, m->state)[QUADRATURE_PUSHED];
         assert_int_equal(motion_step(a, m, until, 1e-3, &r), STATUS_OK);
         assert_true(++p.steps <= most_steps);
-        put_in += fabs(m->state[SLOT_MOTOR_WORK] - work) + fabs(pushed) +
-                  fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED] - moved);
+        put_in += fabs(m->state[SLOT_MOTOR_WORK] - work) + fabs(pushed);
         p.open = fmax(p.open, fabs(motion_energy_residual(a, m, m->state)));
         if (r.event == MOTION_IMPACT || r.event == MOTION_TOUCH) {
             check_close(m->state[SLOT_GAP], 0, 1e-9);
         }
         motion_apply(a, m, &r);
+        put_in += fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED] - moved);
         p.impacts += r.event == MOTION_IMPACT;
         p.touches += r.event == MOTION_TOUCH;
         p.momentum += r.event == MOTION_IMPACT ? r.impulse : 0;

@@ -96,6 +96,35 @@ static void a_rigid_wall_leads_the_tip(void **state)
     }
 }
 
+// A link at rest that a wall meets at a constant speed leaves it as one that comes at that speed
+// leaves a wall at rest: seen from the wall. The sine is slow enough to be straight.
+static void a_wall_at_constant_speed_is_one_at_rest_seen_from_it(void **state)
+{
+    (void)state;
+    static const double shares[] = {0, 0.5, 1};
+    for (size_t i = 0; i < 3; i++) {
+        char e[64];
+        snprintf(e, sizeof e, "wall.restitution=%g", shares[i]);
+        const parameters p =
+            fixture_parameters(SETTINGS(PRESSED_LINK, "arm.tilt=0", "initial.angle=-0.01", e,
+                                        "wall.motion_amplitude=10", "wall.motion_frequency=0.001"));
+        arm a;
+        arm_init(&a, &p);
+        motion *m = motion_create(&a, &p.method);
+        motion_start(&a, m, -0.01, 0);
+        const double w = 2 * M_PI * 1e-3, place = a.link_length * sin(0.01);
+        const double meets = asin(place / 10) / w, speed = 10 * w * cos(w * meets);
+        const passage done = move_on(&a, m, meets + 1e-3, 1000);
+        assert_int_equal(done.impacts, 1);
+        const double turns = -(1 + shares[i]) * speed / (a.link_length * cos(0.01));
+        const double inertia = a.hub_inertia + a.link_mass * a.link_length * a.link_length / 3;
+        check_relative(state_velocities(m, m->state)[0], turns, 1e-5);
+        check_relative(done.momentum, -inertia * turns / (a.link_length * cos(0.01)), 1e-5);
+        check_below(done.open, 1e-10);
+        motion_destroy(m);
+    }
+}
+
 // An arm at rest that a wall strikes gets the impulse with which it would strike the wall.
 static void only_the_relative_velocity_counts_at_an_impact(void **state)
 {
@@ -248,6 +277,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_driven_spring_has_its_amplitude_and_phase),
         cmocka_unit_test(a_rigid_wall_leads_the_tip),
+        cmocka_unit_test(a_wall_at_constant_speed_is_one_at_rest_seen_from_it),
         cmocka_unit_test(only_the_relative_velocity_counts_at_an_impact),
         cmocka_unit_test(a_wall_moved_in_flight_is_where_it_was_put),
         cmocka_unit_test(a_wall_moved_in_contact_lets_go_or_is_refused),

@@ -137,8 +137,8 @@ static status check_engine(const parameters *p, fault *f)
     if (p->method.engine == ENGINE_PAIR && !pair) {
         return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.engine),
                             "method.engine = pair takes two equal bare links in a level plane on a "
-                            "rigid wall, with "
-                            "a motor whose current follows at once; expected auto or stiff");
+                            "rigid wall at rest, with a motor whose current follows at once; "
+                            "expected auto or stiff");
     }
     return STATUS_OK;
 }
