@@ -2,6 +2,7 @@
 #include "tests/explorer_on_screen.h"
 
 #include <math.h>
+#include <unistd.h>
 
 #include "src/run/trace.h"
 
@@ -92,11 +93,61 @@ static void test_statistics_are_from_the_mark_to_the_cursor(void **state)
     explorer_finish(&ex);
 }
 
+// Rows of a run, written and laid under another one, are shifted so that both touch at once, or as
+// they are told; what cannot be read leaves what is there.
+static void test_measured_data_touch_when_the_run_does(void **state)
+{
+    (void)state;
+    explorer ex;
+    char path[] = "/tmp/impactlab-data-XXXXXX", line[96];
+    open_explorer(&ex, "corrected/first-impact");
+    const int file = mkstemp(path);
+    FILE *stream = fdopen(file, "w");
+    assert_non_null(stream);
+    const trace *t = &ex.state.session.run.trace;
+    fputs("time[ms],force[mN]\n", stream);
+    for (size_t r = 0; r < t->row_count; r++) {
+        fprintf(stream, "%.17g,%.17g\n", 1e3 * (t->rows[r].time + 0.125), 1e3 * t->rows[r].force);
+    }
+    fclose(stream);
+    snprintf(line, sizeof line, ":data %s<Enter>", path);
+    press(&ex, line);
+    assert_int_equal(ex.state.measured.row_count, t->row_count);
+    for (size_t r = 0; r < t->row_count; r++) {
+        check_close(ex.state.measured.rows[r].time, t->rows[r].time, 1e-9);
+        check_close(ex.state.measured.rows[r].force, t->rows[r].force, 1e-9);
+    }
+    static const struct {
+        int width, height;
+    } sizes[] = {{80, 24}, {100, 30}, {200, 60}};
+    for (size_t i = 0; i < 3; i++) {
+        assert_shows_at(&ex, sizes[i].width, sizes[i].height, "shifted by -0.125 s");
+    }
+    press(&ex, ":data /nowhere.csv<Enter>");
+    assert_true(ex.state.message.warning);
+    assert_int_equal(ex.state.measured.row_count, t->row_count);
+
+    // beside pins, a difference, a sweep and another scenario, and by hand
+    press(&ex, "b:set arm.k2 5<Enter>DD:sweep arm.k2=4:8:3<Enter>");
+    free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
+    press(&ex, ":open compare/hybrid<Enter>u");
+    free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
+    snprintf(line, sizeof line, ":data %s@0.5<Enter>", path);
+    press(&ex, line);
+    check_close(ex.state.measured.rows[0].time, 0.625, 1e-9);
+    press(&ex, ":data off<Enter>");
+    assert_int_equal(ex.state.measured.row_count, 0);
+    free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
+    unlink(path);
+    explorer_finish(&ex);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_spectrum_names_the_highest_line),
         cmocka_unit_test(test_a_phase_pane_ends_where_the_signals_end),
+        cmocka_unit_test(test_measured_data_touch_when_the_run_does),
         cmocka_unit_test(test_statistics_are_from_the_mark_to_the_cursor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -43,8 +43,23 @@ static void add_pane(const explorer_state *st, session_file *file, int index, in
     if (index >= PANES_OF_TABLE && p->shown) {
         add_line(file, "%s%s", views[p->view], signals);
     }
-    if (p->scaling == AXIS_FIXED && p->shown && p->count > 0) {
+
+    // axes and hidden signals of what can be shown again; a lesson hides signals of its own
+    if (p->count == 0 || (index >= PANES_OF_TABLE && !p->shown)) {
+        return;
+    }
+    if (p->scaling == AXIS_FIXED) {
         add_line(file, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high, number);
+    } else if (p->scaling == AXIS_GROW) {
+        add_line(file, "axis grow %d", number);
+    }
+    if (p->hidden != 0 || st->lesson.on) {
+        add_line(file, "signal all %d", number);
+    }
+    for (int k = 0; k < p->count; k++) {
+        if (p->hidden >> k & 1) {
+            add_line(file, "signal %s %d", signal_table[p->signals[k]].name, number);
+        }
     }
 }
 
@@ -61,10 +76,10 @@ static void add_looks(const explorer_state *st, session_file *file)
     add_line(file, "lanes %s", lane_choice_words[st->looks.lanes]);
     if (st->panes.chosen) {
         add_line(file, "panes %s", shown);
-        for (int i = 0, number = 1; i < PANES; i++) {
-            add_pane(st, file, i, number);
-            number += i < PANES_OF_TABLE || st->panes.pane[i].shown;
-        }
+    }
+    for (int i = 0, number = 1; i < PANES; i++) {
+        add_pane(st, file, i, number);
+        number += i < PANES_OF_TABLE || st->panes.pane[i].shown;
     }
     if (st->window.to > st->window.from) {
         add_line(file, "zoom %.17g %.17g", st->window.from, st->window.to);

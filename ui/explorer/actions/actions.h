@@ -68,6 +68,9 @@ void act_scrub(explorer_state *st, double time);
 void act_zoom_at(explorer_state *st, double factor, double time);
 void act_pan_by(explorer_state *st, double seconds);
 
+// Gives a parameter another value, from the cursor on or from the start.
+bool act_change(explorer_state *st, int parameter, const char *text);
+
 // Says what happens at the cursor: an event of the run, else the controller's change of mode.
 bool act_tell_event(explorer_state *st);
 

@@ -276,12 +276,18 @@ bool act_toggle_signal(explorer_state *st, int index, int k)
 // One signal after the other is hidden, from the last to the first, then all are shown.
 bool act_hide_signal(explorer_state *st, const char *argument)
 {
-    const int index = panes_focused(&st->panes), signal = signal_find(argument);
+    char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
+    int index = panes_focused(&st->panes);
+    snprintf(text, sizeof text, "%s", argument);
+    if (split(text, words) == 2 && !read_pane(st, words[1], &index)) {
+        return false;
+    }
+    const int signal = signal_find(words[0]);
     if (index < 0) {
         return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
     }
     pane *p = &st->panes.pane[index];
-    if (strcmp(argument, "all") == 0) {
+    if (strcmp(words[0], "all") == 0) {
         p->hidden = 0;
         return true;
     }

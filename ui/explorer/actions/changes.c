@@ -1,4 +1,4 @@
-// Actions that change the run: values, the control law, pushes, undo, sliders, the list of changes.
+// Actions that change the run: values, pushes, undo, sliders, the list of changes.
 #include "ui/explorer/actions/actions.h"
 
 #include <assert.h>
@@ -8,8 +8,6 @@
 
 #include "src/base/text_stream.h"
 #include "src/base/numbers.h"
-#include "src/base/words.h"
-#include "src/rig/controller.h"
 
 // What the last input came to: that the run stops with it, that it has no effect, or its news.
 static bool tell_change(explorer_state *st)
@@ -44,8 +42,7 @@ static bool tell_change(explorer_state *st)
     return act_tell(st, "%s = %s%s%s %s", info->path, value, blank, info->unit, when);
 }
 
-// Gives a parameter another value, from the cursor on or from the start.
-static bool change(explorer_state *st, int parameter, const char *text)
+bool act_change(explorer_state *st, int parameter, const char *text)
 {
     assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
     session_forget_ghost(&st->session);
@@ -118,7 +115,7 @@ bool act_set(explorer_state *st, const char *argument)
         return act_tell(st, "%s: %s%s%s", info->path, info->description,
                         inert != NULL ? "; without effect, " : "", inert != NULL ? inert : "");
     }
-    return change(st, parameter, value);
+    return act_change(st, parameter, value);
 }
 
 // How far a nudge of a real parameter goes up from a value: a fixed step, or on a logarithmic scale
@@ -190,7 +187,7 @@ static bool take_swept(explorer_state *st)
     const double now = s->now;
     sweep_axis_format(&sweep->axis, sweep->runs[sweep->selected].value, value, sizeof value);
     session_seek(s, 0);
-    const bool changed = change(st, sweep->axis.parameter, value);
+    const bool changed = act_change(st, sweep->axis.parameter, value);
     const double seen = s->seen;
     session_seek(s, now);
     s->seen = fmax(seen, s->now);
@@ -290,7 +287,7 @@ bool act_exchange_model(explorer_state *st, const char *argument)
 {
     (void)argument;
     bool printed = st->session.effective.parameters.arm.model == ARM_PRINTED;
-    return change(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
+    return act_change(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
 }
 
 bool act_extend(explorer_state *st, const char *argument)
@@ -304,7 +301,7 @@ bool act_extend(explorer_state *st, const char *argument)
     // what has been seen stays seen: only rows are added
     double seen = st->session.seen;
     number_format(text, duration + more);
-    if (!change(st, PARAMETER_INDEX(run.duration), text)) {
+    if (!act_change(st, PARAMETER_INDEX(run.duration), text)) {
         return false;
     }
     st->session.seen = seen;
@@ -410,166 +407,4 @@ bool act_drop_change(explorer_state *st, const char *argument)
     const int last = st->session.input_count - 1;
     st->change = st->change > last ? (last < 0 ? 0 : last) : st->change;
     return act_tell(st, "without %s; U puts it in again", text);
-}
-
-// --- the control law --------------------------------------------------------------------------
-
-static bool is_release(const char *word)
-{
-    return strcmp(word, "off") == 0 || strcmp(word, "none") == 0;
-}
-
-// Whether the script and the inputs hold a mode that another law does not have.
-static bool lock_prevents(const session *s, const char *name)
-{
-    scenario wanted = s->effective;
-    if (parameter_set_text(&wanted.parameters, PARAMETER_INDEX(control.law), name, NULL) !=
-        STATUS_OK) {
-        return false;
-    }
-    const controller *law = controller_of(wanted.parameters.control.law);
-    return scenario_check_locks(&wanted, law, NULL) != STATUS_OK;
-}
-
-// Says which law is near to a name that none has.
-static bool refuse_law(explorer_state *st, const char *name)
-{
-    nearest_word near = nearest_begin(name);
-    for (int i = 0; i < LAW_COUNT; i++) {
-        nearest_try(&near, control_law_table[i].word);
-    }
-    return act_refuse(st, "there is no control law '%.60s'%s%s%s", name,
-                      near.best ? ", did you mean '" : " (:law and Tab lists them)",
-                      near.best ? near.best : "", near.best ? "'?" : "");
-}
-
-// Changes the control law; if the lock on a mode prevents it, the message says what to do.
-static bool change_law(explorer_state *st, const char *name)
-{
-    return change(st, PARAMETER_INDEX(control.law), name) ||
-           (lock_prevents(&st->session, name) &&
-            act_refuse(st, "%.200s; undo the lock first", st->message.text));
-}
-
-bool act_law(explorer_state *st, const char *argument)
-{
-    char present[LINE_TEXT];
-    const parameters *p = &st->session.effective.parameters;
-    const int law = PARAMETER_INDEX(control.law);
-    parameter_format(p, law, present, sizeof present);
-
-    // the law of now is the one to come back to
-    if (state_has_law(st)) {
-        snprintf(st->last_law, sizeof st->last_law, "%s", present);
-    }
-
-    // a name of the table, however the parameter would refuse another one
-    parameters scratch = st->session.effective.parameters;
-    if (argument[0] != '\0' && !is_release(argument) &&
-        parameter_set_text(&scratch, law, argument, NULL) != STATUS_OK) {
-        return refuse_law(st, argument);
-    }
-
-    // without a name: off, or on again
-    if (argument[0] == '\0') {
-        const char *again = st->last_law[0] ? st->last_law : "hybrid";
-        return change_law(st, state_has_law(st) ? "none" : again);
-    }
-    return change_law(st, is_release(argument) ? "none" : argument);
-}
-
-// Index of the mode the law is held in at the cursor, -1 if in none.
-static int locked_mode(explorer_state *st)
-{
-    const law_modes *m = state_law_modes(st);
-    parameters p = state_parameters(st);
-    for (int i = 0; i < m->count; i++) {
-        if (strcmp(m->names[i], p.control.lock) == 0) {
-            return i;
-        }
-    }
-    return -1;
-}
-
-// The value of control.lock that an argument asks for: a mode, "none", or the next one of a round
-// through all modes and none.
-static const char *wanted_lock(explorer_state *st, const char *argument)
-{
-    const law_modes *m = state_law_modes(st);
-    int step = strcmp(argument, "next") == 0 ? 1 : strcmp(argument, "previous") == 0 ? -1 : 0;
-    if (step == 0) {
-        return is_release(argument) ? "none" : argument;
-    }
-    int round = m->count + 1, next = (locked_mode(st) + 1 + step + round) % round;
-    return next == 0 ? "none" : m->names[next - 1];
-}
-
-// Whether the last change is a lock at this very instant: going on through the modes replaces it.
-static bool locked_just_now(const session *s)
-{
-    if (s->input_count == 0) {
-        return false;
-    }
-    const session_input *last = &s->inputs[s->input_count - 1];
-    return last->kind == SESSION_INPUT_TIMED && last->time == s->now &&
-           last->parameter == PARAMETER_INDEX(control.lock);
-}
-
-static bool tell_modes(explorer_state *st)
-{
-    const law_modes *m = state_law_modes(st);
-    char text[LINE_TEXT] = "";
-    for (int i = 0; i < m->count; i++) {
-        size_t used = strlen(text);
-        snprintf(text + used, sizeof text - used, "%s%s", i > 0 ? ", " : "", m->names[i]);
-    }
-    return act_tell(st, "lock takes off, next or a mode of this law: %s", text);
-}
-
-static bool lock(explorer_state *st, const char *wanted)
-{
-    session *s = &st->session;
-    fault f = {0};
-
-    // going on through the modes at one instant replaces the lock there
-    const bool replaces = locked_just_now(s);
-    status undone = replaces ? session_undo(s, &f) : STATUS_OK;
-    if (undone != STATUS_OK) {
-        return act_worked(st, undone, &f);
-    }
-
-    // a lock that is refused leaves the one before in effect
-    parameters p = state_parameters(st);
-    const bool other = strcmp(p.control.lock, wanted) != 0;
-    if (other && !change(st, PARAMETER_INDEX(control.lock), wanted)) {
-        if (replaces) {
-            loss_unless(session_redo(s, &f) == STATUS_OK);
-        }
-        return false;
-    }
-    if (other && st->message.warning) {
-        return true;
-    }
-    if (strcmp(wanted, "none") == 0) {
-        return act_tell(st, "the law chooses its mode itself from %.4f s on", s->now);
-    }
-    return act_tell(st, "held in '%s' from %.4f s on", wanted, s->now);
-}
-
-bool act_lock(explorer_state *st, const char *argument)
-{
-    if (!state_has_law(st)) {
-        return act_refuse(st, "no law is on that could be held in a mode (:law NAME)");
-    }
-    if (!state_law_modes(st)->lockable) {
-        return act_refuse(st, "this law cannot be held in a mode");
-    }
-    if (argument[0] == '\0') {
-        return tell_modes(st);
-    }
-
-    // a copy: the modes are read anew when the run changes
-    char wanted[LINE_TEXT];
-    snprintf(wanted, sizeof wanted, "%s", wanted_lock(st, argument));
-    return lock(st, wanted);
 }

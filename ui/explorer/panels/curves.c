@@ -287,6 +287,8 @@ static void set_look(const explorer_state *st, plot_frame *f, const shown_run *r
         f->colour = run->index == st->sweep.selected ? INK_OTHER : INK_FRAME;
     } else if (run->kind == SHOWN_BEFORE) {
         f->colour = INK_FRAME;
+    } else if (run->kind == SHOWN_MEASURED) {
+        f->colour = INK_TEXT;
     }
 }
 

@@ -52,6 +52,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "compare", "", "both runs in numbers", act_compare)                                      \
     X("", "explain", "", "what is selected, in focus and at the cursor", act_explain)              \
     X("", "why", "", "the run's course, from its events and energies", act_show_why)               \
+    X("", "data", "FILE.csv[@SHIFT]|off", "measured columns, aligned at the first contact",        \
+      act_lay_data)                                                                                \
     X("", "undo", "", "take the last change back", act_undo)                                       \
     X("", "redo", "", "put it in again", act_redo)                                                 \
     X("Looking", "mark", "[TIME]", "second cursor: differences to it", act_set_mark)               \
@@ -67,7 +69,7 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "axis", "auto|grow|LOW HIGH [PANE]", "range: what is visible, was seen, or yours",       \
       act_axis)                                                                                    \
     X("", "trace", "1-9|SIGNAL...", "show or hide a pane of curves", act_trace_pane)               \
-    X("", "signal", "[NAME|all]",                                                                  \
+    X("", "signal", "[NAME|all] [PANE]",                                                           \
       "hide a signal of the pane in focus, or show it; alone: the next", act_hide_signal)          \
     X("", "phase", "SIGNAL OVER", "a pane of one signal over another: phase gap force",            \
       act_phase_pane)                                                                              \

@@ -114,6 +114,7 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
 void panes_define(pane_set *set, const pane_wishes *wishes)
 {
     assert(set != NULL && wishes != NULL);
+    const bool same = set->controlled == wishes->controlled;
     set->controlled = wishes->controlled;
     set->room = wishes->room;
     for (int i = 0; i < PANES; i++) {
@@ -126,7 +127,7 @@ void panes_define(pane_set *set, const pane_wishes *wishes)
         }
         const char *const *names = set->controlled ? controlled_panes[i] : scripted_panes[i];
         p->count = 0;
-        p->hidden = 0;
+        p->hidden = same ? p->hidden : 0;
         for (int j = 0; j < PANE_SIGNALS && names[j] != NULL; j++) {
             int signal = signal_find(names[j]);
             assert(signal >= 0);

@@ -83,6 +83,9 @@ static void show_anew(explorer_state *st)
     st->mark.set = false;
     begin_lesson(st);
     time_window_show_all(&st->window);
+    for (int i = 0; i < PANES_OF_TABLE; i++) {
+        st->panes.pane[i].hidden = 0;
+    }
     define_panes(st);
 }
 
@@ -123,6 +126,7 @@ void state_finish(explorer_state *st)
     run_log_forget(&st->log);
     scenario_menu_finish(&st->scenarios);
     difference_finish(&st->difference);
+    trace_finish(&st->measured);
     lab_sweep_end(&st->sweep);
     run_list_clear(&st->pinned);
     for (int i = 0; i < st->visit_count; i++) {
@@ -235,7 +239,8 @@ int state_run_count(const explorer_state *st)
     if (st->difference.on && st->session.has_other) {
         return 1;
     }
-    return 1 + state_visible_pins(st) + st->sweep.count + st->session.has_ghost;
+    return 1 + state_visible_pins(st) + st->sweep.count + st->session.has_ghost +
+           (st->measured.row_count > 0);
 }
 
 // The number of a pinned run by its number among those that are not hidden.
@@ -262,6 +267,9 @@ shown_run state_run(const explorer_state *st, int index)
     }
     if (index == 0) {
         return (shown_run){SHOWN_PRESENT, 0, &s->run.trace, state_run_id(st)};
+    }
+    if (st->measured.row_count > 0 && index == state_run_count(st) - 1) {
+        return (shown_run){SHOWN_MEASURED, 0, &st->measured, pinned_id >> 1 | st->measured_id};
     }
     if (index <= pins) {
         const int pin = visible_pin(st, index - 1);

@@ -13,12 +13,20 @@
 #include "ui/explorer/state/view.h"
 
 enum { SIDE_WIDTH = 72 }; // least width of a screen with the side panels next to the curves [cells]
-// The present run, pinned runs, runs of a sweep, and the run before the adjustment of a value.
-enum { SHOWN_RUNS = 1 + PINNED_RUNS + SWEPT_RUNS + 1 };
+// The present run, pinned runs, runs of a sweep, the run before the adjustment of a value, and
+// measured data.
+enum { SHOWN_RUNS = 1 + PINNED_RUNS + SWEPT_RUNS + 2 };
 
 // A run with visible curves.
 typedef struct shown_run {
-    enum { SHOWN_PRESENT, SHOWN_DIFFERENCE, SHOWN_PINNED, SHOWN_SWEPT, SHOWN_BEFORE } kind;
+    enum {
+        SHOWN_PRESENT,
+        SHOWN_DIFFERENCE,
+        SHOWN_PINNED,
+        SHOWN_SWEPT,
+        SHOWN_BEFORE,
+        SHOWN_MEASURED
+    } kind;
     int index; // among the runs of its kind
     const trace *trace;
     unsigned long id; // of its rows, never 0
@@ -62,8 +70,10 @@ typedef struct explorer_state {
     lab_sweep sweep;
     run_difference difference;
     solved_limit limit;
-    unsigned opened;      // number of scenarios opened
-    visit visits[VISITS]; // [present_visit] is empty: it is the session
+    trace measured;            // data laid under the run, no rows: none
+    unsigned long measured_id; // counts the files read, and how often one was shifted
+    unsigned opened;           // number of scenarios opened
+    visit visits[VISITS];      // [present_visit] is empty: it is the session
     int visit_count, present_visit;
 
     // the instants of interest
