@@ -105,9 +105,9 @@ static void test_measured_data_touch_when_the_run_does(void **state)
     FILE *stream = fdopen(file, "w");
     assert_non_null(stream);
     const trace *t = &ex.state.session.run.trace;
-    fputs("time[ms],force[mN]\n", stream);
+    fputs("time[ms],force[mN],encoder[rad]\n", stream);
     for (size_t r = 0; r < t->row_count; r++) {
-        fprintf(stream, "%.17g,%.17g\n", 1e3 * (t->rows[r].time + 0.125), 1e3 * t->rows[r].force);
+        fprintf(stream, "%.17g,%.17g,\n", 1e3 * (t->rows[r].time + 0.125), 1e3 * t->rows[r].force);
     }
     fclose(stream);
     snprintf(line, sizeof line, ":data %s<Enter>", path);

@@ -223,6 +223,16 @@ bool act_save_scene(explorer_state *st, const char *argument)
 
 // --- measured data ----------------------------------------------------------------------------
 
+// Whether a column has an entry at all: rows of a run have empty ones where nothing is recorded.
+static bool has_entries(const csv_table *t, int column)
+{
+    bool found = false;
+    for (size_t r = 0; r < t->rows && column >= 0 && !found; r++) {
+        found = t->fields[r * (size_t)t->columns + (size_t)column][0] != '\0';
+    }
+    return found;
+}
+
 // Appends a row of each of a table's columns that are signals, in their units.
 static status read_measured(trace *t, const csv_table *table, fault *f)
 {
@@ -232,7 +242,7 @@ static status read_measured(trace *t, const csv_table *table, fault *f)
     status code = csv_table_times(table, "time", &columns[0], f);
     for (int i = 1; i < signal_count && code == STATUS_OK; i++) {
         const signal_info *info = &signal_table[i];
-        if (csv_table_find(table, info->name) >= 0) {
+        if (has_entries(table, csv_table_find(table, info->name))) {
             code = csv_table_numbers(table, info->name, info->unit, &columns[i], f);
             known++;
         }
