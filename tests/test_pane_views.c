@@ -116,6 +116,7 @@ static void test_measured_data_touch_when_the_run_does(void **state)
     for (size_t r = 0; r < t->row_count; r++) {
         check_close(ex.state.measured.rows[r].time, t->rows[r].time, 1e-9);
         check_close(ex.state.measured.rows[r].force, t->rows[r].force, 1e-9);
+        assert_true(isnan(ex.state.measured.rows[r].encoder));
     }
     static const struct {
         int width, height;

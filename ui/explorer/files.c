@@ -223,18 +223,27 @@ bool act_save_scene(explorer_state *st, const char *argument)
 
 // --- measured data ----------------------------------------------------------------------------
 
-// Whether a column has an entry at all: rows of a run have empty ones where nothing is recorded.
-static bool has_entries(const csv_table *t, int column)
+static char gap[] = "0"; // in the place of an empty field
+
+// The numbers of a column, NaN where its field is empty: rows of a run have such.
+static status read_column(csv_table *t, int column, const signal_info *info, double **values,
+                          fault *f)
 {
-    bool found = false;
-    for (size_t r = 0; r < t->rows && column >= 0 && !found; r++) {
-        found = t->fields[r * (size_t)t->columns + (size_t)column][0] != '\0';
+    char **fields = t->fields + column;
+    for (size_t r = 0; r < t->rows; r++) {
+        char **field = &fields[r * (size_t)t->columns];
+        *field = (*field)[0] != '\0' ? *field : gap;
     }
-    return found;
+    const status code = csv_table_numbers(t, info->name, info->unit, values, f);
+    for (size_t r = 0; r < t->rows && code == STATUS_OK; r++) {
+        const bool empty = fields[r * (size_t)t->columns] == gap;
+        (*values)[r] = empty ? (double)NAN : (*values)[r];
+    }
+    return code;
 }
 
 // Appends a row of each of a table's columns that are signals, in their units.
-static status read_measured(trace *t, const csv_table *table, fault *f)
+static status read_measured(trace *t, csv_table *table, fault *f)
 {
     static const double none[1] = {0};
     double *columns[SIGNALS_AT_MOST] = {NULL};
@@ -242,8 +251,9 @@ static status read_measured(trace *t, const csv_table *table, fault *f)
     status code = csv_table_times(table, "time", &columns[0], f);
     for (int i = 1; i < signal_count && code == STATUS_OK; i++) {
         const signal_info *info = &signal_table[i];
-        if (has_entries(table, csv_table_find(table, info->name))) {
-            code = csv_table_numbers(table, info->name, info->unit, &columns[i], f);
+        const int column = csv_table_find(table, info->name);
+        if (column >= 0) {
+            code = read_column(table, column, info, &columns[i], f);
             known++;
         }
     }
