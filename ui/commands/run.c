@@ -175,7 +175,8 @@ static int run_and_report(const arguments *a, scenario *s)
     if (code != STATUS_OK) {
         complain("%s failed: %s", s->name,
                  result.summary.message[0] ? result.summary.message : status_text(code));
-        exit_status = worse(exit_status, EXIT_FAILED);
+        exit_status =
+            worse(exit_status, code == STATUS_BAD_SCENARIO ? EXIT_BAD_ARGUMENTS : EXIT_FAILED);
     } else if (result.summary.inaccurate) {
         complain("%s is inaccurate: %s", s->name, result.summary.message);
         exit_status = worse(exit_status, EXIT_FAILED);
