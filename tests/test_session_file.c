@@ -59,7 +59,8 @@ static void test_what_was_done_comes_back(void **state)
         "b:open compare/hybrid<Enter>:pin with \u03b8<Enter>:set control.force 1.37<Enter>"
         ":seek 0.35<Enter>:set control.force 2.1<Enter>:push 0.003<Enter>b:hide 2<Enter>"
         ":set control.transition_time 0.2<Enter>:trace gap_velocity<Enter>"
-        ":phase gap force<Enter>:axis -1 3 1<Enter>:axis grow 3<Enter>:signal hub_angle 2<Enter>"
+        ":phase gap force<Enter>:axis -1 3 1<Enter>:axis grow 3<Enter>:signal hub_angle "
+        "2<Enter>:limit force 2.5<Enter>"
         ":zoom 0.1 0.9<Enter>:mark 0.3<Enter>"
         ":seek 0.5<Enter>";
     explorer ex, again;
@@ -92,6 +93,8 @@ static void test_what_was_done_comes_back(void **state)
     assert_int_equal(again.state.panes.pane[1].hidden, ex.state.panes.pane[1].hidden);
     assert_int_equal(again.state.panes.pane[2].scaling, ex.state.panes.pane[2].scaling);
     assert_int_not_equal(again.state.panes.pane[1].hidden, 0);
+    assert_int_equal(again.state.limit.signal, SIGNAL_INDEX(force));
+    check_close(again.state.limit.bound, 2.5, 0);
     assert_int_equal(again.state.panes.pane[2].scaling, AXIS_GROW);
 
     // and again

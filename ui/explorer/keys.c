@@ -187,6 +187,9 @@ static void key_by_table(explorer *ex, int key)
     if (key == 'y' && st->session.run.summary.status == STATUS_NOT_ALLOWED) {
         bound = "allow"; // the answer to what is asked then
     }
+    if (key == 's' && asked) {
+        bound = "session save"; // the other answer to what leaving asks
+    }
     if (bound != NULL) {
         // a copy: the command may be one that binds keys
         char line[LINE_TEXT];

@@ -84,6 +84,9 @@ static void add_looks(const explorer_state *st, session_file *file)
     if (st->window.to > st->window.from) {
         add_line(file, "zoom %.17g %.17g", st->window.from, st->window.to);
     }
+    if (st->limit.signal >= 0) {
+        add_line(file, "limit %s %.17g", signal_table[st->limit.signal].name, st->limit.bound);
+    }
     if (st->mark.set) {
         add_line(file, "mark %.17g", st->mark.time);
     }

@@ -312,6 +312,23 @@ bool act_hide_signal(explorer_state *st, const char *argument)
                                      : act_tell(st, "all signals of the pane are shown");
 }
 
+bool act_set_limit(explorer_state *st, const char *argument)
+{
+    char text[LINE_TEXT], *words[4];
+    solved_limit limit = {.signal = -1};
+    snprintf(text, sizeof text, "%s", argument);
+    const int count = split(text, words);
+    if (count == 2 && (limit.signal = signal_find(words[0])) >= 0) {
+        if (!act_read_number(st, words[1], &limit.bound)) {
+            return false;
+        }
+    } else if (strcmp(argument, "off") != 0) {
+        return act_refuse(st, "limit takes a signal and a value, such as force 2, or off");
+    }
+    st->limit = limit;
+    return true;
+}
+
 bool act_alone(explorer_state *st, const char *argument)
 {
     (void)argument;

@@ -398,10 +398,7 @@ bool act_quit(explorer_state *st, const char *argument)
         snprintf(lost + used, sizeof lost - used, "%d pinned run%s", pins, pins == 1 ? "" : "s");
     }
     st->asked_to_quit = true;
-    return act_warn(st,
-                    "%s would be lost: q leaves all the same, :session save FILE keeps all, Esc "
-                    "stays",
-                    lost);
+    return act_warn(st, "%s would be lost: q leaves all the same, s keeps all, Esc stays", lost);
 }
 
 bool act_quit_now(explorer_state *st, const char *argument)

@@ -71,6 +71,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "trace", "1-9|SIGNAL...", "show or hide a pane of curves", act_trace_pane)               \
     X("", "signal", "[NAME|all] [PANE]",                                                           \
       "hide a signal of the pane in focus, or show it; alone: the next", act_hide_signal)          \
+    X("", "limit", "SIGNAL VALUE|off", "a bound drawn across the panes of a signal",               \
+      act_set_limit)                                                                               \
     X("", "phase", "SIGNAL OVER", "a pane of one signal over another: phase gap force",            \
       act_phase_pane)                                                                              \
     X("", "spectrum", "SIGNAL", "a pane of its amplitudes in the visible part", act_spectrum_pane) \
