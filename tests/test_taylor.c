@@ -262,18 +262,19 @@ static void the_bounds_hold(void **state)
         double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3);
         looked_at++;
         bool contact = m->state[SLOT_CONTACT] != 0, stuck = m->state[SLOT_FRICTION] == HUB_STICK;
-        const watch watched[] = {contact ? WATCH_FORCE : WATCH_GAP,
-                                 stuck ? WATCH_STICTION : WATCH_HUB};
+        const event_function watched[] = {contact ? EVENT_OF_FORCE : EVENT_OF_GAP,
+                                          stuck ? EVENT_OF_STICTION : EVENT_OF_HUB};
         for (int n = 0; n < 2; n++) {
-            watch w = watched[n];
+            event_function w = watched[n];
             for (int part = 0; part < 4; part++) {
                 double from = h * part / 4, to = h * (part + 1) / 4, width = to - from;
-                double lower = fmin(e->look(&moving.arm, m, w, from).value,
-                                    e->look(&moving.arm, m, w, to).value) -
-                               e->bend(&moving.arm, m, w, from, to) * width * width / 8;
+                double lower =
+                    fmin(e->event_function(&moving.arm, m, w, from).value,
+                         e->event_function(&moving.arm, m, w, to).value) -
+                    e->second_derivative(&moving.arm, m, w, from, to) * width * width / 8;
                 for (int k = 1; k < 16; k++) {
                     double t = from + width * k / 16;
-                    check_below(lower, e->look(&moving.arm, m, w, t).value + 1e-12);
+                    check_below(lower, e->event_function(&moving.arm, m, w, t).value + 1e-12);
                 }
             }
         }
@@ -283,7 +284,8 @@ static void the_bounds_hold(void **state)
         for (int k = 1; k <= 64; k++) {
             const double t = h * k / 64;
             for (int n = 0; n < 2; n++) {
-                assert_true(!(least[n] > 0) || e->look(&moving.arm, m, watched[n], t).value > 0);
+                assert_true(!(least[n] > 0) ||
+                            e->event_function(&moving.arm, m, watched[n], t).value > 0);
             }
             if (contact) {
                 check_below(e->force_at(&moving.arm, m, t).value, block[AT_FORCE_MOST] + 1e-12);
@@ -312,18 +314,20 @@ static void known_roots_are_the_first(void **state)
         const double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3);
         const taylor_stride *s = m->memory;
         const bool contact = m->state[SLOT_CONTACT] != 0;
-        const watch watched[] = {contact ? WATCH_FORCE : WATCH_GAP, WATCH_HUB};
+        const event_function watched[] = {contact ? EVENT_OF_FORCE : EVENT_OF_GAP, EVENT_OF_HUB};
         const double roots[] = {s->lane.block[AT_WALL_ROOT], s->lane.block[AT_HUB_ROOT]};
         for (int n = 0; n < 2; n++) {
             const double root = roots[n], near = 1e-9 * h;
             for (int k = 1; k < LOOKS && root > 0; k++) {
                 const double t = root * k / LOOKS;
-                assert_true(m->engine->look(&moving.arm, m, watched[n], t).value > 0);
+                assert_true(m->engine->event_function(&moving.arm, m, watched[n], t).value > 0);
             }
             if (root > near) {
                 known++;
-                assert_true(m->engine->look(&moving.arm, m, watched[n], root - near).value > 0);
-                assert_true(m->engine->look(&moving.arm, m, watched[n], root + near).value < 0);
+                assert_true(
+                    m->engine->event_function(&moving.arm, m, watched[n], root - near).value > 0);
+                assert_true(
+                    m->engine->event_function(&moving.arm, m, watched[n], root + near).value < 0);
             }
         }
         motion_destroy(m);

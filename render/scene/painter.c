@@ -133,8 +133,8 @@ static void light_vertex(const mesh_vertex *v, const camera *c, vector light, fl
     double sum = AMBIENT_GROUND + (AMBIENT_SKY - AMBIENT_GROUND) * sky + LAMP * lamp + FILL * fill;
 
     // brightest where the normal halves the angle between lamp and eye
-    double glance = fmax(0, vector_dot(v->normal, vector_unit(vector_add(light, view))));
-    double shine = HIGHLIGHT * v->material.shine * pow(glance, HIGHLIGHT_EDGE);
+    double highlight = fmax(0, vector_dot(v->normal, vector_unit(vector_add(light, view))));
+    double shine = HIGHLIGHT * v->material.shine * pow(highlight, HIGHLIGHT_EDGE);
 
     // lights add up in linear colours only
     rgba[0] = to_screen(to_linear(v->material.colour.red) * sum + shine);

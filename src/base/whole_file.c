@@ -217,7 +217,7 @@ static void remove_left_behind(const char *path)
 
 // --- the stream -----------------------------------------------------------------------------
 
-// Where the bytes of a stream go. The stream itself forgets why a write failed.
+// Where the bytes of a stream go. The stream itself does not keep why a write failed.
 typedef struct whole_file_sink {
     int descriptor;
     int reason; // errno of the first write that failed, 0 if none did

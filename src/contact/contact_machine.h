@@ -60,7 +60,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 // Determines in advance, in m->ahead, how far the next motion_step(a, m, until, step, ...) will go,
 // and updates the recorded peak force for that step. For a dense engine and an arm that is not held
 // still; motion_step does it itself if nobody has. An arm that is held folded has no step.
-void motion_look_ahead(const arm *a, motion *m, double until, double step);
+void motion_examine_step(const arm *a, motion *m, double until, double step);
 // The same, but the step may go on to `far` [s] while its stride lasts; the stride itself is chosen
 // for `until` only. For engines that know the hub within a stride (engine.hub_at).
 void motion_look_far(const arm *a, motion *m, double until, double far, double step);

@@ -12,7 +12,7 @@ enum { MOST_CUTS = 40, MOST_ITERATIONS = 100 };
 // A function at one instant of the stride.
 typedef struct point {
     double time; // since the stride's start [s]
-    glance at;
+    value_and_slope at;
 } point;
 
 // Where the cubic through both ends' values and slopes, the time over the value, is zero: for a
@@ -32,7 +32,8 @@ static double guess_root(point lo, point hi)
 // The root of a function that falls from `lo` to `hi`, the function taken from `look`, its slope
 // too, and `bend` that bounds its second derivative: Newton's method within the bracket, halved
 // where that leaves it or gains too little.
-static double root_between(const arm *a, const motion *m, watch w, point lo, point hi, double bend)
+static double root_between(const arm *a, const motion *m, event_function w, point lo, point hi,
+                           double bend)
 {
     double from = lo.time, to = hi.time;
     double t = guess_root(lo, hi);
@@ -42,7 +43,7 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
         if (!(t > from && t < to)) {
             t = 0.5 * (from + to);
         }
-        glance g = m->engine->look(a, m, w, t);
+        value_and_slope g = m->engine->event_function(a, m, w, t);
         if (g.value > 0) {
             from = t;
         } else {
@@ -73,11 +74,12 @@ static double root_between(const arm *a, const motion *m, watch w, point lo, poi
 // the bound on the second derivative excludes a fall are skipped; those in which it excludes a
 // rising slope have exactly one root; all others are bisected. Where the function is not finite
 // nothing is found: the state at the step's end reports that.
-static double first_fall(const arm *a, const motion *m, watch w, point lo, point hi, int cuts,
-                         double known)
+static double first_zero_crossing(const arm *a, const motion *m, event_function w, point lo,
+                                  point hi, int cuts, double known)
 {
     const double length = hi.time - lo.time;
-    const double bend = isfinite(known) ? known : m->engine->bend(a, m, w, lo.time, hi.time);
+    const double bend =
+        isfinite(known) ? known : m->engine->second_derivative(a, m, w, lo.time, hi.time);
     const double room = bend * length * length / 8;
     if (fmin(lo.at.value, hi.at.value) > room || !isfinite(room)) {
         return -1;
@@ -86,33 +88,35 @@ static double first_fall(const arm *a, const motion *m, watch w, point lo, point
     // at most one root, or no dip deeper than the tolerance
     const bool falls = hi.at.value < 0;
     const bool steady = fmax(lo.at.slope, hi.at.slope) + bend * length / 2 < 0;
-    const bool flat = cuts == 0 || room <= watch_tolerance(w);
+    const bool flat = cuts == 0 || room <= event_tolerance(w);
     if (steady || flat) {
         return falls ? root_between(a, m, w, lo, hi, bend) : -1;
     }
 
     // each half by itself, the earlier one first
     double time = 0.5 * (lo.time + hi.time);
-    point middle = {time, m->engine->look(a, m, w, time)};
+    point middle = {time, m->engine->event_function(a, m, w, time)};
     if (middle.at.value < 0) {
-        return first_fall(a, m, w, lo, middle, cuts - 1, bend);
+        return first_zero_crossing(a, m, w, lo, middle, cuts - 1, bend);
     }
-    double first = first_fall(a, m, w, lo, middle, cuts - 1, bend);
-    return first >= 0 ? first : first_fall(a, m, w, middle, hi, cuts - 1, bend);
+    double first = first_zero_crossing(a, m, w, lo, middle, cuts - 1, bend);
+    return first >= 0 ? first : first_zero_crossing(a, m, w, middle, hi, cuts - 1, bend);
 }
 
-void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+void dense_search_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
 {
     *any = false;
-    *first = WATCH_GAP;
+    *first = EVENT_OF_GAP;
 
     // each function that is watched, as far as the first fall so far
-    for (watch w = WATCH_GAP; w < WATCHES; w++) {
-        if (!watch_active(a, m, w) || m->engine->clear(a, m, w, *h)) {
+    for (event_function w = EVENT_OF_GAP; w < EVENT_FUNCTION_COUNT; w++) {
+        if (!event_function_active(a, m, w) || m->engine->clear(a, m, w, *h)) {
             continue;
         }
-        point start = {0, m->engine->look(a, m, w, 0)}, end = {*h, m->engine->look(a, m, w, *h)};
-        double fall = start.at.value < 0 ? 0 : first_fall(a, m, w, start, end, MOST_CUTS, HUGE_VAL);
+        point start = {0, m->engine->event_function(a, m, w, 0)},
+              end = {*h, m->engine->event_function(a, m, w, *h)};
+        double fall =
+            start.at.value < 0 ? 0 : first_zero_crossing(a, m, w, start, end, MOST_CUTS, HUGE_VAL);
         if (fall >= 0) {
             *any = true;
             *first = w;
@@ -160,8 +164,9 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
 {
     // no larger force is possible here, or the slope keeps its sign
     const double length = hi.time - lo.time;
-    const double bend =
-        isfinite(known) ? known : m->engine->bend(a, m, WATCH_FORCE, lo.time, hi.time);
+    const double bend = isfinite(known)
+                            ? known
+                            : m->engine->second_derivative(a, m, EVENT_OF_FORCE, lo.time, hi.time);
     const double most = fmax(lo.at.value, hi.at.value) + bend * length * length / 8;
     const double change = bend * length / 2; // of the slope from the nearer end
     if (most <= m->pulse_peak * (1 + SAME_PEAK) || fmin(lo.at.slope, hi.at.slope) > change ||
@@ -185,9 +190,9 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
 }
 
 // The gap to the wall at rest and its rate at h in the stride.
-static glance rest_gap_at(const arm *a, const motion *m, double h)
+static value_and_slope rest_gap_at(const arm *a, const motion *m, double h)
 {
-    glance gap = m->engine->gap_at(a, m, h);
+    value_and_slope gap = m->engine->gap_at(a, m, h);
     if (state_face_swings(m->state)) {
         const wall_face face = wall_face_after(&a->wall, state_face(m->state), h);
         gap.value -= face.position;
@@ -208,7 +213,7 @@ void dense_deepest(const arm *a, motion *m, double h)
         double from = lo.time, to = hi.time, v0 = lo.at.slope, v1 = hi.at.slope;
         for (int k = 0; k < MOST_CUTS && v0 < 0 && v1 > 0 && to - from > 1e-9 * h; k++) {
             const double t = from + (to - from) * v0 / (v0 - v1);
-            const glance g = rest_gap_at(a, m, t);
+            const value_and_slope g = rest_gap_at(a, m, t);
             m->largest_penetration = fmax(m->largest_penetration, -g.value);
             if (g.slope < 0) {
                 from = t, v0 = g.slope, v1 /= 2;

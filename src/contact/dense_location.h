@@ -10,7 +10,7 @@
 // The first instant in [0, *h] of the stride at which a function that is watched leaves its
 // admissible side, by the engine's look, bend and clear: *any, *first and *h as locate_first_event
 // has them; m->trial is left alone.
-void dense_search_event(const arm *a, motion *m, double *h, watch *first, bool *any);
+void dense_search_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
 
 // Raises m->pulse_peak to the largest force in [0, h] of a stride in contact.
 void dense_peak(const arm *a, motion *m, double h);

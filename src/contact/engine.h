@@ -38,21 +38,21 @@ typedef struct motion motion;
 
 // Watched functions (event functions): each is positive as long as the present contact state can
 // last, and falls below zero where it ends.
-typedef enum watch {
-    WATCH_GAP,      // the gap, in free flight; the depth, in contact without a constraint [m]
-    WATCH_FORCE,    // the contact force [N]
-    WATCH_HUB,      // the hub's velocity in the direction it slides [rad/s]
-    WATCH_STICTION, // margin to break-away while the hub sticks, kst - |friction| [N m]
-    WATCH_CURRENT,  // margin of an electric drive's current to its limit or, at the limit, to
-                    // leaving it [A]; dense engines only: it ends a stride and is no event
-    WATCHES
-} watch;
+typedef enum event_function {
+    EVENT_OF_GAP,      // the gap, in free flight; the depth, in contact without a constraint [m]
+    EVENT_OF_FORCE,    // the contact force [N]
+    EVENT_OF_HUB,      // the hub's velocity in the direction it slides [rad/s]
+    EVENT_OF_STICTION, // margin to break-away while the hub sticks, kst - |friction| [N m]
+    EVENT_OF_CURRENT,  // margin of an electric drive's current to its limit or, at the limit, to
+                       // leaving it [A]; dense engines only: it ends a stride and is no event
+    EVENT_FUNCTION_COUNT
+} event_function;
 
 // Value and slope of a function at an instant.
-typedef struct glance {
+typedef struct value_and_slope {
     double value; // in its unit
     double slope; // its derivative by time
-} glance;
+} value_and_slope;
 
 // What a state holds.
 typedef struct state_energy {
@@ -77,33 +77,34 @@ typedef struct engine {
     // Dense engines, else NULL. The watched function and its slope at h in [0, length]. Where it
     // starts at zero (after a release, a bounce or a break-away) the engine may divide it by a
     // power of h: that removes the root at the start and keeps the sign and all other roots.
-    glance (*look)(const arm *a, const motion *m, watch w, double h);
+    value_and_slope (*event_function)(const arm *a, const motion *m, event_function w, double h);
 
-    // Dense engines: a bound on the magnitude of the second derivative by time of what `look` gives
+    // Dense engines: a bound on the magnitude of the event function's second derivative by time,
     // for h from `from` to `to`. With it, the function is nowhere in between below the lower of its
-    // ends less bend (to - from)^2 / 8. For stiction the bound is that of the friction torque. It
-    // is expensive, and over a part of an interval hardly tighter.
-    double (*bend)(const arm *a, const motion *m, watch w, double from, double to);
+    // ends less the bound times (to - from)^2 / 8. For stiction the bound is that of the friction
+    // torque. It is expensive, and over a part of an interval hardly tighter.
+    double (*second_derivative)(const arm *a, const motion *m, event_function w, double from,
+                                double to);
 
     // Dense engines: cheap tests after which most strides need no search. `clear`: the
     // watched function certainly stays above zero up to h; `bounded`: the contact force certainly
     // stays at or below `most` [N]. False means that the test cannot tell.
-    bool (*clear)(const arm *a, motion *m, watch w, double h);
+    bool (*clear)(const arm *a, motion *m, event_function w, double h);
     bool (*bounded)(const arm *a, motion *m, double h, double most);
 
     // Dense engines: the contact force [N] and its slope [N/s], never divided by a power of h.
-    glance (*force_at)(const arm *a, const motion *m, double h);
+    value_and_slope (*force_at)(const arm *a, const motion *m, double h);
 
     // Dense engines, or NULL: force_at at the start and at the ends of `count` equal pieces of a
     // stride of length h [s], into at[count + 1].
-    void (*forces_at)(const arm *a, const motion *m, double h, int count, glance *at);
+    void (*forces_at)(const arm *a, const motion *m, double h, int count, value_and_slope *at);
 
     // Dense engines: the gap [m] and its rate [m/s] in free flight and within walls that
     // give, never divided by a power of h.
-    glance (*gap_at)(const arm *a, const motion *m, double h);
+    value_and_slope (*gap_at)(const arm *a, const motion *m, double h);
 
     // Dense engines: the hub's angle [rad] and velocity [rad/s].
-    glance (*hub_at)(const arm *a, const motion *m, double h);
+    value_and_slope (*hub_at)(const arm *a, const motion *m, double h);
 
     // Dense engines, or NULL: into `state`, at an instant [s] of the last step, what sensors and
     // the history of the force see, as the stride has it and not evaluated: angles, velocities and
@@ -124,7 +125,7 @@ typedef struct engine {
     bool (*move_to)(const arm *a, motion *m, double h, state_energy *has);
 
     // Dense engines: the first event, as dense_search_event (dense_location.h) has it.
-    void (*first_event)(const arm *a, motion *m, double *h, watch *first, bool *any);
+    void (*first_event)(const arm *a, motion *m, double *h, event_function *first, bool *any);
 
     // Engines that can do so without evaluating the state, else NULL: adds to accelerations and
     // reactions of m->state the immediate effect of a change of the motor's torque [N m], while the

@@ -75,25 +75,25 @@ static void come_to_rest(motion *m)
     }
 }
 
-static motion_event event_of(const motion *m, watch w)
+static motion_event event_of(const motion *m, event_function w)
 {
     // the wall: contact begins with an impact only at a speed, and only if it does not give
     switch (w) {
-    case WATCH_GAP:
+    case EVENT_OF_GAP:
         if (m->wall_gives) {
             return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
         }
         return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
-    case WATCH_FORCE:
+    case EVENT_OF_FORCE:
         return MOTION_RELEASE;
 
     // the hub
-    case WATCH_HUB:
+    case EVENT_OF_HUB:
         return MOTION_STICK;
-    case WATCH_STICTION:
+    case EVENT_OF_STICTION:
         return MOTION_SLIP;
-    case WATCH_CURRENT:
-    case WATCHES:
+    case EVENT_OF_CURRENT:
+    case EVENT_FUNCTION_COUNT:
         break;
     }
     return MOTION_REACHED;
@@ -101,7 +101,7 @@ static motion_event event_of(const motion *m, watch w)
 
 // Tries a step of *h, shorter if need be; *h and m->trial end at the first event, if there is
 // one.
-static status step_to_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+static status step_to_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
 {
     status s = motion_try_step(a, m, *h);
     for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
@@ -114,7 +114,7 @@ static status step_to_event(const arm *a, motion *m, double *h, watch *first, bo
 // Ends a step of the `wanted` length that was just tried at m->cut if it goes beyond, or ends
 // within rounding of it.
 static status cut_step(const arm *a, motion *m, double step, status tried, double wanted, double *h,
-                       watch *first, bool *any)
+                       event_function *first, bool *any)
 {
     double left = m->cut - m->state[SLOT_TIME];
     double reached = tried == STATUS_OK ? *h : wanted;
@@ -130,7 +130,7 @@ static status cut_step(const arm *a, motion *m, double step, status tried, doubl
 
 // A step of a stepping engine, which locates events and peaks by further, shorter steps.
 static status tried_step(const arm *a, motion *m, double step, double wanted, double *h,
-                         watch *first, bool *any)
+                         event_function *first, bool *any)
 {
     status s = step_to_event(a, m, h, first, any);
     s = cut_step(a, m, step, s, wanted, h, first, any);
@@ -182,7 +182,7 @@ static void look_ahead(const arm *a, motion *m, double until, double far, double
     if (begun && far > until) {
         h = larger(smaller(left_of_stride(m), far - now), h);
     }
-    watch first = WATCH_GAP;
+    event_function first = EVENT_OF_GAP;
     bool any = false;
 
     // to the first event, the cut or the stride's end; an event at the instant of the cut is before
@@ -209,7 +209,7 @@ static void look_ahead(const arm *a, motion *m, double until, double far, double
     m->ahead.first = first;
 }
 
-void motion_look_ahead(const arm *a, motion *m, double until, double step)
+void motion_examine_step(const arm *a, motion *m, double until, double step)
 {
     motion_look_far(a, m, until, until, step);
 }
@@ -218,14 +218,14 @@ void motion_look_far(const arm *a, motion *m, double until, double far, double s
 {
     assert(a != NULL && m != NULL && step > 0 && engine_is_dense(m->engine));
     assert(!(far > until) || m->engine->hub_at != NULL);
-    if (!m->starved && !held_folded(a, m)) {
+    if (!m->out_of_memory && !held_folded(a, m)) {
         look_ahead(a, m, until, far, step);
     }
 }
 
 // The stride of a dense engine.
 static status dense_stride(const arm *a, motion *m, double until, double step, double *h,
-                           watch *first, bool *any)
+                           event_function *first, bool *any)
 {
     if (!m->ahead.known) {
         look_ahead(a, m, until, until, step);
@@ -311,10 +311,10 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     assert(a != NULL && m != NULL && report != NULL && step > 0);
     *report = (motion_report){.event = MOTION_REACHED};
 
-    // a step examined by motion_look_ahead needs no search any more
-    if (!m->ahead.known && (m->starved || held_folded(a, m))) {
+    // a step examined by motion_examine_step needs no search any more
+    if (!m->ahead.known && (m->out_of_memory || held_folded(a, m))) {
         m->failure_time = m->state[SLOT_TIME];
-        return m->starved ? STATUS_NO_MEMORY : STATUS_FOLDED;
+        return m->out_of_memory ? STATUS_NO_MEMORY : STATUS_FOLDED;
     }
     if ((m->ahead.known || !motion_held_still(m)) && glide(a, m, until, step)) {
         return STATUS_OK;
@@ -326,7 +326,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 
     // as far as accuracy allows, the cut, or the first event
     double h;
-    watch first = WATCH_GAP;
+    event_function first = EVENT_OF_GAP;
     bool any = false;
     status s;
     if (engine_is_dense(m->engine)) {
@@ -344,7 +344,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     accept(m, step);
     m->made = h;
     note_hold(a, m);
-    const bool folded = any && (first == WATCH_GAP || first == WATCH_FORCE) &&
+    const bool folded = any && (first == EVENT_OF_GAP || first == EVENT_OF_FORCE) &&
                         motion_wall_is_rigid(m) && chain_is_folded(a, state_angles(m, m->state));
     if (folded || went_through_fold(a, m)) {
         m->failure_time = m->state[SLOT_TIME];

@@ -29,30 +29,30 @@ static bool within_wall(const motion *m, const double *state)
 }
 
 // Positive on the admissible side.
-static double watch_value(const arm *a, const motion *m, const double *state, watch w)
+static double watch_value(const arm *a, const motion *m, const double *state, event_function w)
 {
     switch (w) {
-    case WATCH_GAP:
+    case EVENT_OF_GAP:
         return within_wall(m, state) ? -state[SLOT_GAP] : state[SLOT_GAP];
-    case WATCH_FORCE:
+    case EVENT_OF_FORCE:
         return within_wall(m, state) ? law_at(a, state) : state[SLOT_FORCE];
-    case WATCH_HUB:
+    case EVENT_OF_HUB:
         return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
-    case WATCH_STICTION:
+    case EVENT_OF_STICTION:
         return a->motor.stiction - fabs(state[SLOT_FRICTION_TORQUE]);
-    case WATCH_CURRENT:
-    case WATCHES:
+    case EVENT_OF_CURRENT:
+    case EVENT_FUNCTION_COUNT:
         break;
     }
     return 1;
 }
 
-double watch_tolerance(watch w)
+double event_tolerance(event_function w)
 {
-    return w == WATCH_GAP        ? TOUCH_TOLERANCE
-           : w == WATCH_FORCE    ? FORCE_TOLERANCE
-           : w == WATCH_STICTION ? TORQUE_TOLERANCE
-                                 : 0;
+    return w == EVENT_OF_GAP        ? TOUCH_TOLERANCE
+           : w == EVENT_OF_FORCE    ? FORCE_TOLERANCE
+           : w == EVENT_OF_STICTION ? TORQUE_TOLERANCE
+                                    : 0;
 }
 
 // Where in (0, 1) a cubic with the given end values and end slopes (per step) is least, if that
@@ -71,7 +71,8 @@ static double cubic_dip(double v0, double v1, double d0, double d1)
 
 // Slopes of a watched function at both ends of the step from m->state to m->trial, per step. False
 // where they are not known.
-static bool watch_slopes(const arm *a, const motion *m, double h, watch w, double *d0, double *d1)
+static bool watch_slopes(const arm *a, const motion *m, double h, event_function w, double *d0,
+                         double *d1)
 {
     const double *state = m->state, *trial = m->trial;
 
@@ -79,17 +80,17 @@ static bool watch_slopes(const arm *a, const motion *m, double h, watch w, doubl
 
     // states contain the slopes of gap and hub velocity; the law of a wall that gives has its own
     // slope
-    if (w == WATCH_GAP) {
+    if (w == EVENT_OF_GAP) {
         double sign = within ? -1 : 1;
         *d0 = sign * state[SLOT_GAP_VELOCITY] * h;
         *d1 = sign * trial[SLOT_GAP_VELOCITY] * h;
-    } else if (w == WATCH_FORCE && within) {
+    } else if (w == EVENT_OF_FORCE && within) {
         *d0 = law_slope_at(a, state) * h;
         *d1 = law_slope_at(a, trial) * h;
-    } else if (w == WATCH_HUB) {
+    } else if (w == EVENT_OF_HUB) {
         *d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
         *d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;
-    } else if (w == WATCH_FORCE) {
+    } else if (w == EVENT_OF_FORCE) {
         // parabola through both ends with the mean the quadrature gives
         double mean = (state_quadratures(m, m->trial)[QUADRATURE_FORCE] -
                        state_quadratures(m, m->state)[QUADRATURE_FORCE]) /
@@ -99,7 +100,7 @@ static bool watch_slopes(const arm *a, const motion *m, double h, watch w, doubl
         *d0 = rise - curve;
         *d1 = rise + curve;
     }
-    return w != WATCH_STICTION;
+    return w != EVENT_OF_STICTION;
 }
 
 // Hermite's cubic at s in (0, 1).
@@ -111,7 +112,8 @@ static double cubic(double s, double v0, double v1, double d0, double d1)
 
 // Fraction of the step at which a function that is admissible at both ends may dip below zero in
 // between; -1 if there is no sign of a dip.
-static double suspected_dip(const arm *a, const motion *m, double h, watch w, double v0, double v1)
+static double suspected_dip(const arm *a, const motion *m, double h, event_function w, double v0,
+                            double v1)
 {
     double d0, d1;
 
@@ -130,7 +132,8 @@ static double suspected_dip(const arm *a, const motion *m, double h, watch w, do
 
 // A first guess of where the function crosses zero between v0 > 0 and v1 < 0: the root of Hermite's
 // cubic by a few steps of false position, or of the straight line.
-static double guess_crossing(const arm *a, const motion *m, double h, watch w, double v0, double v1)
+static double guess_crossing(const arm *a, const motion *m, double h, event_function w, double v0,
+                             double v1)
 {
     double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
 
@@ -160,7 +163,7 @@ typedef struct bracket {
 // Narrows a bracket until it is as narrow as LOCATION_TIME; m->trial ends as the state at its far
 // side. Starts at `s` and goes on by Chandrupatla's method: inverse quadratic interpolation where
 // the last three values allow it, else bisection.
-static status narrow(const arm *a, motion *m, watch w, double s, bracket *b)
+static status narrow(const arm *a, motion *m, event_function w, double s, bracket *b)
 {
     // the velocities of an implicit step are differences of angles over it: it must not be tiny
     const double least = motion_unresolved(a, m) ? 1e-6 * m->nominal_step : LOCATION_TIME;
@@ -201,11 +204,11 @@ static status narrow(const arm *a, motion *m, watch w, double s, bracket *b)
 
 // Looks for the first instant in (0, *h] at which `w` leaves its admissible side; if there is one,
 // *h and m->trial move there.
-static status search(const arm *a, motion *m, watch w, double *h, bool *found)
+static status search(const arm *a, motion *m, event_function w, double *h, bool *found)
 {
     double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
     double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(a, m, *h, w, v0, v1) : 0.5 * *h;
-    double lo = 0, hi = *h, tolerance = watch_tolerance(w);
+    double lo = 0, hi = *h, tolerance = event_tolerance(w);
 
     // admissible at the end: only a dip in between can matter
     *found = false;
@@ -254,7 +257,7 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
     // exceeds its rounding: this ends flights too low to be told from rounding (after an impact
     // that leaves the arm with hardly any force)
     double edge = 0;
-    if (w == WATCH_GAP && !(v0 > 0) && !m->wall_gives) {
+    if (w == EVENT_OF_GAP && !(v0 > 0) && !m->wall_gives) {
         edge = beyond;
         hi = closed;
         v1 = v_closed;
@@ -276,14 +279,15 @@ static status search(const arm *a, motion *m, watch w, double *h, bool *found)
     return s;
 }
 
-status locate_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+status locate_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
 {
     status s = STATUS_OK;
     *any = false;
-    *first = WATCH_GAP;
-    for (watch w = WATCH_GAP; s == STATUS_OK && w <= WATCH_STICTION && !motion_held_still(m); w++) {
+    *first = EVENT_OF_GAP;
+    for (event_function w = EVENT_OF_GAP;
+         s == STATUS_OK && w <= EVENT_OF_STICTION && !motion_held_still(m); w++) {
         bool found = false;
-        if (watch_active(a, m, w)) {
+        if (event_function_active(a, m, w)) {
             s = search(a, m, w, h, &found);
         }
         *first = found ? w : *first;

@@ -8,37 +8,37 @@
 #define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
 
 // Whether a fall of the watched function below zero would end the motion's present contact state.
-static inline bool watch_active(const arm *a, const motion *m, watch w)
+static inline bool event_function_active(const arm *a, const motion *m, event_function w)
 {
     bool contact = m->state[SLOT_CONTACT] != 0;
     bool stuck = m->state[SLOT_FRICTION] == HUB_STICK;
     bool held = m->dof == 1 && contact && motion_wall_is_rigid(m);
 
-    // a watch is of use only where its event could end the present state
+    // an event function is of use only where its event could end the present state
     switch (w) {
-    case WATCH_GAP:
+    case EVENT_OF_GAP:
         return (!contact || m->wall_gives) && wall_stands(&a->wall);
-    case WATCH_FORCE:
+    case EVENT_OF_FORCE:
         return contact;
-    case WATCH_HUB:
+    case EVENT_OF_HUB:
         return !stuck && !held && a->motor.stiction > 0;
-    case WATCH_STICTION:
+    case EVENT_OF_STICTION:
         return stuck && !held;
-    case WATCH_CURRENT:
+    case EVENT_OF_CURRENT:
         return m->electric && a->motor.current_limit < HUGE_VAL;
-    case WATCHES:
+    case EVENT_FUNCTION_COUNT:
         break;
     }
     return false;
 }
 
 // Tolerance of the watched function: how far below zero still counts as admissible, in its unit.
-double watch_tolerance(watch w);
+double event_tolerance(event_function w);
 
 // Looks for the first function that leaves its admissible side within (0, *h], m->trial being the
 // state after a step *h. If there is one, *any is true, *first says which, and *h and m->trial move
 // to the far side of that instant. Returns why, if a step fails.
-status locate_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);
+status locate_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
 
 // Records the largest force within the step from m->state to m->trial, located between its ends by
 // refining a parabola, and the deepest point of an arm that turns back within a wall that gives.

@@ -101,7 +101,7 @@ struct motion {
     bool wall_has_face;  // contact ties the arm to a mass on a spring
     bool electric;       // the motor's current is followed
     bool wall_moves;     // nothing rests for long
-    bool starved;        // no memory for the engine that a changed arm asks for
+    bool out_of_memory;  // no memory for the engine that a changed arm asks for
     double cut;          // where a step ends early, its course before unchanged [s]; HUGE_VAL: none
     double aim; // the instant where a state is wanted, if it is to be met to the last bit [s]
     double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
@@ -111,10 +111,11 @@ struct motion {
     double *between; // states within the last step: MOTION_TOGETHER of a dense engine, else one
     double *scratch; // vectors of length dof
     chain_link *links;
-    arm *moved;   // the arm with its wall at an instant, where that moves, else NULL
-    void *sweeps; // the implicit solver's scratch, one element a link
-    void *memory; // the engine's own: the stride it is in
-    bool forgets; // that stride may be another arm's: only what the state keeps of it is valid
+    arm *moved;           // the arm with its wall at an instant, where that moves, else NULL
+    void *sweeps;         // the implicit solver's scratch, one element a link
+    void *memory;         // the engine's own: the stride it is in
+    bool history_invalid; // that stride may be another arm's: only what the state keeps of it is
+                          // valid
 
     // energies of m->trial, and of m->state as motion_step left it, if the engine computed them
     // with the state; else unknown_energy
@@ -122,13 +123,13 @@ struct motion {
 
     double made; // length of the last step, up to its end as the engine located it [s]
 
-    // the coming step, if motion_look_ahead has examined it
+    // the coming step, if motion_examine_step has examined it
     struct {
         bool known;
-        bool begun;    // else it cannot be made
-        double length; // to its end, the cut or the first event [s]
-        bool any;      // an event ends it
-        watch first;   // that event's
+        bool begun;           // else it cannot be made
+        double length;        // to its end, the cut or the first event [s]
+        bool any;             // an event ends it
+        event_function first; // that event's
     } ahead;
 
     void *block, *engine_block; // where all of that lies
@@ -231,7 +232,7 @@ void motion_follow_arm(const arm *a, motion *m);
 // changed in between.
 static inline void motion_forget_stride(motion *m)
 {
-    m->forgets = true;
+    m->history_invalid = true;
     m->ahead.known = false;
 }
 

@@ -177,7 +177,7 @@ motion *motion_create_by(const arm *a, const method_parameters *method, const en
 motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
 {
     assert(m == NULL || (a != NULL && method != NULL && method->step > 0));
-    if (m == NULL || m->dof != a->dof || a->links != m->link_count || m->starved) {
+    if (m == NULL || m->dof != a->dof || a->links != m->link_count || m->out_of_memory) {
         motion_destroy(m);
         return motion_create(a, method);
     }
@@ -197,7 +197,7 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
                    .moved = m->moved,
                    .sweeps = m->sweeps,
                    .memory = m->memory,
-                   .forgets = true,
+                   .history_invalid = true,
                    .block = m->block,
                    .engine_block = m->engine_block};
     choose_engine(a, &next, method, NULL);
@@ -228,14 +228,14 @@ void motion_follow_arm(const arm *a, motion *m)
     assert(a != NULL && m != NULL && a->dof == m->dof);
     const bool stays = motion_is_implicit(m) || m->chosen;
     const engine *wanted = stays ? m->engine : event_engine(a);
-    if (wanted == m->engine && !m->starved) {
+    if (wanted == m->engine && !m->out_of_memory) {
         return;
     }
     free(m->engine_block);
     m->ahead.known = false;
     m->engine = wanted;
     m->size = size_of_states(a, m, wanted);
-    m->starved = !open_engine(a, m);
+    m->out_of_memory = !open_engine(a, m);
     motion_end_stride(m);
 
     // it knows nothing yet of the strides to come

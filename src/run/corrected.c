@@ -365,7 +365,7 @@ void corrected_sum_up(corrected_run *c, status failed)
 
     // all that the end of the step under way changes, but for what is summed up
     const motion moving = *c->motion;
-    const step_under_way under_way = c->under_way;
+    const open_step under_way = c->under_way;
     const pace paced = c->pace;
     const sensors felt = on->sensors;
     size_t *forces = &c->recording->result->history.forces.count;

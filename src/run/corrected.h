@@ -21,12 +21,12 @@ typedef struct way {
 // change nothing, stops of a program. The motion still stands at the step's start and knows how far
 // the step goes (m->ahead; m->trial is a copy, as after a step); the run has come to an instant
 // within it.
-typedef struct step_under_way {
+typedef struct open_step {
     bool goes_on;     // there is one
     double begun_for; // the stop that it was begun for [s]
     double now;       // the run's instant [s]
     way sensed;       // up to where the sensors have followed the arm
-} step_under_way;
+} open_step;
 
 typedef struct corrected_run {
     recording *recording;
@@ -37,7 +37,7 @@ typedef struct corrected_run {
     double last_event; // in it, -1 if none [s]
     int at_once;       // events in a row without time passing
     pace pace;         // of the whole run
-    step_under_way under_way;
+    open_step under_way;
 
     arm arm; // with the command in force
 } corrected_run;
@@ -69,7 +69,7 @@ motion *corrected_finish(corrected_run *c, status failed);
 
 // --- a step, from where it is begun to what comes of its end ----------------------------------
 
-// Looks how far the next step goes (motion_look_ahead), in flight beyond the instants of samples:
+// Looks how far the next step goes (motion_examine_step), in flight beyond the instants of samples:
 // it is under way then. Of an arm that a dense engine moves and nothing holds still.
 void corrected_begin_step(corrected_run *c);
 

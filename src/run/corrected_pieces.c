@@ -148,7 +148,7 @@ static status follow_decay(corrected_run *c, way *w, double end, double reach, p
 
 // Whether a force begins with a decay that is over at once: it shows in the slope at the start
 // only, which then says nothing about the mean.
-static bool falls_at_once(glance first, glance last, double width)
+static bool falls_at_once(value_and_slope first, value_and_slope last, double width)
 {
     const double shown = fabs(last.value - first.value) + fabs(last.slope) * width;
     return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
@@ -161,7 +161,7 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
                                   int count)
 {
     const motion *m = c->motion;
-    glance at[MOST_PIECES + 1];
+    value_and_slope at[MOST_PIECES + 1];
     force_step *kept = recording_add_steps(c->recording, count);
     if (kept == NULL) {
         return STATUS_NO_MEMORY;
@@ -179,9 +179,9 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
 
     const double slope_share = width / 12;
     double start = rest->start;
-    glance first = at[0];
+    value_and_slope first = at[0];
     for (int i = 0; i < count; i++) {
-        const glance last = at[i + 1];
+        const value_and_slope last = at[i + 1];
         const double end = rest->start + (i + 1) * width;
         const double mean =
             (first.value + last.value) / 2 + slope_share * (first.slope - last.slope);
@@ -288,7 +288,7 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole, boo
 {
     const motion *m = c->motion;
     sensors *felt = &c->recording->rig->sensors;
-    const step_under_way *on = &c->under_way;
+    const open_step *on = &c->under_way;
     const bool rest = on->goes_on && on->sensed.time > whole->start;
     const bool pressed = whole->first != 0 || whole->last != 0 || whole->mean != 0;
     if (!pressed && sensors_at_rest(felt)) {
@@ -371,16 +371,16 @@ enum { SEPARATION_BISECTIONS = 30, FASTEST_THIRDS = 24, MOST_FLIGHT_PIECES = 16 
 
 // The gap at an instant [s] within the step just made, a step in free flight; false, and none, if
 // that fails.
-static bool gap_within(const arm *a, motion *m, double time, glance *gap)
+static bool gap_within(const arm *a, motion *m, double time, value_and_slope *gap)
 {
-    *gap = (glance){0, 0};
+    *gap = (value_and_slope){0, 0};
     if (m->engine->gap_at != NULL && !state_is_held_still(m, m->trial)) {
         *gap = m->engine->gap_at(a, m, time - m->trial[SLOT_TIME]);
         return true;
     }
     const double *state = motion_between(a, m, time);
     if (state != NULL) {
-        *gap = (glance){state[SLOT_GAP], state[SLOT_GAP_VELOCITY]};
+        *gap = (value_and_slope){state[SLOT_GAP], state[SLOT_GAP_VELOCITY]};
     }
     return state != NULL;
 }
@@ -405,7 +405,7 @@ bool flight_separated(const arm *a, motion *m)
     // the gap closes at the step's end: bisect for the instant at which it was the largest
     for (int i = 0; i < SEPARATION_BISECTIONS; i++) {
         const double middle = 0.5 * (from + to);
-        glance gap;
+        value_and_slope gap;
         if (!gap_within(a, m, middle, &gap) || gap.value > SEPARATION_GAP) {
             return gap.value > SEPARATION_GAP;
         }
@@ -426,7 +426,7 @@ static void rates_of(const arm *a, motion *m, int count, double *rate)
     rate[0] = m->trial[SLOT_GAP_VELOCITY];
     rate[count] = m->state[SLOT_GAP_VELOCITY];
     for (int i = 1; i < count; i++) {
-        glance gap;
+        value_and_slope gap;
         rate[i] = gap_within(a, m, from + i * width, &gap) ? gap.slope : HUGE_VAL;
     }
 }
@@ -438,7 +438,7 @@ static double least_rate(const arm *a, motion *m, double from, double to, double
     // thirds of what is left, of which the better two stay
     for (int i = 0; i < FASTEST_THIRDS; i++) {
         const double early = from + (to - from) / 3, late = to - (to - from) / 3;
-        glance first, second;
+        value_and_slope first, second;
         if (!gap_within(a, m, early, &first) || !gap_within(a, m, late, &second)) {
             break;
         }

@@ -85,11 +85,11 @@ static status record_step(corrected_run *c, motion_report *report)
 // --- the step under way -----------------------------------------------------------------------
 
 // Whether the arm flies under a rig, in strides that outlive steps.
-static bool flies_far(const corrected_run *c)
+static bool flies_beyond_samples(const corrected_run *c)
 {
     const motion *m = c->motion;
     return c->recording->rig != NULL && m->state[SLOT_CONTACT] == 0 && m->engine->hub_at != NULL &&
-           !m->starved && !motion_held_still(m);
+           !m->out_of_memory && !motion_held_still(m);
 }
 
 void corrected_begin_step(corrected_run *c)
@@ -97,8 +97,8 @@ void corrected_begin_step(corrected_run *c)
     motion *m = c->motion;
     const double step = c->recording->now.method.step;
     assert(!c->under_way.goes_on);
-    if (!flies_far(c)) {
-        motion_look_ahead(&c->arm, m, c->stop, step);
+    if (!flies_beyond_samples(c)) {
+        motion_examine_step(&c->arm, m, c->stop, step);
         return;
     }
 
@@ -106,10 +106,10 @@ void corrected_begin_step(corrected_run *c)
     const double now = m->state[SLOT_TIME];
     motion_look_far(&c->arm, m, c->stop, c->recording->scenario->parameters.run.duration, step);
     memcpy(m->trial, m->state, (size_t)m->size * sizeof *m->state);
-    c->under_way = (step_under_way){.goes_on = true,
-                                    .begun_for = c->stop,
-                                    .now = now,
-                                    .sensed = corrected_way_at(c, now, m->state)};
+    c->under_way = (open_step){.goes_on = true,
+                               .begun_for = c->stop,
+                               .now = now,
+                               .sensed = corrected_way_at(c, now, m->state)};
 }
 
 // Whether the step under way ends after an instant [s].
@@ -134,7 +134,7 @@ static bool sensed_within(const corrected_run *c, double time, sensed_motion *at
         *at = corrected_sensed_motion(c, state);
     }
 
-    const glance hub = m->engine->hub_at(&c->arm, m, time - m->state[SLOT_TIME]);
+    const value_and_slope hub = m->engine->hub_at(&c->arm, m, time - m->state[SLOT_TIME]);
     at->angle = hub.value;
     at->velocity = hub.slope;
     return true;
@@ -199,7 +199,7 @@ status corrected_stride(corrected_run *c, double until, fault *f)
     }
 
     // within the step under way
-    if (!c->under_way.goes_on && flies_far(c)) {
+    if (!c->under_way.goes_on && flies_beyond_samples(c)) {
         corrected_begin_step(c);
     }
     const double next = instant_after(c->stop, until) ? until : c->stop;
@@ -219,7 +219,7 @@ status corrected_end_step(corrected_run *c, fault *f)
 {
     assert(c != NULL && f != NULL);
     motion *m = c->motion;
-    const step_under_way *on = &c->under_way;
+    const open_step *on = &c->under_way;
     if (!on->goes_on) {
         return STATUS_OK;
     }
@@ -239,7 +239,7 @@ double *corrected_present(const corrected_run *c)
 
 sensed_motion corrected_sensed_now(const corrected_run *c)
 {
-    const step_under_way *on = &c->under_way;
+    const open_step *on = &c->under_way;
     sensed_motion at = on->sensed.at;
     if (!on->goes_on) {
         return corrected_sensed_motion(c, c->motion->state);

@@ -81,7 +81,7 @@ static const double *corrected_state(const stepped_run *run, int *angle_count)
 typedef struct saved_motion {
     double stop, last_event;
     int at_once;
-    step_under_way under_way;
+    open_step under_way;
     long steps;
     double start_energy, cut, pulse_peak, pulse_peak_time, largest_penetration, overheld;
 } saved_motion;

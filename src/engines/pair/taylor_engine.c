@@ -152,7 +152,8 @@ static void take_up(const arm *a, motion *m)
     taylor_stride *s = m->memory;
     double *kept = state_kept(m, m->state);
     const size_t start = KEPT_WANTED * sizeof *kept, size = sizeof s->kept - start;
-    if (m->forgets || !s->own || memcmp(s->kept + KEPT_WANTED, kept + KEPT_WANTED, size) != 0) {
+    if (m->history_invalid || !s->own ||
+        memcmp(s->kept + KEPT_WANTED, kept + KEPT_WANTED, size) != 0) {
         prepare(a, m);
         taylor_compute_one(&s->lane);
         s->known = 0;
@@ -213,7 +214,7 @@ static double begin(const arm *a, motion *m, double remaining, double step)
     }
 
     s->ready = false;
-    m->forgets = false;
+    m->history_invalid = false;
     memcpy(s->kept, kept, sizeof s->kept);
     s->used = kept[KEPT_USED];
     return smaller(kept[KEPT_LENGTH] - s->used, remaining);
@@ -231,7 +232,7 @@ taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
 {
     assert(a != NULL && m != NULL);
     taylor_stride *s = m->memory;
-    if (m->engine != &taylor_engine || m->starved || motion_held_still(m) ||
+    if (m->engine != &taylor_engine || m->out_of_memory || motion_held_still(m) ||
         goes_on(m, remaining)) {
         return NULL;
     }
@@ -246,8 +247,8 @@ const engine taylor_engine = {.name = "pair",
                               .state_at = taylor_state_at,
                               .states_at = taylor_states_at,
                               .move_to = taylor_move_to,
-                              .look = taylor_look,
-                              .bend = taylor_bend,
+                              .event_function = taylor_event_function,
+                              .second_derivative = taylor_second_derivative,
                               .clear = taylor_clear,
                               .bounded = taylor_bounded,
                               .force_at = taylor_force_at,

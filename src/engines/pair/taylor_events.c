@@ -12,7 +12,7 @@ static double rounding_of(const arm *a, const motion *m, const taylor_stride *s)
 
 // A function that is to be watched, from the series: only where it comes near zero is it asked for.
 // Just after an event it may begin at zero, as the gap does after a bounce cut short.
-static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, watch w)
+static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, event_function w)
 {
     const int order = s->lane.form.order;
     const bool jumped = s->kept[KEPT_JUMPED] != 0;
@@ -23,30 +23,30 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, wat
     s->known |= 1u << w;
 
     // the wall
-    if (w == WATCH_FORCE) {
+    if (w == EVENT_OF_FORCE) {
         const double edge[] = {EDGE_VALUE, EDGE_RATE, EDGE_MORE};
         set_polynomial(p, taylor_term(lane, AT_FORCE), spacing, order, 1);
         if (jumped) {
-            leave_edge(p, edge);
+            deflate_root(p, edge);
         }
-    } else if (w == WATCH_GAP) {
+    } else if (w == EVENT_OF_GAP) {
         set_polynomial(p, taylor_term(lane, AT_GAP), spacing, order + 2, 1);
         const bool inside = p->terms[0] < 0 && p->terms[0] > -EDGE_DEPTH && p->terms[1] > 0;
         p->terms[0] = inside ? 0 : p->terms[0];
         if (jumped || inside) {
             const double lacking = EDGE_RATE * (1 + LEFT_OUT * (rounding_of(a, m, s) - 1));
-            leave_edge(p, (double[]){EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, lacking)});
+            deflate_root(p, (double[]){EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, lacking)});
         }
     }
 
     // the hub; what holds a stuck one may hold a little more just after an event
-    if (w == WATCH_HUB) {
+    if (w == EVENT_OF_HUB) {
         const int place = a->hub_spring ? AT_RATE_0 : AT_RATE_1;
         set_polynomial(p, taylor_term(lane, place), spacing, order + 1, friction);
         if (jumped) {
-            leave_edge(p, (double[]){0, EDGE_RATE * rounding_of(a, m, s), EDGE_MORE});
+            deflate_root(p, (double[]){0, EDGE_RATE * rounding_of(a, m, s), EDGE_MORE});
         }
-    } else if (w == WATCH_STICTION) {
+    } else if (w == EVENT_OF_STICTION) {
         const double *hold = taylor_term(lane, AT_HOLD);
         const double sign = hold[0] < 0 ? -1 : 1;
         set_polynomial(p, hold, spacing, order, -sign);
@@ -57,7 +57,7 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, wat
     }
 }
 
-static const polynomial *watched(const arm *a, const motion *m, watch w)
+static const polynomial *watched(const arm *a, const motion *m, event_function w)
 {
     taylor_stride *s = m->memory;
     if (!(s->known & 1u << w)) {
@@ -66,27 +66,29 @@ static const polynomial *watched(const arm *a, const motion *m, watch w)
     return &s->watched[w];
 }
 
-glance taylor_look(const arm *a, const motion *m, watch w, double h)
+value_and_slope taylor_event_function(const arm *a, const motion *m, event_function w, double h)
 {
     const taylor_stride *s = m->memory;
     const polynomial *p = watched(a, m, w);
     const double t = s->used + h;
-    glance near = t > 0 ? glance_at(p->terms, p->count, t) : (glance){p->terms[0], p->terms[1]};
-    if (w != WATCH_STICTION) {
+    value_and_slope near = t > 0 ? value_and_slope_at(p->terms, p->count, t)
+                                 : (value_and_slope){p->terms[0], p->terms[1]};
+    if (w != EVENT_OF_STICTION) {
         return near;
     }
-    glance far = glance_at(s->far_limit.terms, s->far_limit.count, t);
+    value_and_slope far = value_and_slope_at(s->far_limit.terms, s->far_limit.count, t);
     return near.value < far.value ? near : far;
 }
 
-double taylor_bend(const arm *a, const motion *m, watch w, double from, double to)
+double taylor_second_derivative(const arm *a, const motion *m, event_function w, double from,
+                                double to)
 {
     taylor_stride *s = m->memory;
     const polynomial *p = watched(a, m, w);
     const double t = s->used + to;
     double near = bend_of(p, t);
     (void)from;
-    if (w == WATCH_FORCE && p->divided) {
+    if (w == EVENT_OF_FORCE && p->divided) {
         // divided by the time: the force itself may bend more
         polynomial force;
         set_polynomial(&force, taylor_term(&s->lane, AT_FORCE), taylor_spacing(&s->lane),
@@ -96,16 +98,16 @@ double taylor_bend(const arm *a, const motion *m, watch w, double from, double t
     return near; // that of both limits of stiction
 }
 
-glance taylor_force_at(const arm *a, const motion *m, double h)
+value_and_slope taylor_force_at(const arm *a, const motion *m, double h)
 {
     taylor_stride *s = m->memory;
     (void)a;
     const int order = s->lane.form.order;
     const double *force = taylor_terms(&s->lane, AT_FORCE, order), t = s->used + h;
-    return t > 0 ? glance_at(force, order, t) : (glance){force[0], force[1]};
+    return t > 0 ? value_and_slope_at(force, order, t) : (value_and_slope){force[0], force[1]};
 }
 
-void taylor_forces_at(const arm *a, const motion *m, double h, int count, glance *at)
+void taylor_forces_at(const arm *a, const motion *m, double h, int count, value_and_slope *at)
 {
     const taylor_stride *s = m->memory;
     const double width = h / count;
@@ -114,9 +116,10 @@ void taylor_forces_at(const arm *a, const motion *m, double h, int count, glance
     // evaluated with others', which began their strides with the steps, or here
     if (lane->pieces == count && lane->end == h) {
         const taylor_pieces *pieces = &lane->group->pieces;
-        at[0] = (glance){*taylor_term(lane, AT_FORCE), *taylor_term(lane, AT_FORCE + 1)};
+        at[0] = (value_and_slope){*taylor_term(lane, AT_FORCE), *taylor_term(lane, AT_FORCE + 1)};
         for (int i = 0; i < count; i++) {
-            at[i + 1] = (glance){pieces->force[i][lane->number], pieces->slope[i][lane->number]};
+            at[i + 1] =
+                (value_and_slope){pieces->force[i][lane->number], pieces->slope[i][lane->number]};
         }
     } else {
         for (int i = 0; i <= count; i++) {
@@ -125,20 +128,20 @@ void taylor_forces_at(const arm *a, const motion *m, double h, int count, glance
     }
 }
 
-glance taylor_gap_at(const arm *a, const motion *m, double h)
+value_and_slope taylor_gap_at(const arm *a, const motion *m, double h)
 {
     taylor_stride *s = m->memory;
     (void)a;
     const int count = s->lane.form.order + 2;
-    return glance_at(taylor_terms(&s->lane, AT_GAP, count), count, s->used + h);
+    return value_and_slope_at(taylor_terms(&s->lane, AT_GAP, count), count, s->used + h);
 }
 
 // Whether the watched function is above zero from the start, or rises from it, and stays above zero
 // over the whole stride.
-static bool clear_throughout(const motion *m, watch w)
+static bool clear_throughout(const motion *m, event_function w)
 {
     const taylor_stride *s = m->memory;
-    const bool wall = w == WATCH_GAP || w == WATCH_FORCE;
+    const bool wall = w == EVENT_OF_GAP || w == EVENT_OF_FORCE;
     return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > 0;
 }
 
@@ -150,18 +153,18 @@ static double known_root(const taylor_stride *s, int place, bool clear)
     return clear ? HUGE_VAL : s->lane.block[place] > 0 ? root : -1;
 }
 
-void taylor_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+void taylor_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
 {
     // of most strides the bounds rule all events out
     const taylor_stride *s = m->memory;
     const contact_state now = contact_state_of(m->state);
     const bool stuck = now.friction == HUB_STICK;
-    const watch wall = now.contact ? WATCH_FORCE : WATCH_GAP;
-    const watch hub = stuck ? WATCH_STICTION : WATCH_HUB;
+    const event_function wall = now.contact ? EVENT_OF_FORCE : EVENT_OF_GAP;
+    const event_function hub = stuck ? EVENT_OF_STICTION : EVENT_OF_HUB;
     const bool wall_clear = clear_throughout(m, wall) || (!now.contact && !wall_stands(&a->wall));
     const bool hub_clear = clear_throughout(m, hub) || (!stuck && a->motor.stiction == 0);
 
-    *first = WATCH_GAP;
+    *first = EVENT_OF_GAP;
     *any = false;
     if (wall_clear && hub_clear) {
         return;
@@ -182,7 +185,7 @@ void taylor_first_event(const arm *a, motion *m, double *h, watch *first, bool *
     }
 }
 
-bool taylor_clear(const arm *a, motion *m, watch w, double h)
+bool taylor_clear(const arm *a, motion *m, event_function w, double h)
 {
     const taylor_stride *s = m->memory;
     const double t = s->used + h;
@@ -196,7 +199,7 @@ bool taylor_clear(const arm *a, motion *m, watch w, double h)
     // what begins on the edge, or is not asked for as far as the stride goes
     const polynomial *p = watched(a, m, w);
     double low = low_of(p, t);
-    return w == WATCH_STICTION ? fmin(low, low_of(&s->far_limit, t)) > 0 : low > 0;
+    return w == EVENT_OF_STICTION ? fmin(low, low_of(&s->far_limit, t)) > 0 : low > 0;
 }
 
 bool taylor_bounded(const arm *a, motion *m, double h, double most)

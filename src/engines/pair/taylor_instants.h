@@ -80,8 +80,8 @@ KERNEL void derivatives_of(coefficients x, int count, real t, real u, real resul
     result[2] = 2 * even1 + 6 * t * odd1 + 8 * u * (even2 + t * odd2);
 }
 
-// Value and first derivative, by the operations of glance_at (taylor_polynomial.h): terms in pairs,
-// the pairs by turns.
+// Value and first derivative, by the operations of value_and_slope_at (taylor_polynomial.h): terms
+// in pairs, the pairs by turns.
 KERNEL void glance_of(coefficients x, int count, real t, double *value, double *slope)
 {
     const real u = t * t, v = u * u;

@@ -25,7 +25,7 @@
 // which the matrix of the stride's start, inverted once, gives; q_(n+1) = w_n/(n + 1) follows.
 //
 // Every operation is written out in its order (taylor_numbers.h), so all widths give the same bits.
-#include "src/engines/pair/taylor_course.h"
+#include "src/engines/pair/taylor_enclosure.h"
 #include "src/engines/pair/taylor_numbers.h"
 #include "src/engines/pair/taylor_products.h"
 #include "src/engines/pair/taylor_roots.h"
@@ -117,7 +117,7 @@ KERNEL void bound_wall(real *block, const int contact, const real *wall, int cou
 {
     const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
     const real value = zero + (contact ? EDGE_VALUE : EDGE_GAP);
-    const course near = course_of(wall, count, h);
+    const course near = enclosure_of(wall, count, h);
     const real lacking = contact ? zero : EDGE_RATE + LEFT_OUT * (block[AT_EDGE_RATE] - EDGE_RATE);
     const edge_limits edge = {value, zero + EDGE_RATE, greater(lacking, zero + EDGE_MORE)};
     const real first = least_at_first(&near, wall, one, h, jumped, &edge);
@@ -125,7 +125,7 @@ KERNEL void bound_wall(real *block, const int contact, const real *wall, int cou
     block[AT_FORCE_MOST] = highest(&near);
     block[AT_WALL_ROOT] = zero - 1.0;
     if (any(~MASK(block[AT_WALL_LEAST] > 0))) {
-        const watched_course gone = {wall, count, &near, one, first, h, jumped};
+        const enclosed_function gone = {wall, count, &near, one, first, h, jumped};
         block[AT_WALL_ROOT] = first_root(&gone);
     }
 }
@@ -136,12 +136,12 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
 {
     const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
     const real sense = choose(MASK(block[AT_FRICTION] < 0), -one, one);
-    const course turning = course_of(rates, order + 1, h);
+    const course turning = enclosure_of(rates, order + 1, h);
     const edge_limits edge = {zero, block[AT_EDGE_RATE], zero + EDGE_MORE};
     const real first = least_at_first(&turning, rates, sense, h, jumped, &edge);
     real left = least_of(&turning, sense, first);
     if (any(stuck)) {
-        const course torque = course_of(hold, order, h);
+        const course torque = enclosure_of(hold, order, h);
         const real low = lowest(&torque, torque.start - torque.off);
         const real most = greater(highest(&torque), -low);
         const real spared = choose(jumped, zero + EDGE_VALUE, zero);
@@ -150,7 +150,7 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
     block[AT_HUB_LEAST] = left;
     block[AT_HUB_ROOT] = zero - 1.0;
     if (any(~stuck & ~MASK(left > 0))) {
-        const watched_course gone = {rates, order + 1, &turning, sense, first, h, jumped};
+        const enclosed_function gone = {rates, order + 1, &turning, sense, first, h, jumped};
         block[AT_HUB_ROOT] = choose(stuck, zero - 1.0, first_root(&gone));
     }
 }

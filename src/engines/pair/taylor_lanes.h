@@ -4,7 +4,7 @@
 //
 //     taylor_prepare each motion
 //     taylor_compute those of one form
-//     motion_look_ahead each motion        (contact_machine.h)
+//     motion_examine_step each motion        (contact_machine.h)
 //     taylor_finish them, each to where its stride ends
 //     motion_step each
 #pragma once

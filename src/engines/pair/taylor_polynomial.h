@@ -61,7 +61,7 @@ typedef struct turns {
 } turns;
 
 // Value and slope: with the dashes by v, (A + u B)' by u is 2 u A' + B + 2 v B'.
-static inline glance glance_at(const double *terms, int count, double t)
+static inline value_and_slope value_and_slope_at(const double *terms, int count, double t)
 {
     const double u = t * t, v = u * u;
     turns value = {{0, 0}, {0, 0}}, slope = {{0, 0}, {0, 0}};
@@ -78,7 +78,7 @@ static inline glance glance_at(const double *terms, int count, double t)
     }
     const pair at = value.even + u * value.odd;
     const pair by_u = value.odd + 2 * (u * slope.even + v * slope.odd);
-    return (glance){at[0] + t * at[1], at[1] + 2 * t * (by_u[0] + t * by_u[1])};
+    return (value_and_slope){at[0] + t * at[1], at[1] + 2 * t * (by_u[0] + t * by_u[1])};
 }
 
 // The largest second derivative for times from 0 to t, from the magnitudes of the terms.
@@ -122,7 +122,7 @@ static inline double low_of(const polynomial *p, double t)
 }
 
 // Divides the function by the time once for each of its first coefficients that is only rounding.
-static inline void leave_edge(polynomial *p, const double limits[3])
+static inline void deflate_root(polynomial *p, const double limits[3])
 {
     const int powers = edge_powers(p->terms, limits, 1);
     if (powers > 0) {

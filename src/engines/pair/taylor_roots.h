@@ -1,19 +1,19 @@
-// Where functions that are watched over a stride (taylor_course.h) first fall below zero.
+// Where functions that are watched over a stride (taylor_enclosure.h) first fall below zero.
 #pragma once
 
-#include "src/engines/pair/taylor_course.h"
+#include "src/engines/pair/taylor_enclosure.h"
 
 enum { MOST_LOOKS = 6 }; // of Newton's method
 
 // A function over strides of length t, positive times its sign at first: what it stays above in
 // the first piece, and whether it has jumped there.
-typedef struct watched_course {
+typedef struct enclosed_function {
     const real *terms;
     int count;
     const course *course;
     real sign, first, t;
     mask jumped;
-} watched_course;
+} enclosed_function;
 
 // The piece in which it may first be below zero, where it is so at that piece's end.
 typedef struct fall {
@@ -22,7 +22,7 @@ typedef struct fall {
     mask there;        // whether there is one
 } fall;
 
-KERNEL fall first_fall(const watched_course *f)
+KERNEL fall first_zero_crossing(const enclosed_function *f)
 {
     const real zero = (real){0}, off = f->course->off;
     fall found = {.from = zero, .length = f->t * 0.25, .above = zero + 1.0, .below = zero - 1.0};
@@ -45,7 +45,7 @@ KERNEL fall first_fall(const watched_course *f)
 }
 
 // Value and slope.
-KERNEL void look_at(const watched_course *f, real t, real *value, real *slope)
+KERNEL void look_at(const enclosed_function *f, real t, real *value, real *slope)
 {
     const real zero = (real){0}, u = t * t;
     const int pairs = f->count - f->count % 2;
@@ -65,10 +65,10 @@ KERNEL void look_at(const watched_course *f, real t, real *value, real *slope)
 // until the error of the next step is below the resolution of time. Between the piece's start and a
 // root at a distance l from it the function lies at most bend l^2/8 below its chord, and stays
 // above zero if it starts above bend l^2/2.
-static __attribute__((noinline)) real first_root(const watched_course *f)
+static __attribute__((noinline)) real first_root(const enclosed_function *f)
 {
     const real zero = (real){0};
-    const fall in = first_fall(f);
+    const fall in = first_zero_crossing(f);
     real root = zero - 1.0;
     if (!any(in.there)) {
         return root;

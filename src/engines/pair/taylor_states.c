@@ -133,12 +133,12 @@ bool taylor_states_at(const arm *a, motion *m, double *start, const double *h, i
     return true;
 }
 
-glance taylor_hub_at(const arm *a, const motion *m, double h)
+value_and_slope taylor_hub_at(const arm *a, const motion *m, double h)
 {
     taylor_stride *s = m->memory;
     const int count = s->lane.form.order + 2;
     const double *angle = taylor_terms(&s->lane, a->first == 0 ? AT_ANGLE_1 : AT_ANGLE_0, count);
-    glance hub = glance_at(angle, count, s->used + h);
+    value_and_slope hub = value_and_slope_at(angle, count, s->used + h);
     hub.slope = m->state[SLOT_FRICTION] == HUB_STICK ? 0 : hub.slope;
     return hub;
 }

@@ -7,14 +7,15 @@
 #include "src/engines/pair/taylor_polynomial.h"
 
 typedef struct taylor_stride {
-    taylor_lane lane;                       // the series
-    polynomial watched[WATCH_STICTION + 1]; // as far as they were asked for; stiction: nearer limit
-    polynomial far_limit;                   // of stiction
-    unsigned known;                         // which of them are, a bit each
-    bool ready;                             // the series of the next stride were computed apart
-    double kept[KEPT_COUNT];                // the stride that the series are of
-    double used;                            // of it before the step in hand [s]
-    bool own;                               // the lane's block has all of them
+    taylor_lane lane; // the series
+    polynomial
+        watched[EVENT_OF_STICTION + 1]; // as far as they were asked for; stiction: nearer limit
+    polynomial far_limit;               // of stiction
+    unsigned known;                     // which of them are, a bit each
+    bool ready;                         // the series of the next stride were computed apart
+    double kept[KEPT_COUNT];            // the stride that the series are of
+    double used;                        // of it before the step in hand [s]
+    bool own;                           // the lane's block has all of them
 } taylor_stride;
 
 // --- states --------------------------------------------------------------------------------------
@@ -24,16 +25,18 @@ status taylor_state_at(const arm *a, motion *m, double h);
 bool taylor_states_at(const arm *a, motion *m, double *start, const double *h, int count,
                       double *const *states, state_energy *energies);
 bool taylor_move_to(const arm *a, motion *m, double h, state_energy *has);
-glance taylor_hub_at(const arm *a, const motion *m, double h);
+value_and_slope taylor_hub_at(const arm *a, const motion *m, double h);
 
 // --- events --------------------------------------------------------------------------------------
 
-// engine.look, .bend, .clear, .bounded, .force_at, .forces_at, .gap_at and .first_event.
-glance taylor_look(const arm *a, const motion *m, watch w, double h);
-double taylor_bend(const arm *a, const motion *m, watch w, double from, double to);
-bool taylor_clear(const arm *a, motion *m, watch w, double h);
+// engine.event_function, .second_derivative, .clear, .bounded, .force_at, .forces_at, .gap_at and
+// .first_event.
+value_and_slope taylor_event_function(const arm *a, const motion *m, event_function w, double h);
+double taylor_second_derivative(const arm *a, const motion *m, event_function w, double from,
+                                double to);
+bool taylor_clear(const arm *a, motion *m, event_function w, double h);
 bool taylor_bounded(const arm *a, motion *m, double h, double most);
-glance taylor_force_at(const arm *a, const motion *m, double h);
-void taylor_forces_at(const arm *a, const motion *m, double h, int count, glance *at);
-glance taylor_gap_at(const arm *a, const motion *m, double h);
-void taylor_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);
+value_and_slope taylor_force_at(const arm *a, const motion *m, double h);
+void taylor_forces_at(const arm *a, const motion *m, double h, int count, value_and_slope *at);
+value_and_slope taylor_gap_at(const arm *a, const motion *m, double h);
+void taylor_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);

@@ -31,26 +31,26 @@
 enum { MOST_ATTEMPTS = 100, MOST_ENDS = 10 };
 
 // How the event function of the step's end, which is `at` its event, differs from zero, as a time.
-static double miss_of(const stiff_stride *s, const arm *a, const motion *m, watch w)
+static double miss_of(const stiff_stride *s, const arm *a, const motion *m, event_function w)
 {
     const double *end = s->end;
-    const glance g = function_at(&s->watched[w], 1);
+    const value_and_slope g = function_at(&s->watched[w], 1);
     const double h = s->step.length;
     double value = g.value;
     double slope = g.slope / h;
-    if (w == WATCH_FORCE && !s->divided[w] && end[SLOT_CONTACT] != 0 &&
+    if (w == EVENT_OF_FORCE && !s->divided[w] && end[SLOT_CONTACT] != 0 &&
         (!m->wall_gives || a->wall.law == WALL_KELVIN_VOIGT)) {
         value = end[SLOT_FORCE];
-    } else if (w == WATCH_GAP && s->kept[STIFF_GAP] == 0) {
+    } else if (w == EVENT_OF_GAP && s->kept[STIFF_GAP] == 0) {
         const bool within = m->wall_gives && end[SLOT_CONTACT] != 0;
         value = within ? -end[SLOT_GAP] : end[SLOT_GAP];
         slope = within ? -end[SLOT_GAP_VELOCITY] : end[SLOT_GAP_VELOCITY];
-    } else if (w == WATCH_HUB) {
+    } else if (w == EVENT_OF_HUB) {
         value = end[SLOT_FRICTION] * state_velocities(m, s->end)[0];
         slope = end[SLOT_FRICTION] * state_accelerations(m, s->end)[0];
-    } else if (w == WATCH_STICTION) {
+    } else if (w == EVENT_OF_STICTION) {
         value = a->motor.stiction - fabs(end[SLOT_FRICTION_TORQUE]) + s->holds_more;
-        const glance far = function_at(&s->far_limit, 1);
+        const value_and_slope far = function_at(&s->far_limit, 1);
         slope = (far.value < g.value ? far.slope : g.slope) / h;
     }
     return slope < 0 ? value / -slope : 0;
@@ -80,8 +80,8 @@ static bool take_stages(stiff_stride *s, const arm *a, motion *m)
 
 // Whether a watched function other than `passed` falls below zero in the step, and then the first
 // one and when [s].
-static bool another_event(stiff_stride *s, const arm *a, motion *m, watch passed, watch *first,
-                          double *time)
+static bool another_event(stiff_stride *s, const arm *a, motion *m, event_function passed,
+                          event_function *first, double *time)
 {
     bool any;
     *time = s->step.length;
@@ -94,7 +94,7 @@ static bool another_event(stiff_stride *s, const arm *a, motion *m, watch passed
 // Takes the step again up to an event at `time` within it, until it ends there: no longer than its
 // error allows, and at another event where the first moves to beyond that one. An event that moves
 // out of the step was one of rounding, and does not end it.
-static bool end_at_event(stiff_stride *s, const arm *a, motion *m, watch w, double time)
+static bool end_at_event(stiff_stride *s, const arm *a, motion *m, event_function w, double time)
 {
     const double allowed = s->step.length;
     double ratio = time / allowed, rate = 0.5;
@@ -112,7 +112,7 @@ static bool end_at_event(stiff_stride *s, const arm *a, motion *m, watch w, doub
             return false;
         }
         double miss = miss_of(s, a, m, w), earlier;
-        watch other;
+        event_function other;
         if (h > time * (1 + AT_EVENT) && another_event(s, a, m, w, &other, &earlier)) {
             w = other;
             time = earlier;
@@ -191,7 +191,7 @@ static void change_drive(stiff_stride *s, const arm *a, motion *m)
     const double *before = state_kept(m, m->state);
     stiff_step *p = &s->step;
     s->turned = a->motor.electric && m->state[SLOT_JUMPED] == 0 &&
-                before[STIFF_EVENT] == 1 + (int)WATCH_CURRENT &&
+                before[STIFF_EVENT] == 1 + (int)EVENT_OF_CURRENT &&
                 before[KEPT_USED] >= before[KEPT_LENGTH];
     if (!s->turned) {
         return;
@@ -301,7 +301,7 @@ bool stiff_make_step(stiff_stride *s, const arm *a, motion *m)
 
     // and no longer than to the first event
     double end = s->step.length;
-    watch first;
+    event_function first;
     bool any;
     dense_search_event(a, m, &end, &first, &any);
     if (any && !end_at_event(s, a, m, first, end)) {

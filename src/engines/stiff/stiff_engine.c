@@ -81,7 +81,7 @@ static void take_up(stiff_stride *s, const arm *a, motion *m)
     const double *kept = state_kept(m, m->state);
     const size_t from = STIFF_LENGTH,
                  size = (KEPT_COUNT + stiff_kept_size(a) - from) * sizeof *kept;
-    if (!s->known || m->forgets || memcmp(s->kept + from, kept + from, size) != 0) {
+    if (!s->known || m->history_invalid || memcmp(s->kept + from, kept + from, size) != 0) {
         memcpy(s->kept, kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
         s->step.dof = a->dof;
         s->step.links = a->links;
@@ -110,7 +110,7 @@ static double begin(const arm *a, motion *m, double remaining, double step)
         s->known = false;
         return 0;
     }
-    m->forgets = false;
+    m->history_invalid = false;
     memcpy(state_kept(m, m->state), s->kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
     state_kept(m, m->state)[KEPT_USED] = s->used;
     return smaller(s->kept[KEPT_LENGTH] - s->used, remaining);
@@ -119,8 +119,8 @@ static double begin(const arm *a, motion *m, double remaining, double step)
 const engine stiff_engine = {.name = "stiff",
                              .begin = begin,
                              .state_at = stiff_state_at,
-                             .look = stiff_look,
-                             .bend = stiff_bend,
+                             .event_function = stiff_event_function,
+                             .second_derivative = stiff_second_derivative,
                              .clear = stiff_clear,
                              .bounded = stiff_bounded,
                              .force_at = stiff_force_at,

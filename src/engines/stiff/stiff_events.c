@@ -17,7 +17,7 @@
 #define LOW_FLIGHT 1e-9
 
 // The function less what is only rounding at its start (edge_limits.h).
-static void leave_edge(stiff_stride *s, watch w, const double limits[3])
+static void deflate_root(stiff_stride *s, event_function w, const double limits[3])
 {
     double terms[4];
     function_start(&s->watched[w], terms);
@@ -30,10 +30,10 @@ static void leave_edge(stiff_stride *s, watch w, const double limits[3])
     // of one that starts flatter still, what is left at the start is rounding; of a force that
     // presses at all stages, or a gap that is open at all of them, the step's own error, too
     double *start = s->watched[w].b;
-    bool holds = (w == WATCH_FORCE && powers > 0) || (w == WATCH_GAP && powers == 3);
+    bool holds = (w == EVENT_OF_FORCE && powers > 0) || (w == EVENT_OF_GAP && powers == 3);
     for (int i = 0; i < RADAU_STAGES && holds; i++) {
-        holds = w == WATCH_FORCE ? s->step.force.at[i] > 0
-                                 : function_at(&s->watched[w], radau_node[i]).value > 0;
+        holds = w == EVENT_OF_FORCE ? s->step.force.at[i] > 0
+                                    : function_at(&s->watched[w], radau_node[i]).value > 0;
     }
     const double share = holds ? LACKS : powers == 3 ? FLAT : 0;
     if (*start < 0 && *start > -share * function_greatest(&s->watched[w])) {
@@ -57,19 +57,19 @@ static void set_force(stiff_stride *s)
 static void watch_within(stiff_stride *s, const arm *a, const motion *m)
 {
     double law[RADAU_LANES];
-    s->watched[WATCH_GAP] = s->gap;
-    function_scale(&s->watched[WATCH_GAP], -1, 0);
+    s->watched[EVENT_OF_GAP] = s->gap;
+    function_scale(&s->watched[EVENT_OF_GAP], -1, 0);
     if (a->wall.law == WALL_KELVIN_VOIGT) {
         const double grows = -a->wall.stiffness * m->state[SLOT_GAP_VELOCITY] -
                              a->wall.damping * m->state[SLOT_GAP_ACCELERATION];
-        function_through_rising(&s->watched[WATCH_FORCE], s->kept + STIFF_FORCE,
+        function_through_rising(&s->watched[EVENT_OF_FORCE], s->kept + STIFF_FORCE,
                                 s->step.length * grows);
         return;
     }
     for (int i = 0; i < RADAU_LANES; i++) {
         law[i] = a->wall.stiffness - a->wall.damping * s->step.rate.at[i];
     }
-    function_through(&s->watched[WATCH_FORCE], law);
+    function_through(&s->watched[EVENT_OF_FORCE], law);
 }
 
 // The gap, from its rates, its acceleration at the start and where it starts [m].
@@ -107,18 +107,18 @@ static void watch_wall(stiff_stride *s, const arm *a, const motion *m, contact_s
     bool at_edge = m->state[SLOT_JUMPED] != 0;
     set_force(s);
     set_gap(s, a, m);
-    s->watched[WATCH_FORCE] = s->force;
+    s->watched[EVENT_OF_FORCE] = s->force;
     if (m->wall_gives && now.contact) {
         watch_within(s, a, m);
     } else if (!now.contact) {
-        stiff_function *distance = &s->watched[WATCH_GAP];
+        stiff_function *distance = &s->watched[EVENT_OF_GAP];
         *distance = s->gap;
         if (distance->b[0] < 0 && distance->b[0] > -EDGE_DEPTH && distance->b[1] > distance->b[0]) {
             distance->b[0] = 0;
             at_edge = true;
         }
     }
-    ignore_rounding(&s->watched[WATCH_GAP]);
+    ignore_rounding(&s->watched[EVENT_OF_GAP]);
     if (!at_edge) {
         return;
     }
@@ -127,12 +127,12 @@ static void watch_wall(stiff_stride *s, const arm *a, const motion *m, contact_s
     const double stiffness = m->wall_gives ? a->wall.stiffness * EDGE_GAP : 0;
     const double reaction[] = {EDGE_VALUE + stiffness, EDGE_RATE + stiffness, EDGE_MORE};
     if (now.contact) {
-        leave_edge(s, WATCH_FORCE, reaction);
+        deflate_root(s, EVENT_OF_FORCE, reaction);
     }
     if (!now.contact || m->wall_gives) {
         double gap[3];
         motion_gap_edges(a, m, gap);
-        leave_edge(s, WATCH_GAP, gap);
+        deflate_root(s, EVENT_OF_GAP, gap);
     }
 }
 
@@ -144,18 +144,18 @@ static void watch_hub(stiff_stride *s, const arm *a, const motion *m, contact_st
         for (int i = 0; i < RADAU_LANES; i++) {
             rate[i] = now.friction * s->step.stage[0].w[i / 4][i % 4];
         }
-        function_through(&s->watched[WATCH_HUB], rate);
+        function_through(&s->watched[EVENT_OF_HUB], rate);
         if (jumped) { // it may start at zero
             const double limits[] = {0, EDGE_RATE * motion_rounding(a, m), EDGE_MORE};
-            function_through_rising(&s->watched[WATCH_HUB], rate,
+            function_through_rising(&s->watched[EVENT_OF_HUB], rate,
                                     now.friction * s->step.length * s->step.a0[0]);
-            leave_edge(s, WATCH_HUB, limits);
+            deflate_root(s, EVENT_OF_HUB, limits);
         }
         return;
     }
 
     // the nearer limit of what friction holds, and the farther one
-    stiff_function *near = &s->watched[WATCH_STICTION];
+    stiff_function *near = &s->watched[EVENT_OF_STICTION];
     function_through(near, s->kept + STIFF_HOLD);
     const double sign = near->b[0] < 0 ? 1 : -1;
     s->far_limit = *near;
@@ -173,7 +173,7 @@ static void watch_current(stiff_stride *s, const arm *a, const motion *m)
     for (int i = 0; i < RADAU_LANES; i++) {
         current[i] = side * s->kept[STIFF_CURRENT + i];
     }
-    stiff_function *near = &s->watched[WATCH_CURRENT];
+    stiff_function *near = &s->watched[EVENT_OF_CURRENT];
     function_through(near, current);
     s->far_current = *near;
     function_scale(&s->far_current, 1, most);
@@ -193,7 +193,7 @@ static void watch_current(stiff_stride *s, const arm *a, const motion *m)
     const double rounding = EDGE_CURRENT * most;
     const double rate = motor->inductance > 0 ? motor->resistance / motor->inductance : 0;
     const double edge[] = {rounding, rounding * rate, 0};
-    leave_edge(s, WATCH_CURRENT, edge);
+    deflate_root(s, EVENT_OF_CURRENT, edge);
     if (s->turned) { // a current that leaves its limit does so without a slope
         near->b[0] = fabs(near->b[0]);
     }
@@ -203,7 +203,7 @@ static void watch_current(stiff_stride *s, const arm *a, const motion *m)
 void stiff_watch(stiff_stride *s, const arm *a, const motion *m)
 {
     const contact_state now = contact_state_of(m->state);
-    for (int w = 0; w < WATCHES; w++) {
+    for (int w = 0; w < EVENT_FUNCTION_COUNT; w++) {
         s->divided[w] = false;
     }
     if (wall_stands(&a->wall)) {

@@ -87,7 +87,7 @@ void function_start(const stiff_function *f, double powers[4])
     powers[3] = n * (n - 1) * (n - 2) / 6.0 * ((b[3] - b[0]) - 3 * (b[2] - b[1]));
 }
 
-glance function_at(const stiff_function *f, double x)
+value_and_slope function_at(const stiff_function *f, double x)
 {
     // de Casteljau
     double b[FUNCTION_MOST];
@@ -99,7 +99,7 @@ glance function_at(const stiff_function *f, double x)
             b[i] = y * b[i] + x * b[i + 1];
         }
     }
-    return (glance){y * b[0] + x * b[1], n * (b[1] - b[0])};
+    return (value_and_slope){y * b[0] + x * b[1], n * (b[1] - b[0])};
 }
 
 double function_bend(const stiff_function *f, double from, double to)

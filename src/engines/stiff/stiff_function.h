@@ -31,7 +31,7 @@ void function_divide(stiff_function *f);
 void function_start(const stiff_function *f, double powers[4]);
 
 // Value and derivative by x.
-glance function_at(const stiff_function *f, double x);
+value_and_slope function_at(const stiff_function *f, double x);
 // A bound on the magnitude of the second derivative by x from one x to another.
 double function_bend(const stiff_function *f, double from, double to);
 // The least and the greatest coefficient.

@@ -103,48 +103,50 @@ status stiff_state_at(const arm *a, motion *m, double h)
 
 // --- what the contact machine asks ---------------------------------------------------------------
 
-static glance by_time(const stiff_stride *s, glance g)
+static value_and_slope by_time(const stiff_stride *s, value_and_slope g)
 {
-    return (glance){g.value, g.slope / s->step.length};
+    return (value_and_slope){g.value, g.slope / s->step.length};
 }
 
-glance stiff_look(const arm *a, const motion *m, watch w, double h)
+value_and_slope stiff_event_function(const arm *a, const motion *m, event_function w, double h)
 {
     const stiff_stride *s = m->memory;
     const double x = (s->used + h) / s->step.length;
-    glance near = function_at(&s->watched[w], x);
-    if (w >= WATCH_STICTION) {
-        const glance far = function_at(w == WATCH_CURRENT ? &s->far_current : &s->far_limit, x);
+    value_and_slope near = function_at(&s->watched[w], x);
+    if (w >= EVENT_OF_STICTION) {
+        const value_and_slope far =
+            function_at(w == EVENT_OF_CURRENT ? &s->far_current : &s->far_limit, x);
         near = near.value < far.value ? near : far;
     }
     (void)a;
     return by_time(s, near);
 }
 
-double stiff_bend(const arm *a, const motion *m, watch w, double from, double to)
+double stiff_second_derivative(const arm *a, const motion *m, event_function w, double from,
+                               double to)
 {
     const stiff_stride *s = m->memory;
     const double length = s->step.length;
     const double x0 = (s->used + from) / length, x1 = (s->used + to) / length;
-    const stiff_function *f = s->used > 0 && w == WATCH_FORCE ? &s->force : &s->watched[w];
+    const stiff_function *f = s->used > 0 && w == EVENT_OF_FORCE ? &s->force : &s->watched[w];
     double most = function_bend(f, x0, x1);
-    if (w >= WATCH_STICTION) {
-        const stiff_function *far = w == WATCH_CURRENT ? &s->far_current : &s->far_limit;
+    if (w >= EVENT_OF_STICTION) {
+        const stiff_function *far = w == EVENT_OF_CURRENT ? &s->far_current : &s->far_limit;
         most = larger(most, function_bend(far, x0, x1));
-    } else if (w == WATCH_FORCE) {
+    } else if (w == EVENT_OF_FORCE) {
         most = larger(most, function_bend(&s->force, x0, x1));
     }
     (void)a;
     return most / (length * length);
 }
 
-bool stiff_clear(const arm *a, motion *m, watch w, double h)
+bool stiff_clear(const arm *a, motion *m, event_function w, double h)
 {
     const stiff_stride *s = m->memory;
-    const stiff_function *far = w == WATCH_CURRENT ? &s->far_current : &s->far_limit;
+    const stiff_function *far = w == EVENT_OF_CURRENT ? &s->far_current : &s->far_limit;
     (void)a, (void)h;
-    return s->passed == 1 + (int)w ||
-           (function_least(&s->watched[w]) > 0 && (w < WATCH_STICTION || function_least(far) > 0));
+    return s->passed == 1 + (int)w || (function_least(&s->watched[w]) > 0 &&
+                                       (w < EVENT_OF_STICTION || function_least(far) > 0));
 }
 
 bool stiff_bounded(const arm *a, motion *m, double h, double most)
@@ -154,23 +156,23 @@ bool stiff_bounded(const arm *a, motion *m, double h, double most)
     return function_greatest(&s->force) <= most;
 }
 
-glance stiff_force_at(const arm *a, const motion *m, double h)
+value_and_slope stiff_force_at(const arm *a, const motion *m, double h)
 {
     const stiff_stride *s = m->memory;
     (void)a;
     return by_time(s, function_at(&s->force, (s->used + h) / s->step.length));
 }
 
-glance stiff_gap_at(const arm *a, const motion *m, double h)
+value_and_slope stiff_gap_at(const arm *a, const motion *m, double h)
 {
     const stiff_stride *s = m->memory;
     if (!wall_stands(&a->wall)) {
-        return (glance){HUGE_VAL, 0};
+        return (value_and_slope){HUGE_VAL, 0};
     }
     return by_time(s, function_at(&s->gap, (s->used + h) / s->step.length));
 }
 
-glance stiff_hub_at(const arm *a, const motion *m, double h)
+value_and_slope stiff_hub_at(const arm *a, const motion *m, double h)
 {
     const stiff_stride *s = m->memory;
     const double length = s->step.length, x = (s->used + h) / length;
@@ -184,8 +186,8 @@ glance stiff_hub_at(const arm *a, const motion *m, double h)
     }
     const double velocity = stiff_velocities(s)[0];
     (void)a;
-    return (glance){stiff_angles(s)[0] + length * (x * velocity + length * twice),
-                    velocity + length * once};
+    return (value_and_slope){stiff_angles(s)[0] + length * (x * velocity + length * twice),
+                             velocity + length * once};
 }
 
 void stiff_sense_at(const arm *a, const motion *m, double time, double *state)
@@ -219,11 +221,11 @@ void stiff_sense_at(const arm *a, const motion *m, double time, double *state)
         s->kept[STIFF_QUADRATURES + QUADRATURE_FORCE] + h * pressed;
 }
 
-void stiff_first_event(const arm *a, motion *m, double *h, watch *first, bool *any)
+void stiff_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
 {
     const stiff_stride *s = m->memory;
     const int event = (int)s->kept[STIFF_EVENT];
     (void)a;
     *any = event > 0 && *h >= s->kept[KEPT_LENGTH] - s->used;
-    *first = *any ? (watch)(event - 1) : WATCH_GAP;
+    *first = *any ? (event_function)(event - 1) : EVENT_OF_GAP;
 }

@@ -9,7 +9,7 @@
 // and the next step depend on. Stages are those of RADAU_LANES.
 enum stiff_kept {
     STIFF_LENGTH = KEPT_COUNT, // of the stages' step; up to rounding that of an event's end [s]
-    STIFF_EVENT,               // 1 + the watch whose event ends it, or 0
+    STIFF_EVENT,               // 1 + the event function whose event ends it, or 0
     STIFF_NEXT,                // length proposed for the next step [s]
     STIFF_RATE,                // of Newton's iteration
     STIFF_SCALE,               // largest momentum so far, that errors are a share of [kg^(1/2) m/s]
@@ -45,13 +45,13 @@ typedef struct stiff_stride {
     double used;      // of it before m->state [s]
 
     // what the contact machine watches
-    stiff_function watched[WATCHES], far_limit, far_current, force, gap;
-    bool divided[WATCHES];
+    stiff_function watched[EVENT_FUNCTION_COUNT], far_limit, far_current, force, gap;
+    bool divided[EVENT_FUNCTION_COUNT];
     double holds_more; // than stiction, just after an event [N m]
     double *end;       // state at the step's end, without what it keeps
     bool ended;        // whether it is that
     bool turned;       // the step begins where the drive's equation changes
-    int passed;        // 1 + the watch that a search leaves out, or 0
+    int passed;        // 1 + the event function that a search leaves out, or 0
 
     double *scratch[4]; // [dof]
 } stiff_stride;
@@ -121,12 +121,13 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
 
 // The engine's functions of these names (engine.h).
 status stiff_state_at(const arm *a, motion *m, double h);
-glance stiff_look(const arm *a, const motion *m, watch w, double h);
-double stiff_bend(const arm *a, const motion *m, watch w, double from, double to);
-bool stiff_clear(const arm *a, motion *m, watch w, double h);
+value_and_slope stiff_event_function(const arm *a, const motion *m, event_function w, double h);
+double stiff_second_derivative(const arm *a, const motion *m, event_function w, double from,
+                               double to);
+bool stiff_clear(const arm *a, motion *m, event_function w, double h);
 bool stiff_bounded(const arm *a, motion *m, double h, double most);
-glance stiff_force_at(const arm *a, const motion *m, double h);
-glance stiff_gap_at(const arm *a, const motion *m, double h);
-glance stiff_hub_at(const arm *a, const motion *m, double h);
+value_and_slope stiff_force_at(const arm *a, const motion *m, double h);
+value_and_slope stiff_gap_at(const arm *a, const motion *m, double h);
+value_and_slope stiff_hub_at(const arm *a, const motion *m, double h);
 void stiff_sense_at(const arm *a, const motion *m, double time, double *state);
-void stiff_first_event(const arm *a, motion *m, double *h, watch *first, bool *any);
+void stiff_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);

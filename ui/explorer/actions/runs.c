@@ -45,7 +45,7 @@ bool act_branch(explorer_state *st, const char *argument)
     }
     return act_tell(st,
                     "branched at %.4f s: change something, the old run stays beside it "
-                    "(c compares, R lists all, B forgets it)",
+                    "(c compares, R lists all, B drops it)",
                     st->session.now);
 }
 

@@ -25,7 +25,7 @@ KERNEL void add_term(four *sum, const four *u, real term)
 
 // That of a polynomial for times from 0 to t. A function deviates from its chord of length h by at
 // most h^2/8 times its largest second derivative. Rounding is allowed for.
-KERNEL course course_of(const real *terms, int count, real t)
+KERNEL course enclosure_of(const real *terms, int count, real t)
 {
     const real zero = (real){0}, u = t * t, none = zero;
     const four time = FOUR(t * 0.25, t * 0.5, t * 0.75, t);
@@ -71,7 +71,7 @@ KERNEL real highest(const course *c)
     return greater(c->start, greater(early, late)) + c->off;
 }
 
-// What is rounding in a function's first coefficients: the limits of leave_edge
+// What is rounding in a function's first coefficients: the limits of deflate_root
 // (taylor_polynomial.h).
 typedef struct edge_limits {
     real value, rate, more;
