@@ -143,7 +143,7 @@ static void measured_loops_are_the_exact_ones(void **state)
         p->code_allowed = i >= 3;
         if (i == 4) {
             p->control.law = LAW_PROCESS;
-            snprintf(p->control.command, sizeof p->control.command, "python3 %s", program_path);
+            snprintf(p->control.command, sizeof p->control.command, "python3 '%s'", program_path);
         }
 
         // one that does not hold the force is asked for that which it comes to
