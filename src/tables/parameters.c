@@ -217,7 +217,7 @@ const parameter_info parameter_table[] = {
     {PATH(control.delay), REAL("s", 0, 1), DEFAULT(0), TIMED,
      MEANING("from a sample to the instant its command takes effect, at most five periods")},
     {PATH(control.delay_periods), REAL("", 0, 5), DEFAULT(0), TIMED,
-     MEANING("the same in sampling periods, on top of it, five at most in all; 1: a command goes "
+     MEANING("further delay in sampling periods, five at most in all; 1: a command goes "
              "out with the next sample")},
     {PATH(control.jitter), REAL("s", 0, 1), DEFAULT(0), TIMED,
      MEANING("width over which the sampling instants scatter, at most one period")},

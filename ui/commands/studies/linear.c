@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/page/text.h"
 #include "render/plot/study_plot.h"
 #include "src/base/csv.h"
 #include "src/base/json.h"
@@ -433,6 +434,10 @@ static int plot_survey(const arguments *a, const analysis *x)
     both[0]->panels[0].heading = "linear, without friction: unstable above zero";
     both[0]->panels[1].heading = "runs, with friction: where one has a value it settles";
     both[0]->figure.panel_count = 2;
+    char changes[SCENARIO_CHANGES];
+    both[0]->figure.title =
+        owned_figure_keep(both[0], text_printf("%s: stability of the loop%s", x->sweep.base->name,
+                                               scenario_changes(x->sweep.base, changes)));
     const int code = publish(a, a->plot, both[0]);
     owned_figure_destroy(both[1]);
     return code;
