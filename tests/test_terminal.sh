@@ -73,13 +73,20 @@ is_prompted() {
     picture | grep -v '^ *$' | tail -n 1 | grep -q '^ready> *$'
 }
 
+# the same, once what the terminal answered a lab that a signal ended is deleted: "1;2c"
+is_ready() {
+    is_prompted && return
+    picture | grep -v '^ *$' | tail -n 1 | grep -q '^ready> ' && mux send-keys C-u
+    false
+}
+
 # starts the lab; afterwards its exit status and the terminal's settings go to files. On a busy
 # machine keys that follow a signal at once are lost: they are sent again where the prompt still waits
 start() {
     local end=$((SECONDS + LIMIT)) patience=5
     rm -f "$folder/after" "$folder/pid"
     while [ $SECONDS -lt $end ]; do
-        until_true is_prompted || fail "the shell has no prompt"
+        until_true is_ready || fail "the shell has no prompt"
         mux send-keys "clear; lab $*" Enter
         LIMIT=$patience until_true test -s "$folder/pid" && break
         patience=$((2 * patience))

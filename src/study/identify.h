@@ -117,7 +117,11 @@ status identify_parameters(const identification *id, bool determined, parameters
 // A combination that the data do not determine, in words, k < undetermined. Returns text.
 const char *identify_words(const identification *id, int k, char *text, size_t size);
 
-// {"scenario", "fit": [{"path", "value", "standard_error", "low", "high", "determined"}],
+// Whether the search ended at an end of its range: then the value is a limit, no estimate.
+bool identify_at_end(const fitted_parameter *fit);
+
+// {"scenario", "fit": [{"path", "value", "standard_error", "low", "high", "determined",
+// "at_end_of_range"}],
 // "correlation", "singular_values", "undetermined", "chi_square", "residuals", "aic", "white",
 // "traces"}. NULL without memory.
 json_t *identify_json(const identification *id);

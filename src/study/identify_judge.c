@@ -244,6 +244,11 @@ json_t *identify_traces_json(const identification *id)
     return traces;
 }
 
+bool identify_at_end(const fitted_parameter *fit)
+{
+    return fit->value == fit->low_most || fit->value == fit->high_most;
+}
+
 json_t *identify_json(const identification *id)
 {
     json_t *object = json_object(), *fit = json_array(), *rows = json_array(),
@@ -260,6 +265,7 @@ json_t *identify_json(const identification *id)
         json_put(line, "low", json_number(of->low));
         json_put(line, "high", json_number(of->high));
         json_put(line, "determined", json_boolean(of->determined));
+        json_put(line, "at_end_of_range", json_boolean(identify_at_end(of)));
         json_add(fit, line);
         for (int j = 0; j < p; j++) {
             const double size = sqrt(id->covariance[i * p + i]) * sqrt(id->covariance[j * p + j]);

@@ -132,10 +132,9 @@ static void print_answer(const scenario *s, const outcome *o)
         const fitted_parameter *fit = &id->fit[i];
         const char *unit = sweep_axis_parameter(&fit->axis)->unit;
         if (fit->determined) {
-            const bool at_end = fit->value == fit->low_most || fit->value == fit->high_most;
             say("  %-26s %12.6g %12.3g   %.6g to %.6g %s%s\n", fit->axis.name, fit->value,
                 fit->standard_error, fit->low, fit->high, unit,
-                at_end ? ", at the end of its range" : "");
+                identify_at_end(fit) ? ", at the end of its range" : "");
         } else {
             say("  %-26s %12s %12s   not determined\n", fit->axis.name, "-", "-");
         }
