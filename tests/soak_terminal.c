@@ -123,7 +123,7 @@ static void answer(soak *s)
 }
 
 // Takes what the program shows for some time, 0: what is there.
-static void event_function(soak *s, double seconds)
+static void watch(soak *s, double seconds)
 {
     double until = seconds_now() + seconds;
     do {
@@ -155,7 +155,7 @@ static void send_bytes(soak *s, const char *bytes, size_t count)
         } else if (seconds_now() > until) {
             fail(s, "takes no input for %g s", ANSWER_TIME);
         }
-        event_function(s, done > 0 ? 0 : 0.01);
+        watch(s, done > 0 ? 0 : 0.01);
     }
     s->keys++;
 }
@@ -205,7 +205,7 @@ static void probe(soak *s)
     // the same size again would be no news
     resize(s, 60 + chance(s, 100), s->height == 20 ? 21 : 20);
     while (s->seen.cleared == cleared) {
-        event_function(s, 0.002);
+        watch(s, 0.002);
         if (has_ended(s, &status)) {
             fail(s, "ended by itself with status %d", status);
         }
@@ -309,7 +309,7 @@ static void send_oddities(soak *s)
     const char *odd = oddities[chance(s, sizeof oddities / sizeof oddities[0])];
     for (const char *c = odd; *c; c++) {
         send_bytes(s, c, 1);
-        event_function(s, chance(s, 4) ? 0 : 0.001 * chance(s, 40));
+        watch(s, chance(s, 4) ? 0 : 0.001 * chance(s, 40));
     }
 }
 
@@ -328,11 +328,11 @@ static void do_something(soak *s)
         resize(s, 1 + chance(s, chance(s, 3) ? 160 : 300), 1 + chance(s, chance(s, 3) ? 50 : 100));
     } else if (what < 97) {
         send_text(s, "\033");
-        event_function(s, ESCAPE_PAUSE);
+        watch(s, ESCAPE_PAUSE);
     } else {
-        event_function(s, 0.001 * chance(s, 200));
+        watch(s, 0.001 * chance(s, 200));
     }
-    event_function(s, chance(s, 5) ? 0 : 0.001 * chance(s, 20));
+    watch(s, chance(s, 5) ? 0 : 0.001 * chance(s, 20));
     if (chance(s, 12) == 0) {
         probe(s);
     }
@@ -381,10 +381,10 @@ static void come_back(soak *s)
     resize(s, 120, 40);
     send_text(s, "\030"); // ends a sequence that stopped halfway
     for (int i = 0; i < 5; i++) {
-        event_function(s, ESCAPE_PAUSE);
+        watch(s, ESCAPE_PAUSE);
         send_text(s, "\033");
     }
-    event_function(s, ESCAPE_PAUSE);
+    watch(s, ESCAPE_PAUSE);
     send_text(s, ":set run.duration " LAST_DURATION "\r");
 }
 
@@ -408,7 +408,7 @@ static void save(soak *s, const char *name)
             come_back(s);
         }
         send_text(s, line);
-        event_function(s, 0.2);
+        watch(s, 0.2);
         if (has_ended(s, &status)) {
             fail(s, "ended by itself with status %d", status);
         }
@@ -467,7 +467,7 @@ static void drain(soak *s)
         fail(s, "the terminal takes nothing any more");
     }
     while (!s->seen.mode[2999]) {
-        event_function(s, 0.01);
+        watch(s, 0.01);
         if (seconds_now() > until) {
             fail(s, "the terminal keeps back what was written");
         }
@@ -480,7 +480,7 @@ static void leave(soak *s)
     double until = seconds_now() + ANSWER_TIME;
     send_text(s, ":quit!\r");
     while (!has_ended(s, &status)) {
-        event_function(s, 0.01);
+        watch(s, 0.01);
         if (seconds_now() > until) {
             fail(s, "does not end within %g s", ANSWER_TIME);
         }
@@ -512,7 +512,7 @@ static void run_session(soak *s, uint64_t seed, double seconds)
     start(s);
     double until = seconds_now() + ANSWER_TIME;
     while (!s->seen.mode[1049]) {
-        event_function(s, 0.01); // keys that come before would be echoed
+        watch(s, 0.01); // keys that come before would be echoed
         if (seconds_now() > until) {
             fail(s, "does not start within %g s", ANSWER_TIME);
         }

@@ -118,7 +118,7 @@ static void test_eighty_columns_show_what_a_first_visit_needs(void **state)
         assert_has(&ex, 80, 24, wanted[i]);
     }
     press(&ex, "b");
-    assert_has(&ex, 80, 24, "history_invalid it)");
+    assert_has(&ex, 80, 24, "drops it)");
     press(&ex, "c");
     assert_has(&ex, 80, 24, "first pulse peak [N]");
     assert_has(&ex, 40, 12, "now as opened      change");

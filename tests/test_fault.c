@@ -15,7 +15,7 @@ static void a_fault_names_its_parameter(void **state)
     assert_string_equal(f.text, "it is 7");
     assert_string_equal(f.path, "wall.angle");
     assert_int_equal(f.line, 0);
-    // the next one history_invalid it
+    // the next one forgets it
     fault_set(&f, STATUS_SINGULAR, "no");
     assert_string_equal(f.path, "");
 }

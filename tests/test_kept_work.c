@@ -43,8 +43,7 @@ static void test_opening_loses_nothing(void **state)
     }
 }
 
-// As many openings as are kept, and more, are undone one by one; a new one history_invalid what was
-// undone.
+// As many openings as are kept, and more, are undone one by one; a new one forgets what was undone.
 static void test_openings_are_undone_one_by_one(void **state)
 {
     (void)state;

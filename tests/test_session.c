@@ -182,7 +182,7 @@ static void test_undo_and_redo(void **state)
     assert_int_equal(session_redo(&s, &f), STATUS_OK);
     check_close(s.run.summary.peak_force_N, third, 0);
     assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
-    // a new change history_invalid what was undone
+    // a new change forgets what was undone
     assert_int_equal(session_undo(&s, &f), STATUS_OK);
     change(&s, "arm.k2", "10");
     assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);

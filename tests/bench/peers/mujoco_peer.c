@@ -245,8 +245,8 @@ static double wall_force(const simulation *s, double hub_angle)
 static bool run(void *instance, peer_answer *answer)
 {
     simulation *s = instance;
-    contact_watch event_function;
-    contact_watch_begin(&event_function, answer);
+    contact_watch watch;
+    contact_watch_begin(&watch, answer);
     start(s);
     long steps = lround(s->duration / s->model->opt.timestep);
     for (long i = 0; i < steps; i++) {
@@ -254,7 +254,7 @@ static bool run(void *instance, peer_answer *answer)
         double rate = 2 * s->data->qvel[0] + s->data->qvel[1];
         mj_step(s->model, s->data);
         if (s->links == 2) {
-            contact_watch_sample(&event_function, time, 2 * hub + bend, rate, wall_force(s, hub));
+            contact_watch_sample(&watch, time, 2 * hub + bend, rate, wall_force(s, hub));
         }
     }
     answer->hub_angle = s->data->qpos[0];

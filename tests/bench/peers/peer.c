@@ -40,37 +40,37 @@ void peer_note_contact(double time, double impulse, peer_answer *answer)
     }
 }
 
-void contact_watch_begin(contact_watch *event_function, peer_answer *answer)
+void contact_watch_begin(contact_watch *watch, peer_answer *answer)
 {
-    *event_function = (contact_watch){.answer = answer};
+    *watch = (contact_watch){.answer = answer};
 }
 
-void contact_watch_sample(contact_watch *event_function, double time, double angles, double rate,
+void contact_watch_sample(contact_watch *watch, double time, double angles, double rate,
                           double force)
 {
-    peer_answer *a = event_function->answer;
+    peer_answer *a = watch->answer;
     // sin(q1 - wall) + sin(q2 - wall) is zero just where the angles' sum is twice the wall's
-    double into = angles - 2 * EXPERIMENT_WALL, before = event_function->into;
+    double into = angles - 2 * EXPERIMENT_WALL, before = watch->into;
     if (into >= 0 && before < 0) {
         double closed =
-            time - EXPERIMENT_STEP * fmax(0, 1 + before / (EXPERIMENT_STEP * event_function->rate));
+            time - EXPERIMENT_STEP * fmax(0, 1 + before / (EXPERIMENT_STEP * watch->rate));
         if (isnan(a->first_contact)) {
             a->first_contact = closed;
-        } else if (event_function->released && isnan(a->second_contact)) {
+        } else if (watch->released && isnan(a->second_contact)) {
             a->second_contact = closed;
         }
     }
-    event_function->into = into;
-    event_function->rate = rate;
+    watch->into = into;
+    watch->rate = rate;
     a->final_force = force;
     if (isnan(a->first_contact)) {
         return;
     }
     double since = time - a->first_contact;
     a->spike = force <= a->spike ? a->spike : force;
-    if (!event_function->released && since > EXPERIMENT_SETTLING) {
+    if (!watch->released && since > EXPERIMENT_SETTLING) {
         if (force <= 0) {
-            event_function->released = true;
+            watch->released = true;
             a->release = time;
         } else if (!(force <= a->peak)) {
             a->peak = force;

@@ -91,12 +91,12 @@ typedef struct contact_watch {
     bool released;
 } contact_watch;
 
-void contact_watch_begin(contact_watch *event_function, peer_answer *answer);
+void contact_watch_begin(contact_watch *watch, peer_answer *answer);
 
 // A sample: time [s], sum of the two links' angles [rad] (the tip lies in the wall when it is twice
 // the wall's angle), its rate [rad/s] and the force from `time` to the next sample [N]. Contact
 // times are extrapolated from the last sample before the wall, which no force has touched yet.
-void contact_watch_sample(contact_watch *event_function, double time, double angles, double rate,
+void contact_watch_sample(contact_watch *watch, double time, double angles, double rate,
                           double force);
 
 #ifdef __cplusplus
