@@ -93,12 +93,12 @@ holds_controls err && fail "control characters of an overlay's cell in err"
 # --- an overlay that lays nothing over anything is a mistake
 : >overlay.csv
 expect 2 run corrected/first-impact --quiet --overlay overlay.csv --plot o.svg
-says err "expected a heading"
+says err "0 rows below the headings"
 for rows in "" "1,\n2,\n" ",3\n" "nan,1\n"; do
     # shellcheck disable=SC2059
     printf "time[s],force[N]\n$rows" >overlay.csv
     expect 2 run corrected/first-impact --quiet --overlay overlay.csv --plot o.svg
-    says err "expected at least one"
+    says err "overlay.csv:"
 done
 
 # --- databases from elsewhere: no code of theirs runs, and what is no row of a sweep is refused

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "src/base/numbers.h"
 
@@ -253,8 +254,8 @@ static double factor_to(const char *unit, const char *wanted)
     return factor;
 }
 
-status csv_table_numbers(const csv_table *t, const char *heading, const char *unit, double **values,
-                         fault *f)
+static status read_column(const csv_table *t, const char *heading, const char *unit, bool gaps,
+                          double **values, fault *f)
 {
     assert(t != NULL && heading != NULL && unit != NULL && values != NULL);
     *values = NULL;
@@ -284,6 +285,10 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
     }
     for (size_t r = 0; r < t->rows; r++) {
         const char *field = t->fields[r * (size_t)t->columns + (size_t)column], *rest;
+        if (gaps && (field[0] == '\0' || strcasecmp(field, "nan") == 0)) {
+            numbers[r] = (double)NAN;
+            continue;
+        }
         if (!decimal_read(field, &numbers[r], &rest) || *rest != '\0' || !isfinite(numbers[r])) {
             free(numbers);
             return fault_set_place(f, STATUS_BAD_ARGUMENT, t->lines[r], column + 1,
@@ -295,6 +300,18 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
     }
     *values = numbers;
     return STATUS_OK;
+}
+
+status csv_table_numbers(const csv_table *t, const char *heading, const char *unit, double **values,
+                         fault *f)
+{
+    return read_column(t, heading, unit, false, values, f);
+}
+
+status csv_table_readings(const csv_table *t, const char *heading, const char *unit,
+                          double **values, fault *f)
+{
+    return read_column(t, heading, unit, true, values, f);
 }
 
 status csv_table_times(const csv_table *t, const char *heading, double **values, fault *f)

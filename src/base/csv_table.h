@@ -35,7 +35,11 @@ int csv_table_find(const csv_table *t, const char *heading);
 status csv_table_numbers(const csv_table *t, const char *heading, const char *unit, double **values,
                          fault *f);
 
-// The same for "time" or another clock [s], whose values must not fall.
+// The same of readings, of which an empty field or "nan" is none: NaN.
+status csv_table_readings(const csv_table *t, const char *heading, const char *unit,
+                          double **values, fault *f);
+
+// As csv_table_numbers for "time" or another clock [s], whose values must not fall.
 status csv_table_times(const csv_table *t, const char *heading, double **values, fault *f);
 
 // The value of a column at an instant: that of the last row not later, or straight between rows;

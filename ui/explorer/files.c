@@ -7,9 +7,9 @@
 
 #include "render/plot/trace_plot.h"
 #include "render/scene/scene.h"
-#include "src/base/csv_table.h"
 #include "src/base/whole_file.h"
 #include "src/run/export.h"
+#include "src/run/measured.h"
 #include "ui/explorer/panels/compose.h"
 #include "ui/explorer/panels/panel.h"
 
@@ -223,63 +223,6 @@ bool act_save_scene(explorer_state *st, const char *argument)
 
 // --- measured data ----------------------------------------------------------------------------
 
-static char gap[] = "0"; // in the place of an empty field
-
-// The numbers of a column, NaN where its field is empty: rows of a run have such.
-static status read_column(csv_table *t, int column, const signal_info *info, double **values,
-                          fault *f)
-{
-    char **fields = t->fields + column;
-    for (size_t r = 0; r < t->rows; r++) {
-        char **field = &fields[r * (size_t)t->columns];
-        *field = (*field)[0] != '\0' ? *field : gap;
-    }
-    const status code = csv_table_numbers(t, info->name, info->unit, values, f);
-    for (size_t r = 0; r < t->rows && code == STATUS_OK; r++) {
-        const bool empty = fields[r * (size_t)t->columns] == gap;
-        (*values)[r] = empty ? (double)NAN : (*values)[r];
-    }
-    return code;
-}
-
-// Appends a row of each of a table's columns that are signals, in their units.
-static status read_measured(trace *t, csv_table *table, fault *f)
-{
-    static const double none[1] = {0};
-    double *columns[SIGNALS_AT_MOST] = {NULL};
-    int known = 0;
-    status code = csv_table_times(table, "time", &columns[0], f);
-    for (int i = 1; i < signal_count && code == STATUS_OK; i++) {
-        const signal_info *info = &signal_table[i];
-        const int column = csv_table_find(table, info->name);
-        if (column >= 0) {
-            code = read_column(table, column, info, &columns[i], f);
-            known++;
-        }
-    }
-    if (code == STATUS_OK && known == 0) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%.200s: no column is headed as a signal, such "
-                         "as force[N]",
-                         table->file);
-    }
-
-    // what was not measured has no value
-    for (size_t r = 0; r < table->rows && code == STATUS_OK; r++) {
-        double row[SIGNALS_AT_MOST];
-        sample measured;
-        for (int i = 0; i < SIGNALS_AT_MOST; i++) {
-            row[i] = columns[i] != NULL ? columns[i][r] : (double)NAN;
-        }
-        memcpy(&measured, row, sizeof measured);
-        code = trace_add_row(t, &measured, none, none);
-    }
-    for (int i = 0; i < SIGNALS_AT_MOST; i++) {
-        free(columns[i]);
-    }
-    return code == STATUS_NO_MEMORY ? fault_no_memory(f) : code;
-}
-
 // The force by which two traces are aligned, -1 if none is in both.
 static int common_force(const trace *a, const trace *b)
 {
@@ -331,7 +274,7 @@ bool act_lay_data(explorer_state *st, const char *argument)
              argument);
     trace_init(&fresh, 1);
     status code = csv_table_read(&table, path, 1, &f);
-    code = code == STATUS_OK ? read_measured(&fresh, &table, &f) : code;
+    code = code == STATUS_OK ? measured_rows(&fresh, &table, NULL, -1, &f) : code;
     csv_table_finish(&table);
     if (code != STATUS_OK) {
         trace_finish(&fresh);
