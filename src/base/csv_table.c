@@ -112,9 +112,9 @@ static status split(csv_table *t, char *text, fault *f)
         }
         if (columns < t->columns || !last) {
             return fault_set_place(f, STATUS_BAD_ARGUMENT, begin, columns,
-                                   "%.300s:%d: the row has %s than %d fields, expected one for "
-                                   "each heading",
-                                   t->file, begin, last ? "fewer" : "more", t->columns);
+                                   "%.300s:%d:%d: the row has %s than %d fields, expected one "
+                                   "for each heading",
+                                   t->file, begin, columns, last ? "fewer" : "more", t->columns);
         }
         t->lines[t->rows++] = begin;
         count += (size_t)columns;
@@ -143,7 +143,7 @@ status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
     if (code == STATUS_OK && t->rows < least) {
         const int line = t->rows > 0 ? t->lines[t->rows - 1] : 1;
         code = fault_set_place(f, STATUS_BAD_ARGUMENT, line, 1,
-                               "%.300s:%d: %zu row%s below the headings, expected at least %zu",
+                               "%.300s:%d:1: %zu row%s below the headings, expected at least %zu",
                                path, line, t->rows, t->rows == 1 ? "" : "s", least);
     }
     if (code != STATUS_OK) {
@@ -262,7 +262,7 @@ static status read_column(const csv_table *t, const char *heading, const char *u
     const int column = csv_table_find(t, heading);
     if (column < 0) {
         return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
-                               "%.300s:1: there is no column '%.*s', expected one of its %d "
+                               "%.300s:1:1: there is no column '%.*s', expected one of its %d "
                                "headings, such as '%.*s'",
                                t->file, SHOWN, heading, t->columns, SHOWN, t->headings[0]);
     }
