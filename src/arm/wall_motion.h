@@ -5,8 +5,8 @@
 //     step: u = A S((t - t0)/T), S(x) = x^3 (10 - 15 x + 6 x^2) for x from 0 to 1: at rest before
 //           and after, the acceleration without a jump; T = 1/(2 f)
 //
-// so that an arm in contact is never struck by the wall's motion itself. In between what it is at
-// instants where a derivative jumps the motion is analytic; steps end there.
+// so that an arm in contact is never struck by the wall's motion itself. The motion is analytic but
+// where a derivative jumps, at a step's begin and end; the engine's steps end there.
 #pragma once
 
 #include <stdbool.h>

@@ -79,7 +79,9 @@ void whole_file_remove_unfinished(void)
                 unlink(name);
             }
         }
-        nanosleep(&(struct timespec){.tv_nsec = pass == 0 ? 1000000 : 0}, NULL);
+        if (pass == 0) {
+            nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+        }
     }
 }
 

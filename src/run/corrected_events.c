@@ -301,11 +301,12 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
 static status check_wall(const corrected_run *c, const action *todo, fault *f)
 {
     motion *m = c->motion;
-    parameters p = c->recording->now;
-    if (todo->parameter != PARAMETER_INDEX(wall.angle) || todo->value == p.wall.angle ||
-        p.wall.kind == WALL_NONE) {
+    const wall_parameters *now = &c->recording->now.wall;
+    if (todo->parameter != PARAMETER_INDEX(wall.angle) || todo->value == now->angle ||
+        now->kind == WALL_NONE) {
         return STATUS_OK;
     }
+    parameters p = c->recording->now;
     const status code = action_apply(todo, &p, f);
     arm after = c->arm;
     wall_init(&after.wall, &p);
