@@ -281,7 +281,7 @@ int many_runs_stopped(const char *db, size_t done, size_t total)
                  "from there",
                  done, total, db);
     } else {
-        complain("stopped: %zu of %zu runs were done, nothing is kept; with --db FILE.sqlite they "
+        complain("stopped: %zu of %zu runs were done and are not kept; with --db FILE.sqlite they "
                  "can be continued",
                  done, total);
     }

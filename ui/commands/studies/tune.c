@@ -184,10 +184,14 @@ static int search(tuner *t)
     if (bar) {
         many_runs_clear_progress();
     }
-    return code == STATUS_OK ? write_results(t)
-           : code == STATUS_STOPPED
-               ? many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count)
-               : complain_fault(&f);
+    if (code == STATUS_STOPPED) {
+        if (a->output != NULL && strcmp(a->output, "-") != 0 &&
+            t->tuning.best.rank < TUNE_REFUSED) {
+            complain("the best numbers so far are in '%s'", a->output);
+        }
+        return many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count);
+    }
+    return code == STATUS_OK ? write_results(t) : complain_fault(&f);
 }
 
 static int tune(const arguments *a, scenario *s)
