@@ -1,8 +1,6 @@
 // Arms for tests: parameters given as "path=value" strings.
 #pragma once
 
-#include <string.h>
-
 #include "src/arm/arm.h"
 #include "src/scenario/scenario.h"
 #include "tests/check.h"
@@ -17,13 +15,10 @@ static inline parameters fixture_parameters(const char *const *settings)
         char path[64];
         const char *equals = strchr(settings[i], '=');
         snprintf(path, sizeof path, "%.*s", (int)(equals - settings[i]), settings[i]);
-        if (parameter_set_text(&p, parameter_find(path), equals + 1, &f) != STATUS_OK) {
-            fail_msg("%s", f.text);
-        }
+        fail_if(parameter_set_text(&p, parameter_find(path), equals + 1, &f) != STATUS_OK, "%s",
+                f.text);
     }
-    if (parameters_resolve(&p, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameters_resolve(&p, &f) != STATUS_OK, "%s", f.text);
     return p;
 }
 

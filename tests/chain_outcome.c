@@ -1,8 +1,5 @@
 #include "tests/chain_outcome.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "src/contact/contact_machine.h"
 #include "tests/check.h"
 

@@ -1,12 +1,16 @@
-// Additions to cmocka for every test program: comparisons of doubles that print both values.
+// What every test program takes: cmocka, and the standard library with it; cases that list
+// themselves, and comparisons of doubles that print both values.
 #pragma once
 
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -29,5 +33,38 @@
         double check_a = (a), check_b = (b);                                                       \
         if (!(check_a < check_b)) {                                                                \
             fail_msg("%s = %.17g is not below %s = %.17g", #a, check_a, #b, check_b);              \
+        }                                                                                          \
+    } while (0)
+
+// A case of the program, whose body follows; `state` is what the set-up left. A program that has
+// no main of its own runs its cases in the order in which they are written.
+#define TEST(name) TEST_BETWEEN(name, NULL, NULL)
+
+// The same between its own set-up and tear-down.
+#define TEST_BETWEEN(name, set_up, tear_down)                                                      \
+    static void name(void **state);                                                                \
+    __attribute__((constructor)) static void add_##name(void)                                      \
+    {                                                                                              \
+        add_case((struct CMUnitTest){#name, name, set_up, tear_down, NULL}, __LINE__);             \
+    }                                                                                              \
+    static void name(__attribute__((unused)) void **state)
+
+void add_case(struct CMUnitTest added, int line);
+
+// Runs all cases between the group's set-up and tear-down; 1 if one failed, 0 if none.
+int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
+
+// The main of a program whose cases share a set-up and a tear-down.
+#define ALL_BETWEEN(set_up, tear_down)                                                             \
+    int main(void)                                                                                 \
+    {                                                                                              \
+        return run_cases(set_up, tear_down);                                                       \
+    }
+
+// Fails with a sentence if the condition holds.
+#define fail_if(condition, ...)                                                                    \
+    do {                                                                                           \
+        if (condition) {                                                                           \
+            fail_msg(__VA_ARGS__);                                                                 \
         }                                                                                          \
     } while (0)

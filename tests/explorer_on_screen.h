@@ -3,9 +3,6 @@
 
 #include "tests/session_fixture.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "ui/explorer/explorer.h"
 #include "ui/terminal/keys.h"
 
@@ -14,17 +11,13 @@ static inline void open_explorer(explorer *ex, const char *name)
     scenario s;
     fault f = {0};
     assert_int_equal(scenario_open(&s, name, fail_on_fault, NULL), STATUS_OK);
-    if (explorer_init(ex, &s, HUGE_VAL, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(explorer_init(ex, &s, HUGE_VAL, &f) != STATUS_OK, "%s", f.text);
 }
 
 static inline void press(explorer *ex, const char *keys)
 {
     fault f = {0};
-    if (!explorer_keys(ex, keys, &f)) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(!explorer_keys(ex, keys, &f), "%s", f.text);
 }
 
 // The screen as text, to be freed.
@@ -46,9 +39,7 @@ static inline char *picture(explorer *ex, int width, int height, glyph_set set)
 static inline void assert_shows_at(explorer *ex, int width, int height, const char *wanted)
 {
     char *text = picture(ex, width, height, GLYPHS_BRAILLE);
-    if (strstr(text, wanted) == NULL) {
-        fail_msg("'%s' is not on the screen:\n%s", wanted, text);
-    }
+    fail_if(strstr(text, wanted) == NULL, "'%s' is not on the screen:\n%s", wanted, text);
     free(text);
 }
 
@@ -60,9 +51,7 @@ static inline void assert_shows(explorer *ex, const char *wanted)
 static inline void assert_hides(explorer *ex, const char *unwanted)
 {
     char *text = picture(ex, 120, 40, GLYPHS_BRAILLE);
-    if (strstr(text, unwanted) != NULL) {
-        fail_msg("'%s' is on the screen:\n%s", unwanted, text);
-    }
+    fail_if(strstr(text, unwanted) != NULL, "'%s' is on the screen:\n%s", unwanted, text);
     free(text);
 }
 

@@ -1,8 +1,6 @@
 // Parameters for tests of their table and of their combinations.
 #pragma once
 
-#include <string.h>
-
 #include "src/tables/parameters.h"
 #include "tests/check.h"
 
@@ -18,7 +16,6 @@ static inline parameters fresh(arm_model_kind model)
 static inline void give(parameters *p, const char *path, const char *text)
 {
     fault f = {0};
-    if (parameter_set_text(p, parameter_find(path), text, &f) != STATUS_OK) {
-        fail_msg("%s = %s was refused: %s", path, text, f.text);
-    }
+    fail_if(parameter_set_text(p, parameter_find(path), text, &f) != STATUS_OK,
+            "%s = %s was refused: %s", path, text, f.text);
 }

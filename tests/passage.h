@@ -2,8 +2,6 @@
 // well the energy ledger closes.
 #pragma once
 
-#include <math.h>
-
 #include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 

@@ -4,9 +4,6 @@
 #include "tests/check.h"
 
 #include <png.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -119,9 +116,7 @@ static inline figure_rect record(const figure *fig, figure_report *report)
     cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
     cairo_t *cr = cairo_create(surface);
     status code = figure_paint(cr, fig, report, &f);
-    if (code != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(code != STATUS_OK, "%s", f.text);
     assert_int_equal(cairo_status(cr), CAIRO_STATUS_SUCCESS);
     cairo_recording_surface_ink_extents(surface, &ink.x, &ink.y, &ink.width, &ink.height);
     cairo_destroy(cr);
@@ -152,12 +147,11 @@ static inline void expect_text(const figure_report *r, const char *wanted)
 static inline void expect_inside(const figure_rect *r, const figure_rect *outer, const char *what)
 {
     const double slack = 0.01;
-    if (r->x < outer->x - slack || r->y < outer->y - slack ||
-        r->x + r->width > outer->x + outer->width + slack ||
-        r->y + r->height > outer->y + outer->height + slack) {
-        fail_msg("%s at %g, %g of %g x %g is not within %g, %g of %g x %g", what, r->x, r->y,
-                 r->width, r->height, outer->x, outer->y, outer->width, outer->height);
-    }
+    fail_if(r->x < outer->x - slack || r->y < outer->y - slack ||
+                r->x + r->width > outer->x + outer->width + slack ||
+                r->y + r->height > outer->y + outer->height + slack,
+            "%s at %g, %g of %g x %g is not within %g, %g of %g x %g", what, r->x, r->y, r->width,
+            r->height, outer->x, outer->y, outer->width, outer->height);
 }
 
 static inline bool overlap(const figure_rect *a, const figure_rect *b)
@@ -179,9 +173,8 @@ static inline void expect_tidy(const figure *fig)
     for (int i = 0; i < r.text_count; i++) {
         expect_inside(&r.texts[i].place, &r.page, r.texts[i].text);
         for (int k = 0; k < i; k++) {
-            if (overlap(&r.texts[i].place, &r.texts[k].place)) {
-                fail_msg("'%s' covers '%s'", r.texts[i].text, r.texts[k].text);
-            }
+            fail_if(overlap(&r.texts[i].place, &r.texts[k].place), "'%s' covers '%s'",
+                    r.texts[i].text, r.texts[k].text);
         }
     }
     for (int i = 0; i < r.panel_count; i++) {
@@ -279,9 +272,7 @@ static inline void expect_same_bytes(const char *a, const char *b)
 static inline void write_figure(const figure *fig, const char *path)
 {
     fault f = {0};
-    if (figure_write(fig, path, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(figure_write(fig, path, &f) != STATUS_OK, "%s", f.text);
 }
 
 // ---- a folder for files

@@ -25,9 +25,6 @@
 // what the arm can have. Where the reference does not
 // agree with itself at another tolerance nothing is said. An arm that starts behind its wall must
 // be refused, and no other for where it starts.
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include "src/arm/chain.h"

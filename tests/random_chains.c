@@ -12,9 +12,6 @@
 // arms that are not plain also the largest force (1e-5), when it is (1e-5 s), and each loss (1e-6
 // of what was put in). Where the explicit formula does not agree with itself at finer strides,
 // the motion is chaotic and nothing is said.
-#include <stdarg.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/base/random.h"
 #include "tests/arm_fixture.h"

@@ -10,9 +10,6 @@
 #include <pthread.h>
 #include <sqlite3.h>
 #include <stdatomic.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 
 #include "src/base/json.h"
@@ -165,9 +162,7 @@ static void keep_nothing(void *context, const char *sentence)
 {
     (void)context;
     assert_true(sentence[0] != 0);
-    if (refused_at == 0) {
-        fail_msg("%s", sentence);
-    }
+    fail_if(refused_at == 0, "%s", sentence);
 }
 
 static const char *scenario_text = "{}"; // of which the scenarios of a test are made

@@ -1,8 +1,6 @@
 // Runs on the rig for tests: the impact of the thesis's 5.4 with settings as "path=value" strings.
 #pragma once
 
-#include <string.h>
-
 #include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
@@ -24,9 +22,7 @@ static inline run_result rig_run(const char *const *settings, bool keep_trace)
 {
     run_result result;
     scenario s = {.parameters = rig_parameters(settings)};
-    if (run_scenario(&s, keep_trace, &result) != STATUS_OK) {
-        fail_msg("%s", result.summary.message);
-    }
+    fail_if(run_scenario(&s, keep_trace, &result) != STATUS_OK, "%s", result.summary.message);
     return result;
 }
 
@@ -45,8 +41,7 @@ static inline void check_refused(const char *const *settings, const char *senten
     run_result r;
     scenario s = {.parameters = rig_parameters(settings)};
     assert_int_not_equal(run_scenario(&s, false, &r), STATUS_OK);
-    if (strstr(r.summary.message, sentence) == NULL) {
-        fail_msg("'%s' does not say '%s'", r.summary.message, sentence);
-    }
+    fail_if(strstr(r.summary.message, sentence) == NULL, "'%s' does not say '%s'",
+            r.summary.message, sentence);
     run_finish(&r);
 }

@@ -1,10 +1,6 @@
 // Shared by the tests of scenarios: reading a text and keeping the sentences about it.
 #pragma once
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/scenario/scenario.h"
 #include "tests/check.h"
 
@@ -42,9 +38,7 @@ static inline scenario good(const char *text)
 {
     scenario s;
     sentences all;
-    if (parse(&s, text, &all) != STATUS_OK || all.count != 0) {
-        fail_msg("refused:\n%s", all.text);
-    }
+    fail_if(parse(&s, text, &all) != STATUS_OK || all.count != 0, "refused:\n%s", all.text);
     return s;
 }
 
@@ -57,10 +51,9 @@ static inline void check_fault(const char *text, int line, int column, const cha
     assert_int_equal(parse(&s, text, &all), STATUS_BAD_SCENARIO);
     snprintf(place, sizeof place, "f.yaml:%d:%d: ", line, column);
     bool there = strncmp(all.text, place, strlen(place)) == 0;
-    if (all.count != 1 || !there || strstr(all.text, what) == NULL) {
-        fail_msg("%d faults, expected one at %d:%d about '%s':\n%s", all.count, line, column, what,
-                 all.text);
-    }
+    fail_if(all.count != 1 || !there || strstr(all.text, what) == NULL,
+            "%d faults, expected one at %d:%d about '%s':\n%s", all.count, line, column, what,
+            all.text);
 }
 
 // The text has exactly `count` faults, and each of the sentences' beginnings is among them.
@@ -70,15 +63,12 @@ static inline void check_faults(const char *text, int count, const char *const *
     sentences all;
     status result = parse(&s, text, &all);
     assert_int_equal(result, STATUS_BAD_SCENARIO);
-    if (all.count != count) {
-        fail_msg("%d faults, expected %d:\n%s", all.count, count, all.text);
-    }
+    fail_if(all.count != count, "%d faults, expected %d:\n%s", all.count, count, all.text);
     for (int i = 0; i < count; i++) {
         char line[512];
         snprintf(line, sizeof line, "\n%s", beginnings[i]);
         bool first = strncmp(all.text, beginnings[i], strlen(beginnings[i])) == 0;
-        if (!first && strstr(all.text, line) == NULL) {
-            fail_msg("no '%s' in:\n%s", beginnings[i], all.text);
-        }
+        fail_if(!first && strstr(all.text, line) == NULL, "no '%s' in:\n%s", beginnings[i],
+                all.text);
     }
 }

@@ -4,8 +4,6 @@
 #include "tests/check.h"
 
 #include <dirent.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -66,9 +64,7 @@ static inline cairo_surface_t *scene_picture_of(const recorded *r, scene_options
     fault f = {0};
     options.width = options.width ? options.width : WIDTH;
     options.height = options.height ? options.height : HEIGHT;
-    if (scene_create(&sc, &r->scenario, &r->result, &options, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(scene_create(&sc, &r->scenario, &r->result, &options, &f) != STATUS_OK, "%s", f.text);
     cairo_surface_t *surface =
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, options.width, options.height);
     assert_int_equal(scene_paint(sc, times, count, surface, &f), STATUS_OK);
@@ -139,9 +135,7 @@ static inline void check_contains(const char *path, const char *text)
     static char bytes[1 << 20];
     size_t length = fread(bytes, 1, sizeof bytes, stream);
     fclose(stream);
-    if (memmem(bytes, length, text, strlen(text)) == NULL) {
-        fail_msg("'%s' is not in %s", text, path);
-    }
+    fail_if(memmem(bytes, length, text, strlen(text)) == NULL, "'%s' is not in %s", text, path);
 }
 
 static inline int set_up(void **state)

@@ -1,8 +1,6 @@
 // Sessions for tests: opened on a scenario that ships, and saved and run again.
 #pragma once
 
-#include <stdlib.h>
-
 #include "src/run/run.h"
 #include "src/session/session.h"
 #include "tests/check.h"

@@ -1,7 +1,5 @@
 #include "tests/sweep_fixture.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "tests/check.h"
@@ -46,18 +44,14 @@ status sweep_of(sweep *s, sweep_sampling sampling, size_t runs, uint64_t seed, f
 void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a, const char *b)
 {
     fault f = {0};
-    if (sweep_of(s, sampling, runs, 1, &f, a, b) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(sweep_of(s, sampling, runs, 1, &f, a, b) != STATUS_OK, "%s", f.text);
 }
 
 sweep_store *must_open(const char *path, const sweep *s)
 {
     sweep_store *store;
     fault f = {0};
-    if (sweep_store_open(&store, path, s, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(sweep_store_open(&store, path, s, &f) != STATUS_OK, "%s", f.text);
     return store;
 }
 
@@ -78,9 +72,7 @@ sweep_progress must_run(const sweep *s, sweep_store *store, int jobs)
     sweep_progress progress;
     fault f = {0};
     sweep_options options = {.jobs = jobs};
-    if (sweep_run(s, store, &options, &progress, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(sweep_run(s, store, &options, &progress, &f) != STATUS_OK, "%s", f.text);
     return progress;
 }
 

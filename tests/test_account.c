@@ -1,8 +1,6 @@
 // The account of a run says what its rows, events and energies say.
 #include "tests/session_fixture.h"
 
-#include <string.h>
-
 #include "src/session/account.h"
 
 static char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE];
@@ -19,9 +17,8 @@ static void check_says(const char *wanted)
 }
 
 // Numbers found independently: touch and release from the summary, energies from the rows.
-static void test_a_first_impact_is_told_in_five_sentences(void **state)
+TEST(test_a_first_impact_is_told_in_five_sentences)
 {
-    (void)state;
     session s;
     char wanted[128];
     open_session(&s, "corrected/first-impact");
@@ -53,9 +50,8 @@ static void test_a_first_impact_is_told_in_five_sentences(void **state)
 }
 
 // Whatever ships: at least a sentence, each ends, and no number is missing.
-static void test_every_scenario_has_an_account(void **state)
+TEST(test_every_scenario_has_an_account)
 {
-    (void)state;
     static const char *const names[] = {
         "corrected/free-vibration", "corrected/hertz-wall", "corrected/restitution",
         "corrected/three-links",    "corrected/stuck-hub",  "corrected/pull-away",
@@ -69,20 +65,10 @@ static void test_every_scenario_has_an_account(void **state)
         assert_true(count >= 1 && count <= ACCOUNT_SENTENCES);
         for (int k = 0; k < count; k++) {
             const size_t length = strlen(sentences[k]);
-            if (sentences[k][length - 1] != '.' || strstr(sentences[k], "nan") != NULL ||
-                strstr(sentences[k], "inf") != NULL) {
-                fail_msg("%s: %s", names[i], sentences[k]);
-            }
+            fail_if(sentences[k][length - 1] != '.' || strstr(sentences[k], "nan") != NULL ||
+                        strstr(sentences[k], "inf") != NULL,
+                    "%s: %s", names[i], sentences[k]);
         }
         session_finish(&s);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_first_impact_is_told_in_five_sentences),
-        cmocka_unit_test(test_every_scenario_has_an_account),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,16 +3,12 @@
 
 static void carry_out(explorer *ex, const char *line)
 {
-    if (!explorer_carry_out(ex, line)) {
-        fail_msg("%s: %s", line, ex->state.message.text);
-    }
+    fail_if(!explorer_carry_out(ex, line), "%s: %s", line, ex->state.message.text);
 }
 
 static void refuse(explorer *ex, const char *line)
 {
-    if (explorer_carry_out(ex, line)) {
-        fail_msg("'%s' is taken", line);
-    }
+    fail_if(explorer_carry_out(ex, line), "'%s' is taken", line);
     assert_true(ex->state.message.warning);
 }
 
@@ -24,9 +20,8 @@ static void check_axis(explorer *ex, int index, double low, double high)
     check_close(ex->layout.axes[index].high, high, 1e-9 + 1e-6 * fabs(high));
 }
 
-static void test_an_automatic_axis_spans_what_is_visible(void **state)
+TEST(test_an_automatic_axis_spans_what_is_visible)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     double peak = ex.state.session.run.summary.first_pulse_peak_N;
@@ -41,9 +36,8 @@ static void test_an_automatic_axis_spans_what_is_visible(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_growing_axis_never_shrinks(void **state)
+TEST(test_a_growing_axis_never_shrinks)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     carry_out(&ex, "axis grow 1");
@@ -66,9 +60,8 @@ static void test_a_growing_axis_never_shrinks(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_fixed_axis_stays(void **state)
+TEST(test_a_fixed_axis_stays)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     carry_out(&ex, "axis -1 4 1");
@@ -88,9 +81,8 @@ static void test_a_fixed_axis_stays(void **state)
     explorer_finish(&ex);
 }
 
-static void test_keys_change_the_axis_of_the_pane_in_focus(void **state)
+TEST(test_keys_change_the_axis_of_the_pane_in_focus)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
@@ -120,9 +112,8 @@ static void test_keys_change_the_axis_of_the_pane_in_focus(void **state)
     explorer_finish(&ex);
 }
 
-static void test_wrong_axes_are_told(void **state)
+TEST(test_wrong_axes_are_told)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     static const char *const wrong[] = {
@@ -144,9 +135,8 @@ static void test_wrong_axes_are_told(void **state)
     explorer_finish(&ex);
 }
 
-static void test_ticks_are_round(void **state)
+TEST(test_ticks_are_round)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
@@ -163,9 +153,8 @@ static void test_ticks_are_round(void **state)
     explorer_finish(&ex);
 }
 
-static void test_the_visible_part_follows_the_cursor_until_it_is_panned(void **state)
+TEST(test_the_visible_part_follows_the_cursor_until_it_is_panned)
 {
-    (void)state;
     explorer ex;
     double from, to;
     open_explorer(&ex, "corrected/first-impact");
@@ -203,9 +192,8 @@ static void test_the_visible_part_follows_the_cursor_until_it_is_panned(void **s
     explorer_finish(&ex);
 }
 
-static void test_a_controlled_run_shows_readings_and_commands(void **state)
+TEST(test_a_controlled_run_shows_readings_and_commands)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>28");
@@ -214,9 +202,7 @@ static void test_a_controlled_run_shows_readings_and_commands(void **state)
         "force_reading", "calculated_force",     "encoder", "desired_angle", "tachometer",
         "command 2.284", "controller_mode force"};
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
-        if (strstr(text, wanted[i]) == NULL) {
-            fail_msg("'%s' is not on the screen:\n%s", wanted[i], text);
-        }
+        fail_if(strstr(text, wanted[i]) == NULL, "'%s' is not on the screen:\n%s", wanted[i], text);
     }
     free(text);
     // the same panes as before where the user chose them
@@ -228,9 +214,8 @@ static void test_a_controlled_run_shows_readings_and_commands(void **state)
     explorer_finish(&ex);
 }
 
-static void test_curves_of_one_pane_look_different(void **state)
+TEST(test_curves_of_one_pane_look_different)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":panes 2<Enter>:seek 0.2<Enter>");
@@ -262,9 +247,8 @@ static void test_curves_of_one_pane_look_different(void **state)
 }
 
 // Blocks of rows give the same range as the rows themselves.
-static void test_ranges_of_long_runs_are_exact(void **state)
+TEST(test_ranges_of_long_runs_are_exact)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     carry_out(&ex, "extend 99");
@@ -315,9 +299,8 @@ static int columns_in_contact(const screen *s)
 }
 
 // Touches of a few milliseconds are seen where a column of the axis is twenty.
-static void test_brief_touches_are_on_the_axis(void **state)
+TEST(test_brief_touches_are_on_the_axis)
 {
-    (void)state;
     explorer ex;
     screen s = {0};
     open_explorer(&ex, "corrected/first-impact");
@@ -329,22 +312,4 @@ static void test_brief_touches_are_on_the_axis(void **state)
     assert_int_equal(columns_in_contact(&s), (int)ex.state.session.run.summary.separations);
     screen_finish(&s);
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_an_automatic_axis_spans_what_is_visible),
-        cmocka_unit_test(test_a_growing_axis_never_shrinks),
-        cmocka_unit_test(test_a_fixed_axis_stays),
-        cmocka_unit_test(test_keys_change_the_axis_of_the_pane_in_focus),
-        cmocka_unit_test(test_wrong_axes_are_told),
-        cmocka_unit_test(test_brief_touches_are_on_the_axis),
-        cmocka_unit_test(test_ticks_are_round),
-        cmocka_unit_test(test_the_visible_part_follows_the_cursor_until_it_is_panned),
-        cmocka_unit_test(test_a_controlled_run_shows_readings_and_commands),
-        cmocka_unit_test(test_curves_of_one_pane_look_different),
-        cmocka_unit_test(test_ranges_of_long_runs_are_exact),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -2,8 +2,6 @@
 #include "render/plot/axis.h"
 #include "render/plot/plot.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "render/page/palette.h"
@@ -20,9 +18,7 @@ static cairo_surface_t *paint(const figure *fig)
     cairo_t *cr = cairo_create(image);
     fault f;
     cairo_scale(cr, SCALE, SCALE);
-    if (figure_paint(cr, fig, NULL, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(figure_paint(cr, fig, NULL, &f) != STATUS_OK, "%s", f.text);
     cairo_destroy(cr);
     cairo_surface_flush(image);
     return image;
@@ -64,9 +60,8 @@ static figure figure_of(const figure_panel *panel)
 }
 
 // Three markers at 1, 10, 100: evenly spaced for any values between.
-static void decades_are_evenly_spaced(void **state)
+TEST(decades_are_evenly_spaced)
 {
-    (void)state;
     static const double x[] = {1, 10, 100}, y[] = {1e-6, 1e-4, 1e-2};
     static const int slots[] = {0, 5, 2};
     figure_series series[3];
@@ -96,9 +91,8 @@ static void decades_are_evenly_spaced(void **state)
     cairo_surface_destroy(image);
 }
 
-static void points_at_or_below_zero_are_left_out(void **state)
+TEST(points_at_or_below_zero_are_left_out)
 {
-    (void)state;
     static const double x[] = {1, 10, 100}, y[] = {1, 0, 3}, none[] = {0, -1, 0};
     const figure_series some = {.name = "s", .x = x, .y = y, .count = 3};
     const figure_series nothing = {.name = "s", .x = x, .y = none, .count = 3};
@@ -118,9 +112,8 @@ static void points_at_or_below_zero_are_left_out(void **state)
     cairo_surface_destroy(image);
 }
 
-static void file_and_data_are_written(void **state)
+TEST(file_and_data_are_written)
 {
-    (void)state;
     static const double x[] = {2, 20}, y[] = {0.5, 0.25};
     const figure_series s = {.name = "cost", .label = "cost", .x = x, .y = y, .count = 2};
     const figure_panel panel = {.y = {.name = "step", .unit = "s", .scale = SCALE_LOGARITHMIC},
@@ -148,9 +141,8 @@ static void file_and_data_are_written(void **state)
 }
 
 // However narrow, an axis of two decades or more has two labels: one alone gives no scale.
-static void a_narrow_axis_has_two_labels(void **state)
+TEST(a_narrow_axis_has_two_labels)
 {
-    (void)state;
     const figure_axis from = {.scale = SCALE_LOGARITHMIC};
     for (double low = -9; low < 3; low += 0.21) {
         for (double decades = 2.1; decades < 16; decades += 0.37) {
@@ -169,13 +161,4 @@ static int release(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(decades_are_evenly_spaced),
-        cmocka_unit_test(points_at_or_below_zero_are_left_out),
-        cmocka_unit_test(file_and_data_are_written),
-        cmocka_unit_test(a_narrow_axis_has_two_labels),
-    };
-    return cmocka_run_group_tests(tests, NULL, release) != 0;
-}
+ALL_BETWEEN(NULL, release)

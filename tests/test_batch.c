@@ -1,6 +1,4 @@
 // Many runs at once give what single runs give.
-#include <stdlib.h>
-
 #include "src/base/random.h"
 #include "src/engines/pair/taylor_lanes.h"
 #include "src/study/batch.h"
@@ -23,15 +21,14 @@ static void check_same(const summary *a, const summary *b)
         double x = 0, y = 0;
         x = summary_value(a, i);
         y = summary_value(b, i);
-        if (!summary_table[i].timing && memcmp(&x, &y, sizeof x) != 0 && !(isnan(x) && isnan(y))) {
-            fail_msg("%s is %.17g in a batch, %.17g alone", summary_table[i].key, x, y);
-        }
+        fail_if(!summary_table[i].timing && memcmp(&x, &y, sizeof x) != 0 &&
+                    !(isnan(x) && isnan(y)),
+                "%s is %.17g in a batch, %.17g alone", summary_table[i].key, x, y);
     }
 }
 
-static void batches_equal_single_runs_to_the_last_bit(void **state)
+TEST(batches_equal_single_runs_to_the_last_bit)
 {
-    (void)state;
     summary *batch = calloc(RUNS, sizeof *batch);
     for (int jobs = 1; jobs <= 3; jobs++) {
         memset(batch, 0, RUNS * sizeof *batch);
@@ -54,9 +51,8 @@ static void make_bad(void *context, size_t i, scenario *made)
     made->parameters.motor.stiction = i == 7 ? (double)NAN : 0.045;
 }
 
-static void a_failing_run_does_not_touch_the_others(void **state)
+TEST(a_failing_run_does_not_touch_the_others)
 {
-    (void)state;
     summary *batch = calloc(RUNS, sizeof *batch);
     assert_int_equal(batch_run(make_bad, NULL, RUNS, 2, batch), STATUS_OK);
     for (int i = 0; i < RUNS; i++) {
@@ -129,23 +125,12 @@ static double compare_widths(size_t first, size_t runs)
 }
 
 // As many runs as the environment's IMPACTLAB_RANDOM_RUNS says, or 1000; 100 000 take a minute.
-static void every_width_of_vectors_gives_the_same_bits(void **state)
+TEST(every_width_of_vectors_gives_the_same_bits)
 {
-    (void)state;
     const char *asked = getenv("IMPACTLAB_RANDOM_RUNS");
     const size_t runs = asked != NULL ? (size_t)atol(asked) : 1000;
     assert_true(compare_widths(0, runs) > (double)runs);
 
     // in number 15073 a bound of the force decides that only narrow vectors had
     assert_true(compare_widths(15064, 16) > 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(batches_equal_single_runs_to_the_last_bit),
-        cmocka_unit_test(a_failing_run_does_not_touch_the_others),
-        cmocka_unit_test(every_width_of_vectors_gives_the_same_bits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,8 +1,4 @@
 // The chain with the beam's own root against the Euler-Bernoulli beam: order two in 1/N.
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/arm/chain.h"
 #include "src/arm/modes.h"
 #include "src/contact/contact_machine.h"
@@ -36,9 +32,8 @@ static double beam_compliance(const parameters *p)
     return pow(p->arm.length, 3) / (3 * p->arm.EI);
 }
 
-static void static_compliance_converges_at_second_order(void **state)
+TEST(static_compliance_converges_at_second_order)
 {
-    (void)state;
     const int links[] = {2, 4, 12, 32};
     double error[4];
     for (int i = 0; i < 4; i++) {
@@ -53,9 +48,8 @@ static void static_compliance_converges_at_second_order(void **state)
 
 // The same deflection out of the strain energy and the geometry of the chain, for small loads: the
 // potential energy V - F y is least where the joints are bent as tip_compliance has it.
-static void joints_bent_by_the_moment_balance_the_load(void **state)
+TEST(joints_bent_by_the_moment_balance_the_load)
 {
-    (void)state;
     parameters p;
     arm a = beam_of(6, &p);
     const double load = 1e-3;
@@ -98,9 +92,8 @@ static double frequency_ratio(int links, tip_end tip, int mode, double beta_leng
     return ratio;
 }
 
-static void frequencies_converge_at_second_order(void **state)
+TEST(frequencies_converge_at_second_order)
 {
-    (void)state;
     // roots of cos cosh = -1 and tan = tanh
     const double clamped_free[3] = {1.875104068711961, 4.694091132974175, 7.854757438237613};
     const double clamped_pinned[3] = {3.926602312047919, 7.068582745628732, 10.210176122813031};
@@ -119,9 +112,8 @@ static void frequencies_converge_at_second_order(void **state)
 }
 
 // The damping ratio is asked for the first clamped-free mode, that of the beam with its root.
-static void first_mode_has_the_damping_asked_for(void **state)
+TEST(first_mode_has_the_damping_asked_for)
 {
-    (void)state;
     const double wanted = 0.02;
     parameters p =
         fixture_parameters(SETTINGS("arm.links=8", "arm.hub_joint=beam", "arm.damping_ratio=0.02"));
@@ -137,9 +129,8 @@ static void first_mode_has_the_damping_asked_for(void **state)
 
 // So it is with links and joints that differ, with a mass at the tip, and without a root that
 // bends.
-static void any_arm_has_the_damping_asked_for(void **state)
+TEST(any_arm_has_the_damping_asked_for)
 {
-    (void)state;
     const char *const *const arms[] = {
         SETTINGS("arm.links=2"),
         SETTINGS("arm.links=5", "arm.tip_mass=0.1"),
@@ -177,9 +168,8 @@ static void any_arm_has_the_damping_asked_for(void **state)
 
 // No free mode is faster than what steps are chosen for, nor slower by a tenth, whatever the
 // joints.
-static void the_highest_frequency_bounds_the_modes(void **state)
+TEST(the_highest_frequency_bounds_the_modes)
 {
-    (void)state;
     const char *const arms[][2] = {{"arm.links=2", "arm.hub_joint=rigid"},
                                    {"arm.links=2", "arm.hub_joint=spring"},
                                    {"arm.links=2", "arm.hub_joint=beam"},
@@ -200,9 +190,8 @@ static void the_highest_frequency_bounds_the_modes(void **state)
 
 // A mode that is damped beyond its limit creeps by two decays whose product is the square of its
 // frequency w and whose sum is 2 zeta w; the faster one is what steps have to follow.
-static void an_overdamped_mode_decays_by_the_roots_of_its_equation(void **state)
+TEST(an_overdamped_mode_decays_by_the_roots_of_its_equation)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("arm.links=8", "arm.damping_ratio=0.1"));
     arm a;
     arm_init(&a, &p);
@@ -213,9 +202,8 @@ static void an_overdamped_mode_decays_by_the_roots_of_its_equation(void **state)
 
 // What is not the beam decays by itself: the hub under its friction and the back EMF, the current
 // through its inductance, the links in the air.
-static void whatever_decays_faster_is_followed(void **state)
+TEST(whatever_decays_faster_is_followed)
 {
-    (void)state;
     const double mass = 0.40108 / 2, l = 0.5;
     for (int spring = 0; spring < 2; spring++) {
         const char *joint = spring ? "arm.hub_joint=spring" : "arm.hub_joint=rigid";
@@ -254,9 +242,8 @@ static void whatever_decays_faster_is_followed(void **state)
 
 // Of the one mode of two links, its damping goes to the springs of an arm whose hub is free: it
 // decays by 2 zeta of the held arm's frequency, as much more as the free arm is faster squared.
-static void damping_by_mode_is_followed(void **state)
+TEST(damping_by_mode_is_followed)
 {
-    (void)state;
     const parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.modal_ratios=0.9"));
     arm a;
     arm_init(&a, &p);
@@ -269,9 +256,8 @@ static void damping_by_mode_is_followed(void **state)
 }
 
 // Set up where a longer, stiffer arm was, an arm has nothing of that.
-static void an_arm_has_nothing_of_the_one_before(void **state)
+TEST(an_arm_has_nothing_of_the_one_before)
 {
-    (void)state;
     const parameters stiff =
         fixture_parameters(SETTINGS("arm.links=4", "arm.joint_stiffness=9,500,500"));
     const parameters soft = fixture_parameters(SETTINGS("arm.links=3", "arm.joint_stiffness=7,5"));
@@ -282,9 +268,8 @@ static void an_arm_has_nothing_of_the_one_before(void **state)
 }
 
 // The longest chain is as good as a beam: w1 = 1.8751^2 sqrt(EI / (m L^3)), with EI = k2 L / 2.
-static void the_longest_chain_has_the_damping_of_a_beam(void **state)
+TEST(the_longest_chain_has_the_damping_of_a_beam)
 {
-    (void)state;
     const char *const hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
     for (int i = 0; i < 2; i++) {
         const parameters p =
@@ -310,9 +295,8 @@ static double beam_with_mass(double mass)
     return lo;
 }
 
-static void a_mass_at_the_tip_lowers_the_frequencies(void **state)
+TEST(a_mass_at_the_tip_lowers_the_frequencies)
 {
-    (void)state;
     const double root = beam_with_mass(0.1);
     double error[2];
     for (int i = 0; i < 2; i++) {
@@ -365,9 +349,8 @@ static double swing(const arm *a, const method_parameters *method, double expect
 }
 
 // With a mass at the tip of a stiff chain every engine swings it as the beam does.
-static void every_engine_carries_the_mass_of_a_stiff_chain(void **state)
+TEST(every_engine_carries_the_mass_of_a_stiff_chain)
 {
-    (void)state;
     const double first = beam_with_mass(0.1) * beam_with_mass(0.1);
     const char *const methods[] = {"method.engine=stiff", "method.name=newmark",
                                    "method.name=generalized-alpha"};
@@ -393,9 +376,8 @@ static void every_engine_carries_the_mass_of_a_stiff_chain(void **state)
     }
 }
 
-static void stiffness_may_be_given_as_the_beams(void **state)
+TEST(stiffness_may_be_given_as_the_beams)
 {
-    (void)state;
     parameters p = fixture_parameters(
         SETTINGS("arm.EI=8.1 N m2", "arm.length=2 m", "arm.hub_joint=beam", "arm.links=5"));
     check_relative(p.arm.k2, 8.1, 1e-15);     // 2 EI / length
@@ -410,25 +392,4 @@ static void stiffness_may_be_given_as_the_beams(void **state)
     parameters_follow(&p, PARAMETER_INDEX(arm.k2));
     check_relative(p.arm.EI, 6.0, 1e-15);
     check_relative(p.arm.k1, 30.0, 1e-15);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(static_compliance_converges_at_second_order),
-        cmocka_unit_test(joints_bent_by_the_moment_balance_the_load),
-        cmocka_unit_test(frequencies_converge_at_second_order),
-        cmocka_unit_test(first_mode_has_the_damping_asked_for),
-        cmocka_unit_test(any_arm_has_the_damping_asked_for),
-        cmocka_unit_test(whatever_decays_faster_is_followed),
-        cmocka_unit_test(damping_by_mode_is_followed),
-        cmocka_unit_test(an_arm_has_nothing_of_the_one_before),
-        cmocka_unit_test(the_longest_chain_has_the_damping_of_a_beam),
-        cmocka_unit_test(the_highest_frequency_bounds_the_modes),
-        cmocka_unit_test(an_overdamped_mode_decays_by_the_roots_of_its_equation),
-        cmocka_unit_test(a_mass_at_the_tip_lowers_the_frequencies),
-        cmocka_unit_test(every_engine_carries_the_mass_of_a_stiff_chain),
-        cmocka_unit_test(stiffness_may_be_given_as_the_beams),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

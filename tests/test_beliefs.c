@@ -10,17 +10,14 @@ static controller_setup told(const char *const *settings)
     fault f;
     parameters p = rig_parameters(settings);
     p.control.law = LAW_HYBRID;
-    if (rig_create(&r, &p, NULL, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(rig_create(&r, &p, NULL, &f) != STATUS_OK, "%s", f.text);
     controller_setup setup = *(const controller_setup *)r->memory; // it stands first
     rig_destroy(r);
     return setup;
 }
 
-static void without_wrong_beliefs_it_is_the_truth(void **state)
+TEST(without_wrong_beliefs_it_is_the_truth)
 {
-    (void)state;
     parameters p = rig_parameters(SETTINGS("wall.angle=0.2"));
     controller_setup s = told(SETTINGS("wall.angle=0.2", "control.delay=2e-3"));
     check_close(s.link_mass, p.arm.mass / 2, 0);
@@ -36,9 +33,8 @@ static void without_wrong_beliefs_it_is_the_truth(void **state)
     assert_true(isinf(s.hub_spring));
 }
 
-static void each_belief_changes_what_it_names(void **state)
+TEST(each_belief_changes_what_it_names)
 {
-    (void)state;
     controller_setup truth = told(SETTINGS("control.delay=2e-3"));
     controller_setup s = told(
         SETTINGS("control.delay=2e-3", "belief.mass_factor=1.5", "belief.inertia_factor=0.5",
@@ -62,18 +58,16 @@ static void each_belief_changes_what_it_names(void **state)
                    1e-15);
 }
 
-static void a_spring_at_the_hub_is_told(void **state)
+TEST(a_spring_at_the_hub_is_told)
 {
-    (void)state;
     controller_setup s =
         told(SETTINGS("arm.hub_joint=spring", "arm.k1=90", "belief.hub_spring_factor=1.1"));
     check_relative(s.hub_spring, 99.0, 1e-15);
 }
 
 // A belief changes the command and nothing of the arm: the same command moves it the same.
-static void the_arm_has_no_beliefs(void **state)
+TEST(the_arm_has_no_beliefs)
 {
-    (void)state;
     summary truth = rig_summary(SETTINGS("control.law=open-loop"));
     summary doubted = rig_summary(
         SETTINGS("control.law=open-loop", "belief.mass_factor=2", "belief.inertia_factor=2",
@@ -83,20 +77,7 @@ static void the_arm_has_no_beliefs(void **state)
     check_close(doubted.first_contact_s, truth.first_contact_s, 0);
 }
 
-static void an_unknown_delay_is_never_negative(void **state)
+TEST(an_unknown_delay_is_never_negative)
 {
-    (void)state;
     check_close(told(SETTINGS("belief.delay_error=-1")).delay, 0, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_wrong_beliefs_it_is_the_truth),
-        cmocka_unit_test(each_belief_changes_what_it_names),
-        cmocka_unit_test(a_spring_at_the_hub_is_told),
-        cmocka_unit_test(the_arm_has_no_beliefs),
-        cmocka_unit_test(an_unknown_delay_is_never_negative),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

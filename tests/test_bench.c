@@ -1,7 +1,5 @@
 #include "src/study/bench.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "tests/check.h"
@@ -25,9 +23,8 @@ static status give_up(const benchmark *b, double *value, fault *f)
     return fault_set(f, STATUS_NOT_FINITE, "it went wrong");
 }
 
-static void median_and_extremes_leave_out_the_first(void **state)
+TEST(median_and_extremes_leave_out_the_first)
 {
-    (void)state;
     const benchmark b = {"name", "us", false, count_up, "", 0};
     bench_result r;
     fault f;
@@ -41,9 +38,8 @@ static void median_and_extremes_leave_out_the_first(void **state)
     assert_string_equal(r.unit, "us");
 }
 
-static void a_measurement_that_fails_is_passed_on(void **state)
+TEST(a_measurement_that_fails_is_passed_on)
 {
-    (void)state;
     const benchmark b = {"name", "us", false, give_up, "", 0};
     bench_result r;
     fault f;
@@ -51,9 +47,8 @@ static void a_measurement_that_fails_is_passed_on(void **state)
     assert_string_equal(f.text, "it went wrong");
 }
 
-static void slower_is_said_of_times_and_rates(void **state)
+TEST(slower_is_said_of_times_and_rates)
 {
-    (void)state;
     const benchmark time = {"t", "us", false, NULL, "", 0}, rate = {"r", "1/s", true, NULL, "", 0};
     const bench_result before = {.median = 10, .min = 9, .max = 11};
     const bench_result twice = {.median = 20, .min = 19, .max = 21};
@@ -79,9 +74,8 @@ static void make_file(char *path, const char *text)
     close(descriptor);
 }
 
-static void what_is_written_is_read_back(void **state)
+TEST(what_is_written_is_read_back)
 {
-    (void)state;
     const bench_result written[] = {{"one", "us/ms", 1.25, 1, 2}, {"two", "1/s", 3e7, 2e7, 4e7}};
     char path[64], *text;
     json_t *object = bench_export(written, 2);
@@ -105,9 +99,8 @@ static void what_is_written_is_read_back(void **state)
     unlink(path);
 }
 
-static void a_file_that_is_no_baseline_is_refused(void **state)
+TEST(a_file_that_is_no_baseline_is_refused)
 {
-    (void)state;
     static const char *const texts[] = {"{", "[]", "{\"bench\": 3}",
                                         "{\"bench\": [{\"name\": \"x\"}]}",
                                         "{\"bench\": [{\"name\": \"x\", \"unit\": \"s\"}]}"};
@@ -134,9 +127,8 @@ static void every_benchmark_of_the_library_gives_a_number(void **state)
     for (int i = 0; i < bench_count; i++) {
         double value = -1;
         fault f = {0};
-        if (bench_table[i].measure(&bench_table[i], &value, &f) != STATUS_OK) {
-            fail_msg("%s: %s", bench_table[i].name, f.text);
-        }
+        fail_if(bench_table[i].measure(&bench_table[i], &value, &f) != STATUS_OK, "%s: %s",
+                bench_table[i].name, f.text);
         assert_true(value > 0 && isfinite(value));
         assert_true(strlen(bench_table[i].name) < BENCH_NAME);
         assert_true(strlen(bench_table[i].unit) < BENCH_UNIT);
@@ -147,16 +139,8 @@ static void every_benchmark_of_the_library_gives_a_number(void **state)
 int main(int count, char **arguments)
 {
     (void)arguments;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(median_and_extremes_leave_out_the_first),
-        cmocka_unit_test(a_measurement_that_fails_is_passed_on),
-        cmocka_unit_test(slower_is_said_of_times_and_rates),
-        cmocka_unit_test(what_is_written_is_read_back),
-        cmocka_unit_test(a_file_that_is_no_baseline_is_refused),
-    };
     const struct CMUnitTest measuring[] = {
         cmocka_unit_test(every_benchmark_of_the_library_gives_a_number),
     };
-    return (count > 1 ? cmocka_run_group_tests(measuring, NULL, NULL)
-                      : cmocka_run_group_tests(tests, NULL, NULL)) != 0;
+    return (count > 1 ? cmocka_run_group_tests(measuring, NULL, NULL) : run_cases(NULL, NULL)) != 0;
 }

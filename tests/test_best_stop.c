@@ -16,9 +16,8 @@ static double divergence(const pressed_arm_model *m)
     return sqrt(m->spring_force / m->mass_force);
 }
 
-static void the_model_has_the_numbers_of_the_arm(void **state)
+TEST(the_model_has_the_numbers_of_the_arm)
 {
-    (void)state;
     pressed_arm_model m = model_of(NULL);
     check_close(m.inertia, 0.0386, 1e-4);
     check_close(m.stiffness, 19.68, 1e-9);
@@ -38,9 +37,8 @@ static void the_model_has_the_numbers_of_the_arm(void **state)
 }
 
 // Docs: x' = ((M11 - M12) w2 + (M12 - M22) w3)/M.
-static void an_impact_throws_both_links_onto_one_motion(void **state)
+TEST(an_impact_throws_both_links_onto_one_motion)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("wall.angle=0"));
     pressed_arm_model m;
     pressed_state after;
@@ -59,9 +57,8 @@ static void an_impact_throws_both_links_onto_one_motion(void **state)
 }
 
 // With a motor that gives every force only the runaway mode counts, in closed form.
-static void a_strong_motor_leaves_the_closed_forms(void **state)
+TEST(a_strong_motor_leaves_the_closed_forms)
 {
-    (void)state;
     pressed_arm_model m = model_of(SETTINGS("motor.voltage_limit=1000"));
     double s = divergence(&m), k = m.spring_force;
     const double velocities[] = {0.4, 1.37, 4};
@@ -80,9 +77,8 @@ static void a_strong_motor_leaves_the_closed_forms(void **state)
 
 // The model is linear where friction is small: a touch a thousand times as gentle has a force a
 // thousand times as small.
-static void the_gentlest_touch_has_a_best_force_too(void **state)
+TEST(the_gentlest_touch_has_a_best_force_too)
 {
-    (void)state;
     pressed_arm_model m = model_of(SETTINGS("motor.voltage_limit=1000"));
     for (double velocity = 1e-6; velocity < 10; velocity *= 7) {
         const pressed_state at = {0, velocity};
@@ -91,9 +87,8 @@ static void the_gentlest_touch_has_a_best_force_too(void **state)
 }
 
 // A hub that is braked hard presses at once, whatever the motor does: no peak is below that.
-static void no_peak_is_below_the_force_of_the_damping(void **state)
+TEST(no_peak_is_below_the_force_of_the_damping)
 {
-    (void)state;
     pressed_arm_model m = model_of(NULL);
     for (int i = 1; i <= 4; i++) {
         m.damping = 5.0 * i;
@@ -107,9 +102,8 @@ static void no_peak_is_below_the_force_of_the_damping(void **state)
 }
 
 // A motor holds what its largest torque and stiction together carry, and no more.
-static void stiction_helps_to_hold(void **state)
+TEST(stiction_helps_to_hold)
 {
-    (void)state;
     pressed_arm_model m = model_of(NULL);
     m.stiction = 0.3 * m.torque_limit;
     const double most = m.spring_force / m.stiffness * (m.torque_limit + m.stiction);
@@ -123,9 +117,8 @@ static void stiction_helps_to_hold(void **state)
         best_settling(&m, (pressed_state){more / m.spring_force, 0}, more, 0.05, 1.06 * more)));
 }
 
-static void what_cannot_be_is_said(void **state)
+TEST(what_cannot_be_is_said)
 {
-    (void)state;
     pressed_arm_model m = model_of(NULL);
     assert_true(isnan(best_peak(&m, (pressed_state){0.01, -0.1})));
     assert_true(isnan(best_peak(&m, (pressed_state){-0.05, 1}))); // thrown back by its own bend
@@ -205,9 +198,8 @@ static double try_out(const pressed_arm_model *m, pressed_state s, const double 
     return settled;
 }
 
-static void no_controller_tried_is_better(void **state)
+TEST(no_controller_tried_is_better)
 {
-    (void)state;
     const struct {
         double velocity, force, peak, limit;
     } cases[] = {{1.37, 0.5, 1, 10},  {1.37, 0.5, 1.6, 10}, {1.37, 1, 1.05, 10}, {1.37, 2, 2.1, 10},
@@ -246,19 +238,4 @@ static void no_controller_tried_is_better(void **state)
         check_below(best - 2e-4, game.soonest);
         check_below(game.soonest, best + 2 * PIECE);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_model_has_the_numbers_of_the_arm),
-        cmocka_unit_test(an_impact_throws_both_links_onto_one_motion),
-        cmocka_unit_test(a_strong_motor_leaves_the_closed_forms),
-        cmocka_unit_test(the_gentlest_touch_has_a_best_force_too),
-        cmocka_unit_test(no_peak_is_below_the_force_of_the_damping),
-        cmocka_unit_test(stiction_helps_to_hold),
-        cmocka_unit_test(what_cannot_be_is_said),
-        cmocka_unit_test(no_controller_tried_is_better),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,7 +1,4 @@
 // The look-up table of (5.26): reading, interpolating and measuring it, and its benefit.
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/study/calibrate.h"
 #include "tests/rig_fixture.h"
 
@@ -13,9 +10,7 @@ static calibration calibrated(const char *const *settings)
     fault f;
     calibration c;
     scenario s = {.parameters = rig_parameters(settings)};
-    if (calibrate(&s, commands, COMMANDS, NULL, &c, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(calibrate(&s, commands, COMMANDS, NULL, &c, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(c.count, COMMANDS);
     return c;
 }
@@ -26,17 +21,14 @@ static void table_setting(const calibration *c, char *text, size_t size)
     fault f;
     k2_table t;
     size_t length = (size_t)snprintf(text, size, "control.k2_table=");
-    if (calibration_table(c, &t, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(calibration_table(c, &t, &f) != STATUS_OK, "%s", f.text);
     assert_true(k2_table_write(&t, text + length, size - length));
 }
 
 // --- the table ------------------------------------------------------------------------------
 
-static void tables_read_and_interpolate(void **state)
+TEST(tables_read_and_interpolate)
 {
-    (void)state;
     k2_table t;
     assert_int_equal(k2_table_read(&t, "  0.5:4.8 1:5   3:2 ", NULL), STATUS_OK);
     assert_int_equal(t.count, 3);
@@ -54,9 +46,8 @@ static void tables_read_and_interpolate(void **state)
     assert_int_equal(t.count, 0);
 }
 
-static void wrong_tables_are_refused(void **state)
+TEST(wrong_tables_are_refused)
 {
-    (void)state;
     const struct {
         const char *text, *sentence;
     } cases[] = {{"1", "'1' is wrong"},
@@ -79,9 +70,8 @@ static void wrong_tables_are_refused(void **state)
     }
 }
 
-static void the_commanded_force_chooses_the_entry(void **state)
+TEST(the_commanded_force_chooses_the_entry)
 {
-    (void)state;
     // (5.23) with the K2 of the table: the angle that the hybrid law goes to
     const char *const table = "control.k2_table=0.5:2 1.5:4";
     const char *const forces[] = {"control.force=0.25", "control.force=1", "control.force=2"};
@@ -100,9 +90,8 @@ static void the_commanded_force_chooses_the_entry(void **state)
 
 // --- measuring ------------------------------------------------------------------------------
 
-static void two_links_have_the_stiffness_of_their_joint(void **state)
+TEST(two_links_have_the_stiffness_of_their_joint)
 {
-    (void)state;
     calibration ideal = calibrated(SETTINGS("sensor.ideal=true", "control.law=hybrid"));
     calibration noisy = calibrated(SETTINGS("control.law=hybrid"));
     for (int i = 0; i < COMMANDS; i++) {
@@ -119,9 +108,8 @@ static void two_links_have_the_stiffness_of_their_joint(void **state)
     }
 }
 
-static void a_spring_at_the_hub_is_measured_with_the_beam(void **state)
+TEST(a_spring_at_the_hub_is_measured_with_the_beam)
 {
-    (void)state;
     // the encoder sits before it: 1/K2 = 1/k2 + 4/k1
     calibration c = calibrated(
         SETTINGS("sensor.ideal=true", "arm.hub_joint=spring", "arm.k1=90", "control.law=hybrid"));
@@ -130,9 +118,8 @@ static void a_spring_at_the_hub_is_measured_with_the_beam(void **state)
 
 // Where friction holds the hub is one thing under a press that comes gently and another one behind
 // an impact; force and angle then differ together, their ratio does not.
-static void stiction_does_not_spoil_the_ratio(void **state)
+TEST(stiction_does_not_spoil_the_ratio)
 {
-    (void)state;
     double force[3], k2[3];
     const char *const starts[] = {"initial.angle=0", "initial.angle=-0.1", "initial.angle=-0.3"};
     for (int i = 0; i < 3; i++) {
@@ -179,9 +166,8 @@ static void many_links_press_as_commanded_with_their_table(void **state)
     }
 }
 
-static void what_does_not_press_is_said(void **state)
+TEST(what_does_not_press_is_said)
 {
-    (void)state;
     const struct {
         const char *setting, *sentence;
     } cases[] = {{"wall.kind=none", "nothing to press against"},
@@ -201,9 +187,8 @@ static void what_does_not_press_is_said(void **state)
     assert_non_null(strstr(f.text, "press alike"));
 }
 
-static void results_reach_every_form(void **state)
+TEST(results_reach_every_form)
 {
-    (void)state;
     calibration c = {.count = 2,
                      .points = {{.command = 2, .force = 1.5, .angle = 0.05, .k2 = 4.5},
                                 {.command = 1, .force = 0.5, .angle = 0.02, .k2 = 4.92}}};
@@ -228,9 +213,8 @@ static void results_reach_every_form(void **state)
 // With an argument the case that takes most of the time, without one the others. The arm is pressed
 // with a voltage: the settings of the scenario for its own law, and the mode that it holds it in,
 // are none of that.
-static void what_another_law_is_told_changes_nothing(void **state)
+TEST(what_another_law_is_told_changes_nothing)
 {
-    (void)state;
     static const char *const told[][2] = {{"control.law=observer", "control.settings=wall_doubt=0"},
                                           {"control.law=hybrid", "control.lock=force"}};
     const calibration plain = calibrated(SETTINGS("control.law=hybrid"));
@@ -248,17 +232,5 @@ int main(int argc, char **argv)
     const struct CMUnitTest longest[] = {
         cmocka_unit_test(many_links_press_as_commanded_with_their_table),
     };
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_read_and_interpolate),
-        cmocka_unit_test(wrong_tables_are_refused),
-        cmocka_unit_test(the_commanded_force_chooses_the_entry),
-        cmocka_unit_test(two_links_have_the_stiffness_of_their_joint),
-        cmocka_unit_test(a_spring_at_the_hub_is_measured_with_the_beam),
-        cmocka_unit_test(stiction_does_not_spoil_the_ratio),
-        cmocka_unit_test(what_does_not_press_is_said),
-        cmocka_unit_test(results_reach_every_form),
-        cmocka_unit_test(what_another_law_is_told_changes_nothing),
-    };
-    return (argc > 1 ? cmocka_run_group_tests(longest, NULL, NULL)
-                     : cmocka_run_group_tests(tests, NULL, NULL)) != 0;
+    return (argc > 1 ? cmocka_run_group_tests(longest, NULL, NULL) : run_cases(NULL, NULL)) != 0;
 }

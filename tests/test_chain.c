@@ -1,7 +1,4 @@
 // The O(N) chain against dense matrices written from the Lagrangian.
-#include <math.h>
-#include <stdlib.h>
-
 #include "src/arm/chain.h"
 #include "tests/arm_fixture.h"
 
@@ -211,9 +208,8 @@ static double numeric_second_rate(const arm *a, const double *q, const double *w
     return (rate[1] - rate[0]) / (2 * h);
 }
 
-static void satisfies_the_lagrangian(void **state)
+TEST(satisfies_the_lagrangian)
 {
-    (void)state;
     static const char *const hubs[] = {"rigid", "spring"}, *const walls[] = {"point", "plane",
                                                                              "none"};
     static const hub_friction frictions[] = {HUB_FORWARD, HUB_BACKWARD, HUB_STICK};
@@ -252,9 +248,8 @@ static void satisfies_the_lagrangian(void **state)
 
 // Links and joints that differ, air, joints that stiffen: the same equations; what damping takes is
 // the power of its forces.
-static void satisfies_it_with_any_links_and_joints(void **state)
+TEST(satisfies_it_with_any_links_and_joints)
 {
-    (void)state;
     static const char *const walls[] = {"point", "plane", "none"};
     static const hub_friction frictions[] = {HUB_FORWARD, HUB_STICK};
     for (int links = 2; links <= 10; links++) {
@@ -280,9 +275,8 @@ static void satisfies_it_with_any_links_and_joints(void **state)
     }
 }
 
-static void rates_follow_from_the_penetration(void **state)
+TEST(rates_follow_from_the_penetration)
 {
-    (void)state;
     for (int links = 1; links <= 5; links++) {
         for (int wall = 0; wall < 2; wall++) {
             arm a = make_arm(links, "rigid", wall ? "plane" : "point");
@@ -300,9 +294,8 @@ static void rates_follow_from_the_penetration(void **state)
 
 // A turn that can be seen changes the penetration by the difference, one far below the last digit
 // of the angles by what its rate says, to all digits.
-static void a_turn_changes_the_penetration(void **state)
+TEST(a_turn_changes_the_penetration)
 {
-    (void)state;
     for (int links = 1; links <= 5; links++) {
         for (int kind = 0; kind < (links > 1 ? 8 : 4); kind++) {
             const char *const wall = kind & 2 ? "plane" : "point";
@@ -334,9 +327,8 @@ static void a_turn_changes_the_penetration(void **state)
     }
 }
 
-static void penetration_of_two_links_is_equation_3_9(void **state)
+TEST(penetration_of_two_links_is_equation_3_9)
 {
-    (void)state;
     arm a = make_arm(2, "spring", "point");
     double q[3], w[3], g, l = 0.5, x = cos(0.1), y = sin(0.1);
     some_state(&a, 4, q, w);
@@ -348,9 +340,8 @@ static void penetration_of_two_links_is_equation_3_9(void **state)
     check_close(g, 0, 1e-16);
 }
 
-static void one_link_on_a_rigid_hub_is_held_by_the_wall(void **state)
+TEST(one_link_on_a_rigid_hub_is_held_by_the_wall)
 {
-    (void)state;
     arm a = make_arm(1, "rigid", "plane");
     double q[1] = {0.1}, w[1] = {0}, alpha[1];
     chain_link work[1];
@@ -373,9 +364,8 @@ static void check_kinetic_energy(const arm *a, const double *q, const double *w)
     check_relative(chain_kinetic_energy(a, q, w), kinetic, 1e-13);
 }
 
-static void energies_match_the_dense_form(void **state)
+TEST(energies_match_the_dense_form)
 {
-    (void)state;
     for (int links = 1; links <= 6; links++) {
         arm a = make_arm(links, "spring", "none");
         double q[LARGEST], w[LARGEST], strain = 0;
@@ -390,9 +380,8 @@ static void energies_match_the_dense_form(void **state)
 }
 
 // The same of links and joints that differ, and of joints whose torque is the energy's slope.
-static void energies_match_with_any_links_and_joints(void **state)
+TEST(energies_match_with_any_links_and_joints)
 {
-    (void)state;
     for (int links = 2; links <= 6; links++) {
         arm a = make_uneven_arm(links, "none", links % 2);
         double q[LARGEST], w[LARGEST];
@@ -416,9 +405,8 @@ static void energies_match_with_any_links_and_joints(void **state)
 
 // A joint that stiffens vibrates as much faster as half as much again of its own stiffness, which
 // is 1 + 3 s b^2 at the bend b of the joint that is bent most; a root stands for twice its bend.
-static void bends_make_it_vibrate_faster(void **state)
+TEST(bends_make_it_vibrate_faster)
 {
-    (void)state;
     arm a = make_stiffening_arm(4, "none"), even = make_arm(4, "rigid", "none");
     const double q[4] = {0.3, 0.35, 0.15, 0.25}, s = 2.5 * 4 * 4 / 4;
     check_relative(chain_stiffened(&a, q), sqrt(1 + 1.5 * 3 * s * 0.2 * 0.2), 1e-14);
@@ -431,9 +419,8 @@ static void bends_make_it_vibrate_faster(void **state)
 }
 
 // m v^2 / 2 of the tip, whose velocity is the sum over the links.
-static void a_mass_at_the_tip_adds_its_own_energy(void **state)
+TEST(a_mass_at_the_tip_adds_its_own_energy)
 {
-    (void)state;
     for (int links = 1; links <= 6; links++) {
         arm a = make_arm(links, "spring", "none");
         double q[LARGEST], w[LARGEST], vx = 0, vy = 0;
@@ -450,9 +437,8 @@ static void a_mass_at_the_tip_adds_its_own_energy(void **state)
 
 // Folded over the hub's axis the tip stands on a flat wall that cannot move it: no link's velocity
 // changes the penetration. A point, or an arm that cannot fold, is no such wall.
-static void an_arm_is_folded_where_a_flat_wall_moves_no_link(void **state)
+TEST(an_arm_is_folded_where_a_flat_wall_moves_no_link)
 {
-    (void)state;
     for (int links = 2; links <= 6; links += 2) {
         arm flat = make_arm(links, "spring", "plane"), point = make_arm(links, "spring", "point");
         double q[LARGEST], jacobian[LARGEST], largest = 0;
@@ -490,9 +476,8 @@ static void an_arm_is_folded_where_a_flat_wall_moves_no_link(void **state)
 
 // Nodes lie a link apart from one another, each in the direction of its link; and the strain is the
 // work that it takes to bend the joints.
-static void nodes_follow_the_links(void **state)
+TEST(nodes_follow_the_links)
 {
-    (void)state;
     for (int kind = 0; kind < 3; kind++) {
         for (int links = 1 + (kind == 1); links <= 8; links++) {
             arm a = kind == 1 ? make_uneven_arm(links, "point", links % 2)
@@ -526,9 +511,8 @@ static void nodes_follow_the_links(void **state)
 }
 
 // A list may be one digit long: it is that arm's only joint or link.
-static void a_list_of_one_digit_is_one(void **state)
+TEST(a_list_of_one_digit_is_one)
 {
-    (void)state;
     const double q[2] = {0.3, 0.7};
     arm listed, plain;
     parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.joint_stiffness=8"));
@@ -544,24 +528,4 @@ static void a_list_of_one_digit_is_one(void **state)
     chain_node(&listed, q, 1, &x, &y);
     check_close(x, 2 * cos(q[0]), 1e-14);
     check_close(y, 2 * sin(q[0]), 1e-14);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nodes_follow_the_links),
-        cmocka_unit_test(bends_make_it_vibrate_faster),
-        cmocka_unit_test(a_mass_at_the_tip_adds_its_own_energy),
-        cmocka_unit_test(satisfies_the_lagrangian),
-        cmocka_unit_test(satisfies_it_with_any_links_and_joints),
-        cmocka_unit_test(rates_follow_from_the_penetration),
-        cmocka_unit_test(a_turn_changes_the_penetration),
-        cmocka_unit_test(a_list_of_one_digit_is_one),
-        cmocka_unit_test(penetration_of_two_links_is_equation_3_9),
-        cmocka_unit_test(one_link_on_a_rigid_hub_is_held_by_the_wall),
-        cmocka_unit_test(energies_match_the_dense_form),
-        cmocka_unit_test(energies_match_with_any_links_and_joints),
-        cmocka_unit_test(an_arm_is_folded_where_a_flat_wall_moves_no_link),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -2,7 +2,6 @@
 // leave one in the dark about what has an effect and when.
 #include "tests/explorer_on_screen.h"
 
-#include <math.h>
 #include <unistd.h>
 
 static double value_of(const explorer *ex, int parameter)
@@ -11,9 +10,8 @@ static double value_of(const explorer *ex, int parameter)
     return parameter_get(&p, parameter);
 }
 
-static void test_typing_replaces_the_value(void **state)
+TEST(test_typing_replaces_the_value)
 {
-    (void)state;
     const int voltage = PARAMETER_INDEX(motor.voltage);
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
@@ -84,18 +82,16 @@ static void change_before_contact(const char *name, const char *setting)
     explorer_finish(&ex);
 }
 
-static void test_a_change_comes_before_the_contact_it_was_made_before(void **state)
+TEST(test_a_change_comes_before_the_contact_it_was_made_before)
 {
-    (void)state;
     change_before_contact("corrected/first-impact", "motor.voltage 0.5");
     change_before_contact("corrected/restitution", "wall.restitution 0.1");
     change_before_contact("corrected/five-links", "motor.voltage 0.5");
     change_before_contact("compare/hybrid", "control.lock approach");
 }
 
-static void test_what_has_no_effect_says_why(void **state)
+TEST(test_what_has_no_effect_says_why)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     assert_int_equal(ex.state.parameters.parameter, PARAMETER_INDEX(control.force));
@@ -123,9 +119,8 @@ static void test_what_has_no_effect_says_why(void **state)
 
 // What one link's springs and a limited current do is not called without effect, and the other way
 // round.
-static void test_inert_is_what_has_no_effect(void **state)
+TEST(test_inert_is_what_has_no_effect)
 {
-    (void)state;
     const struct {
         const char *lines;
         int parameter;
@@ -148,9 +143,8 @@ static void test_inert_is_what_has_no_effect(void **state)
     }
 }
 
-static void test_predictors_take_the_voltage_in_force(void **state)
+TEST(test_predictors_take_the_voltage_in_force)
 {
-    (void)state;
     explorer ex;
     char wanted[64];
     open_explorer(&ex, "compare/hybrid");
@@ -171,9 +165,8 @@ static void test_predictors_take_the_voltage_in_force(void **state)
     explorer_finish(&ex);
 }
 
-static void test_predictors_say_that_they_know_two_links(void **state)
+TEST(test_predictors_say_that_they_know_two_links)
 {
-    (void)state;
     explorer ex;
     static const char said[] = "the first two know two links";
     open_explorer(&ex, "corrected/five-links");
@@ -190,9 +183,8 @@ static void test_predictors_say_that_they_know_two_links(void **state)
     explorer_finish(&ex);
 }
 
-static void test_values_that_have_no_room_are_cut_visibly(void **state)
+TEST(test_values_that_have_no_room_are_cut_visibly)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/known-springs");
     press(&ex, "/link_lengths<Enter>");
@@ -220,9 +212,8 @@ static void test_values_that_have_no_room_are_cut_visibly(void **state)
     explorer_finish(&ex);
 }
 
-static void test_changes_to_come_are_seen_edited_and_dropped(void **state)
+TEST(test_changes_to_come_are_seen_edited_and_dropped)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":seek 0.5<Enter>:set motor.voltage 2<Enter>:seek 0.7<Enter>p<Home>");
@@ -252,9 +243,8 @@ static void test_changes_to_come_are_seen_edited_and_dropped(void **state)
     explorer_finish(&ex);
 }
 
-static void test_nudges_are_one_change_and_reversible(void **state)
+TEST(test_nudges_are_one_change_and_reversible)
 {
-    (void)state;
     const int voltage = PARAMETER_INDEX(motor.voltage);
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
@@ -280,16 +270,14 @@ static void test_nudges_are_one_change_and_reversible(void **state)
         }
         parameter_list_select(&ex.state.parameters, (parameter_line){i, false});
         press(&ex, "<lt><lt><lt>>>>");
-        if (fabs(value_of(&ex, i) - before) > 1e-5 * fabs(before)) {
-            fail_msg("%s: %.17g and then %.17g", info->path, before, value_of(&ex, i));
-        }
+        fail_if(fabs(value_of(&ex, i) - before) > 1e-5 * fabs(before), "%s: %.17g and then %.17g",
+                info->path, before, value_of(&ex, i));
     }
     explorer_finish(&ex);
 }
 
-static void test_saving_never_replaces_a_file_unasked(void **state)
+TEST(test_saving_never_replaces_a_file_unasked)
 {
-    (void)state;
     char folder[] = "/tmp/impactlab-save-XXXXXX", before[1024], whole[256];
     explorer ex;
     assert_non_null(mkdtemp(folder));
@@ -316,9 +304,8 @@ static void test_saving_never_replaces_a_file_unasked(void **state)
     explorer_finish(&ex);
 }
 
-static void test_everything_that_is_listed_can_be_filtered(void **state)
+TEST(test_everything_that_is_listed_can_be_filtered)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "/stic");
@@ -347,9 +334,8 @@ static void test_everything_that_is_listed_can_be_filtered(void **state)
     explorer_finish(&ex);
 }
 
-static void test_groups_of_parameters_fold(void **state)
+TEST(test_groups_of_parameters_fold)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     assert_shows(&ex, "\u25be motor");
@@ -366,9 +352,8 @@ static void test_groups_of_parameters_fold(void **state)
     explorer_finish(&ex);
 }
 
-static void test_values_and_last_parts_are_completed_in_turn(void **state)
+TEST(test_values_and_last_parts_are_completed_in_turn)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":set wall.kind p<Tab>");
@@ -391,9 +376,8 @@ static void test_values_and_last_parts_are_completed_in_turn(void **state)
     explorer_finish(&ex);
 }
 
-static void test_descriptions_are_shown(void **state)
+TEST(test_descriptions_are_shown)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":info<Enter>");
@@ -403,9 +387,8 @@ static void test_descriptions_are_shown(void **state)
     explorer_finish(&ex);
 }
 
-static void test_leaving_asks_if_changes_would_be_lost(void **state)
+TEST(test_leaving_asks_if_changes_would_be_lost)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":seek 0.2<Enter><lt>q");
@@ -426,9 +409,8 @@ static void test_leaving_asks_if_changes_would_be_lost(void **state)
     explorer_finish(&ex);
 }
 
-static void test_an_interrupt_stops_a_computation_first(void **state)
+TEST(test_an_interrupt_stops_a_computation_first)
 {
-    (void)state;
     explorer ex;
     scenario s;
     fault f = {0};
@@ -458,9 +440,8 @@ static void assert_panes(explorer *ex, int height, const char *wanted)
     assert_string_equal(shown, wanted);
 }
 
-static void test_panes_follow_scenario_and_height(void **state)
+TEST(test_panes_follow_scenario_and_height)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     assert_panes(&ex, 24, "134");
@@ -480,9 +461,8 @@ static void test_panes_follow_scenario_and_height(void **state)
     explorer_finish(&ex);
 }
 
-static void test_setpoints_and_limits_are_lines(void **state)
+TEST(test_setpoints_and_limits_are_lines)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     assert_shows(&ex, "\u2508force");
@@ -494,9 +474,8 @@ static void test_setpoints_and_limits_are_lines(void **state)
     explorer_finish(&ex);
 }
 
-static void test_ticks_are_even_and_names_whole(void **state)
+TEST(test_ticks_are_even_and_names_whole)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":seek 0.35<Enter>");
@@ -524,9 +503,8 @@ static void test_ticks_are_even_and_names_whole(void **state)
 }
 
 // The head of the arrow stands in the column of its shaft, wherever the tip is.
-static void test_the_arrow_has_its_head_on(void **state)
+TEST(test_the_arrow_has_its_head_on)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>");
@@ -548,41 +526,12 @@ static void test_the_arrow_has_its_head_on(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_filter_selects_what_has_an_effect(void **state)
+TEST(test_a_filter_selects_what_has_an_effect)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     // motor.transconductance stands before control.transition_time, but the drive has none
     press(&ex, "/trans<Enter>");
     assert_shows(&ex, ":set control.transition_time");
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_typing_replaces_the_value),
-        cmocka_unit_test(test_a_change_comes_before_the_contact_it_was_made_before),
-        cmocka_unit_test(test_what_has_no_effect_says_why),
-        cmocka_unit_test(test_inert_is_what_has_no_effect),
-        cmocka_unit_test(test_predictors_take_the_voltage_in_force),
-        cmocka_unit_test(test_predictors_say_that_they_know_two_links),
-        cmocka_unit_test(test_values_that_have_no_room_are_cut_visibly),
-        cmocka_unit_test(test_changes_to_come_are_seen_edited_and_dropped),
-        cmocka_unit_test(test_nudges_are_one_change_and_reversible),
-        cmocka_unit_test(test_saving_never_replaces_a_file_unasked),
-        cmocka_unit_test(test_everything_that_is_listed_can_be_filtered),
-        cmocka_unit_test(test_groups_of_parameters_fold),
-        cmocka_unit_test(test_values_and_last_parts_are_completed_in_turn),
-        cmocka_unit_test(test_descriptions_are_shown),
-        cmocka_unit_test(test_leaving_asks_if_changes_would_be_lost),
-        cmocka_unit_test(test_an_interrupt_stops_a_computation_first),
-        cmocka_unit_test(test_panes_follow_scenario_and_height),
-        cmocka_unit_test(test_setpoints_and_limits_are_lines),
-        cmocka_unit_test(test_ticks_are_even_and_names_whole),
-        cmocka_unit_test(test_the_arrow_has_its_head_on),
-        cmocka_unit_test(test_a_filter_selects_what_has_an_effect),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

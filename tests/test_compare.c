@@ -1,13 +1,9 @@
 // Rows of a comparison and what counts as a difference.
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/study/compare.h"
 #include "tests/rig_fixture.h"
 
-static void differences_are_shares_of_the_larger_value(void **state)
+TEST(differences_are_shares_of_the_larger_value)
 {
-    (void)state;
     const double none = (double)NAN;
     assert_false(compare_differs(1.0, 1.05, 0.05));
     assert_true(compare_differs(1.0, 1.06, 0.05));
@@ -46,9 +42,8 @@ static void keep(char **text, const compare_table *t,
     fclose(stream);
 }
 
-static void rows_reach_every_form(void **state)
+TEST(rows_reach_every_form)
 {
-    (void)state;
     scenario a, b;
     compare_row rows[2] = {row_of(&a, "a \"b\"", "control.law=hybrid"),
                            row_of(&b, "bare", "control.law=none")};
@@ -89,9 +84,8 @@ static void rows_reach_every_form(void **state)
 }
 
 // Two scenarios at two forces, each pair compared with the reference of its own force.
-static void varied_values_have_columns(void **state)
+TEST(varied_values_have_columns)
 {
-    (void)state;
     fault f;
     const sweep_axis varied[] = {varied_axis("control.force"), varied_axis("control.gains")};
     compare_row rows[4], references[2];
@@ -137,9 +131,8 @@ static void varied_values_have_columns(void **state)
 }
 
 // Full knowledge of the state bounds every law, and only where its model holds.
-static void nothing_beats_the_best(void **state)
+TEST(nothing_beats_the_best)
 {
-    (void)state;
     const char *const laws[] = {"control.law=hybrid", "control.law=optimal",
                                 "control.law=predictive", "control.law=force-pd"};
     for (int i = 0; i < 4; i++) {
@@ -173,9 +166,8 @@ static void nothing_beats_the_best(void **state)
 
 // The best settling time may press as hard as the run did, and at least up to the end of its band:
 // after this impact no less than 0.789 N is possible.
-static void a_gentle_run_is_held_against_its_band(void **state)
+TEST(a_gentle_run_is_held_against_its_band)
 {
-    (void)state;
     static const double command[] = {0.7, 0.77}, pressed[] = {0, 0.8};
     for (int i = 0; i < 4; i++) {
         char force[32];
@@ -194,9 +186,8 @@ static void a_gentle_run_is_held_against_its_band(void **state)
 }
 
 // What failed says so in every form and has no numbers; values of each type have theirs.
-static void a_failed_run_says_so(void **state)
+TEST(a_failed_run_says_so)
 {
-    (void)state;
     const sweep_axis varied[] = {varied_axis("printed.spring_counted_twice"),
                                  varied_axis("arm.model")};
     compare_row rows[2] = {{.scenario = "a", .law = "none", .ok = true, .varied = {1, ARM_PRINTED}},
@@ -233,9 +224,8 @@ static void a_failed_run_says_so(void **state)
 }
 
 // Every form to the last character: widths, marks, units, and a thousand without digits behind it.
-static void forms_are_written_to_the_letter(void **state)
+TEST(forms_are_written_to_the_letter)
 {
-    (void)state;
     fault f;
     const sweep_axis varied[] = {varied_axis("control.force"), varied_axis("sensor.ideal")};
     compare_row rows[3] = {
@@ -278,9 +268,8 @@ static void forms_are_written_to_the_letter(void **state)
 }
 
 // Each number of a row is the summary's, or a bound that holds for such an arm only.
-static void a_row_has_the_numbers_of_its_run(void **state)
+TEST(a_row_has_the_numbers_of_its_run)
 {
-    (void)state;
     const char *const *const cases[] = {
         SETTINGS("control.law=hybrid", "control.force=2"),
         SETTINGS("control.law=none"),
@@ -321,9 +310,8 @@ static void a_row_has_the_numbers_of_its_run(void **state)
                 // an arm that starts at rest with a commanded force
                 const bool impact = i < 3 || i == 5;
                 const bool known = k == 1 ? impact : k == 4 ? i == 0 || i == 2 : i == 0;
-                if (isnan(row.values[k]) == known) {
-                    fail_msg("case %zu: %s is %g", i, compare_quantities[k].key, row.values[k]);
-                }
+                fail_if(isnan(row.values[k]) == known, "case %zu: %s is %g", i,
+                        compare_quantities[k].key, row.values[k]);
             } else if (!(row.values[k] == expected[k] ||
                          (isnan(row.values[k]) && isnan(expected[k])))) {
                 fail_msg("case %zu: %s is %g, not %g", i, compare_quantities[k].key, row.values[k],
@@ -334,19 +322,4 @@ static void a_row_has_the_numbers_of_its_run(void **state)
         assert_ptr_equal(row.scenario, s.name);
         run_finish(&r);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(differences_are_shares_of_the_larger_value),
-        cmocka_unit_test(rows_reach_every_form),
-        cmocka_unit_test(varied_values_have_columns),
-        cmocka_unit_test(a_failed_run_says_so),
-        cmocka_unit_test(a_gentle_run_is_held_against_its_band),
-        cmocka_unit_test(forms_are_written_to_the_letter),
-        cmocka_unit_test(a_row_has_the_numbers_of_its_run),
-        cmocka_unit_test(nothing_beats_the_best),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

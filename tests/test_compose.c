@@ -14,9 +14,8 @@ static char *lines_of(const char *text, int width, bool *split)
     return out;
 }
 
-static void test_text_is_wrapped_at_blanks(void **state)
+TEST(test_text_is_wrapped_at_blanks)
 {
-    (void)state;
     bool split;
     assert_string_equal(lines_of("one two three", 7, &split), "one two|three|");
     assert_false(split);
@@ -35,15 +34,12 @@ static void test_text_is_wrapped_at_blanks(void **state)
 static void check_small(explorer *ex, int width, int height, const char *wanted)
 {
     char *text = picture(ex, width, height, GLYPHS_BRAILLE);
-    if (strncmp(text, wanted, strlen(wanted)) != 0) {
-        fail_msg("%d x %d shows\n%s", width, height, text);
-    }
+    fail_if(strncmp(text, wanted, strlen(wanted)) != 0, "%d x %d shows\n%s", width, height, text);
     free(text);
 }
 
-static void test_a_screen_that_is_too_small_says_so_in_what_fits(void **state)
+TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     check_small(&ex, 1, 1, "<\n");
@@ -65,9 +61,7 @@ static void test_a_screen_that_is_too_small_says_so_in_what_fits(void **state)
                 for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
                     known = known || strcmp(word, words[i]) == 0;
                 }
-                if (!known) {
-                    fail_msg("'%s' at %d x %d", word, width, height);
-                }
+                fail_if(!known, "'%s' at %d x %d", word, width, height);
             }
             free(text);
         }
@@ -78,15 +72,13 @@ static void test_a_screen_that_is_too_small_says_so_in_what_fits(void **state)
 static void assert_has(explorer *ex, int width, int height, const char *wanted)
 {
     char *text = picture(ex, width, height, GLYPHS_BRAILLE);
-    if (strstr(text, wanted) == NULL) {
-        fail_msg("'%s' is not on a screen of %d x %d:\n%s", wanted, width, height, text);
-    }
+    fail_if(strstr(text, wanted) == NULL, "'%s' is not on a screen of %d x %d:\n%s", wanted, width,
+            height, text);
     free(text);
 }
 
-static void test_the_status_keeps_what_matters(void **state)
+TEST(test_the_status_keeps_what_matters)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>m");
@@ -106,9 +98,8 @@ static void test_the_status_keeps_what_matters(void **state)
     explorer_finish(&ex);
 }
 
-static void test_eighty_columns_show_what_a_first_visit_needs(void **state)
+TEST(test_eighty_columns_show_what_a_first_visit_needs)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
@@ -130,9 +121,8 @@ static void test_eighty_columns_show_what_a_first_visit_needs(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_narrow_screen_reaches_the_side(void **state)
+TEST(test_a_narrow_screen_reaches_the_side)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     assert_has(&ex, 60, 20, "\u25b81      N");
@@ -148,16 +138,4 @@ static void test_a_narrow_screen_reaches_the_side(void **state)
     press(&ex, ":panes 123456789<Enter>ww");
     assert_has(&ex, 60, 20, "\u25b83  rad/s");
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_text_is_wrapped_at_blanks),
-        cmocka_unit_test(test_a_screen_that_is_too_small_says_so_in_what_fits),
-        cmocka_unit_test(test_the_status_keeps_what_matters),
-        cmocka_unit_test(test_eighty_columns_show_what_a_first_visit_needs),
-        cmocka_unit_test(test_a_narrow_screen_reaches_the_side),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,7 +1,5 @@
 // What computes is whole without SQLite: this program holds all of it and nothing that stores. A
 // sweep is kept in an array here.
-#include <math.h>
-#include <string.h>
 
 #include "src/study/robust.h"
 #include "src/study/sweep_run.h"
@@ -61,9 +59,8 @@ static status tell_quantity(sweep_store *store, const char *key, double *values,
     return STATUS_OK;
 }
 
-static void a_sweep_is_computed_into_rows_of_any_kind(void **state)
+TEST(a_sweep_is_computed_into_rows_of_any_kind)
 {
-    (void)state;
     static char name[] = "test", vary[] = "motor.voltage=0.5,1,2";
     char *varied[] = {vary};
     const sweep_request request = {.vary = varied, .vary_count = 1};
@@ -94,12 +91,4 @@ static void a_sweep_is_computed_into_rows_of_any_kind(void **state)
     assert_true(isfinite(law.raw[ROBUST_MEDIAN]));
     robust_law_finish(&law);
     sweep_finish(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sweep_is_computed_into_rows_of_any_kind),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

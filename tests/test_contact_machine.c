@@ -1,6 +1,5 @@
 // Transitions of the contact machine on one rod, taken one by one: what each event does to the
 // state, and what the state is found to be afterwards. Whole runs are in test_motion.c.
-#include <string.h>
 
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
@@ -55,9 +54,8 @@ static motion_report next_event(moving_rod *r, double until)
     return report;
 }
 
-static void the_state_at_the_start_follows_from_where_the_arm_is(void **state)
+TEST(the_state_at_the_start_follows_from_where_the_arm_is)
 {
-    (void)state;
     // pressed at the wall, the wall answers with all of the motor's torque
     moving_rod pressed = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
     assert_true(touches(&pressed));
@@ -79,9 +77,8 @@ static void the_state_at_the_start_follows_from_where_the_arm_is(void **state)
 
 // A face stands at rest: an arm that starts on it and moves into it strikes it at once, as one does
 // that comes from next to it.
-static void an_arm_that_starts_on_a_face_strikes_it(void **state)
+TEST(an_arm_that_starts_on_a_face_strikes_it)
 {
-    (void)state;
     const double speed = 0.2, mass = 0.5;
     moving_rod r =
         start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt", "wall.stiffness=1e4",
@@ -103,9 +100,8 @@ static void an_arm_that_starts_on_a_face_strikes_it(void **state)
 }
 
 // How fast a face is met decides whether the arm bounces: one that flees is met slowly.
-static void a_face_that_flees_is_met_slowly(void **state)
+TEST(a_face_that_flees_is_met_slowly)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         moving_rod r = start_rod(SETTINGS(
             "arm.links=1", "wall.contact=kelvin-voigt", "wall.stiffness=1e4", "wall.mass=0.5",
@@ -123,9 +119,8 @@ static void a_face_that_flees_is_met_slowly(void **state)
     }
 }
 
-static void a_plastic_impact_stops_the_rod_and_holds_it(void **state)
+TEST(a_plastic_impact_stops_the_rod_and_holds_it)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1"));
     motion_report impact = next_event(&r, 1);
     assert_int_equal(impact.event, MOTION_IMPACT);
@@ -136,9 +131,8 @@ static void a_plastic_impact_stops_the_rod_and_holds_it(void **state)
     motion_destroy(r.motion);
 }
 
-static void an_elastic_impact_turns_the_rod_back(void **state)
+TEST(an_elastic_impact_turns_the_rod_back)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.restitution=0.8"));
     motion_report impact = next_event(&r, 1);
     assert_int_equal(impact.event, MOTION_IMPACT);
@@ -150,9 +144,8 @@ static void an_elastic_impact_turns_the_rod_back(void **state)
 
 // The face of a wall that gives stays on an arm that is pushed as long as it presses, parts from
 // one that is torn away faster than it follows, and is met again.
-static void a_push_parts_arm_and_face(void **state)
+TEST(a_push_parts_arm_and_face)
 {
-    (void)state;
     const char *const damping[] = {"wall.damping=0", "wall.damping=50"};
     for (int i = 0; i < 2; i++) {
         moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt", damping[i],
@@ -193,9 +186,8 @@ static void a_push_parts_arm_and_face(void **state)
 }
 
 // Stiction is a limit without a margin: a torque beyond it by a hundred millionth moves the rod.
-static void a_torque_just_beyond_stiction_moves_the_rod(void **state)
+TEST(a_torque_just_beyond_stiction_moves_the_rod)
 {
-    (void)state;
     for (int sign = -1; sign <= 1; sign += 2) {
         moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.voltage=0.05"));
         assert_int_equal(contact_state_of(r.motion->state).friction, HUB_STICK);
@@ -212,9 +204,8 @@ static void a_torque_just_beyond_stiction_moves_the_rod(void **state)
 
 // Where the engine steps, a summit of the force is found by stepping again from the step's start;
 // the step then ends as if it had not been looked for. The series of the same arm have no need to.
-static void a_located_peak_leaves_the_step_as_it_was(void **state)
+TEST(a_located_peak_leaves_the_step_as_it_was)
 {
-    (void)state;
     moving_rod steps = start_rod_by(NULL, &explicit_engine), series = start_rod(NULL);
     assert_ptr_not_equal(steps.motion->engine, series.motion->engine);
     moving_rod *const both[] = {&steps, &series};
@@ -241,9 +232,8 @@ static void a_located_peak_leaves_the_step_as_it_was(void **state)
     motion_destroy(series.motion);
 }
 
-static void a_push_in_flight_adds_its_impulse(void **state)
+TEST(a_push_in_flight_adds_its_impulse)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.kind=none", "initial.velocity=1"));
     motion_report report = {0};
     motion_push(&r.arm, r.motion, 0.03, &report);
@@ -254,9 +244,8 @@ static void a_push_in_flight_adds_its_impulse(void **state)
     motion_destroy(r.motion);
 }
 
-static void a_push_into_the_wall_is_answered_by_it(void **state)
+TEST(a_push_into_the_wall_is_answered_by_it)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
     motion_report report = {0};
     motion_push(&r.arm, r.motion, 0.03, &report);
@@ -267,9 +256,8 @@ static void a_push_into_the_wall_is_answered_by_it(void **state)
     motion_destroy(r.motion);
 }
 
-static void a_push_away_ends_the_contact(void **state)
+TEST(a_push_away_ends_the_contact)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
     motion_report report = {0};
     motion_push(&r.arm, r.motion, -0.03, &report);
@@ -278,9 +266,8 @@ static void a_push_away_ends_the_contact(void **state)
     motion_destroy(r.motion);
 }
 
-static void a_torque_away_from_the_wall_ends_the_contact(void **state)
+TEST(a_torque_away_from_the_wall_ends_the_contact)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
     double before = r.arm.motor.torque;
     arm_set_voltage(&r.arm, -1);
@@ -292,9 +279,8 @@ static void a_torque_away_from_the_wall_ends_the_contact(void **state)
 }
 
 // A release is looked at, not obeyed: what is pressed at the wall stays there.
-static void a_release_of_what_is_pressed_is_none(void **state)
+TEST(a_release_of_what_is_pressed_is_none)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
     const double force = r.motion->state[SLOT_FORCE];
     motion_report release = {.event = MOTION_RELEASE};
@@ -305,18 +291,16 @@ static void a_release_of_what_is_pressed_is_none(void **state)
 }
 
 // Without stiction a hub that begins to turn meets no event of friction on its way to the wall.
-static void a_hub_without_stiction_never_sticks(void **state)
+TEST(a_hub_without_stiction_never_sticks)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.stiction=0"));
     assert_int_equal(next_event(&r, 1).event, MOTION_IMPACT);
     motion_destroy(r.motion);
 }
 
 // A wall that gives stops nothing at once: the rod of 1 m keeps its speed, the damper answers it.
-static void a_wall_that_gives_takes_the_rod_at_its_speed(void **state)
+TEST(a_wall_that_gives_takes_the_rod_at_its_speed)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt",
                                       "wall.stiffness=1e4", "wall.damping=20"));
     motion_report report = {.event = MOTION_REACHED};
@@ -334,9 +318,8 @@ static void a_wall_that_gives_takes_the_rod_at_its_speed(void **state)
 
 // A hub behind its spring under a torque that jumps: one that slides is accelerated by all of it,
 // one that sticks lets friction take it.
-static void a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not(void **state)
+TEST(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not)
 {
-    (void)state;
     moving_rod sliding = start_rod(SETTINGS("arm.hub_joint=spring", "initial.velocity=1"));
     const double torque = sliding.arm.motor.torque;
     const double before = state_accelerations(sliding.motion, sliding.motion->state)[0];
@@ -362,9 +345,8 @@ static void a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not(vo
     motion_destroy(stuck.motion);
 }
 
-static void a_cut_changes_nothing_before_it(void **state)
+TEST(a_cut_changes_nothing_before_it)
 {
-    (void)state;
     moving_rod free = start_rod(SETTINGS("arm.links=1")), cut = start_rod(SETTINGS("arm.links=1"));
     cut.motion->cut = 0.35; // after the impact
     motion_report a = next_event(&free, 1), b = next_event(&cut, 1);
@@ -377,9 +359,8 @@ static void a_cut_changes_nothing_before_it(void **state)
 }
 
 // A motion that was begun anew is the one it was the first time, to the last bit.
-static void a_motion_can_be_started_again(void **state)
+TEST(a_motion_can_be_started_again)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.voltage=3"));
     double first[256];
     const size_t size = (size_t)r.motion->size;
@@ -412,9 +393,8 @@ static void assert_starts_anew(const moving_rod *r)
 }
 
 // After every jump, of events and of torques, an implicit method starts anew.
-static void implicit_methods_start_anew_after_a_jump(void **state)
+TEST(implicit_methods_start_anew_after_a_jump)
 {
-    (void)state;
     static const char *const joints[] = {"arm.hub_joint=rigid", "arm.hub_joint=spring"};
     static const char *const links[] = {"arm.links=2", "arm.links=5"};
     int events[MOTION_SLIP + 1] = {0}, moved = 0;
@@ -448,9 +428,8 @@ static void implicit_methods_start_anew_after_a_jump(void **state)
 }
 
 // What is held at wall and hub has neither velocity nor acceleration, to the last bit, and stays.
-static void what_is_held_does_not_move(void **state)
+TEST(what_is_held_does_not_move)
 {
-    (void)state;
     static const char *const stictions[] = {"motor.stiction=0.1", "motor.stiction=0.4"};
     static const char *const methods[] = {"method.name=event", "method.name=generalized-alpha"};
     for (int i = 0; i < 4; i++) {
@@ -481,9 +460,8 @@ static void what_is_held_does_not_move(void **state)
 }
 
 // An arm with long flights keeps bouncing: the chatter rule counts only short flights.
-static void bounces_in_long_flights_are_no_chatter(void **state)
+TEST(bounces_in_long_flights_are_no_chatter)
 {
-    (void)state;
     moving_rod r = start_rod(SETTINGS("arm.links=2", "wall.restitution=0.95", "motor.voltage=2",
                                       "motor.stiction=0", "arm.damping_ratio=0.01"));
     const double shortest = 2 * 3.14159265358979 / r.arm.highest_frequency;
@@ -508,9 +486,8 @@ static void bounces_in_long_flights_are_no_chatter(void **state)
 
 // A force that only rises is largest at the last instant there was, one that only falls where it
 // began.
-static void the_peak_of_a_rising_force_is_at_its_end(void **state)
+TEST(the_peak_of_a_rising_force_is_at_its_end)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         moving_rod r = start_rod_by(NULL, i == 0 ? NULL : &explicit_engine);
         motion *m = r.motion;
@@ -535,33 +512,4 @@ static void the_peak_of_a_rising_force_is_at_its_end(void **state)
         assert_true(rising > 5);
         motion_destroy(m);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_state_at_the_start_follows_from_where_the_arm_is),
-        cmocka_unit_test(an_arm_that_starts_on_a_face_strikes_it),
-        cmocka_unit_test(a_face_that_flees_is_met_slowly),
-        cmocka_unit_test(a_plastic_impact_stops_the_rod_and_holds_it),
-        cmocka_unit_test(a_push_parts_arm_and_face),
-        cmocka_unit_test(an_elastic_impact_turns_the_rod_back),
-        cmocka_unit_test(a_torque_just_beyond_stiction_moves_the_rod),
-        cmocka_unit_test(a_located_peak_leaves_the_step_as_it_was),
-        cmocka_unit_test(a_push_in_flight_adds_its_impulse),
-        cmocka_unit_test(a_push_into_the_wall_is_answered_by_it),
-        cmocka_unit_test(a_push_away_ends_the_contact),
-        cmocka_unit_test(a_torque_away_from_the_wall_ends_the_contact),
-        cmocka_unit_test(a_release_of_what_is_pressed_is_none),
-        cmocka_unit_test(a_hub_without_stiction_never_sticks),
-        cmocka_unit_test(a_wall_that_gives_takes_the_rod_at_its_speed),
-        cmocka_unit_test(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not),
-        cmocka_unit_test(implicit_methods_start_anew_after_a_jump),
-        cmocka_unit_test(what_is_held_does_not_move),
-        cmocka_unit_test(bounces_in_long_flights_are_no_chatter),
-        cmocka_unit_test(the_peak_of_a_rising_force_is_at_its_end),
-        cmocka_unit_test(a_cut_changes_nothing_before_it),
-        cmocka_unit_test(a_motion_can_be_started_again),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

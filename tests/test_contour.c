@@ -4,9 +4,8 @@
 #include "render/page/palette.h"
 #include "tests/check.h"
 
-static void contours_lie_where_a_plane_has_the_level(void **state)
+TEST(contours_lie_where_a_plane_has_the_level)
 {
-    (void)state;
     contour_piece pieces[2];
     // z = 1 + 2 x + 4 y at the corners
     const double tilted[4] = {1, 3, 5, 7};
@@ -21,9 +20,8 @@ static void contours_lie_where_a_plane_has_the_level(void **state)
     assert_int_equal(contour_square(hole, 2, pieces), 0);
 }
 
-static void a_saddle_is_cut_by_its_middle(void **state)
+TEST(a_saddle_is_cut_by_its_middle)
 {
-    (void)state;
     contour_piece pieces[2];
     // high at (0, 0) and (1, 1); the middle is at 5
     const double saddle[4] = {10, 0, 0, 10};
@@ -38,9 +36,8 @@ static void a_saddle_is_cut_by_its_middle(void **state)
     }
 }
 
-static void the_colour_scale_grows_lighter_all_the_way(void **state)
+TEST(the_colour_scale_grows_lighter_all_the_way)
 {
-    (void)state;
     double before = -1;
     for (int i = 0; i <= 100; i++) {
         colour c = palette_shade(THEME_COLOUR, i / 100.0);
@@ -49,14 +46,4 @@ static void the_colour_scale_grows_lighter_all_the_way(void **state)
         check_below(before, light);
         before = light;
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contours_lie_where_a_plane_has_the_level),
-        cmocka_unit_test(a_saddle_is_cut_by_its_middle),
-        cmocka_unit_test(the_colour_scale_grows_lighter_all_the_way),
-    };
-    return cmocka_run_group_tests_name("contour", tests, NULL, NULL) != 0;
 }

@@ -1,8 +1,4 @@
 // The list of control laws: a law's name, word, controller and line of the manual belong together.
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/rig/controller_values.h"
 #include "src/rig/external/process_lines.h"
 #include "src/rig/rig.h"
@@ -10,9 +6,8 @@
 
 static const char *manual; // path of docs/reference/laws.md
 
-static void every_word_chooses_the_controller_of_that_name(void **state)
+TEST(every_word_chooses_the_controller_of_that_name)
 {
-    (void)state;
     const int index = PARAMETER_INDEX(control.law);
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
         parameters p;
@@ -29,9 +24,8 @@ static void every_word_chooses_the_controller_of_that_name(void **state)
     }
 }
 
-static void parameters_of_the_scenario_are_described_there_alone(void **state)
+TEST(parameters_of_the_scenario_are_described_there_alone)
 {
-    (void)state;
     for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
         const controller *c = controller_of(law);
         for (int i = 0; i < c->parameter_count; i++) {
@@ -45,9 +39,8 @@ static void parameters_of_the_scenario_are_described_there_alone(void **state)
                 assert_true(c->parameters[i].unit != NULL && c->parameters[i].description != NULL);
                 continue;
             }
-            if (c->parameters[i].unit != NULL || c->parameters[i].initial != 0) {
-                fail_msg("%s describes %s, which the parameter table does", c->name, path);
-            }
+            fail_if(c->parameters[i].unit != NULL || c->parameters[i].initial != 0,
+                    "%s describes %s, which the parameter table does", c->name, path);
             controller_parameter known = controller_parameter_at(c, i);
             assert_string_equal(known.unit, parameter_table[index].unit);
             check_close(known.initial, parameter_table[index].default_corrected, 0);
@@ -65,9 +58,8 @@ static double value_of(int index, const char *const *settings)
     return values[index];
 }
 
-static void settings_go_before_the_scenario_and_that_before_the_default(void **state)
+TEST(settings_go_before_the_scenario_and_that_before_the_default)
 {
-    (void)state;
     const controller *law = controller_of(LAW_HYBRID);
     int kp = 0;
     while (strcmp(law->parameters[kp].name, "kp") != 0) {
@@ -81,9 +73,8 @@ static void settings_go_before_the_scenario_and_that_before_the_default(void **s
         0);
 }
 
-static void initial_values_of_ones_own_parameters_take_effect(void **state)
+TEST(initial_values_of_ones_own_parameters_take_effect)
 {
-    (void)state;
     const controller_parameter table[] = {{"kp", "", 7, 0, 10, "own initial value"},
                                           {"calm", "s", 0.5, 0, 1, "of this controller alone"},
                                           {.name = "kv"}};
@@ -129,9 +120,8 @@ static void initial_values_of_ones_own_parameters_take_effect(void **state)
 }
 
 // A setting that is none says which one and what was expected; of a name the nearest.
-static void wrong_settings_are_told(void **state)
+TEST(wrong_settings_are_told)
 {
-    (void)state;
     const controller_parameter table[] = {{"kp", "1/s", 7, 0, 10, "with a unit"},
                                           {"calm", "", 0.5, 0, 1, "without one"},
                                           {"bare", NULL, 0.5, 0, 1, "with nothing said of it"}};
@@ -155,9 +145,7 @@ static void wrong_settings_are_told(void **state)
         parameters p = rig_parameters(NULL);
         strcpy(p.control.settings, cases[i].settings);
         assert_int_equal(controller_values(&own, &p, values, &f), STATUS_BAD_SCENARIO);
-        if (strstr(f.text, cases[i].sentence) == NULL) {
-            fail_msg("'%s': '%s'", cases[i].settings, f.text);
-        }
+        fail_if(strstr(f.text, cases[i].sentence) == NULL, "'%s': '%s'", cases[i].settings, f.text);
     }
 
     // without a controller with parameters there is no name to suggest
@@ -173,9 +161,8 @@ static void wrong_settings_are_told(void **state)
 // --- a controller in a program of its own ----------------------------------------------------
 
 // It hears its settings as numbers where they are numbers, else as texts.
-static void settings_are_told_as_numbers_or_texts(void **state)
+TEST(settings_are_told_as_numbers_or_texts)
 {
-    (void)state;
     parameters p = rig_parameters(NULL);
     strcpy(p.control.settings, "gain=2.5 way=fast mixed=3x bare");
     const controller_setup setup = {.period = 0.005};
@@ -192,9 +179,8 @@ static void settings_are_told_as_numbers_or_texts(void **state)
 }
 
 // An answer is an object with a command; what else it names has to be a number or null.
-static void answers_are_numbers(void **state)
+TEST(answers_are_numbers)
 {
-    (void)state;
     static const struct {
         const char *line;
         status answer;
@@ -214,9 +200,7 @@ static void answers_are_numbers(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         controller_output out = {0};
         const char *line = cases[i].line;
-        if (process_read_answer(line, strlen(line), &out) != cases[i].answer) {
-            fail_msg("%s", line);
-        }
+        fail_if(process_read_answer(line, strlen(line), &out) != cases[i].answer, "%s", line);
         if (cases[i].answer == STATUS_OK) {
             check_close(out.command, 1.5, 0);
             assert_true(isnan(out.desired_velocity) && isnan(out.calculated_force));
@@ -227,9 +211,8 @@ static void answers_are_numbers(void **state)
 
 // --- the manual -----------------------------------------------------------------------------
 
-static void manual_says_of_every_law_when_to_take_it(void **state)
+TEST(manual_says_of_every_law_when_to_take_it)
 {
-    (void)state;
     FILE *file = fopen(manual, "rb");
     char *text = calloc(1, 1 << 20);
     assert_non_null(file);
@@ -243,25 +226,13 @@ static void manual_says_of_every_law_when_to_take_it(void **state)
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
         char word[64];
         snprintf(word, sizeof word, "`%s`", control_law_table[law].word);
-        if (strstr(text, word) == NULL) {
-            fail_msg("the first table of %s has no %s", manual, word);
-        }
+        fail_if(strstr(text, word) == NULL, "the first table of %s has no %s", manual, word);
     }
     free(text);
 }
 
 int main(int count, char **arguments)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_word_chooses_the_controller_of_that_name),
-        cmocka_unit_test(parameters_of_the_scenario_are_described_there_alone),
-        cmocka_unit_test(settings_go_before_the_scenario_and_that_before_the_default),
-        cmocka_unit_test(initial_values_of_ones_own_parameters_take_effect),
-        cmocka_unit_test(wrong_settings_are_told),
-        cmocka_unit_test(settings_are_told_as_numbers_or_texts),
-        cmocka_unit_test(answers_are_numbers),
-        cmocka_unit_test(manual_says_of_every_law_when_to_take_it),
-    };
     manual = count > 1 ? arguments[1] : "docs/reference/laws.md";
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(NULL, NULL);
 }

@@ -1,7 +1,5 @@
 // A program in the place of a control law: odd ways to answer, and states of a run that it is led
 // back to and on from.
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "src/run/loop.h"
@@ -20,9 +18,8 @@ static scenario under(const char *program)
 
 #define ANSWERS "while read -r l; do echo '{\"command\": 1}'; done"
 
-static void odd_programs_are_understood(void **state)
+TEST(odd_programs_are_understood)
 {
-    (void)state;
     static const char *const programs[] = {
         ANSWERS,
         "exec 2>&-; " ANSWERS,        // has nothing to complain to
@@ -32,18 +29,15 @@ static void odd_programs_are_understood(void **state)
     for (int i = 0; i < 3; i++) {
         scenario s = under(programs[i]);
         run_result r;
-        if (run_scenario(&s, false, &r) != STATUS_OK) {
-            fail_msg("%s: %s", programs[i], r.summary.message);
-        }
+        fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", programs[i], r.summary.message);
         peak[i] = r.summary.peak_force_N;
         assert_true(i == 0 || peak[i] == peak[0]);
         run_finish(&r);
     }
 }
 
-static void programs_without_an_answer_are_said(void **state)
+TEST(programs_without_an_answer_are_said)
 {
-    (void)state;
     static const struct {
         const char *program, *sentence;
     } cases[] = {
@@ -56,9 +50,8 @@ static void programs_without_an_answer_are_said(void **state)
         scenario s = under(cases[i].program);
         run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_CONTROLLER_FAILED);
-        if (strstr(r.summary.message, cases[i].sentence) == NULL) {
-            fail_msg("'%s' does not say '%s'", r.summary.message, cases[i].sentence);
-        }
+        fail_if(strstr(r.summary.message, cases[i].sentence) == NULL, "'%s' does not say '%s'",
+                r.summary.message, cases[i].sentence);
         run_finish(&r);
     }
 }
@@ -75,17 +68,14 @@ static void *kept(const run_loop *l)
 static sample gone_to(run_loop *l, double time)
 {
     fault f = {.text = ""};
-    if (loop_until(l, time, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(loop_until(l, time, &f) != STATUS_OK, "%s", f.text);
     return loop_row(l);
 }
 
 // Led back the program is started anew, and led on from where it is on the way; the rows are the
 // same.
-static void a_program_is_led_back_and_on(void **state)
+TEST(a_program_is_led_back_and_on)
 {
-    (void)state;
     const scenario s = under(ANSWERS);
     const loop_options options = {.keep_trace = false};
     run_loop *l;
@@ -113,9 +103,8 @@ static void a_program_is_led_back_and_on(void **state)
 
 // A program that answers otherwise when it is asked again cannot be led back. Its answers, from its
 // process number, are 1 to 2 V: enough to move the arm, whose stiffness then shows in the readings.
-static void a_program_that_answers_otherwise_is_said(void **state)
+TEST(a_program_that_answers_otherwise_is_said)
 {
-    (void)state;
     const scenario s = under("n=$$; while read -r l; do echo \"{\\\"command\\\": 1.$n}\"; done");
     const loop_options options = {.keep_trace = false};
     run_loop *l;
@@ -137,11 +126,5 @@ static void a_program_that_answers_otherwise_is_said(void **state)
 int main(void)
 {
     alarm(120); // where somebody waits for what never comes, this fails
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(odd_programs_are_understood),
-        cmocka_unit_test(programs_without_an_answer_are_said),
-        cmocka_unit_test(a_program_is_led_back_and_on),
-        cmocka_unit_test(a_program_that_answers_otherwise_is_said),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+    return run_cases(NULL, NULL);
 }

@@ -5,9 +5,8 @@
 #include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
-static void the_order_of_made_up_errors_is_found(void **state)
+TEST(the_order_of_made_up_errors_is_found)
 {
-    (void)state;
     for (int p = 1; p <= 4; p++) {
         double value[3];
         for (int i = 0; i < 3; i++) {
@@ -33,9 +32,7 @@ static convergence_panel panel_of(const char *const *settings)
     scenario s = {.name = name, .parameters = fixture_parameters(settings)};
     convergence_panel panel;
     fault f = {0};
-    if (convergence_compute(&s, NULL, &panel, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(convergence_compute(&s, NULL, &panel, &f) != STATUS_OK, "%s", f.text);
     return panel;
 }
 
@@ -50,9 +47,8 @@ static const convergence_row *row_of(const convergence_panel *panel, const char 
     return NULL;
 }
 
-static void the_implicit_methods_are_of_second_order_through_impacts(void **state)
+TEST(the_implicit_methods_are_of_second_order_through_impacts)
 {
-    (void)state;
     static const char *const methods[] = {"method.name=newmark", "method.name=generalized-alpha"};
     static const char *const keys[] = {"first_contact_s", "contact_impulse_Ns",
                                        "first_pulse_peak_N", "steady_force_N", "motor_work_J"};
@@ -66,9 +62,8 @@ static void the_implicit_methods_are_of_second_order_through_impacts(void **stat
     }
 }
 
-static void the_event_method_needs_no_shorter_step(void **state)
+TEST(the_event_method_needs_no_shorter_step)
 {
-    (void)state;
     convergence_panel panel = panel_of(SETTINGS("method.step=2e-3"));
     for (int i = 0; i < 2; i++) {
         const convergence_row *peak = row_of(&panel, "first_pulse_peak_N");
@@ -80,9 +75,8 @@ static void the_event_method_needs_no_shorter_step(void **state)
 
 // Before and after an event are two rows of one instant, which belong side by side: the force jumps
 // by newtons there, and the runs differ by rounding.
-static void rows_at_an_event_are_compared_in_their_order(void **state)
+TEST(rows_at_an_event_are_compared_in_their_order)
 {
-    (void)state;
     enum { ROWS = 3000 };
     static double x[ROWS], y[ROWS];
     static char name[] = "test";
@@ -104,9 +98,8 @@ static void rows_at_an_event_are_compared_in_their_order(void **state)
 }
 
 // Only instants that both traces have are compared, whichever has more, and each row once.
-static void instants_of_one_trace_only_are_left_out(void **state)
+TEST(instants_of_one_trace_only_are_left_out)
 {
-    (void)state;
     enum { ROWS = 40 };
     for (int kind = 0; kind < 6; kind++) {
         // multiples of two steps, one of which may begin later, end earlier or have double rows
@@ -148,9 +141,8 @@ static void instants_of_one_trace_only_are_left_out(void **state)
     assert_int_equal(convergence_difference(&none, &one, x, y), 0);
 }
 
-static void a_run_that_fails_is_told_with_its_step(void **state)
+TEST(a_run_that_fails_is_told_with_its_step)
 {
-    (void)state;
     static char name[] = "test";
     scenario s = {.name = name,
                   .parameters = fixture_parameters(SETTINGS(
@@ -171,9 +163,8 @@ static void a_run_that_fails_is_told_with_its_step(void **state)
 }
 
 // The cheapest of the points that keep an error, and none beyond the first one that does not.
-static void the_least_cost_is_read_off_a_study(void **state)
+TEST(the_least_cost_is_read_off_a_study)
 {
-    (void)state;
     method_study study;
     for (int i = 0; i < STUDY_STEPS; i++) {
         study.points[0][i] =
@@ -209,9 +200,8 @@ static int stop_after_two(void *context)
     return 0;
 }
 
-static void a_study_that_is_stopped_keeps_the_runs_before(void **state)
+TEST(a_study_that_is_stopped_keeps_the_runs_before)
 {
-    (void)state;
     static char name[] = "test";
     static method_study study;
     // its shortest steps would take hours
@@ -240,9 +230,8 @@ static void a_study_that_is_stopped_keeps_the_runs_before(void **state)
     }
 }
 
-static void a_study_runs_each_method_at_each_step_once(void **state)
+TEST(a_study_runs_each_method_at_each_step_once)
 {
-    (void)state;
     static char name[] = "test";
     static struct {
         method_study study;
@@ -285,20 +274,4 @@ static void a_study_runs_each_method_at_each_step_once(void **state)
         }
     }
     assert_true(compared > 2 * STUDY_METHODS);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_order_of_made_up_errors_is_found),
-        cmocka_unit_test(the_implicit_methods_are_of_second_order_through_impacts),
-        cmocka_unit_test(the_event_method_needs_no_shorter_step),
-        cmocka_unit_test(rows_at_an_event_are_compared_in_their_order),
-        cmocka_unit_test(instants_of_one_trace_only_are_left_out),
-        cmocka_unit_test(a_run_that_fails_is_told_with_its_step),
-        cmocka_unit_test(the_least_cost_is_read_off_a_study),
-        cmocka_unit_test(a_study_that_is_stopped_keeps_the_runs_before),
-        cmocka_unit_test(a_study_runs_each_method_at_each_step_once),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

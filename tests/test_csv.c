@@ -2,9 +2,6 @@
 // values.
 #include "src/base/csv.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "tests/check.h"
 
 typedef struct memory_file {
@@ -25,9 +22,8 @@ static void check_written(memory_file *m, const char *expected)
     free(m->text);
 }
 
-static void headings_carry_units(void **state)
+TEST(headings_carry_units)
 {
-    (void)state;
     memory_file m;
     open_memory(&m);
     csv_heading(&m.csv, "force", "N");
@@ -39,9 +35,8 @@ static void headings_carry_units(void **state)
     check_written(&m, "force[N],impacts[],value,\"a,b[m]\",\"rate[m, s]\"\n");
 }
 
-static void texts_are_quoted_where_they_could_be_misread(void **state)
+TEST(texts_are_quoted_where_they_could_be_misread)
 {
-    (void)state;
     memory_file m;
     open_memory(&m);
     csv_text(&m.csv, "plain text");
@@ -57,9 +52,8 @@ static void texts_are_quoted_where_they_could_be_misread(void **state)
         &m, "plain text,\"one, two\",\"say \"\"ah\"\"\",\"two\nlines\",\nnext,\"\"\"?[1m?\"\"\"\n");
 }
 
-static void missing_numbers_are_empty(void **state)
+TEST(missing_numbers_are_empty)
 {
-    (void)state;
     memory_file m;
     open_memory(&m);
     csv_number(&m.csv, (double)NAN);
@@ -67,14 +61,4 @@ static void missing_numbers_are_empty(void **state)
     csv_number(&m.csv, (double)INFINITY);
     csv_end_row(&m.csv);
     check_written(&m, ",0.1,inf\n");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(headings_carry_units),
-        cmocka_unit_test(texts_are_quoted_where_they_could_be_misread),
-        cmocka_unit_test(missing_numbers_are_empty),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

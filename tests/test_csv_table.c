@@ -1,8 +1,6 @@
 // Tables that people recorded: what is read, and where what cannot be read stands.
 #include "src/base/csv_table.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "tests/check.h"
@@ -26,9 +24,8 @@ static status read_table(csv_table *t, const char *text, size_t least, fault *f)
     return code;
 }
 
-static void columns_are_found_by_name_and_converted(void **state)
+TEST(columns_are_found_by_name_and_converted)
 {
-    (void)state;
     csv_table t;
     fault f;
     double *values;
@@ -58,9 +55,8 @@ static void columns_are_found_by_name_and_converted(void **state)
     csv_table_finish(&t);
 }
 
-static void what_cannot_be_read_is_named_with_line_and_column(void **state)
+TEST(what_cannot_be_read_is_named_with_line_and_column)
 {
-    (void)state;
     const struct {
         const char *text;
         int line, column; // 0: nowhere
@@ -106,9 +102,8 @@ static void what_cannot_be_read_is_named_with_line_and_column(void **state)
     assert_int_equal(csv_table_read(&t, "/", 2, &f), STATUS_CANNOT_READ);
 }
 
-static void between_rows_a_value_holds_or_lies_on_a_line(void **state)
+TEST(between_rows_a_value_holds_or_lies_on_a_line)
 {
-    (void)state;
     const double times[] = {0, 1, 1, 3}, values[] = {5, 6, 8, 10};
     const struct {
         double time, held, linear;
@@ -118,14 +113,4 @@ static void between_rows_a_value_holds_or_lies_on_a_line(void **state)
         check_close(csv_table_at(times, values, 4, cases[i].time, false), cases[i].held, 0);
         check_close(csv_table_at(times, values, 4, cases[i].time, true), cases[i].linear, 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(columns_are_found_by_name_and_converted),
-        cmocka_unit_test(what_cannot_be_read_is_named_with_line_and_column),
-        cmocka_unit_test(between_rows_a_value_holds_or_lies_on_a_line),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

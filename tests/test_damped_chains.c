@@ -1,16 +1,13 @@
 // Chains of many links with decaying fast modes: long strides for any bend of the arm, bounces that
 // do not depend on the recorded rows, and arbitrarily small motions. Numbers stated are those of
 // power series of the chain of order 32.
-#include <math.h>
-#include <stdlib.h>
 
 #include "tests/passage.h"
 
 // 256 links from rest into a wall, against which they bend: the last link's line meets a point by a
 // fifth of a link beyond its end.
-static void a_chain_that_bends_keeps_its_strides(void **state)
+TEST(a_chain_that_bends_keeps_its_strides)
 {
-    (void)state;
     for (int kind = 0; kind < 2; kind++) {
         const parameters p = fixture_parameters(
             SETTINGS("arm.links=256", "arm.damping_ratio=0.01", "motor.voltage=1",
@@ -23,9 +20,8 @@ static void a_chain_that_bends_keeps_its_strides(void **state)
 
 // 64 links that bounce with all but the slowest modes overdamped: after an impact strides are much
 // shorter than any of the slow decays take, and soon as long again as before.
-static void a_strongly_damped_chain_that_bounces_keeps_its_strides(void **state)
+TEST(a_strongly_damped_chain_that_bounces_keeps_its_strides)
 {
-    (void)state;
     const parameters p =
         fixture_parameters(SETTINGS("arm.links=64", "arm.damping_ratio=0.3", "arm.hub_joint=spring",
                                     "wall.restitution=0.8", "wall.angle=2.1", "motor.voltage=5"));
@@ -71,9 +67,8 @@ static bounces bounces_of(const parameters *p, const engine *by, double gap, dou
 
 // Strongly damped chains bounce ever lower, to flights of 1e-9 s and 1e-13 m, and what is left of
 // their speed makes the peak force, however long the run is.
-static void low_bounces_are_those_of_power_series(void **state)
+TEST(low_bounces_are_those_of_power_series)
 {
-    (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=18", "arm.damping_ratio=0.9149", "arm.k2=50.78", "arm.mass=1.48",
                  "arm.hub_inertia=0.02198", "motor.voltage=2.55", "motor.stiction=0",
@@ -89,9 +84,8 @@ static void low_bounces_are_those_of_power_series(void **state)
 
 // With a rest speed of 1e-7 m/s flights become as short as 4e-14 s and as low as 1e-22 m, which is
 // less than what angles are rounded to. None of them regains any speed.
-static void flights_lower_than_any_rounding_are_those_of_power_series(void **state)
+TEST(flights_lower_than_any_rounding_are_those_of_power_series)
 {
-    (void)state;
     static const char *const arms[2][10] = {
         {"arm.links=23", "arm.hub_joint=beam", "arm.damping_ratio=0.595492",
          "wall.restitution=0.223733", "motor.voltage=0.587403", "arm.k2=32.794", "arm.mass=1.31544",
@@ -118,9 +112,8 @@ static void flights_lower_than_any_rounding_are_those_of_power_series(void **sta
 
 // An arm that closes a gap of less than 1e-9 m meets the wall where the gap is none, wherever its
 // strides end before it.
-static void a_slow_arm_meets_its_wall_in_time(void **state)
+TEST(a_slow_arm_meets_its_wall_in_time)
 {
-    (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=11", "arm.hub_joint=beam", "arm.damping_ratio=0.1", "arm.k2=15",
                  "arm.mass=0.28", "arm.hub_inertia=1.4e-4", "motor.voltage=4e-6",
@@ -173,9 +166,8 @@ static void hub_events(double share, double instant[3])
 
 // Within a stride a small arm's friction comes to its limit from next to it, and only there does
 // the hub break away: at the instant at which a larger arm's does.
-static void a_small_motion_slips_as_a_larger_one(void **state)
+TEST(a_small_motion_slips_as_a_larger_one)
 {
-    (void)state;
     double larger[3], small[3];
     hub_events(1e-4, larger);
     hub_events(1e-6, small);
@@ -187,9 +179,8 @@ static void a_small_motion_slips_as_a_larger_one(void **state)
 // After an impact the hub's velocity has transients of all modes, damped and not: the ledger closes
 // only where all products of them are in the hub's loss. Arms so small that a stride's own check of
 // its ledger does not shorten it.
-static void small_arms_close_the_ledger(void **state)
+TEST(small_arms_close_the_ledger)
 {
-    (void)state;
     static const char *const arms[2][8] = {
         {"arm.links=21", "arm.damping_ratio=0.0453325", "motor.voltage=5.33721e-7",
          "arm.k2=13.7651", "arm.mass=0.171243", "arm.hub_inertia=0.00846674",
@@ -204,17 +195,4 @@ static void small_arms_close_the_ledger(void **state)
         assert_int_equal(all.impacts, 1);
         check_below(all.open, 1e-7);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_chain_that_bends_keeps_its_strides),
-        cmocka_unit_test(a_strongly_damped_chain_that_bounces_keeps_its_strides),
-        cmocka_unit_test(low_bounces_are_those_of_power_series),
-        cmocka_unit_test(flights_lower_than_any_rounding_are_those_of_power_series),
-        cmocka_unit_test(a_slow_arm_meets_its_wall_in_time),
-        cmocka_unit_test(a_small_motion_slips_as_a_larger_one),
-        cmocka_unit_test(small_arms_close_the_ledger)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,9 +19,8 @@ static void go(const arm *a, motion *m, double until)
             continue;
         }
         for (int i = SLOT_COUNT; i < m->size; i++) {
-            if (m->state[i] != 0 && fabs(m->state[i]) < LEAST) {
-                fail_msg("entry %d of the state is %g at %g s", i, m->state[i], next);
-            }
+            fail_if(m->state[i] != 0 && fabs(m->state[i]) < LEAST,
+                    "entry %d of the state is %g at %g s", i, m->state[i], next);
         }
     }
 }
@@ -36,9 +35,8 @@ static motion *fading_motion(arm *a, const char *links, const char *method, cons
 
 // Without Coulomb friction only back EMF and damping end the motion, exponentially: exactly by the
 // series, to what its tolerance leaves by the stiff engine.
-static void an_arm_that_coasts_comes_to_rest(void **state)
+TEST(an_arm_that_coasts_comes_to_rest)
 {
-    (void)state;
     static const char *const links[] = {"arm.links=1", "arm.links=2"};
     for (int k = 0; k < 2; k++) {
         arm a;
@@ -60,9 +58,8 @@ static void an_arm_that_coasts_comes_to_rest(void **state)
 }
 
 // A bent beam is let go while its hub sticks: the vibration fades around the straight shape.
-static void a_beam_that_vibrated_is_exactly_straight(void **state)
+TEST(a_beam_that_vibrated_is_exactly_straight)
 {
-    (void)state;
     arm a;
     motion *m = fading_motion(&a, "arm.links=2", "method.name=event", "motor.stiction=1");
     motion_start(&a, m, 0, 0);
@@ -78,9 +75,8 @@ static void a_beam_that_vibrated_is_exactly_straight(void **state)
 }
 
 // The implicit methods end in the rounding of their angles, single links beyond it.
-static void the_implicit_methods_keep_nothing_that_faded(void **state)
+TEST(the_implicit_methods_keep_nothing_that_faded)
 {
-    (void)state;
     static const char *const methods[] = {"method.name=newmark", "method.name=generalized-alpha"};
     static const char *const frictions[] = {"motor.stiction=0", "motor.stiction=0.01"};
     for (int k = 0; k < 4; k++) {
@@ -94,14 +90,4 @@ static void the_implicit_methods_keep_nothing_that_faded(void **state)
         }
         motion_destroy(m);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_arm_that_coasts_comes_to_rest),
-        cmocka_unit_test(a_beam_that_vibrated_is_exactly_straight),
-        cmocka_unit_test(the_implicit_methods_keep_nothing_that_faded),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

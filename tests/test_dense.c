@@ -1,17 +1,13 @@
 // Dense systems of linear equations against their residuals.
 #include "src/base/dense.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "src/base/random.h"
 #include "tests/check.h"
 
 enum { LARGEST = 12, COLUMNS = 3 };
 
-static void what_is_solved_gives_the_right_sides_again(void **state)
+TEST(what_is_solved_gives_the_right_sides_again)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 5);
     for (int n = 1; n <= LARGEST; n++) {
@@ -47,9 +43,8 @@ static void what_is_solved_gives_the_right_sides_again(void **state)
 }
 
 // Without an exchange of rows a zero ends the elimination, and a tiny pivot loses all digits.
-static void the_largest_entry_is_the_pivot(void **state)
+TEST(the_largest_entry_is_the_pivot)
 {
-    (void)state;
     double zero[4] = {0, 1, 1, 1}, x[2] = {2, 5};
     assert_true(dense_solve(2, zero, x));
     check_close(x[0], 3, 0);
@@ -66,21 +61,10 @@ static void the_largest_entry_is_the_pivot(void **state)
     check_close(z[3], 1, 1e-15);
 }
 
-static void a_singular_matrix_is_refused(void **state)
+TEST(a_singular_matrix_is_refused)
 {
-    (void)state;
     double singular[9] = {1, 2, 3, 2, 4, 6, 1, 0, 1}, x[3] = {1, 1, 1};
     assert_false(dense_solve(3, singular, x));
     double endless[1] = {(double)INFINITY}, y[1] = {1};
     assert_false(dense_solve(1, endless, y));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_solved_gives_the_right_sides_again),
-        cmocka_unit_test(the_largest_entry_is_the_pivot),
-        cmocka_unit_test(a_singular_matrix_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,8 +1,6 @@
 // Sequences that terminals send, whole and in pieces.
 #include "tests/check.h"
 
-#include <string.h>
-
 #include "ui/terminal/escape_sequence.h"
 
 typedef struct meant {
@@ -27,9 +25,8 @@ static meant feed_fresh(const char *text)
     return feed(&e, text);
 }
 
-static void test_mouse_reports_are_understood(void **state)
+TEST(test_mouse_reports_are_understood)
 {
-    (void)state;
     meant m = feed_fresh("[<0;45;30M");
     assert_int_equal(m.result, SEQUENCE_MOUSE);
     assert_int_equal(m.mouse.kind, POINTER_PRESS);
@@ -53,9 +50,8 @@ static void test_mouse_reports_are_understood(void **state)
     assert_int_equal(feed_fresh("[M#!\"").mouse.kind, POINTER_RELEASE);
 }
 
-static void test_what_means_nothing_is_passed_over(void **state)
+TEST(test_what_means_nothing_is_passed_over)
 {
-    (void)state;
     static const char *const others[] = {"[<64;45;30m", "[<2;45;30M", "[<35;45;30M", "[<0;45M",
                                          "[<;;M",       "[1;5C",      "OQ",          "[202~",
                                          "[?1;2c",      "[<0;1;2;3M"};
@@ -73,9 +69,8 @@ static void test_what_means_nothing_is_passed_over(void **state)
     assert_int_equal(feed_fresh(digits).result, SEQUENCE_OVER);
 }
 
-static void test_pasted_text_has_marks(void **state)
+TEST(test_pasted_text_has_marks)
 {
-    (void)state;
     assert_int_equal(feed_fresh("[200~").result, SEQUENCE_PASTE);
     assert_int_equal(feed_fresh("[201~").result, SEQUENCE_PASTED);
 
@@ -84,9 +79,8 @@ static void test_pasted_text_has_marks(void **state)
     assert_int_equal(feed(&e, "[200~").result, SEQUENCE_PASTE);
 }
 
-static void test_a_sequence_may_come_in_pieces(void **state)
+TEST(test_a_sequence_may_come_in_pieces)
 {
-    (void)state;
     escape_sequence e = {.state = SEQUENCE_ESCAPED};
     assert_int_equal(feed(&e, "[<0;4").result, SEQUENCE_GOES_ON);
     assert_int_equal(feed(&e, "5;30").result, SEQUENCE_GOES_ON);
@@ -94,9 +88,8 @@ static void test_a_sequence_may_come_in_pieces(void **state)
     assert_int_equal(e.state, SEQUENCE_NONE);
 }
 
-static void test_other_keys_end_it(void **state)
+TEST(test_other_keys_end_it)
 {
-    (void)state;
     escape_sequence e = {.state = SEQUENCE_ESCAPED};
     assert_int_equal(feed(&e, "x").result, SEQUENCE_OTHER_KEY);
     assert_int_equal(e.state, SEQUENCE_NONE);
@@ -104,16 +97,4 @@ static void test_other_keys_end_it(void **state)
     meant m = feed_fresh("[<0;4\033");
     assert_int_equal(m.result, SEQUENCE_OTHER_KEY);
     assert_int_equal(m.taken, 6);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mouse_reports_are_understood),
-        cmocka_unit_test(test_what_means_nothing_is_passed_over),
-        cmocka_unit_test(test_pasted_text_has_marks),
-        cmocka_unit_test(test_a_sequence_may_come_in_pieces),
-        cmocka_unit_test(test_other_keys_end_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

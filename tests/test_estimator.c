@@ -3,9 +3,8 @@
 #include "src/base/random.h"
 #include "tests/rig_fixture.h"
 
-static void estimator_finds_a_constant(void **state)
+TEST(estimator_finds_a_constant)
 {
-    (void)state;
     estimator e = {.z = {0}, .p = {{4}}};
     const double row[4] = {2};
     for (int i = 0; i < 100; i++) {
@@ -17,9 +16,8 @@ static void estimator_finds_a_constant(void **state)
 }
 
 // Arrays have room for the most states; those that a model does not use neither count nor change.
-static void states_beyond_the_model_are_left_alone(void **state)
+TEST(states_beyond_the_model_are_left_alone)
 {
-    (void)state;
     enum { STATES = 2, ALL = ESTIMATOR_STATES };
     const double nothing = (double)NAN;
     double rate[ALL][ALL] = {{0, 1}, {-4, -0.1}}, input[ALL] = {0, 2}, row[ALL] = {1, 0.5};
@@ -53,9 +51,8 @@ static void states_beyond_the_model_are_left_alone(void **state)
 }
 
 // x'' = -w^2 x + u over h: both parts in closed form.
-static void a_sampled_oscillator_has_its_closed_form(void **state)
+TEST(a_sampled_oscillator_has_its_closed_form)
 {
-    (void)state;
     const double w = 12, h = 0.02, c = cos(w * h), s = sin(w * h);
     double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0, 1}, {-w * w, 0}};
     double input[ESTIMATOR_STATES] = {0, 1};
@@ -71,9 +68,8 @@ static void a_sampled_oscillator_has_its_closed_form(void **state)
 
 // Any model of any number of states does what the matrices say; what lies behind its states is NaN
 // everywhere and reaches nothing.
-static void any_model_follows_its_matrices(void **state)
+TEST(any_model_follows_its_matrices)
 {
-    (void)state;
     enum { ALL = ESTIMATOR_STATES };
     random_generator g;
     random_seed(&g, 4);
@@ -165,9 +161,8 @@ static void any_model_follows_its_matrices(void **state)
 
 // Another view of any number of states is that of the matrices; what lies behind either view is NaN
 // before and nothing after.
-static void another_view_is_that_of_its_matrix(void **state)
+TEST(another_view_is_that_of_its_matrix)
 {
-    (void)state;
     enum { ALL = ESTIMATOR_STATES };
     random_generator g;
     random_seed(&g, 6);
@@ -200,16 +195,4 @@ static void another_view_is_that_of_its_matrix(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sampled_oscillator_has_its_closed_form),
-        cmocka_unit_test(any_model_follows_its_matrices),
-        cmocka_unit_test(another_view_is_that_of_its_matrix),
-        cmocka_unit_test(estimator_finds_a_constant),
-        cmocka_unit_test(states_beyond_the_model_are_left_alone),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

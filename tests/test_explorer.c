@@ -5,9 +5,8 @@
 
 #include "src/base/random.h"
 
-static void test_text_is_cut_and_cleaned(void **state)
+TEST(test_text_is_cut_and_cleaned)
 {
-    (void)state;
     screen s = {0};
     char *text = NULL;
     size_t size = 0;
@@ -25,9 +24,8 @@ static void test_text_is_cut_and_cleaned(void **state)
     screen_finish(&s);
 }
 
-static void test_lines_of_dots_stay_within_their_canvas(void **state)
+TEST(test_lines_of_dots_stay_within_their_canvas)
 {
-    (void)state;
     screen s = {0};
     assert_true(screen_resize(&s, 6, 4));
     canvas c = {&s, 1, 1, 4, 2};
@@ -43,9 +41,8 @@ static void test_lines_of_dots_stay_within_their_canvas(void **state)
     screen_finish(&s);
 }
 
-static void test_every_glyph_has_a_twin_in_ascii(void **state)
+TEST(test_every_glyph_has_a_twin_in_ascii)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     static const char *const pages[] = {"<End>bp", "?", "<Esc>c", "<Esc>o", "<Esc><Tab>m"};
@@ -60,9 +57,8 @@ static void test_every_glyph_has_a_twin_in_ascii(void **state)
     explorer_finish(&ex);
 }
 
-static void test_playing_shows_an_impact_within_seconds(void **state)
+TEST(test_playing_shows_an_impact_within_seconds)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     assert_shows(&ex, "free flight");
@@ -77,9 +73,8 @@ static void test_playing_shows_an_impact_within_seconds(void **state)
 }
 
 // A newcomer's way: watch, pause, go back to just before contact, lower the voltage, compare.
-static void test_a_lower_voltage_is_compared_with_the_run_before(void **state)
+TEST(test_a_lower_voltage_is_compared_with_the_run_before)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "<Space>");
@@ -127,9 +122,8 @@ static int tallest_column(explorer *ex, int width)
     return tallest;
 }
 
-static void test_a_spike_of_one_row_is_drawn(void **state)
+TEST(test_a_spike_of_one_row_is_drawn)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "134:extend 19<Enter><End>");
@@ -139,9 +133,8 @@ static void test_a_spike_of_one_row_is_drawn(void **state)
     explorer_finish(&ex);
 }
 
-static void test_values_show_the_difference_to_the_mark(void **state)
+TEST(test_values_show_the_difference_to_the_mark)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":seek 0.2<Enter>m<Tab>:seek 0.25<Enter>");
@@ -152,9 +145,8 @@ static void test_values_show_the_difference_to_the_mark(void **state)
     explorer_finish(&ex);
 }
 
-static void test_the_list_filters_and_opens(void **state)
+TEST(test_the_list_filters_and_opens)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "o/three");
@@ -174,9 +166,8 @@ static void test_the_list_filters_and_opens(void **state)
     explorer_finish(&ex);
 }
 
-static void test_what_is_typed_is_completed(void **state)
+TEST(test_what_is_typed_is_completed)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":comp<Tab>");
@@ -191,9 +182,8 @@ static void test_what_is_typed_is_completed(void **state)
     explorer_finish(&ex);
 }
 
-static void test_help_lists_every_key(void **state)
+TEST(test_help_lists_every_key)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "?");
@@ -208,9 +198,8 @@ static void test_help_lists_every_key(void **state)
     explorer_finish(&ex);
 }
 
-static void test_pages_scroll_to_their_ends(void **state)
+TEST(test_pages_scroll_to_their_ends)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "?GGjj");
@@ -223,9 +212,8 @@ static void test_pages_scroll_to_their_ends(void **state)
     explorer_finish(&ex);
 }
 
-static void test_saved_scenario_and_screen(void **state)
+TEST(test_saved_scenario_and_screen)
 {
-    (void)state;
     explorer ex;
     char folder[] = "/tmp/impactlab-screen-XXXXXX", line[128], path[64];
     assert_non_null(mkdtemp(folder));
@@ -237,9 +225,7 @@ static void test_saved_scenario_and_screen(void **state)
     static const char *const endings[] = {"csv", "yaml", "txt", "svg"};
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
         snprintf(line, sizeof line, "save %s/run.%s", folder, endings[i]);
-        if (!explorer_carry_out(&ex, line)) {
-            fail_msg("%s: %s", line, ex.state.message.text);
-        }
+        fail_if(!explorer_carry_out(&ex, line), "%s: %s", line, ex.state.message.text);
     }
     assert_false(explorer_carry_out(&ex, "save /nowhere/run.csv"));
     assert_false(explorer_carry_out(&ex, "save run.doc"));
@@ -256,9 +242,8 @@ static void test_saved_scenario_and_screen(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_click_moves_the_cursor(void **state)
+TEST(test_a_click_moves_the_cursor)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
@@ -270,9 +255,8 @@ static void test_a_click_moves_the_cursor(void **state)
     explorer_finish(&ex);
 }
 
-static void test_every_scenario_and_every_size_draws(void **state)
+TEST(test_every_scenario_and_every_size_draws)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     static const int sizes[][2] = {{1, 1},   {300, 100}, {40, 12}, {41, 13}, {72, 20},
@@ -295,9 +279,8 @@ static void test_every_scenario_and_every_size_draws(void **state)
 }
 
 // Beneath a lesson the arm may be left a row, or none, also from near by.
-static void test_a_lesson_leaves_the_arm_any_height(void **state)
+TEST(test_a_lesson_leaves_the_arm_any_height)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "lessons/hybrid-law");
     press(&ex, ":closeup on<Enter>:seek 0.5<Enter>");
@@ -309,9 +292,8 @@ static void test_a_lesson_leaves_the_arm_any_height(void **state)
 
 // At the last row before a touch the linearised arm says what "impactlab predict" says, for as many
 // links as there are; while the run plays it is not asked.
-static void test_many_links_are_predicted_while_the_run_rests(void **state)
+TEST(test_many_links_are_predicted_while_the_run_rests)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/five-links");
     press(&ex, "i");
@@ -332,9 +314,8 @@ static int chance(random_generator *r, int limit)
     return (int)random_below(r, (uint64_t)limit);
 }
 
-static void test_random_keys_do_no_harm(void **state)
+TEST(test_random_keys_do_no_harm)
 {
-    (void)state;
     static const int keys[] = {KEY_CODE_LEFT,
                                KEY_CODE_RIGHT,
                                KEY_CODE_UP,
@@ -378,9 +359,8 @@ static void test_random_keys_do_no_harm(void **state)
 
 // The lab draws and takes keys while a long run is computed; what it shows in the end is what a
 // lab that waits for its runs shows.
-static void test_a_long_run_is_drawn_while_it_is_computed(void **state)
+TEST(test_a_long_run_is_drawn_while_it_is_computed)
 {
-    (void)state;
     explorer ex, patient;
     scenario s;
     fault f = {0};
@@ -425,29 +405,4 @@ static void test_a_long_run_is_drawn_while_it_is_computed(void **state)
     ex.state.session.input_count = 0;
     explorer_finish(&ex);
     explorer_finish(&patient);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_text_is_cut_and_cleaned),
-        cmocka_unit_test(test_lines_of_dots_stay_within_their_canvas),
-        cmocka_unit_test(test_every_glyph_has_a_twin_in_ascii),
-        cmocka_unit_test(test_playing_shows_an_impact_within_seconds),
-        cmocka_unit_test(test_a_lower_voltage_is_compared_with_the_run_before),
-        cmocka_unit_test(test_a_spike_of_one_row_is_drawn),
-        cmocka_unit_test(test_values_show_the_difference_to_the_mark),
-        cmocka_unit_test(test_the_list_filters_and_opens),
-        cmocka_unit_test(test_what_is_typed_is_completed),
-        cmocka_unit_test(test_help_lists_every_key),
-        cmocka_unit_test(test_pages_scroll_to_their_ends),
-        cmocka_unit_test(test_saved_scenario_and_screen),
-        cmocka_unit_test(test_a_click_moves_the_cursor),
-        cmocka_unit_test(test_every_scenario_and_every_size_draws),
-        cmocka_unit_test(test_a_lesson_leaves_the_arm_any_height),
-        cmocka_unit_test(test_a_long_run_is_drawn_while_it_is_computed),
-        cmocka_unit_test(test_many_links_are_predicted_while_the_run_rests),
-        cmocka_unit_test(test_random_keys_do_no_harm),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,8 +1,5 @@
 #include "src/run/export.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/run/run.h"
 #include "tests/check.h"
 
@@ -36,9 +33,8 @@ static run_result stopped_result(void)
     return result;
 }
 
-static void object_holds_every_key(void **state)
+TEST(object_holds_every_key)
 {
-    (void)state;
     scenario s = parse("title: T\narm: {links: 3}\nwall: {kind: plane}\n"
                        "expect:\n  impacts: {value: 1, tolerance: 0}\n  peak_force_N: null\n"
                        "  first_contact_s: {value: 0.3, tolerance: 0.01}\n"
@@ -88,9 +84,8 @@ static void object_holds_every_key(void **state)
 
 // A change of a word is told as the word; one whose place in the script is not known as an event
 // alone.
-static void changes_are_told_as_they_were_written(void **state)
+TEST(changes_are_told_as_they_were_written)
 {
-    (void)state;
     scenario s = parse("title: T\ncontrol: {law: hybrid}\n"
                        "script:\n  - {at: 0.1 s, set: {control.lock: force}}\n");
     run_result result = stopped_result();
@@ -116,9 +111,8 @@ static void keep_sentences(void *context, const char *sentence)
     strcat(context, "\n");
 }
 
-static void missed_expectations_say_what_is_and_what_was_expected(void **state)
+TEST(missed_expectations_say_what_is_and_what_was_expected)
 {
-    (void)state;
     char said[1024] = "";
     scenario s = parse("title: T\nexpect:\n"
                        "  impacts: null\n"
@@ -173,9 +167,8 @@ static int count_of(const char *text, char wanted)
     return count;
 }
 
-static void csv_has_one_header_and_a_column_for_each_value(void **state)
+TEST(csv_has_one_header_and_a_column_for_each_value)
 {
-    (void)state;
     for (int links = 2; links <= 3; links++) {
         char *text = csv_of(links, (double)NAN);
         int columns = (links > 2 ? 3 : 0);
@@ -194,9 +187,8 @@ static void csv_has_one_header_and_a_column_for_each_value(void **state)
     }
 }
 
-static void csv_has_columns_of_fitted_sensors_only(void **state)
+TEST(csv_has_columns_of_fitted_sensors_only)
 {
-    (void)state;
     char *without = csv_of(2, (double)NAN), *with = csv_of(2, -0.125);
     assert_null(strstr(without, "film[rad]"));
     assert_non_null(strstr(with, ",film[rad],"));
@@ -206,16 +198,4 @@ static void csv_has_columns_of_fitted_sensors_only(void **state)
     assert_int_equal(count_of(with, ','), count_of(without, ',') + 1);
     free(without);
     free(with);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(object_holds_every_key),
-        cmocka_unit_test(changes_are_told_as_they_were_written),
-        cmocka_unit_test(missed_expectations_say_what_is_and_what_was_expected),
-        cmocka_unit_test(csv_has_one_header_and_a_column_for_each_value),
-        cmocka_unit_test(csv_has_columns_of_fitted_sensors_only),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

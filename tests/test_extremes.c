@@ -1,8 +1,6 @@
 // Parameters at the ends of their ranges: a run ends with bounded effort, and nothing that is no
 // finite number passes for a result.
-#include <math.h>
 #include <signal.h>
-#include <string.h>
 
 #include "src/run/run.h"
 #include "src/run/together.h"
@@ -41,9 +39,8 @@ static status ends_of_push(int links, double impulse)
     return code;
 }
 
-static void a_push_of_any_size_ends_a_run_or_lets_it_go_on(void **state)
+TEST(a_push_of_any_size_ends_a_run_or_lets_it_go_on)
 {
-    (void)state;
     static const int links[] = {1, 2, 3, 8};
     for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
         assert_int_equal(ends_of_push(links[i], 1e300), STATUS_NOT_FINITE);
@@ -54,9 +51,8 @@ static void a_push_of_any_size_ends_a_run_or_lets_it_go_on(void **state)
 }
 
 // Whoever asks a run of either model to end gets its first rows, and hears at which instant.
-static void a_run_that_is_asked_to_end_does(void **state)
+TEST(a_run_that_is_asked_to_end_does)
 {
-    (void)state;
     static const char *const models[] = {"printed", "corrected"};
     for (int i = 0; i < 2; i++) {
         char text[128];
@@ -81,9 +77,8 @@ static void a_run_that_is_asked_to_end_does(void **state)
 }
 
 // At 1e16 rad/s a turn takes less than a last bit of the time.
-static void strides_that_pass_no_time_end_a_run(void **state)
+TEST(strides_that_pass_no_time_end_a_run)
 {
-    (void)state;
     assert_int_equal(ends_of_push(1, 1e15), STATUS_NO_PROGRESS);
     assert_int_equal(ends_of_push(1, -1e20), STATUS_NO_PROGRESS);
 }
@@ -91,9 +86,8 @@ static void strides_that_pass_no_time_end_a_run(void **state)
 // The force just after an impact of a chain that is damped beyond all vibration: the last joint's
 // damper, which grows with N, turns at the speed over a link's length, its lever arm. So the peak
 // grows with N^3, and it is at the first contact.
-static void the_peak_of_a_damped_chain_is_at_its_impact(void **state)
+TEST(the_peak_of_a_damped_chain_is_at_its_impact)
 {
-    (void)state;
     static const int links[] = {16, 24, 28, 32, 40};
     double before = 0;
     for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
@@ -117,9 +111,8 @@ static void the_peak_of_a_damped_chain_is_at_its_impact(void **state)
 }
 
 // An arm that turns away from a point comes to it with the line behind its last link.
-static void a_touch_behind_the_link_is_told(void **state)
+TEST(a_touch_behind_the_link_is_told)
 {
-    (void)state;
     for (int way = -1; way <= 1; way += 2) {
         char text[160];
         run_result result;
@@ -148,9 +141,8 @@ static void give_up(void *context, const sweep_progress *p)
     abandoned = true;
 }
 
-static void runs_without_an_end_are_abandoned_and_not_stored(void **state)
+TEST(runs_without_an_end_are_abandoned_and_not_stored)
 {
-    (void)state;
     static const char text[] = "title: Nearly for ever\ninitial: {velocity: 0.01 rad/s}\n"
                                "wall: {angle: 3 rad}\narm: {links: 24}\nrun: {duration: 90000 s}\n";
     char *vary[] = {"motor.voltage=0.001:0.002:3"};
@@ -176,9 +168,8 @@ static void runs_without_an_end_are_abandoned_and_not_stored(void **state)
     scenario_finish(&base);
 }
 
-static void runs_abandoned_before_they_begin_are_not_set_up(void **state)
+TEST(runs_abandoned_before_they_begin_are_not_set_up)
 {
-    (void)state;
     static const char *const texts[] = {"title: Corrected\n",
                                         "title: Printed\narm: {model: printed}\n",
                                         "title: Under a law\ncontrol: {law: hybrid}\n"};
@@ -196,18 +187,4 @@ static void runs_abandoned_before_they_begin_are_not_set_up(void **state)
         run_finish(&result);
         scenario_finish(&s);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_push_of_any_size_ends_a_run_or_lets_it_go_on),
-        cmocka_unit_test(a_run_that_is_asked_to_end_does),
-        cmocka_unit_test(strides_that_pass_no_time_end_a_run),
-        cmocka_unit_test(the_peak_of_a_damped_chain_is_at_its_impact),
-        cmocka_unit_test(a_touch_behind_the_link_is_told),
-        cmocka_unit_test(runs_without_an_end_are_abandoned_and_not_stored),
-        cmocka_unit_test(runs_abandoned_before_they_begin_are_not_set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 // Faults: a code and places for programs, a sentence for people.
 #include "src/base/fault.h"
 
-#include <string.h>
-
 #include "tests/check.h"
 
-static void a_fault_names_its_parameter(void **state)
+TEST(a_fault_names_its_parameter)
 {
-    (void)state;
     fault f;
     assert_int_equal(fault_set_at(&f, STATUS_BAD_SCENARIO, "wall.angle", "%s is %d", "it", 7),
                      STATUS_BAD_SCENARIO);
@@ -20,9 +17,8 @@ static void a_fault_names_its_parameter(void **state)
     assert_string_equal(f.path, "");
 }
 
-static void a_fault_names_its_place(void **state)
+TEST(a_fault_names_its_place)
 {
-    (void)state;
     fault f;
     fault_set_place(&f, STATUS_BAD_SCENARIO, 3, 14, "here");
     assert_int_equal(f.line, 3);
@@ -32,25 +28,22 @@ static void a_fault_names_its_place(void **state)
     assert_int_equal(f.line, 0);
 }
 
-static void nobody_has_to_listen(void **state)
+TEST(nobody_has_to_listen)
 {
-    (void)state;
     assert_int_equal(fault_set(NULL, STATUS_NO_MEMORY, "lost"), STATUS_NO_MEMORY);
     assert_int_equal(fault_set_at(NULL, STATUS_SINGULAR, "arm.k2", "lost"), STATUS_SINGULAR);
     assert_int_equal(fault_set_place(NULL, STATUS_BAD_SCENARIO, 1, 2, "lost"), STATUS_BAD_SCENARIO);
 }
 
-static void long_sentences_are_cut(void **state)
+TEST(long_sentences_are_cut)
 {
-    (void)state;
     fault f;
     fault_set(&f, STATUS_SINGULAR, "%2000d", 1);
     assert_int_equal(strlen(f.text), sizeof f.text - 1);
 }
 
-static void every_status_has_a_text_of_its_own(void **state)
+TEST(every_status_has_a_text_of_its_own)
 {
-    (void)state;
     for (int i = STATUS_OK; i <= STATUS_NOT_ALLOWED; i++) {
         assert_true(strlen(status_text((status)i)) > 0);
         for (int k = STATUS_OK; k < i; k++) {
@@ -58,16 +51,4 @@ static void every_status_has_a_text_of_its_own(void **state)
         }
     }
     assert_non_null(status_text((status)1000));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_fault_names_its_parameter),
-        cmocka_unit_test(a_fault_names_its_place),
-        cmocka_unit_test(nobody_has_to_listen),
-        cmocka_unit_test(long_sentences_are_cut),
-        cmocka_unit_test(every_status_has_a_text_of_its_own),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

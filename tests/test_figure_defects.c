@@ -12,9 +12,8 @@ const char *__lsan_default_suppressions(void)
     return "leak:libfontconfig\n";
 }
 
-static void the_last_of_twenty_links_is_body_21(void **state)
+TEST(the_last_of_twenty_links_is_body_21)
 {
-    (void)state;
     static figure_report r;
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -31,9 +30,8 @@ static void the_last_of_twenty_links_is_body_21(void **state)
 }
 
 // The peak lies between two rows: the mark's force must be among the drawn.
-static void the_peak_is_on_the_curve(void **state)
+TEST(the_peak_is_on_the_curve)
 {
-    (void)state;
     fault f = {0};
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -72,9 +70,7 @@ static const figure_text *text_of_mark(const figure_report *r, const figure_mark
     for (int i = 0; i < r->text_count; i++) {
         found = g_str_has_prefix(r->texts[i].text, wanted) ? &r->texts[i] : found;
     }
-    if (found == NULL) {
-        fail_msg("'%s' is not drawn", wanted);
-    }
+    fail_if(found == NULL, "'%s' is not drawn", wanted);
     g_free(wanted);
     return found;
 }
@@ -130,9 +126,8 @@ static void check_mode(const figure_mark *m, const figure_text *t, double x, dou
 }
 
 // What begins at a line stands on that side of it, or points there where the page ends.
-static void labels_of_modes_stand_where_the_mode_is(void **state)
+TEST(labels_of_modes_stand_where_the_mode_is)
 {
-    (void)state;
     check_labels("compare/hybrid", 0, 0, check_mode);
     check_labels("compare/bang-bang", 0, 0, check_mode);
     check_labels("compare/reverse-torque", 0, 0, check_mode);
@@ -154,9 +149,8 @@ static void check_peak(const figure_mark *m, const figure_text *t, double x, dou
 
 // Wherever there is room for a word; no text meets another, not in the insets of short pulses
 // either.
-static void the_label_of_the_peak_stands_at_its_point(void **state)
+TEST(the_label_of_the_peak_stands_at_its_point)
 {
-    (void)state;
     static const char *const names[] = {"corrected/first-impact", "corrected/stiff-beam",
                                         "corrected/five-links",   "corrected/spring-hub",
                                         "corrected/plane-wall",   "corrected/fast-impact",
@@ -166,9 +160,8 @@ static void the_label_of_the_peak_stands_at_its_point(void **state)
     }
 }
 
-static void quantities_have_the_same_digits(void **state)
+TEST(quantities_have_the_same_digits)
 {
-    (void)state;
     static const struct {
         double value;
         const char *shown;
@@ -185,9 +178,8 @@ static void quantities_have_the_same_digits(void **state)
 }
 
 // However narrow the page, no line begins with what belongs to the end of the one before.
-static void numbers_keep_their_units(void **state)
+TEST(numbers_keep_their_units)
 {
-    (void)state;
     const char *caption = "At 1 V and 10 ms, <i>β</i> = 0.4, <i>h</i> = 10\u2009ms, a peak of "
                           "5.40\u2009N after 12.5 ms, <i>k</i><sub>1</sub> = 0.4 at "
                           "4.92\u2009N·m/rad, 3\u2009V·s/rad. impactlab 0.1.0.";
@@ -202,9 +194,8 @@ static void numbers_keep_their_units(void **state)
             const char *line =
                 text + pango_layout_line_get_start_index(pango_layout_get_line_readonly(layout, i));
             for (size_t k = 0; k < G_N_ELEMENTS(torn); k++) {
-                if (strncmp(line, torn[k], strlen(torn[k])) == 0) {
-                    fail_msg("at %g points a line begins with '%.12s'", width, line);
-                }
+                fail_if(strncmp(line, torn[k], strlen(torn[k])) == 0,
+                        "at %g points a line begins with '%.12s'", width, line);
             }
         }
         g_object_unref(layout);
@@ -214,9 +205,8 @@ static void numbers_keep_their_units(void **state)
 
 // An index can be read where it is printed, however the page of a diagram is scaled: its letters
 // have 6 points there, or those of the text about it.
-static void indices_can_be_read_on_scaled_pages(void **state)
+TEST(indices_can_be_read_on_scaled_pages)
 {
-    (void)state;
     static const double scales[] = {0.65, 1, 1.38};
     PangoContext *context = text_context_create();
     for (size_t i = 0; i < G_N_ELEMENTS(scales); i++) {
@@ -233,9 +223,8 @@ static void indices_can_be_read_on_scaled_pages(void **state)
 
 // A title of two lines ends with more than a word, and lines are as far apart with an exponent in
 // one of them as without.
-static void lines_are_even(void **state)
+TEST(lines_are_even)
 {
-    (void)state;
     PangoContext *context = text_context_create();
     double widths[2], plain, raised, width;
     text_block title = {.markup = "Optical encoder under a constant 1 V",
@@ -259,9 +248,8 @@ static void lines_are_even(void **state)
     g_object_unref(context);
 }
 
-static void apostrophes_are_the_printers(void **state)
+TEST(apostrophes_are_the_printers)
 {
-    (void)state;
     static const char *const cases[][2] = {{"Newmark's", "Newmark\u2019s"},
                                            {"Newmark&apos;s", "Newmark\u2019s"},
                                            {"Newmark&#39;s", "Newmark\u2019s"},
@@ -274,9 +262,8 @@ static void apostrophes_are_the_printers(void **state)
 }
 
 // A curve that is cut by the axis begins at it: no colour left of it.
-static void curves_begin_at_the_axis(void **state)
+TEST(curves_begin_at_the_axis)
 {
-    (void)state;
     static figure_report r;
     double x[] = {0, 1, 2, 3}, y[] = {1, 1.2, 1.1, 1.4};
     figure_series series = {.x = x, .y = y, .count = 4};
@@ -296,9 +283,8 @@ static void curves_begin_at_the_axis(void **state)
 enum { STAIRS = 1200 };
 
 // Pixels of a grey between black and the page's own greys in the legend's swatch.
-static void a_busy_line_has_no_dashes(void **state)
+TEST(a_busy_line_has_no_dashes)
 {
-    (void)state;
     static figure_report r;
     static double x[STAIRS], stairs[STAIRS], smooth[STAIRS];
     for (int i = 0; i < STAIRS; i++) {
@@ -338,9 +324,8 @@ static void a_busy_line_has_no_dashes(void **state)
     cairo_surface_destroy(surface);
 }
 
-static void a_map_without_colours_is_grey(void **state)
+TEST(a_map_without_colours_is_grey)
 {
-    (void)state;
     static figure_report r;
     double x[] = {0, 1, 2}, y[] = {0, 1}, z[] = {1, 2, 3, 4, 5, 6};
     figure_map map = {.x = x, .y = y, .columns = 3, .rows = 2, .z = z, .contours = true};
@@ -357,9 +342,8 @@ static void a_map_without_colours_is_grey(void **state)
 }
 
 // The CSV of a figure is headed by the axes' names and units.
-static void numbers_have_names_and_units(void **state)
+TEST(numbers_have_names_and_units)
 {
-    (void)state;
     fault f = {0};
     size_t length;
     double x[] = {0, 1};
@@ -381,9 +365,8 @@ static void numbers_have_names_and_units(void **state)
 }
 
 // A legend that found no room inside stands above the panel's heading, not over it.
-static void a_legend_keeps_off_the_heading(void **state)
+TEST(a_legend_keeps_off_the_heading)
 {
-    (void)state;
     static figure_report r;
     enum { POINTS = 60, CURVES = 3 };
     double x[POINTS], y[CURVES][POINTS];
@@ -439,9 +422,7 @@ static cairo_surface_t *paint_sweep(const char *one, const char *other, figure_r
     sweep_request request = {.vary = vary, .vary_count = other != NULL ? 2 : 1};
     sweep s;
     fault f = {0};
-    if (sweep_init(&s, &base, &request, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(sweep_init(&s, &base, &request, &f) != STATUS_OK, "%s", f.text);
     double values[64];
     assert_true(s.run_count <= 64);
     for (size_t i = 0; i < s.run_count; i++) {
@@ -456,9 +437,8 @@ static cairo_surface_t *paint_sweep(const char *one, const char *other, figure_r
 }
 
 // Sweeps and errors over costs have two axes and no box round them, as recorded signals do.
-static void all_plots_have_axes_of_one_style(void **state)
+TEST(all_plots_have_axes_of_one_style)
 {
-    (void)state;
     static figure_report r;
     double x[] = {0.01, 0.1, 1, 10}, y[] = {1, 3, 20, 50};
     figure_series series = {.x = x, .y = y, .count = 4, .marker = MARKER_CIRCLE};
@@ -478,9 +458,8 @@ static void all_plots_have_axes_of_one_style(void **state)
 }
 
 // A number over a list of words is a line for each word, and no map with colours between them.
-static void words_are_lines_not_colours(void **state)
+TEST(words_are_lines_not_colours)
 {
-    (void)state;
     static figure_report r;
     static const char *const names[] = {"event", "newmark", "generalized-alpha"};
     cairo_surface_t *surface =
@@ -500,26 +479,4 @@ static void words_are_lines_not_colours(void **state)
     cairo_surface_destroy(surface);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_last_of_twenty_links_is_body_21),
-        cmocka_unit_test(the_peak_is_on_the_curve),
-        cmocka_unit_test(labels_of_modes_stand_where_the_mode_is),
-        cmocka_unit_test(the_label_of_the_peak_stands_at_its_point),
-        cmocka_unit_test(quantities_have_the_same_digits),
-        cmocka_unit_test(numbers_keep_their_units),
-        cmocka_unit_test(indices_can_be_read_on_scaled_pages),
-        cmocka_unit_test(lines_are_even),
-        cmocka_unit_test(apostrophes_are_the_printers),
-        cmocka_unit_test(curves_begin_at_the_axis),
-        cmocka_unit_test(a_busy_line_has_no_dashes),
-        cmocka_unit_test(a_map_without_colours_is_grey),
-        cmocka_unit_test(numbers_have_names_and_units),
-        cmocka_unit_test(a_legend_keeps_off_the_heading),
-        cmocka_unit_test(all_plots_have_axes_of_one_style),
-        cmocka_unit_test(words_are_lines_not_colours),
-    };
-    return cmocka_run_group_tests_name("figure defects", tests, make_work_folder,
-                                       remove_work_folder) != 0;
-}
+ALL_BETWEEN(make_work_folder, remove_work_folder)

@@ -3,9 +3,6 @@
 #include "tests/check.h"
 
 #include <cairo.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "render/figures/figures.h"
@@ -25,9 +22,7 @@ static artwork open_figure(const char *id)
     const figure_options as_it_comes = {0};
     const thesis_figure *which = thesis_figure_find(id);
     assert_non_null(which);
-    if (figure_open(which, &as_it_comes, &drawn, &f) != STATUS_OK) {
-        fail_msg("%s: %s", id, f.text);
-    }
+    fail_if(figure_open(which, &as_it_comes, &drawn, &f) != STATUS_OK, "%s: %s", id, f.text);
     return drawn;
 }
 
@@ -42,9 +37,7 @@ static char *caption_of(const char *id)
 static void expect_in_caption(const char *id, const char *part)
 {
     char *caption = caption_of(id);
-    if (strstr(caption, part) == NULL) {
-        fail_msg("%s: '%s' is not in '%s'", id, part, caption);
-    }
+    fail_if(strstr(caption, part) == NULL, "%s: '%s' is not in '%s'", id, part, caption);
     g_free(caption);
 }
 
@@ -57,9 +50,7 @@ static char *csv_of(const char *id)
     assert_true(file >= 0);
     close(file);
     artwork drawn = open_figure(id);
-    if (drawn.write_csv(drawn.what, path, &f) != STATUS_OK) {
-        fail_msg("%s: %s", id, f.text);
-    }
+    fail_if(drawn.write_csv(drawn.what, path, &f) != STATUS_OK, "%s: %s", id, f.text);
     artwork_finish(&drawn);
     assert_true(g_file_get_contents(path, &text, NULL, NULL));
     unlink(path);
@@ -72,24 +63,20 @@ static double value_in(const char *csv, const char *quantity)
     char start[80];
     snprintf(start, sizeof start, "\n%s,", quantity);
     const char *line = strstr(csv, start);
-    if (line == NULL) {
-        fail_msg("no line begins with '%s'", quantity);
-    }
+    fail_if(line == NULL, "no line begins with '%s'", quantity);
     return atof(line + strlen(start));
 }
 
-static void captions_name_the_constants_of_the_printed_model(void **state)
+TEST(captions_name_the_constants_of_the_printed_model)
 {
-    (void)state;
     expect_in_caption("3.2", "k1 = 90");
     expect_in_caption("3.10", "1.67·10");
     expect_in_caption("2.2", "k1 = 90");
     expect_in_caption("4.1", "90");
 }
 
-static void captions_say_whose_shading_it_is(void **state)
+TEST(captions_say_whose_shading_it_is)
 {
-    (void)state;
     expect_in_caption("3.4", "of the first run (printed)");
     for (int i = 1; i <= 7; i++) {
         char id[4] = {'5', '.', (char)('0' + i), '\0'};
@@ -98,9 +85,8 @@ static void captions_say_whose_shading_it_is(void **state)
 }
 
 // Simulation and bench stand over the same seconds.
-static void chapters_2_and_3_have_one_time_axis(void **state)
+TEST(chapters_2_and_3_have_one_time_axis)
 {
-    (void)state;
     static const char *const ids[] = {"2.4", "2.5", "2.6", "3.2"};
     for (size_t i = 0; i < G_N_ELEMENTS(ids); i++) {
         static figure_report r;
@@ -120,15 +106,12 @@ static void chapters_2_and_3_have_one_time_axis(void **state)
             found = found || (strcmp(r.texts[k].text, "1.0") == 0 &&
                               fabs(p.x + p.width / 2 - r.panels[0].x - r.panels[0].width) < 0.6);
         }
-        if (!found) {
-            fail_msg("%s: its time axis does not end at 1.0 s", ids[i]);
-        }
+        fail_if(!found, "%s: its time axis does not end at 1.0 s", ids[i]);
     }
 }
 
-static void the_printed_peak_is_a_point(void **state)
+TEST(the_printed_peak_is_a_point)
 {
-    (void)state;
     char *csv = csv_of("3.4");
     const char *row = strstr(csv, ",Table 4.3,");
     assert_non_null(row);
@@ -139,9 +122,8 @@ static void the_printed_peak_is_a_point(void **state)
 
 // The cut body: the hinge's torque about the centre is the moment of its impulse, a relation of
 // (4.3) and (4.4) that the drawing does not use; and the wall stops the point of collision.
-static void the_cut_body_is_in_balance(void **state)
+TEST(the_cut_body_is_in_balance)
 {
-    (void)state;
     char *csv = csv_of("4.2");
     double half = 0.25, torque = value_in(csv, "hinge torque impulse Y");
     check_relative(torque, -half * value_in(csv, "hinge impulse X"), 1e-9);
@@ -151,18 +133,16 @@ static void the_cut_body_is_in_balance(void **state)
 }
 
 // Both states of 3.1 lie on the constraint (3.9).
-static void the_last_link_goes_through_the_contact_point(void **state)
+TEST(the_last_link_goes_through_the_contact_point)
 {
-    (void)state;
     char *csv = csv_of("3.1");
     check_close(value_in(csv, "constraint (3.9)"), 0, 1e-9);
     check_relative(value_in(csv, "b") / value_in(csv, "a"), tan(0.1), 1e-12);
     g_free(csv);
 }
 
-static void the_algorithm_has_the_thesis_numbers(void **state)
+TEST(the_algorithm_has_the_thesis_numbers)
 {
-    (void)state;
     static const char *const numbers[] = {"1", "2", "2.1", "2.2", "3", "3.1", "3.2", "4"};
     char *csv = csv_of("T3.2");
     const char *at = csv;
@@ -180,17 +160,14 @@ static void the_algorithm_has_the_thesis_numbers(void **state)
 static double point_in(const char *csv, const char *start)
 {
     const char *line = strstr(csv, start);
-    if (line == NULL) {
-        fail_msg("no line begins with '%s'", start);
-    }
+    fail_if(line == NULL, "no line begins with '%s'", start);
     return atof(line + strlen(start));
 }
 
 // What the thesis prints stands where it prints it, what is computed beside it, and the residual is
 // their difference.
-static void printed_values_have_residuals(void **state)
+TEST(printed_values_have_residuals)
 {
-    (void)state;
     char *csv = csv_of("forces");
     double printed = point_in(csv, "force k2 x 100[N],max_force_energy printed,1,");
     double computed = point_in(csv, "force k2 x 100[N],max_force_energy,1,");
@@ -207,9 +184,8 @@ static void printed_values_have_residuals(void **state)
 
 // Section 3.1.3: with one run of the algorithm no pair gives a usable force, with two the thesis's
 // does.
-static void the_printed_arm_needs_its_second_run(void **state)
+TEST(the_printed_arm_needs_its_second_run)
 {
-    (void)state;
     static const char *const starts[] = {"\"two runs, h = 1\u2009ms\",map,",
                                          "\"one run, 1\u2009ms\",map,",
                                          "\"one run, 0.2\u2009ms\",map,"};
@@ -239,18 +215,7 @@ static void the_printed_arm_needs_its_second_run(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(captions_name_the_constants_of_the_printed_model),
-        cmocka_unit_test(captions_say_whose_shading_it_is),
-        cmocka_unit_test(chapters_2_and_3_have_one_time_axis),
-        cmocka_unit_test(the_printed_peak_is_a_point),
-        cmocka_unit_test(the_cut_body_is_in_balance),
-        cmocka_unit_test(the_last_link_goes_through_the_contact_point),
-        cmocka_unit_test(the_algorithm_has_the_thesis_numbers),
-        cmocka_unit_test(printed_values_have_residuals),
-        cmocka_unit_test(the_printed_arm_needs_its_second_run),
-    };
-    int failed = cmocka_run_group_tests_name("figure_fidelity", tests, NULL, NULL);
+    int failed = run_cases(NULL, NULL);
     text_release();
     return failed != 0;
 }

@@ -10,9 +10,8 @@ const char *__lsan_default_suppressions(void)
 
 // ---- files
 
-static void same_bytes_also_for_later_figures(void **state)
+TEST(same_bytes_also_for_later_figures)
 {
-    (void)state;
     static const char *const formats[] = {"png", "pdf", "svg"};
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -61,9 +60,8 @@ static bool contains(const GString *bytes, const char *wanted)
     return memmem(bytes->str, bytes->len, wanted, strlen(wanted)) != NULL;
 }
 
-static void pdf_embeds_fonts_and_has_no_type_3(void **state)
+TEST(pdf_embeds_fonts_and_has_no_type_3)
 {
-    (void)state;
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     write_figure(&s.figure.figure, path_of("fonts.pdf"));
@@ -81,9 +79,8 @@ static void pdf_embeds_fonts_and_has_no_type_3(void **state)
     synthetic_finish(&s);
 }
 
-static void png_knows_its_resolution_and_origin(void **state)
+TEST(png_knows_its_resolution_and_origin)
 {
-    (void)state;
     synthetic s;
     synthetic_init(&s, run_panels, 2);
     s.figure.figure.width = 127;
@@ -116,9 +113,8 @@ static void png_knows_its_resolution_and_origin(void **state)
     synthetic_finish(&s);
 }
 
-static void svg_ids_are_unique_and_all_references_resolve(void **state)
+TEST(svg_ids_are_unique_and_all_references_resolve)
 {
-    (void)state;
     synthetic s;
     size_t length;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -148,9 +144,8 @@ static void svg_ids_are_unique_and_all_references_resolve(void **state)
     synthetic_finish(&s);
 }
 
-static void csv_holds_what_is_drawn(void **state)
+TEST(csv_holds_what_is_drawn)
 {
-    (void)state;
     double x[] = {0, 0.1, 0.2}, y[] = {1, (double)NAN, -2.5};
     figure_series series = {.name = "force, \"raw\"", .x = x, .y = y, .count = 3};
     figure_impulse impulse = {0.1, 0.04};
@@ -175,9 +170,8 @@ static void csv_holds_what_is_drawn(void **state)
     free(csv);
 }
 
-static void faults_are_sentences(void **state)
+TEST(faults_are_sentences)
 {
-    (void)state;
     fault f = {0};
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -201,9 +195,8 @@ static void faults_are_sentences(void **state)
     synthetic_finish(&s);
 }
 
-static void a_full_disk_is_noticed(void **state)
+TEST(a_full_disk_is_noticed)
 {
-    (void)state;
     static const char *const names[] = {"full.png", "full.pdf", "full.svg"};
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -217,17 +210,4 @@ static void a_full_disk_is_noticed(void **state)
     synthetic_finish(&s);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bytes_also_for_later_figures),
-        cmocka_unit_test(pdf_embeds_fonts_and_has_no_type_3),
-        cmocka_unit_test(png_knows_its_resolution_and_origin),
-        cmocka_unit_test(svg_ids_are_unique_and_all_references_resolve),
-        cmocka_unit_test(csv_holds_what_is_drawn),
-        cmocka_unit_test(faults_are_sentences),
-        cmocka_unit_test(a_full_disk_is_noticed),
-    };
-    return cmocka_run_group_tests_name("figure_file", tests, make_work_folder,
-                                       remove_work_folder) != 0;
-}
+ALL_BETWEEN(make_work_folder, remove_work_folder)

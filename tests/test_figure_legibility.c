@@ -8,9 +8,6 @@
 
 #include <cairo.h>
 #include <glib.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "render/figures/figures.h"
 #include "render/page/text.h"
@@ -139,9 +136,8 @@ static artwork open_figure(int i, figure_options o)
 {
     fault f = {0};
     artwork drawn;
-    if (figure_open(thesis_figure_at(i), &o, &drawn, &f) != STATUS_OK) {
-        fail_msg("%s: %s", thesis_figure_at(i)->id, f.text);
-    }
+    fail_if(figure_open(thesis_figure_at(i), &o, &drawn, &f) != STATUS_OK, "%s: %s",
+            thesis_figure_at(i)->id, f.text);
     return drawn;
 }
 
@@ -463,9 +459,8 @@ static void check_legends(const figure *fig, figure_theme theme, const char *id,
 
 // ---- tests
 
-static void every_figure_can_be_read(void **state)
+TEST(every_figure_can_be_read)
 {
-    (void)state;
     static figure_report r;
     complaints = 0;
     for (int i = 0; i < thesis_figure_count(); i++) {
@@ -489,9 +484,8 @@ static void every_figure_can_be_read(void **state)
 }
 
 // Every colour of the palette differs from every other for everyone, and contrasts with the page.
-static void colours_are_far_from_each_other(void **state)
+TEST(colours_are_far_from_each_other)
 {
-    (void)state;
     static const figure_theme coloured[] = {THEME_COLOUR, THEME_DARK};
     complaints = 0;
     for (int t = 0; t < 2; t++) {
@@ -517,11 +511,7 @@ static void colours_are_far_from_each_other(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_are_far_from_each_other),
-        cmocka_unit_test(every_figure_can_be_read),
-    };
-    int failed = cmocka_run_group_tests_name("figure_legibility", tests, NULL, NULL);
+    int failed = run_cases(NULL, NULL);
     text_release();
     return failed != 0;
 }

@@ -3,9 +3,6 @@
 #include "tests/check.h"
 
 #include <cairo.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "render/figures/figures.h"
@@ -34,9 +31,7 @@ static char *path_of(const char *name)
 static char *read_file(const char *path, size_t *length)
 {
     FILE *stream = fopen(path, "rb");
-    if (stream == NULL) {
-        fail_msg("%s cannot be read", path);
-    }
+    fail_if(stream == NULL, "%s cannot be read", path);
     fseek(stream, 0, SEEK_END);
     *length = (size_t)ftell(stream);
     rewind(stream);
@@ -54,9 +49,7 @@ static artwork open_figure(const char *id, figure_options o)
     artwork drawn;
     const thesis_figure *which = thesis_figure_find(id);
     assert_non_null(which);
-    if (figure_open(which, &o, &drawn, &f) != STATUS_OK) {
-        fail_msg("%s: %s", id, f.text);
-    }
+    fail_if(figure_open(which, &o, &drawn, &f) != STATUS_OK, "%s: %s", id, f.text);
     return drawn;
 }
 
@@ -67,9 +60,7 @@ static figure_rect record(const artwork *a, figure_report *report)
     figure_rect ink;
     cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
     cairo_t *cr = cairo_create(surface);
-    if (a->paint(cr, a->what, report, &f) != STATUS_OK) {
-        fail_msg("%s: %s", a->title, f.text);
-    }
+    fail_if(a->paint(cr, a->what, report, &f) != STATUS_OK, "%s: %s", a->title, f.text);
     assert_int_equal(cairo_status(cr), CAIRO_STATUS_SUCCESS);
     cairo_recording_surface_ink_extents(surface, &ink.x, &ink.y, &ink.width, &ink.height);
     cairo_destroy(cr);
@@ -83,28 +74,24 @@ static void expect_tidy(const char *id, figure_options o)
     static figure_report r;
     artwork drawn = open_figure(id, o);
     figure_rect ink = record(&drawn, &r), page = {0, 0, ceil(drawn.width), ceil(drawn.height)};
-    if (!rect_is_within(&ink, &page, 0.5)) {
-        fail_msg("%s: ink at %g, %g of %g x %g leaves the page of %g x %g", id, ink.x, ink.y,
-                 ink.width, ink.height, page.width, page.height);
-    }
+    fail_if(!rect_is_within(&ink, &page, 0.5),
+            "%s: ink at %g, %g of %g x %g leaves the page of %g x %g", id, ink.x, ink.y, ink.width,
+            ink.height, page.width, page.height);
     assert_true(r.text_count >= 3);
     for (int i = 0; i < r.text_count; i++) {
-        if (!rect_is_within(&r.texts[i].place, &page, 0.5)) {
-            fail_msg("%s: '%s' is not within the page", id, r.texts[i].text);
-        }
+        fail_if(!rect_is_within(&r.texts[i].place, &page, 0.5), "%s: '%s' is not within the page",
+                id, r.texts[i].text);
         for (int k = 0; k < i; k++) {
-            if (rects_overlap(&r.texts[i].place, &r.texts[k].place)) {
-                fail_msg("%s: '%s' covers '%s'", id, r.texts[i].text, r.texts[k].text);
-            }
+            fail_if(rects_overlap(&r.texts[i].place, &r.texts[k].place), "%s: '%s' covers '%s'", id,
+                    r.texts[i].text, r.texts[k].text);
         }
     }
     artwork_finish(&drawn);
 }
 
 // But those that take long: test_figure_legibility looks at them.
-static void every_figure_is_tidy(void **state)
+TEST(every_figure_is_tidy)
 {
-    (void)state;
     for (int i = 0; i < thesis_figure_count(); i++) {
         assert_ptr_equal(thesis_figure_find(thesis_figure_at(i)->id), thesis_figure_at(i));
         if (thesis_figure_at(i)->slow) {
@@ -114,9 +101,8 @@ static void every_figure_is_tidy(void **state)
     }
 }
 
-static void figures_fit_a_column_of_85_mm(void **state)
+TEST(figures_fit_a_column_of_85_mm)
 {
-    (void)state;
     static const char *const ids[] = {"2.1", "2.2", "3.4", "3.11", "4.3", "4.6",
                                       "5.2", "5.6", "5.7", "T3.1", "T4.2"};
     for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
@@ -143,16 +129,13 @@ static void expect_texts(const char *id, const char *const *texts)
     artwork drawn = open_figure(id, (figure_options){0});
     record(&drawn, &r);
     for (; *texts != NULL; texts++) {
-        if (!has_text(&r, *texts)) {
-            fail_msg("%s: '%s' is not drawn", id, *texts);
-        }
+        fail_if(!has_text(&r, *texts), "%s: '%s' is not drawn", id, *texts);
     }
     artwork_finish(&drawn);
 }
 
-static void figures_say_what_they_show(void **state)
+TEST(figures_say_what_they_show)
 {
-    (void)state;
     expect_texts("2.1", (const char *[]){"Fig. 2.1", "40\u2009kΩ", "FSR", "(V)", "(N)", NULL});
     expect_texts("4.3", (const char *[]){"0.0443", "T = 70.0\u2009ms", "fmax = 1.34\u2009N", NULL});
     expect_texts("4.2", (const char *[]){"impulse 0.0443\u2009N·s", "0.743\u2009m/s", NULL});
@@ -163,9 +146,8 @@ static void figures_say_what_they_show(void **state)
 
 // One legend speaks for both panels of 4.4 and 4.5: both have its colours, and none beside it that
 // reads like one of them.
-static void the_predictors_figures_have_the_legends_colours(void **state)
+TEST(the_predictors_figures_have_the_legends_colours)
 {
-    (void)state;
     static const char *const ids[] = {"4.4", "4.5"};
     for (int k = 0; k < 2; k++) {
         fault f = {0};
@@ -196,9 +178,7 @@ static void the_predictors_figures_have_the_legends_colours(void **state)
 static double number_in_csv(const char *csv, const char *start, int column)
 {
     const char *line = strstr(csv, start);
-    if (line == NULL) {
-        fail_msg("no line begins with '%s'", start);
-    }
+    fail_if(line == NULL, "no line begins with '%s'", start);
     for (int i = 0; i < column; i++) {
         line = strchr(line, ',');
         assert_non_null(line);
@@ -219,16 +199,13 @@ static char *csv_of(const char *id)
     size_t length;
     const thesis_figure *which = thesis_figure_find(id);
     char name[64];
-    if (draw_plain(id, path_of("csv"), "svg", &f) != STATUS_OK) {
-        fail_msg("%s: %s", id, f.text);
-    }
+    fail_if(draw_plain(id, path_of("csv"), "svg", &f) != STATUS_OK, "%s: %s", id, f.text);
     snprintf(name, sizeof name, "csv/%s.csv", which->file);
     return read_file(path_of(name), &length);
 }
 
-static void recorded_signals_stand_beside_their_picture(void **state)
+TEST(recorded_signals_stand_beside_their_picture)
 {
-    (void)state;
     char *csv = csv_of("3.4");
     assert_non_null(strstr(csv, ",force,"));
     assert_non_null(strstr(csv, ",force corrected,"));
@@ -254,9 +231,8 @@ static status overlaid(const char *csv, const char *id, fault *f)
     return code;
 }
 
-static void reference_data_lie_over_signals(void **state)
+TEST(reference_data_lie_over_signals)
 {
-    (void)state;
     fault f = {0};
     size_t length;
     const char *good = "time[s],force [N],remark\n0.35,1.5,first\r\n0.4,,missing\n\n0.45,0.25,\n";
@@ -299,9 +275,8 @@ static double map_error(const char *csv, const char *step, double beta, double g
     return error;
 }
 
-static void the_map_tells_good_pairs_from_bad(void **state)
+TEST(the_map_tells_good_pairs_from_bad)
 {
-    (void)state;
     char *csv = csv_of("beta-gamma");
     // the thesis's pair at its step, and the same at a fifth of the step
     double at_1_ms = map_error(csv, "1", 0.4, 0.5);
@@ -316,9 +291,8 @@ static void the_map_tells_good_pairs_from_bad(void **state)
     free(csv);
 }
 
-static void table_cells_are_right(void **state)
+TEST(table_cells_are_right)
 {
-    (void)state;
     char *csv = csv_of("T4.1");
     const char *group = "Peak force by the energy principle (N),thesis";
     check_close(number_in_csv(csv, group, 2), 23.93, 0);
@@ -350,9 +324,8 @@ static void expect_same_file(const char *name)
     free(b);
 }
 
-static void a_second_run_writes_the_same_bytes(void **state)
+TEST(a_second_run_writes_the_same_bytes)
 {
-    (void)state;
     static const char *const ids[] = {"2.3", "4.2", "4.6", "5.7", "T4.2"};
     static const char *const folders[] = {"once", "twice"};
     fault f = {0};
@@ -373,9 +346,8 @@ static void a_second_run_writes_the_same_bytes(void **state)
     }
 }
 
-static void fonts_are_embedded_as_outlines(void **state)
+TEST(fonts_are_embedded_as_outlines)
 {
-    (void)state;
     static const char *const ids[] = {"2.1", "T3.2", "4.4"};
     fault f = {0};
     for (size_t i = 0; i < 3; i++) {
@@ -390,9 +362,8 @@ static void fonts_are_embedded_as_outlines(void **state)
     }
 }
 
-static void themes_change_the_page(void **state)
+TEST(themes_change_the_page)
 {
-    (void)state;
     static const char *const ids[] = {"3.4", "4.1", "T2.1"};
     fault f = {0};
     for (size_t i = 0; i < 3; i++) {
@@ -412,9 +383,8 @@ static void themes_change_the_page(void **state)
     }
 }
 
-static void figures_are_asked_for_by_id(void **state)
+TEST(figures_are_asked_for_by_id)
 {
-    (void)state;
     fault f = {0};
     assert_null(thesis_figure_find("3.99"));
     assert_ptr_equal(thesis_figure_find("t4.1"), thesis_figure_find("T4.1"));
@@ -429,14 +399,11 @@ static void figures_are_asked_for_by_id(void **state)
 // ---- the report
 // ----------------------------------------------------------------------------------
 
-static void the_report_stands_alone(void **state)
+TEST(the_report_stands_alone)
 {
-    (void)state;
     fault f = {0};
     size_t length;
-    if (report_write(path_of("report"), NULL, 0, NULL, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(report_write(path_of("report"), NULL, 0, NULL, &f) != STATUS_OK, "%s", f.text);
     char *html = read_file(path_of("report/report.html"), &length);
     for (const char *at = strstr(html, "src="); at != NULL; at = strstr(at + 1, "src=")) {
         assert_int_equal(strncmp(at, "src=\"data:image/png;base64,", 27), 0);
@@ -448,9 +415,7 @@ static void the_report_stands_alone(void **state)
     for (int i = 0; i < thesis_figure_count(); i++) {
         char again[64];
         snprintf(again, sizeof again, "<code>impactlab figures %s</code>", thesis_figure_at(i)->id);
-        if (strstr(html, again) == NULL) {
-            fail_msg("%s is not in the report", thesis_figure_at(i)->id);
-        }
+        fail_if(strstr(html, again) == NULL, "%s is not in the report", thesis_figure_at(i)->id);
     }
     assert_non_null(strstr(html, "82.92"));
     assert_non_null(strstr(html, "motor.torque_constant"));
@@ -467,9 +432,8 @@ static void the_report_stands_alone(void **state)
     free(pdf);
 }
 
-static void a_report_without_a_folder_is_complained_about(void **state)
+TEST(a_report_without_a_folder_is_complained_about)
 {
-    (void)state;
     fault f = {0};
     assert_int_equal(report_write("/proc/nowhere", NULL, 0, NULL, &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "/proc/nowhere"));
@@ -493,23 +457,4 @@ static int remove_work_folder(void **state)
     return system(command);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_figure_is_tidy),
-        cmocka_unit_test(figures_fit_a_column_of_85_mm),
-        cmocka_unit_test(figures_say_what_they_show),
-        cmocka_unit_test(the_predictors_figures_have_the_legends_colours),
-        cmocka_unit_test(recorded_signals_stand_beside_their_picture),
-        cmocka_unit_test(reference_data_lie_over_signals),
-        cmocka_unit_test(the_map_tells_good_pairs_from_bad),
-        cmocka_unit_test(table_cells_are_right),
-        cmocka_unit_test(a_second_run_writes_the_same_bytes),
-        cmocka_unit_test(fonts_are_embedded_as_outlines),
-        cmocka_unit_test(themes_change_the_page),
-        cmocka_unit_test(figures_are_asked_for_by_id),
-        cmocka_unit_test(the_report_stands_alone),
-        cmocka_unit_test(a_report_without_a_folder_is_complained_about),
-    };
-    return cmocka_run_group_tests_name("figures", tests, make_work_folder, remove_work_folder) != 0;
-}
+ALL_BETWEEN(make_work_folder, remove_work_folder)

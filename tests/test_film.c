@@ -17,9 +17,8 @@ static film_clock clock_of(const recorded *r, double seconds, double slow)
 }
 
 // The film runs through the whole run, forwards, and slower round the impact by what was asked for.
-static void test_clock(void **state)
+TEST(test_clock)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     film_clock c = clock_of(&r, 10, 8);
     double speed, last = -1, outside, inside = 0, run = 0;
@@ -56,9 +55,8 @@ static film_options small_film(void)
 }
 
 // Every impact is slowed down, not the first alone, and the speed told is the clock's own.
-static void test_clock_of_bounces(void **state)
+TEST(test_clock_of_bounces)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     film_clock c = clock_of(&r, 10, 8);
     double speed, fastest = 0;
@@ -92,17 +90,14 @@ static int count_files(const char *path)
     return count;
 }
 
-static void test_frames(void **state)
+TEST(test_frames)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
     char path[256];
     snprintf(path, sizeof path, "%s", in_folder("frames"));
-    if (film_of(&r, &options, path, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(film_of(&r, &options, path, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(count_files(path), 5);
     cairo_surface_t *frame =
         cairo_image_surface_create_from_png(in_folder("frames/frame-00003.png"));
@@ -127,9 +122,8 @@ static void expect_same_frames(const char *one, const char *two, int count)
 }
 
 // Two threads write what one does, of one run and of several.
-static void test_threads(void **state)
+TEST(test_threads)
 {
-    (void)state;
     recorded r[3] = {record("corrected/first-impact"), record("corrected/plane-wall"),
                      record("corrected/first-impact")};
     const film_run runs[3] = {{&r[0].scenario, &r[0].result, "one"},
@@ -141,10 +135,9 @@ static void test_threads(void **state)
             film_options options = small_film();
             fault f = {0};
             options.threads = threads;
-            if (film_write(runs, k == 0 ? 1 : 3, &options, in_folder(names[k][threads - 1]), &f) !=
-                STATUS_OK) {
-                fail_msg("%s", f.text);
-            }
+            fail_if(film_write(runs, k == 0 ? 1 : 3, &options, in_folder(names[k][threads - 1]),
+                               &f) != STATUS_OK,
+                    "%s", f.text);
         }
         expect_same_frames(names[k][0], names[k][1], 5);
     }
@@ -154,17 +147,14 @@ static void test_threads(void **state)
 }
 
 // Each run has a view of its own: with an arm in it, and the first's own picture in the first.
-static void test_split_screen(void **state)
+TEST(test_split_screen)
 {
-    (void)state;
     recorded r[2] = {record("corrected/first-impact"), record("corrected/plane-wall")};
     const film_run runs[2] = {{&r[0].scenario, &r[0].result, "one"},
                               {&r[1].scenario, &r[1].result, "two"}};
     film_options options = small_film();
     fault f = {0};
-    if (film_write(runs, 2, &options, in_folder("split"), &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(film_write(runs, 2, &options, in_folder("split"), &f) != STATUS_OK, "%s", f.text);
     cairo_surface_t *frame =
         cairo_image_surface_create_from_png(in_folder("split/frame-00003.png"));
     assert_int_equal(cairo_image_surface_get_width(frame), 320);
@@ -196,9 +186,8 @@ static int arrow_of_view(cairo_surface_t *frame, bool right)
 
 // Runs side by side have one scale of force: where each presses with its share of its own peak, the
 // arrow of four times the force is several times as large.
-static void test_one_scale_of_force(void **state)
+TEST(test_one_scale_of_force)
 {
-    (void)state;
     recorded r[2] = {record("corrected/first-impact"), record("corrected/first-impact")};
     run_finish(&r[1].result);
     assert_int_equal(scenario_override(&r[1].scenario, "motor.voltage=4", NULL), STATUS_OK);
@@ -210,9 +199,7 @@ static void test_one_scale_of_force(void **state)
     options.height = 480;
     options.view.plain = true;
     fault f = {0};
-    if (film_write(runs, 2, &options, in_folder("scale"), &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(film_write(runs, 2, &options, in_folder("scale"), &f) != STATUS_OK, "%s", f.text);
     cairo_surface_t *frame =
         cairo_image_surface_create_from_png(in_folder("scale/frame-00005.png"));
     const int one = arrow_of_view(frame, false), four = arrow_of_view(frame, true);
@@ -223,9 +210,8 @@ static void test_one_scale_of_force(void **state)
     forget(&r[1]);
 }
 
-static void test_film(void **state)
+TEST(test_film)
 {
-    (void)state;
     recorded r = record("corrected/plane-wall");
     film_options options = small_film();
     fault f = {0};
@@ -237,9 +223,7 @@ static void test_film(void **state)
     const char *const names[] = {"film.mp4", "film.webm", "film.gif", "film.webp"};
     const char *const marks[] = {"ftypisom", "webm", "GIF89a", "WEBPVP8X"};
     for (int i = 0; i < 4; i++) {
-        if (film_of(&r, &options, in_folder(names[i]), &f) != STATUS_OK) {
-            fail_msg("%s", f.text);
-        }
+        fail_if(film_of(&r, &options, in_folder(names[i]), &f) != STATUS_OK, "%s", f.text);
         check_contains(in_folder(names[i]), marks[i]);
     }
     forget(&r);
@@ -267,9 +251,8 @@ static void restore_encoder(char *old)
 }
 
 // An encoder that gives up is quoted, and nothing of the film is left.
-static void test_encoder_fails(void **state)
+TEST(test_encoder_fails)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
@@ -288,17 +271,14 @@ static void test_encoder_fails(void **state)
 }
 
 // A GIF has the size and the frames that were asked for: nothing scales or drops them.
-static void test_gif_as_asked(void **state)
+TEST(test_gif_as_asked)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
     char *old = with_encoder("#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
                              "printf 'GIF89a %s;' \"$*\" >\"${last#file:}\"\n");
-    if (film_of(&r, &options, in_folder("asked.gif"), &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(film_of(&r, &options, in_folder("asked.gif"), &f) != STATUS_OK, "%s", f.text);
     restore_encoder(old);
     char words[4096] = "";
     FILE *stream = fopen(in_folder("asked.gif"), "r");
@@ -320,9 +300,8 @@ static void stop_soon(void *context, int done, int total)
     stopped = done >= 2;
 }
 
-static void test_interrupted(void **state)
+TEST(test_interrupted)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
@@ -340,9 +319,8 @@ static void test_interrupted(void **state)
 
 // An error message is a failure for any status of the encoder, as with a full disk; and what it
 // leaves without a complaint must be a film.
-static void test_encoder_complains(void **state)
+TEST(test_encoder_complains)
 {
-    (void)state;
     static const struct {
         const char *script, *said;
     } cases[] = {
@@ -384,9 +362,8 @@ static void stop_now(int number)
 }
 
 // An encoder that hangs, before the first frame or after the last, is left at the first signal.
-static void test_encoder_hangs(void **state)
+TEST(test_encoder_hangs)
 {
-    (void)state;
     static const char *const scripts[] = {"#!/bin/sh\ntrap '' TERM\nexec sleep 1000\n",
                                           "#!/bin/sh\ncat >/dev/null\nexec sleep 1000\n"};
     recorded r = record("corrected/first-impact");
@@ -407,9 +384,8 @@ static void test_encoder_hangs(void **state)
     forget(&r);
 }
 
-static void test_film_refused(void **state)
+TEST(test_film_refused)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
@@ -423,22 +399,4 @@ static void test_film_refused(void **state)
     forget(&r);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clock),
-        cmocka_unit_test(test_clock_of_bounces),
-        cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_split_screen),
-        cmocka_unit_test(test_one_scale_of_force),
-        cmocka_unit_test(test_film),
-        cmocka_unit_test(test_encoder_fails),
-        cmocka_unit_test(test_gif_as_asked),
-        cmocka_unit_test(test_interrupted),
-        cmocka_unit_test(test_encoder_complains),
-        cmocka_unit_test(test_encoder_hangs),
-        cmocka_unit_test(test_film_refused),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down) != 0;
-}
+ALL_BETWEEN(set_up, tear_down)

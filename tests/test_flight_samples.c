@@ -1,10 +1,6 @@
 // Samples of the rig that are taken in flight while a step goes on: a loop from one to the next is
 // the run to the last bit, and what they read is what is read where every one of them ends a step,
 // with a piezo film, which these laws do not read, and in a loop that a program stops anywhere.
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "src/base/random.h"
 #include "src/run/loop.h"
@@ -247,21 +243,18 @@ static void check_loops(uint64_t seed, looping how)
     }
 }
 
-static void a_loop_from_sample_to_sample_is_the_run(void **state)
+TEST(a_loop_from_sample_to_sample_is_the_run)
 {
-    (void)state;
     check_loops(11, LOOPING_AT_SAMPLES);
 }
 
-static void a_loop_stops_between_samples_on_the_way(void **state)
+TEST(a_loop_stops_between_samples_on_the_way)
 {
-    (void)state;
     check_loops(12, LOOPING_ANYWHERE);
 }
 
-static void samples_on_the_way_are_those_at_ends_of_steps(void **state)
+TEST(samples_on_the_way_are_those_at_ends_of_steps)
 {
-    (void)state;
     check_loops(13, LOOPING_ENDED);
 }
 
@@ -276,9 +269,8 @@ static void make(void *context, size_t i, scenario *made)
 }
 
 // Runs side by side, computed in lanes, are the same as single runs.
-static void runs_side_by_side_are_single_runs(void **state)
+TEST(runs_side_by_side_are_single_runs)
 {
-    (void)state;
     summary together[RUNS];
     assert_int_equal(batch_run(make, NULL, RUNS, 1, together), STATUS_OK);
     for (size_t i = 0; i < RUNS; i++) {
@@ -289,15 +281,4 @@ static void runs_side_by_side_are_single_runs(void **state)
         check_same_summary(&together[i], &single.summary);
         run_finish(&single);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_loop_from_sample_to_sample_is_the_run),
-        cmocka_unit_test(a_loop_stops_between_samples_on_the_way),
-        cmocka_unit_test(samples_on_the_way_are_those_at_ends_of_steps),
-        cmocka_unit_test(runs_side_by_side_are_single_runs),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,9 +49,8 @@ static double largest_mean(force_curve f, double from, double window)
     return mean;
 }
 
-static void a_constant_force_has_settled_from_the_start(void **state)
+TEST(a_constant_force_has_settled_from_the_start)
 {
-    (void)state;
     force_history h = history_of(flat);
     check_close(force_settled_since(&h, 3), 0, 0);
     // a run that ends outside the band has not settled
@@ -59,17 +58,15 @@ static void a_constant_force_has_settled_from_the_start(void **state)
     force_history_finish(&h);
 }
 
-static void a_rising_force_settles_where_it_enters_the_band(void **state)
+TEST(a_rising_force_settles_where_it_enters_the_band)
 {
-    (void)state;
     force_history h = history_of(rising);
     check_close(force_settled_since(&h, 2), 0.95, 1e-12);
     force_history_finish(&h);
 }
 
-static void the_band_is_entered_within_a_step(void **state)
+TEST(the_band_is_entered_within_a_step)
 {
-    (void)state;
     // up and down again to nothing: 4 t (1 - t) = 0.05 f where the band round f ends from below
     force_history h = history_of(parabola);
     assert_true(isnan(force_settled_since(&h, 0.5)));
@@ -88,9 +85,8 @@ static force_step parabolic_step(double start, double end, double first, double 
     return (force_step){start, end, first, first + slope + curve, first + slope / 2 + curve / 3};
 }
 
-static void a_line_that_meets_the_band_at_a_steps_end_settles_there(void **state)
+TEST(a_line_that_meets_the_band_at_a_steps_end_settles_there)
 {
-    (void)state;
     for (int power = -40; power <= 40; power += 10) {
         const double final = ldexp(2, power), edge = final - SETTLED_BAND * final;
         const force_step steps[] = {{0, 1, 0, final / 2, final / 4},
@@ -107,9 +103,8 @@ static void a_line_that_meets_the_band_at_a_steps_end_settles_there(void **state
 }
 
 // A force that comes back to the edge of its band at the last instant has settled then.
-static void a_force_at_the_edge_of_its_band_has_settled(void **state)
+TEST(a_force_at_the_edge_of_its_band_has_settled)
 {
-    (void)state;
     double final = 1;
     while (final + SETTLED_BAND * final - final != SETTLED_BAND * final) {
         final += 0.0625; // until the edge is a number
@@ -128,9 +123,8 @@ static void a_force_at_the_edge_of_its_band_has_settled(void **state)
     }
 }
 
-static void a_history_keeps_all_of_its_steps(void **state)
+TEST(a_history_keeps_all_of_its_steps)
 {
-    (void)state;
     enum { STEPS = 5000 };
     force_history h;
     force_history_init(&h);
@@ -147,9 +141,8 @@ static void a_history_keeps_all_of_its_steps(void **state)
 
 // Steps as long as their lines are steep, with what rounding leaves of their curves: the instant of
 // the crossing is that of the line, for any unit of the force.
-static void lines_are_crossed_where_they_are(void **state)
+TEST(lines_are_crossed_where_they_are)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 5);
     for (int i = 0; i < 2000; i++) {
@@ -170,9 +163,8 @@ static void lines_are_crossed_where_they_are(void **state)
 
 // Histories of parabolas that end near their final force. From the instant found on the force is in
 // the band, and just before it was not; the same forces in another unit give the same instant.
-static void from_the_instant_found_the_force_stays(void **state)
+TEST(from_the_instant_found_the_force_stays)
 {
-    (void)state;
     enum { STEPS = 30, LOOKS = 200 };
     random_generator g;
     random_seed(&g, 6);
@@ -234,9 +226,8 @@ static void from_the_instant_found_the_force_stays(void **state)
 }
 
 // The sign of a force counts: one as large the other way is not in the band.
-static void the_opposite_force_is_outside(void **state)
+TEST(the_opposite_force_is_outside)
 {
-    (void)state;
     for (int sign = -1; sign <= 1; sign += 2) {
         force_history h;
         force_history_init(&h);
@@ -248,17 +239,15 @@ static void the_opposite_force_is_outside(void **state)
     }
 }
 
-static void an_empty_history_has_no_answer(void **state)
+TEST(an_empty_history_has_no_answer)
 {
-    (void)state;
     force_history h = {0};
     assert_true(isnan(force_settled_since(&h, 1)));
     force_history_finish(&h);
 }
 
-static void the_largest_mean_is_where_the_curve_is_highest(void **state)
+TEST(the_largest_mean_is_where_the_curve_is_highest)
 {
-    (void)state;
     // a window of w round the top of 4 t (1 - t) has the mean 1 - w^2/3
     check_close(largest_mean(parabola, 0, 0.1), 1 - 0.01 / 3, 1e-12);
     check_close(largest_mean(parabola, 0, 0.237), 1 - 0.237 * 0.237 / 3, 1e-12);
@@ -270,9 +259,8 @@ static void the_largest_mean_is_where_the_curve_is_highest(void **state)
     check_close(largest_mean(rising, 0, 0.1), 2 * 0.95, 1e-12);
 }
 
-static void an_impulse_counts_as_long_as_the_window_holds_it(void **state)
+TEST(an_impulse_counts_as_long_as_the_window_holds_it)
 {
-    (void)state;
     event impact = {.time = 0.503, .kind = EVENT_IMPACT, .impulse = 0.2, .index = -1};
     run_result r = {.history = {.forces = history_of(flat)},
                     .trace = {.events = &impact, .event_count = 1}};
@@ -301,9 +289,8 @@ static double pressed(const parameters *p)
 
 // The modes of a damped chain decay within nanoseconds of an impact, in which they press with
 // thousands of newtons: what is kept of the force has their impulse.
-static void the_force_kept_has_the_impulse_of_decays(void **state)
+TEST(the_force_kept_has_the_impulse_of_decays)
 {
-    (void)state;
     static const char *const links[] = {"arm.links=2", "arm.links=8", "arm.links=32"};
     static const char *const ratios[] = {"arm.damping_ratio=0.01", "arm.damping_ratio=0.3",
                                          "arm.damping_ratio=1"};
@@ -325,24 +312,4 @@ static void the_force_kept_has_the_impulse_of_decays(void **state)
         check_relative(sum, pressed(&p), 1e-4);
         run_finish(&run);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_constant_force_has_settled_from_the_start),
-        cmocka_unit_test(a_rising_force_settles_where_it_enters_the_band),
-        cmocka_unit_test(the_band_is_entered_within_a_step),
-        cmocka_unit_test(a_line_that_meets_the_band_at_a_steps_end_settles_there),
-        cmocka_unit_test(lines_are_crossed_where_they_are),
-        cmocka_unit_test(from_the_instant_found_the_force_stays),
-        cmocka_unit_test(the_opposite_force_is_outside),
-        cmocka_unit_test(an_empty_history_has_no_answer),
-        cmocka_unit_test(the_largest_mean_is_where_the_curve_is_highest),
-        cmocka_unit_test(an_impulse_counts_as_long_as_the_window_holds_it),
-        cmocka_unit_test(a_force_at_the_edge_of_its_band_has_settled),
-        cmocka_unit_test(a_history_keeps_all_of_its_steps),
-        cmocka_unit_test(the_force_kept_has_the_impulse_of_decays),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

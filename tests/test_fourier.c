@@ -1,16 +1,13 @@
 // The Fourier transform of sines and other known series.
 #include "tests/check.h"
 
-#include <math.h>
-
 #include "src/base/fourier.h"
 
 enum { N = 256 };
 #define PI 3.14159265358979323846
 
-static void a_transform_is_the_sum_that_defines_it(void **state)
+TEST(a_transform_is_the_sum_that_defines_it)
 {
-    (void)state;
     enum { SHORT = 16 };
     double re[SHORT], im[SHORT], re0[SHORT], im0[SHORT];
     for (int i = 0; i < SHORT; i++) {
@@ -30,9 +27,8 @@ static void a_transform_is_the_sum_that_defines_it(void **state)
     }
 }
 
-static void amplitudes_are_those_of_the_sines(void **state)
+TEST(amplitudes_are_those_of_the_sines)
 {
-    (void)state;
     double series[N], scratch[2 * N], amplitude[N / 2];
     for (int i = 0; i < N; i++) {
         const double turn = 2 * PI * i / N;
@@ -48,32 +44,19 @@ static void amplitudes_are_those_of_the_sines(void **state)
     check_close(amplitude[30], 0, 1e-12);
 }
 
-static void nothing_is_written_behind_the_amplitudes(void **state)
+TEST(nothing_is_written_behind_the_amplitudes)
 {
-    (void)state;
     double series[N] = {0}, scratch[2 * N], amplitude[N / 2 + 1];
     amplitude[N / 2] = 42;
     fourier_amplitudes(series, N, scratch, amplitude);
     check_close(amplitude[N / 2], 42, 0);
 }
 
-static void the_ends_of_the_window_count_nothing(void **state)
+TEST(the_ends_of_the_window_count_nothing)
 {
-    (void)state;
     double series[N] = {1}, scratch[2 * N], amplitude[N / 2];
     fourier_amplitudes(series, N, scratch, amplitude);
     for (int k = 2; k < N / 2; k++) {
         check_close(amplitude[k], 0, 1e-13);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_ends_of_the_window_count_nothing),
-        cmocka_unit_test(nothing_is_written_behind_the_amplitudes),
-        cmocka_unit_test(a_transform_is_the_sum_that_defines_it),
-        cmocka_unit_test(amplitudes_are_those_of_the_sines),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,6 @@
 //   test_identify SEEDS
 #include "src/study/identify.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "src/base/dense.h"
@@ -99,18 +97,14 @@ static void set_up(identification *id, const scenario *base, recording_made *mad
         assert_int_equal(identify_add_path(id, paths[i], &f), STATUS_OK);
     }
     for (int i = 0; i < count; i++) {
-        if (identify_add_trace(id, made[i].file, NULL, 0, &f) != STATUS_OK) {
-            fail_msg("%s", f.text);
-        }
+        fail_if(identify_add_trace(id, made[i].file, NULL, 0, &f) != STATUS_OK, "%s", f.text);
     }
 }
 
 static void fit(identification *id)
 {
     fault f = {.text = ""};
-    if (identify_fit(id, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(identify_fit(id, &f) != STATUS_OK, "%s", f.text);
 }
 
 // --- the bound --------------------------------------------------------------------------------
@@ -302,25 +296,22 @@ static const recording_made three[RECORDINGS] = {
     {.law = "open-loop", .angle = -0.3, .voltage = 3},
 };
 
-static void intervals_cover_and_errors_are_near_the_bound(void **state)
+TEST(intervals_cover_and_errors_are_near_the_bound)
 {
-    (void)state;
     recording_made made[RECORDINGS];
     memcpy(made, three, sizeof made);
     study(made, RECORDINGS, 4, true);
 }
 
-static void so_they_do_with_viscous_friction(void **state)
+TEST(so_they_do_with_viscous_friction)
 {
-    (void)state;
     recording_made made[RECORDINGS];
     memcpy(made, three, sizeof made);
     study(made, RECORDINGS, 5, false);
 }
 
-static void so_they_do_in_a_closed_loop(void **state)
+TEST(so_they_do_in_a_closed_loop)
 {
-    (void)state;
     recording_made made[RECORDINGS];
     memcpy(made, three, sizeof made);
     made[1].law = made[2].law = "hybrid";
@@ -330,9 +321,8 @@ static void so_they_do_in_a_closed_loop(void **state)
 
 // --- what the data do not say -----------------------------------------------------------------
 
-static void one_combination_is_named(void **state)
+TEST(one_combination_is_named)
 {
-    (void)state;
     recording_made made = {.law = "open-loop", .angle = -2.9, .voltage = 3, .no_wall = true};
     char words[512];
     fault f;
@@ -359,9 +349,8 @@ static void one_combination_is_named(void **state)
     unlink(made.file);
 }
 
-static void two_links_leave_eight_unexplained(void **state)
+TEST(two_links_leave_eight_unexplained)
 {
-    (void)state;
     int rejected = 0;
     recording_made made[RECORDINGS];
     memcpy(made, three, sizeof made);
@@ -379,9 +368,8 @@ static void two_links_leave_eight_unexplained(void **state)
     assert_true(rejected >= 0.95 * seeds);
 }
 
-static void another_trace_is_foretold(void **state)
+TEST(another_trace_is_foretold)
 {
-    (void)state;
     recording_made made[RECORDINGS], other = {.law = "open-loop", .angle = -0.2, .voltage = 2};
     memcpy(made, three, sizeof made);
     const scenario base = rig_scenario(&made[1], NULL, 1);
@@ -417,19 +405,11 @@ static void another_trace_is_foretold(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(intervals_cover_and_errors_are_near_the_bound),
-        cmocka_unit_test(so_they_do_with_viscous_friction),
-        cmocka_unit_test(so_they_do_in_a_closed_loop),
-        cmocka_unit_test(one_combination_is_named),
-        cmocka_unit_test(two_links_leave_eight_unexplained),
-        cmocka_unit_test(another_trace_is_foretold),
-    };
     fault f;
     seeds = argc > 1 ? atoi(argv[1]) : seeds;
     if (identify_available(&f) != STATUS_OK) {
         return 77;
     }
     cmocka_set_test_filter(argc > 2 ? argv[2] : NULL);
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+    return run_cases(NULL, NULL);
 }

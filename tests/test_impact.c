@@ -1,6 +1,4 @@
 // Instantaneous velocity increments, (4.10)-(4.17).
-#include <math.h>
-
 #include "src/arm/impact.h"
 #include "tests/arm_fixture.h"
 
@@ -47,9 +45,8 @@ static double jacobian(const arm *a, const double *q, int i)
     return chain_penetration_rate(a, q, unit);
 }
 
-static void impulse_is_the_change_of_momentum(void **state)
+TEST(impulse_is_the_change_of_momentum)
 {
-    (void)state;
     for (int links = 1; links <= 12; links++) {
         for (int kind = 0; kind < 8; kind++) {
             char n[32];
@@ -75,9 +72,8 @@ static void impulse_is_the_change_of_momentum(void **state)
     }
 }
 
-static void increments_of_the_two_links_have_opposite_signs(void **state)
+TEST(increments_of_the_two_links_have_opposite_signs)
 {
-    (void)state;
     for (int seed = 0; seed < 50; seed++) {
         for (int rigid = 0; rigid < 2; rigid++) {
             arm a = make_arm(SETTINGS(rigid ? "arm.hub_joint=rigid" : "arm.hub_joint=spring"));
@@ -90,9 +86,8 @@ static void increments_of_the_two_links_have_opposite_signs(void **state)
     }
 }
 
-static void hub_jumps_only_with_a_rigid_joint(void **state)
+TEST(hub_jumps_only_with_a_rigid_joint)
 {
-    (void)state;
     double q[3], w[3], dw[3];
     chain_link work[2];
     arm spring = make_arm(SETTINGS("arm.hub_joint=spring"));
@@ -109,9 +104,8 @@ static void hub_jumps_only_with_a_rigid_joint(void **state)
 }
 
 // (4.11), (4.12), (4.14) with the contact force at the contact point (errata B5), by Cramer's rule.
-static void agrees_with_the_closed_form(void **state)
+TEST(agrees_with_the_closed_form)
 {
-    (void)state;
     arm a = make_arm(SETTINGS("arm.hub_joint=spring"));
     double q[3], w[3], dw[3];
     chain_link work[2];
@@ -130,9 +124,8 @@ static void agrees_with_the_closed_form(void **state)
 
 // Arm and face are two bodies: the impulse that turns the arm moves the face, which then leaves at
 // the share e of the speed they met at; what both lose is the loss.
-static void a_face_takes_the_impulse_that_the_arm_gives(void **state)
+TEST(a_face_takes_the_impulse_that_the_arm_gives)
 {
-    (void)state;
     for (int kind = 0; kind < 4; kind++) {
         const double e = kind & 1 ? 0.6 : 0, face = kind & 2 ? -0.3 : 0.2;
         arm a =
@@ -151,16 +144,4 @@ static void a_face_takes_the_impulse_that_the_arm_gives(void **state)
         const double left = chain_kinetic_energy(&a, q, after) + 0.025 * face_after * face_after;
         check_close(before - left, r.loss, 1e-12 * (1 + before));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(impulse_is_the_change_of_momentum),
-        cmocka_unit_test(increments_of_the_two_links_have_opposite_signs),
-        cmocka_unit_test(hub_jumps_only_with_a_rigid_joint),
-        cmocka_unit_test(agrees_with_the_closed_form),
-        cmocka_unit_test(a_face_takes_the_impulse_that_the_arm_gives),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -4,9 +4,8 @@
 
 #include "ui/terminal/ink_colours.h"
 
-static void test_measures_agree_with_known_values(void **state)
+TEST(test_measures_agree_with_known_values)
 {
-    (void)state;
     const rgb black = {0, 0, 0}, white = {255, 255, 255}, grey = {119, 119, 119};
     check_close(rgb_contrast(black, white), 21, 1e-9);
     check_close(rgb_contrast(white, white), 1, 1e-12);
@@ -23,9 +22,8 @@ static double least_contrast(colour_theme theme, rgb c)
     return fmin(rgb_contrast(c, theme_grounds(theme)[0]), rgb_contrast(c, theme_grounds(theme)[1]));
 }
 
-static void test_every_ink_can_be_read_on_its_ground(void **state)
+TEST(test_every_ink_can_be_read_on_its_ground)
 {
-    (void)state;
     for (int theme = COLOURS_DARK; theme <= COLOURS_LIGHT; theme++) {
         for (int i = 0; i < INK_COUNT; i++) {
             rgb c;
@@ -35,10 +33,9 @@ static void test_every_ink_can_be_read_on_its_ground(void **state)
                 assert_int_equal(ink_16((colour_theme)theme, (ink)i), -1);
                 continue;
             }
-            if (least_contrast((colour_theme)theme, c) < least) {
-                fail_msg("ink %d of theme %d: contrast %.2f", i, theme,
-                         least_contrast((colour_theme)theme, c));
-            }
+            fail_if(least_contrast((colour_theme)theme, c) < least,
+                    "ink %d of theme %d: contrast %.2f", i, theme,
+                    least_contrast((colour_theme)theme, c));
             int near = ink_256((colour_theme)theme, (ink)i),
                 basic = ink_16((colour_theme)theme, (ink)i);
             assert_in_range(near, 16, 255);
@@ -74,9 +71,8 @@ static rgb seen_without(rgb c, const double m[3][3])
     return (rgb){share(out[0]), share(out[1]), share(out[2])};
 }
 
-static void test_curves_are_told_apart_by_everybody(void **state)
+TEST(test_curves_are_told_apart_by_everybody)
 {
-    (void)state;
     static const double eyes[3][3][3] = {
         {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
         {{0.152286, 1.052583, -0.204868},
@@ -95,10 +91,8 @@ static void test_curves_are_told_apart_by_everybody(void **state)
                 for (int eye = 0; eye < 3; eye++) {
                     double apart =
                         rgb_distance(seen_without(a, eyes[eye]), seen_without(b, eyes[eye]));
-                    if (apart < 0.09) {
-                        fail_msg("curves %d and %d of theme %d, eye %d: %.3f apart",
-                                 i - INK_SERIES_0, j - INK_SERIES_0, theme, eye, apart);
-                    }
+                    fail_if(apart < 0.09, "curves %d and %d of theme %d, eye %d: %.3f apart",
+                            i - INK_SERIES_0, j - INK_SERIES_0, theme, eye, apart);
                 }
                 // with fewer colours they are at least not the same; on light ground 16 have only
                 // seven that can be read, text's own among them
@@ -111,9 +105,8 @@ static void test_curves_are_told_apart_by_everybody(void **state)
     }
 }
 
-static void test_no_colour_in_mono(void **state)
+TEST(test_no_colour_in_mono)
 {
-    (void)state;
     rgb c;
     for (int i = 0; i < INK_COUNT; i++) {
         assert_false(ink_rgb(COLOURS_MONO, (ink)i, &c));
@@ -122,9 +115,8 @@ static void test_no_colour_in_mono(void **state)
     }
 }
 
-static void test_the_number_of_colours_is_a_setting(void **state)
+TEST(test_the_number_of_colours_is_a_setting)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     assert_int_equal(ex.state.looks.depth, DEPTH_AUTO);
@@ -156,9 +148,8 @@ static void find_alike(colour_theme theme, int pair[2])
 }
 
 // The curves of one pane, by the inks in the legends of a screen.
-static void test_curves_of_a_pane_differ_with_few_colours(void **state)
+TEST(test_curves_of_a_pane_differ_with_few_colours)
 {
-    (void)state;
     static const char *const scenarios[] = {"compare/hybrid", "corrected/first-impact"};
     for (int n = 0; n < 4; n++) {
         explorer ex;
@@ -199,17 +190,4 @@ static void test_curves_of_a_pane_differ_with_few_colours(void **state)
         screen_finish(&s);
         explorer_finish(&ex);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_measures_agree_with_known_values),
-        cmocka_unit_test(test_every_ink_can_be_read_on_its_ground),
-        cmocka_unit_test(test_curves_are_told_apart_by_everybody),
-        cmocka_unit_test(test_no_colour_in_mono),
-        cmocka_unit_test(test_the_number_of_colours_is_a_setting),
-        cmocka_unit_test(test_curves_of_a_pane_differ_with_few_colours),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -2,7 +2,6 @@
 // on the arm: the tip goes as planned, rests afterwards, meets the wall as fast as planned, and the
 // force follows its plan.
 #include <complex.h>
-#include <stdlib.h>
 
 #include "src/rig/laws/laws.h"
 #include "tests/rig_fixture.h"
@@ -60,9 +59,8 @@ static double complex torque_per_acceleration(const controller_setup *r, double 
 
 // A window of two seconds in 1024 instants, the tip departing in its middle: transform, divide,
 // transform back. At w = 0 the arm is a rigid body; its acceleration has no mean, its damping has.
-static void plan_is_the_inverse_of_every_frequency(void **state)
+TEST(plan_is_the_inverse_of_every_frequency)
 {
-    (void)state;
     enum { COUNT = 1024 };
     const double window = 2, step = window / COUNT;
     const double values[] = {
@@ -110,9 +108,8 @@ static void plan_is_the_inverse_of_every_frequency(void **state)
     check_below(0.1 * largest, ahead);
 }
 
-static void plan_needs_an_arm_that_it_can_invert(void **state)
+TEST(plan_needs_an_arm_that_it_can_invert)
 {
-    (void)state;
     const double values[] = {1, 0, TRAVEL_TIME, 0.35, 0.05};
     controller_setup heavy = default_setup(values), loose = heavy;
     void *memory = calloc(1, inverse_dynamics_law.memory_size);
@@ -169,9 +166,8 @@ static travelled travel(const char *const *settings)
     return result;
 }
 
-static void tip_follows_its_plan_and_rests(void **state)
+TEST(tip_follows_its_plan_and_rests)
 {
-    (void)state;
     travelled ideal = travel(SETTINGS("motor.stiction=0"));
     check_below(ideal.tip_error, 1e-3);
     check_below(ideal.left_moving, 1e-3);
@@ -186,9 +182,8 @@ static void tip_follows_its_plan_and_rests(void **state)
 
 // The same law that believes in an arm a hundred times stiffer is the computed torque of a rigid
 // body.
-static void rigid_body_torque_leaves_vibration(void **state)
+TEST(rigid_body_torque_leaves_vibration)
 {
-    (void)state;
     travelled rigid = travel(SETTINGS("motor.stiction=0", "belief.k2_factor=100"));
     travelled flexible = travel(SETTINGS("motor.stiction=0"));
     check_below(0.2, rigid.left_moving);
@@ -197,9 +192,8 @@ static void rigid_body_torque_leaves_vibration(void **state)
 }
 
 // Open-loop: what it believes of the stiffness is what it gets.
-static void wrong_stiffness_costs(void **state)
+TEST(wrong_stiffness_costs)
 {
-    (void)state;
     const char *const factors[] = {"belief.k2_factor=0.8", "belief.k2_factor=1.2"};
     for (int i = 0; i < 2; i++) {
         travelled wrong = travel(SETTINGS("motor.stiction=0", factors[i]));
@@ -222,9 +216,8 @@ static const event *first_impact(const run_result *r)
     return NULL;
 }
 
-static void tip_meets_the_wall_as_fast_as_planned(void **state)
+TEST(tip_meets_the_wall_as_fast_as_planned)
 {
-    (void)state;
     const double speeds[] = {0.1, 0.2, 0.4, 0.8};
     for (int i = 0; i < 4; i++) {
         for (int seed = 1; seed <= 5; seed++) {
@@ -241,9 +234,8 @@ static void tip_meets_the_wall_as_fast_as_planned(void **state)
 }
 
 // Sampled fast and without friction the force is the planned one through the impact and after it.
-static void force_follows_its_plan(void **state)
+TEST(force_follows_its_plan)
 {
-    (void)state;
     const char *const speeds[] = {"control.arrival_speed=0", "control.arrival_speed=0.3"};
     for (int i = 0; i < 2; i++) {
         run_result r = rig_run(SETTINGS("control.law=inverse-dynamics", "sensor.ideal=true",
@@ -262,9 +254,8 @@ static void force_follows_its_plan(void **state)
 }
 
 // On the noisy default rig, and with the wall found 0.02 rad before or behind its believed place.
-static void press_ends_near_its_force(void **state)
+TEST(press_ends_near_its_force)
 {
-    (void)state;
     const char *const errors[] = {"belief.wall_error=0", "belief.wall_error=0.02",
                                   "belief.wall_error=-0.02"};
     const double peaks[] = {1.05, 1.3, 1.5};
@@ -279,9 +270,8 @@ static void press_ends_near_its_force(void **state)
     }
 }
 
-static void early_touch_moves_the_plan_on(void **state)
+TEST(early_touch_moves_the_plan_on)
 {
-    (void)state;
     run_result r =
         rig_run(SETTINGS("control.law=inverse-dynamics", "belief.wall_error=0.02"), true);
     double touch = first_impact(&r)->time;
@@ -293,20 +283,4 @@ static void early_touch_moves_the_plan_on(void **state)
         }
     }
     run_finish(&r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plan_is_the_inverse_of_every_frequency),
-        cmocka_unit_test(plan_needs_an_arm_that_it_can_invert),
-        cmocka_unit_test(tip_follows_its_plan_and_rests),
-        cmocka_unit_test(rigid_body_torque_leaves_vibration),
-        cmocka_unit_test(wrong_stiffness_costs),
-        cmocka_unit_test(tip_meets_the_wall_as_fast_as_planned),
-        cmocka_unit_test(force_follows_its_plan),
-        cmocka_unit_test(press_ends_near_its_force),
-        cmocka_unit_test(early_touch_moves_the_plan_on),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

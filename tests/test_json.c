@@ -2,9 +2,6 @@
 #include "src/base/json.h"
 #include "src/base/text_stream.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "tests/check.h"
 
 // What json_write writes of a value, on the heap; takes over the value.
@@ -19,9 +16,8 @@ static char *written(json_t *value)
     return text;
 }
 
-static void json_is_what_jansson_reads(void **state)
+TEST(json_is_what_jansson_reads)
 {
-    (void)state;
     const char *source = "{\"b\": [1, 0.1, null, true], \"a\": {\"quote\\\" \\u00e9\\n\": \"\"}, "
                          "\"empty\": {}, \"none\": [], \"list\": [{\"x\": -1e-300}, []]}";
     json_t *value = json_loads(source, 0, NULL);
@@ -36,9 +32,8 @@ static void json_is_what_jansson_reads(void **state)
     free(text);
 }
 
-static void text_without_utf8_is_made_readable(void **state)
+TEST(text_without_utf8_is_made_readable)
 {
-    (void)state;
     char *text = written(json_text("a\xff\x80\x7f"
                                    "b"));
     assert_string_equal(text, "\"a??\x7f"
@@ -49,9 +44,8 @@ static void text_without_utf8_is_made_readable(void **state)
     free(text);
 }
 
-static void numbers_that_are_missing_are_null(void **state)
+TEST(numbers_that_are_missing_are_null)
 {
-    (void)state;
     const double values[] = {1.5, (double)NAN, (double)INFINITY, 0.1};
     char *text = written(json_numbers(values, 4));
     assert_string_equal(text, "[1.5, null, null, 0.1]\n");
@@ -61,26 +55,23 @@ static void numbers_that_are_missing_are_null(void **state)
     free(text);
 }
 
-static void objects_have_a_line_a_member(void **state)
+TEST(objects_have_a_line_a_member)
 {
-    (void)state;
     char *text = written(json_loads("{\"a\": 1, \"b\": {}, \"c\": [{\"d\": 2}]}", 0, NULL));
     assert_string_equal(text, "{\n  \"a\": 1,\n  \"b\": {},\n  \"c\": [\n    {\n      \"d\": 2\n"
                               "    }\n  ]\n}\n");
     free(text);
 }
 
-static void lists_within_lists_have_lines_of_their_own(void **state)
+TEST(lists_within_lists_have_lines_of_their_own)
 {
-    (void)state;
     char *text = written(json_loads("[[1, 2], [], {}]", 0, NULL));
     assert_string_equal(text, "[\n  [1, 2],\n  [],\n  {}\n]\n");
     free(text);
 }
 
-static void what_cannot_be_put_is_noted_once(void **state)
+TEST(what_cannot_be_put_is_noted_once)
 {
-    (void)state;
     json_t *object = json_object(), *array = json_array();
     loss_forget();
     json_put(object, "a", json_number(1));
@@ -103,9 +94,8 @@ static void what_cannot_be_put_is_noted_once(void **state)
 }
 
 // A member that there is no memory for leaves its place empty, and that is noted.
-static void a_member_that_is_lost_is_noted(void **state)
+TEST(a_member_that_is_lost_is_noted)
 {
-    (void)state;
     char text[32] = "";
     FILE *stream = fmemopen(text, sizeof text, "w");
     assert_non_null(stream);
@@ -119,18 +109,4 @@ static void a_member_that_is_lost_is_noted(void **state)
     fclose(stream);
     assert_string_equal(text, "1.5");
     json_decref(value);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_cannot_be_put_is_noted_once),
-        cmocka_unit_test(lists_within_lists_have_lines_of_their_own),
-        cmocka_unit_test(objects_have_a_line_a_member),
-        cmocka_unit_test(json_is_what_jansson_reads),
-        cmocka_unit_test(text_without_utf8_is_made_readable),
-        cmocka_unit_test(numbers_that_are_missing_are_null),
-        cmocka_unit_test(a_member_that_is_lost_is_noted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,23 +1,18 @@
 // The table of stiffness by force: reading, interpolation and refusals.
 #include "src/tables/k2_table.h"
 
-#include <string.h>
-
 #include "tests/check.h"
 
 static k2_table read(const char *text)
 {
     k2_table t;
     fault f = {.text = ""};
-    if (k2_table_read(&t, text, &f) != STATUS_OK) {
-        fail_msg("refused: %s", f.text);
-    }
+    fail_if(k2_table_read(&t, text, &f) != STATUS_OK, "refused: %s", f.text);
     return t;
 }
 
-static void between_entries_lie_straight_lines(void **state)
+TEST(between_entries_lie_straight_lines)
 {
-    (void)state;
     const k2_table t = read("0.5:4.8 1:5 4:0.5");
     assert_int_equal(t.count, 3);
     check_close(k2_table_at(&t, 0.5), 4.8, 0);
@@ -32,9 +27,8 @@ static void between_entries_lie_straight_lines(void **state)
     check_close(k2_table_at(&exact, 1), 0.1, 0);
 }
 
-static void beyond_the_ends_stay_the_last_values(void **state)
+TEST(beyond_the_ends_stay_the_last_values)
 {
-    (void)state;
     const k2_table t = read("0.5:4.8 4:0.5"), one = read("2:3");
     check_close(k2_table_at(&t, 0), 4.8, 0);
     check_close(k2_table_at(&t, 1e9), 0.5, 0);
@@ -42,9 +36,8 @@ static void beyond_the_ends_stay_the_last_values(void **state)
     check_close(k2_table_at(&one, 5), 3, 0);
 }
 
-static void it_is_written_as_it_was_read(void **state)
+TEST(it_is_written_as_it_was_read)
 {
-    (void)state;
     char text[64], small[8];
     const k2_table t = read("  0.5:4.8   1:5 "), none = read("");
     assert_true(k2_table_write(&t, text, sizeof text));
@@ -61,18 +54,16 @@ static void it_is_written_as_it_was_read(void **state)
     assert_string_equal(text, "0.5:4.8 1:5");
 }
 
-static void what_is_no_table_is_refused(void **state)
+TEST(what_is_no_table_is_refused)
 {
-    (void)state;
     static const char *const wrong[] = {"1",     "1:",      ":5",      "1:0",     "1:-2",
                                         "-1:5",  "2:5 1:5", "1:5 1:6", "1:5,2:6", "a:b",
                                         "1:nan", "1:5 0:6", "1:5 x",   "inf:5"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         k2_table t;
         fault f = {.text = ""};
-        if (k2_table_read(&t, wrong[i], &f) == STATUS_OK) {
-            fail_msg("'%s' is taken for a table", wrong[i]);
-        }
+        fail_if(k2_table_read(&t, wrong[i], &f) == STATUS_OK, "'%s' is taken for a table",
+                wrong[i]);
         assert_string_equal(f.path, "control.k2_table");
     }
 
@@ -86,15 +77,4 @@ static void what_is_no_table_is_refused(void **state)
     assert_int_equal(k2_table_read(&t, text, &f), STATUS_BAD_SCENARIO);
     text[strlen(text) - strlen("33:5 ")] = '\0';
     assert_int_equal(k2_table_read(&t, text, &f), STATUS_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(between_entries_lie_straight_lines),
-        cmocka_unit_test(beyond_the_ends_stay_the_last_values),
-        cmocka_unit_test(it_is_written_as_it_was_read),
-        cmocka_unit_test(what_is_no_table_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

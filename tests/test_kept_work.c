@@ -12,9 +12,8 @@ static double peak(const explorer *ex)
 
 // Each way of opening another scenario keeps the changes and the pins; u brings them back, U leaves
 // again.
-static void test_opening_loses_nothing(void **state)
+TEST(test_opening_loses_nothing)
 {
-    (void)state;
     static const char *const ways[] = {"]", "[", "o/three<Enter>", ":open thesis/fig-3-4<Enter>",
                                        ":lesson hybrid-law<Enter>"};
     for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
@@ -44,9 +43,8 @@ static void test_opening_loses_nothing(void **state)
 }
 
 // As many openings as are kept, and more, are undone one by one; a new one forgets what was undone.
-static void test_openings_are_undone_one_by_one(void **state)
+TEST(test_openings_are_undone_one_by_one)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     for (int i = 0; i < VISITS + 3; i++) {
@@ -65,9 +63,8 @@ static void test_openings_are_undone_one_by_one(void **state)
 }
 
 // Two scenarios side by side: two keys, of at most six.
-static void test_a_pinned_run_of_another_scenario_is_drawn_and_taken(void **state)
+TEST(test_a_pinned_run_of_another_scenario_is_drawn_and_taken)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     const double first = peak(&ex);
@@ -89,9 +86,8 @@ static void test_a_pinned_run_of_another_scenario_is_drawn_and_taken(void **stat
 }
 
 // Pins of another scenario do not do a lesson's step.
-static void test_a_lesson_wants_a_pin_of_its_own(void **state)
+TEST(test_a_lesson_wants_a_pin_of_its_own)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "b:lesson beta-and-gamma<Enter>y");
@@ -105,9 +101,8 @@ static void test_a_lesson_wants_a_pin_of_its_own(void **state)
     explorer_finish(&ex);
 }
 
-static void test_leaving_asks_for_everything_that_would_be_lost(void **state)
+TEST(test_leaving_asks_for_everything_that_would_be_lost)
 {
-    (void)state;
     static const struct {
         const char *keys, *lost;
     } cases[] = {{"b", "1 pinned run would"},
@@ -129,9 +124,8 @@ static void test_leaving_asks_for_everything_that_would_be_lost(void **state)
 // --- on the screen ----------------------------------------------------------------------------
 
 // What a line of keys makes the lab say, and what it must not.
-static void test_sentences_are_whole_and_numbers_short(void **state)
+TEST(test_sentences_are_whole_and_numbers_short)
 {
-    (void)state;
     static const struct {
         const char *keys, *says, *never;
     } cases[] = {
@@ -181,9 +175,8 @@ static int parameter_rows(explorer *ex, int width, int height)
 }
 
 // With a law and pinned runs the parameters keep six lines; what is folded is a tab.
-static void test_parameters_keep_their_rows(void **state)
+TEST(test_parameters_keep_their_rows)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, "b:set control.force 2<Enter>b:set control.force 3<Enter>");
@@ -211,9 +204,8 @@ static void test_parameters_keep_their_rows(void **state)
 }
 
 // One key hides a signal, and a click on its legend; neither moves the cursor.
-static void test_a_signal_is_hidden_by_a_key_or_a_click(void **state)
+TEST(test_a_signal_is_hidden_by_a_key_or_a_click)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":seek 0.5<Enter>K");
@@ -251,9 +243,8 @@ static int count_keys(const char *keys)
 }
 
 // How much voltage so that the peak stays below 2 N? At most 25 keys, with completion.
-static void test_a_limit_is_asked_for_in_few_keys(void **state)
+TEST(test_a_limit_is_asked_for_in_few_keys)
 {
-    (void)state;
     static const char keys[] = ":so<Tab>vo<Tab> pea<Tab>N<lt>2<Enter>";
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
@@ -289,9 +280,8 @@ static void test_a_limit_is_asked_for_in_few_keys(void **state)
 }
 
 // Why a run is as it is, whole at every size.
-static void test_why_is_answered_on_the_screen(void **state)
+TEST(test_why_is_answered_on_the_screen)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "W");
@@ -306,9 +296,8 @@ static void test_why_is_answered_on_the_screen(void **state)
 }
 
 // F1 explains what one stands on; the palette knows other words for it.
-static void test_help_is_where_one_stands(void **state)
+TEST(test_help_is_where_one_stands)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "<End>NNNN<Home>n<F1>");
@@ -333,9 +322,8 @@ static void test_help_is_where_one_stands(void **state)
 }
 
 // Panes of one's own, any number: a second one takes at most twelve keys.
-static void test_own_panes_stand_side_by_side(void **state)
+TEST(test_own_panes_stand_side_by_side)
 {
-    (void)state;
     static const char keys[] = ":tr gap<Enter>";
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
@@ -362,9 +350,8 @@ static void test_own_panes_stand_side_by_side(void **state)
 }
 
 // t_f three steps shorter: at most five keys.
-static void test_the_transition_is_three_steps_shorter_in_few_keys(void **state)
+TEST(test_the_transition_is_three_steps_shorter_in_few_keys)
 {
-    (void)state;
     static const char keys[] = "<lt><lt><lt>";
     explorer ex;
     open_explorer(&ex, "lessons/hybrid-law");
@@ -372,24 +359,4 @@ static void test_the_transition_is_three_steps_shorter_in_few_keys(void **state)
     assert_true(count_keys(keys) <= 5);
     check_close(ex.state.session.effective.parameters.control.transition_time, 0.32, 1e-9);
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_opening_loses_nothing),
-        cmocka_unit_test(test_openings_are_undone_one_by_one),
-        cmocka_unit_test(test_a_pinned_run_of_another_scenario_is_drawn_and_taken),
-        cmocka_unit_test(test_a_lesson_wants_a_pin_of_its_own),
-        cmocka_unit_test(test_leaving_asks_for_everything_that_would_be_lost),
-        cmocka_unit_test(test_sentences_are_whole_and_numbers_short),
-        cmocka_unit_test(test_parameters_keep_their_rows),
-        cmocka_unit_test(test_a_signal_is_hidden_by_a_key_or_a_click),
-        cmocka_unit_test(test_a_limit_is_asked_for_in_few_keys),
-        cmocka_unit_test(test_why_is_answered_on_the_screen),
-        cmocka_unit_test(test_help_is_where_one_stands),
-        cmocka_unit_test(test_own_panes_stand_side_by_side),
-        cmocka_unit_test(test_the_transition_is_three_steps_shorter_in_few_keys),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

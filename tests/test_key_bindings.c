@@ -7,9 +7,8 @@
 #include "ui/explorer/panels/panel.h"
 #include "ui/explorer/explorer.h"
 
-static void test_a_key_gets_another_command(void **state)
+TEST(test_a_key_gets_another_command)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":key x step 5<Enter>");
@@ -37,9 +36,8 @@ static void test_a_key_gets_another_command(void **state)
     explorer_finish(&ex);
 }
 
-static void test_wrong_keys_are_told(void **state)
+TEST(test_wrong_keys_are_told)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     static const struct {
@@ -60,9 +58,8 @@ static void test_wrong_keys_are_told(void **state)
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         assert_false(explorer_execute(&ex.state, wrong[i].line));
         const message_line result = ex.state.message;
-        if (strstr(result.text, wrong[i].why) == NULL || result.at != wrong[i].at) {
-            fail_msg("'%s' at %d: %s", wrong[i].line, result.at, result.text);
-        }
+        fail_if(strstr(result.text, wrong[i].why) == NULL || result.at != wrong[i].at,
+                "'%s' at %d: %s", wrong[i].line, result.at, result.text);
     }
     assert_int_equal(ex.state.keys.count, 0);
     // a full table
@@ -77,9 +74,8 @@ static void test_wrong_keys_are_told(void **state)
     explorer_finish(&ex);
 }
 
-static void test_the_help_shows_the_keys_that_are(void **state)
+TEST(test_the_help_shows_the_keys_that_are)
 {
-    (void)state;
     static help_line lines[500];
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
@@ -100,14 +96,11 @@ static void test_the_help_shows_the_keys_that_are(void **state)
             for (int k = 0; k < count && !found; k++) {
                 found = strstr(lines[k].text, call) != NULL;
             }
-            if (!found) {
-                fail_msg("%s is not in the help at width %d", call, width);
-            }
+            fail_if(!found, "%s is not in the help at width %d", call, width);
         }
         for (int k = 0; k < count; k++) {
-            if ((int)strlen(lines[k].text) > width) {
-                fail_msg("wider than %d: '%s'", width, lines[k].text);
-            }
+            fail_if((int)strlen(lines[k].text) > width, "wider than %d: '%s'", width,
+                    lines[k].text);
         }
     }
     explorer_finish(&ex);
@@ -139,9 +132,8 @@ static void remove_settings(const char *folder)
     assert_int_equal(rmdir(folder), 0);
 }
 
-static void test_settings_keep_looks_axes_and_keys(void **state)
+TEST(test_settings_keep_looks_axes_and_keys)
 {
-    (void)state;
     char folder[] = "/tmp/impactlab-settings-XXXXXX";
     explorer ex;
     make_settings(folder, NULL);
@@ -175,9 +167,8 @@ static void test_settings_keep_looks_axes_and_keys(void **state)
     remove_settings(folder);
 }
 
-static void test_faults_in_settings_are_told_with_their_place(void **state)
+TEST(test_faults_in_settings_are_told_with_their_place)
 {
-    (void)state;
     char folder[] = "/tmp/impactlab-settings-XXXXXX", wanted[128];
     explorer ex;
     make_settings(folder, "# mine\n"
@@ -201,16 +192,4 @@ static void test_faults_in_settings_are_told_with_their_place(void **state)
     assert_non_null(strstr(ex.state.message.text, "left alone"));
     explorer_finish(&ex);
     remove_settings(folder);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_key_gets_another_command),
-        cmocka_unit_test(test_wrong_keys_are_told),
-        cmocka_unit_test(test_the_help_shows_the_keys_that_are),
-        cmocka_unit_test(test_settings_keep_looks_axes_and_keys),
-        cmocka_unit_test(test_faults_in_settings_are_told_with_their_place),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -21,9 +21,8 @@ static screen drawn(explorer *ex, int width, int height)
     return s;
 }
 
-static void test_the_contact_lane_is_where_rows_touch(void **state)
+TEST(test_the_contact_lane_is_where_rows_touch)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "<End>b"); // beside another run
@@ -50,9 +49,8 @@ static void test_the_contact_lane_is_where_rows_touch(void **state)
     explorer_finish(&ex);
 }
 
-static void test_modes_are_named_and_changes_told(void **state)
+TEST(test_modes_are_named_and_changes_told)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":seek 0.2<Enter>:set control.force 2<Enter><End>");
@@ -79,9 +77,8 @@ static void test_modes_are_named_and_changes_told(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_click_moves_the_cursor_or_the_window(void **state)
+TEST(test_a_click_moves_the_cursor_or_the_window)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "<End>");
@@ -103,14 +100,4 @@ static void test_a_click_moves_the_cursor_or_the_window(void **state)
     check_close(ex.state.window.to - ex.state.window.from, 0.1, 1e-9);
     check_close((ex.state.window.to + ex.state.window.from) / 2, 0.75, 0.02);
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_contact_lane_is_where_rows_touch),
-        cmocka_unit_test(test_modes_are_named_and_changes_told),
-        cmocka_unit_test(test_a_click_moves_the_cursor_or_the_window),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

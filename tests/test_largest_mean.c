@@ -1,8 +1,6 @@
 // The largest mean of the force over a sliding window, against analytic results and plain sums.
 #include "src/run/largest_mean.h"
 
-#include <string.h>
-
 #include "src/base/random.h"
 #include "tests/rig_fixture.h"
 
@@ -39,9 +37,8 @@ static void add_impulse(run_result *r, double time, double impulse, bool deliver
     assert_int_equal(trace_add_event(&r->trace, e), STATUS_OK);
 }
 
-static void a_hump_is_met_in_its_middle(void **state)
+TEST(a_hump_is_met_in_its_middle)
 {
-    (void)state;
     // 4 s (1 - s) over 1 s: the mean over 0.2 s round the top is 1 - w^2/3
     run_result r = empty_run();
     add_step(&r, 0, 1, 0, 4, -4);
@@ -52,9 +49,8 @@ static void a_hump_is_met_in_its_middle(void **state)
     finish(&r);
 }
 
-static void an_impulse_counts_over_the_window(void **state)
+TEST(an_impulse_counts_over_the_window)
 {
-    (void)state;
     run_result r = empty_run();
     add_step(&r, 0, 0.5, 1, 0, 0);
     add_step(&r, 0.5, 1, 1, 0, 0);
@@ -73,9 +69,8 @@ static void an_impulse_counts_over_the_window(void **state)
 }
 
 // Steps without a length, impacts without an impulse and events of another kind change nothing.
-static void what_has_no_impulse_changes_nothing(void **state)
+TEST(what_has_no_impulse_changes_nothing)
 {
-    (void)state;
     run_result r = empty_run();
     assert_true(isnan(force_largest_mean(&r, 0, 0.1)));
     add_step(&r, 0, 0.5, 1, 0, 0);
@@ -104,9 +99,8 @@ static double force_at(const run_result *r, double time)
 }
 
 // No window at a fine grid has a larger mean than the one found, and one has nearly that.
-static void it_is_the_largest_of_many(void **state)
+TEST(it_is_the_largest_of_many)
 {
-    (void)state;
     enum { FINE = 4000 };
     run_result r = empty_run();
     double time = 0, last = 0;
@@ -147,9 +141,8 @@ static double integral_to(const run_result *r, double time)
 
 // Windows shorter and longer than the steps, some with impulses: of all windows that begin on a
 // fine grid none has a larger mean, and near the best of them there is one with the mean found.
-static void no_window_of_random_forces_has_more(void **state)
+TEST(no_window_of_random_forces_has_more)
 {
-    (void)state;
     enum { ROUNDS = 60, FINE = 3000 };
     random_generator g;
     random_seed(&g, 11);
@@ -186,9 +179,8 @@ static void no_window_of_random_forces_has_more(void **state)
 }
 
 // The largest force at the start of a history that fills its memory: behind it nothing has more.
-static void a_full_history_is_looked_at_to_its_end(void **state)
+TEST(a_full_history_is_looked_at_to_its_end)
 {
-    (void)state;
     run_result r = empty_run();
     add_step(&r, 0, 1, 5, -4, 0);
     for (int i = 1; r.history.forces.count < r.history.forces.array.capacity; i++) {
@@ -199,26 +191,11 @@ static void a_full_history_is_looked_at_to_its_end(void **state)
     finish(&r);
 }
 
-static void a_run_on_the_rig_has_it_and_the_bare_arm_has_not(void **state)
+TEST(a_run_on_the_rig_has_it_and_the_bare_arm_has_not)
 {
-    (void)state;
     summary rig = rig_summary(SETTINGS("control.law=hybrid"));
     check_below(rig.smoothed_over_command_N, rig.force_over_command_N + 1e-9);
     check_below(0.5, rig.smoothed_over_command_N);
     summary bare = rig_summary(NULL);
     assert_true(isnan(bare.smoothed_over_command_N));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_hump_is_met_in_its_middle),
-        cmocka_unit_test(an_impulse_counts_over_the_window),
-        cmocka_unit_test(what_has_no_impulse_changes_nothing),
-        cmocka_unit_test(it_is_the_largest_of_many),
-        cmocka_unit_test(no_window_of_random_forces_has_more),
-        cmocka_unit_test(a_full_history_is_looked_at_to_its_end),
-        cmocka_unit_test(a_run_on_the_rig_has_it_and_the_bare_arm_has_not),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,15 +4,13 @@
 static void assert_pictured(explorer *ex, int width, int height, glyph_set set, const char *wanted)
 {
     char *text = picture(ex, width, height, set);
-    if (strstr(text, wanted) == NULL) {
-        fail_msg("'%s' is not on the screen of %d x %d:\n%s", wanted, width, height, text);
-    }
+    fail_if(strstr(text, wanted) == NULL, "'%s' is not on the screen of %d x %d:\n%s", wanted,
+            width, height, text);
     free(text);
 }
 
-static void test_the_panel_is_whole_on_every_screen(void **state)
+TEST(test_the_panel_is_whole_on_every_screen)
 {
-    (void)state;
     static const int sizes[][2] = {{80, 24}, {100, 30}, {120, 40}, {200, 60}};
     static const char *const laws[] = {
         "hybrid",     "recovering",  "force-pd",  "force-integral", "discontinuous", "optimal",
@@ -46,9 +44,8 @@ static void test_the_panel_is_whole_on_every_screen(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_narrow_screen_shows_the_panel_beside_the_parameters(void **state)
+TEST(test_a_narrow_screen_shows_the_panel_beside_the_parameters)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     free(picture(&ex, 60, 24, GLYPHS_BRAILLE));
@@ -57,9 +54,8 @@ static void test_a_narrow_screen_shows_the_panel_beside_the_parameters(void **st
     explorer_finish(&ex);
 }
 
-static void test_a_command_beyond_the_limit_is_marked(void **state)
+TEST(test_a_command_beyond_the_limit_is_marked)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/bang-bang");
     session_seek(&ex.state.session, 0.02);
@@ -69,9 +65,8 @@ static void test_a_command_beyond_the_limit_is_marked(void **state)
     explorer_finish(&ex);
 }
 
-static void test_one_key_goes_through_the_modes(void **state)
+TEST(test_one_key_goes_through_the_modes)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":seek 0.9<Enter>");
@@ -101,9 +96,8 @@ static void test_one_key_goes_through_the_modes(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_lock_is_saved_and_run_again_byte_for_byte(void **state)
+TEST(test_a_lock_is_saved_and_run_again_byte_for_byte)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/recovering");
     press(&ex, ":seek 0.4<Enter>:lock approach<Enter>:seek 0.6<Enter>LLb:seek 0.8<Enter>F");
@@ -114,9 +108,8 @@ static void test_a_lock_is_saved_and_run_again_byte_for_byte(void **state)
     explorer_finish(&ex);
 }
 
-static void test_laws_and_modes_are_completed_and_checked(void **state)
+TEST(test_laws_and_modes_are_completed_and_checked)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":lock app<Tab>");
@@ -146,9 +139,8 @@ static void test_laws_and_modes_are_completed_and_checked(void **state)
     explorer_finish(&ex);
 }
 
-static void test_the_log_names_modes(void **state)
+TEST(test_the_log_names_modes)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, "nn");
@@ -168,18 +160,4 @@ static void test_the_log_names_modes(void **state)
     click_at(&ex, log.area.x + 3, log.area.y + 2 - log.index);
     check_close(ex.state.session.now, 0.295, 0);
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_panel_is_whole_on_every_screen),
-        cmocka_unit_test(test_a_narrow_screen_shows_the_panel_beside_the_parameters),
-        cmocka_unit_test(test_a_command_beyond_the_limit_is_marked),
-        cmocka_unit_test(test_one_key_goes_through_the_modes),
-        cmocka_unit_test(test_a_lock_is_saved_and_run_again_byte_for_byte),
-        cmocka_unit_test(test_laws_and_modes_are_completed_and_checked),
-        cmocka_unit_test(test_the_log_names_modes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

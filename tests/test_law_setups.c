@@ -1,13 +1,11 @@
 // The parameters given to laws on the rig: delays, motors, arms and changes at the ends of their
 // ranges. A law works with them, or says why it cannot.
-#include <string.h>
 
 #include "tests/rig_fixture.h"
 
 // A model-based law waits for its command not at all, for part of a period, or for all of it.
-static void laws_know_any_delay(void **state)
+TEST(laws_know_any_delay)
 {
-    (void)state;
     static const char *const laws[] = {"control.law=optimal", "control.law=observer"};
     static const char *const delays[] = {"control.delay_periods=0", "control.delay_periods=0.5",
                                          "control.delay_periods=1"};
@@ -21,9 +19,8 @@ static void laws_know_any_delay(void **state)
     }
 }
 
-static void a_motor_without_torque_is_said(void **state)
+TEST(a_motor_without_torque_is_said)
 {
-    (void)state;
     static const char *const laws[] = {"control.law=optimal", "control.law=observer"};
     for (int i = 0; i < 2; i++) {
         check_refused(SETTINGS(laws[i], "motor.amplifier_gain=0"), "it needs a motor");
@@ -31,9 +28,8 @@ static void a_motor_without_torque_is_said(void **state)
 }
 
 // Links that throw the force of an impact nowhere: the law brakes by the spring alone.
-static void links_without_a_force_of_their_own_are_pressed(void **state)
+TEST(links_without_a_force_of_their_own_are_pressed)
 {
-    (void)state;
     const summary s = rig_summary(SETTINGS("control.law=optimal", "arm.mass=0.4",
                                            "arm.link_inertia=0.0125", "control.force=1"));
     assert_true(s.impacts >= 1);
@@ -41,18 +37,16 @@ static void links_without_a_force_of_their_own_are_pressed(void **state)
 }
 
 // A mass without inertia moves at its commanded speed.
-static void an_admittance_may_have_no_mass(void **state)
+TEST(an_admittance_may_have_no_mass)
 {
-    (void)state;
     const summary s = rig_summary(
         SETTINGS("control.law=admittance", "control.settings=mass_time=0", "run.duration=3"));
     check_relative(s.steady_force_N, 1.0, 0.2);
 }
 
 // A forecast of the touch includes the spring between hub and beam.
-static void a_forecast_knows_the_hubs_spring(void **state)
+TEST(a_forecast_knows_the_hubs_spring)
 {
-    (void)state;
     const char *const *const joints[] = {
         SETTINGS("control.law=speed-limit", "control.force_limit=2", "arm.hub_joint=spring",
                  "arm.k1=2000"),
@@ -72,9 +66,7 @@ static status run_with_change(const char *const *settings, const char *path, con
     scenario s = {.parameters = rig_parameters(settings)};
     parameters p = s.parameters;
     const int index = parameter_index(path);
-    if (parameter_set_text(&p, index, text, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameter_set_text(&p, index, text, &f) != STATUS_OK, "%s", f.text);
     action change = {
         .time = time, .kind = ACTION_SET, .parameter = index, .value = parameter_get(&p, index)};
     if (parameter_is_text(&parameter_table[index])) {
@@ -87,9 +79,8 @@ static status run_with_change(const char *const *settings, const char *path, con
 
 // A transition under way is planned anew to another force, or to another end; with no time left it
 // goes on as it was.
-static void a_transition_leads_where_it_is_told(void **state)
+TEST(a_transition_leads_where_it_is_told)
 {
-    (void)state;
     const char *const *const settings = SETTINGS("control.law=hybrid", "control.force=1");
     const double touch = rig_summary(settings).first_contact_s;
     static const struct {
@@ -109,9 +100,8 @@ static void a_transition_leads_where_it_is_told(void **state)
 }
 
 // A rate that a script sets at the start is the rig's from its first sample on.
-static void a_rate_set_at_the_start_is_that_of_the_rig(void **state)
+TEST(a_rate_set_at_the_start_is_that_of_the_rig)
 {
-    (void)state;
     run_result r;
     const char *const *const settings = SETTINGS("control.law=hybrid", "control.rate=200");
     assert_int_equal(run_with_change(settings, "control.rate", "100", 0, &r), STATUS_OK);
@@ -123,9 +113,8 @@ static void a_rate_set_at_the_start_is_that_of_the_rig(void **state)
 }
 
 // A limit that changes during the run is passed to the forecast, too.
-static void a_limit_may_change(void **state)
+TEST(a_limit_may_change)
 {
-    (void)state;
     run_result r;
     const char *const *const settings =
         SETTINGS("control.law=speed-limit", "control.force_limit=4", "control.approach_voltage=5",
@@ -134,19 +123,4 @@ static void a_limit_may_change(void **state)
     const summary high = rig_summary(settings);
     check_below(r.summary.peak_force_N, high.peak_force_N);
     run_finish(&r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(laws_know_any_delay),
-        cmocka_unit_test(a_motor_without_torque_is_said),
-        cmocka_unit_test(links_without_a_force_of_their_own_are_pressed),
-        cmocka_unit_test(an_admittance_may_have_no_mass),
-        cmocka_unit_test(a_forecast_knows_the_hubs_spring),
-        cmocka_unit_test(a_transition_leads_where_it_is_told),
-        cmocka_unit_test(a_rate_set_at_the_start_is_that_of_the_rig),
-        cmocka_unit_test(a_limit_may_change),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

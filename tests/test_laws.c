@@ -2,16 +2,13 @@
 // before the wall.
 #include "tests/rig_fixture.h"
 
-#include <string.h>
-
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
 
 // --- the hybrid law -------------------------------------------------------------------------
 
-static void hybrid_makes_contact_once_and_settles(void **state)
+TEST(hybrid_makes_contact_once_and_settles)
 {
-    (void)state;
     summary one = rig_summary(SETTINGS("control.law=hybrid", "control.force=1"));
     summary two = rig_summary(SETTINGS("control.law=hybrid", "control.force=2"));
     check_close(one.impacts, 1, 0);
@@ -28,9 +25,8 @@ static void hybrid_makes_contact_once_and_settles(void **state)
     check_below(printed_two.settling_time_s, printed_one.settling_time_s);
 }
 
-static void hybrid_force_follows_its_coefficients(void **state)
+TEST(hybrid_force_follows_its_coefficients)
 {
-    (void)state;
     summary corrected = rig_summary(SETTINGS("control.law=hybrid", "sensor.ideal=true"));
     summary printed = rig_summary(
         SETTINGS("control.law=hybrid", "sensor.ideal=true", "control.coefficients=printed"));
@@ -41,9 +37,8 @@ static void hybrid_force_follows_its_coefficients(void **state)
 }
 
 // The impact mode starts where the hub is and ends at the angle that (5.23) gives.
-static void quintic_joins_contact_and_rest(void **state)
+TEST(quintic_joins_contact_and_rest)
 {
-    (void)state;
     run_result r = rig_run(SETTINGS("control.law=hybrid", "sensor.ideal=true"), true);
     const trace *t = &r.trace;
     size_t first = 0, last = 0;
@@ -65,9 +60,8 @@ static void quintic_joins_contact_and_rest(void **state)
     run_finish(&r);
 }
 
-static void gains_have_both_readings(void **state)
+TEST(gains_have_both_readings)
 {
-    (void)state;
     summary torque = rig_summary(SETTINGS("control.law=hybrid", "control.coefficients=printed",
                                           "control.gains=torque", "sensor.ideal=true"));
     summary volts = rig_summary(SETTINGS("control.law=hybrid", "control.coefficients=printed",
@@ -102,9 +96,8 @@ static int failures_of(const char *const *settings)
     return failures;
 }
 
-static void the_thesis_needs_its_200_hertz(void **state)
+TEST(the_thesis_needs_its_200_hertz)
 {
-    (void)state;
     // a separate hub before the beam, a delay of one period: 100 Hz fails, 200 Hz does not
     assert_int_equal(failures_of(SETTINGS("control.rate=100")), 5);
     assert_int_equal(failures_of(SETTINGS("control.rate=150")), 5);
@@ -129,9 +122,8 @@ static void the_thesis_needs_its_200_hertz(void **state)
 
 // What fails is the velocity gain on the hub alone: held for a period T and a period late,
 // w' = -(kv/I1) w becomes w(k + 1) = w(k) - (kv T/I1) w(k - 1), stable below kv = I1/T.
-static void the_rate_limits_the_velocity_gain(void **state)
+TEST(the_rate_limits_the_velocity_gain)
 {
-    (void)state;
     const double rates[] = {100, 150, 200, 300, 500};
     for (int i = 0; i < 5; i++) {
         char rate[32], low[32], high[32];
@@ -146,9 +138,8 @@ static void the_rate_limits_the_velocity_gain(void **state)
 // --- the optimal law ------------------------------------------------------------------------
 
 // Against the hybrid law with corrected coefficients on the noisy default rig.
-static void optimal_law_beats_the_hybrid(void **state)
+TEST(optimal_law_beats_the_hybrid)
 {
-    (void)state;
     const struct {
         const char *force;
         double share; // of the hybrid law's overshoot that is allowed
@@ -171,9 +162,8 @@ static void optimal_law_beats_the_hybrid(void **state)
     }
 }
 
-static void optimal_law_stands_wrong_beliefs(void **state)
+TEST(optimal_law_stands_wrong_beliefs)
 {
-    (void)state;
     const char *const beliefs[] = {"belief.k2_factor=0.8", "belief.k2_factor=1.2",
                                    "belief.wall_error=0.02", "belief.wall_error=-0.02"};
     const char *const forces[] = {"control.force=0.5", "control.force=1", "control.force=2",
@@ -192,9 +182,8 @@ static void optimal_law_stands_wrong_beliefs(void **state)
 }
 
 // The approach goes as fast as the limit on the force allows, wherever the wall is.
-static void predictive_law_keeps_its_limit(void **state)
+TEST(predictive_law_keeps_its_limit)
 {
-    (void)state;
     const double limits[] = {0.7, 1, 1.5, 2};
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 8; k++) {
@@ -217,9 +206,8 @@ static void predictive_law_keeps_its_limit(void **state)
 
 // --- the others -----------------------------------------------------------------------------
 
-static void bang_bang_hits_harder_than_the_plain_approach(void **state)
+TEST(bang_bang_hits_harder_than_the_plain_approach)
 {
-    (void)state;
     summary plain = rig_summary(SETTINGS("control.law=hybrid"));
     summary bang = rig_summary(SETTINGS("control.law=bang-bang"));
     check_below(1.2 * plain.peak_force_N, bang.peak_force_N);
@@ -245,17 +233,15 @@ static double peak_of_touch(const char *angle, double *tip_speed)
     return peak;
 }
 
-static void same_tip_speed_at_another_phase_gives_another_peak(void **state)
+TEST(same_tip_speed_at_another_phase_gives_another_peak)
 {
-    (void)state;
     double early, late, soft = peak_of_touch("0.11", &early), hard = peak_of_touch("0.21", &late);
     check_relative(early, late, 0.01);
     check_below(1.4 * soft, hard);
 }
 
-static void slower_approach_hits_softer(void **state)
+TEST(slower_approach_hits_softer)
 {
-    (void)state;
     double last = HUGE_VAL;
     const char *const limits[] = {"control.speed_limit=0.6", "control.speed_limit=0.4",
                                   "control.speed_limit=0.2"};
@@ -268,9 +254,8 @@ static void slower_approach_hits_softer(void **state)
 
 // The force at rest is the commanded one to what friction holds, 0.045 N m over 2 l, for every law
 // that regulates it.
-static void every_law_ends_near_its_force(void **state)
+TEST(every_law_ends_near_its_force)
 {
-    (void)state;
     const char *const laws[] = {"control.law=hybrid",         "control.law=force-pd",
                                 "control.law=reverse-torque", "control.law=speed-limit",
                                 "control.law=discontinuous",  "control.law=recovering",
@@ -283,9 +268,8 @@ static void every_law_ends_near_its_force(void **state)
     check_close(integral.steady_force_N, 1, 0.05);
 }
 
-static void recovering_law_returns_to_position_control(void **state)
+TEST(recovering_law_returns_to_position_control)
 {
-    (void)state;
     run_result r = rig_run(SETTINGS("control.law=recovering", "control.approach_voltage=7",
                                     "control.force=0.5", "run.duration=2"),
                            true);
@@ -300,9 +284,8 @@ static void recovering_law_returns_to_position_control(void **state)
 }
 
 // Spring and beam in series: a wall believed d rad off costs d k K/(k + K) of torque, K = 4 k2.
-static void impedance_gives_way_by_its_stiffness(void **state)
+TEST(impedance_gives_way_by_its_stiffness)
 {
-    (void)state;
     static const double stiffness[] = {5, 20, 40};
     for (size_t i = 0; i < sizeof stiffness / sizeof stiffness[0]; i++) {
         char setting[64];
@@ -317,9 +300,8 @@ static void impedance_gives_way_by_its_stiffness(void **state)
 }
 
 // All settings count, in any order and with blanks between them.
-static void several_settings_are_taken(void **state)
+TEST(several_settings_are_taken)
 {
-    (void)state;
     fault f;
     const controller *law = controller_of(LAW_IMPEDANCE);
     parameters p = rig_parameters(SETTINGS("control.law=impedance"));
@@ -343,9 +325,8 @@ static void several_settings_are_taken(void **state)
 
 // A setting is a number within its limits, both included, and nothing else; what is refused names
 // the word.
-static void settings_are_numbers_within_limits(void **state)
+TEST(settings_are_numbers_within_limits)
 {
-    (void)state;
     static const controller_parameter own[] = {
         {.name = "gain",
          .unit = "N",
@@ -386,26 +367,23 @@ static void settings_are_numbers_within_limits(void **state)
     for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
         double values[2] = {-99, -99};
         strcpy(p.control.settings, right[i].text);
-        if (controller_values(&law, &p, values, &f) != STATUS_OK) {
-            fail_msg("'%s': %s", right[i].text, f.text);
-        }
+        fail_if(controller_values(&law, &p, values, &f) != STATUS_OK, "'%s': %s", right[i].text,
+                f.text);
         check_close(values[0], right[i].gain, 0);
         check_close(values[1], right[i].gains, 0);
     }
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         double values[2];
         strcpy(p.control.settings, wrong[i]);
-        if (controller_values(&law, &p, values, &f) != STATUS_BAD_SCENARIO) {
-            fail_msg("'%s' was taken: %g, %g", wrong[i], values[0], values[1]);
-        }
+        fail_if(controller_values(&law, &p, values, &f) != STATUS_BAD_SCENARIO,
+                "'%s' was taken: %g, %g", wrong[i], values[0], values[1]);
         assert_int_equal(f.code, STATUS_BAD_SCENARIO);
     }
 }
 
 // Admittance ends where the reading is right, wherever the wall is and however stiff the beam.
-static void admittance_ends_with_the_force(void **state)
+TEST(admittance_ends_with_the_force)
 {
-    (void)state;
     static const char *const wrong[] = {"belief.wall_error=0.02", "belief.k2_factor=0.75",
                                         "belief.torque_factor=0.85", "control.force=2"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -417,9 +395,8 @@ static void admittance_ends_with_the_force(void **state)
 
 // A wall believed 0.02 rad off spoils the force by 0.13 N; what a sensor shows of it mends that,
 // and costs little where the belief was right.
-static void the_impact_angle_can_be_measured(void **state)
+TEST(the_impact_angle_can_be_measured)
 {
-    (void)state;
     static const char *const sources[] = {"control.impact_angle=film",
                                           "control.impact_angle=accelerometer"};
     static const char *const beliefs[] = {"belief.wall_error=-0.02", "belief.wall_error=0",
@@ -436,9 +413,8 @@ static void the_impact_angle_can_be_measured(void **state)
 }
 
 // The sensor is fitted with it, and cannot be left out.
-static void an_impact_angle_needs_its_sensor(void **state)
+TEST(an_impact_angle_needs_its_sensor)
 {
-    (void)state;
     parameters p = rig_parameters(SETTINGS("control.impact_angle=film"));
     assert_true(p.sensor.film && !p.sensor.accelerometer);
     fault f;
@@ -449,31 +425,4 @@ static void an_impact_angle_needs_its_sensor(void **state)
     assert_int_equal(parameter_set_text(&p, parameter_find("sensor.accelerometer"), "false", &f),
                      STATUS_OK);
     assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hybrid_makes_contact_once_and_settles),
-        cmocka_unit_test(hybrid_force_follows_its_coefficients),
-        cmocka_unit_test(the_impact_angle_can_be_measured),
-        cmocka_unit_test(an_impact_angle_needs_its_sensor),
-        cmocka_unit_test(quintic_joins_contact_and_rest),
-        cmocka_unit_test(gains_have_both_readings),
-        cmocka_unit_test(the_thesis_needs_its_200_hertz),
-        cmocka_unit_test(the_rate_limits_the_velocity_gain),
-        cmocka_unit_test(optimal_law_beats_the_hybrid),
-        cmocka_unit_test(optimal_law_stands_wrong_beliefs),
-        cmocka_unit_test(predictive_law_keeps_its_limit),
-        cmocka_unit_test(bang_bang_hits_harder_than_the_plain_approach),
-        cmocka_unit_test(same_tip_speed_at_another_phase_gives_another_peak),
-        cmocka_unit_test(slower_approach_hits_softer),
-        cmocka_unit_test(every_law_ends_near_its_force),
-        cmocka_unit_test(recovering_law_returns_to_position_control),
-        cmocka_unit_test(impedance_gives_way_by_its_stiffness),
-        cmocka_unit_test(several_settings_are_taken),
-        cmocka_unit_test(settings_are_numbers_within_limits),
-        cmocka_unit_test(admittance_ends_with_the_force),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

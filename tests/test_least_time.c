@@ -1,6 +1,5 @@
 // The least time to the wanted force: its touch can be had, nothing does better, and limits that
 // leave less take longer.
-#include <stdlib.h>
 
 #include "src/arm/modes.h"
 #include "src/base/random.h"
@@ -34,9 +33,8 @@ static int torque_of(const parameters *p, const least_time *t, double *torque)
     return n;
 }
 
-static void full_voltage_either_way_has_it(void **state)
+TEST(full_voltage_either_way_has_it)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS(START));
     static const double forces[] = {0.5, 1, 4};
     for (int i = 0; i < 3; i++) {
@@ -61,9 +59,8 @@ static void full_voltage_either_way_has_it(void **state)
 }
 
 // Weak duality: for any torque, K xi less the weighted tip is on this side of the solution's.
-static void no_torque_does_better(void **state)
+TEST(no_torque_does_better)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS(START));
     const double most = motor_torque_per_volt(&p.motor) * p.motor.voltage_limit + p.motor.stiction;
     least_time t = least_time_of(&p, 1, 0.05, 2);
@@ -82,9 +79,8 @@ static void no_torque_does_better(void **state)
     }
 }
 
-static void less_voltage_and_less_force_take_longer(void **state)
+TEST(less_voltage_and_less_force_take_longer)
 {
-    (void)state;
     static const char *const volts[] = {"motor.voltage_limit=10", "motor.voltage_limit=5",
                                         "motor.voltage_limit=3", "motor.voltage_limit=2.5"};
     double before = 0;
@@ -104,9 +100,8 @@ static void less_voltage_and_less_force_take_longer(void **state)
 // A beam that hardly bends goes as one rod about the hub, braked by the motor: I w' = T - D w. A
 // touch throws both links onto x' = (M11 - M22)/M w, (2.16) and (2.17), hub and first link one
 // body.
-static void a_stiff_arm_goes_as_a_rod(void **state)
+TEST(a_stiff_arm_goes_as_a_rod)
 {
-    (void)state;
     enum { STEPS = 200 };
     parameters p = fixture_parameters(SETTINGS(START, "arm.k2=1000"));
     const double damping = motor_damping(&p.motor), most = 0.5;
@@ -173,9 +168,8 @@ static bool largest_press(const response *steps, int n, double most, double way,
     return true;
 }
 
-static void it_is_the_best_of_all_touches(void **state)
+TEST(it_is_the_best_of_all_touches)
 {
-    (void)state;
     static const struct {
         const char *limit;
         double force, peak;
@@ -242,9 +236,8 @@ static void it_is_the_best_of_all_touches(void **state)
 
 // Before it touches, the arm moves as M q'' + C q' + K q = T e says, with the matrices that its
 // modes are computed from; of its momentum the touch leaves what the constraint allows.
-static void the_flight_is_that_of_the_straight_arm(void **state)
+TEST(the_flight_is_that_of_the_straight_arm)
 {
-    (void)state;
     enum { SIZE = 5, STEPS = 400 }; // q, q', 1
     const parameters p = fixture_parameters(SETTINGS(START));
     arm a;
@@ -288,26 +281,11 @@ static void the_flight_is_that_of_the_straight_arm(void **state)
     }
 }
 
-static void where_there_is_no_way_it_says_so(void **state)
+TEST(where_there_is_no_way_it_says_so)
 {
-    (void)state;
     assert_true(isnan(of(SETTINGS("arm.links=3", START), 1, 2).total));
     assert_true(isnan(of(SETTINGS("initial.angle=0", "wall.angle=0"), 1, 2).total));
     assert_true(isnan(of(SETTINGS(START), 0, 2).total));
     assert_true(
         isnan(of(SETTINGS(START, "motor.voltage_limit=0", "motor.stiction=0"), 1, 2).total));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(full_voltage_either_way_has_it),
-        cmocka_unit_test(no_torque_does_better),
-        cmocka_unit_test(it_is_the_best_of_all_touches),
-        cmocka_unit_test(less_voltage_and_less_force_take_longer),
-        cmocka_unit_test(a_stiff_arm_goes_as_a_rod),
-        cmocka_unit_test(the_flight_is_that_of_the_straight_arm),
-        cmocka_unit_test(where_there_is_no_way_it_says_so),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

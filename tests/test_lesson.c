@@ -8,26 +8,21 @@ static void go_through(explorer *ex, const char *name)
     const lesson *l = &ex->state.session.base.lesson;
     for (int i = 0; i < l->step_count; i++) {
         const lesson_step *step = &l->steps[i];
-        if (ex->state.lesson.step != i || !ex->state.lesson.on) {
-            fail_msg("%s is at step %d, expected %d", name, ex->state.lesson.step + 1, i + 1);
-        }
+        fail_if(ex->state.lesson.step != i || !ex->state.lesson.on, "%s is at step %d, expected %d",
+                name, ex->state.lesson.step + 1, i + 1);
 
         // asked before it is done it gives a hint and stays
         if (step->check != LESSON_READ) {
             explorer_carry_out(ex, "continue");
-            if (ex->state.lesson.step != i || strlen(step->hint) < 5) {
-                fail_msg("%s: step %d is done before anything is, or has no hint", name, i + 1);
-            }
+            fail_if(ex->state.lesson.step != i || strlen(step->hint) < 5,
+                    "%s: step %d is done before anything is, or has no hint", name, i + 1);
         }
         for (int k = 0; k < step->command_count; k++) {
-            if (!explorer_carry_out(ex, step->commands[k])) {
-                fail_msg("%s: step %d: '%s': %s", name, i + 1, step->commands[k],
-                         ex->state.message.text);
-            }
+            fail_if(!explorer_carry_out(ex, step->commands[k]), "%s: step %d: '%s': %s", name,
+                    i + 1, step->commands[k], ex->state.message.text);
         }
-        if (step->check != LESSON_READ && !ex->state.lesson.passed) {
-            fail_msg("%s: step %d is not done by its own commands", name, i + 1);
-        }
+        fail_if(step->check != LESSON_READ && !ex->state.lesson.passed,
+                "%s: step %d is not done by its own commands", name, i + 1);
         explorer_carry_out(ex, "continue");
     }
     assert_false(ex->state.lesson.on);
@@ -47,9 +42,8 @@ static void read_copy(const scenario *s, scenario *copy)
     free(text);
 }
 
-static void test_a_copy_keeps_its_lesson(void **state)
+TEST(test_a_copy_keeps_its_lesson)
 {
-    (void)state;
     static const char *const names[] = {"lessons/impulse-and-force", "lessons/two-predictors",
                                         "lessons/step-size",         "lessons/beta-and-gamma",
                                         "lessons/hybrid-law",        "lessons/what-a-sensor-sees"};
@@ -77,9 +71,8 @@ static void test_a_copy_keeps_its_lesson(void **state)
     }
 }
 
-static void test_every_lesson_can_be_gone_through(void **state)
+TEST(test_every_lesson_can_be_gone_through)
 {
-    (void)state;
     char **names;
     int count, lessons = 0;
     fault f = {0};
@@ -102,9 +95,8 @@ static void test_every_lesson_can_be_gone_through(void **state)
     assert_int_equal(lessons, 6);
 }
 
-static void test_every_step_fits_a_small_screen(void **state)
+TEST(test_every_step_fits_a_small_screen)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "lessons/impulse-and-force");
     const lesson *l = &ex.state.session.base.lesson;
@@ -125,9 +117,8 @@ static void test_every_step_fits_a_small_screen(void **state)
 }
 
 // What a step names is on a screen of 80 x 24: when it is asked, or once it is done.
-static void test_what_a_step_names_is_on_the_screen(void **state)
+TEST(test_what_a_step_names_is_on_the_screen)
 {
-    (void)state;
     static const struct {
         const char *lesson;
         int step; // from 1
@@ -182,9 +173,8 @@ static void test_what_a_step_names_is_on_the_screen(void **state)
 }
 
 // Two keys open the first lesson of the list, which goes by number.
-static void test_the_list_of_lessons_opens_the_first(void **state)
+TEST(test_the_list_of_lessons_opens_the_first)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":lesson<Enter>");
@@ -201,9 +191,8 @@ static void test_the_list_of_lessons_opens_the_first(void **state)
     explorer_finish(&ex);
 }
 
-static void test_wrong_answers_are_not_taken(void **state)
+TEST(test_wrong_answers_are_not_taken)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "lessons/hybrid-law");
     press(&ex, "A1<Enter>");
@@ -227,17 +216,4 @@ static void test_wrong_answers_are_not_taken(void **state)
     press(&ex, ":lesson no-such<Enter>");
     assert_true(ex.state.message.warning);
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_lesson_can_be_gone_through),
-        cmocka_unit_test(test_a_copy_keeps_its_lesson),
-        cmocka_unit_test(test_every_step_fits_a_small_screen),
-        cmocka_unit_test(test_what_a_step_names_is_on_the_screen),
-        cmocka_unit_test(test_the_list_of_lessons_opens_the_first),
-        cmocka_unit_test(test_wrong_answers_are_not_taken),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,6 @@
 // The linear arm: its poles and zeros against closed forms and the modes, and the MAT file.
 #include "src/study/linear/linear.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/arm/modes.h"
 #include "src/exchange/mat_file.h"
 #include "tests/check.h"
@@ -21,9 +18,7 @@ static scenario opened(const char *name, const char *changes)
         items[count++] = item;
     }
     assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
-    if (scenario_override_all(&s, items, count, NULL, NULL) != STATUS_OK) {
-        fail_msg("%s", changes);
-    }
+    fail_if(scenario_override_all(&s, items, count, NULL, NULL) != STATUS_OK, "%s", changes);
     return s;
 }
 
@@ -32,9 +27,7 @@ static linear_arm linearised(const char *name, const char *changes, linear_place
     scenario s = opened(name, changes);
     fault f = {.text = ""};
     linear_arm l;
-    if (linear_arm_init(&l, &s.parameters, place, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(linear_arm_init(&l, &s.parameters, place, &f) != STATUS_OK, "%s", f.text);
     scenario_finish(&s);
     return l;
 }
@@ -43,18 +36,15 @@ static void poles_of(const linear_arm *l, double complex *poles)
 {
     fault f = {.text = ""};
     assert_true(l->system.states <= MOST);
-    if (linear_poles(&l->system, poles, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(linear_poles(&l->system, poles, &f) != STATUS_OK, "%s", f.text);
 }
 
 #define ROUND "corrected/first-impact"
 
 // The straight two-link arm: in contact M x'' + D x' + 4 k2 x = K u; in flight the hub's and the
 // bend's cubic; and with the force as input or output the zeros +-(4 k2/mu)^(1/2).
-static void two_links_have_their_closed_forms(void **state)
+TEST(two_links_have_their_closed_forms)
 {
-    (void)state;
     double complex poles[MOST], zeros[MOST];
     fault f;
     int count;
@@ -92,9 +82,8 @@ static void two_links_have_their_closed_forms(void **state)
 }
 
 // Where the motor cannot move the hub are the frequencies of the arm with its hub locked.
-static void zeros_to_the_hub_are_frequencies_of_the_held_arm(void **state)
+TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
 {
-    (void)state;
     static const char *const joints[] = {"rigid", "spring arm.k1=90", "beam"};
     for (int i = 0; i < 6; i++) {
         const linear_place place = i % 2 == 0 ? LINEAR_FREE : LINEAR_CONTACT;
@@ -126,9 +115,8 @@ static void zeros_to_the_hub_are_frequencies_of_the_held_arm(void **state)
 
 // The arm rests where it is said to: the force is the torque over the lever, and a wall that gives
 // is as deep as its law says.
-static void the_arm_rests_under_its_force(void **state)
+TEST(the_arm_rests_under_its_force)
 {
-    (void)state;
     const double K = 6.02 * 0.249092 * 9.80665 / 33.6;
     linear_arm l = linearised(ROUND, "motor.voltage=1e-3", LINEAR_CONTACT);
     check_relative(l.force, K * 1e-3, 1e-6);
@@ -153,9 +141,8 @@ static void the_arm_rests_under_its_force(void **state)
 
 // A pole that friction alone holds still is not in the arm with its hub held, and what cannot be
 // linearised is said.
-static void what_has_no_linear_form_is_refused(void **state)
+TEST(what_has_no_linear_form_is_refused)
 {
-    (void)state;
     static const struct {
         const char *changes, *says;
         linear_place place;
@@ -189,9 +176,8 @@ static uint32_t word(const unsigned char *at)
 }
 
 // Names of every length: the reader walks from element to element by their sizes alone.
-static void mat_files_are_read_element_by_element(void **state)
+TEST(mat_files_are_read_element_by_element)
 {
-    (void)state;
     const double values[6] = {1, 2, 3, 4, 5, 6};
     const double complex roots[2] = {complex_of(1, 2), complex_of(3, -4)};
     char *bytes = NULL;
@@ -233,16 +219,4 @@ static void mat_files_are_read_element_by_element(void **state)
     }
     assert_ptr_equal(at, end);
     free(bytes);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_links_have_their_closed_forms),
-        cmocka_unit_test(zeros_to_the_hub_are_frequencies_of_the_held_arm),
-        cmocka_unit_test(the_arm_rests_under_its_force),
-        cmocka_unit_test(what_has_no_linear_form_is_refused),
-        cmocka_unit_test(mat_files_are_read_element_by_element),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,8 +1,6 @@
 // Sampled loops: limits of stability, margins, loop gains measured in runs, pushes that lose
 // contact.
 #include <assert.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/arm/chain.h"
 #include "src/run/loop.h"
@@ -23,9 +21,7 @@ static scenario opened(const char *name, const char *changes)
         items[count++] = item;
     }
     assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
-    if (scenario_override_all(&s, items, count, NULL, NULL) != STATUS_OK) {
-        fail_msg("%s", changes);
-    }
+    fail_if(scenario_override_all(&s, items, count, NULL, NULL) != STATUS_OK, "%s", changes);
     return s;
 }
 
@@ -34,17 +30,15 @@ static linear_system loop_of(const scenario *s, linear_arm *l)
 {
     fault f = {.text = ""};
     linear_system loop = {0};
-    if (linear_arm_init(l, &s->parameters, LINEAR_CONTACT, &f) != STATUS_OK ||
-        linear_loop(&loop, l, &s->parameters, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(linear_arm_init(l, &s->parameters, LINEAR_CONTACT, &f) != STATUS_OK ||
+                linear_loop(&loop, l, &s->parameters, &f) != STATUS_OK,
+            "%s", f.text);
     return loop;
 }
 
 // Limits that another program found, on a grid of half a hertz and for the straight arm.
-static void limits_are_those_found_otherwise(void **state)
+TEST(limits_are_those_found_otherwise)
 {
-    (void)state;
     static const struct {
         const char *name, *changes, *path;
         double from, to, known;
@@ -72,9 +66,8 @@ static void limits_are_those_found_otherwise(void **state)
 }
 
 // A gain margin is the factor, a delay margin the delay, at which a pole reaches the unit circle.
-static void margins_are_met_by_the_poles(void **state)
+TEST(margins_are_met_by_the_poles)
 {
-    (void)state;
     static const char *const cases[][2] = {
         {"compare/force-pd", IDEAL "control.rate=200 control.force_gain=2 control.kv=0"},
         {"compare/force-integral", IDEAL "control.rate=100"},
@@ -126,9 +119,8 @@ static void margins_are_met_by_the_poles(void **state)
 static const char *plugin_path, *program_path;
 
 // Small sines in a run meet what the matrices say, also of laws that are not the lab's.
-static void measured_loops_are_the_exact_ones(void **state)
+TEST(measured_loops_are_the_exact_ones)
 {
-    (void)state;
     char loaded[1024];
     snprintf(loaded, sizeof loaded,
              IDEAL "control.law=plugin control.settings=rise_time=0.05 control.plugin=%s",
@@ -157,9 +149,7 @@ static void measured_loops_are_the_exact_ones(void **state)
         linear_system loop = loop_of(&s, &l);
         linear_response r;
         fault f = {.text = ""};
-        if (linear_inject(&s, &r, &f) != STATUS_OK) {
-            fail_msg("%s: %s", cases[i][1], f.text);
-        }
+        fail_if(linear_inject(&s, &r, &f) != STATUS_OK, "%s: %s", cases[i][1], f.text);
         const double period = 1 / p->control.rate;
         double complex scratch[64 * 67];
         int compared = 0;
@@ -232,9 +222,8 @@ static double losses_with(double factor)
 
 // The observer law, which has no linear form, fails in runs within a tenth of the loop gain and of
 // the further delay that its measured loop bears.
-static void measured_margins_are_those_of_runs(void **state)
+TEST(measured_margins_are_those_of_runs)
 {
-    (void)state;
     scenario s = opened("compare/observer", IDEAL "run.duration=3");
     linear_arm l;
     linear_system loop;
@@ -268,9 +257,8 @@ static void measured_margins_are_those_of_runs(void **state)
 
 // A push away from a rigid wall throws the arm off with p C, C = J M^-1 J', and the force f brings
 // it back after (p C)^2/(2 f C): a micrometre is a separation.
-static void the_least_push_lifts_the_arm_by_a_micrometre(void **state)
+TEST(the_least_push_lifts_the_arm_by_a_micrometre)
 {
-    (void)state;
     scenario s = opened("corrected/first-impact", "motor.stiction=0 run.duration=4");
     linear_arm l;
     fault f = {.text = ""};
@@ -299,12 +287,5 @@ int main(int argc, char **argv)
     assert(argc == 3);
     plugin_path = argv[1];
     program_path = argv[2];
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(limits_are_those_found_otherwise),
-        cmocka_unit_test(margins_are_met_by_the_poles),
-        cmocka_unit_test(measured_loops_are_the_exact_ones),
-        cmocka_unit_test(measured_margins_are_those_of_runs),
-        cmocka_unit_test(the_least_push_lifts_the_arm_by_a_micrometre),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+    return run_cases(NULL, NULL);
 }

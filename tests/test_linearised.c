@@ -1,6 +1,4 @@
 // The project's own predictor against the corrected simulation, on the cases of Tables 4.1-4.3.
-#include <stdlib.h>
-
 #include "src/run/run.h"
 #include "src/predict/linearised.h"
 #include "src/predict/pulse.h"
@@ -99,21 +97,18 @@ static void it_is_right_on_the_twelve_cases(const char *wall, told_errors told)
     check_close(100 * delay_error[held - 1], told.worst_delay, 5.001e-4);
 }
 
-static void it_is_right_at_a_point(void **state)
+TEST(it_is_right_at_a_point)
 {
-    (void)state;
     it_is_right_on_the_twelve_cases("wall.kind=point", (told_errors){0.015, 0.5, 0.008, 0.196});
 }
 
-static void it_is_right_at_a_flat_wall(void **state)
+TEST(it_is_right_at_a_flat_wall)
 {
-    (void)state;
     it_is_right_on_the_twelve_cases("wall.kind=plane", (told_errors){0.008, 0.234, 0.005, 0.477});
 }
 
-static void other_arms_are_predicted_too(void **state)
+TEST(other_arms_are_predicted_too)
 {
-    (void)state;
     comparison spring = compare(4.92, 1, "wall.kind=point", "arm.hub_joint=spring");
     check_relative(spring.predicted.force, spring.simulated.first_pulse_peak_N, 0.01);
     check_relative(spring.predicted.delay, spring.simulated.first_pulse_time_to_peak_s, 0.02);
@@ -125,9 +120,8 @@ static void other_arms_are_predicted_too(void **state)
 }
 
 // Strong damping makes the force jump up at the touch and peak long before the arm stops.
-static void an_early_peak_is_predicted_too(void **state)
+TEST(an_early_peak_is_predicted_too)
 {
-    (void)state;
     static const char *const damping[] = {"arm.damping_ratio=0.15", "arm.damping_ratio=0.3",
                                           "arm.damping_ratio=0.5"};
     static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
@@ -139,9 +133,8 @@ static void an_early_peak_is_predicted_too(void **state)
 }
 
 // A joint that is overdamped: the force jumps up at the touch and only falls, at any voltage.
-static void an_overdamped_arm_is_predicted_too(void **state)
+TEST(an_overdamped_arm_is_predicted_too)
 {
-    (void)state;
     static const char *const damping[] = {"arm.modal_ratios=1.2", "arm.modal_ratios=3",
                                           "arm.modal_ratios=20"};
     static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
@@ -155,9 +148,8 @@ static void an_overdamped_arm_is_predicted_too(void **state)
 
 // A hub that the motor's own friction holds back comes to rest late or only in the limit: later
 // than the pulse is followed nothing is claimed.
-static void a_damped_hub_is_predicted_too(void **state)
+TEST(a_damped_hub_is_predicted_too)
 {
-    (void)state;
     static const double friction[] = {0.03, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 2, 3, 8};
     static const double volts[] = {2, 5, 10};
     int held = 0;
@@ -175,9 +167,8 @@ static void a_damped_hub_is_predicted_too(void **state)
 }
 
 // In free flight the wall is imagined where the arm is; the nearer the wall, the truer.
-static void in_flight_it_approaches_the_prediction_at_the_wall(void **state)
+TEST(in_flight_it_approaches_the_prediction_at_the_wall)
 {
-    (void)state;
     comparison at_wall = compare(4.92, 1, "wall.kind=point", "arm.links=2");
     parameters p = fixture_parameters(NULL);
     arm a;
@@ -196,9 +187,8 @@ static void in_flight_it_approaches_the_prediction_at_the_wall(void **state)
     motion_destroy(m);
 }
 
-static void a_receding_arm_does_not_touch(void **state)
+TEST(a_receding_arm_does_not_touch)
 {
-    (void)state;
     parameters p = fixture_parameters(NULL);
     arm a;
     arm_init(&a, &p);
@@ -227,9 +217,8 @@ static prediction of_one_link(const char *const *settings, const voltage_profile
 
 // A rod on a rigid wall is held by it with what the motor presses, then as later; on one that gives
 // it swings as a mass on a spring about the hub.
-static void one_link_presses_with_its_motor(void **state)
+TEST(one_link_presses_with_its_motor)
 {
-    (void)state;
     const double at[] = {0.05}, more[] = {3}, off[] = {0};
     const voltage_profile none = {0}, stronger = {1, at, more}, weaker = {1, at, off};
     const char *const *const rigid =
@@ -255,9 +244,8 @@ static void one_link_presses_with_its_motor(void **state)
 }
 
 // Where no wall stands there is nothing to be touched.
-static void without_a_wall_there_is_no_touch(void **state)
+TEST(without_a_wall_there_is_no_touch)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("wall.kind=none"));
     arm a;
     arm_init(&a, &p);
@@ -333,9 +321,8 @@ static void predict_and_follow(const char *joint, const char *links, const volta
 }
 
 // The remark of 4.2: the voltage after the touch may be prescribed.
-static void a_prescribed_voltage_is_followed(void **state)
+TEST(a_prescribed_voltage_is_followed)
 {
-    (void)state;
     const double times[] = {0.01, 0.03}, volts[] = {0.5, 1.5};
     predict_and_follow("arm.hub_joint=rigid", "arm.links=2", &(voltage_profile){0});
     predict_and_follow("arm.hub_joint=rigid", "arm.links=2", &(voltage_profile){2, times, volts});
@@ -344,9 +331,8 @@ static void a_prescribed_voltage_is_followed(void **state)
 }
 
 // The first pulse of several arms: its peak, and how long it takes until the force vanishes.
-static void a_pulse_ends_where_the_arm_leaves(void **state)
+TEST(a_pulse_ends_where_the_arm_leaves)
 {
-    (void)state;
     static const char *const stiffness_of[] = {"arm.k2=4.92", "arm.k2=49.2", "arm.k2=492"};
     static const char *const volts_of[] = {"motor.voltage=1", "motor.voltage=2", "motor.voltage=5"};
     int ended = 0;
@@ -392,9 +378,8 @@ static void a_pulse_ends_where_the_arm_leaves(void **state)
     assert_true(ended > 3);
 }
 
-static void an_elastic_impact_does_not_hold(void **state)
+TEST(an_elastic_impact_does_not_hold)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("wall.restitution=0.5"));
     arm a;
     arm_init(&a, &p);
@@ -410,9 +395,8 @@ static void an_elastic_impact_does_not_hold(void **state)
 // Commands take the force down after its first peak and up to a higher one: the less is left of it
 // in between, the less can be told. While enough is left the second peak is the answer, then none
 // is given, and where contact is lost the first one is.
-static void a_force_that_nearly_vanishes_is_not_answered(void **state)
+TEST(a_force_that_nearly_vanishes_is_not_answered)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("motor.voltage=1"));
     arm a;
     arm_init(&a, &p);
@@ -457,9 +441,8 @@ static void a_force_that_nearly_vanishes_is_not_answered(void **state)
 // A gentle touch is one damped oscillation of the hub, x'' = a - c x' - k x, and the force
 // (2 k2 x + 2 d x' + (m33 - m23) x'')/l, l a link's length, d the joint's damping. The closed form
 // and the chain of linear arms are both compared with it.
-static void a_gentle_touch_is_one_oscillation(void **state)
+TEST(a_gentle_touch_is_one_oscillation)
 {
-    (void)state;
     static const struct {
         double bend, speed, second, volts; // [rad], first and second link [rad/s], [V]
     } touches[] = {{0, 1, 1, 0},        {0, 1, 1, 0.7},      {0, 1, 1, -0.4},
@@ -524,26 +507,4 @@ static void a_gentle_touch_is_one_oscillation(void **state)
         }
         motion_destroy(m);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_right_at_a_point),
-        cmocka_unit_test(it_is_right_at_a_flat_wall),
-        cmocka_unit_test(other_arms_are_predicted_too),
-        cmocka_unit_test(an_early_peak_is_predicted_too),
-        cmocka_unit_test(an_overdamped_arm_is_predicted_too),
-        cmocka_unit_test(a_damped_hub_is_predicted_too),
-        cmocka_unit_test(in_flight_it_approaches_the_prediction_at_the_wall),
-        cmocka_unit_test(a_receding_arm_does_not_touch),
-        cmocka_unit_test(one_link_presses_with_its_motor),
-        cmocka_unit_test(without_a_wall_there_is_no_touch),
-        cmocka_unit_test(a_prescribed_voltage_is_followed),
-        cmocka_unit_test(an_elastic_impact_does_not_hold),
-        cmocka_unit_test(a_pulse_ends_where_the_arm_leaves),
-        cmocka_unit_test(a_gentle_touch_is_one_oscillation),
-        cmocka_unit_test(a_force_that_nearly_vanishes_is_not_answered),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

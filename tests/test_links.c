@@ -1,8 +1,6 @@
 // How far a number of links is from a beam.
 #include "src/study/links.h"
 
-#include <string.h>
-
 #include "tests/check.h"
 
 static links_study studied(const char *name, char *const *changes, int count)
@@ -12,9 +10,7 @@ static links_study studied(const char *name, char *const *changes, int count)
     links_study study;
     assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
     assert_int_equal(scenario_override_all(&s, changes, count, NULL, NULL), STATUS_OK);
-    if (links_study_compute(&s, NULL, &study, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(links_study_compute(&s, NULL, &study, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(study.count, LINKS_LENGTHS);
     scenario_finish(&s);
     return study;
@@ -33,9 +29,8 @@ static const links_row *row_of(const links_study *study, const char *key)
 
 // Frequencies and statics have the beam's as their limit, whether the first link is held by the hub
 // (an error of order one) or by the beam's root (order two).
-static void small_motion_tends_to_the_beam(void **state)
+TEST(small_motion_tends_to_the_beam)
 {
-    (void)state;
     static const char *const keys[] = {"frequency_tip_free_Hz", "frequency_tip_pinned_Hz",
                                        "tip_compliance_m_per_N"};
     char *hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
@@ -52,9 +47,8 @@ static void small_motion_tends_to_the_beam(void **state)
 
 // The stopped half-infinite beam: 4 EI v (rho A / 4 EI)^(3/4) sqrt(t / pi), which many links meet
 // within a hundredth. An undamped beam has it, a damped one and a wall that gives do not.
-static void a_blow_tends_to_the_stopped_beam(void **state)
+TEST(a_blow_tends_to_the_stopped_beam)
 {
-    (void)state;
     const links_study study = studied("corrected/plane-wall-fast", NULL, 0);
     const links_row *momentum = row_of(&study, "momentum_2ms_Ns"),
                     *sensed = row_of(&study, "sensed_1ms_N");
@@ -72,9 +66,8 @@ static void a_blow_tends_to_the_stopped_beam(void **state)
 }
 
 // Enough is the fewest from which on all are near, not the first that happens to be.
-static void enough_is_enough_for_all_that_follow(void **state)
+TEST(enough_is_enough_for_all_that_follow)
 {
-    (void)state;
     links_row row = {.value = {100, 140, 103, 98, 101, 100}, .beam = 100, .limit = 5};
     assert_int_equal(links_enough(&row), 8);
     row.value[LINKS_LENGTHS - 1] = 110;
@@ -88,9 +81,8 @@ static void enough_is_enough_for_all_that_follow(void **state)
 }
 
 // A mass at the tip has no closed form here, but limits of its own.
-static void uneven_arms_have_no_beam(void **state)
+TEST(uneven_arms_have_no_beam)
 {
-    (void)state;
     char *changes[] = {"arm.tip_mass=0.05", "arm.hub_joint=beam"};
     const links_study study = studied("corrected/damped-beam", changes, 2);
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
@@ -101,9 +93,8 @@ static void uneven_arms_have_no_beam(void **state)
     assert_true(row->enough > 0);
 }
 
-static void what_has_no_contact_is_refused(void **state)
+TEST(what_has_no_contact_is_refused)
 {
-    (void)state;
     scenario s;
     fault f;
     links_study study;
@@ -118,16 +109,4 @@ static void what_has_no_contact_is_refused(void **state)
     atomic_store(&monitor.stop, true);
     assert_int_equal(links_study_compute(&s, &monitor, &study, &f), STATUS_STOPPED);
     scenario_finish(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(small_motion_tends_to_the_beam),
-        cmocka_unit_test(a_blow_tends_to_the_stopped_beam),
-        cmocka_unit_test(enough_is_enough_for_all_that_follow),
-        cmocka_unit_test(uneven_arms_have_no_beam),
-        cmocka_unit_test(what_has_no_contact_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

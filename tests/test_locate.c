@@ -68,9 +68,8 @@ static const struct {
      1.5},
 };
 
-static void steps_find_what_series_find(void **state)
+TEST(steps_find_what_series_find)
 {
-    (void)state;
     int of[MOTION_SLIP + 1] = {0}, far[MOTION_SLIP + 1] = {0}, total[MOTION_SLIP + 1] = {0};
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
         static found exact[MOST], stepped[MOST];
@@ -105,9 +104,8 @@ static void steps_find_what_series_find(void **state)
 }
 
 // A rod that is pulled back reaches the wall and would be in front of it again when the step ends.
-static void a_touch_between_the_ends_of_a_step_is_found(void **state)
+TEST(a_touch_between_the_ends_of_a_step_is_found)
 {
-    (void)state;
     const double wall = 0.1, reach[] = {0.5, 0.9, 0.99};
     for (int i = 0; i < 3; i++) {
         // it turns back after 2 ms, when `reach` of its way leads to the wall
@@ -127,13 +125,4 @@ static void a_touch_between_the_ends_of_a_step_is_found(void **state)
         check_close(m->state[SLOT_GAP], 0, 1e-15);
         motion_destroy(m);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_find_what_series_find),
-        cmocka_unit_test(a_touch_between_the_ends_of_a_step_is_found),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -3,8 +3,6 @@
 // refused.
 #include <errno.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -81,9 +79,8 @@ static outcome try_drawing(const unsigned char *wanted, size_t size, long reques
     return WIFEXITED(state) ? (outcome)WEXITSTATUS(state) : CRASHED;
 }
 
-static void a_line_that_lacks_a_piece_is_said(void **state)
+TEST(a_line_that_lacks_a_piece_is_said)
 {
-    (void)state;
     cairo_surface_t *whole = cairo_image_surface_create(CAIRO_FORMAT_RGB24, SIZE, SIZE);
     assert_int_equal(draw(whole, NEVER), STATUS_OK);
     const unsigned char *wanted = cairo_image_surface_get_data(whole);
@@ -96,10 +93,4 @@ static void a_line_that_lacks_a_piece_is_said(void **state)
     assert_int_equal(count[LACKING], 0);
     assert_true(count[SAID] > 0 && count[WHOLE] > 0);
     cairo_surface_destroy(whole);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_line_that_lacks_a_piece_is_said)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,8 +2,6 @@
 // run's rows, which are then kept once.
 #include "tests/trace_check.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include "src/base/random.h"
@@ -23,9 +21,7 @@ static void open_lasting(session *s, const char *name, const char *duration, dou
 static void change(session *s, const char *path, const char *value)
 {
     fault f = {0};
-    if (session_change(s, parameter_find(path), value, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(session_change(s, parameter_find(path), value, &f) != STATUS_OK, "%s", f.text);
 }
 
 // Opens a session on a run of twenty links and looks until it has `rows` rows. Where a busy machine
@@ -84,9 +80,8 @@ static void assert_as_from_the_start(const session *s)
         double one, other;
         one = summary_value(&s->run.summary, i);
         other = summary_value(&whole.summary, i);
-        if (!summary_table[i].timing && memcmp(&one, &other, sizeof one) != 0) {
-            fail_msg("%s is %.17g, from the start %.17g", summary_table[i].key, one, other);
-        }
+        fail_if(!summary_table[i].timing && memcmp(&one, &other, sizeof one) != 0,
+                "%s is %.17g, from the start %.17g", summary_table[i].key, one, other);
     }
     assert_string_equal(s->run.summary.message, whole.summary.message);
     assert_int_equal(s->run.summary.status, whole.summary.status);
@@ -98,9 +93,8 @@ static void assert_as_from_the_start(const session *s)
     run_finish(&whole);
 }
 
-static void a_resumed_run_is_the_run_from_the_start(void **state)
+TEST(a_resumed_run_is_the_run_from_the_start)
 {
-    (void)state;
     static const char *const names[] = {
         "corrected/first-impact", "corrected/newmark",   "corrected/restitution",
         "corrected/spring-hub",   "corrected/stuck-hub", "corrected/five-links",
@@ -132,9 +126,8 @@ static void a_resumed_run_is_the_run_from_the_start(void **state)
     }
 }
 
-static void test_a_long_run_is_looked_at_while_it_is_computed(void **state)
+TEST(test_a_long_run_is_looked_at_while_it_is_computed)
 {
-    (void)state;
     session s;
     open_while_computing(&s, 0);
     assert_true(wait_for_run(&s) > 0);
@@ -142,9 +135,8 @@ static void test_a_long_run_is_looked_at_while_it_is_computed(void **state)
     session_finish(&s);
 }
 
-static void test_a_change_supersedes_a_run_being_computed(void **state)
+TEST(test_a_change_supersedes_a_run_being_computed)
 {
-    (void)state;
     session s;
     fault f = {0};
     open_lasting(&s, "corrected/twenty-links", "4", 0);
@@ -163,9 +155,8 @@ static void test_a_change_supersedes_a_run_being_computed(void **state)
     session_finish(&s);
 }
 
-static void test_a_run_is_stopped_and_gone_on_with(void **state)
+TEST(test_a_run_is_stopped_and_gone_on_with)
 {
-    (void)state;
     session s;
     fault f = {0};
     int duration = open_while_computing(&s, 1000);
@@ -187,9 +178,8 @@ static void test_a_run_is_stopped_and_gone_on_with(void **state)
     session_finish(&s);
 }
 
-static void test_the_cursor_waits_for_rows_to_come(void **state)
+TEST(test_the_cursor_waits_for_rows_to_come)
 {
-    (void)state;
     session s;
     open_lasting(&s, "corrected/twenty-links", "4", 0);
     wait_for_run(&s);
@@ -210,9 +200,8 @@ static void test_the_cursor_waits_for_rows_to_come(void **state)
     session_finish(&s);
 }
 
-static void test_runs_end_with_their_session(void **state)
+TEST(test_runs_end_with_their_session)
 {
-    (void)state;
     for (int i = 0; i < 10; i++) {
         session s;
         open_lasting(&s, "corrected/twenty-links", "30", 1e-3 * i);
@@ -240,26 +229,11 @@ static void check_shared_rows(const char *name)
     assert_int_equal(shared_array_memory(), 0);
 }
 
-static void test_branches_share_the_rows_before_them(void **state)
+TEST(test_branches_share_the_rows_before_them)
 {
-    (void)state;
     check_shared_rows("corrected/free-vibration");
     // runs that are computed from the start, or in one stride while nothing moves
     check_shared_rows("compare/open-loop");
     check_shared_rows("thesis/fig-3-4");
     check_shared_rows("corrected/first-impact");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_resumed_run_is_the_run_from_the_start),
-        cmocka_unit_test(test_a_long_run_is_looked_at_while_it_is_computed),
-        cmocka_unit_test(test_a_change_supersedes_a_run_being_computed),
-        cmocka_unit_test(test_a_run_is_stopped_and_gone_on_with),
-        cmocka_unit_test(test_the_cursor_waits_for_rows_to_come),
-        cmocka_unit_test(test_runs_end_with_their_session),
-        cmocka_unit_test(test_branches_share_the_rows_before_them),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -3,8 +3,6 @@
 #include "src/run/loop.h"
 #include "src/tables/control_laws.h"
 
-#include <stdlib.h>
-
 #include "tests/arm_fixture.h"
 
 static run_loop *begun(const char *const *settings, const given_law *law)
@@ -14,18 +12,15 @@ static run_loop *begun(const char *const *settings, const given_law *law)
     const loop_options options = {.law = law != NULL ? *law : (given_law){0}};
     run_loop *l = NULL;
     fault f = {.text = ""};
-    if (loop_create(&l, &s, &options, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(loop_create(&l, &s, &options, &f) != STATUS_OK, "%s", f.text);
     return l;
 }
 
 #define BRIEF "initial.angle=-0.01", "wall.angle=0", "run.duration=0.1"
 
 // The end of a loop is final for every way of continuing, with a law and without one.
-static void the_end_stays(void **state)
+TEST(the_end_stays)
 {
-    (void)state;
     const char *const *const cases[] = {SETTINGS(BRIEF), SETTINGS(BRIEF, "control.law=hybrid"),
                                         SETTINGS("arm.model=printed", "run.duration=0.1")};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -57,9 +52,8 @@ static void give_up(void *memory, const controller_input *input, controller_outp
 static const controller gives_up = {
     .interface = CONTROLLER_INTERFACE, .name = "gives up", .memory_size = 16, .sample = give_up};
 
-static void what_stopped_it_is_said_again(void **state)
+TEST(what_stopped_it_is_said_again)
 {
-    (void)state;
     const given_law law = {&gives_up, NULL};
     run_loop *l = begun(SETTINGS(BRIEF), &law);
     fault f = {.text = ""}, again = {.text = ""};
@@ -81,9 +75,8 @@ static void what_stopped_it_is_said_again(void **state)
     loop_destroy(l);
 }
 
-static void a_refused_input_changes_nothing(void **state)
+TEST(a_refused_input_changes_nothing)
 {
-    (void)state;
     run_loop *l = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
     run_loop *same = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
     fault f = {.text = ""};
@@ -104,9 +97,8 @@ static void a_refused_input_changes_nothing(void **state)
 }
 
 // A state goes back into the loop it is of; from another one, or cut, it is refused.
-static void a_state_belongs_to_its_loop(void **state)
+TEST(a_state_belongs_to_its_loop)
 {
-    (void)state;
     const given_law law = {&gives_up, NULL};
     const given_law *const laws[] = {NULL, &law};
     for (int i = 0; i < 2; i++) {
@@ -136,9 +128,8 @@ static void a_state_belongs_to_its_loop(void **state)
 
 // What is kept of a state is the state: two loops that have come to the same one keep the same
 // bytes, wherever they lie.
-static void a_state_holds_no_addresses(void **state)
+TEST(a_state_holds_no_addresses)
 {
-    (void)state;
 #define LAW(name, prefix, word, description) {"arm.model=corrected", "control.law=" word},
     static const char *const settings[][2] = {
         CONTROL_LAWS(LAW){"arm.model=corrected", "control.law=none"},
@@ -166,9 +157,8 @@ static void a_state_holds_no_addresses(void **state)
 
 // A state kept while the wall's face is on its way back has it where it is: the arm meets it again
 // where it does without going back.
-static void a_state_has_the_face_on_its_way(void **state)
+TEST(a_state_has_the_face_on_its_way)
 {
-    (void)state;
     run_loop *l = begun(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=100",
                                  "wall.damping=500", "run.duration=2"),
                         NULL);
@@ -200,9 +190,8 @@ static void a_state_has_the_face_on_its_way(void **state)
 
 // Another voltage each millisecond, whose strides are made for no more than the next change or two:
 // the motion is the one that a program finds which stops in between, and the ledger closes.
-static void changes_are_followed_wherever_steps_end(void **state)
+TEST(changes_are_followed_wherever_steps_end)
 {
-    (void)state;
     const char *const *const settings =
         SETTINGS("initial.angle=0.09", "initial.velocity=0.5", "run.duration=0.1");
     run_loop *l = begun(settings, NULL), *cut = begun(settings, NULL);
@@ -231,9 +220,8 @@ static void changes_are_followed_wherever_steps_end(void **state)
 }
 
 // Cut anywhere, a run of two links differs from the uninterrupted one by rounding alone.
-static void a_cut_elsewhere_is_rounding(void **state)
+TEST(a_cut_elsewhere_is_rounding)
 {
-    (void)state;
     const char *const *const cases[] = {
         SETTINGS("run.duration=1"), SETTINGS("motor.voltage=5", "run.duration=1"),
         SETTINGS("wall.kind=plane", "run.duration=1"),
@@ -260,9 +248,8 @@ static void a_cut_elsewhere_is_rounding(void **state)
 }
 
 // Nor does a cut change where the arm meets the face of a wall that it has left on its way back.
-static void a_cut_leaves_the_face_on_its_way(void **state)
+TEST(a_cut_leaves_the_face_on_its_way)
 {
-    (void)state;
     const char *const *const walls[] = {
         SETTINGS("arm.links=4", "arm.hub_joint=beam", "motor.voltage=4", "wall.kind=plane",
                  "wall.contact=kelvin-voigt", "wall.stiffness=2e3", "wall.damping=100",
@@ -289,20 +276,4 @@ static void a_cut_leaves_the_face_on_its_way(void **state)
         loop_destroy(whole);
         loop_destroy(cut);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cut_elsewhere_is_rounding),
-        cmocka_unit_test(a_cut_leaves_the_face_on_its_way),
-        cmocka_unit_test(the_end_stays),
-        cmocka_unit_test(what_stopped_it_is_said_again),
-        cmocka_unit_test(a_refused_input_changes_nothing),
-        cmocka_unit_test(a_state_belongs_to_its_loop),
-        cmocka_unit_test(a_state_holds_no_addresses),
-        cmocka_unit_test(a_state_has_the_face_on_its_way),
-        cmocka_unit_test(changes_are_followed_wherever_steps_end),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,7 +1,6 @@
 // Arms of many links at the default step. The implicit methods resolve few of their modes there:
 // the run stays stable and ends pressing on the wall with the force a static beam would give, and
 // its ledger shows what it lost. The event method is exact for any number of links.
-#include <math.h>
 
 #include "src/run/run.h"
 #include "tests/arm_fixture.h"
@@ -14,9 +13,8 @@ static void check_case(int links, const char *hub, const char *wall, double volt
     scenario s = {.parameters = fixture_parameters(SETTINGS("method.name=generalized-alpha", n, hub,
                                                             wall, v, "run.duration=1"))};
     run_result r;
-    if (run_scenario(&s, false, &r) != STATUS_OK) {
-        fail_msg("%d links, %s, %s, %g V: %s", links, hub, wall, volts, r.summary.message);
-    }
+    fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%d links, %s, %s, %g V: %s", links, hub,
+            wall, volts, r.summary.message);
     // motor torque within the friction's band, over the length of 1 m
     double torque = motor_torque_per_volt(&s.parameters.motor) * volts;
     check_close(r.summary.steady_force_N, torque, 0.045 + 0.05 * torque);
@@ -29,9 +27,8 @@ static void check_case(int links, const char *hub, const char *wall, double volt
     run_finish(&r);
 }
 
-static void runs_stay_stable(void **state)
+TEST(runs_stay_stable)
 {
-    (void)state;
     static const int links[] = {50, 64, 128, 300, 1024};
     static const char *const hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=spring"};
     static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
@@ -45,9 +42,8 @@ static void runs_stay_stable(void **state)
 }
 
 // Hub joints, walls, damping and restitution: located events, a ledger that closes.
-static void the_event_method_stays_exact(void **state)
+TEST(the_event_method_stays_exact)
 {
-    (void)state;
     static const char *const cases[][5] = {
         {"arm.links=50", "arm.hub_joint=rigid", "wall.kind=plane", "arm.damping_ratio=0",
          "wall.restitution=0"},
@@ -65,9 +61,8 @@ static void the_event_method_stays_exact(void **state)
         scenario s = {.parameters = fixture_parameters(
                           SETTINGS(c[0], c[1], c[2], c[3], c[4], "run.duration=0.32"))};
         run_result r;
-        if (run_scenario(&s, false, &r) != STATUS_OK) {
-            fail_msg("%s, %s, %s, %s: %s", c[0], c[1], c[2], c[3], r.summary.message);
-        }
+        fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s, %s, %s, %s: %s", c[0], c[1], c[2],
+                c[3], r.summary.message);
         assert_string_equal(summary_status(&r.summary), "ok");
         check_below(r.summary.energy_residual_J, 1e-6 * r.summary.motor_work_J);
         check_below(r.summary.max_penetration_m, 1e-10);
@@ -98,9 +93,8 @@ static double momentum_of_50_ms(int links)
 }
 
 // The links become a beam with the square of their length.
-static void momentum_converges_to_a_beams(void **state)
+TEST(momentum_converges_to_a_beams)
 {
-    (void)state;
     double momentum[4], last = 0;
     for (int i = 0; i < 4; i++) {
         momentum[i] = momentum_of_50_ms(16 << i);
@@ -116,9 +110,8 @@ static void momentum_converges_to_a_beams(void **state)
 
 // Three links whipped about at 10^3 rad/s by a motor without friction: strides follow the fastest
 // link, whichever it is, so that answers do not depend on the time step.
-static void strides_follow_the_fastest_link(void **state)
+TEST(strides_follow_the_fastest_link)
 {
-    (void)state;
     static const char *const steps[] = {"method.step=1e-3", "method.step=2e-4", "method.step=5e-5"};
     summary first = {0};
     for (int i = 0; i < 3; i++) {
@@ -135,13 +128,4 @@ static void strides_follow_the_fastest_link(void **state)
         check_close(r.summary.impacts, first.impacts, 0);
         run_finish(&r);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(momentum_converges_to_a_beams),
-                                       cmocka_unit_test(strides_follow_the_fastest_link),
-                                       cmocka_unit_test(runs_stay_stable),
-                                       cmocka_unit_test(the_event_method_stays_exact)};
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,7 +1,4 @@
 // Damping of the beam by mode and by air: how each mode decays, and what the ledger says of it.
-#include <math.h>
-#include <string.h>
-
 #include "src/arm/modes.h"
 #include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
@@ -28,9 +25,8 @@ static held_modes modes_of(const parameters *p)
 }
 
 // Joints that the arm does not have take no part; an arm may have as many as a list has numbers.
-static void only_joints_that_are_there_are_damped(void **state)
+TEST(only_joints_that_are_there_are_damped)
 {
-    (void)state;
     const char *const *const arms[] = {SETTINGS("arm.links=5"),
                                        SETTINGS("arm.links=32", "arm.hub_joint=beam")};
     for (int j = 0; j < 2; j++) {
@@ -51,9 +47,8 @@ static void only_joints_that_are_there_are_damped(void **state)
 
 // Of links and joints that differ, too, structural damping gives the first mode its ratio; a rod
 // that cannot bend has none.
-static void structural_damping_is_of_the_first_mode(void **state)
+TEST(structural_damping_is_of_the_first_mode)
 {
-    (void)state;
     const char *const *const arms[] = {
         SETTINGS("arm.damping_ratio=0.03", "arm.links=4", "arm.link_lengths=0.2,0.3,0.1,0.4",
                  "arm.joint_stiffness=9,5,12"),
@@ -149,9 +144,8 @@ static void check_decay(const parameters *p, int mode, double ratio)
 
 static const char *const hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
 
-static void modes_decay_with_the_ratios_of_the_list(void **state)
+TEST(modes_decay_with_the_ratios_of_the_list)
 {
-    (void)state;
     const double ratios[] = {0.02, 0.3, 0.005, 0};
     for (int hub = 0; hub < 2; hub++) {
         for (int mode = 0; mode < 4; mode++) {
@@ -173,9 +167,8 @@ static void modes_decay_with_the_ratios_of_the_list(void **state)
 }
 
 // Drag per length over mass per length: every mode of the held beam decays at half of it.
-static void air_takes_from_all_modes_alike(void **state)
+TEST(air_takes_from_all_modes_alike)
 {
-    (void)state;
     const double drag = 0.5, rate = drag / 0.40108 / 2;
     for (int mode = 0; mode < 3; mode++) {
         parameters p =
@@ -187,9 +180,8 @@ static void air_takes_from_all_modes_alike(void **state)
 }
 
 // Ratios that grow with the frequency are damping in proportion to stiffness.
-static void ratios_in_proportion_are_structural_damping(void **state)
+TEST(ratios_in_proportion_are_structural_damping)
 {
-    (void)state;
     for (int hub = 0; hub < 2; hub++) {
         parameters p = fixture_parameters(
             SETTINGS(hubs[hub], "arm.links=5", "arm.damping_ratio=0.03", "wall.kind=plane"));
@@ -227,9 +219,8 @@ static void ratios_in_proportion_are_structural_damping(void **state)
 }
 
 // An arm that turns as a whole loses nothing to damping by mode.
-static void an_arm_that_turns_as_a_whole_is_not_damped(void **state)
+TEST(an_arm_that_turns_as_a_whole_is_not_damped)
 {
-    (void)state;
     parameters p = fixture_parameters(
         SETTINGS("arm.links=5", "arm.hub_joint=beam", "arm.modal_ratios=0.1,0.2"));
     held_modes m = modes_of(&p);
@@ -242,17 +233,4 @@ static void an_arm_that_turns_as_a_whole_is_not_damped(void **state)
     chain_accelerations(&m.arm, work, angle, velocity, (contact_state){false, HUB_FORWARD}, alpha,
                         &r);
     check_close(r.damping_power, 0, 1e-20);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(structural_damping_is_of_the_first_mode),
-        cmocka_unit_test(only_joints_that_are_there_are_damped),
-        cmocka_unit_test(modes_decay_with_the_ratios_of_the_list),
-        cmocka_unit_test(air_takes_from_all_modes_alike),
-        cmocka_unit_test(ratios_in_proportion_are_structural_damping),
-        cmocka_unit_test(an_arm_that_turns_as_a_whole_is_not_damped),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

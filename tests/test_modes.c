@@ -1,7 +1,4 @@
 // Modes of the chain against the Euler-Bernoulli beam it approximates.
-#include <math.h>
-#include <stdlib.h>
-
 #include "src/arm/chain.h"
 #include "src/arm/modes.h"
 #include "tests/arm_fixture.h"
@@ -40,24 +37,21 @@ static void check_mode(tip_end tip, int mode, double expected)
     check_relative(2 * finest - fine, expected, 1e-3);
 }
 
-static void clamped_free_modes_converge(void **state)
+TEST(clamped_free_modes_converge)
 {
-    (void)state;
     check_mode(TIP_FREE, 0, 1.8751040687);
     check_mode(TIP_FREE, 1, 4.6940911330);
     check_mode(TIP_FREE, 2, 7.8547574382);
 }
 
-static void clamped_pinned_modes_converge(void **state)
+TEST(clamped_pinned_modes_converge)
 {
-    (void)state;
     check_mode(TIP_PINNED, 0, 3.9266023120);
     check_mode(TIP_PINNED, 1, 7.0685827456);
 }
 
-static void two_links_with_locked_hub_have_the_closed_form(void **state)
+TEST(two_links_with_locked_hub_have_the_closed_form)
 {
-    (void)state;
     parameters p = fixture_parameters(NULL);
     arm a;
     arm_init(&a, &p);
@@ -70,9 +64,8 @@ static void two_links_with_locked_hub_have_the_closed_form(void **state)
     check_close(shapes[1], 1, 0);
 }
 
-static void free_hub_has_one_mode_of_rigid_turning(void **state)
+TEST(free_hub_has_one_mode_of_rigid_turning)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("arm.links=4", "arm.hub_joint=spring"));
     arm a;
     arm_init(&a, &p);
@@ -100,9 +93,8 @@ static const char *const *const any_arms[] = {
 };
 
 // A product x'A y is what the energy of both together has more than that of each.
-static void matrices_are_those_of_the_energies(void **state)
+TEST(matrices_are_those_of_the_energies)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof any_arms / sizeof any_arms[0]; i++) {
         parameters p = fixture_parameters(any_arms[i]);
         arm a;
@@ -133,9 +125,8 @@ static void matrices_are_those_of_the_energies(void **state)
 
 // (K - w^2 M) x is nothing but what holds the hub and a force on the tip, at whose levers the links
 // are; and the tip is where it is held.
-static void every_mode_balances_but_for_what_holds_the_arm(void **state)
+TEST(every_mode_balances_but_for_what_holds_the_arm)
 {
-    (void)state;
     for (size_t i = 0; i < 4 * sizeof any_arms / sizeof any_arms[0]; i++) {
         const hub_end hub = i % 2 ? HUB_LOCKED : HUB_FREE;
         const tip_end tip = i / 2 % 2 ? TIP_PINNED : TIP_FREE;
@@ -173,17 +164,4 @@ static void every_mode_balances_but_for_what_holds_the_arm(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clamped_free_modes_converge),
-        cmocka_unit_test(clamped_pinned_modes_converge),
-        cmocka_unit_test(two_links_with_locked_hub_have_the_closed_form),
-        cmocka_unit_test(free_hub_has_one_mode_of_rigid_turning),
-        cmocka_unit_test(matrices_are_those_of_the_energies),
-        cmocka_unit_test(every_mode_balances_but_for_what_holds_the_arm),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,6 +1,5 @@
 // The machine of free flight, impact, contact, release, stick and slip, on motions with closed
 // forms and by what must hold at every row.
-#include <math.h>
 
 #include "src/run/run.h"
 #include "src/contact/contact_machine.h"
@@ -11,9 +10,7 @@ static run_result run(const char *const *settings)
 {
     scenario s = {.parameters = fixture_parameters(settings)};
     run_result r;
-    if (run_scenario(&s, true, &r) != STATUS_OK) {
-        fail_msg("%s", r.summary.message);
-    }
+    fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s", r.summary.message);
     return r;
 }
 
@@ -49,9 +46,8 @@ static double rod_angle(const rod *r, double t)
     return r->torque / r->damping * (t + (exp(-r->rate * t) - 1) / r->rate);
 }
 
-static void a_single_rod_follows_its_closed_form(void **state)
+TEST(a_single_rod_follows_its_closed_form)
 {
-    (void)state;
     rod r = one_rod();
     run_result result = run(SETTINGS("arm.links=1", "run.duration=0.6"));
     double t = 0.2823; // contact: rod_angle(t) = 0.1, by Newton's method
@@ -70,9 +66,8 @@ static void a_single_rod_follows_its_closed_form(void **state)
 
 // Without any damping its velocity is a straight line, however long the stride: what the gap makes
 // of it, the sine of a parabola, has its say in how long that is.
-static void a_rod_that_gathers_speed_meets_the_wall_where_it_is(void **state)
+TEST(a_rod_that_gathers_speed_meets_the_wall_where_it_is)
 {
-    (void)state;
     static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
     for (int i = 0; i < 2; i++) {
         run_result r = run(SETTINGS("arm.links=1", "motor.back_emf=0", "motor.viscous_friction=0",
@@ -87,9 +82,8 @@ static void a_rod_that_gathers_speed_meets_the_wall_where_it_is(void **state)
     }
 }
 
-static void a_coasting_rod_sticks_when_friction_says(void **state)
+TEST(a_coasting_rod_sticks_when_friction_says)
 {
-    (void)state;
     rod r = one_rod();
     run_result result = run(SETTINGS("arm.links=1", "wall.kind=none", "motor.voltage=0",
                                      "initial.velocity=0.5", "run.duration=1.2"));
@@ -102,9 +96,8 @@ static void a_coasting_rod_sticks_when_friction_says(void **state)
     run_finish(&result);
 }
 
-static void a_bouncing_rod_rebounds_by_e_and_comes_to_rest(void **state)
+TEST(a_bouncing_rod_rebounds_by_e_and_comes_to_rest)
 {
-    (void)state;
     rod r = one_rod();
     run_result result = run(SETTINGS("arm.links=1", "wall.restitution=0.5", "run.duration=1.5"));
     const event *first = find_event(&result, EVENT_IMPACT, 0);
@@ -126,9 +119,8 @@ static void a_bouncing_rod_rebounds_by_e_and_comes_to_rest(void **state)
 
 // Parameters refuse an arm that starts behind the wall; put there regardless, it cannot be relied
 // on, whatever moves it.
-static void an_arm_inside_a_rigid_wall_is_never_ok(void **state)
+TEST(an_arm_inside_a_rigid_wall_is_never_ok)
 {
-    (void)state;
     static const char *const methods[] = {"method.name=event", "method.name=newmark",
                                           "method.name=generalized-alpha"};
     static const char *const kinds[] = {"wall.kind=point", "wall.kind=plane"};
@@ -149,9 +141,8 @@ static void an_arm_inside_a_rigid_wall_is_never_ok(void **state)
 
 // A torque that nobody tells the motion of takes a stuck hub beyond stiction: that is noted, and
 // what is within stiction or slides is not.
-static void a_hub_held_beyond_stiction_is_noted(void **state)
+TEST(a_hub_held_beyond_stiction_is_noted)
 {
-    (void)state;
     static const char *const engines[] = {"method.engine=pair", "method.engine=stiff"};
     for (int i = 0; i < 2; i++) {
         const parameters p = fixture_parameters(SETTINGS("motor.stiction=1e3", engines[i]));
@@ -173,9 +164,8 @@ static void a_hub_held_beyond_stiction_is_noted(void **state)
 
 // A point stops the line through the link on both sides of the hub: an arm may start, and press, on
 // its far side, which the run says.
-static void a_start_on_the_point_behind_the_hub_is_a_touch_from_behind(void **state)
+TEST(a_start_on_the_point_behind_the_hub_is_a_touch_from_behind)
 {
-    (void)state;
     run_result r = run(SETTINGS("arm.links=1", "wall.angle=3", "initial.angle=-0.14159265358979312",
                                 "motor.voltage=-1", "run.duration=0.2"));
     check_close(r.summary.first_contact_s, 0, 0);
@@ -186,9 +176,8 @@ static void a_start_on_the_point_behind_the_hub_is_a_touch_from_behind(void **st
 
 // An arm that starts on its wall does not know at what angle that is, which rounding of the gap
 // does: of every arm, motor and wall the run is the same, and comes to its end.
-static void a_start_on_the_wall_is_the_same_at_any_angle(void **state)
+TEST(a_start_on_the_wall_is_the_same_at_any_angle)
 {
-    (void)state;
     static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt",
                                         "wall.contact=hunt-crossley"};
     static const char *const arms[] = {"arm.links=1", "arm.links=2", "arm.links=4"};
@@ -240,9 +229,8 @@ static void check_ledger(const run_result *r)
     }
 }
 
-static void gap_and_force_stay_complementary_and_energy_is_accounted_for(void **state)
+TEST(gap_and_force_stay_complementary_and_energy_is_accounted_for)
 {
-    (void)state;
     const char *const links[] = {"arm.links=1", "arm.links=2", "arm.links=3", "arm.links=5"};
     for (int i = 0; i < 4 * 8; i++) {
         run_result r = run(SETTINGS(links[i % 4], i & 4 ? "wall.kind=plane" : "wall.kind=point",
@@ -259,9 +247,8 @@ static void gap_and_force_stay_complementary_and_energy_is_accounted_for(void **
 }
 
 // With the arm at rest on the wall and the hub held by friction, the middle spring alone presses.
-static void the_steady_force_is_the_springs(void **state)
+TEST(the_steady_force_is_the_springs)
 {
-    (void)state;
     run_result r = run(SETTINGS("run.duration=2"));
     const sample *last = &r.trace.rows[r.trace.row_count - 1];
     double d = last->last_angle - last->first_angle;
@@ -273,9 +260,8 @@ static void the_steady_force_is_the_springs(void **state)
     run_finish(&r);
 }
 
-static void the_located_peak_does_not_depend_on_the_step(void **state)
+TEST(the_located_peak_does_not_depend_on_the_step)
 {
-    (void)state;
     run_result coarse = run(SETTINGS("method.step=4e-3")), fine = run(SETTINGS("method.step=1e-4"));
     check_relative(coarse.summary.first_pulse_peak_N, fine.summary.first_pulse_peak_N, 1e-9);
     check_close(coarse.summary.first_pulse_time_to_peak_s, fine.summary.first_pulse_time_to_peak_s,
@@ -286,9 +272,8 @@ static void the_located_peak_does_not_depend_on_the_step(void **state)
     run_finish(&fine);
 }
 
-static void without_a_trace_the_summary_is_the_same(void **state)
+TEST(without_a_trace_the_summary_is_the_same)
 {
-    (void)state;
     scenario s = {.parameters = fixture_parameters(NULL)};
     run_result with, without;
     run_scenario(&s, true, &with);
@@ -304,9 +289,8 @@ static void without_a_trace_the_summary_is_the_same(void **state)
     run_finish(&without);
 }
 
-static void script_acts_at_its_time_and_is_booked(void **state)
+TEST(script_acts_at_its_time_and_is_booked)
 {
-    (void)state;
     action todo[] = {
         {.time = 0.70005, .kind = ACTION_PUSH, .value = 0.02},
         {.time = 1.0, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(motor.voltage), .value = 2},
@@ -339,14 +323,11 @@ static void script_acts_at_its_time_and_is_booked(void **state)
 static void check_events_tell_the_state(const run_result *r)
 {
     const event *wrong = contradicting_event(r);
-    if (wrong != NULL) {
-        fail_msg("%s at %.9g s", event_name(wrong->kind), wrong->time);
-    }
+    fail_if(wrong != NULL, "%s at %.9g s", event_name(wrong->kind), wrong->time);
 }
 
-static void events_tell_what_is_in_contact_and_what_sticks(void **state)
+TEST(events_tell_what_is_in_contact_and_what_sticks)
 {
-    (void)state;
     static const char *const arms[] = {"arm.links=1", "arm.links=2", "arm.links=3",
                                        "arm.hub_joint=spring"};
     static const char *const walls[][3] = {
@@ -378,9 +359,8 @@ static void events_tell_what_is_in_contact_and_what_sticks(void **state)
 }
 
 // The hub stops, friction turns round, and the arm lifts off: that is a release, too.
-static void a_hub_that_stops_may_release_the_arm(void **state)
+TEST(a_hub_that_stops_may_release_the_arm)
 {
-    (void)state;
     action todo = {.time = 0.284,
                    .kind = ACTION_SET,
                    .parameter = PARAMETER_INDEX(motor.voltage),
@@ -402,9 +382,8 @@ static void a_hub_that_stops_may_release_the_arm(void **state)
 }
 
 // A contact that a push or the script ends is released then.
-static void a_contact_ended_from_outside_is_released(void **state)
+TEST(a_contact_ended_from_outside_is_released)
 {
-    (void)state;
     const int voltage = PARAMETER_INDEX(motor.voltage);
     const struct {
         const char *restitution;
@@ -431,9 +410,8 @@ static void a_contact_ended_from_outside_is_released(void **state)
 
 // An arm that starts at rest on the wall is in its first contact at once, held still or not, for
 // any wall; one that swings off at once is not.
-static void an_arm_that_starts_on_the_wall_is_in_contact(void **state)
+TEST(an_arm_that_starts_on_the_wall_is_in_contact)
 {
-    (void)state;
     static const struct {
         const char *links, *wall;
         double released; // [s], 0: never
@@ -476,9 +454,8 @@ static void an_arm_that_starts_on_the_wall_is_in_contact(void **state)
 
 // One that starts on a wall that gives and moves into it is in contact from the start: as one that
 // comes from 1 nm in front of it.
-static void an_arm_that_moves_into_the_wall_is_in_contact(void **state)
+TEST(an_arm_that_moves_into_the_wall_is_in_contact)
 {
-    (void)state;
     static const char *const walls[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
     for (int i = 0; i < 2; i++) {
         run_result at = run(SETTINGS(walls[i], "wall.angle=0", "initial.velocity=1"));
@@ -494,9 +471,8 @@ static void an_arm_that_moves_into_the_wall_is_in_contact(void **state)
 }
 
 // The gap of an arm that starts on the wall is zero, whatever rounding makes of it.
-static void an_arm_on_the_wall_does_not_strike_it(void **state)
+TEST(an_arm_on_the_wall_does_not_strike_it)
 {
-    (void)state;
     static const char *const arms[] = {"arm.links=3", "arm.link_lengths=0.294,0.386,0.314"};
     static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
     for (int i = 0; i < 400; i++) {
@@ -513,9 +489,8 @@ static void an_arm_on_the_wall_does_not_strike_it(void **state)
 }
 
 // What rounding leaves of the gap's rate in contact neither strikes nor lifts off.
-static void a_push_of_nothing_changes_nothing(void **state)
+TEST(a_push_of_nothing_changes_nothing)
 {
-    (void)state;
     static const char *const arms[] = {"arm.links=2", "arm.links=12", "arm.tip_mass=0.01"};
     for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
         enum { PUSHES = 20 };
@@ -539,9 +514,8 @@ static void a_push_of_nothing_changes_nothing(void **state)
     }
 }
 
-static void a_step_that_cannot_be_taken_stops_with_time_and_reason(void **state)
+TEST(a_step_that_cannot_be_taken_stops_with_time_and_reason)
 {
-    (void)state;
     scenario s = {.parameters = fixture_parameters(SETTINGS(
                       "method.name=newmark", "method.step=0.5", "motor.voltage=10", "arm.k2=1e5"))};
     s.parameters.motor.stiction = (double)NAN; // a bad number that slipped in
@@ -553,9 +527,8 @@ static void a_step_that_cannot_be_taken_stops_with_time_and_reason(void **state)
 }
 
 // Newmark with gamma below 1/2 feeds energy into the motion: the ledger notices and the run stops.
-static void a_run_that_makes_energy_from_nothing_is_stopped(void **state)
+TEST(a_run_that_makes_energy_from_nothing_is_stopped)
 {
-    (void)state;
     scenario s = {.parameters = fixture_parameters(SETTINGS(
                       "method.name=newmark", "method.gamma=0.3", "arm.links=8", "run.duration=3"))};
     run_result r;
@@ -565,9 +538,8 @@ static void a_run_that_makes_energy_from_nothing_is_stopped(void **state)
 }
 
 // Steps that lose a share of the energy do not go by as if nothing were wrong.
-static void a_ledger_that_does_not_close_makes_a_run_inaccurate(void **state)
+TEST(a_ledger_that_does_not_close_makes_a_run_inaccurate)
 {
-    (void)state;
     static const struct {
         const char *step, *bound;
         bool inaccurate;
@@ -594,9 +566,8 @@ static void a_ledger_that_does_not_close_makes_a_run_inaccurate(void **state)
 
 // A motion so small that the tolerances of events are a share of it does not go by either; a large
 // one, an arm that friction holds and one that the wall holds do.
-static void a_motion_too_small_to_follow_is_inaccurate(void **state)
+TEST(a_motion_too_small_to_follow_is_inaccurate)
 {
-    (void)state;
     static const struct {
         const char *voltage, *stiction, *angle, *links;
         bool inaccurate;
@@ -617,18 +588,15 @@ static void a_motion_too_small_to_follow_is_inaccurate(void **state)
         snprintf(stiction, sizeof stiction, "motor.stiction=%s", cases[i].stiction);
         snprintf(angle, sizeof angle, "wall.angle=%s", cases[i].angle);
         run_result r = run(SETTINGS(voltage, stiction, angle, cases[i].links, "wall.kind=plane"));
-        if (r.summary.inaccurate != cases[i].inaccurate) {
-            fail_msg("%s, %s, %s: %s %s", voltage, angle, cases[i].links,
-                     summary_status(&r.summary), r.summary.message);
-        }
+        fail_if(r.summary.inaccurate != cases[i].inaccurate, "%s, %s, %s: %s %s", voltage, angle,
+                cases[i].links, summary_status(&r.summary), r.summary.message);
         run_finish(&r);
     }
 }
 
 // A fast arm's strides follow its rotation: where they may end does not matter.
-static void fast_rotation_is_resolved_whatever_the_step(void **state)
+TEST(fast_rotation_is_resolved_whatever_the_step)
 {
-    (void)state;
     double contact[2], peak[2];
     for (int i = 0; i < 2; i++) {
         run_result r =
@@ -643,9 +611,8 @@ static void fast_rotation_is_resolved_whatever_the_step(void **state)
 }
 
 // Pressed on an elastic wall the arm does not bounce for ever: the chatter rule, and says so.
-static void elastic_chattering_is_bounded_and_said(void **state)
+TEST(elastic_chattering_is_bounded_and_said)
 {
-    (void)state;
     run_result r = run(SETTINGS("arm.links=20", "arm.damping_ratio=0.001", "wall.kind=plane",
                                 "wall.restitution=1", "motor.voltage=10", "run.duration=0.25"));
     check_ledger(&r);
@@ -659,45 +626,10 @@ static void elastic_chattering_is_bounded_and_said(void **state)
     run_finish(&r);
 }
 
-static void structural_damping_does_not_upset_the_event_method(void **state)
+TEST(structural_damping_does_not_upset_the_event_method)
 {
-    (void)state;
     run_result r = run(SETTINGS("arm.links=20", "arm.damping_ratio=0.01", "run.duration=0.4"));
     check_ledger(&r);
     assert_true(r.trace.rows[r.trace.row_count - 1].damping_loss > 0);
     run_finish(&r);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_single_rod_follows_its_closed_form),
-        cmocka_unit_test(an_arm_inside_a_rigid_wall_is_never_ok),
-        cmocka_unit_test(a_hub_held_beyond_stiction_is_noted),
-        cmocka_unit_test(a_start_on_the_wall_is_the_same_at_any_angle),
-        cmocka_unit_test(a_start_on_the_point_behind_the_hub_is_a_touch_from_behind),
-        cmocka_unit_test(a_rod_that_gathers_speed_meets_the_wall_where_it_is),
-        cmocka_unit_test(a_coasting_rod_sticks_when_friction_says),
-        cmocka_unit_test(a_bouncing_rod_rebounds_by_e_and_comes_to_rest),
-        cmocka_unit_test(gap_and_force_stay_complementary_and_energy_is_accounted_for),
-        cmocka_unit_test(the_steady_force_is_the_springs),
-        cmocka_unit_test(the_located_peak_does_not_depend_on_the_step),
-        cmocka_unit_test(without_a_trace_the_summary_is_the_same),
-        cmocka_unit_test(script_acts_at_its_time_and_is_booked),
-        cmocka_unit_test(events_tell_what_is_in_contact_and_what_sticks),
-        cmocka_unit_test(a_hub_that_stops_may_release_the_arm),
-        cmocka_unit_test(a_contact_ended_from_outside_is_released),
-        cmocka_unit_test(an_arm_that_starts_on_the_wall_is_in_contact),
-        cmocka_unit_test(an_arm_that_moves_into_the_wall_is_in_contact),
-        cmocka_unit_test(an_arm_on_the_wall_does_not_strike_it),
-        cmocka_unit_test(a_push_of_nothing_changes_nothing),
-        cmocka_unit_test(a_run_that_makes_energy_from_nothing_is_stopped),
-        cmocka_unit_test(a_ledger_that_does_not_close_makes_a_run_inaccurate),
-        cmocka_unit_test(a_motion_too_small_to_follow_is_inaccurate),
-        cmocka_unit_test(fast_rotation_is_resolved_whatever_the_step),
-        cmocka_unit_test(elastic_chattering_is_bounded_and_said),
-        cmocka_unit_test(structural_damping_does_not_upset_the_event_method),
-        cmocka_unit_test(a_step_that_cannot_be_taken_stops_with_time_and_reason),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

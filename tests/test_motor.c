@@ -17,9 +17,8 @@ static motor_parameters drive(void)
                               .stiction = 0.05};
 }
 
-static void constants_follow_from_the_circuit(void **state)
+TEST(constants_follow_from_the_circuit)
 {
-    (void)state;
     motor_parameters p = drive();
     motor_model m;
     motor_init(&m, &p);
@@ -31,9 +30,8 @@ static void constants_follow_from_the_circuit(void **state)
     check_close(m.torque, 1, 1e-15);
 }
 
-static void commands_saturate_both_ways(void **state)
+TEST(commands_saturate_both_ways)
 {
-    (void)state;
     motor_parameters p = drive();
     motor_model m;
     motor_init(&m, &p);
@@ -46,9 +44,8 @@ static void commands_saturate_both_ways(void **state)
     }
 }
 
-static void the_command_in_force_leaves_the_parameter_alone(void **state)
+TEST(the_command_in_force_leaves_the_parameter_alone)
 {
-    (void)state;
     motor_parameters p = drive();
     motor_model m;
     motor_init(&m, &p);
@@ -57,9 +54,8 @@ static void the_command_in_force_leaves_the_parameter_alone(void **state)
 }
 
 // What goes in becomes heat in the armature and mechanical work, back EMF included.
-static void energy_in_is_heat_and_work(void **state)
+TEST(energy_in_is_heat_and_work)
 {
-    (void)state;
     motor_parameters p = drive();
     const double volts = 4, duration = 0.3, speed = 1.7, turn = speed * duration;
     double current = (p.amplifier_gain * volts - p.back_emf * speed) / p.resistance;
@@ -74,9 +70,8 @@ static void energy_in_is_heat_and_work(void **state)
 
 // An amplifier that controls the current: a torque independent of the speed, and a limit in
 // amperes.
-static void a_current_drive_knows_no_back_emf(void **state)
+TEST(a_current_drive_knows_no_back_emf)
 {
-    (void)state;
     motor_parameters p = drive();
     motor_model m;
     p.drive = DRIVE_CURRENT;
@@ -111,9 +106,8 @@ static void a_current_drive_knows_no_back_emf(void **state)
 
 // A single link without friction in free motion: constant acceleration under a current, an
 // exponential approach to the idle speed under a voltage.
-static void free_motion_is_that_of_the_drive(void **state)
+TEST(free_motion_is_that_of_the_drive)
 {
-    (void)state;
     for (int current = 0; current <= 1; current++) {
         parameters p = fixture_parameters(SETTINGS(
             "arm.links=1", "wall.kind=none", "motor.stiction=0", "motor.viscous_friction=0",
@@ -158,9 +152,8 @@ static double current_of(const motion *m)
 }
 
 // With the hub held by friction a step of voltage is answered by V/R (1 - e^(-R t/L)).
-static void current_of_a_held_motor_rises_as_in_a_coil(void **state)
+TEST(current_of_a_held_motor_rises_as_in_a_coil)
 {
-    (void)state;
     for (int links = 1; links <= 2; links++) {
         char n[32];
         snprintf(n, sizeof n, "arm.links=%d", links);
@@ -179,9 +172,8 @@ static void current_of_a_held_motor_rises_as_in_a_coil(void **state)
 }
 
 // A single link without friction: J L w" + J R w' + kT kB w = kT V, two exponentials.
-static void a_free_link_and_its_coil_are_two_exponentials(void **state)
+TEST(a_free_link_and_its_coil_are_two_exponentials)
 {
-    (void)state;
     const double inductance = 0.5, t = 0.15;
     parameters p = fixture_parameters(SETTINGS("arm.links=1", "wall.kind=none", "motor.stiction=0",
                                                "motor.viscous_friction=0", "motor.inductance=0.5",
@@ -205,9 +197,8 @@ static void a_free_link_and_its_coil_are_two_exponentials(void **state)
 
 // Cut at a limit the current accelerates evenly until back EMF takes it below the limit, at a speed
 // from which the approach to the idle speed is exponential.
-static void a_limited_current_accelerates_evenly_at_first(void **state)
+TEST(a_limited_current_accelerates_evenly_at_first)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("arm.links=1", "wall.kind=none", "motor.stiction=0",
                                                "motor.viscous_friction=0",
                                                "motor.current_limit=0.2", "motor.voltage=2"));
@@ -239,9 +230,8 @@ static void a_limited_current_accelerates_evenly_at_first(void **state)
 }
 
 // A coil that follows at once in the end: the arm's impact goes to that without one with L.
-static void a_small_inductance_is_none_in_the_limit(void **state)
+TEST(a_small_inductance_is_none_in_the_limit)
 {
-    (void)state;
     double momentum[3];
     const char *const coils[] = {"motor.inductance=0", "motor.inductance=2e-3",
                                  "motor.inductance=1e-3"};
@@ -256,9 +246,8 @@ static void a_small_inductance_is_none_in_the_limit(void **state)
     check_close(log2((momentum[1] - momentum[0]) / (momentum[2] - momentum[0])), 1, 0.1);
 }
 
-static void what_belongs_to_a_current_drive_is_refused_with_a_voltage(void **state)
+TEST(what_belongs_to_a_current_drive_is_refused_with_a_voltage)
 {
-    (void)state;
     const char *const paths[] = {"motor.transconductance"};
     for (int i = 0; i < 1; i++) {
         parameters p;
@@ -268,22 +257,4 @@ static void what_belongs_to_a_current_drive_is_refused_with_a_voltage(void **sta
         assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
         assert_string_equal(f.path, paths[i]);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(constants_follow_from_the_circuit),
-        cmocka_unit_test(commands_saturate_both_ways),
-        cmocka_unit_test(the_command_in_force_leaves_the_parameter_alone),
-        cmocka_unit_test(energy_in_is_heat_and_work),
-        cmocka_unit_test(a_current_drive_knows_no_back_emf),
-        cmocka_unit_test(free_motion_is_that_of_the_drive),
-        cmocka_unit_test(current_of_a_held_motor_rises_as_in_a_coil),
-        cmocka_unit_test(a_free_link_and_its_coil_are_two_exponentials),
-        cmocka_unit_test(a_limited_current_accelerates_evenly_at_first),
-        cmocka_unit_test(a_small_inductance_is_none_in_the_limit),
-        cmocka_unit_test(what_belongs_to_a_current_drive_is_refused_with_a_voltage),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

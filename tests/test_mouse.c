@@ -15,9 +15,8 @@ static void click(explorer *ex, int x, int y)
     point(ex, POINTER_RELEASE, x, y);
 }
 
-static void test_clicks_and_drags_in_curves_move_the_cursor(void **state)
+TEST(test_clicks_and_drags_in_curves_move_the_cursor)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     hit_area c = part_on_screen(&ex, PANEL_CURVES, PART_BODY);
@@ -37,9 +36,8 @@ static void test_clicks_and_drags_in_curves_move_the_cursor(void **state)
     explorer_finish(&ex);
 }
 
-static void test_the_wheel_zooms_where_it_points(void **state)
+TEST(test_the_wheel_zooms_where_it_points)
 {
-    (void)state;
     explorer ex;
     double from, to;
     open_explorer(&ex, "corrected/first-impact");
@@ -63,9 +61,8 @@ static void test_the_wheel_zooms_where_it_points(void **state)
     explorer_finish(&ex);
 }
 
-static void test_the_time_axis_is_dragged(void **state)
+TEST(test_the_time_axis_is_dragged)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     hit_area a = part_on_screen(&ex, PANEL_CURVES, PART_TIME_AXIS);
@@ -86,9 +83,8 @@ static void test_the_time_axis_is_dragged(void **state)
     explorer_finish(&ex);
 }
 
-static void test_an_axis_of_values_is_dragged_and_zoomed(void **state)
+TEST(test_an_axis_of_values_is_dragged_and_zoomed)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     hit_area a = part_on_screen(&ex, PANEL_CURVES, PART_LABELS);
@@ -106,9 +102,8 @@ static void test_an_axis_of_values_is_dragged_and_zoomed(void **state)
     explorer_finish(&ex);
 }
 
-static void test_events_and_scenarios_are_clicked(void **state)
+TEST(test_events_and_scenarios_are_clicked)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "<End>");
@@ -136,9 +131,8 @@ static void test_events_and_scenarios_are_clicked(void **state)
     explorer_finish(&ex);
 }
 
-static void test_the_wheel_scrolls_pages_and_panels(void **state)
+TEST(test_the_wheel_scrolls_pages_and_panels)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "?");
@@ -172,9 +166,8 @@ static void test_the_wheel_scrolls_pages_and_panels(void **state)
     explorer_finish(&ex);
 }
 
-static void test_random_pointing_does_no_harm(void **state)
+TEST(test_random_pointing_does_no_harm)
 {
-    (void)state;
     random_generator r;
     random_seed(&r, 11);
     explorer ex;
@@ -197,18 +190,4 @@ static void test_random_pointing_does_no_harm(void **state)
                     to <= ex.state.session.effective.parameters.run.duration * (1 + 1e-12));
     }
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clicks_and_drags_in_curves_move_the_cursor),
-        cmocka_unit_test(test_the_wheel_zooms_where_it_points),
-        cmocka_unit_test(test_the_time_axis_is_dragged),
-        cmocka_unit_test(test_an_axis_of_values_is_dragged_and_zoomed),
-        cmocka_unit_test(test_events_and_scenarios_are_clicked),
-        cmocka_unit_test(test_the_wheel_scrolls_pages_and_panels),
-        cmocka_unit_test(test_random_pointing_does_no_harm),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

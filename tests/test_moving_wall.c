@@ -1,7 +1,5 @@
 // A wall that moves: driven arms and impacts in closed form, walls moved at once by a script, and a
 // law that holds its force on one.
-#include <math.h>
-#include <stdlib.h>
 
 #include "src/arm/impact.h"
 #include "src/contact/engine.h"
@@ -34,9 +32,8 @@ static double angle_at(const char *const *settings, double time, double *force)
 
 // On a spring and damper the link is an oscillator that the wall drives:
 // (-I w^2 + L^2 (k + i w c)) q = -L (k + i w c) u.
-static void a_driven_spring_has_its_amplitude_and_phase(void **state)
+TEST(a_driven_spring_has_its_amplitude_and_phase)
 {
-    (void)state;
     const parameters p = fixture_parameters(SETTINGS(PRESSED_LINK));
     arm a;
     arm_init(&a, &p);
@@ -68,9 +65,8 @@ static void a_driven_spring_has_its_amplitude_and_phase(void **state)
 }
 
 // On a rigid one the tip goes where the wall does, and the force makes it so.
-static void a_rigid_wall_leads_the_tip(void **state)
+TEST(a_rigid_wall_leads_the_tip)
 {
-    (void)state;
     const parameters p = fixture_parameters(SETTINGS(PRESSED_LINK));
     arm a;
     arm_init(&a, &p);
@@ -98,9 +94,8 @@ static void a_rigid_wall_leads_the_tip(void **state)
 
 // A link at rest that a wall meets at a constant speed leaves it as one that comes at that speed
 // leaves a wall at rest: seen from the wall. The sine is slow enough to be straight.
-static void a_wall_at_constant_speed_is_one_at_rest_seen_from_it(void **state)
+TEST(a_wall_at_constant_speed_is_one_at_rest_seen_from_it)
 {
-    (void)state;
     static const double shares[] = {0, 0.5, 1};
     for (size_t i = 0; i < 3; i++) {
         char e[64];
@@ -126,9 +121,8 @@ static void a_wall_at_constant_speed_is_one_at_rest_seen_from_it(void **state)
 }
 
 // An arm at rest that a wall strikes gets the impulse with which it would strike the wall.
-static void only_the_relative_velocity_counts_at_an_impact(void **state)
+TEST(only_the_relative_velocity_counts_at_an_impact)
 {
-    (void)state;
     static const char *const kinds[] = {"wall.kind=plane", "wall.kind=point"};
     for (size_t i = 0; i < 2; i++) {
         const parameters p = fixture_parameters(
@@ -173,9 +167,7 @@ static run_result run_of(const char *wall, double from, double time, double to, 
     run_result r;
     run_scenario(&s, true, &r);
     scenario_finish(&s);
-    if (r.summary.status != expected) {
-        fail_msg("%s: %s", text, r.summary.message);
-    }
+    fail_if(r.summary.status != expected, "%s: %s", text, r.summary.message);
     return r;
 }
 
@@ -184,9 +176,8 @@ static const char *const walls[] = {
     "kind: plane, contact: hunt-crossley", "kind: point, contact: kelvin-voigt, mass: 0.05"};
 
 // Moved while the arm flies, it is as if it had always been there.
-static void a_wall_moved_in_flight_is_where_it_was_put(void **state)
+TEST(a_wall_moved_in_flight_is_where_it_was_put)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
         run_result moved = run_of(walls[i], 0.1, 0.05, 0.07, STATUS_OK);
         run_result there = run_of(walls[i], 0.07, 0, 0.07, STATUS_OK);
@@ -200,9 +191,8 @@ static void a_wall_moved_in_flight_is_where_it_was_put(void **state)
 
 // Taken away from an arm that presses on it, it lets go at once and costs no energy; moved into the
 // arm it is refused.
-static void a_wall_moved_in_contact_lets_go_or_is_refused(void **state)
+TEST(a_wall_moved_in_contact_lets_go_or_is_refused)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
         run_result r = run_of(walls[i], 0.1, 0, 0.1, STATUS_OK);
         const trace *t = &r.trace;
@@ -231,9 +221,8 @@ static void a_wall_moved_in_contact_lets_go_or_is_refused(void **state)
 }
 
 // A loop goes on after a wall was refused as if nothing had been asked.
-static void a_refused_wall_changes_nothing(void **state)
+TEST(a_refused_wall_changes_nothing)
 {
-    (void)state;
     double end[2];
     for (int asked = 0; asked < 2; asked++) {
         scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=0.5"))};
@@ -254,9 +243,8 @@ static void a_refused_wall_changes_nothing(void **state)
 }
 
 // On walls that come and go by a millimetre a second the law holds its force.
-static void the_observer_holds_its_force_on_a_moving_wall(void **state)
+TEST(the_observer_holds_its_force_on_a_moving_wall)
 {
-    (void)state;
     static const char *const on[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
     for (size_t i = 0; i < 2; i++) {
         run_result r = rig_run(SETTINGS("control.law=observer", "control.force=1",
@@ -270,19 +258,4 @@ static void the_observer_holds_its_force_on_a_moving_wall(void **state)
         }
         run_finish(&r);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_driven_spring_has_its_amplitude_and_phase),
-        cmocka_unit_test(a_rigid_wall_leads_the_tip),
-        cmocka_unit_test(a_wall_at_constant_speed_is_one_at_rest_seen_from_it),
-        cmocka_unit_test(only_the_relative_velocity_counts_at_an_impact),
-        cmocka_unit_test(a_wall_moved_in_flight_is_where_it_was_put),
-        cmocka_unit_test(a_wall_moved_in_contact_lets_go_or_is_refused),
-        cmocka_unit_test(a_refused_wall_changes_nothing),
-        cmocka_unit_test(the_observer_holds_its_force_on_a_moving_wall),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,6 @@
 // No step, event or push allocates memory: runs in real time, or a million of them, rely on it. The
 // linker puts the counting functions below in the place of the allocator's (-Wl,--wrap=malloc and
 // so on, see meson.build).
-#include <stdlib.h>
 
 #include "src/predict/linearised.h"
 #include "src/contact/contact_machine.h"
@@ -79,9 +78,8 @@ static passage go_through(const char *const *settings)
     return seen;
 }
 
-static void the_counter_counts(void **state)
+TEST(the_counter_counts)
 {
-    (void)state;
     long before = allocations;
     parameters p = fixture_parameters(NULL);
     arm a;
@@ -90,9 +88,8 @@ static void the_counter_counts(void **state)
     assert_true(allocations > before);
 }
 
-static void a_run_through_impacts_allocates_nothing(void **state)
+TEST(a_run_through_impacts_allocates_nothing)
 {
-    (void)state;
     passage seen = go_through(NULL);
     assert_int_equal(seen.allocations, 0);
     assert_true(seen.events[MOTION_IMPACT] >= 2);
@@ -113,9 +110,8 @@ static void a_run_through_impacts_allocates_nothing(void **state)
     assert_true(seen.events[MOTION_RELEASE] >= 1);
 }
 
-static void implicit_runs_through_impacts_allocate_nothing(void **state)
+TEST(implicit_runs_through_impacts_allocate_nothing)
 {
-    (void)state;
     passage seen = go_through(SETTINGS("method.name=newmark"));
     assert_int_equal(seen.allocations, 0);
     assert_true(seen.events[MOTION_IMPACT] >= 2);
@@ -124,18 +120,16 @@ static void implicit_runs_through_impacts_allocate_nothing(void **state)
     assert_true(seen.events[MOTION_IMPACT] >= 1);
 }
 
-static void a_hub_spring_allocates_nothing(void **state)
+TEST(a_hub_spring_allocates_nothing)
 {
-    (void)state;
     passage seen = go_through(SETTINGS("arm.hub_joint=spring", "run.duration=0.4"));
     assert_int_equal(seen.allocations, 0);
     assert_true(seen.events[MOTION_IMPACT] >= 1);
 }
 
 // The predictor of two links is asked in free flight at every sample.
-static void a_prediction_allocates_nothing(void **state)
+TEST(a_prediction_allocates_nothing)
 {
-    (void)state;
     parameters p = fixture_parameters(NULL);
     const double q[] = {0.1, 0.1}, w[] = {0.6, 0.9};
     prediction out;
@@ -146,16 +140,4 @@ static void a_prediction_allocates_nothing(void **state)
     assert_int_equal(predict_linearised(&a, m, q, w, &out), STATUS_OK);
     assert_int_equal(allocations - before, 0);
     motion_destroy(m);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_counter_counts),
-        cmocka_unit_test(a_run_through_impacts_allocates_nothing),
-        cmocka_unit_test(implicit_runs_through_impacts_allocate_nothing),
-        cmocka_unit_test(a_hub_spring_allocates_nothing),
-        cmocka_unit_test(a_prediction_allocates_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -230,21 +230,18 @@ static status put_side_by_side(scenario *s, FILE *out)
 
 // --- the tests ----------------------------------------------------------------------------------
 
-static void scenarios_are_read_copied_and_written(void **state)
+TEST(scenarios_are_read_copied_and_written)
 {
-    (void)state;
     try_with_scenario(read_and_write, "arm.links=4 arm.joint_stiffness=4,5,6");
 }
 
-static void printed_texts(void **state)
+TEST(printed_texts)
 {
-    (void)state;
     try_all(print_text, "a long text");
 }
 
-static void runs_of_every_engine(void **state)
+TEST(runs_of_every_engine)
 {
-    (void)state;
     static const char *const settings[] = {"",
                                            "arm.links=5 arm.damping_ratio=0.01",
                                            "arm.links=24",
@@ -256,9 +253,8 @@ static void runs_of_every_engine(void **state)
     }
 }
 
-static void runs_of_the_rig(void **state)
+TEST(runs_of_the_rig)
 {
-    (void)state;
     static const char *const settings[] = {"control.law=hybrid", "control.law=optimal",
                                            "control.law=observer", "control.law=inverse-dynamics"};
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
@@ -267,26 +263,23 @@ static void runs_of_the_rig(void **state)
     }
 }
 
-static void predictions(void **state)
+TEST(predictions)
 {
-    (void)state;
     try_with_scenario(predict, "");
     try_with_scenario(predict, "arm.links=6 arm.damping_ratio=0.01");
     try_with_scenario(predict, "wall.contact=kelvin-voigt wall.stiffness=1e4");
 }
 
-static void sessions_and_loops(void **state)
+TEST(sessions_and_loops)
 {
-    (void)state;
     try_with_scenario(change_on_the_way, "");
     try_with_scenario(change_on_the_way, "control.law=hybrid");
     try_with_scenario(step_as_a_loop, "");
     try_with_scenario(step_as_a_loop, "control.law=hybrid");
 }
 
-static void many_runs(void **state)
+TEST(many_runs)
 {
-    (void)state;
     try_with_scenario(run_many, "");
     try_with_scenario(run_many, "arm.links=3");
     try_with_scenario(sweep_over, "control.law=hybrid");
@@ -299,14 +292,5 @@ int main(int count, char **arguments)
     (void)arguments;
     everywhere = count > 1;
     scenario_text = whole_scenario;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scenarios_are_read_copied_and_written),
-        cmocka_unit_test(printed_texts),
-        cmocka_unit_test(runs_of_every_engine),
-        cmocka_unit_test(runs_of_the_rig),
-        cmocka_unit_test(predictions),
-        cmocka_unit_test(sessions_and_loops),
-        cmocka_unit_test(many_runs),
-    };
-    return cmocka_run_group_tests(tests, use_refusing_allocators, NULL) != 0;
+    return run_cases(use_refusing_allocators, NULL);
 }

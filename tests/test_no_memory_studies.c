@@ -214,9 +214,8 @@ static status run(scenario *s, FILE *out)
 
 // --- the tests ----------------------------------------------------------------------------------
 
-static void a_name_means_the_same_scenario(void **state)
+TEST(a_name_means_the_same_scenario)
 {
-    (void)state;
     put_file("own.yaml", "title: Own\n");
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     char path[64];
@@ -232,9 +231,8 @@ static void a_name_means_the_same_scenario(void **state)
     free(before);
 }
 
-static void sets_and_studies(void **state)
+TEST(sets_and_studies)
 {
-    (void)state;
     put_file("set", "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
     snprintf(set_path, sizeof set_path, "%s/set", folder);
     try_with_scenario(draw_cases, "");
@@ -244,15 +242,13 @@ static void sets_and_studies(void **state)
     try_with_scenario(measure_stiffness, "");
 }
 
-static void parts_of_a_sweep(void **state)
+TEST(parts_of_a_sweep)
 {
-    (void)state;
     try_with_scenario(sweep_in_parts, "");
 }
 
-static void runs_of_the_printed_model(void **state)
+TEST(runs_of_the_printed_model)
 {
-    (void)state;
     try_with_scenario(run, "arm.model=printed");
     try_with_scenario(run, "arm.model=printed control.law=hybrid");
 }
@@ -280,11 +276,5 @@ int main(int count, char **arguments)
     (void)arguments;
     everywhere = count > 1;
     scenario_text = short_run;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_name_means_the_same_scenario),
-        cmocka_unit_test(sets_and_studies),
-        cmocka_unit_test(parts_of_a_sweep),
-        cmocka_unit_test(runs_of_the_printed_model),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder) != 0;
+    return run_cases(make_folder, remove_folder);
 }

@@ -1,16 +1,11 @@
 // Numbers as text: short, exact, and read only in the usual notations.
 #include "src/base/numbers.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/base/random.h"
 #include "tests/check.h"
 
-static void numbers_are_short_and_read_back(void **state)
+TEST(numbers_are_short_and_read_back)
 {
-    (void)state;
     const struct {
         double value;
         const char *text;
@@ -35,9 +30,8 @@ static void numbers_are_short_and_read_back(void **state)
     }
 }
 
-static void short_numbers_have_exponents_from_a_million(void **state)
+TEST(short_numbers_have_exponents_from_a_million)
 {
-    (void)state;
     const struct {
         double value;
         const char *text;
@@ -51,9 +45,8 @@ static void short_numbers_have_exponents_from_a_million(void **state)
     }
 }
 
-static void what_is_not_finite_has_a_word(void **state)
+TEST(what_is_not_finite_has_a_word)
 {
-    (void)state;
     char text[NUMBER_TEXT];
     number_format(text, -(double)NAN);
     assert_string_equal(text, "nan");
@@ -61,9 +54,8 @@ static void what_is_not_finite_has_a_word(void **state)
     assert_string_equal(text, "-inf");
 }
 
-static void decimals_are_read_with_what_follows(void **state)
+TEST(decimals_are_read_with_what_follows)
 {
-    (void)state;
     const struct {
         const char *text;
         double value;
@@ -78,9 +70,8 @@ static void decimals_are_read_with_what_follows(void **state)
     }
 }
 
-static void what_is_no_decimal_is_refused(void **state)
+TEST(what_is_no_decimal_is_refused)
 {
-    (void)state;
     const char *const texts[] = {"", "x", "0x10", "inf", "nan", "-.", " 1", "+-1", "e5"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         double value;
@@ -103,9 +94,8 @@ static double some_number(random_generator *g, int i)
 
 // What is written reads back to the last bit, and no number of one digit less does; of those with
 // as many digits it is the nearest.
-static void digits_are_as_few_as_read_back(void **state)
+TEST(digits_are_as_few_as_read_back)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 20261122);
     for (int i = 0; i < 200000; i++) {
@@ -132,9 +122,8 @@ static void digits_are_as_few_as_read_back(void **state)
     }
 }
 
-static void digits_of_known_numbers(void **state)
+TEST(digits_of_known_numbers)
 {
-    (void)state;
     const struct {
         double value;
         const char *text;
@@ -159,9 +148,8 @@ static void digits_of_known_numbers(void **state)
     }
 }
 
-static void decimals(void **state)
+TEST(decimals)
 {
-    (void)state;
     double value;
     const char *rest;
     assert_true(decimal_read("-1.5e2  N", &value, &rest));
@@ -175,9 +163,8 @@ static void decimals(void **state)
 }
 
 // Numbers of so many digits times a power of ten, written out by hand.
-static void digits_and_points_stand_where_they_belong(void **state)
+TEST(digits_and_points_stand_where_they_belong)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 12);
     for (int trial = 0; trial < 40000; trial++) {
@@ -212,20 +199,4 @@ static void digits_and_points_stand_where_they_belong(void **state)
             assert_string_equal(text, expected);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(decimals),
-        cmocka_unit_test(digits_are_as_few_as_read_back),
-        cmocka_unit_test(digits_of_known_numbers),
-        cmocka_unit_test(numbers_are_short_and_read_back),
-        cmocka_unit_test(digits_and_points_stand_where_they_belong),
-        cmocka_unit_test(short_numbers_have_exponents_from_a_million),
-        cmocka_unit_test(what_is_not_finite_has_a_word),
-        cmocka_unit_test(decimals_are_read_with_what_follows),
-        cmocka_unit_test(what_is_no_decimal_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,5 @@
 // The law `observer`: its gain, its reduced arm, and what it has to show on the rig; and that laws
 // see sensors only.
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/rig/estimation/arm_observer.h"
 #include "src/rig/controller_values.h"
@@ -70,9 +68,8 @@ static void check_optimal(const sampled_model *m, const quadratic_cost *c, doubl
     }
 }
 
-static void doubling_makes_the_cost_least(void **state)
+TEST(doubling_makes_the_cost_least)
 {
-    (void)state;
     // the arm in contact at 200 Hz, with and without errors asked to die faster
     double rate[N][N] = {{0, 1}, {-510, -4.7}}, input[N] = {0, 11.3};
     const double output[2] = {28.2, 0.08}, direct = -0.19;
@@ -102,9 +99,8 @@ static void doubling_makes_the_cost_least(void **state)
 }
 
 // As many states as there may be: six vibrations, in any unit of the cost.
-static void all_states_have_a_gain_in_any_unit(void **state)
+TEST(all_states_have_a_gain_in_any_unit)
 {
-    (void)state;
     double rate[N][N] = {{0}}, input[N] = {0}, gain[3][N];
     for (int i = 0; i < N; i += 2) {
         rate[i][i + 1] = 1;
@@ -131,9 +127,8 @@ static void all_states_have_a_gain_in_any_unit(void **state)
 }
 
 // Each term is weight (row z + direct u)^2 = z'C z + 2 u s'z + r u^2.
-static void a_cost_is_the_sum_of_its_squares(void **state)
+TEST(a_cost_is_the_sum_of_its_squares)
 {
-    (void)state;
     const double rows[2][2] = {{2, -3}, {0.5, 4}}, direct[2] = {0.7, -1.1}, weight[2] = {3, 5};
     const double z[2] = {0.3, -0.8}, u = 1.7;
     quadratic_cost cost = {.growth = 1};
@@ -154,9 +149,8 @@ static void a_cost_is_the_sum_of_its_squares(void **state)
 }
 
 // A scalar: p = a^2 p/(1 + p b^2/r) + q has a root in closed form.
-static void doubling_solves_the_scalar_equation(void **state)
+TEST(doubling_solves_the_scalar_equation)
 {
-    (void)state;
     sampled_model m = {.n = 1, .a = {{1.2}}, .b = {0.5}};
     quadratic_cost cost = {.state = {{2}}, .effort = 3, .growth = 1};
     double gain[N], a = 1.2, b = 0.5, q = 2, r = 3;
@@ -191,9 +185,8 @@ static controller_setup two_links(void)
 }
 
 // Two links have one degree of freedom in contact: M x'' = T - 4 k2 x, f = 4 k2 x - mu x''.
-static void two_links_reduce_to_themselves(void **state)
+TEST(two_links_reduce_to_themselves)
 {
-    (void)state;
     controller_setup s = two_links();
     reduced_arm reduced;
     assert_null(reduced_arm_init(&reduced, &s));
@@ -215,9 +208,8 @@ static void two_links_reduce_to_themselves(void **state)
 
 // A plastic touch keeps what M projects: it loses energy, and nothing of a motion that the contact
 // allows.
-static void a_touch_loses_energy(void **state)
+TEST(a_touch_loses_energy)
 {
-    (void)state;
     controller_setup s = two_links();
     s.links = 8;
     s.period = 1e-3;
@@ -240,9 +232,8 @@ static void a_touch_loses_energy(void **state)
 
 // --- on the rig -------------------------------------------------------------------------------
 
-static void overshoot_is_small_when_told_the_truth(void **state)
+TEST(overshoot_is_small_when_told_the_truth)
 {
-    (void)state;
     const char *const forces[] = {"control.force=0.5", "control.force=1", "control.force=2",
                                   "control.force=4"};
     for (int i = 0; i < 4; i++) {
@@ -257,9 +248,8 @@ static void overshoot_is_small_when_told_the_truth(void **state)
 }
 
 // What no table covered: each within 30 %, settled, steady within 5 %.
-static void wrong_beliefs_do_no_harm(void **state)
+TEST(wrong_beliefs_do_no_harm)
 {
-    (void)state;
     const char *const beliefs[] = {"belief.mass_factor=0.85",
                                    "belief.mass_factor=1.15",
                                    "belief.friction_factor=0.7",
@@ -286,9 +276,8 @@ static void wrong_beliefs_do_no_harm(void **state)
 }
 
 // A tip thrown back is met softly: the second meeting is no harder than the command allows.
-static void walls_that_throw_back_are_met_softly(void **state)
+TEST(walls_that_throw_back_are_met_softly)
 {
-    (void)state;
     static const char *const walls[][2] = {{"wall.restitution=0.1"},
                                            {"wall.restitution=0.2"},
                                            {"wall.contact=kelvin-voigt", "wall.stiffness=1000"},
@@ -306,9 +295,8 @@ static void walls_that_throw_back_are_met_softly(void **state)
     }
 }
 
-static void a_delay_untold_does_no_harm(void **state)
+TEST(a_delay_untold_does_no_harm)
 {
-    (void)state;
     summary s = rig_summary(
         SETTINGS("control.law=observer", "control.delay=5e-3", "belief.delay_error=-5e-3"));
     check_below(s.force_over_command_N, 0.3);
@@ -317,9 +305,8 @@ static void a_delay_untold_does_no_harm(void **state)
 }
 
 // Arms of more links than it is told of, and arms that it is told of.
-static void it_settles_on_many_links(void **state)
+TEST(it_settles_on_many_links)
 {
-    (void)state;
     static const char *const links[][2] = {{"arm.links=3", "belief.links=3"},
                                            {"arm.links=5", "belief.links=5"},
                                            {"arm.links=8", "belief.links=8"}};
@@ -348,9 +335,8 @@ static controller_setup setup_of(const parameters *p)
 }
 
 // Behind a spring a torque is no force at once, and a limit on that force is none of the command.
-static void a_hub_on_a_spring_does_not_swing(void **state)
+TEST(a_hub_on_a_spring_does_not_swing)
 {
-    (void)state;
     static const char *const springs[] = {"arm.k1=90", "arm.k1=150", "arm.k1=300"};
     for (int i = 0; i < 3; i++) {
         summary s = rig_summary(SETTINGS("control.law=observer", "control.force=2",
@@ -408,9 +394,8 @@ static observer_arms arms_after(const char *const *settings)
 
 // Told the truth, the arm told of; told something else, the one that is nearest: of eight links
 // six, and the hub that gives. A stiffness or an inertia believed wrongly is no other arm.
-static void readings_tell_which_arm_it_is(void **state)
+TEST(readings_tell_which_arm_it_is)
 {
-    (void)state;
     static const char *const told[][4] = {
         {"control.law=observer"},
         {"control.law=observer", "belief.k2_factor=1.2"},
@@ -435,9 +420,8 @@ static void readings_tell_which_arm_it_is(void **state)
 
 // A stiffness believed wrongly is learned from the readings: half the way to it counts as much as
 // what was believed, and the force at the end does not depend on it.
-static void it_learns_how_stiff_the_arm_is(void **state)
+TEST(it_learns_how_stiff_the_arm_is)
 {
-    (void)state;
     static const double wrong[] = {0.75, 1.25};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         const char *const settings[] = {"control.law=observer", NULL};
@@ -472,9 +456,8 @@ static void it_learns_how_stiff_the_arm_is(void **state)
 }
 
 // Pushed off the wall it finds back: the force is there again at the end.
-static void it_finds_the_wall_again(void **state)
+TEST(it_finds_the_wall_again)
 {
-    (void)state;
     for (int sign = -1; sign <= 1; sign += 2) {
         const char *const settings[] = {"control.law=observer", "run.duration=2", NULL};
         action push = {.time = 1, .kind = ACTION_PUSH, .parameter = -1, .value = sign * 0.05};
@@ -491,9 +474,8 @@ static void it_finds_the_wall_again(void **state)
 
 // The speeds of the summary are those that the rows show, and the tip does not come back faster
 // than it came.
-static void the_tip_comes_back_no_faster_than_it_came(void **state)
+TEST(the_tip_comes_back_no_faster_than_it_came)
 {
-    (void)state;
     const char *const settings[] = {"control.law=observer", "wall.restitution=0.3", NULL};
     action push = {.time = 0.8, .kind = ACTION_PUSH, .parameter = -1, .value = -0.05};
     scenario s = {.parameters = rig_parameters(settings), .actions = &push, .action_count = 1};
@@ -519,9 +501,8 @@ static void the_tip_comes_back_no_faster_than_it_came(void **state)
 }
 
 // Walls that give, and that throw the tip back: it comes to rest on them with the wanted force.
-static void it_settles_on_walls_that_give(void **state)
+TEST(it_settles_on_walls_that_give)
 {
-    (void)state;
     static const char *const walls[][3] = {
         {"wall.contact=kelvin-voigt", "wall.stiffness=200", NULL},
         {"wall.contact=kelvin-voigt", "wall.stiffness=2e4", NULL},
@@ -559,9 +540,8 @@ static run_result force_after_change(double from, double to, double rate)
 
 // A step of the set-point settles in 0.15 s with at most a tenth of it over; a ramp is followed
 // within a twentieth of the force, once the force that first goes the other way is over it.
-static void it_follows_a_setpoint_in_contact(void **state)
+TEST(it_follows_a_setpoint_in_contact)
 {
-    (void)state;
     static const double steps[][2] = {{1, 1.5}, {1.5, 1}, {0.5, 1}, {1, 0.5}, {2.5, 3}};
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         const double to = steps[i][1], step = to - steps[i][0];
@@ -589,9 +569,8 @@ static void it_follows_a_setpoint_in_contact(void **state)
 }
 
 // A tip that drifts to the wall where no force is wanted is touched by, and nothing presses on it.
-static void no_force_is_wanted_and_none_is_held(void **state)
+TEST(no_force_is_wanted_and_none_is_held)
 {
-    (void)state;
     const summary m =
         rig_summary(SETTINGS("control.law=observer", "control.force=0", "initial.velocity=2"));
     check_below(0, m.first_contact_s);
@@ -601,9 +580,8 @@ static void no_force_is_wanted_and_none_is_held(void **state)
 // --- laws see sensors only --------------------------------------------------------------------
 
 // The plant is replaced by a recording of what its sensors read: the commands are the same.
-static void the_same_readings_give_the_same_commands(void **state)
+TEST(the_same_readings_give_the_same_commands)
 {
-    (void)state;
     for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
         const char *const settings[] = {"sensor.film=true", "sensor.accelerometer=true",
                                         "run.duration=0.8", NULL};
@@ -650,31 +628,4 @@ static void the_same_readings_give_the_same_commands(void **state)
         free(memory);
         run_finish(&r);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(doubling_makes_the_cost_least),
-        cmocka_unit_test(doubling_solves_the_scalar_equation),
-        cmocka_unit_test(all_states_have_a_gain_in_any_unit),
-        cmocka_unit_test(a_cost_is_the_sum_of_its_squares),
-        cmocka_unit_test(two_links_reduce_to_themselves),
-        cmocka_unit_test(a_touch_loses_energy),
-        cmocka_unit_test(overshoot_is_small_when_told_the_truth),
-        cmocka_unit_test(wrong_beliefs_do_no_harm),
-        cmocka_unit_test(walls_that_throw_back_are_met_softly),
-        cmocka_unit_test(a_delay_untold_does_no_harm),
-        cmocka_unit_test(it_settles_on_many_links),
-        cmocka_unit_test(a_hub_on_a_spring_does_not_swing),
-        cmocka_unit_test(readings_tell_which_arm_it_is),
-        cmocka_unit_test(it_learns_how_stiff_the_arm_is),
-        cmocka_unit_test(it_finds_the_wall_again),
-        cmocka_unit_test(the_tip_comes_back_no_faster_than_it_came),
-        cmocka_unit_test(it_settles_on_walls_that_give),
-        cmocka_unit_test(it_follows_a_setpoint_in_contact),
-        cmocka_unit_test(no_force_is_wanted_and_none_is_held),
-        cmocka_unit_test(the_same_readings_give_the_same_commands),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,5 @@
 // One link on a wall under a motor with friction: what holds the link, what its force is, and what
 // can only be said of it within bounds.
-#include <math.h>
-#include <string.h>
 
 #include "src/base/random.h"
 #include "src/run/run.h"
@@ -15,9 +13,7 @@ static run_result run_of(const char *text)
     run_result r;
     run_scenario(&s, true, &r);
     scenario_finish(&s);
-    if (r.summary.status != STATUS_OK) {
-        fail_msg("%s\n%s", text, r.summary.message);
-    }
+    fail_if(r.summary.status != STATUS_OK, "%s\n%s", text, r.summary.message);
     return r;
 }
 
@@ -45,9 +41,8 @@ static const sample *row_at(const run_result *r, double time)
 
 // A link that friction holds within a wall stays there while the current changes, until the motor
 // no longer outweighs what the wall gives and friction holds: T e^(-t R/L) = f l - kst.
-static void a_link_stuck_within_a_wall_slips_when_its_current_lets_it(void **state)
+TEST(a_link_stuck_within_a_wall_slips_when_its_current_lets_it)
 {
-    (void)state;
     static const struct {
         const char *wall;
         double inductance; // [H]
@@ -85,9 +80,8 @@ static void a_link_stuck_within_a_wall_slips_when_its_current_lets_it(void **sta
 }
 
 // Where the hub sticks and slips without end, the hub is named, whatever it is in contact with.
-static void what_stands_still_names_the_event_that_repeats(void **state)
+TEST(what_stands_still_names_the_event_that_repeats)
 {
-    (void)state;
     scenario s = good("arm: {links: 1}\nwall: {contact: kelvin-voigt}\n"
                       "initial: {angle: 0.1}\n");
     arm a;
@@ -140,9 +134,8 @@ static void check_determined(const summary *s)
 }
 
 // On a rigid wall friction may take from the force what it can hold, and add as much.
-static void wall_and_friction_leave_open_what_the_force_is(void **state)
+TEST(wall_and_friction_leave_open_what_the_force_is)
 {
-    (void)state;
     static const char *const ways[] = {
         "wall: {kind: point}\n",
         "wall: {kind: plane}\n",
@@ -185,9 +178,8 @@ static void wall_and_friction_leave_open_what_the_force_is(void **state)
 }
 
 // Where the motor pulls, less than friction holds, the wall may press as hard as that.
-static void a_link_that_rests_may_be_pressed_or_not(void **state)
+TEST(a_link_that_rests_may_be_pressed_or_not)
 {
-    (void)state;
     static const double volts[] = {0.05, 0, -0.05};
     for (int i = 0; i < 3; i++) {
         char text[200];
@@ -212,9 +204,8 @@ static void a_link_that_rests_may_be_pressed_or_not(void **state)
 }
 
 // The mean of bounds that change in the window: at once, with a current, where one reaches zero.
-static void steady_bounds_are_means(void **state)
+TEST(steady_bounds_are_means)
 {
-    (void)state;
     run_result r = run_of("arm: {links: 1}\nscript:\n  - at: 0.95 s\n"
                           "    set: {motor.voltage: 0.05}\n");
     const double before = torque_of(1), after = torque_of(0.05);
@@ -241,9 +232,8 @@ static void steady_bounds_are_means(void **state)
 }
 
 // Once it has left, the first pulse's bounds stay, and no force is open any more.
-static void a_link_that_was_pushed_off_has_no_open_force(void **state)
+TEST(a_link_that_was_pushed_off_has_no_open_force)
 {
-    (void)state;
     run_result r = run_of("arm: {links: 1}\nscript:\n  - at: 0.5 s\n"
                           "    set: {motor.voltage: -3}\n");
     check_bounds(r.summary.first_pulse_peak_low_N, r.summary.first_pulse_peak_high_N,
@@ -256,9 +246,8 @@ static void a_link_that_was_pushed_off_has_no_open_force(void **state)
 
 // Springs, depths and no friction determine the force; within a wall that gives the way there says
 // which one it is.
-static void what_else_holds_still_has_one_force(void **state)
+TEST(what_else_holds_still_has_one_force)
 {
-    (void)state;
     static const char *const texts[] = {
         "arm: {links: 2}\n",
         "arm: {links: 1, hub_joint: spring}\n",
@@ -292,9 +281,8 @@ static double between(random_generator *g, double low, double high)
 }
 
 // A link that the wall stops rests, to the last bit: friction holds it.
-static void a_link_that_is_stopped_sticks_whatever_rounding_says(void **state)
+TEST(a_link_that_is_stopped_sticks_whatever_rounding_says)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 5);
     for (int i = 0; i < 100; i++) {
@@ -314,9 +302,8 @@ static void a_link_that_is_stopped_sticks_whatever_rounding_says(void **state)
 }
 
 // Steps too long for the hub's decay stop the link at the wall, too, and it presses.
-static void a_link_stops_in_long_steps(void **state)
+TEST(a_link_stops_in_long_steps)
 {
-    (void)state;
     static const char *const methods[] = {"newmark", "generalized-alpha"};
     for (int i = 0; i < 2; i++) {
         char text[200];
@@ -329,20 +316,4 @@ static void a_link_stops_in_long_steps(void **state)
         check_close(row_at(&r, 2)->hub_velocity, 0, 0);
         run_finish(&r);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wall_and_friction_leave_open_what_the_force_is),
-        cmocka_unit_test(a_link_that_rests_may_be_pressed_or_not),
-        cmocka_unit_test(steady_bounds_are_means),
-        cmocka_unit_test(a_link_that_was_pushed_off_has_no_open_force),
-        cmocka_unit_test(what_else_holds_still_has_one_force),
-        cmocka_unit_test(a_link_that_is_stopped_sticks_whatever_rounding_says),
-        cmocka_unit_test(a_link_stops_in_long_steps),
-        cmocka_unit_test(a_link_stuck_within_a_wall_slips_when_its_current_lets_it),
-        cmocka_unit_test(what_stands_still_names_the_event_that_repeats),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,5 @@
 // The optional sensors, each against its data: piezoelectric force sensor, piezo film along the
 // beam, accelerometer on the hub.
-#include <string.h>
 
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
@@ -44,18 +43,16 @@ static double accelerometer(sensors *s, double acceleration)
 
 // --- whether they are there -----------------------------------------------------------------
 
-static void sensors_not_fitted_read_nothing(void **state)
+TEST(sensors_not_fitted_read_nothing)
 {
-    (void)state;
     sensors s = fresh_sensors(NULL);
     sensor_reading r = sensors_read(&s, &(sensed_motion){.force = 1, .bending = 1});
     assert_true(isnan(r.piezo_force) && isnan(r.film) && isnan(r.accelerometer));
     assert_false(isnan(r.force_reading));
 }
 
-static void choice_of_the_piezo_fits_it(void **state)
+TEST(choice_of_the_piezo_fits_it)
 {
-    (void)state;
     fault f;
     parameters p = rig_parameters(SETTINGS("sensor.force=piezo"));
     assert_true(p.sensor.piezo);
@@ -68,9 +65,8 @@ static void choice_of_the_piezo_fits_it(void **state)
     assert_non_null(strstr(f.text, "sensor.piezo_leak_time"));
 }
 
-static void fitting_them_changes_no_other_signal(void **state)
+TEST(fitting_them_changes_no_other_signal)
 {
-    (void)state;
     run_result without = rig_run(SETTINGS("control.law=optimal"), true);
     run_result with = rig_run(SETTINGS("control.law=optimal", ALL_FITTED), true);
     assert_int_equal(without.trace.row_count, with.trace.row_count);
@@ -89,9 +85,8 @@ static void fitting_them_changes_no_other_signal(void **state)
     run_finish(&with);
 }
 
-static void ideal_sensors_tell_the_truth(void **state)
+TEST(ideal_sensors_tell_the_truth)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS("sensor.ideal=true", ALL_FITTED));
     sensed_motion m = {.acceleration = -1234.567, .bending = 2.345678, .force = 98.7654};
     sensors_strike(&s, 0.1);
@@ -121,9 +116,8 @@ static void check_steps(double (*read)(sensors *, double), sensors *s, double ga
     assert_int_equal(steps, 10);
 }
 
-static void readings_have_the_steps_of_the_converter(void **state)
+TEST(readings_have_the_steps_of_the_converter)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS(ALL_FITTED, "sensor.piezo_noise=0", "sensor.film_noise=0",
                                        "sensor.accelerometer_noise=0", "sensor.piezo_rise_time=0",
                                        "sensor.accelerometer_rise_time=0"));
@@ -132,9 +126,8 @@ static void readings_have_the_steps_of_the_converter(void **state)
     check_steps(accelerometer, &s, 0.02);
 }
 
-static void sensors_go_off_scale(void **state)
+TEST(sensors_go_off_scale)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS(ALL_FITTED, "sensor.piezo_noise=0", "sensor.film_noise=0",
                                        "sensor.accelerometer_noise=0", "sensor.piezo_rise_time=0",
                                        "sensor.adc_bits=0", "sensor.accelerometer_rise_time=0",
@@ -167,9 +160,8 @@ static void check_spread(double (*read)(sensors *, double), sensors *s, double s
     check_close(sum / COUNT, 0, 0.02 * spread);
 }
 
-static void noise_has_its_spread(void **state)
+TEST(noise_has_its_spread)
 {
-    (void)state;
     sensors s =
         fresh_sensors(SETTINGS(ALL_FITTED, "sensor.adc_bits=0", "sensor.piezo_noise=0.03",
                                "sensor.film_noise=0.02", "sensor.accelerometer_noise=0.01"));
@@ -178,9 +170,8 @@ static void noise_has_its_spread(void **state)
     check_spread(accelerometer, &s, 0.5);
 }
 
-static void each_noise_is_its_own(void **state)
+TEST(each_noise_is_its_own)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS(ALL_FITTED, "sensor.adc_bits=0", "sensor.tachometer_noise=1",
                                        "sensor.piezo_noise=1", "sensor.film_noise=1",
                                        "sensor.accelerometer_noise=1", "sensor.tachometer_gain=1",
@@ -209,9 +200,8 @@ static void each_noise_is_its_own(void **state)
         "sensor.accelerometer_noise=0"
 
 // A step of 1 N: exp(-t/q) - exp(-t/r), times q/(q - r), with the rise's r and the leak's q.
-static void piezo_rises_and_leaks(void **state)
+TEST(piezo_rises_and_leaks)
 {
-    (void)state;
     const double r = 5e-5 / RISE_CONSTANTS, q = 5, instants[] = {1e-5, 5e-5, 2e-4, 5e-3, 1, 4, 20};
     sensors s = fresh_sensors(SETTINGS(QUIET));
     double t = 0, tenth = 0;
@@ -231,9 +221,8 @@ static void piezo_rises_and_leaks(void **state)
 
 // What a gain makes larger at the converter is taken back: the reading is the force, and the
 // converter's step is so much finer.
-static void a_gain_is_taken_back(void **state)
+TEST(a_gain_is_taken_back)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.piezo_rise_time=0", "sensor.piezo_gain=4",
                                        "sensor.accelerometer_rise_time=0",
                                        "sensor.accelerometer_gain=0.5"));
@@ -247,9 +236,8 @@ static void a_gain_is_taken_back(void **state)
     check_close(piezo(&s, 1.3), 1.3, 0.51 * step);
 }
 
-static void piezo_without_leak_stays_and_without_rise_is_instant(void **state)
+TEST(piezo_without_leak_stays_and_without_rise_is_instant)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.piezo_leak_time=0"));
     hold(&s, 1000, (sensed_motion){.force = 2});
     check_close(piezo(&s, 2), 2, 1e-12);
@@ -260,9 +248,8 @@ static void piezo_without_leak_stays_and_without_rise_is_instant(void **state)
 }
 
 // An impulse p arrives as p/r; the sensor is off scale until it has died down to its range.
-static void impulse_drives_the_piezo_off_scale(void **state)
+TEST(impulse_drives_the_piezo_off_scale)
 {
-    (void)state;
     const double impulse = 0.02, r = 5e-5 / RISE_CONSTANTS;
     const double back = r * log(impulse / r / 10);
     sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.adc_range=20"));
@@ -279,9 +266,8 @@ static void impulse_drives_the_piezo_off_scale(void **state)
 
 // Strides far shorter than the leak, each with a force that rises and falls by ten newtons: a
 // ringing chain of many links makes them. By symmetry the leak sees the mean.
-static void leak_keeps_its_digits_over_short_strides(void **state)
+TEST(leak_keeps_its_digits_over_short_strides)
 {
-    (void)state;
     const int strides = 100000;
     const sensed_motion edge = {.force = -5};
     for (double h = 2e-6; h < 1e-3; h *= 6) {
@@ -293,9 +279,8 @@ static void leak_keeps_its_digits_over_short_strides(void **state)
     }
 }
 
-static void film_leaks(void **state)
+TEST(film_leaks)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS(QUIET));
     double t = 0;
     for (int i = 0; i < 40; i++) {
@@ -309,9 +294,8 @@ static void film_leaks(void **state)
 }
 
 // A swinging beam: the high pass turns sin(w t) into w q/(1 + w^2 q^2) (w q sin + cos) in the end.
-static void film_follows_a_swing(void **state)
+TEST(film_follows_a_swing)
 {
-    (void)state;
     const double w = 12, q = 0.2, h = 0.005, share = w * q / (1 + w * w * q * q);
     sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.film_leak_time=0.2"));
     for (int i = 0; i < 1000; i++) {
@@ -324,9 +308,8 @@ static void film_follows_a_swing(void **state)
     check_close(film(&s, 0.1 * sin(end)), 0.1 * share * (w * q * sin(end) + cos(end)), 1e-8);
 }
 
-static void accelerometer_rises_in_its_time(void **state)
+TEST(accelerometer_rises_in_its_time)
 {
-    (void)state;
     const double tau = 3.5e-4 / RISE_CONSTANTS;
     sensors s = fresh_sensors(SETTINGS(QUIET));
     for (int i = 0; i < 20; i++) {
@@ -338,9 +321,8 @@ static void accelerometer_rises_in_its_time(void **state)
 }
 
 // A jump of the velocity is a pulse of acceleration: jump/tau, whose integral is the jump.
-static void accelerometer_feels_a_jump(void **state)
+TEST(accelerometer_feels_a_jump)
 {
-    (void)state;
     const double tau = 3.5e-4 / RISE_CONSTANTS, h = 1e-6;
     sensors s =
         fresh_sensors(SETTINGS(QUIET, "sensor.adc_range=1000", "sensor.accelerometer_range=0"));
@@ -360,9 +342,8 @@ static void accelerometer_feels_a_jump(void **state)
 // --- in a run -------------------------------------------------------------------------------
 
 // Against the rows of a run, put through lag and leak in the simplest way.
-static void run_feeds_the_sensors(void **state)
+TEST(run_feeds_the_sensors)
 {
-    (void)state;
     const double tau = 0.01 / RISE_CONSTANTS, leak = 0.1;
     run_result run =
         rig_run(SETTINGS(QUIET, "control.law=force-pd", "method.step=2e-5", "run.duration=0.4",
@@ -398,9 +379,8 @@ static void run_feeds_the_sensors(void **state)
 }
 
 // The arm pressed against the wall is pushed: an impact without an approach.
-static void sensors_feel_a_push_in_contact(void **state)
+TEST(sensors_feel_a_push_in_contact)
 {
-    (void)state;
     // a twentieth of a millisecond before a sample
     action push = {.kind = ACTION_PUSH, .time = 0.99995, .value = 0.02};
     run_result run;
@@ -425,9 +405,8 @@ static void sensors_feel_a_push_in_contact(void **state)
 
 // Steps that do not resolve an impact deliver it as a force, unless it rebounds: then it is a jump,
 // and an impulse like any other.
-static void sensors_feel_an_unresolved_rebound(void **state)
+TEST(sensors_feel_an_unresolved_rebound)
 {
-    (void)state;
     run_result run = rig_run(SETTINGS(QUIET, "control.law=open-loop", "control.rate=5000",
                                       "method.name=newmark", "arm.links=12", "wall.kind=plane",
                                       "wall.restitution=0.8", "run.duration=0.305"),
@@ -469,9 +448,8 @@ static void see(const char *const *settings)
     rig_destroy(r);
 }
 
-static void controller_gets_what_is_fitted(void **state)
+TEST(controller_gets_what_is_fitted)
 {
-    (void)state;
     see(SETTINGS("control.law=open-loop"));
     assert_true(isnan(got.piezo_force) && isnan(got.film) && isnan(got.accelerometer));
     check_close(got.force, 1.5, 0.1);
@@ -485,9 +463,8 @@ static void controller_gets_what_is_fitted(void **state)
     assert_true(isnan(got.film) && isnan(got.accelerometer));
 }
 
-static void ideal_force_sensors_are_alike(void **state)
+TEST(ideal_force_sensors_are_alike)
 {
-    (void)state;
     summary by_fsr = rig_summary(SETTINGS("control.law=force-pd", "sensor.ideal=true"));
     summary by_piezo =
         rig_summary(SETTINGS("control.law=force-pd", "sensor.ideal=true", "sensor.force=piezo"));
@@ -495,9 +472,8 @@ static void ideal_force_sensors_are_alike(void **state)
     check_relative(by_piezo.steady_force_N, by_fsr.steady_force_N, 1e-9);
 }
 
-static void printed_arm_feeds_the_sensors_too(void **state)
+TEST(printed_arm_feeds_the_sensors_too)
 {
-    (void)state;
     run_result run = rig_run(
         SETTINGS("control.law=open-loop", "arm.model=printed", "sensor.ideal=true", ALL_FITTED),
         true);
@@ -513,34 +489,4 @@ static void printed_arm_feeds_the_sensors_too(void **state)
     }
     check_below(0.02, largest);
     run_finish(&run);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sensors_not_fitted_read_nothing),
-        cmocka_unit_test(choice_of_the_piezo_fits_it),
-        cmocka_unit_test(fitting_them_changes_no_other_signal),
-        cmocka_unit_test(ideal_sensors_tell_the_truth),
-        cmocka_unit_test(readings_have_the_steps_of_the_converter),
-        cmocka_unit_test(sensors_go_off_scale),
-        cmocka_unit_test(noise_has_its_spread),
-        cmocka_unit_test(each_noise_is_its_own),
-        cmocka_unit_test(piezo_rises_and_leaks),
-        cmocka_unit_test(piezo_without_leak_stays_and_without_rise_is_instant),
-        cmocka_unit_test(impulse_drives_the_piezo_off_scale),
-        cmocka_unit_test(leak_keeps_its_digits_over_short_strides),
-        cmocka_unit_test(film_leaks),
-        cmocka_unit_test(film_follows_a_swing),
-        cmocka_unit_test(accelerometer_rises_in_its_time),
-        cmocka_unit_test(accelerometer_feels_a_jump),
-        cmocka_unit_test(run_feeds_the_sensors),
-        cmocka_unit_test(sensors_feel_a_push_in_contact),
-        cmocka_unit_test(sensors_feel_an_unresolved_rebound),
-        cmocka_unit_test(controller_gets_what_is_fitted),
-        cmocka_unit_test(ideal_force_sensors_are_alike),
-        cmocka_unit_test(printed_arm_feeds_the_sensors_too),
-        cmocka_unit_test(a_gain_is_taken_back),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -3,8 +3,6 @@
 //
 //   test_outside PLUGIN OTHER_PLUGIN
 #include <assert.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -79,16 +77,14 @@ static parameters parameters_of(const struct outside_case *c)
     p.code_allowed = true;
     p.run.duration = 0.05;
     p.control.rate = 100;
-    if (parameter_set_text(&p, parameter_at(c->parameter), c->value, &f) != STATUS_OK ||
-        parameters_resolve(&p, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameter_set_text(&p, parameter_at(c->parameter), c->value, &f) != STATUS_OK ||
+                parameters_resolve(&p, &f) != STATUS_OK,
+            "%s", f.text);
     return p;
 }
 
-static void one_list_has_all_that_names_a_file(void **state)
+TEST(one_list_has_all_that_names_a_file)
 {
-    (void)state;
     assert_int_equal(CASES, outside_count);
     static const char *const own[] = {"control.settings", "control.lock", "control.k2_table",
                                       "control.playback_column"};
@@ -100,9 +96,7 @@ static void one_list_has_all_that_names_a_file(void **state)
         for (int k = 0; k < outside_count; k++) {
             known = known || parameter_at(outside_table[k].parameter) == i;
         }
-        if (!known) {
-            fail_msg("%s is a text: does a run read what it names?", parameter_table[i].path);
-        }
+        fail_if(!known, "%s is a text: does a run read what it names?", parameter_table[i].path);
     }
 }
 
@@ -133,9 +127,8 @@ static bool depends_on(const char *command, const char *path)
     return strcmp(before, after) != 0;
 }
 
-static void files_that_a_command_names_are_its_content(void **state)
+TEST(files_that_a_command_names_are_its_content)
 {
-    (void)state;
     char folder[256], path[512];
     assert_non_null(getcwd(folder, sizeof folder));
     assert_int_equal(mkdir("bin", 0755), 0);
@@ -185,9 +178,8 @@ static void write_bytes(const char *path, size_t count, int byte)
 }
 
 // A stamp is another one after a change; of a small file only then.
-static void a_stamp_sees_changes(void **state)
+TEST(a_stamp_sees_changes)
 {
-    (void)state;
     parameters p = {.control.law = LAW_PROCESS, .control.command = "./law.sh"};
     char first[SHA256_TEXT], second[SHA256_TEXT];
     for (size_t count = 1000; count <= 1000000; count *= 1000) {
@@ -215,9 +207,8 @@ static void a_stamp_sees_changes(void **state)
     unlink("law.sh");
 }
 
-static void a_plugin_is_its_file(void **state)
+TEST(a_plugin_is_its_file)
 {
-    (void)state;
     char text[SHA256_TEXT];
     fault f = {.text = ""};
     parameters p = {.control.law = LAW_PLUGIN, .control.plugin = "law.so"};
@@ -247,9 +238,8 @@ static void check_refused(const char *path, const sweep *s, const char *name)
     sweep_store *store;
     fault f = {.text = ""};
     assert_int_equal(sweep_store_open(&store, path, s, &f), STATUS_BAD_ARGUMENT);
-    if (strstr(f.text, "the content of ") == NULL || strstr(f.text, name) == NULL) {
-        fail_msg("'%s' does not name %s", f.text, name);
-    }
+    fail_if(strstr(f.text, "the content of ") == NULL || strstr(f.text, name) == NULL,
+            "'%s' does not name %s", f.text, name);
 }
 
 static void must_compute(const sweep *s, const char *path, sweep_share share)
@@ -258,17 +248,14 @@ static void must_compute(const sweep *s, const char *path, sweep_share share)
     sweep_progress progress;
     fault f = {.text = ""};
     const sweep_options options = {.jobs = 2, .share = share};
-    if (sweep_run(s, store, &options, &progress, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(sweep_run(s, store, &options, &progress, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(progress.failed, 0);
     sweep_store_close(store);
 }
 
 // A program, plug-in or file that is another one when a sweep goes on, in a part or in a merge.
-static void rows_of_what_is_gone_are_refused(void **state)
+TEST(rows_of_what_is_gone_are_refused)
 {
-    (void)state;
     const parameters first = base.parameters;
     for (int i = 0; i < CASES; i++) {
         base.parameters = parameters_of(&cases[i]);
@@ -324,9 +311,8 @@ static void rows_of_what_is_gone_are_refused(void **state)
 }
 
 // What is varied may decide whether a file is read.
-static void a_varied_law_decides_what_is_read(void **state)
+TEST(a_varied_law_decides_what_is_read)
 {
-    (void)state;
     const parameters first = base.parameters;
     base.parameters = parameters_of(&cases[1]);
     base.parameters.control.law = LAW_OPEN_LOOP;
@@ -349,9 +335,8 @@ static void a_varied_law_decides_what_is_read(void **state)
 
 // A command that only a shell can read may be of any program: its rows are kept, and not mixed with
 // others.
-static void rows_of_what_cannot_be_told_stay_alone(void **state)
+TEST(rows_of_what_cannot_be_told_stay_alone)
 {
-    (void)state;
     const parameters first = base.parameters;
     const struct outside_case shell = {
         .parameter = cases[1].parameter, .value = "exec sh law.sh; exit", .law = LAW_PROCESS};
@@ -377,9 +362,8 @@ static void rows_of_what_cannot_be_told_stay_alone(void **state)
 }
 
 // Rows that were computed while it changed are not kept.
-static void what_changes_during_a_sweep_ends_it(void **state)
+TEST(what_changes_during_a_sweep_ends_it)
 {
-    (void)state;
     const parameters first = base.parameters;
     base.parameters = parameters_of(&cases[1]);
     write_program(0);
@@ -415,9 +399,8 @@ static void what_changes_during_a_sweep_ends_it(void **state)
 }
 
 // A run that was not let, or whose plug-in cannot be loaded, is no row: the next time it may be.
-static void what_could_not_begin_is_no_row(void **state)
+TEST(what_could_not_begin_is_no_row)
 {
-    (void)state;
     const parameters first = base.parameters;
     sweep_progress progress;
     const sweep_options options = {.jobs = 1};
@@ -465,9 +448,7 @@ static void open_session(session *s)
     scenario own;
     fault f = {.text = ""};
     assert_int_equal(scenario_copy(&own, &base), STATUS_OK);
-    if (session_open(s, &own, (double)INFINITY, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(session_open(s, &own, (double)INFINITY, &f) != STATUS_OK, "%s", f.text);
 }
 
 // The last command of the run.
@@ -477,9 +458,8 @@ static double last_command(const session *s)
 }
 
 // A run that is computed again has the program of now, not answers of the one before.
-static void a_session_asks_the_program_of_now(void **state)
+TEST(a_session_asks_the_program_of_now)
 {
-    (void)state;
     const parameters first = base.parameters;
     fault f = {.text = ""};
     for (int i = 0; i < CASES; i++) {
@@ -507,19 +487,7 @@ int main(int argc, char **argv)
         plugin_files[i] = realpath(argv[i + 1], NULL); // the tests work in another folder
         assert(plugin_files[i] != NULL);
     }
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_list_has_all_that_names_a_file),
-        cmocka_unit_test(files_that_a_command_names_are_its_content),
-        cmocka_unit_test(a_stamp_sees_changes),
-        cmocka_unit_test(a_plugin_is_its_file),
-        cmocka_unit_test(rows_of_what_is_gone_are_refused),
-        cmocka_unit_test(a_varied_law_decides_what_is_read),
-        cmocka_unit_test(rows_of_what_cannot_be_told_stay_alone),
-        cmocka_unit_test(what_changes_during_a_sweep_ends_it),
-        cmocka_unit_test(what_could_not_begin_is_no_row),
-        cmocka_unit_test(a_session_asks_the_program_of_now),
-    };
-    const int failed = cmocka_run_group_tests(tests, sweep_fixture_open, sweep_fixture_close);
+    const int failed = run_cases(sweep_fixture_open, sweep_fixture_close);
     free(plugin_files[0]);
     free(plugin_files[1]);
     return failed != 0;

@@ -1,9 +1,8 @@
 // The palette: every entry is found by words, and does what it shows.
 #include "tests/explorer_on_screen.h"
 
-static void test_words_find_things_of_every_kind(void **state)
+TEST(test_words_find_things_of_every_kind)
 {
-    (void)state;
     static palette_entry entries[PALETTE_ENTRIES];
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
@@ -35,9 +34,8 @@ static void test_words_find_things_of_every_kind(void **state)
     explorer_finish(&ex);
 }
 
-static void test_enter_does_what_the_entry_is_for(void **state)
+TEST(test_enter_does_what_the_entry_is_for)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
 
@@ -64,9 +62,8 @@ static void test_enter_does_what_the_entry_is_for(void **state)
     explorer_finish(&ex);
 }
 
-static void test_the_prompt_has_it_too(void **state)
+TEST(test_the_prompt_has_it_too)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":bra");
@@ -89,9 +86,8 @@ static void test_the_prompt_has_it_too(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_click_takes_an_entry(void **state)
+TEST(test_a_click_takes_an_entry)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "<C-p>forget");
@@ -105,15 +101,4 @@ static void test_a_click_takes_an_entry(void **state)
     }
     assert_false(ex.state.prompt.open);
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_words_find_things_of_every_kind),
-        cmocka_unit_test(test_enter_does_what_the_entry_is_for),
-        cmocka_unit_test(test_the_prompt_has_it_too),
-        cmocka_unit_test(test_a_click_takes_an_entry),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

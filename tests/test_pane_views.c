@@ -1,14 +1,12 @@
 // Panes that are not over time, and the panel of statistics.
 #include "tests/explorer_on_screen.h"
 
-#include <math.h>
 #include <unistd.h>
 
 #include "src/run/trace.h"
 
-static void test_a_spectrum_names_the_highest_line(void **state)
+TEST(test_a_spectrum_names_the_highest_line)
 {
-    (void)state;
     explorer ex;
 
     // the command follows a sine of 5 Hz on the commanded force
@@ -40,9 +38,8 @@ static void test_a_spectrum_names_the_highest_line(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_phase_pane_ends_where_the_signals_end(void **state)
+TEST(test_a_phase_pane_ends_where_the_signals_end)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "<End>:phase force gap<Enter>e");
@@ -72,9 +69,8 @@ static void test_a_phase_pane_ends_where_the_signals_end(void **state)
     explorer_finish(&ex);
 }
 
-static void test_statistics_are_from_the_mark_to_the_cursor(void **state)
+TEST(test_statistics_are_from_the_mark_to_the_cursor)
 {
-    (void)state;
     explorer ex;
     char wanted[64], number[32];
     open_explorer(&ex, "corrected/first-impact");
@@ -95,9 +91,8 @@ static void test_statistics_are_from_the_mark_to_the_cursor(void **state)
 
 // Rows of a run, written and laid under another one, are shifted so that both touch at once, or as
 // they are told; what cannot be read leaves what is there.
-static void test_measured_data_touch_when_the_run_does(void **state)
+TEST(test_measured_data_touch_when_the_run_does)
 {
-    (void)state;
     explorer ex;
     char path[] = "/tmp/impactlab-data-XXXXXX", line[96];
     open_explorer(&ex, "corrected/first-impact");
@@ -141,15 +136,4 @@ static void test_measured_data_touch_when_the_run_does(void **state)
     free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
     unlink(path);
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_spectrum_names_the_highest_line),
-        cmocka_unit_test(test_a_phase_pane_ends_where_the_signals_end),
-        cmocka_unit_test(test_measured_data_touch_when_the_run_does),
-        cmocka_unit_test(test_statistics_are_from_the_mark_to_the_cursor),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

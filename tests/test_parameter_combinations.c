@@ -12,17 +12,14 @@ static void check_conflict(const char *first, const char *first_text, const char
     give(&p, first, first_text);
     give(&p, second, second_text);
     assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
-    if (strstr(f.text, expected) == NULL) {
-        fail_msg("'%s' does not say '%s'", f.text, expected);
-    }
+    fail_if(strstr(f.text, expected) == NULL, "'%s' does not say '%s'", f.text, expected);
     // to blame is the one that the sentence begins with, of those that were given
     assert_true(strcmp(f.path, first) == 0 || strcmp(f.path, second) == 0);
     assert_non_null(strstr(f.text, f.path));
 }
 
-static void impossible_combinations_are_refused(void **state)
+TEST(impossible_combinations_are_refused)
 {
-    (void)state;
     check_conflict("arm.link_inertia", "1e-5", "arm.links", "3", "two links only");
     check_conflict("arm.model", "printed", "arm.links", "3", "two links");
     check_conflict("arm.model", "printed", "arm.hub_joint", "rigid", "hub spring");
@@ -49,14 +46,11 @@ static void check_goes_together(const char *const *settings)
     for (int i = 0; settings[i] != NULL; i += 2) {
         give(&p, settings[i], settings[i + 1]);
     }
-    if (parameters_resolve(&p, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameters_resolve(&p, &f) != STATUS_OK, "%s", f.text);
 }
 
-static void what_only_looks_like_a_conflict_is_none(void **state)
+TEST(what_only_looks_like_a_conflict_is_none)
 {
-    (void)state;
     // a limit that the amplifier holds by itself, a face that bounces
     check_goes_together((const char *const[]){"method.name", "generalized-alpha", "motor.drive",
                                               "current", "motor.current_limit", "5", NULL});
@@ -70,9 +64,8 @@ static void what_only_looks_like_a_conflict_is_none(void **state)
 }
 
 // Of several that contradict one another the first that was given is to blame; defaults are not.
-static void defaults_are_never_to_blame(void **state)
+TEST(defaults_are_never_to_blame)
 {
-    (void)state;
     parameters p = fresh(ARM_CORRECTED);
     fault f = {0};
     give(&p, "wall.angle", "-2 rad");
@@ -103,9 +96,8 @@ static void check_start(parameters p, double angle, double wall)
     chain_penetration(&a, q, rest, &behind, NULL);
 
     const bool far = angle > wall + 1e-14; // where the wall is in front only after a turn
-    if (fabs(behind) > 1e-14 && (code == STATUS_OK) != (behind < 0 && !far)) {
-        fail_msg("start at %.17g, wall at %.17g, %.3g m behind: %s", angle, wall, behind, f.text);
-    }
+    fail_if(fabs(behind) > 1e-14 && (code == STATUS_OK) != (behind < 0 && !far),
+            "start at %.17g, wall at %.17g, %.3g m behind: %s", angle, wall, behind, f.text);
     const double ahead = wall - angle;
     if (ahead == 0 || ahead == M_PI) {
         assert_int_equal(code, STATUS_OK);
@@ -113,9 +105,8 @@ static void check_start(parameters p, double angle, double wall)
     assert_true(code == STATUS_OK || strcmp(f.path, "initial.angle") == 0);
 }
 
-static void an_arm_starts_in_front_of_its_wall(void **state)
+TEST(an_arm_starts_in_front_of_its_wall)
 {
-    (void)state;
     static const char *const kinds[] = {"point", "plane"};
     static const char *const contacts[] = {"rigid", "kelvin-voigt", "hunt-crossley"};
     static const char *const methods[] = {"event", "newmark", "generalized-alpha"};
@@ -151,9 +142,8 @@ static void an_arm_starts_in_front_of_its_wall(void **state)
 }
 
 // The bound of what the ledger may lack follows the method, unless it was given.
-static void the_ledgers_bound_follows_the_method(void **state)
+TEST(the_ledgers_bound_follows_the_method)
 {
-    (void)state;
     static const char *const methods[] = {"event", "newmark", "generalized-alpha"};
     double bound[3];
     for (int i = 0; i < 3; i++) {
@@ -180,9 +170,8 @@ static void the_ledgers_bound_follows_the_method(void **state)
     check_close(bound[2], 1e-2, 0);
 }
 
-static void resolving_twice_changes_nothing(void **state)
+TEST(resolving_twice_changes_nothing)
 {
-    (void)state;
     parameters p = fresh(ARM_CORRECTED);
     fault f;
     give(&p, "arm.links", "7");
@@ -193,9 +182,8 @@ static void resolving_twice_changes_nothing(void **state)
 }
 
 // What a combination of settings is resolved to: accepted, or refused for one of them.
-static void conditions_hold_up_to_their_limits(void **state)
+TEST(conditions_hold_up_to_their_limits)
 {
-    (void)state;
     static const struct {
         const char *settings[4]; // path=value
         const char *blamed;      // NULL: accepted
@@ -279,17 +267,15 @@ static void conditions_hold_up_to_their_limits(void **state)
             give(&p, path, equals + 1);
         }
         const status code = parameters_resolve(&p, &f);
-        if ((code == STATUS_OK) != (cases[i].blamed == NULL) ||
-            (cases[i].blamed != NULL && strcmp(f.path, cases[i].blamed) != 0)) {
-            fail_msg("case %zu, %s ...: %s %s", i, cases[i].settings[0], f.path, f.text);
-        }
+        fail_if((code == STATUS_OK) != (cases[i].blamed == NULL) ||
+                    (cases[i].blamed != NULL && strcmp(f.path, cases[i].blamed) != 0),
+                "case %zu, %s ...: %s %s", i, cases[i].settings[0], f.path, f.text);
     }
 }
 
 // Parameters that are not given follow from the others.
-static void walls_motors_and_sensors_follow_what_was_given(void **state)
+TEST(walls_motors_and_sensors_follow_what_was_given)
 {
-    (void)state;
     parameters p = fresh(ARM_CORRECTED);
     fault f = {0};
     give(&p, "motor.amplifier_gain", "3");
@@ -327,19 +313,4 @@ static void walls_motors_and_sensors_follow_what_was_given(void **state)
         assert_int_equal(p.sensor.accelerometer, i == 1);
         assert_int_equal(p.sensor.piezo, i == 2);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(impossible_combinations_are_refused),
-        cmocka_unit_test(what_only_looks_like_a_conflict_is_none),
-        cmocka_unit_test(conditions_hold_up_to_their_limits),
-        cmocka_unit_test(walls_motors_and_sensors_follow_what_was_given),
-        cmocka_unit_test(defaults_are_never_to_blame),
-        cmocka_unit_test(an_arm_starts_in_front_of_its_wall),
-        cmocka_unit_test(the_ledgers_bound_follows_the_method),
-        cmocka_unit_test(resolving_twice_changes_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,8 +1,5 @@
 // Lists of joint stiffnesses and link lengths: their notation, what contradicts them, and what they
 // make of the arm.
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/arm/modes.h"
 #include "src/predict/predictors.h"
@@ -19,9 +16,8 @@ static const char *set_list(parameters *p, const char *path, const char *text, f
     return list;
 }
 
-static void lists_are_written_in_one_way(void **state)
+TEST(lists_are_written_in_one_way)
 {
-    (void)state;
     static const char *const same[] = {"10,12.5,9",          "10, 12.5, 9",  "[10, 12.5, 9]",
                                        " [ 10 ,12.5 , 9 ] ", "1e1,12.50,9.", "10 N m/rad, 12.5, 9"};
     parameters p;
@@ -45,15 +41,13 @@ static void check_refused(const char *path, const char *text, const char *expect
     parameters p;
     fault f;
     assert_string_equal(set_list(&p, path, text, &f), "");
-    if (f.code == STATUS_OK || strstr(f.text, expected) == NULL) {
-        fail_msg("%s = %s gave '%s', expected '%s'", path, text, f.text, expected);
-    }
+    fail_if(f.code == STATUS_OK || strstr(f.text, expected) == NULL,
+            "%s = %s gave '%s', expected '%s'", path, text, f.text, expected);
     assert_string_equal(f.path, path);
 }
 
-static void what_is_no_list_of_its_numbers_is_refused(void **state)
+TEST(what_is_no_list_of_its_numbers_is_refused)
 {
-    (void)state;
     check_refused("arm.joint_stiffness", "10,-1,9", "-1 is out of range");
     check_refused("arm.joint_stiffness", "10,stiff,9", "'stiff' is not a number");
     check_refused("arm.joint_stiffness", "10,,9", "number 2 is missing");
@@ -79,15 +73,12 @@ static void check_conflict(const char *const *settings, const char *path, const 
                          STATUS_OK);
     }
     assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
-    if (strstr(f.text, expected) == NULL) {
-        fail_msg("'%s', expected '%s'", f.text, expected);
-    }
+    fail_if(strstr(f.text, expected) == NULL, "'%s', expected '%s'", f.text, expected);
     assert_string_equal(f.path, path);
 }
 
-static void lists_contradict_other_parameters(void **state)
+TEST(lists_contradict_other_parameters)
 {
-    (void)state;
     const char *const stiffness = "arm.joint_stiffness", *const lengths = "arm.link_lengths";
     check_conflict(SETTINGS("arm.links", "4", stiffness, "10,12"), stiffness,
                    "has 2 numbers, expected 3");
@@ -119,9 +110,8 @@ static void lists_contradict_other_parameters(void **state)
 }
 
 // Of a beam in one link only the root bends, and k2 is that spring.
-static void one_link_bends_at_its_root_alone(void **state)
+TEST(one_link_bends_at_its_root_alone)
 {
-    (void)state;
     parameters one =
         fixture_parameters(SETTINGS("arm.links=1", "arm.hub_joint=beam", "arm.joint_stiffness=5"));
     assert_true(parameters_even_links(&one.arm));
@@ -130,9 +120,8 @@ static void one_link_bends_at_its_root_alone(void **state)
 }
 
 // What follows from others does not change by itself during a run.
-static void what_follows_from_others_may_not_change(void **state)
+TEST(what_follows_from_others_may_not_change)
 {
-    (void)state;
     fault f;
     parameters beam = fixture_parameters(SETTINGS("arm.hub_joint=beam"));
     parameters spring = fixture_parameters(SETTINGS("arm.hub_joint=spring"));
@@ -150,9 +139,7 @@ static run_result run_of(const char *const *settings)
 {
     scenario s = {.name = (char *)"list", .parameters = fixture_parameters(settings)};
     run_result r;
-    if (run_scenario(&s, true, &r) != STATUS_OK) {
-        fail_msg("%s", r.summary.message);
-    }
+    fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s", r.summary.message);
     return r;
 }
 
@@ -167,9 +154,8 @@ static void check_same_bytes(const char *const *settings, const char *const *lis
     run_finish(&other);
 }
 
-static void equal_numbers_are_the_uniform_arm_to_the_last_bit(void **state)
+TEST(equal_numbers_are_the_uniform_arm_to_the_last_bit)
 {
-    (void)state;
     check_same_bytes(SETTINGS("arm.k2=7"), SETTINGS("arm.joint_stiffness=7"));
     check_same_bytes(SETTINGS("arm.links=4", "arm.k2=5", "wall.kind=plane"),
                      SETTINGS("arm.links=4", "arm.joint_stiffness=10,10,10", "wall.kind=plane",
@@ -180,9 +166,8 @@ static void equal_numbers_are_the_uniform_arm_to_the_last_bit(void **state)
 }
 
 // Lists that differ from the uniform arm by nothing that counts.
-static void the_general_way_meets_the_uniform_one(void **state)
+TEST(the_general_way_meets_the_uniform_one)
 {
-    (void)state;
     run_result one = run_of(SETTINGS("arm.links=4", "arm.k2=5", "run.duration=0.33"));
     run_result other = run_of(
         SETTINGS("arm.links=4", "arm.joint_stiffness=10,10.000000000001,10", "run.duration=0.33"));
@@ -208,9 +193,8 @@ static double tip_compliance(const char *const *settings)
     return sum;
 }
 
-static void k2_of_a_list_bends_the_same_under_a_tip_load(void **state)
+TEST(k2_of_a_list_bends_the_same_under_a_tip_load)
 {
-    (void)state;
     static const char *const hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
     for (int hub = 0; hub < 2; hub++) {
         const char *const list =
@@ -236,9 +220,8 @@ static void k2_of_a_list_bends_the_same_under_a_tip_load(void **state)
 }
 
 // The same beam cut otherwise: the first clamped frequency goes to Euler and Bernoulli's.
-static void a_beam_cut_into_unequal_links_converges(void **state)
+TEST(a_beam_cut_into_unequal_links_converges)
 {
-    (void)state;
     double off[2];
     for (int i = 0; i < 2; i++) {
         const int n = 10 << i;
@@ -265,9 +248,8 @@ static void a_beam_cut_into_unequal_links_converges(void **state)
 }
 
 // The linearised arm takes any links and joints, the thesis's two links say that they do not.
-static void predictors_take_lists_or_say_so(void **state)
+TEST(predictors_take_lists_or_say_so)
 {
-    (void)state;
     parameters p = fixture_parameters(
         SETTINGS("arm.links=3", "arm.joint_stiffness=8,5", "arm.link_lengths=0.4,0.35,0.25"));
     const double q[3] = {0.1, 0.1, 0.1}, w[3] = {0.6, 0.6, 0.6};
@@ -291,21 +273,4 @@ static void predictors_take_lists_or_say_so(void **state)
         check_relative(answer.prediction.impulse, r.summary.contact_impulse_Ns, 1e-6);
         run_finish(&r);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists_are_written_in_one_way),
-        cmocka_unit_test(what_is_no_list_of_its_numbers_is_refused),
-        cmocka_unit_test(lists_contradict_other_parameters),
-        cmocka_unit_test(one_link_bends_at_its_root_alone),
-        cmocka_unit_test(what_follows_from_others_may_not_change),
-        cmocka_unit_test(equal_numbers_are_the_uniform_arm_to_the_last_bit),
-        cmocka_unit_test(the_general_way_meets_the_uniform_one),
-        cmocka_unit_test(k2_of_a_list_bends_the_same_under_a_tip_load),
-        cmocka_unit_test(a_beam_cut_into_unequal_links_converges),
-        cmocka_unit_test(predictors_take_lists_or_say_so),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

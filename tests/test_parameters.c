@@ -1,9 +1,6 @@
 // The table of parameters: properties of every entry, and reading of values.
 #include "tests/given_parameters.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 // The text is refused, nothing changes, and the sentence mentions the path and `expected`.
 static void check_refused(const char *path, const char *text, const char *expected)
 {
@@ -11,20 +8,17 @@ static void check_refused(const char *path, const char *text, const char *expect
     fault f = {0};
     int index = parameter_find(path);
     assert_true(index >= 0);
-    if (parameter_set_text(&p, index, text, &f) == STATUS_OK) {
-        fail_msg("%s = '%s' was accepted", path, text);
-    }
+    fail_if(parameter_set_text(&p, index, text, &f) == STATUS_OK, "%s = '%s' was accepted", path,
+            text);
     assert_int_equal(f.code, STATUS_BAD_SCENARIO);
     assert_memory_equal(&p, &before, sizeof p);
     assert_string_equal(f.path, path);
-    if (strstr(f.text, path) == NULL || strstr(f.text, expected) == NULL) {
-        fail_msg("'%s' does not mention %s and '%s'", f.text, path, expected);
-    }
+    fail_if(strstr(f.text, path) == NULL || strstr(f.text, expected) == NULL,
+            "'%s' does not mention %s and '%s'", f.text, path, expected);
 }
 
-static void every_path_is_unique_and_found(void **state)
+TEST(every_path_is_unique_and_found)
 {
-    (void)state;
     for (int i = 0; i < parameter_count; i++) {
         const char *path = parameter_table[i].path;
         fault f = {0};
@@ -39,15 +33,12 @@ static void every_path_is_unique_and_found(void **state)
     assert_int_equal(parameter_find(""), -1);
 }
 
-static void every_field_is_a_place_of_its_own(void **state)
+TEST(every_field_is_a_place_of_its_own)
 {
-    (void)state;
     for (int i = 0; i < parameter_count; i++) {
         for (int j = 0; j < i; j++) {
-            if (parameter_table[i].offset == parameter_table[j].offset) {
-                fail_msg("%s and %s share a field", parameter_table[i].path,
-                         parameter_table[j].path);
-            }
+            fail_if(parameter_table[i].offset == parameter_table[j].offset,
+                    "%s and %s share a field", parameter_table[i].path, parameter_table[j].path);
         }
     }
 }
@@ -62,9 +53,8 @@ static int choice_count(const char *choices)
     return count;
 }
 
-static void every_entry_is_complete(void **state)
+TEST(every_entry_is_complete)
 {
-    (void)state;
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         assert_non_null(info->unit);
@@ -80,19 +70,17 @@ static void every_entry_is_complete(void **state)
     }
 }
 
-static void defaults_are_in_range(void **state)
+TEST(defaults_are_in_range)
 {
-    (void)state;
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         double both[] = {info->default_corrected, info->default_printed};
         for (int k = 0; k < 2; k++) {
             bool derived = isnan(both[k]);
-            if (!derived && !parameter_is_text(info) &&
-                (both[k] < info->minimum || both[k] > info->maximum)) {
-                fail_msg("%s: default %g is not in %g to %g", info->path, both[k], info->minimum,
-                         info->maximum);
-            }
+            fail_if(!derived && !parameter_is_text(info) &&
+                        (both[k] < info->minimum || both[k] > info->maximum),
+                    "%s: default %g is not in %g to %g", info->path, both[k], info->minimum,
+                    info->maximum);
             assert_true(!derived || strcmp(info->path, "arm.link_inertia") == 0 ||
                         strcmp(info->path, "arm.EI") == 0 ||
                         strcmp(info->path, "wall.stiffness") == 0 ||
@@ -125,9 +113,8 @@ static void check_round_trip(int index)
     }
 }
 
-static void text_and_value_go_both_ways(void **state)
+TEST(text_and_value_go_both_ways)
 {
-    (void)state;
     for (int i = 0; i < parameter_count; i++) {
         if (!parameter_is_text(&parameter_table[i])) {
             check_round_trip(i);
@@ -135,9 +122,8 @@ static void text_and_value_go_both_ways(void **state)
     }
 }
 
-static void the_own_unit_is_accepted(void **state)
+TEST(the_own_unit_is_accepted)
 {
-    (void)state;
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         parameters p = fresh(ARM_PRINTED), q = p;
@@ -152,9 +138,8 @@ static void the_own_unit_is_accepted(void **state)
     }
 }
 
-static void notations_of_numbers(void **state)
+TEST(notations_of_numbers)
 {
-    (void)state;
     static const struct {
         const char *text;
         double value;
@@ -169,9 +154,8 @@ static void notations_of_numbers(void **state)
     check_close(p.motor.voltage, -2.5, 0);
 }
 
-static void words_for_truth(void **state)
+TEST(words_for_truth)
 {
-    (void)state;
     static const char *const truths[] = {"true", "yes", "on", "1"};
     static const char *const lies[] = {"false", "no", "off", "0"};
     for (int i = 0; i < 4; i++) {
@@ -183,9 +167,8 @@ static void words_for_truth(void **state)
     }
 }
 
-static void wrong_values_are_refused(void **state)
+TEST(wrong_values_are_refused)
 {
-    (void)state;
     check_refused("arm.k2", "stiff", "not a number");
     check_refused("arm.k2", "", "no value");
     check_refused("arm.k2", "   ", "no value");
@@ -211,9 +194,8 @@ static void wrong_values_are_refused(void **state)
 }
 
 // 5e-324 H for the motor ended the program: what is divided by such a number is none.
-static void values_next_to_nothing_are_refused(void **state)
+TEST(values_next_to_nothing_are_refused)
 {
-    (void)state;
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         for (double value = 1e-101; value > 0; value /= 1e37) {
@@ -230,9 +212,8 @@ static void values_next_to_nothing_are_refused(void **state)
                   "too small to be computed with, expected 0 or at least 1e-100 H");
 }
 
-static void an_endless_value_is_refused(void **state)
+TEST(an_endless_value_is_refused)
 {
-    (void)state;
     char text[4096];
     memset(text, '1', sizeof text - 1);
     text[sizeof text - 1] = '\0';
@@ -253,9 +234,8 @@ static void an_endless_value_is_refused(void **state)
     assert_int_equal(strlen(p.control.plugin), PARAMETER_TEXT_SIZE - 1);
 }
 
-static void numbers_are_checked_too(void **state)
+TEST(numbers_are_checked_too)
 {
-    (void)state;
     parameters p = fresh(ARM_CORRECTED);
     fault f;
     int links = PARAMETER_INDEX(arm.links), model = PARAMETER_INDEX(arm.model);
@@ -278,9 +258,8 @@ static void numbers_are_checked_too(void **state)
 
 // A text is one line: wherever a control character stands in it, it is refused, and nothing
 // changes.
-static void texts_are_lines(void **state)
+TEST(texts_are_lines)
 {
-    (void)state;
     const char *const plain = "a text of one line";
     const int length = (int)strlen(plain), index = parameter_find("control.plugin");
     for (int at = 1; at + 1 < length; at++) {
@@ -307,9 +286,8 @@ static void texts_are_lines(void **state)
 }
 
 // Every number may be its least and its largest value, nothing beyond, and whole ones no other.
-static void ranges_include_their_ends(void **state)
+TEST(ranges_include_their_ends)
 {
-    (void)state;
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         if (parameter_is_text(info)) {
@@ -340,9 +318,8 @@ static void ranges_include_their_ends(void **state)
     }
 }
 
-static void a_misspelt_path_suggests_the_nearest(void **state)
+TEST(a_misspelt_path_suggests_the_nearest)
 {
-    (void)state;
     assert_string_equal(parameter_suggest("arm.k22"), "arm.k2");
     assert_string_equal(parameter_suggest("motor.voltag"), "motor.voltage");
     assert_string_equal(parameter_suggest("wall.angel"), "wall.angle");
@@ -357,9 +334,8 @@ static void a_misspelt_path_suggests_the_nearest(void **state)
     assert_null(parameter_suggest(endless));
 }
 
-static void defaults_follow_the_model(void **state)
+TEST(defaults_follow_the_model)
 {
-    (void)state;
     parameters p = fresh(ARM_CORRECTED);
     fault f;
     give(&p, "arm.k2", "49.2");
@@ -378,9 +354,8 @@ static void defaults_follow_the_model(void **state)
 }
 
 // A uniform rod of mass m and length l has m l^2/12 about its centre.
-static void a_link_is_a_uniform_rod_unless_told(void **state)
+TEST(a_link_is_a_uniform_rod_unless_told)
 {
-    (void)state;
     static const int links[] = {1, 2, 3, 10, 1024};
     for (size_t i = 0; i < sizeof links / sizeof links[0]; i++) {
         parameters p = fresh(ARM_CORRECTED);
@@ -396,28 +371,4 @@ static void a_link_is_a_uniform_rod_unless_told(void **state)
     give(&p, "arm.link_inertia", "1.67e-5 kg m2");
     assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
     check_close(p.arm.link_inertia, 1.67e-5, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_path_is_unique_and_found),
-        cmocka_unit_test(every_field_is_a_place_of_its_own),
-        cmocka_unit_test(every_entry_is_complete),
-        cmocka_unit_test(defaults_are_in_range),
-        cmocka_unit_test(text_and_value_go_both_ways),
-        cmocka_unit_test(the_own_unit_is_accepted),
-        cmocka_unit_test(notations_of_numbers),
-        cmocka_unit_test(words_for_truth),
-        cmocka_unit_test(wrong_values_are_refused),
-        cmocka_unit_test(values_next_to_nothing_are_refused),
-        cmocka_unit_test(an_endless_value_is_refused),
-        cmocka_unit_test(numbers_are_checked_too),
-        cmocka_unit_test(ranges_include_their_ends),
-        cmocka_unit_test(texts_are_lines),
-        cmocka_unit_test(a_misspelt_path_suggests_the_nearest),
-        cmocka_unit_test(defaults_follow_the_model),
-        cmocka_unit_test(a_link_is_a_uniform_rod_unless_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -14,9 +14,8 @@ static peer_answer answer_of(const peer *p)
     return answer;
 }
 
-static void another_integrator_answers_the_same(void **state)
+TEST(another_integrator_answers_the_same)
 {
-    (void)state;
     const peer *ours, *others;
     peers_impactlab(&ours);
     assert_int_equal(peers_taylor(&others), 1);
@@ -28,12 +27,4 @@ static void another_integrator_answers_the_same(void **state)
     check_close(b.release, a.release, 1e-11);
     check_close(b.second_contact, a.second_contact, 1e-11);
     check_close(b.final_force, a.final_force, 1e-10);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(another_integrator_answers_the_same),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

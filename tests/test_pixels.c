@@ -2,7 +2,6 @@
 // believed only what they answer.
 #include "tests/explorer_on_screen.h"
 
-#include <stdint.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -188,9 +187,8 @@ static pixel_block block_of(cairo_surface_t *surface)
                          cairo_image_surface_get_stride(surface) / 4};
 }
 
-static void test_what_is_written_is_the_picture(void **state)
+TEST(test_what_is_written_is_the_picture)
 {
-    (void)state;
     explorer ex;
     screen s = {0};
     picture_layer layer;
@@ -234,9 +232,8 @@ static void test_what_is_written_is_the_picture(void **state)
     explorer_finish(&ex);
 }
 
-static void test_few_registers_are_enough(void **state)
+TEST(test_few_registers_are_enough)
 {
-    (void)state;
     uint32_t pixels[64 * 20];
     // a ground, a line and all that lies between them
     for (int i = 0; i < 64 * 20; i++) {
@@ -272,9 +269,8 @@ static long pixels_like(cairo_surface_t *surface, rgb c)
     return count;
 }
 
-static void test_arm_and_force_are_in_the_picture(void **state)
+TEST(test_arm_and_force_are_in_the_picture)
 {
-    (void)state;
     explorer ex;
     screen s = {0};
     picture_layer layer;
@@ -297,9 +293,8 @@ static void test_arm_and_force_are_in_the_picture(void **state)
     explorer_finish(&ex);
 }
 
-static void test_what_lies_over_a_picture_is_seen(void **state)
+TEST(test_what_lies_over_a_picture_is_seen)
 {
-    (void)state;
     explorer ex;
     screen s = {0};
     picture_layer layer;
@@ -338,9 +333,8 @@ static void test_what_lies_over_a_picture_is_seen(void **state)
 }
 
 // What cairo could not draw is not shown: words stand there, and the next drawing begins anew.
-static void test_a_picture_that_failed_is_words(void **state)
+TEST(test_a_picture_that_failed_is_words)
 {
-    (void)state;
     screen s = {0};
     picture_layer layer = {.cell_width = 8, .cell_height = 16};
     picture_region regions[PICTURE_REGIONS];
@@ -365,9 +359,8 @@ static void test_a_picture_that_failed_is_words(void **state)
     screen_finish(&s);
 }
 
-static void test_a_screen_without_pictures_has_dots(void **state)
+TEST(test_a_screen_without_pictures_has_dots)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
@@ -406,9 +399,8 @@ static pixel_protocol answered(const char *const *answers, int count, bool caref
     answered((const char *const[]){__VA_ARGS__},                                                   \
              (int)(sizeof(const char *const[]){__VA_ARGS__} / sizeof(char *)), careful, &(a))
 
-static void test_pictures_are_drawn_only_where_a_terminal_says_so(void **state)
+TEST(test_pictures_are_drawn_only_where_a_terminal_says_so)
 {
-    (void)state;
     pixel_answers a;
 
     // none answers, plain ones, half an answer
@@ -450,9 +442,8 @@ static void test_pictures_are_drawn_only_where_a_terminal_says_so(void **state)
     assert_int_equal(a.registers, 0);
 }
 
-static void test_answers_are_no_keys(void **state)
+TEST(test_answers_are_no_keys)
 {
-    (void)state;
     pointer_event ignored;
     escape_sequence e = {.state = SEQUENCE_ESCAPED};
 
@@ -472,19 +463,4 @@ static void test_answers_are_no_keys(void **state)
     assert_int_equal(escape_sequence_take(&e, '_', &ignored), SEQUENCE_GOES_ON);
     assert_int_equal(escape_sequence_take(&e, 27, &ignored), SEQUENCE_GOES_ON);
     assert_int_equal(escape_sequence_take(&e, 'q', &ignored), SEQUENCE_OTHER_KEY);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_written_is_the_picture),
-        cmocka_unit_test(test_few_registers_are_enough),
-        cmocka_unit_test(test_arm_and_force_are_in_the_picture),
-        cmocka_unit_test(test_what_lies_over_a_picture_is_seen),
-        cmocka_unit_test(test_a_picture_that_failed_is_words),
-        cmocka_unit_test(test_a_screen_without_pictures_has_dots),
-        cmocka_unit_test(test_pictures_are_drawn_only_where_a_terminal_says_so),
-        cmocka_unit_test(test_answers_are_no_keys),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -2,7 +2,6 @@
 #include "src/base/plain_math.h"
 
 #include <float.h>
-#include <math.h>
 
 #include "src/base/random.h"
 #include "tests/check.h"
@@ -16,9 +15,8 @@ static double units_off(double found, long double exact)
     return (double)(fabsl((long double)found - exact) / (long double)unit);
 }
 
-static void exponentials_are_right_to_two_units(void **state)
+TEST(exponentials_are_right_to_two_units)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 1);
     for (int i = 0; i < TRIALS; i++) {
@@ -36,9 +34,8 @@ static void exponentials_are_right_to_two_units(void **state)
     check_close(plain_exp(-740), exp(-740), 2 * DBL_TRUE_MIN);
 }
 
-static void logarithms_are_right_to_two_units(void **state)
+TEST(logarithms_are_right_to_two_units)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 2);
     for (int i = 0; i < TRIALS; i++) {
@@ -56,9 +53,8 @@ static void logarithms_are_right_to_two_units(void **state)
     assert_true(plain_log(HUGE_VAL) == HUGE_VAL && isnan(plain_log((double)NAN)));
 }
 
-static void powers_are_those_of_the_library(void **state)
+TEST(powers_are_those_of_the_library)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 3);
     for (int i = 0; i < TRIALS; i++) {
@@ -70,9 +66,8 @@ static void powers_are_those_of_the_library(void **state)
     check_close(plain_pow(0, 2), 0, 0);
 }
 
-static void arctangents_are_right_to_two_units(void **state)
+TEST(arctangents_are_right_to_two_units)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 5);
     for (int i = 0; i < TRIALS; i++) {
@@ -94,15 +89,4 @@ static void arctangents_are_right_to_two_units(void **state)
     }
     check_close(plain_atan2(-0.0, -1), -acos(-1), 0);
     check_close(plain_atan2(0, 0), 0, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exponentials_are_right_to_two_units),
-        cmocka_unit_test(logarithms_are_right_to_two_units),
-        cmocka_unit_test(arctangents_are_right_to_two_units),
-        cmocka_unit_test(powers_are_those_of_the_library),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

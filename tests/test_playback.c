@@ -1,6 +1,4 @@
 // control.law = playback: a recorded command is the input of another run.
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "src/run/export.h"
@@ -31,9 +29,8 @@ static summary record(const char *const *settings)
 
 // What a run plays back is the run, to the last bit, where its samples are those that were
 // recorded. Under a delay the voltage is the command of a delay earlier.
-static void a_run_plays_back_its_own_csv(void **state)
+TEST(a_run_plays_back_its_own_csv)
 {
-    (void)state;
     static const struct {
         const char *law, *rate, *delay, *column, *shift;
     } cases[] = {
@@ -61,9 +58,8 @@ static void a_run_plays_back_its_own_csv(void **state)
 }
 
 // What goes out at an instant: between rows, beyond them, and shifted.
-static void a_command_is_held_or_goes_straight(void **state)
+TEST(a_command_is_held_or_goes_straight)
 {
-    (void)state;
     static const struct {
         const char *hold, *shift;
         double time, volts;
@@ -90,9 +86,8 @@ static void a_command_is_held_or_goes_straight(void **state)
     unlink("u.csv");
 }
 
-static void a_file_with_faults_is_told_with_its_place(void **state)
+TEST(a_file_with_faults_is_told_with_its_place)
 {
-    (void)state;
     static const struct {
         const char *text, *sentence;
     } cases[] = {
@@ -125,16 +120,11 @@ static void a_file_with_faults_is_told_with_its_place(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_run_plays_back_its_own_csv),
-        cmocka_unit_test(a_command_is_held_or_goes_straight),
-        cmocka_unit_test(a_file_with_faults_is_told_with_its_place),
-    };
     char folder[] = "/tmp/playback-XXXXXX";
     if (mkdtemp(folder) == NULL || chdir(folder) != 0) {
         return 1;
     }
-    const int failures = cmocka_run_group_tests(tests, NULL, NULL);
+    const int failures = run_cases(NULL, NULL);
     rmdir(folder);
     return failures;
 }

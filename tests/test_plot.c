@@ -11,9 +11,8 @@ const char *__lsan_default_suppressions(void)
 // ---- text
 
 // comes first: fontconfig reads its configuration once
-static void missing_font_is_reported(void **state)
+TEST(missing_font_is_reported)
 {
-    (void)state;
     pid_t child = fork();
     if (child == 0) {
         FILE *file = fopen(path_of("fonts.conf"), "w");
@@ -36,9 +35,8 @@ static void missing_font_is_reported(void **state)
     assert_int_equal(WEXITSTATUS(result), 0);
 }
 
-static void indices_are_small_and_scale_with_the_letters(void **state)
+TEST(indices_are_small_and_scale_with_the_letters)
 {
-    (void)state;
     PangoContext *context = text_context_create();
     double plain, lowered, twice, height, narrow;
     text_measure(context, &(text_block){.markup = "x111", .size = 12}, &plain, &height);
@@ -51,9 +49,8 @@ static void indices_are_small_and_scale_with_the_letters(void **state)
     g_object_unref(context);
 }
 
-static void markup_that_is_none_is_shown_as_it_stands(void **state)
+TEST(markup_that_is_none_is_shown_as_it_stands)
 {
-    (void)state;
     PangoContext *context = text_context_create();
     PangoLayout *layout =
         text_layout_create(context, &(text_block){.markup = "a < b & c", .size = 8});
@@ -65,9 +62,8 @@ static void markup_that_is_none_is_shown_as_it_stands(void **state)
     g_object_unref(context);
 }
 
-static void units_are_set_as_the_si_brochure_has_them(void **state)
+TEST(units_are_set_as_the_si_brochure_has_them)
 {
-    (void)state;
     static const char *const units[][2] = {{"rad/s2", "rad/s\u00b2"},
                                            {"kg m2", "kg\u00b7m\u00b2"},
                                            {"N m", "N\u00b7m"},
@@ -84,9 +80,8 @@ static void units_are_set_as_the_si_brochure_has_them(void **state)
 
 // ---- layout
 
-static void all_texts_of_a_run_are_drawn(void **state)
+TEST(all_texts_of_a_run_are_drawn)
 {
-    (void)state;
     static figure_report r;
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -116,9 +111,8 @@ static void all_texts_of_a_run_are_drawn(void **state)
     synthetic_finish(&s);
 }
 
-static void nothing_is_clipped_or_covered(void **state)
+TEST(nothing_is_clipped_or_covered)
 {
-    (void)state;
     static const double widths[] = {0, 85, 120, 260};
     for (int i = 0; i < 4; i++) {
         for (int theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
@@ -136,9 +130,8 @@ static void nothing_is_clipped_or_covered(void **state)
     }
 }
 
-static void many_marks_and_impulses_stay_readable(void **state)
+TEST(many_marks_and_impulses_stay_readable)
 {
-    (void)state;
     static figure_mark marks[60];
     static figure_impulse impulses[300];
     for (int i = 0; i < 60; i++) {
@@ -157,9 +150,8 @@ static void many_marks_and_impulses_stay_readable(void **state)
     synthetic_finish(&s);
 }
 
-static void layout_is_the_same_on_every_surface(void **state)
+TEST(layout_is_the_same_on_every_surface)
 {
-    (void)state;
     static figure_report reference, other;
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -178,9 +170,8 @@ static void layout_is_the_same_on_every_surface(void **state)
 }
 
 // An impulse has no place on the force axis: a huge one changes nothing there.
-static void impulses_do_not_touch_the_force_axis(void **state)
+TEST(impulses_do_not_touch_the_force_axis)
 {
-    (void)state;
     static figure_report r;
     synthetic s;
     synthetic_init(&s, run_panels, 1);
@@ -200,9 +191,8 @@ static void impulses_do_not_touch_the_force_axis(void **state)
 }
 
 // The unit of small impulses, a power of ten and all, is wider than their name: it has its place.
-static void the_unit_of_small_impulses_is_on_the_page(void **state)
+TEST(the_unit_of_small_impulses_is_on_the_page)
 {
-    (void)state;
     static figure_report r;
     synthetic s;
     synthetic_init(&s, run_panels, 1);
@@ -218,9 +208,8 @@ static void the_unit_of_small_impulses_is_on_the_page(void **state)
 }
 
 // Its raised exponent does not reach the letters of the name above: an empty row is between them.
-static void the_exponent_of_small_impulses_stands_clear_of_their_name(void **state)
+TEST(the_exponent_of_small_impulses_stands_clear_of_their_name)
 {
-    (void)state;
     static figure_report r;
     enum { SCALE = 4, DARK = 128 };
     synthetic s;
@@ -252,9 +241,8 @@ static void the_exponent_of_small_impulses_stands_clear_of_their_name(void **sta
 
 // ---- curves
 
-static void a_spike_of_one_sample_is_visible(void **state)
+TEST(a_spike_of_one_sample_is_visible)
 {
-    (void)state;
     enum { COUNT = 100000, SPIKE = 50003 };
     double *x = calloc(COUNT, sizeof *x), *y = calloc(COUNT, sizeof *y);
     assert_non_null(x);
@@ -288,9 +276,8 @@ static void a_spike_of_one_sample_is_visible(void **state)
     free(y);
 }
 
-static void points_that_are_not_finite_leave_a_gap(void **state)
+TEST(points_that_are_not_finite_leave_a_gap)
 {
-    (void)state;
     enum { COUNT = 101 };
     const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
     for (int kind = 0; kind < 3; kind++) {
@@ -317,9 +304,8 @@ static void points_that_are_not_finite_leave_a_gap(void **state)
     }
 }
 
-static void one_lone_point_is_visible(void **state)
+TEST(one_lone_point_is_visible)
 {
-    (void)state;
     double x[] = {0, 1, 2}, y[] = {(double)NAN, 1, (double)NAN};
     figure_series series = {.x = x, .y = y, .count = 3, .colour = 0};
     figure_panel panel = {.series = &series, .series_count = 1};
@@ -330,9 +316,8 @@ static void one_lone_point_is_visible(void **state)
     cairo_surface_destroy(image);
 }
 
-static void empty_and_hopeless_series_are_drawn_without_fuss(void **state)
+TEST(empty_and_hopeless_series_are_drawn_without_fuss)
 {
-    (void)state;
     double none[] = {(double)NAN, (double)NAN}, huge[] = {-1e308, 1e308, 0, 1e300};
     double x[] = {0, 0.3, 0.6, 1}, same[] = {2, 2, 2, 2};
     figure_series series[] = {{.x = x, .y = x, .count = 0, .label = "empty"},
@@ -353,9 +338,8 @@ static void empty_and_hopeless_series_are_drawn_without_fuss(void **state)
 }
 
 // Lines to far away points keep their direction inside the panel and stay out of everything else.
-static void far_away_points_are_clipped(void **state)
+TEST(far_away_points_are_clipped)
 {
-    (void)state;
     double x[] = {0, 0.25, 0.5, 0.75, 1}, y[] = {0.5, 1e12, 0.5, -1e300, 0.5};
     figure_series series = {.x = x, .y = y, .count = 5, .colour = 5};
     figure_panel panel = {.series = &series, .series_count = 1, .y.low = 0, .y.high = 1};
@@ -372,9 +356,8 @@ static void far_away_points_are_clipped(void **state)
     cairo_surface_destroy(image);
 }
 
-static void legend_and_inset_keep_off_the_data(void **state)
+TEST(legend_and_inset_keep_off_the_data)
 {
-    (void)state;
     static figure_report with, without;
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -398,9 +381,8 @@ static void legend_and_inset_keep_off_the_data(void **state)
 }
 
 // Data in one corner after the other: the legend has to go elsewhere and stay inside.
-static void legend_goes_to_a_free_corner(void **state)
+TEST(legend_goes_to_a_free_corner)
 {
-    (void)state;
     enum { COUNT = 200 };
     for (int corner = 0; corner < 4; corner++) {
         double x[COUNT], y[COUNT], z[COUNT];
@@ -425,9 +407,8 @@ static void legend_goes_to_a_free_corner(void **state)
     }
 }
 
-static void legend_leaves_a_full_panel(void **state)
+TEST(legend_leaves_a_full_panel)
 {
-    (void)state;
     enum { COUNT = 2000 };
     static double x[COUNT], y[COUNT], z[COUNT];
     for (int i = 0; i < COUNT; i++) {
@@ -450,9 +431,8 @@ static void legend_leaves_a_full_panel(void **state)
     expect_tidy(&fig);
 }
 
-static void mono_has_no_colour(void **state)
+TEST(mono_has_no_colour)
 {
-    (void)state;
     static figure_report r;
     synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
@@ -486,9 +466,8 @@ static bool is_in_key(const figure *fig, const figure_series *s, bool colour)
 
 // Each curve says which run (by its colour) and which signal (by its line) it is, in every panel
 // alike, and one key on top has them all; of eight runs with three signals each, at both widths.
-static void each_curve_of_a_comparison_says_run_and_signal(void **state)
+TEST(each_curve_of_a_comparison_says_run_and_signal)
 {
-    (void)state;
     static const trace_panel panels[] = {
         {.signals = {"last_velocity", "first_velocity"}},
         {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}},
@@ -560,9 +539,8 @@ static void ignore(void *context, const char *sentence)
     (void)sentence;
 }
 
-static void a_scenario_is_plotted(void **state)
+TEST(a_scenario_is_plotted)
 {
-    (void)state;
     fault f = {0};
     scenario s;
     run_result result;
@@ -580,31 +558,4 @@ static void a_scenario_is_plotted(void **state)
     scenario_finish(&s);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(missing_font_is_reported),
-        cmocka_unit_test(indices_are_small_and_scale_with_the_letters),
-        cmocka_unit_test(markup_that_is_none_is_shown_as_it_stands),
-        cmocka_unit_test(units_are_set_as_the_si_brochure_has_them),
-        cmocka_unit_test(all_texts_of_a_run_are_drawn),
-        cmocka_unit_test(nothing_is_clipped_or_covered),
-        cmocka_unit_test(many_marks_and_impulses_stay_readable),
-        cmocka_unit_test(layout_is_the_same_on_every_surface),
-        cmocka_unit_test(impulses_do_not_touch_the_force_axis),
-        cmocka_unit_test(the_unit_of_small_impulses_is_on_the_page),
-        cmocka_unit_test(the_exponent_of_small_impulses_stands_clear_of_their_name),
-        cmocka_unit_test(a_spike_of_one_sample_is_visible),
-        cmocka_unit_test(points_that_are_not_finite_leave_a_gap),
-        cmocka_unit_test(one_lone_point_is_visible),
-        cmocka_unit_test(empty_and_hopeless_series_are_drawn_without_fuss),
-        cmocka_unit_test(far_away_points_are_clipped),
-        cmocka_unit_test(legend_and_inset_keep_off_the_data),
-        cmocka_unit_test(legend_goes_to_a_free_corner),
-        cmocka_unit_test(legend_leaves_a_full_panel),
-        cmocka_unit_test(mono_has_no_colour),
-        cmocka_unit_test(each_curve_of_a_comparison_says_run_and_signal),
-        cmocka_unit_test(a_scenario_is_plotted),
-    };
-    return cmocka_run_group_tests_name("plot", tests, make_work_folder, remove_work_folder) != 0;
-}
+ALL_BETWEEN(make_work_folder, remove_work_folder)

@@ -1,6 +1,4 @@
 // Controllers from shared objects: test_plugin SOFT_PUSH BROKEN OUTDATED SILENT.
-#include <string.h>
-
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 
@@ -12,9 +10,8 @@ static const char *plugin_setting(char *text, size_t size, const char *file)
     return text;
 }
 
-static void plugin_controls_the_arm(void **state)
+TEST(plugin_controls_the_arm)
 {
-    (void)state;
     char file[160];
     plugin_setting(file, sizeof file, soft_push_file);
     summary s = rig_summary(SETTINGS("control.law=plugin", file, "control.force=1.5"));
@@ -25,9 +22,8 @@ static void plugin_controls_the_arm(void **state)
     check_below(s.settling_time_s, slow.settling_time_s);
 }
 
-static void wrong_plugins_are_refused(void **state)
+TEST(wrong_plugins_are_refused)
 {
-    (void)state;
     char file[160];
     plugin_setting(file, sizeof file, soft_push_file);
     check_refused(SETTINGS("control.law=plugin", "control.plugin=/nonexistent.so"),
@@ -52,9 +48,8 @@ static void wrong_plugins_are_refused(void **state)
 }
 
 // The modes of one that is open to code, and none of one that is not or cannot be opened.
-static void modes_of_a_plugin_are_its_own(void **state)
+TEST(modes_of_a_plugin_are_its_own)
 {
-    (void)state;
     char file[160], names[4][MODE_NAME_SIZE];
     bool lockable;
     plugin_setting(file, sizeof file, soft_push_file);
@@ -69,9 +64,8 @@ static void modes_of_a_plugin_are_its_own(void **state)
     assert_true(rig_mode_names(&p, names, 4, &lockable) == 0 && !lockable);
 }
 
-static void command_that_is_not_finite_stops_the_run(void **state)
+TEST(command_that_is_not_finite_stops_the_run)
 {
-    (void)state;
     char file[160];
     const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
     for (int i = 0; i < 2; i++) {
@@ -87,9 +81,8 @@ static void command_that_is_not_finite_stops_the_run(void **state)
 }
 
 // The modes of a plug-in are its own, where it is the law and may be opened.
-static void modes_are_the_plugins_own(void **state)
+TEST(modes_are_the_plugins_own)
 {
-    (void)state;
     char file[160], names[4][MODE_NAME_SIZE];
     bool lockable = false;
     plugin_setting(file, sizeof file, soft_push_file);
@@ -111,13 +104,6 @@ static void modes_are_the_plugins_own(void **state)
 
 int main(int count, char **arguments)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plugin_controls_the_arm),
-        cmocka_unit_test(modes_are_the_plugins_own),
-        cmocka_unit_test(wrong_plugins_are_refused),
-        cmocka_unit_test(modes_of_a_plugin_are_its_own),
-        cmocka_unit_test(command_that_is_not_finite_stops_the_run),
-    };
     if (count != 5) {
         fprintf(stderr, "usage: test_plugin SOFT_PUSH.so BROKEN.so OUTDATED.so SILENT.so\n");
         return 2;
@@ -126,5 +112,5 @@ int main(int count, char **arguments)
     broken_file = arguments[2];
     outdated_file = arguments[3];
     silent_file = arguments[4];
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+    return run_cases(NULL, NULL);
 }

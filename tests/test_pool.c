@@ -91,9 +91,8 @@ int __wrap_pthread_join(pthread_t thread, void **result)
 }
 
 // Each thread that there was is waited for, once, however many were to be had.
-static void every_thread_is_joined_once(void **state)
+TEST(every_thread_is_joined_once)
 {
-    (void)state;
     for (int asked = 1; asked <= 8; asked++) {
         for (int left = 0; left <= asked + 1; left++) {
             tally t = {.fail_at = asked == 3 ? 5 : 0, .stop = asked == 5};
@@ -110,9 +109,8 @@ static void every_thread_is_joined_once(void **state)
     started = joined = 0;
 }
 
-static void every_piece_is_computed_and_collected_once(void **state)
+TEST(every_piece_is_computed_and_collected_once)
 {
-    (void)state;
     for (int threads = 1; threads <= POOL_MOST_THREADS; threads *= threads < 8 ? 2 : 32) {
         tally t = {.fail_at = 0};
         pool_work w = work_on(&t);
@@ -126,9 +124,8 @@ static void every_piece_is_computed_and_collected_once(void **state)
     }
 }
 
-static void a_failure_ends_the_work_and_is_returned(void **state)
+TEST(a_failure_ends_the_work_and_is_returned)
 {
-    (void)state;
     fault f = {.text = ""};
     tally t = {.fail_at = 10};
     pool_work w = work_on(&t);
@@ -138,9 +135,8 @@ static void a_failure_ends_the_work_and_is_returned(void **state)
     assert_true(t.computed <= 2 * QUEUE + 4); // what was there when it failed and what came then
 }
 
-static void a_stop_ends_it_early_without_a_fault(void **state)
+TEST(a_stop_ends_it_early_without_a_fault)
 {
-    (void)state;
     tally t = {.stop = 1};
     pool_work w = work_on(&t);
     assert_int_equal(pool_run(&w, 2, NULL), STATUS_OK);
@@ -156,9 +152,8 @@ static void compute_slowly(void *context, size_t i, void *scratch, void *result)
 }
 
 // A piece may take longer than the calling thread waits before it looks again.
-static void a_slow_piece_is_waited_for(void **state)
+TEST(a_slow_piece_is_waited_for)
 {
-    (void)state;
     tally t = {.fail_at = 0};
     pool_work w = work_on(&t);
     w.count = 1;
@@ -169,9 +164,8 @@ static void a_slow_piece_is_waited_for(void **state)
 }
 
 // One thread is the calling one, unless that has ticks to give meanwhile.
-static void one_thread_without_ticks_is_the_calling_one(void **state)
+TEST(one_thread_without_ticks_is_the_calling_one)
 {
-    (void)state;
     for (int ticks = 0; ticks < 2; ticks++) {
         tally t = {.fail_at = 0};
         pool_work w = work_on(&t);
@@ -183,9 +177,8 @@ static void one_thread_without_ticks_is_the_calling_one(void **state)
     }
 }
 
-static void no_pieces_are_no_work(void **state)
+TEST(no_pieces_are_no_work)
 {
-    (void)state;
     tally t = {.fail_at = 0};
     pool_work w = work_on(&t);
     w.count = 0;
@@ -195,9 +188,8 @@ static void no_pieces_are_no_work(void **state)
 }
 
 // Without a single thread to be had the calling one does everything, in order.
-static void the_work_is_done_without_threads(void **state)
+TEST(the_work_is_done_without_threads)
 {
-    (void)state;
     for (int left = 0; left < 3; left++) {
         tally t = {.fail_at = 0};
         pool_work w = work_on(&t);
@@ -231,15 +223,5 @@ static void the_work_is_done_without_threads(void **state)
 int main(void)
 {
     alarm(120); // where somebody waits for what never comes, this fails
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_thread_is_joined_once),
-        cmocka_unit_test(every_piece_is_computed_and_collected_once),
-        cmocka_unit_test(a_failure_ends_the_work_and_is_returned),
-        cmocka_unit_test(a_stop_ends_it_early_without_a_fault),
-        cmocka_unit_test(a_slow_piece_is_waited_for),
-        cmocka_unit_test(one_thread_without_ticks_is_the_calling_one),
-        cmocka_unit_test(no_pieces_are_no_work),
-        cmocka_unit_test(the_work_is_done_without_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+    return run_cases(NULL, NULL);
 }

@@ -93,9 +93,8 @@ static double energy_force(const parameters *p, const three_body_state *s)
     return (k - (a.m23 + a.m33 * turn) * acceleration) / a.j3;
 }
 
-static void energy_of_any_state_is_shared_by_the_springs(void **state)
+TEST(energy_of_any_state_is_shared_by_the_springs)
 {
-    (void)state;
     unsigned seed = 21;
     for (int trial = 0; trial < 400; trial++) {
         three_body_state s;
@@ -109,9 +108,8 @@ static void energy_of_any_state_is_shared_by_the_springs(void **state)
 }
 
 // Without any oscillation to speak of, more than critically damped, no energy is left.
-static void what_only_creeps_keeps_no_energy(void **state)
+TEST(what_only_creeps_keeps_no_energy)
 {
-    (void)state;
     unsigned seed = 23;
     three_body_state s;
     parameters p = any_arm(0, &seed, &s);
@@ -128,9 +126,8 @@ static void what_only_creeps_keeps_no_energy(void **state)
 }
 
 // The energy predictor of the listing: its masses and its levers, (4.28), (4.29), (4.34).
-static void listed_energy_of_any_state(void **state)
+TEST(listed_energy_of_any_state)
 {
-    (void)state;
     unsigned seed = 22;
     for (int trial = 0; trial < 200; trial++) {
         three_body_state s;
@@ -193,9 +190,8 @@ static motion_left left_at(const parameters *p, const three_body_state *s, const
     return out;
 }
 
-static void corrected_dynamics_solves_its_equations(void **state)
+TEST(corrected_dynamics_solves_its_equations)
 {
-    (void)state;
     unsigned seed = 24;
     int found = 0, none = 0;
     for (int trial = 0; trial < 400; trial++) {
@@ -250,9 +246,8 @@ static void corrected_dynamics_solves_its_equations(void **state)
 }
 
 // The printed quadratic form: the hub jumps with the first link, (4.21) and (4.22) remain.
-static void the_printed_quadratic_form_solves_two_of_the_equations(void **state)
+TEST(the_printed_quadratic_form_solves_two_of_the_equations)
 {
-    (void)state;
     unsigned seed = 25;
     int found = 0;
     for (int trial = 0; trial < 200; trial++) {
@@ -282,16 +277,4 @@ static void the_printed_quadratic_form_solves_two_of_the_equations(void **state)
         found++;
     }
     assert_true(found > 100);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(energy_of_any_state_is_shared_by_the_springs),
-        cmocka_unit_test(what_only_creeps_keeps_no_energy),
-        cmocka_unit_test(listed_energy_of_any_state),
-        cmocka_unit_test(corrected_dynamics_solves_its_equations),
-        cmocka_unit_test(the_printed_quadratic_form_solves_two_of_the_equations),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

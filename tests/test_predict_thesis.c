@@ -1,7 +1,5 @@
 #include "tests/three_body_states.h"
 
-#include <string.h>
-
 // (3.12): rate at which the contact point comes through the second link's line.
 static double penetration_rate(const parameters *p, const double q[3], const double w[3])
 {
@@ -10,9 +8,8 @@ static double penetration_rate(const parameters *p, const double q[3], const dou
     return l * c * w[1] + (a * cos(q[2]) + b * sin(q[2]) - l * c) * w[2];
 }
 
-static void springs_share_energy_by_their_compliance(void **state)
+TEST(springs_share_energy_by_their_compliance)
 {
-    (void)state;
     const double k[3] = {1, 3, 6}; // compliances 6 : 2 : 1
     double deflection[3], torque = 0, energy = 0;
     quasi_principle_deflections(3, k, 9, deflection);
@@ -30,9 +27,8 @@ static void springs_share_energy_by_their_compliance(void **state)
 
 // Links without inertia of their own, at rest, bent by a small D: all masses are multiples of
 // u = m e^2, cosines are 1, the levers 2l and l, and the second link turns against the first.
-static void energy_of_a_small_bend_can_be_computed_by_hand(void **state)
+TEST(energy_of_a_small_bend_can_be_computed_by_hand)
 {
-    (void)state;
     const double D = 1e-4;
     three_body_state s = {{0.1 + D / 2, 0.1 + D / 2, 0.1 - D / 2}, {0, 0, 0}};
     prediction out;
@@ -57,9 +53,8 @@ static void energy_of_a_small_bend_can_be_computed_by_hand(void **state)
 
 // 4.3 on damping: a straight arm that strikes with no drive bends for a quarter of a period, in
 // which the oscillator with mass I1 + 2u and stiffness 4 k2 loses exp(-pi d / w) of its energy.
-static void damping_takes_its_share_of_the_energy(void **state)
+TEST(damping_takes_its_share_of_the_energy)
 {
-    (void)state;
     const double ratio = 0.02;
     three_body_state s = {{0.1, 0.1, 0.1}, {1e-4, 1e-4, 1e-4}};
     parameters p = corrected_with(HUB_RIGID);
@@ -76,9 +71,8 @@ static void damping_takes_its_share_of_the_energy(void **state)
     check_relative(damped.force, undamped.force * exp(-M_PI_2 * d / w), 1e-4);
 }
 
-static void energy_cross_term_makes_no_difference_at_half_a_metre_only(void **state)
+TEST(energy_cross_term_makes_no_difference_at_half_a_metre_only)
 {
-    (void)state;
     unsigned seed = 2;
     for (int longer = 0; longer <= 1; longer++) {
         parameters listed = parameters_of(ARM_PRINTED), meant;
@@ -97,9 +91,8 @@ static void energy_cross_term_makes_no_difference_at_half_a_metre_only(void **st
     }
 }
 
-static void impact_stops_the_contact_point(void **state)
+TEST(impact_stops_the_contact_point)
 {
-    (void)state;
     unsigned seed = 4;
     for (int trial = 0; trial < 60; trial++) {
         parameters p = trial % 3 == 0   ? parameters_of(ARM_PRINTED)
@@ -120,9 +113,8 @@ static void impact_stops_the_contact_point(void **state)
     }
 }
 
-static void plastic_impact_loses_half_impulse_times_speed(void **state)
+TEST(plastic_impact_loses_half_impulse_times_speed)
 {
-    (void)state;
     unsigned seed = 6;
     for (int trial = 0; trial < 20; trial++) {
         parameters p = corrected_with(trial % 2 ? HUB_SPRING : HUB_RIGID);
@@ -154,9 +146,8 @@ static void thesis_equations(const parameters *p, const three_body_state *s, con
     left[1] = spring2 + T / 2 * l * f - 2 * u * cos(d2) * w2 - (u + p->arm.link_inertia) * w3;
 }
 
-static void printed_dynamics_solves_the_printed_equations(void **state)
+TEST(printed_dynamics_solves_the_printed_equations)
 {
-    (void)state;
     unsigned seed = 8;
     int held = 0;
     for (int trial = 0; trial < 60; trial++) {
@@ -179,9 +170,8 @@ static void printed_dynamics_solves_the_printed_equations(void **state)
 
 // Hubs and beams far softer and stiffer than the thesis's: what is predicted solves the equations,
 // and what has no solution nearby is said to have none.
-static void any_springs_solve_the_printed_equations(void **state)
+TEST(any_springs_solve_the_printed_equations)
 {
-    (void)state;
     unsigned seed = 12;
     int held = 0;
     for (int trial = 0; trial < 4000; trial++) {
@@ -213,9 +203,8 @@ static void any_springs_solve_the_printed_equations(void **state)
 // Hub and first link one body, straight beam, no motor, no friction: after the impact the beam
 // swings with d = -2 theta2, (I1 + 2u) theta2'' = -4 k theta2 for small bends, u = m e^2. Its first
 // peak is known; the thesis's assumptions meet the force and are 4/pi too late.
-static void corrected_dynamics_meets_the_peak_of_a_half_oscillation(void **state)
+TEST(corrected_dynamics_meets_the_peak_of_a_half_oscillation)
 {
-    (void)state;
     parameters p = corrected_with(HUB_RIGID);
     p.arm.link_inertia = 0;
     p.arm.k2 = 5000;
@@ -235,9 +224,8 @@ static void corrected_dynamics_meets_the_peak_of_a_half_oscillation(void **state
     check_close(quadratic.force, out.force, 0);
 }
 
-static void a_stiff_hub_spring_predicts_like_a_rigid_hub(void **state)
+TEST(a_stiff_hub_spring_predicts_like_a_rigid_hub)
 {
-    (void)state;
     unsigned seed = 9;
     parameters rigid = corrected_with(HUB_RIGID), spring = corrected_with(HUB_SPRING);
     // without hub inertia the velocity jumps agree as well
@@ -253,9 +241,8 @@ static void a_stiff_hub_spring_predicts_like_a_rigid_hub(void **state)
     }
 }
 
-static void prediction_does_not_depend_on_where_the_corrected_arm_stands(void **state)
+TEST(prediction_does_not_depend_on_where_the_corrected_arm_stands)
 {
-    (void)state;
     unsigned seed = 10;
     for (int kind = WALL_POINT; kind <= WALL_PLANE; kind++) {
         parameters p = corrected_with(HUB_RIGID);
@@ -278,9 +265,8 @@ typedef status (*predictor)(const parameters *, const three_body_state *, predic
 static const predictor predictors[3] = {predict_energy, predict_impact_dynamics,
                                         predict_impact_quadratic};
 
-static void no_state_gives_garbage(void **state)
+TEST(no_state_gives_garbage)
 {
-    (void)state;
     unsigned seed = 12;
     int held = 0;
     for (int trial = 0; trial < 3000; trial++) {
@@ -301,9 +287,8 @@ static void no_state_gives_garbage(void **state)
         for (int i = 0; i < 3; i++) {
             prediction out;
             fault f = {.text = ""};
-            if (predictors[i](&p, &s, &out, &f) != STATUS_OK) {
-                fail_msg("trial %d, predictor %d: %s", trial, i, f.text);
-            }
+            fail_if(predictors[i](&p, &s, &out, &f) != STATUS_OK, "trial %d, predictor %d: %s",
+                    trial, i, f.text);
             if (out.holds) {
                 held++;
                 assert_true(out.force > 0 && out.force < 1e4);
@@ -315,9 +300,8 @@ static void no_state_gives_garbage(void **state)
     assert_true(held > 1000);
 }
 
-static void an_arm_that_moves_away_does_not_touch(void **state)
+TEST(an_arm_that_moves_away_does_not_touch)
 {
-    (void)state;
     for (int model = ARM_CORRECTED; model <= ARM_PRINTED; model++) {
         parameters p = parameters_of((arm_model_kind)model);
         three_body_state s = {{0.1, 0.1, 0.1}, {-1, -1, -1}};
@@ -330,9 +314,8 @@ static void an_arm_that_moves_away_does_not_touch(void **state)
 }
 
 // A link bent away from the wall by much springs back from it.
-static void a_link_that_is_bent_forwards_loses_contact_at_once(void **state)
+TEST(a_link_that_is_bent_forwards_loses_contact_at_once)
 {
-    (void)state;
     parameters p = corrected_with(HUB_RIGID);
     for (int i = 0; i < 3; i++) {
         three_body_state forwards = {{0.05, 0.05, 0.15}, {0.3, 0.3, 0.3}};
@@ -345,9 +328,8 @@ static void a_link_that_is_bent_forwards_loses_contact_at_once(void **state)
     }
 }
 
-static void faster_hits_harder(void **state)
+TEST(faster_hits_harder)
 {
-    (void)state;
     for (int model = ARM_CORRECTED; model <= ARM_PRINTED; model++) {
         parameters p = parameters_of((arm_model_kind)model);
         p.arm.k2 *= 10;
@@ -366,9 +348,8 @@ static void faster_hits_harder(void **state)
     }
 }
 
-static void more_links_are_predicted_as_the_two_link_arm(void **state)
+TEST(more_links_are_predicted_as_the_two_link_arm)
 {
-    (void)state;
     parameters two = corrected_with(HUB_RIGID), many;
     parameters_defaults(&many, ARM_CORRECTED);
     assert_int_equal(parameter_set_number(&many, PARAMETER_INDEX(arm.links), 12, NULL), STATUS_OK);
@@ -382,9 +363,8 @@ static void more_links_are_predicted_as_the_two_link_arm(void **state)
     }
 }
 
-static void a_state_that_is_not_finite_is_refused(void **state)
+TEST(a_state_that_is_not_finite_is_refused)
 {
-    (void)state;
     parameters p = parameters_of(ARM_CORRECTED);
     three_body_state s = {{0.1, 0.1, 0.1}, {1, 1, (double)NAN}};
     for (int i = 0; i < 3; i++) {
@@ -404,9 +384,8 @@ static void a_state_that_is_not_finite_is_refused(void **state)
 }
 
 // A state too fast for its impulse to be a number is said to have none.
-static void an_impact_without_a_finite_impulse_is_refused(void **state)
+TEST(an_impact_without_a_finite_impulse_is_refused)
 {
-    (void)state;
     const three_body_state s = {{0.1, 0.1, 0.1}, {1e308, 1e308, 1.5e308}};
     for (int model = ARM_CORRECTED; model <= ARM_PRINTED; model++) {
         parameters p = parameters_of((arm_model_kind)model);
@@ -424,9 +403,8 @@ static void an_impact_without_a_finite_impulse_is_refused(void **state)
 }
 
 // Joints damped beyond the critical give no energy back.
-static void an_overdamped_arm_gives_no_energy_back(void **state)
+TEST(an_overdamped_arm_gives_no_energy_back)
 {
-    (void)state;
     parameters p = corrected_with(HUB_RIGID), plain = p;
     p.arm.damping_ratio = 4;
     const three_body_state s = {{0.11, 0.11, 0.09}, {1, 1, 1}};
@@ -435,30 +413,4 @@ static void an_overdamped_arm_gives_no_energy_back(void **state)
     assert_int_equal(predict_energy(&plain, &s, &free, NULL), STATUS_OK);
     check_below(damped.force, free.force);
     assert_true(isfinite(damped.force));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(springs_share_energy_by_their_compliance),
-        cmocka_unit_test(energy_of_a_small_bend_can_be_computed_by_hand),
-        cmocka_unit_test(damping_takes_its_share_of_the_energy),
-        cmocka_unit_test(energy_cross_term_makes_no_difference_at_half_a_metre_only),
-        cmocka_unit_test(impact_stops_the_contact_point),
-        cmocka_unit_test(plastic_impact_loses_half_impulse_times_speed),
-        cmocka_unit_test(printed_dynamics_solves_the_printed_equations),
-        cmocka_unit_test(any_springs_solve_the_printed_equations),
-        cmocka_unit_test(corrected_dynamics_meets_the_peak_of_a_half_oscillation),
-        cmocka_unit_test(a_stiff_hub_spring_predicts_like_a_rigid_hub),
-        cmocka_unit_test(prediction_does_not_depend_on_where_the_corrected_arm_stands),
-        cmocka_unit_test(no_state_gives_garbage),
-        cmocka_unit_test(an_arm_that_moves_away_does_not_touch),
-        cmocka_unit_test(a_link_that_is_bent_forwards_loses_contact_at_once),
-        cmocka_unit_test(faster_hits_harder),
-        cmocka_unit_test(more_links_are_predicted_as_the_two_link_arm),
-        cmocka_unit_test(a_state_that_is_not_finite_is_refused),
-        cmocka_unit_test(an_impact_without_a_finite_impulse_is_refused),
-        cmocka_unit_test(an_overdamped_arm_gives_no_energy_back),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -3,7 +3,6 @@
 // in most cases.
 //
 // test_predictor_claims [CASES [SEED]]
-#include <stdlib.h>
 
 #include "src/base/random.h"
 #include "src/predict/linearised.h"
@@ -34,9 +33,7 @@ static double between_decades(random_generator *g, double low, double high)
 static void set(parameters *p, const char *path, double value)
 {
     fault f;
-    if (parameter_set_number(p, parameter_find(path), value, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameter_set_number(p, parameter_find(path), value, &f) != STATUS_OK, "%s", f.text);
 }
 
 // What random arms are drawn from.
@@ -79,9 +76,7 @@ static parameters random_arm(random_generator *g, const family *of)
         set(&p, "wall.damping", hertz ? between_decades(g, 1e3, 1e6) : between(g, 0.1, 10));
         set(&p, "arm.tip_mass", between(g, 0, 0.05));
     }
-    if (parameters_resolve(&p, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameters_resolve(&p, &f) != STATUS_OK, "%s", f.text);
     return p;
 }
 
@@ -195,50 +190,44 @@ static tally try_many(long count, const family *of)
     return t;
 }
 
-static void two_links(void **state)
+TEST(two_links)
 {
-    (void)state;
     tally t = try_many(cases / 2, &(family){.fewest = 2, .most = 2});
     assert_int_equal(t.wrong, 0);
     assert_true(t.answered >= 0.8 * t.held);
 }
 
-static void three_to_twelve_links(void **state)
+TEST(three_to_twelve_links)
 {
-    (void)state;
     tally t = try_many(cases / 2, &(family){.fewest = 3, .most = 12});
     assert_int_equal(t.wrong, 0);
     assert_true(t.answered >= 0.5 * t.held);
 }
 
-static void walls_that_give(void **state)
+TEST(walls_that_give)
 {
-    (void)state;
     tally t = try_many(cases / 5, &(family){.fewest = 2, .most = 6, .gives = true});
     assert_int_equal(t.wrong, 0);
     assert_true(t.answered >= 0.5 * t.held);
 }
 
 // The force then jumps up at the touch, and peaks there or soon after, long before the arm stops.
-static void two_strongly_damped_links(void **state)
+TEST(two_strongly_damped_links)
 {
-    (void)state;
     tally t = try_many(cases / 5, &(family){.fewest = 2, .most = 2, .strongly_damped = 0.5});
     assert_int_equal(t.wrong, 0);
     assert_true(t.answered >= 0.8 * t.held);
 }
 
-static void strongly_damped_beams(void **state)
+TEST(strongly_damped_beams)
 {
-    (void)state;
     tally t = try_many(cases / 10, &(family){.fewest = 3, .most = 6, .strongly_damped = 0.5});
     assert_int_equal(t.wrong, 0);
     assert_true(t.answered >= 0.5 * t.held);
 }
 
-static void strongly_damped_at_walls_that_give(void **state)
+TEST(strongly_damped_at_walls_that_give)
 {
-    (void)state;
     tally t = try_many(cases / 10, &(family){2, 4, true, 0.5});
     assert_int_equal(t.wrong, 0);
     assert_true(t.answered >= 0.5 * t.held);
@@ -246,15 +235,7 @@ static void strongly_damped_at_walls_that_give(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_links),
-        cmocka_unit_test(three_to_twelve_links),
-        cmocka_unit_test(walls_that_give),
-        cmocka_unit_test(two_strongly_damped_links),
-        cmocka_unit_test(strongly_damped_beams),
-        cmocka_unit_test(strongly_damped_at_walls_that_give),
-    };
     cases = argc > 1 ? strtol(argv[1], NULL, 10) : cases;
     seed = argc > 2 ? strtoull(argv[2], NULL, 10) : seed;
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+    return run_cases(NULL, NULL);
 }

@@ -2,18 +2,14 @@
 #include "src/run/first_contact.h"
 #include "src/run/run.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "tests/arm_fixture.h"
 
 // The arm just before it touches a wall at 0.1 rad, bent back and turning towards it.
 static const three_body_state closing = {{0.1136, 0.1136, 0.0864}, {0.585, 0.585, 0.9}};
 static const double links[2] = {0.1136, 0.0864}, rates[2] = {0.585, 0.9};
 
-static void every_predictor_answers_for_the_corrected_arm(void **state)
+TEST(every_predictor_answers_for_the_corrected_arm)
 {
-    (void)state;
     parameters p = fixture_parameters(NULL);
     prediction_answer answers[PREDICTOR_COUNT];
     prediction alone;
@@ -28,9 +24,8 @@ static void every_predictor_answers_for_the_corrected_arm(void **state)
     assert_string_equal(answers[PREDICTOR_IMPACT_QUADRATIC].name, "impact_quadratic");
 }
 
-static void an_arm_that_moves_away_does_not_hold(void **state)
+TEST(an_arm_that_moves_away_does_not_hold)
 {
-    (void)state;
     parameters p = fixture_parameters(NULL);
     const three_body_state away = {{0.1136, 0.1136, 0.0864}, {-1, -1, -1}};
     const double back[2] = {-1, -1}, at[] = {0.01}, volts[] = {1};
@@ -46,9 +41,8 @@ static void an_arm_that_moves_away_does_not_hold(void **state)
     assert_int_equal(predict_with(PREDICTOR_IMPACT_QUADRATIC, &told).outcome, PREDICTION_LOST);
 }
 
-static void the_linearised_arm_says_what_it_lacks(void **state)
+TEST(the_linearised_arm_says_what_it_lacks)
 {
-    (void)state;
     parameters p = fixture_parameters(NULL), printed;
     parameters_defaults(&printed, ARM_PRINTED);
     assert_int_equal(parameters_resolve(&printed, NULL), STATUS_OK);
@@ -63,9 +57,8 @@ static void the_linearised_arm_says_what_it_lacks(void **state)
     assert_true(isnan(answer.prediction.force));
 }
 
-static void a_state_that_is_not_finite_fails_with_a_sentence(void **state)
+TEST(a_state_that_is_not_finite_fails_with_a_sentence)
 {
-    (void)state;
     parameters p = fixture_parameters(NULL);
     three_body_state bad = closing;
     bad.velocity[2] = (double)NAN;
@@ -90,15 +83,12 @@ static prediction predicted(predictor which, int count, const double *times, con
     parameters p = fixture_parameters(NULL);
     prediction_question question = {&p, closing, links, rates, {count, times, volts}, false};
     prediction_answer answer = predict_with(which, &question);
-    if (answer.outcome != PREDICTION_HOLDS) {
-        fail_msg("%s: %s", answer.name, prediction_reason(&answer));
-    }
+    fail_if(answer.outcome != PREDICTION_HOLDS, "%s: %s", answer.name, prediction_reason(&answer));
     return answer.prediction;
 }
 
-static void commands_after_the_touch_count_while_it_lasts(void **state)
+TEST(commands_after_the_touch_count_while_it_lasts)
 {
-    (void)state;
     const parameters p = fixture_parameters(NULL);
     const double v = p.motor.voltage;
     for (int which = PREDICTOR_IMPACT_DYNAMICS; which <= PREDICTOR_LINEARISED; which++) {
@@ -123,9 +113,8 @@ static void commands_after_the_touch_count_while_it_lasts(void **state)
 
 // A command acts from its own instant on, not from that of the next sample, a tenth of a radian
 // later: the later more voltage comes, by half a millisecond each time, the less the arm presses.
-static void a_command_counts_from_its_own_instant(void **state)
+TEST(a_command_counts_from_its_own_instant)
 {
-    (void)state;
     enum { STEPS = 24 };
     const parameters p = fixture_parameters(NULL);
     const double more[] = {3 * p.motor.voltage};
@@ -140,9 +129,8 @@ static void a_command_counts_from_its_own_instant(void **state)
     }
 }
 
-static void who_cannot_answer_says_why(void **state)
+TEST(who_cannot_answer_says_why)
 {
-    (void)state;
     const struct {
         const char *const *settings;
         predictor which;
@@ -184,9 +172,8 @@ static void who_cannot_answer_says_why(void **state)
 
 // The row of a run that is asked about: none where it begins in contact, and of the printed model
 // what three bodies tell.
-static void the_row_before_landing_is_asked_about(void **state)
+TEST(the_row_before_landing_is_asked_about)
 {
-    (void)state;
     const double none[1] = {0};
     const sample on_the_wall = {.contact = 1}, struck = {.impulse = 0.1};
     for (int i = 0; i < 4; i++) {
@@ -225,9 +212,8 @@ static run_result predicted_run(scenario *s, prediction_answer answers[PREDICTOR
 
 // The current of a motor with inductance is followed through the pulse, at its limit, too; what
 // leaves it out says how much that is.
-static void a_current_that_lags_is_followed(void **state)
+TEST(a_current_that_lags_is_followed)
 {
-    (void)state;
     static const char *const lags[] = {"motor.inductance=5e-3", "motor.inductance=0.5",
                                        "motor.inductance=2", "motor.inductance=20"};
     static const char *const limits[] = {"motor.current_limit=0", "motor.current_limit=0.15"};
@@ -277,9 +263,8 @@ static void a_current_that_lags_is_followed(void **state)
 }
 
 // An arm that starts on the wall and swings off is asked about where it comes back.
-static void an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns(void **state)
+TEST(an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns)
 {
-    (void)state;
     static const char *const starts[][3] = {
         {"wall.contact=rigid", "motor.voltage=1", "initial.velocity=0"},
         {"wall.contact=kelvin-voigt", "motor.voltage=1", "initial.velocity=0"},
@@ -316,21 +301,4 @@ static void an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns(void *
         run_finish(&r);
     }
     assert_true(held >= 5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_predictor_answers_for_the_corrected_arm),
-        cmocka_unit_test(an_arm_that_moves_away_does_not_hold),
-        cmocka_unit_test(the_linearised_arm_says_what_it_lacks),
-        cmocka_unit_test(commands_after_the_touch_count_while_it_lasts),
-        cmocka_unit_test(the_row_before_landing_is_asked_about),
-        cmocka_unit_test(a_current_that_lags_is_followed),
-        cmocka_unit_test(an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns),
-        cmocka_unit_test(a_command_counts_from_its_own_instant),
-        cmocka_unit_test(who_cannot_answer_says_why),
-        cmocka_unit_test(a_state_that_is_not_finite_fails_with_a_sentence),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,5 @@
 #include "tests/check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/thesis/printed_algorithm.h"
 
 enum { MOST_ROWS = 20000 };
@@ -52,15 +49,12 @@ static recording *run(const parameters *p, script change)
     recording *r = calloc(1, sizeof *r);
     fault f = {.text = ""};
     assert_non_null(r);
-    if (run_into(r, *p, change, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(run_into(r, *p, change, &f) != STATUS_OK, "%s", f.text);
     return r;
 }
 
-static void rows_stand_on_the_time_grid_from_the_initial_state(void **state)
+TEST(rows_stand_on_the_time_grid_from_the_initial_state)
 {
-    (void)state;
     parameters p = printed_parameters_of(5, 0.6);
     p.initial.angle = -0.2;
     recording *r = run(&p, NULL);
@@ -86,9 +80,8 @@ static double first_contact(const parameters *p)
     return time;
 }
 
-static void first_contact_comes_when_the_thesis_says(void **state)
+TEST(first_contact_comes_when_the_thesis_says)
 {
-    (void)state;
     const double voltage[4] = {1, 2, 5, 10}, expected[4] = {0.312, 0.215, 0.145, 0.101};
     for (int i = 0; i < 4; i++) {
         // the listing labels a row with the time at which its step starts
@@ -97,9 +90,8 @@ static void first_contact_comes_when_the_thesis_says(void **state)
     }
 }
 
-static void contact_keeps_the_constraint_and_never_pulls(void **state)
+TEST(contact_keeps_the_constraint_and_never_pulls)
 {
-    (void)state;
     parameters p = printed_parameters_of(1, 1);
     p.printed.newton_iterations = 5;
     recording *r = run(&p, NULL);
@@ -123,9 +115,8 @@ static void contact_keeps_the_constraint_and_never_pulls(void **state)
 
 // The listing's way of letting go: the constraint is left in the step after the one whose force
 // came out as nothing, and no sooner.
-static void contact_ends_after_the_step_without_force(void **state)
+TEST(contact_ends_after_the_step_without_force)
 {
-    (void)state;
     parameters p = printed_parameters_of(2, 1);
     recording *r = run(&p, NULL);
     int releases = 0;
@@ -139,9 +130,8 @@ static void contact_ends_after_the_step_without_force(void **state)
     free(r);
 }
 
-static void steady_force_is_the_balance_of_the_printed_equations(void **state)
+TEST(steady_force_is_the_balance_of_the_printed_equations)
 {
-    (void)state;
     // at rest k1 (theta1 - theta2) = torque less what friction holds back, and (2.16), (2.17) as
     // printed give f l (1 + cos d) + f l = k1 (theta1 - theta2): three levers instead of two
     parameters p = printed_parameters_of(1, 6);
@@ -160,9 +150,8 @@ static void steady_force_is_the_balance_of_the_printed_equations(void **state)
     free(r);
 }
 
-static void no_wall_no_contact(void **state)
+TEST(no_wall_no_contact)
 {
-    (void)state;
     parameters p = printed_parameters_of(5, 1);
     p.wall.kind = WALL_NONE;
     recording *r = run(&p, NULL);
@@ -174,18 +163,16 @@ static void no_wall_no_contact(void **state)
     free(r);
 }
 
-static void the_wall_stands_where_its_angle_says(void **state)
+TEST(the_wall_stands_where_its_angle_says)
 {
-    (void)state;
     parameters near = printed_parameters_of(1, 1), far = near;
     far.wall.angle = 0.4;
     far.initial.angle = 0.3;
     check_close(first_contact(&far), first_contact(&near), 1e-9);
 }
 
-static void command_saturates_at_its_limit(void **state)
+TEST(command_saturates_at_its_limit)
 {
-    (void)state;
     parameters ten = printed_parameters_of(10, 0.3), twenty = printed_parameters_of(20, 0.3);
     recording *a = run(&ten, NULL), *b = run(&twenty, NULL);
     assert_memory_equal(a->rows, b->rows, (size_t)a->count * sizeof a->rows[0]);
@@ -193,9 +180,8 @@ static void command_saturates_at_its_limit(void **state)
     free(b);
 }
 
-static void same_input_gives_the_same_bytes(void **state)
+TEST(same_input_gives_the_same_bytes)
 {
-    (void)state;
     parameters p = printed_parameters_of(5, 1);
     recording *a = run(&p, NULL), *b = run(&p, NULL);
     assert_int_equal(a->count, b->count);
@@ -209,9 +195,8 @@ static void switch_off_at_100_ms(double time, parameters *p)
     p->motor.voltage = time < 0.1 - 1e-9 ? 2 : 0;
 }
 
-static void script_changes_parameters_between_steps(void **state)
+TEST(script_changes_parameters_between_steps)
 {
-    (void)state;
     parameters p = printed_parameters_of(2, 1);
     recording *driven = run(&p, NULL), *coasting = run(&p, switch_off_at_100_ms);
     assert_memory_equal(driven->rows, coasting->rows, 101 * sizeof driven->rows[0]);
@@ -222,9 +207,8 @@ static void script_changes_parameters_between_steps(void **state)
     free(coasting);
 }
 
-static void overflow_stops_the_run_with_a_sentence(void **state)
+TEST(overflow_stops_the_run_with_a_sentence)
 {
-    (void)state;
     parameters p = printed_parameters_of(1, 1);
     p.initial.velocity = 1e200;
     recording *r = calloc(1, sizeof *r);
@@ -302,9 +286,8 @@ static double newmark_error(parameters p, const double exact[6], double h)
     return error;
 }
 
-static void free_flight_converges_to_the_equations_with_second_order(void **state)
+TEST(free_flight_converges_to_the_equations_with_second_order)
 {
-    (void)state;
     parameters p = printed_parameters_of(1, 0.25);
     p.wall.kind = WALL_NONE;
     p.motor.stiction = 0;
@@ -322,9 +305,8 @@ static void free_flight_converges_to_the_equations_with_second_order(void **stat
     check_close(log2(newmark_error(p, exact, 2.5e-4) / newmark_error(p, exact, 1.25e-4)), 1, 0.15);
 }
 
-static void beta_matters_little_in_free_flight(void **state)
+TEST(beta_matters_little_in_free_flight)
 {
-    (void)state;
     parameters p = printed_parameters_of(1, 0.3), q = p;
     p.wall.kind = q.wall.kind = WALL_NONE;
     p.method.beta = 0.25;
@@ -350,9 +332,8 @@ static double largest_force(const parameters *p)
 
 // 3.1.3: with a single run no beta and gamma give a force that is any use. Where it survives, it
 // is the impulse over one step: ten times as large with a tenth of the step.
-static void a_single_run_gives_no_force_whatever_beta_and_gamma(void **state)
+TEST(a_single_run_gives_no_force_whatever_beta_and_gamma)
 {
-    (void)state;
     parameters p = printed_parameters_of(1, 0.5);
     const double both = largest_force(&p);
     p.printed.reevaluation = REEVALUATE_NONE;
@@ -379,9 +360,8 @@ static void a_single_run_gives_no_force_whatever_beta_and_gamma(void **state)
     check_relative(largest_force(&p), both, 0.05);
 }
 
-static void negative_forces_change_no_peak(void **state)
+TEST(negative_forces_change_no_peak)
 {
-    (void)state;
     parameters p = printed_parameters_of(5, 1);
     recording *clamped = run(&p, NULL);
     p.printed.clamp_force = false;
@@ -400,9 +380,8 @@ static void negative_forces_change_no_peak(void **state)
 
 // Every step under every combination of switches: Newmark's relations between both ends, the
 // equations at its end, what is re-evaluated there, and what the next step starts from.
-static void every_step_solves_what_its_switches_say(void **state)
+TEST(every_step_solves_what_its_switches_say)
 {
-    (void)state;
     int constrained = 0, released = 0, steps = 0, unsolved = 0;
     for (unsigned switches = 0; switches < 96; switches++) {
         parameters p = printed_parameters_of(switches % 2 ? 2 : 5, 0.5);
@@ -485,27 +464,4 @@ static void every_step_solves_what_its_switches_say(void **state)
 
     // Newton's method goes back and forth in a few of them
     assert_true(unsolved < steps / 10);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_step_solves_what_its_switches_say),
-        cmocka_unit_test(rows_stand_on_the_time_grid_from_the_initial_state),
-        cmocka_unit_test(first_contact_comes_when_the_thesis_says),
-        cmocka_unit_test(contact_keeps_the_constraint_and_never_pulls),
-        cmocka_unit_test(contact_ends_after_the_step_without_force),
-        cmocka_unit_test(steady_force_is_the_balance_of_the_printed_equations),
-        cmocka_unit_test(no_wall_no_contact),
-        cmocka_unit_test(the_wall_stands_where_its_angle_says),
-        cmocka_unit_test(command_saturates_at_its_limit),
-        cmocka_unit_test(same_input_gives_the_same_bytes),
-        cmocka_unit_test(script_changes_parameters_between_steps),
-        cmocka_unit_test(overflow_stops_the_run_with_a_sentence),
-        cmocka_unit_test(free_flight_converges_to_the_equations_with_second_order),
-        cmocka_unit_test(beta_matters_little_in_free_flight),
-        cmocka_unit_test(a_single_run_gives_no_force_whatever_beta_and_gamma),
-        cmocka_unit_test(negative_forces_change_no_peak),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

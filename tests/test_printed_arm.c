@@ -1,8 +1,5 @@
 #include "tests/check.h"
 
-#include <stdbool.h>
-#include <string.h>
-
 #include "src/thesis/printed_arm.h"
 #include "src/base/dense.h"
 
@@ -62,9 +59,8 @@ static void moved_residual(const printed_arm *a, newmark_slopes slopes, motion_s
     printed_residual(a, m.q, m.w, m.alpha, m.force, residual);
 }
 
-static void jacobian_is_the_derivative_of_the_residual(void **state)
+TEST(jacobian_is_the_derivative_of_the_residual)
 {
-    (void)state;
     const newmark_slopes slopes = {1 / (0.4 * 1e-6), 0.5 / (0.4 * 1e-3)};
     const double change = 1e-5;
     unsigned seed = 7;
@@ -136,9 +132,8 @@ static double energy_defect(const printed_arm *a, motion_state m)
     return rate - drive * m.w[0] + m.force * rate_of_gap;
 }
 
-static void sound_switches_balance_the_energy(void **state)
+TEST(sound_switches_balance_the_energy)
 {
-    (void)state;
     printed_arm a = arm_with(0);
     unsigned seed = 11;
     for (int trial = 0; trial < 50; trial++) {
@@ -146,9 +141,8 @@ static void sound_switches_balance_the_energy(void **state)
     }
 }
 
-static void doubled_spring_gives_power_from_nowhere(void **state)
+TEST(doubled_spring_gives_power_from_nowhere)
 {
-    (void)state;
     printed_arm a = arm_with(1);
     unsigned seed = 11;
     for (int trial = 0; trial < 50; trial++) {
@@ -157,9 +151,8 @@ static void doubled_spring_gives_power_from_nowhere(void **state)
     }
 }
 
-static void levers_of_the_force_agree_to_second_order_in_the_bend(void **state)
+TEST(levers_of_the_force_agree_to_second_order_in_the_bend)
 {
-    (void)state;
     printed_arm end = arm_with(2), point = arm_with(0);
     for (double bend = 0.1; bend > 0.01; bend /= 2) {
         // both links touch the contact point's circle: half the bend either way
@@ -173,9 +166,8 @@ static void levers_of_the_force_agree_to_second_order_in_the_bend(void **state)
     }
 }
 
-static void gradient_is_the_derivative_of_the_penetration(void **state)
+TEST(gradient_is_the_derivative_of_the_penetration)
 {
-    (void)state;
     printed_arm a = arm_with(0);
     unsigned seed = 3;
     for (int trial = 0; trial < 20; trial++) {
@@ -208,9 +200,8 @@ static double penetration_acceleration(const printed_arm *a, const motion_state 
     return sum / (h * h);
 }
 
-static void reevaluation_satisfies_the_equations_of_motion_and_the_constraint(void **state)
+TEST(reevaluation_satisfies_the_equations_of_motion_and_the_constraint)
 {
-    (void)state;
     unsigned seed = 5;
     for (unsigned switches = 0; switches < 4; switches++) {
         printed_arm a = arm_with(switches);
@@ -229,9 +220,8 @@ static void reevaluation_satisfies_the_equations_of_motion_and_the_constraint(vo
 
 // The listing multiplies the force by what belongs on the right side: the penetration then
 // accelerates by -(1 + f) times that term.
-static void listed_reevaluation_breaks_the_constraint_by_the_misplaced_term(void **state)
+TEST(listed_reevaluation_breaks_the_constraint_by_the_misplaced_term)
 {
-    (void)state;
     printed_arm a = arm_with(8);
     unsigned seed = 5;
     for (int trial = 0; trial < 20; trial++) {
@@ -243,9 +233,8 @@ static void listed_reevaluation_breaks_the_constraint_by_the_misplaced_term(void
     }
 }
 
-static void sign_has_a_dead_band_of_1e_5_either_way_as_listed_too(void **state)
+TEST(sign_has_a_dead_band_of_1e_5_either_way_as_listed_too)
 {
-    (void)state;
     for (int listed = 0; listed <= 1; listed++) {
         assert_true(printed_sign(1e-4, listed) == 1);
         assert_true(printed_sign(1e-5, listed) == 0);
@@ -257,9 +246,8 @@ static void sign_has_a_dead_band_of_1e_5_either_way_as_listed_too(void **state)
     }
 }
 
-static void constants_are_those_of_the_thesis(void **state)
+TEST(constants_are_those_of_the_thesis)
 {
-    (void)state;
     printed_arm a = arm_with(63);
     check_close(a.motor.torque, 0.4377, 5e-5); // 1 V
     check_close(a.link_mass, 0.20054, 1e-12);
@@ -269,9 +257,8 @@ static void constants_are_those_of_the_thesis(void **state)
     assert_true(wall_stands(&a.wall));
 }
 
-static void dense_solve_pivots_and_refuses_the_singular(void **state)
+TEST(dense_solve_pivots_and_refuses_the_singular)
 {
-    (void)state;
     double swap[4] = {0, 2, 3, 1}, right[2] = {4, 5};
     assert_true(dense_solve(2, swap, right));
     check_close(right[0], 1, 1e-15);
@@ -283,9 +270,8 @@ static void dense_solve_pivots_and_refuses_the_singular(void **state)
 }
 
 // Coulomb friction takes its torque while the hub turns, either way, and none at rest.
-static void a_resting_hub_has_no_friction(void **state)
+TEST(a_resting_hub_has_no_friction)
 {
-    (void)state;
     printed_arm a = arm_with(4);
     assert_true(a.motor.stiction > 0);
     const double q[3] = {0.1, 0.1, 0.1}, alpha[3] = {0};
@@ -296,22 +282,4 @@ static void a_resting_hub_has_no_friction(void **state)
     const double damping = 1e-4 * a.motor.damping;
     check_close(fabs(forwards[0] - at_rest[0]), a.motor.stiction + damping, 1e-15);
     check_close(forwards[0] + backwards[0], 2 * at_rest[0], 1e-15);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jacobian_is_the_derivative_of_the_residual),
-        cmocka_unit_test(sound_switches_balance_the_energy),
-        cmocka_unit_test(doubled_spring_gives_power_from_nowhere),
-        cmocka_unit_test(levers_of_the_force_agree_to_second_order_in_the_bend),
-        cmocka_unit_test(gradient_is_the_derivative_of_the_penetration),
-        cmocka_unit_test(reevaluation_satisfies_the_equations_of_motion_and_the_constraint),
-        cmocka_unit_test(listed_reevaluation_breaks_the_constraint_by_the_misplaced_term),
-        cmocka_unit_test(sign_has_a_dead_band_of_1e_5_either_way_as_listed_too),
-        cmocka_unit_test(constants_are_those_of_the_thesis),
-        cmocka_unit_test(dense_solve_pivots_and_refuses_the_singular),
-        cmocka_unit_test(a_resting_hub_has_no_friction),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

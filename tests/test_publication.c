@@ -17,9 +17,7 @@ static artwork open_figure(const char *id, const figure_options *o)
 {
     fault f = {0};
     artwork drawn;
-    if (figure_open(thesis_figure_find(id), o, &drawn, &f) != STATUS_OK) {
-        fail_msg("%s: %s", id, f.text);
-    }
+    fail_if(figure_open(thesis_figure_find(id), o, &drawn, &f) != STATUS_OK, "%s: %s", id, f.text);
     return drawn;
 }
 
@@ -33,9 +31,8 @@ static void report_of(const artwork *a, figure_report *r)
     cairo_surface_destroy(surface);
 }
 
-static void bare_pages_have_no_title_and_no_caption(void **state)
+TEST(bare_pages_have_no_title_and_no_caption)
 {
-    (void)state;
     static figure_report r;
     static const char *const some[] = {"2.2", "3.4", "4.3", "T3.1"};
     for (size_t k = 0; k < G_N_ELEMENTS(some); k++) {
@@ -67,14 +64,11 @@ static void publish(const figure_options *o, const char *path)
                         .x = {.name = "time", .label = "Time", .unit = "s"},
                         .panels = &panel,
                         .panel_count = 1};
-    if (figure_publish(&fig, o, path, true, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(figure_publish(&fig, o, path, true, &f) != STATUS_OK, "%s", f.text);
 }
 
-static void a_bare_picture_has_its_caption_beside_it(void **state)
+TEST(a_bare_picture_has_its_caption_beside_it)
 {
-    (void)state;
     size_t length;
     publish(&(figure_options){.look.bare = true}, path_of("bare.svg"));
     char *text = read_file(path_of("bare.txt"), &length);
@@ -84,9 +78,8 @@ static void a_bare_picture_has_its_caption_beside_it(void **state)
     assert_int_not_equal(access(path_of("dressed.txt"), F_OK), 0);
 }
 
-static void latex_sets_the_figure(void **state)
+TEST(latex_sets_the_figure)
 {
-    (void)state;
     size_t length;
     char *tex = g_strdup(path_of("paper.tex"));
     publish(&(figure_options){.look.width = 85, .latex = tex}, path_of("force.pdf"));
@@ -109,9 +102,8 @@ static void latex_sets_the_figure(void **state)
     g_free(tex);
 }
 
-static void files_know_the_command_and_tell_what_they_show(void **state)
+TEST(files_know_the_command_and_tell_what_they_show)
 {
-    (void)state;
     size_t length;
     const figure_options o = {.command = "impactlab run x --set arm.k2=3"};
     publish(&o, path_of("m.svg"));
@@ -125,9 +117,8 @@ static void files_know_the_command_and_tell_what_they_show(void **state)
     free(png);
 }
 
-static void a_transparent_picture_has_no_ground(void **state)
+TEST(a_transparent_picture_has_no_ground)
 {
-    (void)state;
     publish(&(figure_options){.look.transparent = true}, path_of("clear.png"));
     cairo_surface_t *surface = cairo_image_surface_create_from_png(path_of("clear.png"));
     assert_int_equal(cairo_image_surface_get_format(surface), CAIRO_FORMAT_ARGB32);
@@ -135,9 +126,8 @@ static void a_transparent_picture_has_no_ground(void **state)
     cairo_surface_destroy(surface);
 }
 
-static void serif_pictures_have_serif_letters(void **state)
+TEST(serif_pictures_have_serif_letters)
 {
-    (void)state;
     size_t length;
     fault f = {0};
     publish(&(figure_options){.look.font = "DejaVu Serif"}, path_of("serif.pdf"));
@@ -159,9 +149,8 @@ static void write_measured(const char *name, const char *text)
     fclose(stream);
 }
 
-static void measured_data_have_a_panel_of_residuals(void **state)
+TEST(measured_data_have_a_panel_of_residuals)
 {
-    (void)state;
     static figure_report r;
     fault f = {0};
     synthetic s;
@@ -171,9 +160,7 @@ static void measured_data_have_a_panel_of_residuals(void **state)
     char *spec = g_strconcat(path_of("bench.csv"), ":cell@0.02", NULL);
     const trace_run run = {&s.scenario, &s.result, "run"};
     const figure_options o = {.overlay = spec, .signals = "force,hub_angle+last_angle"};
-    if (run_figure_init(&drawn, "t", NULL, 0, &run, 1, &o, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(run_figure_init(&drawn, "t", NULL, 0, &run, 1, &o, &f) != STATUS_OK, "%s", f.text);
     const figure *fig = &drawn.traces.figure;
     record(fig, &r);
     expect_text(&r, "bench.csv: cell");
@@ -216,9 +203,8 @@ static status open_recipe(const char *name, artwork *drawn, fault *f)
 }
 
 // Every recipe that ships is drawn and tidy at a column's width.
-static void shipped_recipes_are_drawn(void **state)
+TEST(shipped_recipes_are_drawn)
 {
-    (void)state;
     static figure_report r;
     char *recipes = g_build_filename(getenv("IMPACTLAB_SCENARIOS"), "recipes", NULL);
     GDir *entries = g_dir_open(recipes, 0, NULL);
@@ -235,16 +221,14 @@ static void shipped_recipes_are_drawn(void **state)
         const figure_options o = {.look.width = 85};
         char *path = g_build_filename(recipes, name, NULL);
         heard = heard != NULL ? g_string_truncate(heard, 0) : g_string_new(NULL);
-        if (recipe_open(path, &o, listen, NULL, &drawn, &f) != STATUS_OK) {
-            fail_msg("%s: %s%s", path, heard->str, f.text);
-        }
+        fail_if(recipe_open(path, &o, listen, NULL, &drawn, &f) != STATUS_OK, "%s: %s%s", path,
+                heard->str, f.text);
         report_of(&drawn, &r);
         for (int k = 0; k < r.text_count; k++) {
             expect_inside(&r.texts[k].place, &r.page, r.texts[k].text);
             for (int n = 0; n < k; n++) {
-                if (overlap(&r.texts[k].place, &r.texts[n].place)) {
-                    fail_msg("%s: '%s' covers '%s'", name, r.texts[k].text, r.texts[n].text);
-                }
+                fail_if(overlap(&r.texts[k].place, &r.texts[n].place), "%s: '%s' covers '%s'", name,
+                        r.texts[k].text, r.texts[n].text);
             }
         }
         artwork_finish(&drawn);
@@ -256,9 +240,8 @@ static void shipped_recipes_are_drawn(void **state)
 }
 
 // Small multiples are what the same runs give one by one.
-static void multiples_are_runs_at_their_values(void **state)
+TEST(multiples_are_runs_at_their_values)
 {
-    (void)state;
     fault f = {0};
     artwork drawn;
     size_t length;
@@ -292,9 +275,8 @@ static void multiples_are_runs_at_their_values(void **state)
 }
 
 // A recipe of figure 3.4 shows the numbers that figure 3.4 does, and their difference.
-static void a_recipe_shows_what_its_runs_give(void **state)
+TEST(a_recipe_shows_what_its_runs_give)
 {
-    (void)state;
     fault f = {0};
     artwork drawn;
     size_t length;
@@ -324,9 +306,8 @@ static void a_recipe_shows_what_its_runs_give(void **state)
     free(thesis);
 }
 
-static void faults_of_recipes_have_their_places(void **state)
+TEST(faults_of_recipes_have_their_places)
 {
-    (void)state;
     static const struct {
         const char *text, *said;
     } cases[] = {
@@ -362,9 +343,8 @@ static void faults_of_recipes_have_their_places(void **state)
         write_measured("bad.yaml", cases[i].text);
         assert_int_equal(open_recipe(path_of("bad.yaml"), &drawn, &f), STATUS_BAD_SCENARIO);
         char *expected = g_strconcat(path_of("bad.yaml"), cases[i].said, NULL);
-        if (strstr(heard->str, expected) == NULL) {
-            fail_msg("expected '%s', heard '%s'", expected, heard->str);
-        }
+        fail_if(strstr(heard->str, expected) == NULL, "expected '%s', heard '%s'", expected,
+                heard->str);
         g_free(expected);
     }
 
@@ -376,21 +356,4 @@ static void faults_of_recipes_have_their_places(void **state)
     assert_non_null(strstr(f.text, "bad.yaml:2:5: "));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bare_pages_have_no_title_and_no_caption),
-        cmocka_unit_test(a_bare_picture_has_its_caption_beside_it),
-        cmocka_unit_test(latex_sets_the_figure),
-        cmocka_unit_test(files_know_the_command_and_tell_what_they_show),
-        cmocka_unit_test(a_transparent_picture_has_no_ground),
-        cmocka_unit_test(serif_pictures_have_serif_letters),
-        cmocka_unit_test(measured_data_have_a_panel_of_residuals),
-        cmocka_unit_test(shipped_recipes_are_drawn),
-        cmocka_unit_test(a_recipe_shows_what_its_runs_give),
-        cmocka_unit_test(multiples_are_runs_at_their_values),
-        cmocka_unit_test(faults_of_recipes_have_their_places),
-    };
-    return cmocka_run_group_tests_name("publication", tests, make_work_folder,
-                                       remove_work_folder) != 0;
-}
+ALL_BETWEEN(make_work_folder, remove_work_folder)

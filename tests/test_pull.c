@@ -1,7 +1,6 @@
 // The tip pulled by the mouse, and slow motion near impacts.
 #include "tests/explorer_on_screen.h"
 
-#include <math.h>
 #include <unistd.h>
 
 enum { WIDTH = 120, HEIGHT = 40 };
@@ -31,9 +30,8 @@ static void pull(explorer *ex, int down, double seconds)
     explorer_point(ex, (pointer_event){.kind = POINTER_RELEASE, .x = x, .y = y + down});
 }
 
-static void test_a_place_is_in_its_cell(void **state)
+TEST(test_a_place_is_in_its_cell)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     free(picture(&ex, WIDTH, HEIGHT, GLYPHS_BRAILLE));
@@ -49,9 +47,8 @@ static void test_a_place_is_in_its_cell(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_pull_gives_the_spring_s_impulse(void **state)
+TEST(test_a_pull_gives_the_spring_s_impulse)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":slow off<Enter>:set motor.voltage 0<Enter>");
@@ -87,9 +84,8 @@ static void test_a_pull_gives_the_spring_s_impulse(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_pull_is_one_change_and_comes_again(void **state)
+TEST(test_a_pull_is_one_change_and_comes_again)
 {
-    (void)state;
     explorer ex;
     scenario again;
     run_result result;
@@ -124,9 +120,8 @@ static void test_a_pull_is_one_change_and_comes_again(void **state)
     explorer_finish(&ex);
 }
 
-static void test_what_is_far_from_the_tip_holds_nothing(void **state)
+TEST(test_what_is_far_from_the_tip_holds_nothing)
 {
-    (void)state;
     explorer ex;
     int x, y;
     open_explorer(&ex, "corrected/first-impact");
@@ -141,9 +136,8 @@ static void test_what_is_far_from_the_tip_holds_nothing(void **state)
     explorer_finish(&ex);
 }
 
-static void test_impacts_are_slow_and_the_rest_is_not(void **state)
+TEST(test_impacts_are_slow_and_the_rest_is_not)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     explorer_state *st = &ex.state;
@@ -164,16 +158,4 @@ static void test_impacts_are_slow_and_the_rest_is_not(void **state)
     explorer_advance(&ex, 0.01);
     check_close(st->session.now - impact, 0.001, 1e-12);
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_place_is_in_its_cell),
-        cmocka_unit_test(test_a_pull_gives_the_spring_s_impulse),
-        cmocka_unit_test(test_a_pull_is_one_change_and_comes_again),
-        cmocka_unit_test(test_what_is_far_from_the_tip_holds_nothing),
-        cmocka_unit_test(test_impacts_are_slow_and_the_rest_is_not),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

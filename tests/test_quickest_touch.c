@@ -27,9 +27,8 @@ static force_rise_task random_task(random_generator *r)
     return t;
 }
 
-static void the_way_is_one_that_its_force_makes(void **state)
+TEST(the_way_is_one_that_its_force_makes)
 {
-    (void)state;
     random_generator r;
     random_seed(&r, 7);
     for (int trial = 0; trial < 200; trial++) {
@@ -66,9 +65,8 @@ static void the_way_is_one_that_its_force_makes(void **state)
 }
 
 // What any other force that ends at rest costs is more: some forces added that leave no motion.
-static void no_other_force_costs_less(void **state)
+TEST(no_other_force_costs_less)
 {
-    (void)state;
     const double s = 34, end = 1, stopping = 0.6, step = 1e-4;
     const force_rise_task task = {.coordinate = 0,
                                   .rate = s * stopping,
@@ -150,9 +148,8 @@ static void fly(const observer_design *d, double *z, double torque)
 
 // Flown as planned, each period planned anew, the tip is at the wall with the wanted motion, no
 // torque beyond the limits, and hardly later than by the bound.
-static void the_plan_does_what_it_says(void **state)
+TEST(the_plan_does_what_it_says)
 {
-    (void)state;
     static const char *const starts[] = {"initial.angle=-0.06", "initial.angle=-0.1",
                                          "initial.angle=-0.35"};
     for (int i = 0; i < 3; i++) {
@@ -188,9 +185,8 @@ static void the_plan_does_what_it_says(void **state)
 }
 
 // A voltage that does not get there plans nothing.
-static void without_a_way_there_is_no_plan(void **state)
+TEST(without_a_way_there_is_no_plan)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("initial.angle=-0.1", "wall.angle=0"));
     const observer_design d = design_of(&p);
     double z[ESTIMATOR_STATES];
@@ -202,9 +198,8 @@ static void without_a_way_there_is_no_plan(void **state)
 }
 
 // On the rig, with its noise and friction: near the bound, below the limit, without separation.
-static void the_law_comes_near_the_least_time(void **state)
+TEST(the_law_comes_near_the_least_time)
 {
-    (void)state;
     static const char *const starts[] = {"initial.angle=-0.09", "initial.angle=-0.1",
                                          "initial.angle=-0.13"};
     static const char *const seeds[] = {"control.seed=5", "control.seed=6", "control.seed=7"};
@@ -227,9 +222,8 @@ static void the_law_comes_near_the_least_time(void **state)
 
 // The force at once falls with a command, but a motion that the limit does not stop is not to be
 // answered by pressing on.
-static void beyond_its_limit_it_brakes(void **state)
+TEST(beyond_its_limit_it_brakes)
 {
-    (void)state;
     summary s = rig_summary(SETTINGS("control.law=observer", "control.settings=wall_doubt=0",
                                      "control.approach_voltage=10", "control.force_limit=1.5",
                                      "initial.angle=-0.35", "belief.k2_factor=0.76"));
@@ -238,25 +232,10 @@ static void beyond_its_limit_it_brakes(void **state)
 }
 
 // A wall that is not where it is believed to be is still found.
-static void a_wall_further_away_is_found(void **state)
+TEST(a_wall_further_away_is_found)
 {
-    (void)state;
     summary s = rig_summary(SETTINGS("control.law=observer", "control.settings=wall_doubt=0",
                                      "control.approach_voltage=10", "belief.wall_error=-0.03"));
     check_close(s.steady_error_N, 0, 0.05);
     assert_false(isnan(s.settling_time_s));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_way_is_one_that_its_force_makes),
-        cmocka_unit_test(no_other_force_costs_less),
-        cmocka_unit_test(the_plan_does_what_it_says),
-        cmocka_unit_test(without_a_way_there_is_no_plan),
-        cmocka_unit_test(the_law_comes_near_the_least_time),
-        cmocka_unit_test(beyond_its_limit_it_brakes),
-        cmocka_unit_test(a_wall_further_away_is_found),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
-#include <stdbool.h>
-#include <string.h>
 
 #include "src/base/random.h"
 #include "tests/check.h"
 
-static void xoshiro_gives_its_published_sequence(void **state)
+TEST(xoshiro_gives_its_published_sequence)
 {
-    (void)state;
     static const uint64_t expected[] = {UINT64_C(11520), UINT64_C(0), UINT64_C(1509978240),
                                         UINT64_C(1215971899390074240)};
     random_generator g = {{1, 2, 3, 4}};
@@ -15,9 +12,8 @@ static void xoshiro_gives_its_published_sequence(void **state)
     }
 }
 
-static void splitmix_gives_its_published_sequence(void **state)
+TEST(splitmix_gives_its_published_sequence)
 {
-    (void)state;
     // of the seed 1234567, as other implementations list it
     static const uint64_t expected[] = {
         UINT64_C(6457827717110365317), UINT64_C(3203168211198807973), UINT64_C(9817491932198370423),
@@ -28,9 +24,8 @@ static void splitmix_gives_its_published_sequence(void **state)
     }
 }
 
-static void equal_seeds_give_equal_sequences(void **state)
+TEST(equal_seeds_give_equal_sequences)
 {
-    (void)state;
     random_generator a, b, c;
     random_seed(&a, 7);
     random_seed(&b, 7);
@@ -45,9 +40,8 @@ static void equal_seeds_give_equal_sequences(void **state)
 }
 
 // Which of the 2^64 numbers are drawn again: 2^64 mod bound of them, the smallest.
-static void numbers_that_would_be_uneven_are_drawn_again(void **state)
+TEST(numbers_that_would_be_uneven_are_drawn_again)
 {
-    (void)state;
     const struct {
         uint64_t bound, again; // 2^64 mod bound
     } cases[] = {{3, 1}, {10, 6}, {UINT64_C(1) << 32, 0}, {(UINT64_C(1) << 63) + 1, INT64_MAX}};
@@ -69,9 +63,8 @@ static void numbers_that_would_be_uneven_are_drawn_again(void **state)
     }
 }
 
-static void uniform_numbers_fill_the_unit_interval_evenly(void **state)
+TEST(uniform_numbers_fill_the_unit_interval_evenly)
 {
-    (void)state;
     enum { DRAWN = 100000, BINS = 20 };
     int bins[BINS] = {0};
     double sum = 0, squares = 0;
@@ -92,9 +85,8 @@ static void uniform_numbers_fill_the_unit_interval_evenly(void **state)
     }
 }
 
-static void whole_numbers_are_equally_likely_up_to_the_bound(void **state)
+TEST(whole_numbers_are_equally_likely_up_to_the_bound)
 {
-    (void)state;
     int counts[6] = {0};
     random_generator g;
     random_seed(&g, 2);
@@ -116,9 +108,8 @@ static void whole_numbers_are_equally_likely_up_to_the_bound(void **state)
     check_close(low, 10000 / 3.0, 5 * sqrt(10000 * 2.0 / 9));
 }
 
-static void a_permutation_has_every_number_once(void **state)
+TEST(a_permutation_has_every_number_once)
 {
-    (void)state;
     enum { COUNT = 1000 };
     size_t order[COUNT];
     unsigned char seen[COUNT] = {0};
@@ -136,9 +127,8 @@ static void a_permutation_has_every_number_once(void **state)
     assert_true(unmoved < 10);
 }
 
-static void all_permutations_are_equally_likely(void **state)
+TEST(all_permutations_are_equally_likely)
 {
-    (void)state;
     int counts[3][3] = {{0}};
     random_generator g;
     random_seed(&g, 4);
@@ -152,19 +142,4 @@ static void all_permutations_are_equally_likely(void **state)
     for (int i = 0; i < 9; i++) {
         check_close(counts[i / 3][i % 3], 3000, 5 * sqrt(9000 * 2.0 / 9));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(xoshiro_gives_its_published_sequence),
-        cmocka_unit_test(splitmix_gives_its_published_sequence),
-        cmocka_unit_test(equal_seeds_give_equal_sequences),
-        cmocka_unit_test(numbers_that_would_be_uneven_are_drawn_again),
-        cmocka_unit_test(uniform_numbers_fill_the_unit_interval_evenly),
-        cmocka_unit_test(whole_numbers_are_equally_likely_up_to_the_bound),
-        cmocka_unit_test(a_permutation_has_every_number_once),
-        cmocka_unit_test(all_permutations_are_equally_likely),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,6 +1,5 @@
 // Runs that random_runs once found wrong: each comes to its end now with a closed ledger, or ends
 // where the model does.
-#include <math.h>
 
 #include "src/run/run.h"
 #include "tests/arm_fixture.h"
@@ -107,9 +106,8 @@ static void run_with(const char *const *settings, bool keep_trace, run_result *r
     run_scenario(&s, keep_trace, result);
 }
 
-static void test_runs_that_failed_come_to_their_end(void **state)
+TEST(test_runs_that_failed_come_to_their_end)
 {
-    (void)state;
     const char *const *const runs[] = {bounced,   broke_away, let_go,       let_go_fast,
                                        came_back, swept_over, came_to_rest, swung};
     for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
@@ -126,9 +124,8 @@ static void test_runs_that_failed_come_to_their_end(void **state)
 // Soft springs let the arm fold over the hub's axis, with its tip sliding on the flat wall. On the
 // way there the wall's reaction grows as 1/lever, and where the lever is nothing the run ends: with
 // the ledger closed, the links opposite to each other and the tip at the axis.
-static void test_an_arm_folded_over_the_hub_ends_the_run(void **state)
+TEST(test_an_arm_folded_over_the_hub_ends_the_run)
 {
-    (void)state;
     const char *const *const arms[] = {
         SETTINGS("wall.kind=plane", "motor.voltage=8.238", "motor.resistance=3.68",
                  "wall.angle=-0.541", "arm.k2=0.09", "initial.angle=-1.977"),
@@ -161,9 +158,8 @@ static void test_an_arm_folded_over_the_hub_ends_the_run(void **state)
 
 // On its way to a fold and back the force has a pole nearby, of which the velocities know nothing:
 // it is what the stiff engine makes of it, which a tip mass of next to nothing takes.
-static void test_the_force_near_a_fold_is_that_of_another_engine(void **state)
+TEST(test_the_force_near_a_fold_is_that_of_another_engine)
 {
-    (void)state;
     const char *const *const near[] = {
         SETTINGS("wall.kind=plane", "arm.mass=0.659275", "arm.length=0.888161",
                  "arm.hub_inertia=0.000270442", "arm.k2=0.075065", "wall.angle=0.190554",
@@ -186,9 +182,8 @@ static void test_the_force_near_a_fold_is_that_of_another_engine(void **state)
 }
 
 // Neither do the strides of chains lead through a fold, nor to a release in it.
-static void test_no_step_leads_through_a_fold(void **state)
+TEST(test_no_step_leads_through_a_fold)
 {
-    (void)state;
     const char *const voltages[] = {"motor.voltage=8.6", "motor.voltage=8.8", "motor.voltage=9.8"};
     for (size_t i = 0; i < sizeof voltages / sizeof voltages[0]; i++) {
         run_result r;
@@ -202,9 +197,8 @@ static void test_no_step_leads_through_a_fold(void **state)
 }
 
 // A decay that strides are only as brief as is no reason to leave the series of two links.
-static void test_a_braked_pair_stays_with_its_series(void **state)
+TEST(test_a_braked_pair_stays_with_its_series)
 {
-    (void)state;
     run_result r, usual;
     run_with(spun, false, &r);
     run_with(SETTINGS("motor.voltage=1"), false, &usual);
@@ -213,16 +207,4 @@ static void test_a_braked_pair_stays_with_its_series(void **state)
     assert_string_equal(r.summary.method, usual.summary.method);
     run_finish(&r);
     run_finish(&usual);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_runs_that_failed_come_to_their_end),
-        cmocka_unit_test(test_an_arm_folded_over_the_hub_ends_the_run),
-        cmocka_unit_test(test_the_force_near_a_fold_is_that_of_another_engine),
-        cmocka_unit_test(test_no_step_leads_through_a_fold),
-        cmocka_unit_test(test_a_braked_pair_stays_with_its_series),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -2,8 +2,6 @@
 //
 //   test_reference          compare
 //   test_reference --print  print the reference's answers
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/run/run.h"
 #include "tests/check.h"
@@ -41,9 +39,8 @@ static reference_answer simulate(const reference_case *c)
 {
     reference_answer answer;
     char message[256];
-    if (!reference_simulate(c, &answer, message, sizeof message)) {
-        fail_msg("the reference failed: %s", message);
-    }
+    fail_if(!reference_simulate(c, &answer, message, sizeof message), "the reference failed: %s",
+            message);
     return answer;
 }
 
@@ -65,9 +62,7 @@ static void set_text(parameters *p, const char *path, const char *text)
     fault f = {0};
     int index = parameter_find(path);
     assert_true(index >= 0);
-    if (parameter_set_text(p, index, text, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameter_set_text(p, index, text, &f) != STATUS_OK, "%s", f.text);
 }
 
 static void set_number(parameters *p, const char *path, double value)
@@ -101,15 +96,11 @@ static summary library_of(const reference_case *c, const char *method, double st
         set_text(&s.parameters, "method.name", method);
         set_number(&s.parameters, "method.step", step);
     }
-    if (parameters_resolve(&s.parameters, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameters_resolve(&s.parameters, &f) != STATUS_OK, "%s", f.text);
     run_scenario(&s, false, &result);
     summary answer = result.summary;
     run_finish(&result);
-    if (answer.status != STATUS_OK) {
-        fail_msg("%s: %s", c->name, answer.message);
-    }
+    fail_if(answer.status != STATUS_OK, "%s: %s", c->name, answer.message);
     return answer;
 }
 

@@ -9,8 +9,6 @@
 // 8 (1 % damping, else none). --into keeps the simulation's answers in FOLDER, --from compares with
 // those kept there: 64 links take it many minutes a case.
 #include <errno.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
@@ -35,9 +33,8 @@ static chain_outcome library_outcome(const reference_case *c, bool by_formula)
     const chain_start start = {&p,          c->angle,    c->velocity,
                                c->duration, c->duration, by_formula ? &explicit_engine : NULL};
     chain_outcome o = chain_outcome_of(&start);
-    if (o.status != STATUS_OK) {
-        fail_msg("%s, %s: %s", c->name, by_formula ? "formula" : "default", status_text(o.status));
-    }
+    fail_if(o.status != STATUS_OK, "%s, %s: %s", c->name, by_formula ? "formula" : "default",
+            status_text(o.status));
     return o;
 }
 
@@ -45,9 +42,8 @@ static chain_outcome reference_outcome(const reference_case *c)
 {
     static reference_answer r;
     char message[256];
-    if (!reference_simulate(c, &r, message, sizeof message)) {
-        fail_msg("the reference failed: %s", message);
-    }
+    fail_if(!reference_simulate(c, &r, message, sizeof message), "the reference failed: %s",
+            message);
     chain_outcome o = {.first_contact = r.first_contact,
                        .first_impulse = r.first_impulse,
                        .motor_work = r.motor_work,
@@ -80,9 +76,7 @@ static void keep(const reference_case *c, const chain_outcome *o)
     char path[512];
     describe(c, into, path);
     FILE *file = fopen(path, "w");
-    if (file == NULL) {
-        fail_msg("%s: %s", path, strerror(errno));
-    }
+    fail_if(file == NULL, "%s: %s", path, strerror(errno));
     fprintf(file, "# %s\n%.15g,%.15g,%.15g,%.15g,%d,%d\n", said, o->first_contact, o->first_impulse,
             o->motor_work, o->residual, o->impacts, o->samples);
     for (int k = 0; k < o->samples; k++) {
@@ -96,9 +90,7 @@ static chain_outcome kept(const reference_case *c)
     char path[512], head[256] = "";
     describe(c, from, path);
     FILE *file = fopen(path, "r");
-    if (file == NULL) {
-        fail_msg("%s: %s", path, strerror(errno));
-    }
+    fail_if(file == NULL, "%s: %s", path, strerror(errno));
 
     // of this case
     assert_non_null(fgets(head, sizeof head, file));

@@ -159,9 +159,8 @@ static status ask_a_program(scenario *s, FILE *out)
 
 // One read of the program's answers or complaints fails for good: the run is the same without it or
 // ends and says why, and never because of a program that ended.
-static void answers_that_cannot_be_read(void **state)
+TEST(answers_that_cannot_be_read)
 {
-    (void)state;
     int failed = 0;
     bool reached = true;
     for (long k = 1; reached; k++) {
@@ -221,17 +220,15 @@ static status open_by_name(const char *name, FILE *out)
     return code == STATUS_CANNOT_READ && refused_at > 0 ? STATUS_NO_MEMORY : code;
 }
 
-static void scenarios_are_listed_whole(void **state)
+TEST(scenarios_are_listed_whole)
 {
-    (void)state;
     try_all(list_scenarios, "");
 }
 
 // One that is there is never said to be missing, and to find it no folder is read: a list of all
 // reads each folder once.
-static void scenarios_are_found_by_name(void **state)
+TEST(scenarios_are_found_by_name)
 {
-    (void)state;
     folders_opened = 0;
     try_all(open_by_name, "corrected/first-impact");
     assert_int_equal(folders_opened, 0);
@@ -259,9 +256,8 @@ static status measure(const char *name, FILE *out)
 
 // The first rows of a program need a file and tables that later ones find; each refusal leaves some
 // of it, from which the next attempt goes on.
-static void the_first_rows_of_all(void **state)
+TEST(the_first_rows_of_all)
 {
-    (void)state;
     long attempts = 0;
     bool grown = false;
     refused_later = true;
@@ -277,15 +273,13 @@ static void the_first_rows_of_all(void **state)
     assert_true(attempts > 8); // its place, number, file, two tables, length, memory
 }
 
-static void rows_are_shared_or_refused(void **state)
+TEST(rows_are_shared_or_refused)
 {
-    (void)state;
     try_all(share_rows, "");
 }
 
-static void whole_files(void **state)
+TEST(whole_files)
 {
-    (void)state;
     char folder[] = "/tmp/refused-XXXXXX", path[64], link[64];
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/file", folder);
@@ -300,9 +294,8 @@ static void whole_files(void **state)
     assert_int_equal(rmdir(folder), 0); // no temporary stays
 }
 
-static void programs_as_controllers(void **state)
+TEST(programs_as_controllers)
 {
-    (void)state;
     memory_is_given = true;
     try_all(ask_once, "read x; echo \"$x\"; exit 7");
     try_with_scenario(ask_a_program, "control.rate=100");
@@ -310,9 +303,8 @@ static void programs_as_controllers(void **state)
     try_with_scenario(ask_a_program, "control.rate=100");
 }
 
-static void measurements(void **state)
+TEST(measurements)
 {
-    (void)state;
     static const char *const names[] = {"arm_n2_us_per_ms", "struck_n8_us_per_ms",
                                         "batch_n2_steps_per_s", "batch_width_4_us_per_run"};
     bench_window = 1e-9;
@@ -329,15 +321,5 @@ int main(int count, char **arguments)
                                     "run: {duration: 0.12 s}\ninitial: {angle: -0.01 rad}\n";
     everywhere = count > 1;
     scenario_text = short_run;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_first_rows_of_all),
-        cmocka_unit_test(rows_are_shared_or_refused),
-        cmocka_unit_test(whole_files),
-        cmocka_unit_test(programs_as_controllers),
-        cmocka_unit_test(answers_that_cannot_be_read),
-        cmocka_unit_test(scenarios_are_listed_whole),
-        cmocka_unit_test(scenarios_are_found_by_name),
-        cmocka_unit_test(measurements),
-    };
-    return cmocka_run_group_tests(tests, use_refusing_allocators, NULL) != 0;
+    return run_cases(use_refusing_allocators, NULL);
 }

@@ -196,9 +196,8 @@ static status linearised(scenario *s, FILE *out)
 // --- for want of memory, and by the arguments
 // ------------------------------------------------------
 
-static void what_is_refused_for_want_of_memory_is_finished(void **state)
+TEST(what_is_refused_for_want_of_memory_is_finished)
 {
-    (void)state;
     try_all(table, "time[s],a[V]\n0,1\n1,2\n");
     try_all(set, "belief.k2_factor=0.9:1.1\ncase softer: arm.k2=5; push=-0.01@0.2\n");
     try_all(parsed, "title: A\nmotor: {voltage: 2 V}\n");
@@ -210,9 +209,8 @@ static void what_is_refused_for_want_of_memory_is_finished(void **state)
     try_with_scenario(linearised, "control.law=force-pd control.force=1");
 }
 
-static void what_is_refused_by_its_arguments_is_finished(void **state)
+TEST(what_is_refused_by_its_arguments_is_finished)
 {
-    (void)state;
     static const struct {
         work *does;
         const char *about[8];
@@ -229,9 +227,8 @@ static void what_is_refused_by_its_arguments_is_finished(void **state)
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
         for (int k = 0; k < 8 && refused[i].about[k] != NULL; k++) {
             const status code = refused[i].does(refused[i].about[k], NULL);
-            if (code == STATUS_OK || code == STATUS_NO_MEMORY) {
-                fail_msg("%zu '%s': %s", i, refused[i].about[k], status_text(code));
-            }
+            fail_if(code == STATUS_OK || code == STATUS_NO_MEMORY, "%zu '%s': %s", i,
+                    refused[i].about[k], status_text(code));
         }
     }
 }
@@ -257,9 +254,5 @@ static int end(void **state)
 int main(int count, char **words)
 {
     everywhere = count > 1 && strcmp(words[1], "everywhere") == 0;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_refused_for_want_of_memory_is_finished),
-        cmocka_unit_test(what_is_refused_by_its_arguments_is_finished),
-    };
-    return cmocka_run_group_tests(tests, begin, end);
+    return run_cases(begin, end);
 }

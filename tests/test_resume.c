@@ -55,9 +55,8 @@ static scenario changed_late(const scenario *s, action *change)
     return changed;
 }
 
-static void a_resumed_run_is_the_run_from_the_start(void **state)
+TEST(a_resumed_run_is_the_run_from_the_start)
 {
-    (void)state;
     action change;
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=4", "motor.stiction=0"))};
     scenario later = changed_late(&s, &change);
@@ -74,9 +73,8 @@ static void a_resumed_run_is_the_run_from_the_start(void **state)
 
 // One link whose force is determined within bounds only, and arms that start on the wall and come
 // back to it: bounds and landing are those of the whole run.
-static void bounds_and_landing_are_resumed(void **state)
+TEST(bounds_and_landing_are_resumed)
 {
-    (void)state;
     const char *const *const arms[] = {
         SETTINGS("run.duration=4", "arm.links=1"), SETTINGS("run.duration=2.55", "arm.links=1"),
         SETTINGS("run.duration=4", "wall.angle=0", "initial.velocity=0.5", "arm.links=3",
@@ -102,9 +100,8 @@ static void bounds_and_landing_are_resumed(void **state)
 }
 
 // A face that the arm has left behind and that is on its way back when the runs part.
-static void a_face_on_its_way_back_is_resumed_where_it_was(void **state)
+TEST(a_face_on_its_way_back_is_resumed_where_it_was)
 {
-    (void)state;
     const int volts = PARAMETER_INDEX(motor.voltage);
     const char *const *const walls[] = {SETTINGS("run.duration=4", "wall.contact=kelvin-voigt",
                                                  "wall.stiffness=100", "wall.damping=500"),
@@ -139,9 +136,8 @@ static void a_face_on_its_way_back_is_resumed_where_it_was(void **state)
 
 // A hub that the script makes so stiff that another engine moves the arm: checkpoints after that
 // are that engine's.
-static void an_arm_made_stiff_is_resumed_as_it_is(void **state)
+TEST(an_arm_made_stiff_is_resumed_as_it_is)
 {
-    (void)state;
     for (int links = 2; links <= 3; links++) {
         action changes[2] = {
             {.time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k1), .value = 1e8}};
@@ -165,9 +161,8 @@ static void an_arm_made_stiff_is_resumed_as_it_is(void **state)
 
 // Scripts of two runs that have their first actions in common: the run is resumed before the first
 // one that differs in whatever, is missing or is new.
-static void scripts_that_part_are_resumed_where_they_part(void **state)
+TEST(scripts_that_part_are_resumed_where_they_part)
 {
-    (void)state;
     const int volts = PARAMETER_INDEX(motor.voltage), spring = PARAMETER_INDEX(arm.k2);
     const action one = {.time = 0.8, .kind = ACTION_SET, .parameter = volts, .value = 1.5};
     const action two = {.time = 2.5, .kind = ACTION_SET, .parameter = volts, .value = 0.5};
@@ -231,9 +226,8 @@ static void scripts_that_part_are_resumed_where_they_part(void **state)
     }
 }
 
-static void a_longer_run_goes_on_from_a_shorter_one(void **state)
+TEST(a_longer_run_goes_on_from_a_shorter_one)
 {
-    (void)state;
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
     scenario longer = {.parameters = fixture_parameters(SETTINGS("run.duration=5"))};
     run_result old = run_keeping_history(&s), whole = run_keeping_history(&longer), result;
@@ -244,9 +238,8 @@ static void a_longer_run_goes_on_from_a_shorter_one(void **state)
     run_finish(&whole);
 }
 
-static void another_arm_has_nothing_in_common(void **state)
+TEST(another_arm_has_nothing_in_common)
 {
-    (void)state;
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
     scenario other = {.parameters = fixture_parameters(SETTINGS("run.duration=3", "arm.k2=5"))};
     run_result old = run_keeping_history(&s), result;
@@ -254,9 +247,8 @@ static void another_arm_has_nothing_in_common(void **state)
     run_finish(&old);
 }
 
-static void a_run_without_history_cannot_be_resumed(void **state)
+TEST(a_run_without_history_cannot_be_resumed)
 {
-    (void)state;
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
     run_result old, result;
     assert_int_equal(run_scenario(&s, true, &old), STATUS_OK);
@@ -264,9 +256,8 @@ static void a_run_without_history_cannot_be_resumed(void **state)
     run_finish(&old);
 }
 
-static void a_shared_result_outlives_the_first(void **state)
+TEST(a_shared_result_outlives_the_first)
 {
-    (void)state;
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
     run_result old = run_keeping_history(&s), again = run_keeping_history(&s), shared;
     assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
@@ -278,9 +269,8 @@ static void a_shared_result_outlives_the_first(void **state)
 }
 
 // On the rig runs have rows but no history, and none when they are shared.
-static void a_run_of_the_rig_is_shared_without_history(void **state)
+TEST(a_run_of_the_rig_is_shared_without_history)
 {
-    (void)state;
     scenario s = {.parameters =
                       fixture_parameters(SETTINGS("run.duration=1", "control.law=open-loop"))};
     run_result old = run_keeping_history(&s), shared;
@@ -292,9 +282,8 @@ static void a_run_of_the_rig_is_shared_without_history(void **state)
     run_finish(&shared);
 }
 
-static void equal_rows_are_kept_once(void **state)
+TEST(equal_rows_are_kept_once)
 {
-    (void)state;
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
     run_result a = run_keeping_history(&s), b = run_keeping_history(&s);
     size_t before = shared_array_memory();
@@ -305,22 +294,4 @@ static void equal_rows_are_kept_once(void **state)
     check_same_run(&a, &b);
     run_finish(&a);
     run_finish(&b);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_resumed_run_is_the_run_from_the_start),
-        cmocka_unit_test(bounds_and_landing_are_resumed),
-        cmocka_unit_test(a_face_on_its_way_back_is_resumed_where_it_was),
-        cmocka_unit_test(an_arm_made_stiff_is_resumed_as_it_is),
-        cmocka_unit_test(scripts_that_part_are_resumed_where_they_part),
-        cmocka_unit_test(a_longer_run_goes_on_from_a_shorter_one),
-        cmocka_unit_test(another_arm_has_nothing_in_common),
-        cmocka_unit_test(a_run_without_history_cannot_be_resumed),
-        cmocka_unit_test(a_shared_result_outlives_the_first),
-        cmocka_unit_test(a_run_of_the_rig_is_shared_without_history),
-        cmocka_unit_test(equal_rows_are_kept_once),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,15 +1,11 @@
 // The sampled loop.
-#include <math.h>
-#include <string.h>
-
 #include "src/rig/rig.h"
 #include "src/run/loop.h"
 #include "src/contact/contact_machine.h"
 #include "tests/rig_fixture.h"
 
-static void command_holds_between_samples(void **state)
+TEST(command_holds_between_samples)
 {
-    (void)state;
     run_result r = rig_run(SETTINGS("control.law=hybrid"), true);
     const trace *t = &r.trace;
     int changes = 0;
@@ -25,9 +21,8 @@ static void command_holds_between_samples(void **state)
     run_finish(&r);
 }
 
-static void delay_shifts_the_command(void **state)
+TEST(delay_shifts_the_command)
 {
-    (void)state;
     run_result r = rig_run(SETTINGS("control.law=hybrid", "control.delay=0.002"), true);
     const trace *t = &r.trace;
     for (size_t i = 1; i < t->row_count; i++) {
@@ -41,9 +36,8 @@ static void delay_shifts_the_command(void **state)
 
 // A command that is still on its way when the run ends has moved nothing: the largest is the
 // largest of the rows.
-static void a_command_still_on_its_way_does_not_count(void **state)
+TEST(a_command_still_on_its_way_does_not_count)
 {
-    (void)state;
     static const char *const ends[] = {"run.duration=0.32", "run.duration=0.3102",
                                        "run.duration=0.305"};
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
@@ -61,9 +55,8 @@ static void a_command_still_on_its_way_does_not_count(void **state)
 
 // A program that takes a whole period to compute: its command goes out with the next sample, also
 // where jitter brings that one early.
-static void a_command_a_period_late_goes_out_with_the_next_sample(void **state)
+TEST(a_command_a_period_late_goes_out_with_the_next_sample)
 {
-    (void)state;
     const char *const jitters[] = {"control.jitter=0", "control.jitter=0.002"};
     for (int k = 0; k < 2; k++) {
         rig *r;
@@ -92,9 +85,8 @@ static void a_command_a_period_late_goes_out_with_the_next_sample(void **state)
 // Commands that are several periods under way keep their order and their delay, also where samples
 // scatter over the whole period; with a delay of whole periods they go out at a sample at the
 // latest.
-static void commands_of_several_periods_go_out_in_order(void **state)
+TEST(commands_of_several_periods_go_out_in_order)
 {
-    (void)state;
     const char *const delays[] = {"control.delay_periods=2.5", "control.delay_periods=5"};
     const char *const jitters[] = {"control.jitter=0", "control.jitter=0.005"};
     for (int k = 0; k < 4; k++) {
@@ -127,9 +119,8 @@ static void commands_of_several_periods_go_out_in_order(void **state)
     }
 }
 
-static void a_delay_is_at_most_five_periods(void **state)
+TEST(a_delay_is_at_most_five_periods)
 {
-    (void)state;
     fault f;
     scenario s = {.parameters = rig_parameters(SETTINGS("control.delay=0.003"))};
     assert_int_equal(scenario_override(&s, "control.delay_periods=4.4", &f), STATUS_OK);
@@ -137,9 +128,8 @@ static void a_delay_is_at_most_five_periods(void **state)
     assert_non_null(strstr(f.text, "together longer than 5 periods of 0.005 s"));
 }
 
-static void jitter_stays_within_its_width(void **state)
+TEST(jitter_stays_within_its_width)
 {
-    (void)state;
     rig *r;
     fault f;
     bool changed;
@@ -157,9 +147,8 @@ static void jitter_stays_within_its_width(void **state)
     rig_destroy(r);
 }
 
-static void rig_changes_the_bare_arm_only_by_its_converter(void **state)
+TEST(rig_changes_the_bare_arm_only_by_its_converter)
 {
-    (void)state;
     summary bare = rig_summary(SETTINGS("control.law=none"));
     summary on = rig_summary(SETTINGS("control.law=open-loop", "sensor.ideal=true"));
     check_close(on.first_contact_s, bare.first_contact_s, 1e-9);
@@ -171,9 +160,8 @@ static void rig_changes_the_bare_arm_only_by_its_converter(void **state)
 }
 
 // What the amplifier feeds in is what the rows say, before and after a script lowers its limit.
-static void energy_under_a_limit_that_changes(void **state)
+TEST(energy_under_a_limit_that_changes)
 {
-    (void)state;
     static const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
     for (int i = 0; i < 2; i++) {
         action lower = {.time = 0.5,
@@ -203,9 +191,8 @@ static void energy_under_a_limit_that_changes(void **state)
 }
 
 // Errors are those from the force that is commanded at the end.
-static void errors_are_from_the_last_command(void **state)
+TEST(errors_are_from_the_last_command)
 {
-    (void)state;
     action raise = {
         .time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(control.force), .value = 2};
     scenario s = {.parameters = rig_parameters(SETTINGS("control.law=force-pd", "run.duration=3")),
@@ -222,9 +209,8 @@ static void errors_are_from_the_last_command(void **state)
     run_finish(&r);
 }
 
-static void same_seed_same_bytes(void **state)
+TEST(same_seed_same_bytes)
 {
-    (void)state;
     run_result a = rig_run(SETTINGS("control.law=optimal", "control.jitter=0.0005"), true);
     run_result b = rig_run(SETTINGS("control.law=optimal", "control.jitter=0.0005"), true);
     run_result c =
@@ -239,9 +225,8 @@ static void same_seed_same_bytes(void **state)
 
 // A beam of twelve links bends further at the hub than two links with the same k2: the stiffness
 // that the controller has to believe in, (5.26), is the one measured there.
-static void many_links_want_their_own_stiffness(void **state)
+TEST(many_links_want_their_own_stiffness)
 {
-    (void)state;
     run_result r =
         rig_run(SETTINGS("control.law=open-loop", "arm.links=12", "run.duration=4"), true);
     const sample *last = &r.trace.rows[r.trace.row_count - 1];
@@ -259,9 +244,8 @@ static void many_links_want_their_own_stiffness(void **state)
 
 // A stop of the run and a sample that differ by rounding are one instant: a stride between them
 // would be too short for an implicit method.
-static void instants_apart_by_rounding_are_one(void **state)
+TEST(instants_apart_by_rounding_are_one)
 {
-    (void)state;
     summary s = rig_summary(SETTINGS("control.law=hybrid", "arm.links=12", "wall.kind=plane",
                                      "method.name=newmark", "run.duration=1.5"));
     check_below(0, s.impacts);
@@ -269,9 +253,8 @@ static void instants_apart_by_rounding_are_one(void **state)
 
 // A hub that friction holds and a command that never stays: forty seconds of torque that jumps
 // under a hub at rest, each jump a question of what sticks and what is touched.
-static void a_command_that_alternates_passes_time(void **state)
+TEST(a_command_that_alternates_passes_time)
 {
-    (void)state;
     const char *const *const arms[] = {
         SETTINGS("run.duration=40"), SETTINGS("run.duration=4", "motor.stiction=0.3"),
         SETTINGS("run.duration=4", "wall.kind=plane", "control.delay_periods=0.5"),
@@ -284,9 +267,7 @@ static void a_command_that_alternates_passes_time(void **state)
         assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
         for (long k = 0; !loop_ended(l); k++) {
             loop_command(l, k % 2 ? 1.1 : 1);
-            if (loop_step(l, &f) != STATUS_OK) {
-                fail_msg("arm %zu: %s", i, f.text);
-            }
+            fail_if(loop_step(l, &f) != STATUS_OK, "arm %zu: %s", i, f.text);
         }
         assert_true(loop_summary(l).peak_force_N > 0.5);
         check_below(loop_summary(l).energy_residual_J, 1e-12);
@@ -333,9 +314,8 @@ static double lagged_force(const parameters *p, double time_constant, double aft
 
 // The modes of a strongly damped chain decay within nanoseconds of an impact, in which they press
 // with thousands of newtons: a force sensor reads their impulse.
-static void sensors_feel_the_spike_of_a_damped_chain(void **state)
+TEST(sensors_feel_the_spike_of_a_damped_chain)
 {
-    (void)state;
     static const char *const ratios[] = {"arm.damping_ratio=0.3", "arm.damping_ratio=1"};
     static const char *const links[] = {"arm.links=8", "arm.links=32"};
     for (int i = 0; i < 4; i++) {
@@ -376,9 +356,8 @@ static void sensors_feel_the_spike_of_a_damped_chain(void **state)
 }
 
 // The approach speed is the largest of the whole flight, wherever strides end.
-static void the_approach_speed_is_the_largest_of_the_flight(void **state)
+TEST(the_approach_speed_is_the_largest_of_the_flight)
 {
-    (void)state;
     static const char *const arms[][8] = {
         {"control.law=observer", "control.approach_voltage=0.6569", "wall.angle=0.0502",
          "initial.angle=0", "arm.k2=53.36", "arm.damping_ratio=0.01", "control.force=0.855"},
@@ -400,27 +379,4 @@ static void the_approach_speed_is_the_largest_of_the_flight(void **state)
         check_relative(r.summary.approach_speed_m_s, fastest, 1e-4);
         run_finish(&r);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_approach_speed_is_the_largest_of_the_flight),
-        cmocka_unit_test(command_holds_between_samples),
-        cmocka_unit_test(delay_shifts_the_command),
-        cmocka_unit_test(a_command_still_on_its_way_does_not_count),
-        cmocka_unit_test(a_command_a_period_late_goes_out_with_the_next_sample),
-        cmocka_unit_test(commands_of_several_periods_go_out_in_order),
-        cmocka_unit_test(a_delay_is_at_most_five_periods),
-        cmocka_unit_test(jitter_stays_within_its_width),
-        cmocka_unit_test(sensors_feel_the_spike_of_a_damped_chain),
-        cmocka_unit_test(rig_changes_the_bare_arm_only_by_its_converter),
-        cmocka_unit_test(energy_under_a_limit_that_changes),
-        cmocka_unit_test(errors_are_from_the_last_command),
-        cmocka_unit_test(same_seed_same_bytes),
-        cmocka_unit_test(many_links_want_their_own_stiffness),
-        cmocka_unit_test(instants_apart_by_rounding_are_one),
-        cmocka_unit_test(a_command_that_alternates_passes_time),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

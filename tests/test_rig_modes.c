@@ -1,7 +1,5 @@
 // Laws held in a mode (control.lock): their behaviour, their continuation, and that a lock made in
 // a session is an input like any other.
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
@@ -20,9 +18,7 @@ static run_result locked_run(const char *const *settings, const char *mode)
     snprintf(script[1].text, sizeof script[1].text, "none");
     scenario s = {.parameters = rig_parameters(settings), .actions = script, .action_count = 2};
     run_result result;
-    if (run_scenario(&s, true, &result) != STATUS_OK) {
-        fail_msg("%s: %s", mode, result.summary.message);
-    }
+    fail_if(run_scenario(&s, true, &result) != STATUS_OK, "%s: %s", mode, result.summary.message);
     return result;
 }
 
@@ -32,9 +28,8 @@ static const sample *answer_at(const run_result *r, double time)
     return &r->trace.rows[trace_row_at(&r->trace, time + 1e-4)];
 }
 
-static void every_lockable_law_stays_in_every_mode_of_its_own(void **state)
+TEST(every_lockable_law_stays_in_every_mode_of_its_own)
 {
-    (void)state;
     int lockable = 0;
     char setting[64];
     for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
@@ -45,11 +40,10 @@ static void every_lockable_law_stays_in_every_mode_of_its_own(void **state)
             run_result r = locked_run(SETTINGS(setting), c->modes[mode]);
             for (size_t i = 0; i < r.trace.row_count; i++) {
                 const sample *row = &r.trace.rows[i];
-                if (row->time > LOCK_TIME && row->time < RELEASE_TIME &&
-                    row->controller_mode != mode) {
-                    fail_msg("%s leaves %s for mode %g at %g s", c->name, c->modes[mode],
-                             row->controller_mode, row->time);
-                }
+                fail_if(row->time > LOCK_TIME && row->time < RELEASE_TIME &&
+                            row->controller_mode != mode,
+                        "%s leaves %s for mode %g at %g s", c->name, c->modes[mode],
+                        row->controller_mode, row->time);
             }
             run_finish(&r);
         }
@@ -57,9 +51,8 @@ static void every_lockable_law_stays_in_every_mode_of_its_own(void **state)
     assert_true(lockable >= 10);
 }
 
-static void approach_means_the_approach_command(void **state)
+TEST(approach_means_the_approach_command)
 {
-    (void)state;
     static const char *const laws[] = {"hybrid",   "recovering",     "reverse-torque",
                                        "force-pd", "force-integral", "discontinuous",
                                        "optimal"};
@@ -76,9 +69,8 @@ static void approach_means_the_approach_command(void **state)
     }
 }
 
-static void force_means_the_force_law_at_once(void **state)
+TEST(force_means_the_force_law_at_once)
 {
-    (void)state;
     // in free flight, from the first sample on
     run_result r =
         rig_run(SETTINGS("control.law=hybrid", "control.lock=force", "sensor.ideal=true"), true);
@@ -92,9 +84,8 @@ static void force_means_the_force_law_at_once(void **state)
     run_finish(&r);
 }
 
-static void impact_mode_is_planned_anew_and_waits_at_its_end(void **state)
+TEST(impact_mode_is_planned_anew_and_waits_at_its_end)
 {
-    (void)state;
     run_result r = locked_run(
         SETTINGS("control.law=hybrid", "sensor.ideal=true", "control.transition_time=0.2"),
         "impact");
@@ -113,9 +104,8 @@ static void impact_mode_is_planned_anew_and_waits_at_its_end(void **state)
     run_finish(&r);
 }
 
-static void release_goes_on_from_the_command_in_effect(void **state)
+TEST(release_goes_on_from_the_command_in_effect)
 {
-    (void)state;
     static const char *const cases[][2] = {
         {"hybrid", "force"},           {"recovering", "force"}, {"force-pd", "contact"},
         {"force-integral", "contact"}, {"optimal", "hold"},     {"force-integral", "approach"},
@@ -127,18 +117,15 @@ static void release_goes_on_from_the_command_in_effect(void **state)
         run_result r = locked_run(SETTINGS(setting, "sensor.ideal=true"), cases[i][1]);
         double last = answer_at(&r, RELEASE_TIME - 0.005)->command;
         double next = answer_at(&r, RELEASE_TIME)->command;
-        if (fabs(next - last) > 0.1) {
-            fail_msg("%s released from %s jumps from %g V to %g V", cases[i][0], cases[i][1], last,
-                     next);
-        }
+        fail_if(fabs(next - last) > 0.1, "%s released from %s jumps from %g V to %g V", cases[i][0],
+                cases[i][1], last, next);
         run_finish(&r);
     }
 }
 
 // Held in the approach while the beam presses, the observers lose neither arm nor wall.
-static void observers_survive_a_lock_in_contact(void **state)
+TEST(observers_survive_a_lock_in_contact)
 {
-    (void)state;
     static const char *const laws[] = {"control.law=optimal", "control.law=predictive"};
     static const char *const modes[] = {"approach", "press", "hold"};
     for (size_t i = 0; i < 6; i++) {
@@ -149,9 +136,8 @@ static void observers_survive_a_lock_in_contact(void **state)
     }
 }
 
-static void unknown_modes_are_refused(void **state)
+TEST(unknown_modes_are_refused)
 {
-    (void)state;
     static const struct {
         const char *law, *mode, *why;
     } cases[] = {
@@ -181,9 +167,8 @@ static void keep_sentences(void *context, const char *sentence)
     snprintf(all + strlen(all), 1024 - strlen(all), "%s\n", sentence);
 }
 
-static void files_are_checked_where_the_lock_stands(void **state)
+TEST(files_are_checked_where_the_lock_stands)
 {
-    (void)state;
     const char *text = "title: t\n"
                        "control: {law: hybrid, lock: pres}\n"
                        "script:\n"
@@ -208,9 +193,8 @@ static void assert_same_rows(const trace *a, const trace *b)
     assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
 }
 
-static void lock_is_an_input_that_a_saved_scenario_repeats(void **state)
+TEST(lock_is_an_input_that_a_saved_scenario_repeats)
 {
-    (void)state;
     const int lock = PARAMETER_INDEX(control.lock);
     scenario s, saved;
     session e;
@@ -253,9 +237,8 @@ static void lock_is_an_input_that_a_saved_scenario_repeats(void **state)
 
 // Held in the pressing mode before there is a wall to press on, the observer follows the flight and
 // the law goes for where the wall is believed to be; what it then presses with is what is wanted.
-static void pressing_from_the_start_finds_the_wall(void **state)
+TEST(pressing_from_the_start_finds_the_wall)
 {
-    (void)state;
     const char *const laws[] = {"control.law=optimal", "control.law=predictive"};
     for (int i = 0; i < 2; i++) {
         summary s = rig_summary(SETTINGS(laws[i], "control.lock=press"));
@@ -267,9 +250,8 @@ static void pressing_from_the_start_finds_the_wall(void **state)
 
 // Every lockable law is in the mode that it is told, from one to the next, in flight as in contact,
 // and with the printed arm, whose steps the sensors sample just the same.
-static void every_mode_is_gone_into_from_every_other(void **state)
+TEST(every_mode_is_gone_into_from_every_other)
 {
-    (void)state;
     enum { MOST = 32 };
     const int lock = PARAMETER_INDEX(control.lock);
     const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
@@ -307,24 +289,19 @@ static void every_mode_is_gone_into_from_every_other(void **state)
                       .actions = script,
                       .action_count = count};
         run_result r;
-        if (run_scenario(&s, true, &r) != STATUS_OK) {
-            fail_msg("%s: %s", c->name, r.summary.message);
-        }
+        fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s: %s", c->name, r.summary.message);
         for (int i = 0; i < count; i++) {
             const double then = script[i].time + 0.006, is = answer_at(&r, then)->controller_mode;
-            if (is != mode[i]) {
-                fail_msg("%s, %s: mode %g, not %d, at %g s", c->name, models[law / LAW_PLUGIN], is,
-                         mode[i], then);
-            }
+            fail_if(is != mode[i], "%s, %s: mode %g, not %d, at %g s", c->name,
+                    models[law / LAW_PLUGIN], is, mode[i], then);
         }
         run_finish(&r);
     }
 }
 
 // No more names are written than there is room for.
-static void names_of_modes_keep_to_their_room(void **state)
+TEST(names_of_modes_keep_to_their_room)
 {
-    (void)state;
     parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
     char names[3][MODE_NAME_SIZE] = {"", "", "untouched"};
     bool lockable;
@@ -337,9 +314,8 @@ static void names_of_modes_keep_to_their_room(void **state)
 }
 
 // A plug-in is opened where it is the law and may be; one that is only named changes nothing.
-static void only_the_law_itself_gives_modes(void **state)
+TEST(only_the_law_itself_gives_modes)
 {
-    (void)state;
     char names[8][MODE_NAME_SIZE];
     bool lockable = false;
     parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
@@ -362,9 +338,8 @@ static void only_the_law_itself_gives_modes(void **state)
     }
 }
 
-static void a_law_of_no_modes_has_none_to_be_held_in(void **state)
+TEST(a_law_of_no_modes_has_none_to_be_held_in)
 {
-    (void)state;
     static const char *const none[] = {NULL}, *const one[] = {"only", NULL};
     controller law = {.name = "own", .lockable = true, .modes = none};
     fault f = {0};
@@ -386,25 +361,4 @@ static void a_law_of_no_modes_has_none_to_be_held_in(void **state)
     law.modes = NULL;
     assert_int_equal(rig_find_mode(&law, "only", &mode, &f), STATUS_BAD_SCENARIO);
     assert_int_equal(rig_find_mode(&law, "", &mode, &f), STATUS_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(only_the_law_itself_gives_modes),
-        cmocka_unit_test(a_law_of_no_modes_has_none_to_be_held_in),
-        cmocka_unit_test(names_of_modes_keep_to_their_room),
-        cmocka_unit_test(every_lockable_law_stays_in_every_mode_of_its_own),
-        cmocka_unit_test(approach_means_the_approach_command),
-        cmocka_unit_test(force_means_the_force_law_at_once),
-        cmocka_unit_test(impact_mode_is_planned_anew_and_waits_at_its_end),
-        cmocka_unit_test(release_goes_on_from_the_command_in_effect),
-        cmocka_unit_test(observers_survive_a_lock_in_contact),
-        cmocka_unit_test(unknown_modes_are_refused),
-        cmocka_unit_test(files_are_checked_where_the_lock_stands),
-        cmocka_unit_test(lock_is_an_input_that_a_saved_scenario_repeats),
-        cmocka_unit_test(every_mode_is_gone_into_from_every_other),
-        cmocka_unit_test(pressing_from_the_start_finds_the_wall),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,8 +1,6 @@
 // Control laws over many beliefs: the set, the judgement, and that it depends on the seed alone.
 #include "src/study/robust.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "src/study/store/sweep_store.h"
@@ -18,9 +16,8 @@ static void write_set(char *path, const char *text)
     close(descriptor);
 }
 
-static void a_set_is_its_lines(void **state)
+TEST(a_set_is_its_lines)
 {
-    (void)state;
     char path[32];
     robust_set set;
     fault f;
@@ -48,9 +45,8 @@ static void a_set_is_its_lines(void **state)
     }
 }
 
-static void cases_are_what_differs(void **state)
+TEST(cases_are_what_differs)
 {
-    (void)state;
     char path[32];
     robust_set set;
     fault f;
@@ -131,9 +127,8 @@ static void cases_are_what_differs(void **state)
 }
 
 // A push that would never act, or not on this arm, and what the scenario has besides.
-static void pushes_of_a_case_must_act(void **state)
+TEST(pushes_of_a_case_must_act)
 {
-    (void)state;
     static const struct {
         const char *text, *says;
     } wrong[] = {{"a=1\n\ncase late: push=1@1.1\n", ":3: case 'late': a push at 1.1 s is outside"},
@@ -150,9 +145,8 @@ static void pushes_of_a_case_must_act(void **state)
         write_set(path, wrong[i].text);
         assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
         assert_int_not_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
-        if (strstr(f.text, wrong[i].says) == NULL) {
-            fail_msg("'%s' does not say '%s'", f.text, wrong[i].says);
-        }
+        fail_if(strstr(f.text, wrong[i].says) == NULL, "'%s' does not say '%s'", f.text,
+                wrong[i].says);
         robust_case_finish(&derived);
         robust_set_finish(&set);
         unlink(path);
@@ -170,9 +164,8 @@ static void pushes_of_a_case_must_act(void **state)
 }
 
 // Whatever stands in the place of a set is refused once, and the caller goes on.
-static void what_is_no_set_is_refused(void **state)
+TEST(what_is_no_set_is_refused)
 {
-    (void)state;
     static const char *const places[] = {".", "/dev/full", "/dev/zero", "/dev/null", "/nowhere"};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         robust_set set;
@@ -214,9 +207,8 @@ static char *judged(int law, char *const *lines, int count, size_t runs, int job
 }
 
 // Sets as short and as long as they may be, cases with as many pushes and settings as there are.
-static void sets_have_limits(void **state)
+TEST(sets_have_limits)
 {
-    (void)state;
     enum { LONGEST = 65536 };
     char path[32];
     robust_set set;
@@ -307,9 +299,8 @@ static void sets_have_limits(void **state)
     unlink(path);
 }
 
-static void threads_change_nothing(void **state)
+TEST(threads_change_nothing)
 {
-    (void)state;
     char *const lines[] = {"belief.k2_factor=0.75:1.25", "control.seed=1:1000"};
     robust_law one, two;
     char *alone = judged(LAW_HYBRID, lines, 2, 12, 1, &one);
@@ -323,9 +314,8 @@ static void threads_change_nothing(void **state)
 }
 
 // One run: every quantile is its value.
-static void one_run_is_all_its_quantiles(void **state)
+TEST(one_run_is_all_its_quantiles)
 {
-    (void)state;
     char *const lines[] = {"wall.kind=point"};
     robust_law found;
     free(judged(LAW_HYBRID, lines, 1, 1, 1, &found));
@@ -340,9 +330,8 @@ static void one_run_is_all_its_quantiles(void **state)
     robust_law_finish(&found);
 }
 
-static void quantiles_rise_and_the_observer_law_stands_the_set(void **state)
+TEST(quantiles_rise_and_the_observer_law_stands_the_set)
 {
-    (void)state;
     char *const lines[] = {"belief.mass_factor=0.85:1.15", "belief.torque_factor=0.85:1.15",
                            "belief.friction_factor=0.7:1.3", "belief.wall_error=-0.03:0.03",
                            "control.seed=1:1000"};
@@ -360,9 +349,8 @@ static void quantiles_rise_and_the_observer_law_stands_the_set(void **state)
 }
 
 // A run that never settles counts as the worst.
-static void what_never_settles_is_in_no_quantile(void **state)
+TEST(what_never_settles_is_in_no_quantile)
 {
-    (void)state;
     char *const lines[] = {"initial.angle=-2.9,-0.1"};
     robust_law found;
     free(judged(LAW_HYBRID, lines, 1, 4, 1, &found));
@@ -394,9 +382,7 @@ static void check_table(void (*writes)(FILE *, const robust_table *), const robu
     const int columns = count_in_line(text, separator);
     assert_true(columns > 5);
     for (int i = 0; i < lines; i++) {
-        if (count_in_line(line, separator) != columns) {
-            fail_msg("not %d columns in: %s", columns, line);
-        }
+        fail_if(count_in_line(line, separator) != columns, "not %d columns in: %s", columns, line);
         line = strchr(line, '\n') + 1;
     }
     assert_string_equal(line, "");
@@ -407,9 +393,8 @@ static void check_table(void (*writes)(FILE *, const robust_table *), const robu
     free(text);
 }
 
-static void tables_have_a_line_a_law(void **state)
+TEST(tables_have_a_line_a_law)
 {
-    (void)state;
     const double never = (double)NAN;
     robust_law laws[] = {
         {.law = "hybrid", .runs = 10, .settled = 1, .overshoot = {3, 8, never}, .against = never},
@@ -430,9 +415,8 @@ static void tables_have_a_line_a_law(void **state)
 }
 
 // The text says how many runs failed and rounds large numbers; JSON names what there is.
-static void texts_and_json_say_what_is_there(void **state)
+TEST(texts_and_json_say_what_is_there)
 {
-    (void)state;
     robust_law laws[] = {{.law = "hybrid", .runs = 10, .failed = 3, .overshoot = {12345.6, 2, 3}}};
     robust_table table = {"test", laws, 1, NULL};
     char *text = NULL;
@@ -460,9 +444,8 @@ static void texts_and_json_say_what_is_there(void **state)
 
 // A force limit is what a run may not exceed, where one is told; chains are judged by the smoothed
 // force.
-static void a_limit_says_what_is_too_much(void **state)
+TEST(a_limit_says_what_is_too_much)
 {
-    (void)state;
     char *const low[] = {"control.force_limit=0.5"}, *const high[] = {"control.force_limit=100"};
     char *const links[] = {"arm.links=3"};
     robust_law found;
@@ -513,23 +496,4 @@ static void a_limit_says_what_is_too_much(void **state)
     robust_law_finish(NULL);
     robust_set_finish(NULL);
     robust_case_finish(NULL);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tables_have_a_line_a_law),
-        cmocka_unit_test(texts_and_json_say_what_is_there),
-        cmocka_unit_test(a_limit_says_what_is_too_much),
-        cmocka_unit_test(a_set_is_its_lines),
-        cmocka_unit_test(cases_are_what_differs),
-        cmocka_unit_test(pushes_of_a_case_must_act),
-        cmocka_unit_test(what_is_no_set_is_refused),
-        cmocka_unit_test(sets_have_limits),
-        cmocka_unit_test(threads_change_nothing),
-        cmocka_unit_test(one_run_is_all_its_quantiles),
-        cmocka_unit_test(quantiles_rise_and_the_observer_law_stands_the_set),
-        cmocka_unit_test(what_never_settles_is_in_no_quantile),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

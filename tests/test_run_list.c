@@ -1,16 +1,13 @@
 // Several runs: pinning, comparing, going on with one of them, differences and sweeps.
 #include "tests/explorer_on_screen.h"
 
-#include <math.h>
-
 static double peak(const explorer *ex)
 {
     return ex->state.session.run.summary.peak_force_N;
 }
 
-static void test_runs_are_pinned_with_what_was_changed(void **state)
+TEST(test_runs_are_pinned_with_what_was_changed)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     const run_list *list = &ex.state.pinned;
@@ -39,9 +36,8 @@ static void test_runs_are_pinned_with_what_was_changed(void **state)
 }
 
 // A number that is cut reads like another one.
-static void test_names_are_cut_between_words(void **state)
+TEST(test_names_are_cut_between_words)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":seek 0.1234<Enter>:set motor.voltage 0.25<Enter>b");
@@ -60,9 +56,8 @@ static void test_names_are_cut_between_words(void **state)
     explorer_finish(&ex);
 }
 
-static void test_no_more_than_seven_and_none_is_lost(void **state)
+TEST(test_no_more_than_seven_and_none_is_lost)
 {
-    (void)state;
     explorer ex;
     char keys[64];
     open_explorer(&ex, "corrected/first-impact");
@@ -86,9 +81,8 @@ static void test_no_more_than_seven_and_none_is_lost(void **state)
     explorer_finish(&ex);
 }
 
-static void test_taking_a_run_brings_all_of_it_back(void **state)
+TEST(test_taking_a_run_brings_all_of_it_back)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     const double opened = peak(&ex);
@@ -108,9 +102,8 @@ static void test_taking_a_run_brings_all_of_it_back(void **state)
     explorer_finish(&ex);
 }
 
-static void test_hidden_runs_are_not_drawn(void **state)
+TEST(test_hidden_runs_are_not_drawn)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "b:set arm.k2 5<Enter>b:set arm.k2 6<Enter>");
@@ -127,9 +120,8 @@ static void test_hidden_runs_are_not_drawn(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_run_of_a_few_rows_is_pinned_too(void **state)
+TEST(test_a_run_of_a_few_rows_is_pinned_too)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":set run.duration 0.005<Enter>b");
@@ -139,9 +131,8 @@ static void test_a_run_of_a_few_rows_is_pinned_too(void **state)
     explorer_finish(&ex);
 }
 
-static void test_the_difference_is_that_of_the_runs(void **state)
+TEST(test_the_difference_is_that_of_the_runs)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":seek 0.1<Enter>b");
@@ -168,9 +159,8 @@ static void test_the_difference_is_that_of_the_runs(void **state)
 
 // Contact, sticking and modes are no amounts: beside the differences they are the present run's, in
 // the curves, at the cursor, in the lanes and in the statistics.
-static void test_states_are_not_subtracted(void **state)
+TEST(test_states_are_not_subtracted)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "compare/hybrid");
     press(&ex, ":seek 0.4<Enter>b:set control.force 2<Enter>:seek 1<Enter>8D");
@@ -195,9 +185,8 @@ static void test_states_are_not_subtracted(void **state)
 }
 
 // An integral over time has a unit of its own, where the panel is narrow, too.
-static void test_an_integral_has_its_own_unit(void **state)
+TEST(test_an_integral_has_its_own_unit)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, "X:trace force gap_velocity hub_acceleration contact<Enter>");
@@ -209,9 +198,7 @@ static void test_an_integral_has_its_own_unit(void **state)
             assert_non_null(line);
             const size_t length = strcspn(line, "\n");
             const char *unit = memmem(line, length, units[i], strlen(units[i]));
-            if (unit == NULL) {
-                fail_msg("no '%s' in '%.*s'", units[i], (int)length, line);
-            }
+            fail_if(unit == NULL, "no '%s' in '%.*s'", units[i], (int)length, line);
         }
 
         // a state has the time that it is on
@@ -221,9 +208,8 @@ static void test_an_integral_has_its_own_unit(void **state)
     explorer_finish(&ex);
 }
 
-static void test_a_sweep_gives_what_single_runs_give(void **state)
+TEST(test_a_sweep_gives_what_single_runs_give)
 {
-    (void)state;
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, ":sweep motor.voltage=0.5:2:4<Enter>");
@@ -265,21 +251,4 @@ static void test_a_sweep_gives_what_single_runs_give(void **state)
     press(&ex, ":sweep motor.volts=1:2:4<Enter>");
     assert_shows(&ex, "did you mean");
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_runs_are_pinned_with_what_was_changed),
-        cmocka_unit_test(test_names_are_cut_between_words),
-        cmocka_unit_test(test_no_more_than_seven_and_none_is_lost),
-        cmocka_unit_test(test_taking_a_run_brings_all_of_it_back),
-        cmocka_unit_test(test_hidden_runs_are_not_drawn),
-        cmocka_unit_test(test_a_run_of_a_few_rows_is_pinned_too),
-        cmocka_unit_test(test_the_difference_is_that_of_the_runs),
-        cmocka_unit_test(test_states_are_not_subtracted),
-        cmocka_unit_test(test_an_integral_has_its_own_unit),
-        cmocka_unit_test(test_a_sweep_gives_what_single_runs_give),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

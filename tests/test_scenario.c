@@ -5,9 +5,8 @@
 
 // ---- what a file may say ------------------------------------------------------------------------
 
-static void a_whole_scenario_is_read(void **state)
+TEST(a_whole_scenario_is_read)
 {
-    (void)state;
     scenario s = good("# a comment\n"
                       "title: 'Contact force: 1 V'\n"
                       "description: >\n"
@@ -48,9 +47,8 @@ static void a_whole_scenario_is_read(void **state)
     scenario_finish(&s);
 }
 
-static void what_is_left_out_has_a_default(void **state)
+TEST(what_is_left_out_has_a_default)
 {
-    (void)state;
     scenario s = good("{}");
     parameters p;
     fault f;
@@ -70,18 +68,16 @@ static void what_is_left_out_has_a_default(void **state)
     scenario_finish(&s);
 }
 
-static void the_order_of_groups_does_not_matter(void **state)
+TEST(the_order_of_groups_does_not_matter)
 {
-    (void)state;
     scenario s = good("script: [{at: 4 s, push: -0.02 N s}]\nrun: {duration: 5 s}\n");
     assert_int_equal(s.actions[0].kind, ACTION_PUSH);
     check_close(s.actions[0].value, -0.02, 0);
     scenario_finish(&s);
 }
 
-static void a_byte_order_mark_and_windows_lines_are_fine(void **state)
+TEST(a_byte_order_mark_and_windows_lines_are_fine)
 {
-    (void)state;
     scenario s = good("\xef\xbb\xbf"
                       "title: x\r\narm:\r\n  k2: 5\r\n");
     assert_string_equal(s.title, "x");
@@ -92,9 +88,8 @@ static void a_byte_order_mark_and_windows_lines_are_fine(void **state)
                 1, 1, "'title'");
 }
 
-static void times_at_both_ends_of_the_run_are_inside(void **state)
+TEST(times_at_both_ends_of_the_run_are_inside)
 {
-    (void)state;
     scenario s = good("script: [{at: 0, push: 1}, {at: 1 s, push: 2}]");
     assert_int_equal(s.action_count, 2);
     scenario_finish(&s);
@@ -102,9 +97,8 @@ static void times_at_both_ends_of_the_run_are_inside(void **state)
 
 // ---- faults of parameters -----------------------------------------------------------------------
 
-static void unknown_keys_suggest_what_was_meant(void **state)
+TEST(unknown_keys_suggest_what_was_meant)
 {
-    (void)state;
     check_fault("titel: x\n", 1, 1, "did you mean 'title'?");
     check_fault("title: x\nmotr: {voltage: 1}\n", 2, 1, "did you mean 'motor'?");
     check_fault("title: x\nqwertyuiop: 1\n", 2, 1,
@@ -120,9 +114,8 @@ static void unknown_keys_suggest_what_was_meant(void **state)
     check_fault("arm.k2: 5\n", 1, 1, "expected 'k2:' under 'arm:'");
 }
 
-static void wrong_values_are_named_with_their_place(void **state)
+TEST(wrong_values_are_named_with_their_place)
 {
-    (void)state;
     check_fault("arm:\n  k2: stiff\n", 2, 7, "arm.k2 = 'stiff' is not a number");
     check_fault("arm:\n  k2: -1\n", 2, 7, "out of range, expected 1e-06 to 1e+09 N m/rad");
     check_fault("arm:\n  k2: 5 N/m\n", 2, 7, "expected N m/rad");
@@ -134,9 +127,8 @@ static void wrong_values_are_named_with_their_place(void **state)
     check_fault("printed: {sign_dead_band: perhaps}\n", 1, 27, "true nor false");
 }
 
-static void wrong_shapes_are_named_with_their_place(void **state)
+TEST(wrong_shapes_are_named_with_their_place)
 {
-    (void)state;
     check_fault("arm: 3\n", 1, 6, "arm is a single value, expected keys");
     check_fault("arm: [1]\n", 1, 6, "arm is a list, expected keys");
     check_fault("title: x\narm:\n", 2, 5, "arm is empty, expected keys");
@@ -152,17 +144,15 @@ static void wrong_shapes_are_named_with_their_place(void **state)
     check_fault("? [a, b]\n: 1\n", 1, 3, "the key is a list, expected a word");
 }
 
-static void a_key_may_be_there_once(void **state)
+TEST(a_key_may_be_there_once)
 {
-    (void)state;
     check_fault("arm:\n  k2: 5\n  k1: 7\n  k2: 6\n", 4, 3, "first at line 2");
     check_fault("arm: {k2: 5}\nmotor: {voltage: 1}\narm: {k1: 7}\n", 3, 1, "'arm' is there twice");
     check_fault("title: x\ntitle: x\n", 2, 1, "first at line 1");
 }
 
-static void impossible_combinations_point_at_the_key(void **state)
+TEST(impossible_combinations_point_at_the_key)
 {
-    (void)state;
     check_fault("arm:\n  model: printed\n  links: 5\n", 3, 10, "the printed model has two links");
     check_fault("arm: {model: printed}\nwall: {kind: plane}\n", 2, 14, "not plane");
     check_fault("arm:\n  links: 3\n  link_inertia: 1e-5\n", 3, 17, "two links only");
@@ -188,9 +178,8 @@ static void impossible_combinations_point_at_the_key(void **state)
 }
 
 // Conditions of one parameter on others, each reported at the place of one of them.
-static void what_does_not_go_together_is_refused(void **state)
+TEST(what_does_not_go_together_is_refused)
 {
-    (void)state;
     static const struct {
         const char *text, *what;
     } cases[] = {
@@ -228,18 +217,16 @@ static void what_does_not_go_together_is_refused(void **state)
         scenario s;
         sentences all;
         const status code = parse(&s, cases[i].text, &all);
-        if (code != STATUS_BAD_SCENARIO || all.count != 1 ||
-            strstr(all.text, cases[i].what) == NULL) {
-            fail_msg("%s: %d faults, expected one about '%s':\n%s", cases[i].text, all.count,
-                     cases[i].what, all.text);
-        }
+        fail_if(code != STATUS_BAD_SCENARIO || all.count != 1 ||
+                    strstr(all.text, cases[i].what) == NULL,
+                "%s: %d faults, expected one about '%s':\n%s", cases[i].text, all.count,
+                cases[i].what, all.text);
     }
 }
 
 // However the reader comes upon them: the keys of the whole before those within.
-static void faults_of_one_line_are_told_from_left_to_right(void **state)
+TEST(faults_of_one_line_are_told_from_left_to_right)
 {
-    (void)state;
     scenario s;
     sentences all;
     const char *text = "{wall: {knd: 3}, script: [{at: x}], w: 1, arm: {lnks: 3}}\n";
@@ -254,9 +241,8 @@ static void faults_of_one_line_are_told_from_left_to_right(void **state)
 }
 
 // Blanks alone are no text, and a unit's sign is no control character.
-static void prose_is_text(void **state)
+TEST(prose_is_text)
 {
-    (void)state;
     check_fault("title: ' '\n", 1, 8, "title is empty, expected text");
     check_fault("title: t\ndescription: \" \\n \"\n", 2, 14, "expected text");
     check_fault("title: \"a \\x9b\"\n", 1, 8, "a control character");
@@ -265,9 +251,8 @@ static void prose_is_text(void **state)
     scenario_finish(&s);
 }
 
-static void a_title_has_a_limit(void **state)
+TEST(a_title_has_a_limit)
 {
-    (void)state;
     char text[400] = "title: ";
     memset(text + 7, 'x', 300);
     check_fault(text, 1, 8, "at most 200");
@@ -275,9 +260,8 @@ static void a_title_has_a_limit(void **state)
 
 // ---- faults of script and expect ----------------------------------------------------------------
 
-static void faults_of_actions(void **state)
+TEST(faults_of_actions)
 {
-    (void)state;
     check_fault("script: {at: 1}\n", 1, 9, "script is a map of keys, expected a list");
     check_fault("script:\n  - at\n", 2, 5, "an action is a single value");
     check_fault("script:\n  - push: 1\n", 2, 5, "without a time");
@@ -300,9 +284,8 @@ static void faults_of_actions(void **state)
                 "takes no pushes");
 }
 
-static void faults_of_set(void **state)
+TEST(faults_of_set)
 {
-    (void)state;
     check_fault("script:\n  - at: 0.5\n    set: 3\n", 3, 10, "set is a single value");
     check_fault("script:\n  - at: 0.5\n    set: {arm.links: 3}\n", 3, 11, "cannot change during");
     check_fault("script:\n  - at: 0.5\n    set: {motor.voltag: 3}\n", 3, 11,
@@ -315,9 +298,8 @@ static void faults_of_set(void **state)
 }
 
 // What a script may change is what the table says, from its first parameter to its last.
-static void only_timed_parameters_are_set_by_a_script(void **state)
+TEST(only_timed_parameters_are_set_by_a_script)
 {
-    (void)state;
     for (int i = 0; i < parameter_count; i++) {
         char text[256];
         snprintf(text, sizeof text, "script:\n  - at: 0.5\n    set: {%s: no}\n",
@@ -336,9 +318,8 @@ static void only_timed_parameters_are_set_by_a_script(void **state)
     }
 }
 
-static void faults_of_expectations(void **state)
+TEST(faults_of_expectations)
 {
-    (void)state;
     check_fault("expect: 3\n", 1, 9, "expect is a single value");
     check_fault("expect:\n  impact: {value: 1, tolerance: 0}\n", 2, 3, "did you mean 'impacts'?");
     check_fault("expect:\n  beauty_of_it_all: null\n", 2, 3, "unknown quantity");
@@ -354,9 +335,8 @@ static void faults_of_expectations(void **state)
     check_fault("expect:\n  impacts: {value: 3, tolerance: 1, by: 2}\n", 2, 37, "unknown key 'by'");
 }
 
-static void several_faults_are_all_reported(void **state)
+TEST(several_faults_are_all_reported)
 {
-    (void)state;
     check_faults(
         "titel: x\n"
         "arm:\n"
@@ -382,9 +362,8 @@ static void several_faults_are_all_reported(void **state)
 }
 
 // A list may be written as YAML's or as text; in either it has an end.
-static void lists_are_read_in_both_forms(void **state)
+TEST(lists_are_read_in_both_forms)
 {
-    (void)state;
     scenario s = good("title: t\narm: {links: 3, joint_stiffness: [10, 12.5]}\n");
     assert_string_equal(s.parameters.arm.joint_stiffness, "10, 12.5");
     scenario_finish(&s);
@@ -403,9 +382,8 @@ static void lists_are_read_in_both_forms(void **state)
 }
 
 // A value that the parameter does not accept changes nothing, for any origin of the action.
-static void an_action_that_cannot_be_changes_nothing(void **state)
+TEST(an_action_that_cannot_be_changes_nothing)
 {
-    (void)state;
     scenario s = good("title: t\n");
     const parameters before = s.parameters;
     const action wrong = {.kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k2), .value = -1};
@@ -418,9 +396,8 @@ static void an_action_that_cannot_be_changes_nothing(void **state)
 
 // One that the law does not know from the start is said even where a script follows.
 // A list may be as long as a text: with one character more it is refused where it becomes too long.
-static void a_list_has_a_limit(void **state)
+TEST(a_list_has_a_limit)
 {
-    (void)state;
     for (int over = -1; over < 2; over++) {
         char number[PARAMETER_TEXT_SIZE + 8], text[2 * PARAMETER_TEXT_SIZE];
         const int digits = PARAMETER_TEXT_SIZE - 1 - (int)strlen(", 7.5") + over;
@@ -441,9 +418,8 @@ static void a_list_has_a_limit(void **state)
 }
 
 // What the parser complains about at the end is not what stands behind the text.
-static void nothing_is_read_behind_the_end(void **state)
+TEST(nothing_is_read_behind_the_end)
 {
-    (void)state;
     scenario s;
     sentences all = {0};
     const char *text = "arm: [1\t";
@@ -454,17 +430,15 @@ static void nothing_is_read_behind_the_end(void **state)
     assert_null(strstr(all.text, "a tab"));
 }
 
-static void the_first_lock_is_one_of_the_laws_modes(void **state)
+TEST(the_first_lock_is_one_of_the_laws_modes)
 {
-    (void)state;
     check_fault("title: t\ncontrol: {law: hybrid, lock: nonsense}\n"
                 "script: [{at: 0.1, set: {motor.voltage: 1}}]\n",
                 2, 30, "nonsense");
 }
 
-static void a_scripted_lock_is_one_of_the_laws_modes(void **state)
+TEST(a_scripted_lock_is_one_of_the_laws_modes)
 {
-    (void)state;
     scenario s = good("title: t\ncontrol: {law: hybrid}\n"
                       "script: [{at: 0.1, set: {control.lock: force}}]\n");
     scenario_finish(&s);
@@ -473,44 +447,10 @@ static void a_scripted_lock_is_one_of_the_laws_modes(void **state)
                 3, 40, "nonsense");
 }
 
-static void an_expectation_may_be_exact(void **state)
+TEST(an_expectation_may_be_exact)
 {
-    (void)state;
     scenario s = good("title: t\nexpect: {impacts: {value: 2, tolerance: 0}}\n");
     check_close(s.expectations[0].tolerance, 0, 0);
     scenario_finish(&s);
     check_fault("title: t\nexpect: {impacts: {value: 2, tolerance: -1}}\n", 2, 41, "tolerance");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_expectation_may_be_exact),
-        cmocka_unit_test(a_scripted_lock_is_one_of_the_laws_modes),
-        cmocka_unit_test(a_whole_scenario_is_read),
-        cmocka_unit_test(what_is_left_out_has_a_default),
-        cmocka_unit_test(the_order_of_groups_does_not_matter),
-        cmocka_unit_test(a_byte_order_mark_and_windows_lines_are_fine),
-        cmocka_unit_test(times_at_both_ends_of_the_run_are_inside),
-        cmocka_unit_test(unknown_keys_suggest_what_was_meant),
-        cmocka_unit_test(wrong_values_are_named_with_their_place),
-        cmocka_unit_test(wrong_shapes_are_named_with_their_place),
-        cmocka_unit_test(a_key_may_be_there_once),
-        cmocka_unit_test(impossible_combinations_point_at_the_key),
-        cmocka_unit_test(what_does_not_go_together_is_refused),
-        cmocka_unit_test(faults_of_one_line_are_told_from_left_to_right),
-        cmocka_unit_test(prose_is_text),
-        cmocka_unit_test(lists_are_read_in_both_forms),
-        cmocka_unit_test(a_list_has_a_limit),
-        cmocka_unit_test(nothing_is_read_behind_the_end),
-        cmocka_unit_test(an_action_that_cannot_be_changes_nothing),
-        cmocka_unit_test(the_first_lock_is_one_of_the_laws_modes),
-        cmocka_unit_test(a_title_has_a_limit),
-        cmocka_unit_test(faults_of_actions),
-        cmocka_unit_test(faults_of_set),
-        cmocka_unit_test(only_timed_parameters_are_set_by_a_script),
-        cmocka_unit_test(faults_of_expectations),
-        cmocka_unit_test(several_faults_are_all_reported),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -72,9 +72,8 @@ static status open_here(scenario *s, const char *name, sentences *all)
     return result;
 }
 
-static void scenarios_open_by_name_and_by_file(void **state)
+TEST_BETWEEN(scenarios_open_by_name_and_by_file, make_folder, remove_folder)
 {
-    (void)state;
     scenario s;
     sentences all;
     char path[128];
@@ -93,9 +92,8 @@ static void scenarios_open_by_name_and_by_file(void **state)
     scenario_finish(&s);
 }
 
-static void an_unknown_name_suggests_the_nearest(void **state)
+TEST_BETWEEN(an_unknown_name_suggests_the_nearest, make_folder, remove_folder)
 {
-    (void)state;
     scenario s;
     sentences all;
     assert_int_equal(open_here(&s, "deep/alpha-8", &all), STATUS_BAD_ARGUMENT);
@@ -111,9 +109,8 @@ static void an_unknown_name_suggests_the_nearest(void **state)
     assert_int_equal(open_here(&s, "", &all), STATUS_BAD_ARGUMENT);
 }
 
-static void files_that_cannot_be_read(void **state)
+TEST_BETWEEN(files_that_cannot_be_read, make_folder, remove_folder)
 {
-    (void)state;
     scenario s;
     sentences all = {0};
     assert_int_equal(scenario_read(&s, "/nonexistent/x.yaml", NULL, keep_sentence, &all),
@@ -137,9 +134,8 @@ static void files_that_cannot_be_read(void **state)
 }
 
 // A link to a folder above would be listed for ever.
-static void links_in_a_circle_end(void **state)
+TEST_BETWEEN(links_in_a_circle_end, make_folder, remove_folder)
 {
-    (void)state;
     char circle[128], **names;
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     int count, found = 0;
@@ -158,9 +154,8 @@ static void links_in_a_circle_end(void **state)
     assert_int_equal(unlink(circle), 0);
 }
 
-static void the_list_is_complete_and_sorted(void **state)
+TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, remove_folder)
 {
-    (void)state;
     char **names;
     int count;
     fault f;
@@ -196,9 +191,8 @@ static void the_list_is_complete_and_sorted(void **state)
 }
 
 // However many folders are named, the last one counts too.
-static void every_folder_is_looked_into(void **state)
+TEST_BETWEEN(every_folder_is_looked_into, make_folder, remove_folder)
 {
-    (void)state;
     enum { FOLDERS = 100 };
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     char *all = NULL;
@@ -232,9 +226,8 @@ static void every_folder_is_looked_into(void **state)
     free(all);
 }
 
-static void every_shipped_scenario_reads_clean(void **state)
+TEST(every_shipped_scenario_reads_clean)
 {
-    (void)state;
     char **names;
     int count, thesis = 0;
     fault f;
@@ -242,9 +235,8 @@ static void every_shipped_scenario_reads_clean(void **state)
     for (int i = 0; i < count; i++) {
         scenario s;
         sentences all = {0};
-        if (scenario_open(&s, names[i], keep_sentence, &all) != STATUS_OK || all.count != 0) {
-            fail_msg("%s", all.text);
-        }
+        fail_if(scenario_open(&s, names[i], keep_sentence, &all) != STATUS_OK || all.count != 0,
+                "%s", all.text);
         // a title of its own, a description, and the thesis's figures on the thesis's model
         assert_string_not_equal(s.title, names[i]);
         assert_in_range(strlen(s.title), 8, 72);
@@ -264,9 +256,8 @@ static void every_shipped_scenario_reads_clean(void **state)
     assert_in_range(count - thesis, 10, 1000);
 }
 
-static void every_figure_and_table_of_the_thesis_has_its_scenario(void **state)
+TEST(every_figure_and_table_of_the_thesis_has_its_scenario)
 {
-    (void)state;
     for (int i = 1; i <= 14; i++) {
         scenario s;
         sentences all = {0};
@@ -288,9 +279,8 @@ static void every_figure_and_table_of_the_thesis_has_its_scenario(void **state)
 
 // ---- --set --------------------------------------------------------------------------------------
 
-static void an_override_sets_and_resolves(void **state)
+TEST(an_override_sets_and_resolves)
 {
-    (void)state;
     scenario s = good("arm: {k2: 5}\n");
     fault f;
     assert_int_equal(scenario_override(&s, "arm.k2=49.2 N m/rad", &f), STATUS_OK);
@@ -311,16 +301,14 @@ static void check_override(const char *text, const char *assignment, const char 
     assert_int_not_equal(scenario_override(&s, assignment, &f), STATUS_OK);
     assert_int_not_equal(f.code, STATUS_OK);
     snprintf(beginning, sizeof beginning, "--set %s: ", assignment);
-    if (strncmp(f.text, beginning, strlen(beginning)) != 0 || strstr(f.text, what) == NULL) {
-        fail_msg("'%s' does not begin with '%s' and say '%s'", f.text, beginning, what);
-    }
+    fail_if(strncmp(f.text, beginning, strlen(beginning)) != 0 || strstr(f.text, what) == NULL,
+            "'%s' does not begin with '%s' and say '%s'", f.text, beginning, what);
     assert_memory_equal(&s.parameters, &before, sizeof before);
     scenario_finish(&s);
 }
 
-static void a_wrong_override_changes_nothing(void **state)
+TEST(a_wrong_override_changes_nothing)
 {
-    (void)state;
     check_override("{}", "arm.k2", "PATH=VALUE");
     check_override("{}", "=3", "PATH=VALUE");
     check_override("{}", "", "PATH=VALUE");
@@ -348,9 +336,8 @@ static void a_wrong_override_changes_nothing(void **state)
     scenario_finish(&s);
 }
 
-static void an_endless_override_is_refused(void **state)
+TEST(an_endless_override_is_refused)
 {
-    (void)state;
     scenario s = good("{}");
     fault f;
     char text[5000];
@@ -393,9 +380,8 @@ static void check_written(const scenario *s)
     free(text);
 }
 
-static void written_scenarios_read_back(void **state)
+TEST(written_scenarios_read_back)
 {
-    (void)state;
     char **names;
     int count;
     assert_int_equal(scenario_list(&names, &count, NULL), STATUS_OK);
@@ -427,9 +413,8 @@ static char *file_of(const scenario *s)
 }
 
 // What YAML takes for the end of a line within a text comes back as it was.
-static void other_line_ends_read_back(void **state)
+TEST(other_line_ends_read_back)
 {
-    (void)state;
     scenario s = good("title: \"a \\L b\\P c\\\"f\"\n");
     assert_string_equal(s.title, "a \xe2\x80\xa8 b\xe2\x80\xa9 c\"f");
     char *file = file_of(&s);
@@ -441,9 +426,8 @@ static void other_line_ends_read_back(void **state)
 }
 
 // However long the title is and however much was changed, the file can be read, and tells of it.
-static void changed_scenarios_read_back(void **state)
+TEST(changed_scenarios_read_back)
 {
-    (void)state;
     for (int length = 1; length <= SCENARIO_TITLE; length++) {
         char head[SCENARIO_TITLE + 16];
         snprintf(
@@ -481,9 +465,8 @@ static void changed_scenarios_read_back(void **state)
 }
 
 // A lesson with every check, with and without what may be left out, is read back as it was.
-static void written_lessons_read_back(void **state)
+TEST(written_lessons_read_back)
 {
-    (void)state;
     scenario s = good("title: t\n"
                       "lesson:\n"
                       "  parameters: [arm.k2]\n"
@@ -518,9 +501,8 @@ static void written_lessons_read_back(void **state)
     scenario_finish(&back);
 }
 
-static void a_copy_shares_nothing_with_the_original(void **state)
+TEST(a_copy_shares_nothing_with_the_original)
 {
-    (void)state;
     char **names;
     int count;
     fault f;
@@ -544,30 +526,4 @@ static void a_copy_shares_nothing_with_the_original(void **state)
         free(names[i]);
     }
     free(names);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(scenarios_open_by_name_and_by_file, make_folder,
-                                        remove_folder),
-        cmocka_unit_test_setup_teardown(an_unknown_name_suggests_the_nearest, make_folder,
-                                        remove_folder),
-        cmocka_unit_test_setup_teardown(files_that_cannot_be_read, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(links_in_a_circle_end, make_folder, remove_folder),
-        cmocka_unit_test_setup_teardown(the_list_is_complete_and_sorted, make_folder,
-                                        remove_folder),
-        cmocka_unit_test_setup_teardown(every_folder_is_looked_into, make_folder, remove_folder),
-        cmocka_unit_test(every_shipped_scenario_reads_clean),
-        cmocka_unit_test(every_figure_and_table_of_the_thesis_has_its_scenario),
-        cmocka_unit_test(an_override_sets_and_resolves),
-        cmocka_unit_test(a_wrong_override_changes_nothing),
-        cmocka_unit_test(an_endless_override_is_refused),
-        cmocka_unit_test(written_scenarios_read_back),
-        cmocka_unit_test(other_line_ends_read_back),
-        cmocka_unit_test(changed_scenarios_read_back),
-        cmocka_unit_test(written_lessons_read_back),
-        cmocka_unit_test(a_copy_shares_nothing_with_the_original),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

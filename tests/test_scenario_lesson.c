@@ -2,9 +2,8 @@
 #include "src/tables/summary.h"
 #include "tests/scenario_fixture.h"
 
-static void faults_of_panes(void **state)
+TEST(faults_of_panes)
 {
-    (void)state;
     check_fault("panes: force\n", 1, 8, "panes is a single value, expected a list of signals");
     check_fault("panes: [force, forse]\n", 1, 16, "no signal 'forse'");
     check_fault("panes: [[force]]\n", 1, 9, "no signal 'a list'");
@@ -28,14 +27,12 @@ static void check_step(const char *step, const char *what)
     char text[1024];
     snprintf(text, sizeof text, "lesson: {steps: [%s]}\n", step);
     const status code = parse(&s, text, &all);
-    if (code != STATUS_BAD_SCENARIO || all.count != 1 || strstr(all.text, what) == NULL) {
-        fail_msg("%s: %d faults, expected one about '%s':\n%s", text, all.count, what, all.text);
-    }
+    fail_if(code != STATUS_BAD_SCENARIO || all.count != 1 || strstr(all.text, what) == NULL,
+            "%s: %d faults, expected one about '%s':\n%s", text, all.count, what, all.text);
 }
 
-static void faults_of_lessons(void **state)
+TEST(faults_of_lessons)
 {
-    (void)state;
     scenario s = good("lesson: {steps: [{say: a, choice: {of: [a, b], right: 2}}]}\n");
     assert_int_equal(s.lesson.steps[0].right, 1);
     scenario_finish(&s);
@@ -118,9 +115,8 @@ static void faults_of_lessons(void **state)
 }
 
 // A key that is no word is said; what its value would have been is missing then.
-static void keys_of_a_check_are_words(void **state)
+TEST(keys_of_a_check_are_words)
 {
-    (void)state;
     scenario s;
     sentences all;
     const char *text =
@@ -131,9 +127,8 @@ static void keys_of_a_check_are_words(void **state)
 }
 
 // Every field of every kind of step, and what is left out.
-static void everything_of_a_lesson_is_read(void **state)
+TEST(everything_of_a_lesson_is_read)
 {
-    (void)state;
     scenario s =
         good("lesson:\n"
              "  parameters: [arm.k2, motor.voltage, arm.k1, arm.EI, arm.mass, arm.model]\n"
@@ -217,15 +212,4 @@ static void everything_of_a_lesson_is_read(void **state)
     check_fault("lesson: {steps: [{say: a, number: {quantity: peek, within: 1}}]}\n", 1, 46,
                 "no quantity");
     check_fault("lesson: {steps: [{say: a}], parameters: [arm.k2, arm.kk]}\n", 1, 41, "arm.kk");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(faults_of_panes),
-        cmocka_unit_test(faults_of_lessons),
-        cmocka_unit_test(everything_of_a_lesson_is_read),
-        cmocka_unit_test(keys_of_a_check_are_words),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -4,9 +4,8 @@
 
 #include "src/scenario/yaml_tree.h"
 
-static void what_yaml_has_beyond_a_scenario_is_refused(void **state)
+TEST(what_yaml_has_beyond_a_scenario_is_refused)
 {
-    (void)state;
     check_fault("arm: &a\n  k2: 5\n", 1, 6, "anchor");
     check_fault("title: x\narm: *a\n", 2, 6, "alias");
     check_fault("arm: {k2: !!float 5}\n", 1, 11, "tag");
@@ -15,9 +14,8 @@ static void what_yaml_has_beyond_a_scenario_is_refused(void **state)
     check_fault("title: \"a\\0b\"\n", 1, 8, "NUL");
 }
 
-static void broken_text_is_placed_exactly(void **state)
+TEST(broken_text_is_placed_exactly)
 {
-    (void)state;
     check_fault("", 1, 1, "empty");
     check_fault("# only a comment\n", 1, 1, "empty");
     check_fault("title: x\narm: {k2: 5\n", 3, 1, "not valid YAML");
@@ -32,9 +30,8 @@ static void broken_text_is_placed_exactly(void **state)
     check_fault("title: \xc3\n", 1, 9, "UTF-8"); // where the character should go on
 }
 
-static void a_nul_byte_is_refused(void **state)
+TEST(a_nul_byte_is_refused)
 {
-    (void)state;
     static const char text[] = "title: a\0b\n";
     scenario s;
     sentences all = {0};
@@ -43,18 +40,16 @@ static void a_nul_byte_is_refused(void **state)
     assert_int_equal(strncmp(all.text, "f.yaml:1:9: ", 12), 0);
 }
 
-static void columns_count_characters(void **state)
+TEST(columns_count_characters)
 {
-    (void)state;
     check_faults("wall: {\"\xc3\xa4\xc3\xb6\xc3\xbc\": 1, angle: x}\n", 2,
                  (const char *const[]){"f.yaml:1:8: unknown key", "f.yaml:1:25: wall.angle"});
     check_fault("{title: \"\xce\xb8\xcc\x87\", arm: 3}\n", 1, 20, "arm is a single value");
 }
 
 // No sentence may carry what a terminal would obey.
-static void sentences_are_printable(void **state)
+TEST(sentences_are_printable)
 {
-    (void)state;
     static const char *const texts[] = {
         "arm: {k2: \"\\e[31m\"}\n", "\"\\a\\e]0;x\": 1\n", "arm: {\"a\\nb\": 1}\n",
         "arm: {model: \"\\x9b31m\"}\n",
@@ -81,9 +76,8 @@ static char *nested(int depth)
     return text;
 }
 
-static void depth_and_size_have_limits(void **state)
+TEST(depth_and_size_have_limits)
 {
-    (void)state;
     char *text = nested(1000000);
     check_fault(text, 1, 8 + TREE_MAX_DEPTH - 1, "nested too deeply");
     free(text);
@@ -110,9 +104,8 @@ static void depth_and_size_have_limits(void **state)
     free(text);
 }
 
-static void faults_come_in_the_order_of_their_places(void **state)
+TEST(faults_come_in_the_order_of_their_places)
 {
-    (void)state;
     scenario s;
     sentences all;
     assert_int_equal(
@@ -128,18 +121,4 @@ static void faults_come_in_the_order_of_their_places(void **state)
         before = next;
     }
     assert_int_equal(all.count, 4);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_yaml_has_beyond_a_scenario_is_refused),
-        cmocka_unit_test(broken_text_is_placed_exactly),
-        cmocka_unit_test(a_nul_byte_is_refused),
-        cmocka_unit_test(columns_count_characters),
-        cmocka_unit_test(sentences_are_printable),
-        cmocka_unit_test(depth_and_size_have_limits),
-        cmocka_unit_test(faults_come_in_the_order_of_their_places),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

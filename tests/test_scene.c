@@ -15,9 +15,8 @@ static double distance(vector a, vector b)
 
 // The curve starts and ends where the arm does, along its outer links, and touches every inner link
 // at its middle.
-static void test_curve(void **state)
+TEST(test_curve)
 {
-    (void)state;
     for (int links = 1; links <= 40; links += links < 3 ? 1 : 37) {
         vector joints[64] = {0}, curve[256];
         assert_in_range(scene_curve_length(links), 2, 256);
@@ -48,9 +47,8 @@ static void test_curve(void **state)
 }
 
 // At a row the joints are the row's; between rows the tip is between.
-static void test_joints(void **state)
+TEST(test_joints)
 {
-    (void)state;
     recorded r = record("corrected/five-links");
     const trace *t = &r.result.trace;
     const parameters *p = &r.scenario.parameters;
@@ -74,9 +72,8 @@ static void test_joints(void **state)
     forget(&r);
 }
 
-static void test_instants(void **state)
+TEST(test_instants)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     const summary *m = &r.result.summary;
     double times[6];
@@ -90,9 +87,8 @@ static void test_instants(void **state)
 }
 
 // Whatever is to be seen lies within the window, and fills it in one direction.
-static void test_camera(void **state)
+TEST(test_camera)
 {
-    (void)state;
     const vector points[] = {{0, 0, 0.1}, {1, 0.2, -0.1}, {0.9, -0.4, 0}, {0.2, 0.3, 0.05}};
     const camera_window window = {0.1, 0.05, 0.9, 0.8};
     const camera_view kinds[] = {{CAMERA_THREE_QUARTER, 0, 0},
@@ -131,9 +127,8 @@ static void test_camera(void **state)
 // --- pictures -------------------------------------------------------------------------------
 
 // The beam is there, the arrow only while the wall pushes.
-static void test_content(void **state)
+TEST(test_content)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     const scene_options cairo = {.renderer = RENDER_CAIRO, .plain = true};
     double before = 0.1, peak = 0.3634, pair[] = {0, 0.3634};
@@ -154,9 +149,8 @@ static void test_content(void **state)
 }
 
 // Presets, and two given angles.
-static void test_camera_words(void **state)
+TEST(test_camera_words)
 {
-    (void)state;
     camera_view view;
     assert_true(camera_read("tip", &view));
     assert_int_equal(view.kind, CAMERA_TIP);
@@ -172,9 +166,8 @@ static void test_camera_words(void **state)
 
 // Bending is drawn larger, while hub and tip stay where they are: the beam covers other pixels, the
 // arrow at its tip the same.
-static void test_exaggerated(void **state)
+TEST(test_exaggerated)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     const double peak = 0.3634;
     scene_options o = {.renderer = RENDER_CAIRO, .plain = true, .camera = {.kind = CAMERA_TOP}};
@@ -193,9 +186,8 @@ static void test_exaggerated(void **state)
 }
 
 // Four samples a pixel's edge are the same picture as two but for edges, without steps between.
-static void test_samples(void **state)
+TEST(test_samples)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     const double peak = 0.3634;
     scene_options o = {.renderer = RENDER_CAIRO, .plain = true, .samples = SAMPLES_QUICK};
@@ -211,9 +203,8 @@ static void test_samples(void **state)
 
 // Where the floor fades, squares of 8 x 8 pixels that hold no line mix two levels: a gradient
 // without dithering would be flat in nearly all of them and jump between.
-static void test_no_bands(void **state)
+TEST(test_no_bands)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     const double start = 0;
     int smooth = 0, mixed = 0;
@@ -275,17 +266,15 @@ static void compare_golden(size_t index, scene_renderer renderer, const char *na
     forget(&r);
 }
 
-static void test_golden_cairo(void **state)
+TEST(test_golden_cairo)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof goldens / sizeof goldens[0]; i++) {
         compare_golden(i, RENDER_CAIRO, "cairo");
     }
 }
 
-static void test_golden_gl(void **state)
+TEST(test_golden_gl)
 {
-    (void)state;
     bool any = false;
     for (scene_renderer which = RENDER_OSMESA; which <= RENDER_EGL; which++) {
         for (size_t i = 0; i < sizeof goldens / sizeof goldens[0] && is_there(which); i++) {
@@ -299,9 +288,8 @@ static void test_golden_gl(void **state)
 }
 
 // The file says what drew it, and a second one has the same bytes.
-static void test_file(void **state)
+TEST(test_file)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     const double time = 0.3;
     const scene_picture p = {
@@ -324,9 +312,8 @@ static void test_file(void **state)
     forget(&r);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-    (void)state;
     recorded r = record("corrected/first-impact");
     const double late = 7, good = 0.1;
     scene_picture p = {.scenario = &r.scenario,
@@ -351,14 +338,5 @@ int main(void)
     // one software renderer, the same on every machine
     setenv("GALLIUM_DRIVER", "llvmpipe", 1);
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_curve),        cmocka_unit_test(test_joints),
-        cmocka_unit_test(test_instants),     cmocka_unit_test(test_camera),
-        cmocka_unit_test(test_camera_words), cmocka_unit_test(test_exaggerated),
-        cmocka_unit_test(test_samples),      cmocka_unit_test(test_content),
-        cmocka_unit_test(test_no_bands),     cmocka_unit_test(test_golden_cairo),
-        cmocka_unit_test(test_golden_gl),    cmocka_unit_test(test_file),
-        cmocka_unit_test(test_refused),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down) != 0;
+    return run_cases(set_up, tear_down);
 }

@@ -2,9 +2,8 @@
 #include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
-static void an_impulse_jumps_and_decays(void **state)
+TEST(an_impulse_jumps_and_decays)
 {
-    (void)state;
     sensor_lag s;
     sensor_lag_start(&s, 1e-3, 2);
     sensor_lag_impulse(&s, 0.05);
@@ -15,9 +14,8 @@ static void an_impulse_jumps_and_decays(void **state)
     check_close(s.peak_time, 2, 0);
 }
 
-static void a_constant_force_is_reached_without_overshoot(void **state)
+TEST(a_constant_force_is_reached_without_overshoot)
 {
-    (void)state;
     sensor_lag s;
     sensor_lag_start(&s, 2e-3, 0);
     for (int i = 1; i <= 100; i++) {
@@ -28,9 +26,8 @@ static void a_constant_force_is_reached_without_overshoot(void **state)
 }
 
 // A parabola against the differential equation stepped finely by Runge-Kutta of fourth order.
-static void a_curved_force_is_followed_exactly(void **state)
+TEST(a_curved_force_is_followed_exactly)
 {
-    (void)state;
     const double tau = 1e-3, length = 4e-3, a = 3, b = 5e3, c = -1.6e6;
     enum { STEPS = 4000 };
     double y = 2, h = length / STEPS, top = 2, top_time = 0;
@@ -61,9 +58,8 @@ static void a_curved_force_is_followed_exactly(void **state)
 
 // A force that decays in a nanosecond from a million newtons, in strides that grow with the time
 // since it began: against the closed form of the lag, which hardly tells it from its impulse.
-static void a_spike_in_brief_strides_is_felt_as_its_impulse(void **state)
+TEST(a_spike_in_brief_strides_is_felt_as_its_impulse)
 {
-    (void)state;
     const double tau = 1e-3, decay = 1e-9, force = 1e6, end = 1e-4;
     sensor_lag s;
     sensor_lag_start(&s, tau, 0);
@@ -79,9 +75,8 @@ static void a_spike_in_brief_strides_is_felt_as_its_impulse(void **state)
 
 // Over a thousandth of the time constant: a constant force to the last digits, a rising one to the
 // cube of the share.
-static void a_brief_stride_is_that_of_its_lag(void **state)
+TEST(a_brief_stride_is_that_of_its_lag)
 {
-    (void)state;
     const double tau = 1e-3, share = 0.9e-3;
     sensor_lag constant, rising;
     sensor_lag_start(&constant, tau, 0);
@@ -94,9 +89,8 @@ static void a_brief_stride_is_that_of_its_lag(void **state)
 }
 
 // Whether a stretch is given whole or in two pieces makes no difference.
-static void pieces_make_the_whole(void **state)
+TEST(pieces_make_the_whole)
 {
-    (void)state;
     sensor_lag whole, pieces;
     sensor_lag_start(&whole, 1e-3, 0);
     sensor_lag_start(&pieces, 1e-3, 0);
@@ -116,9 +110,8 @@ static scenario fast_touch(void)
 }
 
 // The force of the ideal contact has no limit, what a sensor of 1 ms reads has the beam's.
-static void the_sensor_converges_where_the_force_does_not(void **state)
+TEST(the_sensor_converges_where_the_force_does_not)
 {
-    (void)state;
     scenario s = fast_touch();
     const int links[] = {6, 12, 24};
     sensor_view view[3];
@@ -138,9 +131,8 @@ static void the_sensor_converges_where_the_force_does_not(void **state)
 }
 
 // With few links the reading is the first impulse over the time constant.
-static void two_links_read_as_one_impulse(void **state)
+TEST(two_links_read_as_one_impulse)
 {
-    (void)state;
     scenario s = fast_touch();
     sensor_view view;
     fault f;
@@ -154,9 +146,8 @@ static void two_links_read_as_one_impulse(void **state)
 
 // The limit against the transform it comes from: y(t) of K / sqrt(t) by the substitution u =
 // sqrt(t).
-static void the_beams_limit_is_the_lag_of_an_inverse_root(void **state)
+TEST(the_beams_limit_is_the_lag_of_an_inverse_root)
 {
-    (void)state;
     parameters p = fixture_parameters(NULL);
     const double tau = 1e-3, k = sensor_beam_momentum(&p, 2, 1) / 2;
     double largest = 0;
@@ -174,9 +165,8 @@ static void the_beams_limit_is_the_lag_of_an_inverse_root(void **state)
     check_relative(k, 2 * pow(2.46, 0.25) * pow(0.40108, 0.75) / sqrt(2 * 3.14159265358979), 1e-12);
 }
 
-static void what_cannot_be_viewed_is_said(void **state)
+TEST(what_cannot_be_viewed_is_said)
 {
-    (void)state;
     scenario s = fast_touch();
     sensor_view view;
     fault f;
@@ -208,9 +198,8 @@ static void what_cannot_be_viewed_is_said(void **state)
 }
 
 // Modes that are too fast to follow are reported in advance, with what would make them slower.
-static void modes_too_fast_to_follow_are_refused(void **state)
+TEST(modes_too_fast_to_follow_are_refused)
 {
-    (void)state;
     scenario s = fast_touch();
     sensor_study study;
     fault f;
@@ -223,9 +212,8 @@ static void modes_too_fast_to_follow_are_refused(void **state)
 }
 
 // A stride of no length brings nothing.
-static void a_force_without_time_is_not_felt(void **state)
+TEST(a_force_without_time_is_not_felt)
 {
-    (void)state;
     sensor_lag lag;
     sensor_lag_start(&lag, 1e-3, 0);
     sensor_lag_force(&lag, 0, 5, 5, 5);
@@ -239,9 +227,8 @@ static void a_force_without_time_is_not_felt(void **state)
 }
 
 // The study's rows are the views of their numbers of links, with the beam that stops alike.
-static void the_study_is_its_views(void **state)
+TEST(the_study_is_its_views)
 {
-    (void)state;
     scenario s = fast_touch();
     sensor_study study;
     sensor_view view;
@@ -279,9 +266,8 @@ static void the_study_is_its_views(void **state)
 
 // What a run of the same arm comes to, by its rows and events: momentum, impacts, and a lag that is
 // stepped finely through all of it.
-static void a_view_is_what_a_run_comes_to(void **state)
+TEST(a_view_is_what_a_run_comes_to)
 {
-    (void)state;
     static const int links[] = {2, 3, 6};
     for (int kind = 0; kind < 6; kind++) {
         scenario s = fast_touch();
@@ -346,9 +332,8 @@ static void a_view_is_what_a_run_comes_to(void **state)
 
 // An arm that starts against the wall has touched it: its window opens with the run, also where it
 // soon leaves.
-static void an_arm_against_the_wall_is_felt_from_the_start(void **state)
+TEST(an_arm_against_the_wall_is_felt_from_the_start)
 {
-    (void)state;
     static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
     for (int i = 0; i < 2; i++) {
         scenario s = fast_touch();
@@ -379,26 +364,4 @@ static void an_arm_against_the_wall_is_felt_from_the_start(void **state)
         check_relative(view.sensed[1], largest, 1e-3);
         run_finish(&r);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_impulse_jumps_and_decays),
-        cmocka_unit_test(a_constant_force_is_reached_without_overshoot),
-        cmocka_unit_test(a_curved_force_is_followed_exactly),
-        cmocka_unit_test(a_spike_in_brief_strides_is_felt_as_its_impulse),
-        cmocka_unit_test(a_brief_stride_is_that_of_its_lag),
-        cmocka_unit_test(pieces_make_the_whole),
-        cmocka_unit_test(the_sensor_converges_where_the_force_does_not),
-        cmocka_unit_test(two_links_read_as_one_impulse),
-        cmocka_unit_test(the_beams_limit_is_the_lag_of_an_inverse_root),
-        cmocka_unit_test(what_cannot_be_viewed_is_said),
-        cmocka_unit_test(modes_too_fast_to_follow_are_refused),
-        cmocka_unit_test(a_force_without_time_is_not_felt),
-        cmocka_unit_test(the_study_is_its_views),
-        cmocka_unit_test(a_view_is_what_a_run_comes_to),
-        cmocka_unit_test(an_arm_against_the_wall_is_felt_from_the_start),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

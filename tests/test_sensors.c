@@ -1,8 +1,6 @@
 // Sensors and converters against their data.
 #include "src/rig/sensors.h"
 
-#include <string.h>
-
 #include "tests/rig_fixture.h"
 
 #define PI 3.14159265358979323846
@@ -26,9 +24,8 @@ static void follow_force(sensors *s, double h, double first, double last, double
     sensors_follow(s, h, &(sensed_motion){.force = first}, &(sensed_motion){.force = last}, mean);
 }
 
-static void encoder_steps_by_one_count(void **state)
+TEST(encoder_steps_by_one_count)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS("sensor.encoder_counts=500"), 1);
     const double count = 2 * PI / 500;
     double last = read_hub(&s, -0.1, 0, 0).encoder;
@@ -46,9 +43,8 @@ static void encoder_steps_by_one_count(void **state)
     assert_in_range(steps, 15, 16); // 0.2 rad of 500 counts a revolution
 }
 
-static void converter_has_its_bits_and_range(void **state)
+TEST(converter_has_its_bits_and_range)
 {
-    (void)state;
     const double step = 20.0 / 4096;
     const converter adc = converter_of(12, 10), continuous = converter_of(0, 10);
     check_close(converter_value(&adc, 0.4 * step), 0, 0);
@@ -72,15 +68,13 @@ static double rise_to(double level)
     return t;
 }
 
-static void force_sensor_rises_in_its_time(void **state)
+TEST(force_sensor_rises_in_its_time)
 {
-    (void)state;
     check_close(rise_to(0.9) - rise_to(0.1), 1.5e-3, 4e-6);
 }
 
-static void force_sensor_follows_a_stride_exactly(void **state)
+TEST(force_sensor_follows_a_stride_exactly)
 {
-    (void)state;
     // f = 2 - 3 u + 5 u^2 over 4 ms, at once and in a thousand short strides
     const double h = 4e-3;
     sensors once = fresh_sensors(NULL, 1), often = once;
@@ -101,9 +95,8 @@ static void force_sensor_follows_a_stride_exactly(void **state)
 // Over less than a thousandth of its lag a sensor takes of f = slope u + curve u^2, u the share of
 // the stride that is over, x times the integrals of e^-(1-u)x u^n: 1!/2! - x 1!/3! + ..., and so
 // on, to the last digits.
-static void short_strides_lose_no_digits(void **state)
+TEST(short_strides_lose_no_digits)
 {
-    (void)state;
     const double h = 5e-7, slope = 3, curve = -2;
     sensors s = fresh_sensors(NULL, 1);
     const double x = h / s.fsr.time_constant;
@@ -122,9 +115,8 @@ static void short_strides_lose_no_digits(void **state)
 
 // What a lag holds, and the input at a stride's ends and in its mean, add up: each is followed
 // whether the others are there or not.
-static void a_lag_is_linear(void **state)
+TEST(a_lag_is_linear)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         sensors s = fresh_sensors(NULL, 1);
         const double h = (i == 0 ? 5e-4 : 0.8) * s.fsr.time_constant;
@@ -147,9 +139,8 @@ static void a_lag_is_linear(void **state)
 }
 
 // Strides that are as long as the one before up to rounding decay as if there had been none before.
-static void strides_of_nearly_one_length_decay_by_their_own(void **state)
+TEST(strides_of_nearly_one_length_decay_by_their_own)
 {
-    (void)state;
     sensors s = fresh_sensors(NULL, 1);
     const double lag = s.fsr.time_constant;
     follow_force(&s, 0.5 * lag, 1, 1, 1);
@@ -161,9 +152,8 @@ static void strides_of_nearly_one_length_decay_by_their_own(void **state)
 }
 
 // What has no noise takes no numbers from the others.
-static void quiet_sensors_draw_nothing(void **state)
+TEST(quiet_sensors_draw_nothing)
 {
-    (void)state;
     const char *const *one = SETTINGS("sensor.adc_bits=0", "sensor.fsr_noise=0");
     const char *const *two = SETTINGS("sensor.adc_bits=0", "sensor.fsr_noise=0.01");
     sensors alone = fresh_sensors(one, 7), both = fresh_sensors(two, 7);
@@ -176,9 +166,8 @@ static void quiet_sensors_draw_nothing(void **state)
 }
 
 // In flight nothing needs to be followed, unless a force is remembered or the arm itself is felt.
-static void sensors_at_rest_remember_no_force(void **state)
+TEST(sensors_at_rest_remember_no_force)
 {
-    (void)state;
     const sensors fresh = fresh_sensors(NULL, 1);
     assert_true(sensors_at_rest(&fresh));
     for (int i = 0; i < 3; i++) {
@@ -199,9 +188,8 @@ static void sensors_at_rest_remember_no_force(void **state)
     assert_false(sensors_at_rest(&real));
 }
 
-static void impulse_arrives_whole(void **state)
+TEST(impulse_arrives_whole)
 {
-    (void)state;
     sensors s = fresh_sensors(NULL, 1);
     double arrived = 0;
     const double h = 1e-6, impulse = 0.02;
@@ -214,9 +202,8 @@ static void impulse_arrives_whole(void **state)
     check_relative(arrived, impulse, 1e-4);
 }
 
-static void divider_follows_the_power_law(void **state)
+TEST(divider_follows_the_power_law)
 {
-    (void)state;
     parameters p = rig_parameters(NULL);
     // half the supply where the sensor has the measuring resistor's 40 kohm: 30 kohm f^-0.75
     double force = pow(40.0 / 30, -1 / 0.75);
@@ -231,9 +218,8 @@ static void divider_follows_the_power_law(void **state)
     check_close(fsr_force(&p.sensor, -0.1), 0, 0);
 }
 
-static void noise_has_its_spread_and_follows_its_seed(void **state)
+TEST(noise_has_its_spread_and_follows_its_seed)
 {
-    (void)state;
     const char *const *quiet = SETTINGS("sensor.tachometer_ripple=0", "sensor.adc_bits=0");
     sensors s = fresh_sensors(quiet, 7), twin = fresh_sensors(quiet, 7);
     sensors other = fresh_sensors(quiet, 8);
@@ -253,9 +239,8 @@ static void noise_has_its_spread_and_follows_its_seed(void **state)
     assert_true(same < 10);
 }
 
-static void ripple_follows_the_shaft(void **state)
+TEST(ripple_follows_the_shaft)
 {
-    (void)state;
     sensors s = fresh_sensors(
         SETTINGS("sensor.tachometer_noise=0", "sensor.adc_bits=0", "sensor.tachometer_ripple=0.05"),
         1);
@@ -264,9 +249,8 @@ static void ripple_follows_the_shaft(void **state)
 }
 
 // (1 + gain error) times the value and an offset, each sensor its own; none with ideal sensors.
-static void sensors_show_what_they_are_calibrated_for(void **state)
+TEST(sensors_show_what_they_are_calibrated_for)
 {
-    (void)state;
     const char *const all[] = {"sensor.encoder_gain_error=0.02",
                                "sensor.encoder_offset=-0.03",
                                "sensor.tachometer_gain_error=-0.1",
@@ -303,9 +287,8 @@ static void sensors_show_what_they_are_calibrated_for(void **state)
 }
 
 // A force that goes up and down shows the loop of a play, and nothing is left where it ends.
-static void hysteresis_is_a_play(void **state)
+TEST(hysteresis_is_a_play)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS("sensor.fsr_hysteresis=0.1", "sensor.fsr_noise=0",
                                        "sensor.fsr_rise_time=0", "sensor.adc_bits=0"),
                               1);
@@ -320,35 +303,11 @@ static void hysteresis_is_a_play(void **state)
     }
 }
 
-static void ideal_sensors_tell_the_truth(void **state)
+TEST(ideal_sensors_tell_the_truth)
 {
-    (void)state;
     sensors s = fresh_sensors(SETTINGS("sensor.ideal=true"), 1);
     sensor_reading r = read_hub(&s, 0.1234567, -1.2345678, 3.456789);
     check_close(r.encoder, 0.1234567, 0);
     check_close(r.tachometer, -1.2345678, 1e-12);
     check_close(r.force_reading, 3.456789, 1e-12);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(encoder_steps_by_one_count),
-        cmocka_unit_test(converter_has_its_bits_and_range),
-        cmocka_unit_test(force_sensor_rises_in_its_time),
-        cmocka_unit_test(force_sensor_follows_a_stride_exactly),
-        cmocka_unit_test(short_strides_lose_no_digits),
-        cmocka_unit_test(a_lag_is_linear),
-        cmocka_unit_test(strides_of_nearly_one_length_decay_by_their_own),
-        cmocka_unit_test(quiet_sensors_draw_nothing),
-        cmocka_unit_test(sensors_at_rest_remember_no_force),
-        cmocka_unit_test(impulse_arrives_whole),
-        cmocka_unit_test(divider_follows_the_power_law),
-        cmocka_unit_test(noise_has_its_spread_and_follows_its_seed),
-        cmocka_unit_test(ripple_follows_the_shaft),
-        cmocka_unit_test(sensors_show_what_they_are_calibrated_for),
-        cmocka_unit_test(hysteresis_is_a_play),
-        cmocka_unit_test(ideal_sensors_tell_the_truth),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,23 +1,17 @@
 // The session of the terminal lab: cursor, changes, undo, branches, and files that reproduce a run.
 #include "tests/trace_check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/base/random.h"
 #include "tests/session_fixture.h"
 
 static void change(session *s, const char *path, const char *value)
 {
     fault f = {0};
-    if (session_change(s, parameter_find(path), value, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(session_change(s, parameter_find(path), value, &f) != STATUS_OK, "%s", f.text);
 }
 
-static void test_stepping_back_and_forth_gives_the_same_states(void **state)
+TEST(test_stepping_back_and_forth_gives_the_same_states)
 {
-    (void)state;
     session s;
     open_session(&s, "corrected/first-impact");
     change(&s, "run.duration", "12");
@@ -34,9 +28,8 @@ static void test_stepping_back_and_forth_gives_the_same_states(void **state)
     session_finish(&s);
 }
 
-static void test_a_run_that_cannot_start_names_its_parameter(void **state)
+TEST(test_a_run_that_cannot_start_names_its_parameter)
 {
-    (void)state;
     session s;
     fault f = {.path = ""};
     open_session(&s, "corrected/first-impact");
@@ -50,9 +43,8 @@ static void test_a_run_that_cannot_start_names_its_parameter(void **state)
     session_finish(&s);
 }
 
-static void test_the_cursor_stays_within_the_run(void **state)
+TEST(test_the_cursor_stays_within_the_run)
 {
-    (void)state;
     session s;
     open_session(&s, "corrected/first-impact");
     assert_false(session_step(&s, -1));
@@ -66,9 +58,8 @@ static void test_the_cursor_stays_within_the_run(void **state)
     session_finish(&s);
 }
 
-static void test_the_cursor_stands_behind_an_event(void **state)
+TEST(test_the_cursor_stands_behind_an_event)
 {
-    (void)state;
     session s;
     open_session(&s, "corrected/first-impact");
     assert_null(session_event(&s));
@@ -82,9 +73,8 @@ static void test_the_cursor_stands_behind_an_event(void **state)
     session_finish(&s);
 }
 
-static void test_a_lower_voltage_before_contact_hits_less_hard(void **state)
+TEST(test_a_lower_voltage_before_contact_hits_less_hard)
 {
-    (void)state;
     session s;
     fault f = {0};
     open_session(&s, "corrected/first-impact");
@@ -116,19 +106,17 @@ static void assert_same_before(const trace *a, const trace *b, double time)
     }
     assert_true(rows <= b->row_count && events <= b->event_count);
     for (size_t i = 0; i < rows; i++) {
-        if (memcmp(&a->rows[i], &b->rows[i], sizeof a->rows[i]) != 0) {
-            fail_msg("row %zu at %.17g s (or %.17g s) differs before %.17g s", i, a->rows[i].time,
-                     b->rows[i].time, time);
-        }
+        fail_if(memcmp(&a->rows[i], &b->rows[i], sizeof a->rows[i]) != 0,
+                "row %zu at %.17g s (or %.17g s) differs before %.17g s", i, a->rows[i].time,
+                b->rows[i].time, time);
     }
     assert_memory_equal(a->angles, b->angles, rows * (size_t)a->angle_count * sizeof *a->angles);
     check_same_events(a, b, events);
     assert_true(rows == b->row_count || b->rows[rows].time >= time);
 }
 
-static void test_what_is_before_a_change_stays_to_the_last_bit(void **state)
+TEST(test_what_is_before_a_change_stays_to_the_last_bit)
 {
-    (void)state;
     static const char *const names[] = {"corrected/first-impact", "corrected/generalized-alpha",
                                         "corrected/newmark",      "corrected/five-links",
                                         "corrected/restitution",  "corrected/stuck-hub",
@@ -160,9 +148,8 @@ static void test_what_is_before_a_change_stays_to_the_last_bit(void **state)
     }
 }
 
-static void test_undo_and_redo(void **state)
+TEST(test_undo_and_redo)
 {
-    (void)state;
     session s;
     fault f = {0};
     open_session(&s, "corrected/first-impact");
@@ -189,9 +176,8 @@ static void test_undo_and_redo(void **state)
     session_finish(&s);
 }
 
-static void test_an_input_taken_out_is_put_in_again(void **state)
+TEST(test_an_input_taken_out_is_put_in_again)
 {
-    (void)state;
     session s;
     fault f = {0};
     open_session(&s, "corrected/first-impact");
@@ -210,9 +196,8 @@ static void test_an_input_taken_out_is_put_in_again(void **state)
     session_finish(&s);
 }
 
-static void test_a_refused_change_changes_nothing(void **state)
+TEST(test_a_refused_change_changes_nothing)
 {
-    (void)state;
     session s;
     fault f = {0};
     open_session(&s, "corrected/first-impact");
@@ -231,9 +216,8 @@ static void test_a_refused_change_changes_nothing(void **state)
     session_finish(&s);
 }
 
-static void test_no_change_puts_the_arm_behind_the_wall(void **state)
+TEST(test_no_change_puts_the_arm_behind_the_wall)
 {
-    (void)state;
     session s;
     fault f = {0};
     open_session(&s, "corrected/first-impact");
@@ -247,9 +231,8 @@ static void test_no_change_puts_the_arm_behind_the_wall(void **state)
     session_finish(&s);
 }
 
-static void test_a_saved_scenario_reproduces_the_run(void **state)
+TEST(test_a_saved_scenario_reproduces_the_run)
 {
-    (void)state;
     static const char *const names[] = {"corrected/first-impact", "corrected/voltage-step",
                                         "corrected/three-links"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -279,9 +262,8 @@ static void test_a_saved_scenario_reproduces_the_run(void **state)
     session_finish(&printed);
 }
 
-static void test_the_model_can_be_exchanged(void **state)
+TEST(test_the_model_can_be_exchanged)
 {
-    (void)state;
     session s;
     open_session(&s, "corrected/first-impact");
     double corrected = s.run.summary.first_contact_s;
@@ -289,23 +271,4 @@ static void test_the_model_can_be_exchanged(void **state)
     assert_int_equal(s.effective.parameters.arm.hub_joint, HUB_SPRING);
     assert_true(s.run.summary.first_contact_s != corrected);
     session_finish(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stepping_back_and_forth_gives_the_same_states),
-        cmocka_unit_test(test_a_run_that_cannot_start_names_its_parameter),
-        cmocka_unit_test(test_the_cursor_stays_within_the_run),
-        cmocka_unit_test(test_the_cursor_stands_behind_an_event),
-        cmocka_unit_test(test_a_lower_voltage_before_contact_hits_less_hard),
-        cmocka_unit_test(test_what_is_before_a_change_stays_to_the_last_bit),
-        cmocka_unit_test(test_undo_and_redo),
-        cmocka_unit_test(test_an_input_taken_out_is_put_in_again),
-        cmocka_unit_test(test_a_refused_change_changes_nothing),
-        cmocka_unit_test(test_no_change_puts_the_arm_behind_the_wall),
-        cmocka_unit_test(test_a_saved_scenario_reproduces_the_run),
-        cmocka_unit_test(test_the_model_can_be_exchanged),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -45,16 +45,13 @@ static void save(explorer *ex)
     char line[128];
     unlink(path);
     snprintf(line, sizeof line, "session save %s", path);
-    if (!explorer_carry_out(ex, line)) {
-        fail_msg("%s", ex->state.message.text);
-    }
+    fail_if(!explorer_carry_out(ex, line), "%s", ex->state.message.text);
 }
 
 // Runs of two scenarios, changes, pushes, pins, panes, axes, zoom and mark come back to the last
 // bit; saved again the file is the same; leaving asks nothing.
-static void test_what_was_done_comes_back(void **state)
+TEST(test_what_was_done_comes_back)
 {
-    (void)state;
     static const char keys[] =
         "b:open compare/hybrid<Enter>:pin with \u03b8<Enter>:set control.force 1.37<Enter>"
         ":seek 0.35<Enter>:set control.force 2.1<Enter>:push 0.003<Enter>b:hide 2<Enter>"
@@ -72,9 +69,7 @@ static void test_what_was_done_comes_back(void **state)
     assert_true(ex.state.quit);
 
     open_explorer(&again, "corrected/three-links");
-    if (!explorer_open_session(&again.state, path)) {
-        fail_msg("%s", again.state.message.text);
-    }
+    fail_if(!explorer_open_session(&again.state, path), "%s", again.state.message.text);
     assert_same_trace(&again.state.session.run.trace, &ex.state.session.run.trace);
     assert_int_equal(again.state.pinned.count, ex.state.pinned.count);
     assert_int_equal(again.state.pinned.baseline, ex.state.pinned.baseline);
@@ -114,9 +109,8 @@ static void test_what_was_done_comes_back(void **state)
 }
 
 // No file of others is replaced; the visit's own is.
-static void test_only_the_visits_own_file_is_replaced(void **state)
+TEST(test_only_the_visits_own_file_is_replaced)
 {
-    (void)state;
     explorer ex;
     char line[128];
     put("precious");
@@ -133,9 +127,8 @@ static void test_only_the_visits_own_file_is_replaced(void **state)
 }
 
 // A session whose law is a program asks before it starts it, and its lines do nothing but look.
-static void test_a_file_from_elsewhere_starts_nothing(void **state)
+TEST(test_a_file_from_elsewhere_starts_nothing)
 {
-    (void)state;
     char text[512], mark[80];
     snprintf(mark, sizeof mark, "%s/started", folder);
     snprintf(text, sizeof text,
@@ -154,9 +147,8 @@ static void test_a_file_from_elsewhere_starts_nothing(void **state)
 }
 
 // Each fault is told with its line, and nothing is taken.
-static void test_broken_files_are_refused_with_their_line(void **state)
+TEST(test_broken_files_are_refused_with_their_line)
 {
-    (void)state;
 #define BASE "impactlab-session: 1\nscenario: a\n| title: \"a\"\n"
     static const struct {
         const char *text, *says;
@@ -187,10 +179,9 @@ static void test_broken_files_are_refused_with_their_line(void **state)
     press(&ex, "b:set arm.k2 5<Enter>");
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         put(cases[i].text);
-        if (explorer_open_session(&ex.state, path) ||
-            strstr(ex.state.message.text, cases[i].says) == NULL) {
-            fail_msg("'%s' says '%s'", cases[i].text, ex.state.message.text);
-        }
+        fail_if(explorer_open_session(&ex.state, path) ||
+                    strstr(ex.state.message.text, cases[i].says) == NULL,
+                "'%s' says '%s'", cases[i].text, ex.state.message.text);
         assert_int_equal(ex.state.pinned.count, 1);
         assert_int_equal(ex.state.session.input_count, 1);
     }
@@ -216,9 +207,8 @@ static void test_broken_files_are_refused_with_their_line(void **state)
 }
 
 // More pins than there is room for change nothing.
-static void test_pins_without_room_are_refused(void **state)
+TEST(test_pins_without_room_are_refused)
 {
-    (void)state;
     explorer ex;
     char keys[64];
     open_explorer(&ex, "corrected/first-impact");
@@ -236,14 +226,4 @@ static void test_pins_without_room_are_refused(void **state)
     explorer_finish(&ex);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_was_done_comes_back),
-        cmocka_unit_test(test_only_the_visits_own_file_is_replaced),
-        cmocka_unit_test(test_a_file_from_elsewhere_starts_nothing),
-        cmocka_unit_test(test_broken_files_are_refused_with_their_line),
-        cmocka_unit_test(test_pins_without_room_are_refused),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
-}
+ALL_BETWEEN(make_folder, remove_folder)

@@ -2,9 +2,6 @@
 // stopped, and continued.
 #include "tests/trace_check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/rig/external/process_lines.h"
 #include "tests/session_fixture.h"
 
@@ -29,9 +26,8 @@ static const char brief[] = "title: t\nwall: {angle: 0}\ninitial: {angle: -0.02}
                             "run: {duration: 0.3 s}\n";
 
 // Pushes of one gesture are undone and redone together, and a new gesture has a number of its own.
-static void a_gesture_is_one_step(void **state)
+TEST(a_gesture_is_one_step)
 {
-    (void)state;
     session s = opened(brief);
     fault f = {0};
     assert_int_equal(session_new_gesture(&s), 1);
@@ -81,9 +77,8 @@ static void a_gesture_is_one_step(void **state)
     session_finish(&s);
 }
 
-static void what_is_too_long_or_no_value_is_refused(void **state)
+TEST(what_is_too_long_or_no_value_is_refused)
 {
-    (void)state;
     session s = opened(brief);
     fault f = {0};
     char endless[4 * PARAMETER_TEXT_SIZE];
@@ -134,9 +129,8 @@ static void what_is_too_long_or_no_value_is_refused(void **state)
 }
 
 // Small steps of one parameter are one input; what is refused on the way is none of them.
-static void adjusting_keeps_what_was_before(void **state)
+TEST(adjusting_keeps_what_was_before)
 {
-    (void)state;
     session s = opened(brief);
     fault f = {0};
     const int voltage = PARAMETER_INDEX(motor.voltage);
@@ -164,9 +158,8 @@ static void adjusting_keeps_what_was_before(void **state)
 }
 
 // An input that another one needs stays, and so do all where the run of others cannot be.
-static void inputs_that_cannot_go_stay(void **state)
+TEST(inputs_that_cannot_go_stay)
 {
-    (void)state;
     session s = opened(brief);
     fault f = {0};
     assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.links), "3", &f), STATUS_OK);
@@ -188,9 +181,8 @@ static void inputs_that_cannot_go_stay(void **state)
 }
 
 // A gesture that nothing comes before, and one whose number another one had that was undone.
-static void gestures_end_where_their_inputs_end(void **state)
+TEST(gestures_end_where_their_inputs_end)
 {
-    (void)state;
     session s = opened(brief);
     fault f = {0};
     for (int i = 0; i < 3; i++) {
@@ -208,9 +200,8 @@ static void gestures_end_where_their_inputs_end(void **state)
 }
 
 // An input that may not go leaves all of them as and where they were, whichever it is.
-static void a_refused_drop_keeps_the_order(void **state)
+TEST(a_refused_drop_keeps_the_order)
 {
-    (void)state;
     session s = opened(brief);
     fault f = {0};
     session_input before[5];
@@ -242,9 +233,8 @@ static void a_refused_drop_keeps_the_order(void **state)
 
 // Where another input went meanwhile, the run has other rows at the instant that undoing leads to:
 // none, a later one, or another one with the number of the row that was shown.
-static void undoing_leads_to_the_instant_in_another_run(void **state)
+TEST(undoing_leads_to_the_instant_in_another_run)
 {
-    (void)state;
     static const struct {
         const char *path, *value;
         double at;
@@ -270,9 +260,8 @@ static void undoing_leads_to_the_instant_in_another_run(void **state)
 }
 
 // An arm that starts on the wall meets it at once: what is done at the row before is done at 0.
-static void a_push_before_a_contact_at_once_is_at_the_start(void **state)
+TEST(a_push_before_a_contact_at_once_is_at_the_start)
 {
-    (void)state;
     session s = opened("title: t\nwall: {angle: 0}\nrun: {duration: 0.1 s}\n"
                        "initial: {velocity: 0.5}\n");
     fault f = {0};
@@ -286,9 +275,8 @@ static void a_push_before_a_contact_at_once_is_at_the_start(void **state)
 }
 
 // A session that takes the inputs of another one has its run to the last bit.
-static void taken_inputs_make_the_same_run(void **state)
+TEST(taken_inputs_make_the_same_run)
 {
-    (void)state;
     session from = opened(brief), to = opened(brief);
     fault f = {0};
     assert_int_equal(session_change(&from, PARAMETER_INDEX(arm.k2), "7", &f), STATUS_OK);
@@ -321,9 +309,8 @@ static void taken_inputs_make_the_same_run(void **state)
 
 // A change given at the row before an event takes effect before it, one at the row after it does
 // not change the event.
-static void a_change_at_an_event_belongs_to_its_row(void **state)
+TEST(a_change_at_an_event_belongs_to_its_row)
 {
-    (void)state;
     session s = opened(brief);
     fault f = {0};
     const double contact = s.run.summary.first_contact_s;
@@ -351,9 +338,8 @@ static void a_change_at_an_event_belongs_to_its_row(void **state)
 
 // So it is at every event of a run, the first and the last, and before nothing else is anything
 // moved.
-static void what_is_done_at_any_event_belongs_to_its_row(void **state)
+TEST(what_is_done_at_any_event_belongs_to_its_row)
 {
-    (void)state;
     session s = opened("title: t\nwall: {angle: 0.3, restitution: 0.6}\nmotor: {stiction: 0.02}\n"
                        "run: {duration: 0.6 s}\n");
     fault f = {0};
@@ -393,9 +379,8 @@ static void what_is_done_at_any_event_belongs_to_its_row(void **state)
 }
 
 // A long run is available as far as it is computed; when stopped it continues to the same rows.
-static void a_stopped_run_goes_on(void **state)
+TEST(a_stopped_run_goes_on)
 {
-    (void)state;
     session s;
     fault f = {0};
     scenario base = read_text("title: t\nmotor: {voltage: 0.001 V}\nwall: {angle: 3 rad}\n"
@@ -435,9 +420,8 @@ static void a_stopped_run_goes_on(void **state)
 }
 
 // Code that is allowed and cannot be loaded: the session is as it was, and not allowed.
-static void code_that_cannot_be_loaded_stays_withheld(void **state)
+TEST(code_that_cannot_be_loaded_stays_withheld)
 {
-    (void)state;
     session s = opened("title: t\ncontrol: {law: plugin, plugin: /nonexistent.so, force: 1 N}\n"
                        "run: {duration: 0.1 s}\n");
     fault f = {0};
@@ -448,24 +432,4 @@ static void code_that_cannot_be_loaded_stays_withheld(void **state)
     assert_int_equal(s.version, version);
     assert_true(s.run.trace.row_count > 0);
     session_finish(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_gesture_is_one_step),
-        cmocka_unit_test(what_is_too_long_or_no_value_is_refused),
-        cmocka_unit_test(adjusting_keeps_what_was_before),
-        cmocka_unit_test(inputs_that_cannot_go_stay),
-        cmocka_unit_test(gestures_end_where_their_inputs_end),
-        cmocka_unit_test(a_refused_drop_keeps_the_order),
-        cmocka_unit_test(undoing_leads_to_the_instant_in_another_run),
-        cmocka_unit_test(a_push_before_a_contact_at_once_is_at_the_start),
-        cmocka_unit_test(taken_inputs_make_the_same_run),
-        cmocka_unit_test(a_change_at_an_event_belongs_to_its_row),
-        cmocka_unit_test(what_is_done_at_any_event_belongs_to_its_row),
-        cmocka_unit_test(a_stopped_run_goes_on),
-        cmocka_unit_test(code_that_cannot_be_loaded_stays_withheld),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

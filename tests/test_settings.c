@@ -1,7 +1,4 @@
 // control.settings.NAME: one number of the text, by --set, in files, in scripts and as an axis.
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/session/session.h"
 #include "src/study/sweep_axis.h"
 #include "src/tables/settings.h"
@@ -27,9 +24,8 @@ static status parse(scenario *s, const char *law, const char *lines, char fault_
     return scenario_parse(s, text, strlen(text), "arm.yaml", NULL, keep_fault, fault_text);
 }
 
-static void one_number_is_exchanged_and_the_others_stay(void **state)
+TEST(one_number_is_exchanged_and_the_others_stay)
 {
-    (void)state;
     static const struct {
         const char *before, *name, *text, *after;
     } cases[] = {
@@ -54,9 +50,8 @@ static void one_number_is_exchanged_and_the_others_stay(void **state)
     }
 }
 
-static void what_is_no_number_or_no_name_is_refused(void **state)
+TEST(what_is_no_number_or_no_name_is_refused)
 {
-    (void)state;
     static const struct {
         const char *assignment, *sentence;
     } cases[] = {
@@ -74,9 +69,8 @@ static void what_is_no_number_or_no_name_is_refused(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         fault f = {0};
         assert_int_not_equal(scenario_override(&s, cases[i].assignment, &f), STATUS_OK);
-        if (strstr(f.text, cases[i].sentence) == NULL) {
-            fail_msg("'%s' does not say '%s'", f.text, cases[i].sentence);
-        }
+        fail_if(strstr(f.text, cases[i].sentence) == NULL, "'%s' does not say '%s'", f.text,
+                cases[i].sentence);
     }
 
     // beside the others there must be room
@@ -96,9 +90,8 @@ static void what_is_no_number_or_no_name_is_refused(void **state)
     scenario_finish(&s);
 }
 
-static void a_file_has_a_map_or_the_text(void **state)
+TEST(a_file_has_a_map_or_the_text)
 {
-    (void)state;
     static const struct {
         const char *lines, *settings, *sentence;
     } cases[] = {
@@ -121,18 +114,16 @@ static void a_file_has_a_map_or_the_text(void **state)
             scenario_finish(&s);
         } else {
             assert_int_equal(code, STATUS_BAD_SCENARIO);
-            if (strstr(said, cases[i].sentence) == NULL) {
-                fail_msg("'%s' does not say '%s'", said, cases[i].sentence);
-            }
+            fail_if(strstr(said, cases[i].sentence) == NULL, "'%s' does not say '%s'", said,
+                    cases[i].sentence);
         }
     }
 }
 
 // A number set during the run is what the law has from then on: the run is another, its rows until
 // then are the same; what is written reads back as the same script.
-static void a_script_sets_one_of_them(void **state)
+TEST(a_script_sets_one_of_them)
 {
-    (void)state;
     char said[1024];
     scenario plain, scripted, again;
     run_result before, after;
@@ -175,9 +166,8 @@ static void a_script_sets_one_of_them(void **state)
 }
 
 // Two of them adjusted at one instant are two inputs, each undone by itself.
-static void a_session_undoes_each_by_itself(void **state)
+TEST(a_session_undoes_each_by_itself)
 {
-    (void)state;
     char said[1024];
     scenario s;
     session lab;
@@ -197,9 +187,8 @@ static void a_session_undoes_each_by_itself(void **state)
     session_finish(&lab);
 }
 
-static void an_axis_varies_one_of_them(void **state)
+TEST(an_axis_varies_one_of_them)
 {
-    (void)state;
     sweep_axis axis = {0};
     char values[] = "0.1:0.3:3", text[64];
     parameters p = rig_parameters(NULL);
@@ -217,23 +206,8 @@ static void an_axis_varies_one_of_them(void **state)
 }
 
 // A name that the law does not have is known when the run starts.
-static void the_start_of_the_run_checks_the_names(void **state)
+TEST(the_start_of_the_run_checks_the_names)
 {
-    (void)state;
     check_refused(SETTINGS("control.law=hybrid", "control.settings=.bogus=3"),
                   "has no parameter 'bogus'");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_number_is_exchanged_and_the_others_stay),
-        cmocka_unit_test(what_is_no_number_or_no_name_is_refused),
-        cmocka_unit_test(a_file_has_a_map_or_the_text),
-        cmocka_unit_test(a_script_sets_one_of_them),
-        cmocka_unit_test(a_session_undoes_each_by_itself),
-        cmocka_unit_test(an_axis_varies_one_of_them),
-        cmocka_unit_test(the_start_of_the_run_checks_the_names),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

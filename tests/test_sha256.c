@@ -1,8 +1,6 @@
 // SHA-256 against the examples of the standard (FIPS 180-4), and in pieces.
 #include "tests/check.h"
 
-#include <string.h>
-
 #include "src/base/sha256.h"
 
 static void check_digest(const void *bytes, size_t size, size_t piece, const char *expected)
@@ -17,9 +15,8 @@ static void check_digest(const void *bytes, size_t size, size_t piece, const cha
     assert_string_equal(text, expected);
 }
 
-static void the_standards_examples_come_out(void **state)
+TEST(the_standards_examples_come_out)
 {
-    (void)state;
     static char many_a[1000000];
     memset(many_a, 'a', sizeof many_a);
     const char *const two_blocks = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
@@ -31,21 +28,11 @@ static void the_standards_examples_come_out(void **state)
                  "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-static void pieces_make_no_difference(void **state)
+TEST(pieces_make_no_difference)
 {
-    (void)state;
     const char *const two_blocks = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
     for (size_t piece = 1; piece <= 56; piece++) {
         check_digest(two_blocks, 56, piece,
                      "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_standards_examples_come_out),
-        cmocka_unit_test(pieces_make_no_difference),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,6 @@
 // Growing arrays: elements stay what they are, shared ones where they are, and memory goes back.
 #include "tests/check.h"
 
-#include <stdint.h>
-#include <string.h>
-
 #include "src/base/random.h"
 #include "src/base/shared_array.h"
 
@@ -38,9 +35,8 @@ static shared_array filled(size_t count)
     return a;
 }
 
-static void plain_arrays_keep_their_elements_as_they_grow(void **state)
+TEST(plain_arrays_keep_their_elements_as_they_grow)
 {
-    (void)state;
     shared_array a;
     shared_array_init(&a, sizeof(uint64_t));
     int moves = 0;
@@ -57,9 +53,8 @@ static void plain_arrays_keep_their_elements_as_they_grow(void **state)
     shared_array_finish(&a);
 }
 
-static void shared_arrays_keep_their_place_as_they_grow(void **state)
+TEST(shared_arrays_keep_their_place_as_they_grow)
 {
-    (void)state;
     shared_array a = filled(1);
     const void *place = a.base;
     fill(&a, 1, MANY);
@@ -76,9 +71,8 @@ static void shared_arrays_keep_their_place_as_they_grow(void **state)
 }
 
 // Of elements of another size nothing is the same, whatever the bytes.
-static void arrays_of_other_elements_are_not_the_same(void **state)
+TEST(arrays_of_other_elements_are_not_the_same)
 {
-    (void)state;
     shared_array a = filled(MANY), pairs;
     assert_true(shared_array_reserve(&pairs, 2 * sizeof(uint64_t), MANY, MANY));
     assert_true(shared_array_grow(&pairs, MANY / 2));
@@ -89,9 +83,8 @@ static void arrays_of_other_elements_are_not_the_same(void **state)
 }
 
 // An array of many chunks.
-static void a_long_array_keeps_its_elements(void **state)
+TEST(a_long_array_keeps_its_elements)
 {
-    (void)state;
     shared_array a;
     const size_t many = 40 * PER_CHUNK;
     assert_true(shared_array_reserve(&a, sizeof(uint64_t), many, many));
@@ -101,9 +94,8 @@ static void a_long_array_keeps_its_elements(void **state)
     shared_array_finish(&a);
 }
 
-static void growing_beyond_the_address_space_fails_and_changes_nothing(void **state)
+TEST(growing_beyond_the_address_space_fails_and_changes_nothing)
 {
-    (void)state;
     shared_array a;
     assert_true(shared_array_reserve(&a, sizeof(uint64_t), 10, 10));
     fill(&a, 0, 10);
@@ -112,9 +104,8 @@ static void growing_beyond_the_address_space_fails_and_changes_nothing(void **st
     shared_array_finish(&a);
 }
 
-static void a_beginning_is_shared_and_the_rest_is_each_ones_own(void **state)
+TEST(a_beginning_is_shared_and_the_rest_is_each_ones_own)
 {
-    (void)state;
     shared_array a = filled(MANY), b;
     size_t alone = shared_array_memory();
     assert_true(shared_array_reserve(&b, sizeof(uint64_t), MANY, 4 * MANY));
@@ -133,9 +124,8 @@ static void a_beginning_is_shared_and_the_rest_is_each_ones_own(void **state)
 }
 
 // A plain array has no chunks that others could have too.
-static void the_beginning_of_a_plain_array_is_copied(void **state)
+TEST(the_beginning_of_a_plain_array_is_copied)
 {
-    (void)state;
     shared_array plain, a;
     shared_array_init(&plain, sizeof(uint64_t));
     fill(&plain, 0, MANY);
@@ -148,9 +138,8 @@ static void the_beginning_of_a_plain_array_is_copied(void **state)
     shared_array_finish(&a);
 }
 
-static void equal_beginnings_are_found_and_merged(void **state)
+TEST(equal_beginnings_are_found_and_merged)
 {
-    (void)state;
     shared_array a = filled(MANY), b = filled(MANY);
     size_t both = shared_array_memory();
     assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 2);
@@ -162,9 +151,8 @@ static void equal_beginnings_are_found_and_merged(void **state)
     shared_array_finish(&b);
 }
 
-static void a_difference_ends_what_is_equal(void **state)
+TEST(a_difference_ends_what_is_equal)
 {
-    (void)state;
     shared_array a = filled(MANY), b = filled(MANY);
     numbers(&b)[PER_CHUNK + 3] = 0;
     assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 1);
@@ -175,9 +163,8 @@ static void a_difference_ends_what_is_equal(void **state)
 }
 
 // As many as the shorter one has: neither is looked at beyond its end.
-static void the_shorter_array_ends_what_is_equal(void **state)
+TEST(the_shorter_array_ends_what_is_equal)
 {
-    (void)state;
     shared_array a = filled(MANY), b = filled(PER_CHUNK);
     assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 1);
     assert_int_equal(shared_array_same_chunks(&b, &a, MANY), 1);
@@ -185,9 +172,8 @@ static void the_shorter_array_ends_what_is_equal(void **state)
     shared_array_finish(&b);
 }
 
-static void memory_goes_back_with_the_last_array(void **state)
+TEST(memory_goes_back_with_the_last_array)
 {
-    (void)state;
     size_t before = shared_array_memory();
     shared_array a = filled(MANY);
     assert_int_equal(shared_array_memory() - before, 3 * ARRAY_CHUNK);
@@ -197,9 +183,8 @@ static void memory_goes_back_with_the_last_array(void **state)
 
 // Many arrays that grow, begin like others, are merged and go, in any order: each keeps its
 // elements, equal chunks are found, and there is memory for as many different chunks as there are.
-static void any_number_of_arrays_share_their_chunks(void **state)
+TEST(any_number_of_arrays_share_their_chunks)
 {
-    (void)state;
     enum { ARRAYS = 60, MOST = 40, WORDS = ARRAY_CHUNK / 4 / sizeof(uint64_t), STEPS = 1500 };
     static shared_array arrays[ARRAYS];
     static uint64_t values[ARRAYS][MOST + 4];
@@ -283,23 +268,4 @@ static void any_number_of_arrays_share_their_chunks(void **state)
         }
     }
     assert_int_equal(shared_array_memory(), before);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_arrays_keep_their_elements_as_they_grow),
-        cmocka_unit_test(shared_arrays_keep_their_place_as_they_grow),
-        cmocka_unit_test(arrays_of_other_elements_are_not_the_same),
-        cmocka_unit_test(a_long_array_keeps_its_elements),
-        cmocka_unit_test(growing_beyond_the_address_space_fails_and_changes_nothing),
-        cmocka_unit_test(a_beginning_is_shared_and_the_rest_is_each_ones_own),
-        cmocka_unit_test(the_beginning_of_a_plain_array_is_copied),
-        cmocka_unit_test(equal_beginnings_are_found_and_merged),
-        cmocka_unit_test(a_difference_ends_what_is_equal),
-        cmocka_unit_test(the_shorter_array_ends_what_is_equal),
-        cmocka_unit_test(memory_goes_back_with_the_last_array),
-        cmocka_unit_test(any_number_of_arrays_share_their_chunks),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

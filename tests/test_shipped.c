@@ -1,6 +1,4 @@
 // Every shipped scenario runs, meets its own expectations and keeps its ledger.
-#include <stdlib.h>
-
 #include "src/run/run.h"
 #include "tests/check.h"
 
@@ -14,15 +12,10 @@ static void check_scenario(const char *name)
 {
     scenario s;
     run_result r;
-    if (scenario_open(&s, name, print_fault, NULL) != STATUS_OK) {
-        fail_msg("%s cannot be read", name);
-    }
-    if (run_scenario(&s, false, &r) != STATUS_OK) {
-        fail_msg("%s: %s", name, r.summary.message);
-    }
-    if (run_check_expectations(&s, &r, print_fault, NULL) != 0) {
-        fail_msg("%s does not meet its expectations", name);
-    }
+    fail_if(scenario_open(&s, name, print_fault, NULL) != STATUS_OK, "%s cannot be read", name);
+    fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", name, r.summary.message);
+    fail_if(run_check_expectations(&s, &r, print_fault, NULL) != 0,
+            "%s does not meet its expectations", name);
     if (s.parameters.arm.model == ARM_CORRECTED && s.parameters.method.name == METHOD_EVENT) {
         // what the motor did, or where it did nothing, what the arm began with
         double m = s.parameters.arm.mass, l = s.parameters.arm.length,
@@ -33,18 +26,15 @@ static void check_scenario(const char *name)
             pushed +=
                 s.actions[i].kind == ACTION_PUSH ? s.actions[i].value * s.actions[i].value / m : 0;
         }
-        if (!(r.summary.energy_residual_J < 1e-6 * (turned_over + pushed))) {
-            fail_msg("%s: energy residual %g J of %g J", name, r.summary.energy_residual_J,
-                     turned_over);
-        }
+        fail_if(!(r.summary.energy_residual_J < 1e-6 * (turned_over + pushed)),
+                "%s: energy residual %g J of %g J", name, r.summary.energy_residual_J, turned_over);
     }
     run_finish(&r);
     scenario_finish(&s);
 }
 
-static void every_scenario_is_its_own_test(void **state)
+TEST(every_scenario_is_its_own_test)
 {
-    (void)state;
     char **names;
     int count;
     fault f;
@@ -55,10 +45,4 @@ static void every_scenario_is_its_own_test(void **state)
         free(names[i]);
     }
     free(names);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_scenario_is_its_own_test)};
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

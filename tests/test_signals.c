@@ -1,13 +1,10 @@
 // The table of recorded signals: one order for rows and table, so that a field gives its index.
 #include "src/tables/signals.h"
 
-#include <string.h>
-
 #include "tests/check.h"
 
-static void every_name_is_unique_and_found(void **state)
+TEST(every_name_is_unique_and_found)
 {
-    (void)state;
     for (int i = 0; i < signal_count; i++) {
         assert_int_equal(signal_find(signal_table[i].name), i);
         assert_int_equal(signal_index(signal_table[i].name), i);
@@ -16,9 +13,8 @@ static void every_name_is_unique_and_found(void **state)
     assert_int_equal(signal_find(""), -1);
 }
 
-static void rows_and_table_have_one_order(void **state)
+TEST(rows_and_table_have_one_order)
 {
-    (void)state;
     double numbers[SIGNALS_AT_MOST];
     sample row;
     for (int i = 0; i < SIGNALS_AT_MOST; i++) {
@@ -33,9 +29,8 @@ static void rows_and_table_have_one_order(void **state)
     assert_int_equal(SIGNAL_INDEX(gap_velocity), signal_find("gap_velocity"));
 }
 
-static void every_signal_is_described(void **state)
+TEST(every_signal_is_described)
 {
-    (void)state;
     for (int i = 0; i < signal_count; i++) {
         assert_true(signal_table[i].symbol[0] != '\0' && signal_table[i].ascii[0] != '\0');
         assert_true(signal_table[i].description[0] != '\0');
@@ -43,14 +38,4 @@ static void every_signal_is_described(void **state)
             assert_true((unsigned char)*c < 0x80);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_name_is_unique_and_found),
-        cmocka_unit_test(rows_and_table_have_one_order),
-        cmocka_unit_test(every_signal_is_described),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

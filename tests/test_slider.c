@@ -1,8 +1,6 @@
 // Sliders of the explorer's parameters: what they span, and the mouse on them.
 #include "tests/explorer_on_screen.h"
 
-#include <math.h>
-
 static void point(explorer *ex, pointer_kind kind, int x, int y)
 {
     explorer_point(ex, (pointer_event){.kind = kind, .x = x, .y = y});
@@ -30,9 +28,8 @@ static double value_of(const explorer *ex, int parameter)
     return parameter_get(&p, parameter);
 }
 
-static void test_every_number_has_a_scale_that_suits_it(void **state)
+TEST(test_every_number_has_a_scale_that_suits_it)
 {
-    (void)state;
     parameters p;
     fault f;
     parameters_defaults(&p, ARM_CORRECTED);
@@ -63,9 +60,8 @@ static void test_every_number_has_a_scale_that_suits_it(void **state)
     }
 }
 
-static void test_ranges_over_decades_are_logarithmic(void **state)
+TEST(test_ranges_over_decades_are_logarithmic)
 {
-    (void)state;
     slider_scale k2, kp, damping;
     assert_true(slider_scale_of(PARAMETER_INDEX(arm.k2), 4.92, &k2));
     assert_true(slider_scale_of(PARAMETER_INDEX(control.kp), 10.15, &kp));
@@ -75,9 +71,8 @@ static void test_ranges_over_decades_are_logarithmic(void **state)
     assert_true(!damping.logarithmic && damping.low == 0 && damping.high == 1);
 }
 
-static void test_the_run_follows_a_drag(void **state)
+TEST(test_the_run_follows_a_drag)
 {
-    (void)state;
     const int voltage = PARAMETER_INDEX(motor.voltage);
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
@@ -110,9 +105,8 @@ static void test_the_run_follows_a_drag(void **state)
     explorer_finish(&ex);
 }
 
-static void test_clicks_select_and_the_wheel_nudges(void **state)
+TEST(test_clicks_select_and_the_wheel_nudges)
 {
-    (void)state;
     const int limit = PARAMETER_INDEX(motor.voltage_limit);
     explorer ex;
     open_explorer(&ex, "corrected/first-impact");
@@ -134,15 +128,13 @@ static void test_clicks_select_and_the_wheel_nudges(void **state)
 static void assert_slider(explorer *ex, int width, int height, glyph_set set, const char *track)
 {
     char *text = picture(ex, width, height, set);
-    if (!strstr(text, " -5 ") || !strstr(text, track) || !strstr(text, " 5 ")) {
-        fail_msg("no slider on the screen of %d x %d:\n%s", width, height, text);
-    }
+    fail_if(!strstr(text, " -5 ") || !strstr(text, track) || !strstr(text, " 5 "),
+            "no slider on the screen of %d x %d:\n%s", width, height, text);
     free(text);
 }
 
-static void test_the_selected_number_has_a_slider_on_every_screen(void **state)
+TEST(test_the_selected_number_has_a_slider_on_every_screen)
 {
-    (void)state;
     static const int sizes[][2] = {{45, 16}, {60, 24}, {80, 24}, {120, 40}, {200, 60}};
     static const glyph_set sets[] = {GLYPHS_BRAILLE, GLYPHS_BLOCKS, GLYPHS_ASCII};
     static const char *const tracks[] = {"\u2500\u25cf\u2500", "\u2500\u25cf\u2500", "-o-"};
@@ -153,16 +145,4 @@ static void test_the_selected_number_has_a_slider_on_every_screen(void **state)
         assert_slider(&ex, sizes[i / 3][0], sizes[i / 3][1], sets[i % 3], tracks[i % 3]);
     }
     explorer_finish(&ex);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_number_has_a_scale_that_suits_it),
-        cmocka_unit_test(test_ranges_over_decades_are_logarithmic),
-        cmocka_unit_test(test_the_run_follows_a_drag),
-        cmocka_unit_test(test_clicks_select_and_the_wheel_nudges),
-        cmocka_unit_test(test_the_selected_number_has_a_slider_on_every_screen),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

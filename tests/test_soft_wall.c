@@ -1,7 +1,5 @@
 // Walls that give: closed forms for a single mass, the order of the steps near the touch, and the
 // way to the rigid wall.
-#include <math.h>
-#include <string.h>
 
 #include "src/run/run.h"
 #include "src/contact/contact_machine.h"
@@ -20,9 +18,7 @@ static run_result run_of(const parameters *p, bool rows)
     char name[] = "test";
     s.name = s.file = s.title = s.description = name;
     run_scenario(&s, rows, &r);
-    if (r.summary.status != STATUS_OK) {
-        fail_msg("%s", r.summary.message);
-    }
+    fail_if(r.summary.status != STATUS_OK, "%s", r.summary.message);
     return r;
 }
 
@@ -64,9 +60,8 @@ static void check_rows(const run_result *r)
 }
 
 // m x'' + c x' + k x = 0 from x' = v on, until k x + c x' = 0.
-static void a_mass_on_kelvin_voigt_has_the_closed_form(void **state)
+TEST(a_mass_on_kelvin_voigt_has_the_closed_form)
 {
-    (void)state;
     const double k = 1e6, damping[] = {0, 20, 200};
     for (int i = 0; i < 3; i++) {
         char c[40];
@@ -92,9 +87,8 @@ static void a_mass_on_kelvin_voigt_has_the_closed_form(void **state)
 
 // Arm and face strike each other plastically and swing as one mass on spring and damper; the arm
 // leaves where they no longer slow down, and the face swings on alone.
-static void a_face_with_a_mass_has_the_closed_form(void **state)
+TEST(a_face_with_a_mass_has_the_closed_form)
 {
-    (void)state;
     const double k = 1e6, face = 0.05, both = mass + face, damping[] = {0, 20, 200};
     const double v = SPEED * mass / both; // common speed after the impact
     for (int i = 0; i < 3; i++) {
@@ -139,9 +133,8 @@ static void a_face_with_a_mass_has_the_closed_form(void **state)
 
 // An arm that has left a face that is farther in may go on and turn back there: that is how deep it
 // was, wherever rows and strides end. A face that swings out with the arm on it is no separation.
-static void an_arm_is_deepest_or_apart_beside_its_face(void **state)
+TEST(an_arm_is_deepest_or_apart_beside_its_face)
 {
-    (void)state;
     parameters p = fixture_parameters(
         SETTINGS("arm.links=1", "arm.hub_joint=spring", "arm.k1=7306.2", "arm.mass=0.48164",
                  "motor.stiction=2", "motor.voltage=-0.18352", "wall.kind=plane",
@@ -176,9 +169,8 @@ static void an_arm_is_deepest_or_apart_beside_its_face(void **state)
 
 // An arm that leaves a light face does so once: what rounding has the face accelerate by is no
 // contact.
-static void an_arm_leaves_a_light_face_once(void **state)
+TEST(an_arm_leaves_a_light_face_once)
 {
-    (void)state;
     parameters p = fixture_parameters(
         SETTINGS("arm.links=3", "arm.hub_joint=beam", "arm.k2=21.5522",
                  "arm.link_lengths=0.37,0.314,0.24", "arm.mass=0.4157", "arm.tip_mass=0.0015214",
@@ -201,9 +193,8 @@ static void an_arm_leaves_a_light_face_once(void **state)
 
 // An arm that leaves a face without a mass does so once, however fast that returns: where the two
 // part is known to rounding only, and that makes no contact.
-static void an_arm_leaves_a_returning_face_once(void **state)
+TEST(an_arm_leaves_a_returning_face_once)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("wall.kind=plane", "wall.stiffness=3e5",
                                                "initial.angle=0.0881", "initial.velocity=2.6",
                                                "motor.voltage=2.8", "run.duration=0.15"));
@@ -224,9 +215,8 @@ static void an_arm_leaves_a_returning_face_once(void **state)
 }
 
 // An elastic impact: both go on with the velocities of two free masses.
-static void a_face_bounces_the_arm_like_two_masses(void **state)
+TEST(a_face_bounces_the_arm_like_two_masses)
 {
-    (void)state;
     const double face = 0.03, e = 0.6, both = mass + face;
     parameters p =
         single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e4", "wall.damping=10");
@@ -258,9 +248,8 @@ static run_result face_run(const char *contact, const char *mass_text)
 
 // Without bound on either side the face is the wall without a mass, or the rigid one; what it is
 // off by goes with the mass, or with one over it.
-static void a_face_lies_between_the_two_walls(void **state)
+TEST(a_face_lies_between_the_two_walls)
 {
-    (void)state;
     const char *const light[] = {"wall.mass=1e-5", "wall.mass=1e-6"};
     const char *const heavy[] = {"wall.mass=1e3", "wall.mass=1e4"};
     run_result none = face_run("wall.contact=kelvin-voigt", "wall.mass=0");
@@ -285,9 +274,8 @@ static void a_face_lies_between_the_two_walls(void **state)
 
 // The same where the damper is so strong that a light face alone would stand still within m/c =
 // 1e-12 s: no step has to follow that.
-static void a_light_face_on_a_strong_damper_is_no_face(void **state)
+TEST(a_light_face_on_a_strong_damper_is_no_face)
 {
-    (void)state;
     const char *const light[] = {"wall.mass=1e-6", "wall.mass=1e-7", "wall.mass=1e-9"};
     run_result each[4];
     for (int i = 0; i < 4; i++) {
@@ -317,9 +305,8 @@ static void a_light_face_on_a_strong_damper_is_no_face(void **state)
 
 // Left alone a face swings as its equation says, whatever its damping: halves of a time make up the
 // whole, and the energy falls at the rate c x'^2.
-static void a_face_left_alone_obeys_its_equation(void **state)
+TEST(a_face_left_alone_obeys_its_equation)
 {
-    (void)state;
     for (int i = 0; i < 7; i++) {
         // from none over critical damping, 2 sqrt(k M) = 20, to far beyond
         const double damping[] = {0, 1, 19.999, 20, 20.001, 200, 1e6};
@@ -353,9 +340,8 @@ static void a_face_left_alone_obeys_its_equation(void **state)
 // Without a mass it returns as its law without force says, and what its spring held is lost on the
 // way; Hunt and Crossley's comes to rest in a time that it says. What returns in no time is at once
 // in its place, and so is what an arm leaves that is not behind it.
-static void a_face_without_mass_returns_without_force(void **state)
+TEST(a_face_without_mass_returns_without_force)
 {
-    (void)state;
     const wall_law laws[] = {WALL_KELVIN_VOIGT, WALL_HUNT_CROSSLEY};
     for (int i = 0; i < 2; i++) {
         wall_model w = {.law = laws[i],
@@ -402,9 +388,8 @@ static double spent(double v, double k, double c)
 
 // Hertz's ball without damping; Hunt and Crossley's with it: both ways spend the same
 // x^(n+1)/(n+1).
-static void a_mass_on_hunt_crossley_has_the_closed_form(void **state)
+TEST(a_mass_on_hunt_crossley_has_the_closed_form)
 {
-    (void)state;
     const double k = 1e8, damping[] = {0, 3e7, 1e9};
     for (int i = 0; i < 3; i++) {
         char text[40];
@@ -436,9 +421,8 @@ static void a_mass_on_hunt_crossley_has_the_closed_form(void **state)
 
 // Sensors take a stride in pieces as short as the wall makes the force change: of a stiff one they
 // would see a parabola over half a pulse else.
-static void the_force_changes_as_fast_as_the_wall(void **state)
+TEST(the_force_changes_as_fast_as_the_wall)
 {
-    (void)state;
     parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", "wall.damping=0");
     arm a;
     arm_init(&a, &p);
@@ -472,9 +456,8 @@ static double step_error(double h)
 // The explicit formula has order 8 elsewhere, order n + 1 in a step from the touch, where x^n is
 // not analytic; the graded steps of a run start so short that this is lost in rounding, as the
 // closed forms above show.
-static void a_step_from_the_touch_is_of_order_n_plus_1(void **state)
+TEST(a_step_from_the_touch_is_of_order_n_plus_1)
 {
-    (void)state;
     double coarse = step_error(1e-4), fine = step_error(2.5e-5);
     print_message("step from the touch: %.3g J, %.3g J, order %.3f\n", coarse, fine,
                   log(coarse / fine) / log(4));
@@ -506,9 +489,8 @@ static void bounce(const char *contact, double stiffness, double velocities[2])
 
 // A pulse lasts as long as its frequency's half period, so what finite torques do in it falls with
 // the root of the stiffness.
-static void a_stiff_wall_bounces_like_a_rigid_one(void **state)
+TEST(a_stiff_wall_bounces_like_a_rigid_one)
 {
-    (void)state;
     double rigid[2], error[3][2];
     bounce("wall.contact=rigid", 1, rigid);
     for (int i = 0; i < 3; i++) {
@@ -526,9 +508,8 @@ static void a_stiff_wall_bounces_like_a_rigid_one(void **state)
 }
 
 // An arm at rest presses as on a rigid wall, but for the depth: order 1 in the compliance.
-static void a_stiff_wall_holds_like_a_rigid_one(void **state)
+TEST(a_stiff_wall_holds_like_a_rigid_one)
 {
-    (void)state;
     double force[3];
     const char *const walls[3][2] = {{"wall.contact=rigid", "wall.stiffness=1e4"},
                                      {"wall.contact=kelvin-voigt", "wall.stiffness=1e3"},
@@ -548,9 +529,8 @@ static void a_stiff_wall_holds_like_a_rigid_one(void **state)
 }
 
 // A wall without a damper takes nothing, to the last bit, however often the arm meets it.
-static void a_wall_without_damping_takes_nothing(void **state)
+TEST(a_wall_without_damping_takes_nothing)
 {
-    (void)state;
     static const char *const walls[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
     static const char *const stiffness[] = {"wall.stiffness=100", "wall.stiffness=1e5",
                                             "wall.stiffness=1e15"};
@@ -566,9 +546,8 @@ static void a_wall_without_damping_takes_nothing(void **state)
 
 // A face that is damped far more than the mass can push is left behind in the wall, and returns by
 // itself; what its spring holds goes into the damper as it does.
-static void a_slow_face_lets_go_behind_the_wall(void **state)
+TEST(a_slow_face_lets_go_behind_the_wall)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         // 1.7 times critical, and an arm that swings back faster than the face can
         parameters p =
@@ -629,9 +608,8 @@ static double contact_time(const run_result *r, int i)
 
 // A face without a mass is what light ones come to, in proportion to their mass, also where the arm
 // meets it again on its way back.
-static void a_face_without_mass_is_the_limit_of_light_ones(void **state)
+TEST(a_face_without_mass_is_the_limit_of_light_ones)
 {
-    (void)state;
     parameters p = fixture_parameters(
         SETTINGS("arm.links=4", "arm.hub_joint=beam", "motor.voltage=4", "wall.kind=plane",
                  "wall.angle=0.1", "wall.contact=kelvin-voigt", "wall.stiffness=2000",
@@ -663,9 +641,8 @@ static void a_face_without_mass_is_the_limit_of_light_ones(void **state)
 
 // A sensor's mass strikes a rigid wall: the implicit method, which has equations of its own, comes
 // to what the event method finds, with the square of its step.
-static void a_mass_at_the_tip_strikes_a_rigid_wall(void **state)
+TEST(a_mass_at_the_tip_strikes_a_rigid_wall)
 {
-    (void)state;
     const char *const methods[3][2] = {{"method.name=event", "method.step=1e-3"},
                                        {"method.name=newmark", "method.step=1e-3"},
                                        {"method.name=newmark", "method.step=1e-4"}};
@@ -684,30 +661,4 @@ static void a_mass_at_the_tip_strikes_a_rigid_wall(void **state)
     }
     check_close(log10(fabs((impulse[1] - impulse[0]) / (impulse[2] - impulse[0]))), 2, 0.1);
     check_close(log10(fabs((contact[1] - contact[0]) / (contact[2] - contact[0]))), 2, 0.1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_mass_on_kelvin_voigt_has_the_closed_form),
-        cmocka_unit_test(a_mass_on_hunt_crossley_has_the_closed_form),
-        cmocka_unit_test(a_face_with_a_mass_has_the_closed_form),
-        cmocka_unit_test(an_arm_is_deepest_or_apart_beside_its_face),
-        cmocka_unit_test(an_arm_leaves_a_light_face_once),
-        cmocka_unit_test(an_arm_leaves_a_returning_face_once),
-        cmocka_unit_test(a_face_bounces_the_arm_like_two_masses),
-        cmocka_unit_test(a_face_lies_between_the_two_walls),
-        cmocka_unit_test(a_light_face_on_a_strong_damper_is_no_face),
-        cmocka_unit_test(a_face_left_alone_obeys_its_equation),
-        cmocka_unit_test(a_face_without_mass_returns_without_force),
-        cmocka_unit_test(a_face_without_mass_is_the_limit_of_light_ones),
-        cmocka_unit_test(the_force_changes_as_fast_as_the_wall),
-        cmocka_unit_test(a_step_from_the_touch_is_of_order_n_plus_1),
-        cmocka_unit_test(a_stiff_wall_bounces_like_a_rigid_one),
-        cmocka_unit_test(a_stiff_wall_holds_like_a_rigid_one),
-        cmocka_unit_test(a_mass_at_the_tip_strikes_a_rigid_wall),
-        cmocka_unit_test(a_wall_without_damping_takes_nothing),
-        cmocka_unit_test(a_slow_face_lets_go_behind_the_wall),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,7 +1,4 @@
 // Arms against walls that give: the library and an independent integrator for them.
-#include <math.h>
-#include <string.h>
-
 #include "src/run/run.h"
 #include "tests/arm_fixture.h"
 #include "tests/reference/soft_wall.h"
@@ -28,9 +25,7 @@ static soft_wall_case cases[] = {
 static void set(parameters *p, const char *path, const char *text)
 {
     fault f = {0};
-    if (parameter_set_text(p, parameter_find(path), text, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameter_set_text(p, parameter_find(path), text, &f) != STATUS_OK, "%s", f.text);
 }
 
 static void set_number(parameters *p, const char *path, double value)
@@ -62,9 +57,7 @@ static void library_agrees(void **state)
     set_number(&p, "motor.voltage", c->voltage);
     set(&p, "motor.stiction", "0");
     set_number(&p, "run.duration", c->duration);
-    if (parameters_resolve(&p, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(parameters_resolve(&p, &f) != STATUS_OK, "%s", f.text);
     scenario s = {.parameters = p};
     run_result result;
     char name[] = "test";

@@ -1,8 +1,6 @@
 // Limits of a parameter for a condition on a result.
 #include "src/study/solve.h"
 
-#include <string.h>
-
 #include "src/run/run.h"
 #include "tests/check.h"
 
@@ -27,9 +25,7 @@ static solve_condition condition_of(const char *text)
 {
     fault f;
     solve_condition c;
-    if (solve_condition_read(text, &c, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(solve_condition_read(text, &c, &f) != STATUS_OK, "%s", f.text);
     return c;
 }
 
@@ -59,9 +55,8 @@ static double quantity_at(const scenario *s, const char *path, double value, con
 
 // One link at rest on the wall presses with the hub's torque, which is proportional to the voltage
 // where there is no friction: twice the force takes twice the voltage.
-static void statics_have_the_limit_of_statics(void **state)
+TEST(statics_have_the_limit_of_statics)
 {
-    (void)state;
     char *changes[] = {"motor.stiction=0", "arm.links=1", "initial.angle=0", "wall.angle=0",
                        "run.duration=0.2"};
     scenario s = opened("corrected/first-impact", changes, 5);
@@ -80,9 +75,8 @@ static void statics_have_the_limit_of_statics(void **state)
 
 // The condition holds at the limit and no longer a little beyond it, and neither the number of
 // values nor that of threads has a say in where it is.
-static void limits_are_where_the_condition_ceases_to_hold(void **state)
+TEST(limits_are_where_the_condition_ceases_to_hold)
 {
-    (void)state;
     scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("motor.voltage", 0.5, 5);
     const solution few = solved(&s, &axis, "peak_force_N<2", 5, 1),
@@ -107,9 +101,8 @@ static void limits_are_where_the_condition_ceases_to_hold(void **state)
 
 // A count jumps; its limits come in the order of the range, each with a value that holds beside
 // those that do not. Within 1e-9 V of a grazing impact rounding decides whether it is one.
-static void jumps_are_located_and_told(void **state)
+TEST(jumps_are_located_and_told)
 {
-    (void)state;
     scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("motor.voltage", 5, 0.5);
     const solution found = solved(&s, &axis, "impacts<3", 65, 1);
@@ -126,9 +119,8 @@ static void jumps_are_located_and_told(void **state)
     scenario_finish(&s);
 }
 
-static void whole_numbers_have_a_last_one(void **state)
+TEST(whole_numbers_have_a_last_one)
 {
-    (void)state;
     scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("arm.links", 2, 20);
 
@@ -146,9 +138,8 @@ static void whole_numbers_have_a_last_one(void **state)
 }
 
 // Where the quantity is missing or the run fails, there is no limit of its value.
-static void what_is_not_there_has_no_limit(void **state)
+TEST(what_is_not_there_has_no_limit)
 {
-    (void)state;
     scenario s = opened("corrected/first-impact", NULL, 0);
 
     // a voltage too small to reach the wall
@@ -167,9 +158,8 @@ static void what_is_not_there_has_no_limit(void **state)
     scenario_finish(&s);
 }
 
-static void conditions_say_what_they_lack(void **state)
+TEST(conditions_say_what_they_lack)
 {
-    (void)state;
     const struct {
         const char *text, *expected;
     } wrong[] = {
@@ -185,9 +175,7 @@ static void conditions_say_what_they_lack(void **state)
         solve_condition c;
         fault f;
         assert_int_equal(solve_condition_read(wrong[i].text, &c, &f), STATUS_BAD_ARGUMENT);
-        if (strstr(f.text, wrong[i].expected) == NULL) {
-            fail_msg("%s: %s", wrong[i].text, f.text);
-        }
+        fail_if(strstr(f.text, wrong[i].expected) == NULL, "%s: %s", wrong[i].text, f.text);
     }
 
     const solve_condition c = condition_of("  impacts >= 3 ");
@@ -195,9 +183,8 @@ static void conditions_say_what_they_lack(void **state)
     assert_true(solve_condition_holds(&c, 3) && !solve_condition_holds(&c, 2));
 }
 
-static void parameters_that_are_no_numbers_have_no_range(void **state)
+TEST(parameters_that_are_no_numbers_have_no_range)
 {
-    (void)state;
     fault f;
     scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("method.name", 0, 1);
@@ -208,9 +195,8 @@ static void parameters_that_are_no_numbers_have_no_range(void **state)
     scenario_finish(&s);
 }
 
-static void one_can_be_stopped(void **state)
+TEST(one_can_be_stopped)
 {
-    (void)state;
     fault f;
     solution found;
     run_monitor monitor = {0};
@@ -220,19 +206,4 @@ static void one_can_be_stopped(void **state)
     atomic_store(&monitor.stop, true);
     assert_int_equal(solve(&s, &axis, &c, 5, 1, &monitor, &found, &f), STATUS_STOPPED);
     scenario_finish(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(statics_have_the_limit_of_statics),
-        cmocka_unit_test(limits_are_where_the_condition_ceases_to_hold),
-        cmocka_unit_test(jumps_are_located_and_told),
-        cmocka_unit_test(whole_numbers_have_a_last_one),
-        cmocka_unit_test(what_is_not_there_has_no_limit),
-        cmocka_unit_test(conditions_say_what_they_lack),
-        cmocka_unit_test(parameters_that_are_no_numbers_have_no_range),
-        cmocka_unit_test(one_can_be_stopped),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,6 @@
 // Statistics of piecewise linear signals, cut anywhere, against exact values.
 #include "tests/check.h"
 
-#include <math.h>
-
 #include "src/base/random.h"
 #include "src/run/trace.h"
 
@@ -13,9 +11,8 @@ static void add(trace *t, double time, double force)
     assert_int_equal(trace_add_row(t, &row, none, none), STATUS_OK);
 }
 
-static void a_ramp_and_a_step(void **state)
+TEST(a_ramp_and_a_step)
 {
-    (void)state;
     const int force = SIGNAL_INDEX(force);
     trace t;
     trace_init(&t, 1);
@@ -103,9 +100,8 @@ static signal_statistics by_pieces(const double *times, const double *values, in
 }
 
 // Rows at eighths of a second, some of them twice, some without a value, cut at sixteenths.
-static void whatever_is_cut_is_the_sum_of_its_pieces(void **state)
+TEST(whatever_is_cut_is_the_sum_of_its_pieces)
 {
-    (void)state;
     enum { ROWS = 12 };
     random_generator g;
     random_seed(&g, 9);
@@ -149,9 +145,8 @@ static void whatever_is_cut_is_the_sum_of_its_pieces(void **state)
 }
 
 // Whole pieces have the values of their rows, to the last bit.
-static void extremes_are_values_of_rows(void **state)
+TEST(extremes_are_values_of_rows)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 3);
     for (int trial = 0; trial < 200; trial++) {
@@ -165,14 +160,4 @@ static void extremes_are_values_of_rows(void **state)
         check_close(s.maximum, fmax(value[0], value[1]), 0);
         trace_finish(&t);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ramp_and_a_step),
-        cmocka_unit_test(whatever_is_cut_is_the_sum_of_its_pieces),
-        cmocka_unit_test(extremes_are_values_of_rows),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,4 @@
 // Order, damping and stability of the engines, on motions with known solutions.
-#include <math.h>
-
 #include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
@@ -94,9 +92,8 @@ static double order_of(const char *method, const char *more, double h)
     return log2(error_at(method, more, h) / error_at(method, more, h / 2));
 }
 
-static void orders_are_as_published(void **state)
+TEST(orders_are_as_published)
 {
-    (void)state;
     check_close(order_of("method.name=newmark", "method.beta=0.25", 1e-3), 2, 0.05);
     check_close(order_of("method.name=newmark", "method.beta=0.4", 1e-3), 2, 0.05);
     check_close(order_of("method.name=newmark", "method.gamma=0.6", 2.5e-4), 1, 0.1);
@@ -107,18 +104,16 @@ static void orders_are_as_published(void **state)
     check_close(order_of("method.name=event", "method.beta=0.4", 2e-2), 8, 0.5);
 }
 
-static void newmark_without_damping_keeps_the_amplitude(void **state)
+TEST(newmark_without_damping_keeps_the_amplitude)
 {
-    (void)state;
     double steps[] = {0.1, 1, 10, 1000};
     for (int i = 0; i < 4; i++) {
         check_close(spectral_radius(steps[i], "method.name=newmark", "method.beta=0.25"), 1, 1e-3);
     }
 }
 
-static void stability_limits_are_those_of_table_3_1(void **state)
+TEST(stability_limits_are_those_of_table_3_1)
 {
-    (void)state;
     // omega h = (gamma/2 - beta)^(-1/2)
     double linear_acceleration = 1 / sqrt(0.25 - 1.0 / 6);
     check_close(linear_acceleration, 3.4641, 1e-4);
@@ -134,9 +129,8 @@ static void stability_limits_are_those_of_table_3_1(void **state)
     check_close(spectral_radius(1e4, "method.name=newmark", "method.beta=0.4"), 1, 1e-3);
 }
 
-static void generalised_alpha_damps_the_highest_modes_as_asked(void **state)
+TEST(generalised_alpha_damps_the_highest_modes_as_asked)
 {
-    (void)state;
     check_close(spectral_radius(3e4, "method.name=generalized-alpha", "method.spectral_radius=0.9"),
                 0.9, 2e-3);
     check_close(spectral_radius(3e4, "method.name=generalized-alpha", "method.spectral_radius=0.5"),
@@ -175,9 +169,8 @@ static double energy_drift(const char *links, const char *hub, double duration)
     return drift;
 }
 
-static void free_motion_keeps_its_energy(void **state)
+TEST(free_motion_keeps_its_energy)
 {
-    (void)state;
     check_below(energy_drift("arm.links=2", "arm.hub_joint=rigid", 10), 1e-8);
     check_below(energy_drift("arm.links=5", "arm.hub_joint=rigid", 10), 1e-8);
     check_below(energy_drift("arm.links=2", "arm.hub_joint=spring", 10), 1e-8);
@@ -210,9 +203,8 @@ static double distance_to_event_method(const char *links, const char *wall, cons
     return fabs(angle[0] - angle[1]);
 }
 
-static void implicit_methods_converge_through_an_impact(void **state)
+TEST(implicit_methods_converge_through_an_impact)
 {
-    (void)state;
     static const char *const methods[] = {"method.name=newmark", "method.name=generalized-alpha"};
     for (int i = 0; i < 4; i++) {
         const char *wall = i % 2 ? "wall.kind=plane" : "wall.kind=point";
@@ -221,17 +213,4 @@ static void implicit_methods_converge_through_an_impact(void **state)
         check_below(coarse, 1e-4);
         check_close(log2(coarse / fine), 2, 0.4);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(orders_are_as_published),
-        cmocka_unit_test(newmark_without_damping_keeps_the_amplitude),
-        cmocka_unit_test(stability_limits_are_those_of_table_3_1),
-        cmocka_unit_test(generalised_alpha_damps_the_highest_modes_as_asked),
-        cmocka_unit_test(free_motion_keeps_its_energy),
-        cmocka_unit_test(implicit_methods_converge_through_an_impact),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,7 +1,5 @@
 // The stiff engine gives the motion of the explicit formula, of every arm and wall, and the same
 // bits in vectors of any width, however a run is cut, and from a copy of its state.
-#include <math.h>
-#include <string.h>
 
 #include "src/contact/contact_machine.h"
 #include "src/engines/pair/taylor_lanes.h"
@@ -69,9 +67,8 @@ static chain_outcome outcome_by_formula(chain_start start)
     return chain_outcome_of(&start);
 }
 
-static void the_explicit_formula_gives_the_same(void **state)
+TEST(the_explicit_formula_gives_the_same)
 {
-    (void)state;
     for (int i = 0; i < ARMS; i++) {
         const parameters p = parameters_of(i);
         const chain_outcome truth =
@@ -98,9 +95,8 @@ static void the_explicit_formula_gives_the_same(void **state)
 }
 
 // One link on a hub spring moves by a linear law, and its steps are long.
-static void air_on_one_link_that_turns_far_closes_the_ledger(void **state)
+TEST(air_on_one_link_that_turns_far_closes_the_ledger)
 {
-    (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=1", "arm.hub_joint=spring", "arm.k1=4.94721", "arm.hub_inertia=0.0272",
                  "arm.mass=0.0675", "arm.air_drag=0.0015", "arm.damping_ratio=0", "wall.kind=none",
@@ -145,15 +141,13 @@ static size_t motion_to_end(const parameters *p, double interval, bool forgetful
 static void check_same_bits(const double *a, const double *b, size_t size)
 {
     for (size_t i = 0; i < size; i++) {
-        if (memcmp(&a[i], &b[i], sizeof a[i]) != 0) {
-            fail_msg("number %zu differs: %.17g and %.17g", i, a[i], b[i]);
-        }
+        fail_if(memcmp(&a[i], &b[i], sizeof a[i]) != 0, "number %zu differs: %.17g and %.17g", i,
+                a[i], b[i]);
     }
 }
 
-static void stops_change_no_bit(void **state)
+TEST(stops_change_no_bit)
 {
-    (void)state;
     for (int i = 1; i < ARMS; i++) { // the first arm's force adds up at rest, from stop to stop
         const parameters p = parameters_of(i);
         double whole[256], cut[256];
@@ -165,9 +159,8 @@ static void stops_change_no_bit(void **state)
     }
 }
 
-static void a_copy_of_the_state_goes_on_with_the_same_bits(void **state)
+TEST(a_copy_of_the_state_goes_on_with_the_same_bits)
 {
-    (void)state;
     for (int i = 0; i < ARMS; i++) {
         const parameters p = parameters_of(i);
         double whole[256], copied[256];
@@ -177,9 +170,8 @@ static void a_copy_of_the_state_goes_on_with_the_same_bits(void **state)
     }
 }
 
-static void every_width_of_vectors_gives_the_same_bits(void **state)
+TEST(every_width_of_vectors_gives_the_same_bits)
 {
-    (void)state;
     for (int i = 0; i < ARMS; i++) {
         const parameters p = parameters_of(i);
         double narrow[256], wide[256];
@@ -193,9 +185,8 @@ static void every_width_of_vectors_gives_the_same_bits(void **state)
 
 // A light arm behind a spring swings off the wall as the fourth power of the time; one that moves
 // into the wall strikes it at once.
-static void starts_on_the_wall_are_told_from_rounding(void **state)
+TEST(starts_on_the_wall_are_told_from_rounding)
 {
-    (void)state;
     const parameters off = fixture_parameters(SETTINGS(
         "arm.hub_joint=spring", "arm.k1=276", "arm.k2=64", "motor.voltage=2", "wall.angle=0"));
     const chain_outcome swings =
@@ -217,9 +208,8 @@ static void starts_on_the_wall_are_told_from_rounding(void **state)
 
 // A light face behind a strong damper is met at rest: the force rises faster than the first step
 // shows, which is no release.
-static void an_arm_that_rests_on_a_face_stays_on_it(void **state)
+TEST(an_arm_that_rests_on_a_face_stays_on_it)
 {
-    (void)state;
     const parameters p = fixture_parameters(SETTINGS(
         "arm.links=1", "arm.hub_joint=spring", "wall.angle=2.1487444233014976", "wall.kind=plane",
         "motor.voltage=5.25", "motor.stiction=0.09", "arm.mass=0.84", "arm.hub_inertia=3.5e-3",
@@ -239,9 +229,8 @@ static void an_arm_that_rests_on_a_face_stays_on_it(void **state)
 // Ten links lie on a soft wall while the hub starts: for milliseconds the tip's gap is rounding. A
 // hub on a stiff spring comes to rest slowly, far from zero: its angle's last digits are momentum.
 // A link leaves a light face on a stiff spring, whose place's last digits push it.
-static void rounding_makes_no_events_and_stops_none(void **state)
+TEST(rounding_makes_no_events_and_stops_none)
 {
-    (void)state;
     const parameters lies = fixture_parameters(SETTINGS(
         "arm.links=10", "arm.hub_joint=spring", "wall.angle=-2.5203893907510242",
         "initial.angle=-2.5203893907510242", "motor.voltage=0.34", "arm.mass=0.1", "arm.k2=1.55",
@@ -301,9 +290,8 @@ static void rounding_makes_no_events_and_stops_none(void **state)
 
 // Where the wall holds the link and friction the hub, the force stays what it is while the motor's
 // current still changes: its peak is reached when the hub comes to rest.
-static void a_force_that_stays_has_its_peak_at_its_start(void **state)
+TEST(a_force_that_stays_has_its_peak_at_its_start)
 {
-    (void)state;
     const parameters p = fixture_parameters(SETTINGS(
         "arm.links=1", "arm.hub_joint=beam", "wall.kind=plane", "motor.voltage=0.49199248223745717",
         "arm.mass=0.95154417458975349", "arm.hub_inertia=0.0033970417183283095",
@@ -329,9 +317,8 @@ static void a_force_that_stays_has_its_peak_at_its_start(void **state)
 }
 
 // Tip against a flat wall through the hub's axis, where the force has a pole.
-static void steps_keep_clear_of_a_fold(void **state)
+TEST(steps_keep_clear_of_a_fold)
 {
-    (void)state;
     const char *const voltages[] = {"motor.voltage=8.6", "motor.voltage=8.8", "motor.voltage=9.8"};
     for (int i = 0; i < 3; i++) {
         const parameters p = fixture_parameters(
@@ -344,9 +331,8 @@ static void steps_keep_clear_of_a_fold(void **state)
 }
 
 // Bounces amplify errors: 62 of them leave a hundred-thousandth of the momentum in doubt.
-static void a_chain_that_bounces_keeps_its_impacts(void **state)
+TEST(a_chain_that_bounces_keeps_its_impacts)
 {
-    (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=18", "wall.kind=plane", "wall.restitution=0.89485274850248742",
                  "motor.voltage=5.5178188164179405", "arm.k2=26.16118528162535",
@@ -364,9 +350,8 @@ static void a_chain_that_bounces_keeps_its_impacts(void **state)
 
 // Decays of 1e10 to 1e19 1/s, after an impact and where the hub sticks and slips: what is over
 // within a step takes no steps of its own, and rounding that such rates amplify makes no event.
-static void decays_of_any_rate_are_passed_over(void **state)
+TEST(decays_of_any_rate_are_passed_over)
 {
-    (void)state;
     static const char *const fast[][6] = {
         {"arm.links=64", "arm.EI=1e6", "arm.damping_ratio=1"},
         {"arm.links=8", "arm.hub_joint=spring", "arm.k1=1e8", "arm.hub_inertia=1e-12",
@@ -400,9 +385,8 @@ static void decays_of_any_rate_are_passed_over(void **state)
 
 // A force of rounding on the wall that the arm just touches ends no step beyond the hub's
 // break-away, and what friction holds stays within stiction.
-static void a_force_of_rounding_hides_no_slip(void **state)
+TEST(a_force_of_rounding_hides_no_slip)
 {
-    (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=3", "arm.hub_joint=rigid", "wall.kind=plane", "method.engine=stiff",
                  "motor.voltage=2.5157641983999302", "arm.mass=0.26491769416740801",
@@ -443,9 +427,8 @@ static bool is_refused(const char *const *settings)
     return parameters_resolve(&p, &f) == STATUS_BAD_SCENARIO && strstr(f.text, "method.engine");
 }
 
-static void an_engine_that_cannot_take_the_arm_is_refused(void **state)
+TEST(an_engine_that_cannot_take_the_arm_is_refused)
 {
-    (void)state;
     assert_true(is_refused(SETTINGS("method.engine=pair", "arm.links=3")));
     assert_true(is_refused(SETTINGS("method.engine=pair", "arm.tip_mass=0.01")));
     assert_true(is_refused(SETTINGS("method.engine=pair", "wall.contact=kelvin-voigt")));
@@ -453,25 +436,4 @@ static void an_engine_that_cannot_take_the_arm_is_refused(void **state)
     assert_true(is_refused(SETTINGS("method.engine=stiff", "method.name=newmark")));
     assert_false(is_refused(SETTINGS("method.engine=pair", "arm.hub_joint=spring")));
     assert_false(is_refused(SETTINGS("method.engine=stiff", "arm.tip_mass=0.01")));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_explicit_formula_gives_the_same),
-        cmocka_unit_test(air_on_one_link_that_turns_far_closes_the_ledger),
-        cmocka_unit_test(starts_on_the_wall_are_told_from_rounding),
-        cmocka_unit_test(an_arm_that_rests_on_a_face_stays_on_it),
-        cmocka_unit_test(rounding_makes_no_events_and_stops_none),
-        cmocka_unit_test(a_force_that_stays_has_its_peak_at_its_start),
-        cmocka_unit_test(steps_keep_clear_of_a_fold),
-        cmocka_unit_test(a_chain_that_bounces_keeps_its_impacts),
-        cmocka_unit_test(decays_of_any_rate_are_passed_over),
-        cmocka_unit_test(stops_change_no_bit),
-        cmocka_unit_test(a_copy_of_the_state_goes_on_with_the_same_bits),
-        cmocka_unit_test(a_force_of_rounding_hides_no_slip),
-        cmocka_unit_test(an_engine_that_cannot_take_the_arm_is_refused),
-        cmocka_unit_test(every_width_of_vectors_gives_the_same_bits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,8 +1,6 @@
 // Arms with decays or vibrations much faster than the motion of interest: they take few strides or
 // report why not, and their slow modes are right. And arms that start on the wall, with first
 // flights that are lower than rounding.
-#include <math.h>
-#include <stdlib.h>
 
 #include "src/run/loop.h"
 #include "src/run/run.h"
@@ -12,9 +10,8 @@
 #include "tests/passage.h"
 
 // Two equal links on a rigid wall, arms that nothing but the motor damps, and all others.
-static void each_arm_has_its_engine(void **state)
+TEST(each_arm_has_its_engine)
 {
-    (void)state;
     static const struct {
         const char *settings[4];
         const engine *by;
@@ -47,17 +44,15 @@ static void each_arm_has_its_engine(void **state)
         arm_init(&a, &p);
         motion *m = motion_create(&a, &p.method);
         assert_non_null(m);
-        if (m->engine != cases[i].by) {
-            fail_msg("case %zu goes by %s, not %s", i, m->engine->name, cases[i].by->name);
-        }
+        fail_if(m->engine != cases[i].by, "case %zu goes by %s, not %s", i, m->engine->name,
+                cases[i].by->name);
         motion_destroy(m);
     }
 }
 
 // A hub of a milligram square metre on a damped spring: its decay of 4e8 1/s is over at once.
-static void a_stiff_hub_takes_few_strides(void **state)
+TEST(a_stiff_hub_takes_few_strides)
 {
-    (void)state;
     for (int links = 2; links <= 4; links++) {
         parameters p = fixture_parameters(SETTINGS("arm.hub_joint=spring", "arm.hub_inertia=1e-6",
                                                    "arm.damping_ratio=0.02", "motor.voltage=1"));
@@ -69,9 +64,8 @@ static void a_stiff_hub_takes_few_strides(void **state)
 }
 
 // The two-link arm of a stiffer hub, and by the explicit formula.
-static void a_stiff_pair_moves_as_by_the_formula(void **state)
+TEST(a_stiff_pair_moves_as_by_the_formula)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.hub_joint=spring",
                                                "arm.hub_inertia=2e-4", "arm.damping_ratio=0.02",
                                                "motor.voltage=1", "wall.restitution=0.5"));
@@ -84,9 +78,8 @@ static void a_stiff_pair_moves_as_by_the_formula(void **state)
 
 // An edit in mid-run makes the arm stiff: the motion goes on by what is right for it then, as the
 // same arm would that went on from a copy of its state.
-static void an_arm_made_stiff_changes_its_engine(void **state)
+TEST(an_arm_made_stiff_changes_its_engine)
 {
-    (void)state;
     for (int links = 2; links <= 3; links++) {
         parameters p = fixture_parameters(SETTINGS("arm.hub_joint=spring", "arm.k1=500",
                                                    "arm.damping_ratio=0", "motor.voltage=1"));
@@ -125,9 +118,8 @@ static void an_arm_made_stiff_changes_its_engine(void **state)
 
 // A stride begins with what decays make of rounding, over at once: the force does not leave its
 // band for that, and has settled when its rows have.
-static void a_stride_that_begins_does_not_unsettle_the_force(void **state)
+TEST(a_stride_that_begins_does_not_unsettle_the_force)
 {
-    (void)state;
     scenario s = {
         .parameters = fixture_parameters(SETTINGS(
             "arm.links=7", "arm.hub_joint=spring", "arm.k1=28214.187", "arm.length=0.384470708390",
@@ -148,9 +140,8 @@ static void a_stride_that_begins_does_not_unsettle_the_force(void **state)
 
 // A damper so strong that the arm rests on it for ever: a run that could not end says so after a
 // bounded effort.
-static void a_run_that_could_not_end_says_so(void **state)
+TEST(a_run_that_could_not_end_says_so)
 {
-    (void)state;
     static const char *const dampers[] = {"wall.damping=1e12", "wall.damping=1e15"};
     for (size_t i = 0; i < sizeof dampers / sizeof dampers[0]; i++) {
         scenario s = {.parameters = fixture_parameters(SETTINGS("wall.contact=kelvin-voigt",
@@ -167,9 +158,8 @@ static void a_run_that_could_not_end_says_so(void **state)
 
 // Arms with decays, of a light hub, a wall's damper or a current, that are over at once and would
 // shorten the strides of a formula that is not stiff.
-static void decays_do_not_shorten_strides(void **state)
+TEST(decays_do_not_shorten_strides)
 {
-    (void)state;
     static const char *const arms[][7] = {
         {"arm.links=3", "arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02",
          "arm.tip_mass=0.01"},
@@ -189,9 +179,8 @@ static void decays_do_not_shorten_strides(void **state)
 }
 
 // The sentence about too short strides names their cause.
-static void a_run_that_could_not_end_says_why(void **state)
+TEST(a_run_that_could_not_end_says_why)
 {
-    (void)state;
     static const struct {
         const char *settings[8];
         double angle, velocity;
@@ -220,18 +209,16 @@ static void a_run_that_could_not_end_says_why(void **state)
         fault f = {.text = ""};
         assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), STATUS_OK);
         assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
-        if (strstr(f.text, cases[i].cause) == NULL) {
-            fail_msg("case %zu, '%s': %s", i, cases[i].cause, f.text);
-        }
+        fail_if(strstr(f.text, cases[i].cause) == NULL, "case %zu, '%s': %s", i, cases[i].cause,
+                f.text);
         motion_destroy(m);
     }
 }
 
 // An arm that a wall throws off and meets again by turns, with no time between, or next to none:
 // the run says that it is the wall, also where it ends in flight.
-static void a_run_that_stands_still_at_a_wall_says_so(void **state)
+TEST(a_run_that_stands_still_at_a_wall_says_so)
 {
-    (void)state;
     static const struct {
         const char *settings[6];
         const char *cause;
@@ -249,9 +236,8 @@ static void a_run_that_stands_still_at_a_wall_says_so(void **state)
         s.parameters.initial.velocity = 0.7;
         run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
-        if (strstr(r.summary.message, cases[i].cause) == NULL) {
-            fail_msg("case %zu, '%s': %s", i, cases[i].cause, r.summary.message);
-        }
+        fail_if(strstr(r.summary.message, cases[i].cause) == NULL, "case %zu, '%s': %s", i,
+                cases[i].cause, r.summary.message);
         run_finish(&r);
     }
 
@@ -270,9 +256,8 @@ static void a_run_that_stands_still_at_a_wall_says_so(void **state)
 }
 
 // Where strides are expensive, with many links, fewer of them are enough to give a run up.
-static void expensive_strides_are_given_up_sooner(void **state)
+TEST(expensive_strides_are_given_up_sooner)
 {
-    (void)state;
     static const struct {
         const char *settings[4];
         int most; // strides
@@ -304,9 +289,8 @@ static void expensive_strides_are_given_up_sooner(void **state)
 
 // A program that goes back to a state a thousand times, or asks for instants a nanosecond apart,
 // has as many strides as it asks for.
-static void a_loop_makes_as_many_strides_as_are_asked_for(void **state)
+TEST(a_loop_makes_as_many_strides_as_are_asked_for)
 {
-    (void)state;
     enum { EPISODES = 750, STEPS = 100, INSTANTS = 70000 };
     char name[] = "rewound", none[] = "";
     scenario s = {.name = name, .file = none, .title = none, .description = none};
@@ -346,9 +330,8 @@ static void a_loop_makes_as_many_strides_as_are_asked_for(void **state)
 
 // On the wall from the start and going into it: an impact at once, whatever rounding makes of the
 // gap, and then flights of less than 1e-15 m, which Runge-Kutta cannot tell from rounding.
-static void an_arm_that_starts_on_the_wall_strikes_it(void **state)
+TEST(an_arm_that_starts_on_the_wall_strikes_it)
 {
-    (void)state;
     static const int links[] = {1, 2, 3, 6, 8, 10, 16};
     for (int i = 0; i < 7 * 4; i++) {
         parameters p = fixture_parameters(SETTINGS("motor.voltage=1"));
@@ -367,9 +350,8 @@ static void an_arm_that_starts_on_the_wall_strikes_it(void **state)
 
 // A heavy soft chain behind a light hub, with decays of 3e7 1/s, that meets its wall once. The
 // explicit formula needs a million strides for this; its answers are given.
-static void an_impact_is_one_of_the_exact_gap(void **state)
+TEST(an_impact_is_one_of_the_exact_gap)
 {
-    (void)state;
     parameters p = fixture_parameters(
         SETTINGS("wall.kind=plane", "arm.links=6", "arm.hub_joint=spring",
                  "motor.voltage=-0.5147139341175766", "motor.amplifier_gain=13.842765371652092",
@@ -387,9 +369,8 @@ static void an_impact_is_one_of_the_exact_gap(void **state)
 
 // A chain with decays of 8e6 1/s that bounces and then presses on the wall, bent and at rest: what
 // small changes mean there is told by its energy, not by velocities of next to nothing.
-static void an_arm_at_rest_takes_few_strides(void **state)
+TEST(an_arm_at_rest_takes_few_strides)
 {
-    (void)state;
     parameters p = fixture_parameters(SETTINGS(
         "wall.kind=plane", "arm.links=17", "arm.hub_joint=spring",
         "motor.voltage=6.7365767390474254", "motor.amplifier_gain=14.453409212005569",
@@ -407,9 +388,8 @@ static void an_arm_at_rest_takes_few_strides(void **state)
 
 // A light hub before a heavy beam: what the hub's own fast vibration loses to back EMF turns twice
 // as far in a stride as the vibration.
-static void what_a_fast_hub_loses_is_all_booked(void **state)
+TEST(what_a_fast_hub_loses_is_all_booked)
 {
-    (void)state;
     parameters p = fixture_parameters(
         SETTINGS("arm.hub_joint=beam", "arm.length=27.7", "arm.mass=594", "arm.hub_inertia=0.0022",
                  "arm.k2=176", "motor.back_emf=15", "motor.stiction=0", "motor.voltage=-3"));
@@ -421,9 +401,8 @@ static void what_a_fast_hub_loses_is_all_booked(void **state)
 
 // Without damping, of the joints or of the motor, nothing is booked as lost to it, and the
 // ledger closes as it does with both: in flight, on the wall, pressed to it and bent.
-static void an_arm_without_damping_loses_nothing_to_it(void **state)
+TEST(an_arm_without_damping_loses_nothing_to_it)
 {
-    (void)state;
     for (int i = 0; i < 8; i++) {
         const bool joints = i & 1, hub = i & 2, stands = i & 4;
         parameters p = fixture_parameters(SETTINGS(
@@ -443,26 +422,4 @@ static void an_arm_without_damping_loses_nothing_to_it(void **state)
         assert_int_equal(lost[QUADRATURE_VISCOUS] != 0, hub);
         motion_destroy(m);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_arm_has_its_engine),
-        cmocka_unit_test(a_stiff_hub_takes_few_strides),
-        cmocka_unit_test(a_stiff_pair_moves_as_by_the_formula),
-        cmocka_unit_test(an_arm_made_stiff_changes_its_engine),
-        cmocka_unit_test(a_stride_that_begins_does_not_unsettle_the_force),
-        cmocka_unit_test(a_run_that_could_not_end_says_so),
-        cmocka_unit_test(decays_do_not_shorten_strides),
-        cmocka_unit_test(a_run_that_could_not_end_says_why),
-        cmocka_unit_test(a_run_that_stands_still_at_a_wall_says_so),
-        cmocka_unit_test(expensive_strides_are_given_up_sooner),
-        cmocka_unit_test(an_arm_without_damping_loses_nothing_to_it),
-        cmocka_unit_test(a_loop_makes_as_many_strides_as_are_asked_for),
-        cmocka_unit_test(an_impact_is_one_of_the_exact_gap),
-        cmocka_unit_test(an_arm_at_rest_takes_few_strides),
-        cmocka_unit_test(what_a_fast_hub_loses_is_all_booked),
-        cmocka_unit_test(an_arm_that_starts_on_the_wall_strikes_it)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

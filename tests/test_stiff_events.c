@@ -2,7 +2,6 @@
 // meets, down to bounces lower than rounding. Where
 // the formula itself tells a touch too coarsely (1e-12 m), numbers are those of power series of the
 // chain of order 32.
-#include <math.h>
 
 #include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
@@ -47,9 +46,8 @@ static meetings meetings_by(const parameters *p, const engine *by, double angle,
 
 // What happens within a stride is what the explicit formula finds at steps a thousand times
 // shorter.
-static void events_within_a_stride_are_the_formulas(void **state)
+TEST(events_within_a_stride_are_the_formulas)
 {
-    (void)state;
     static const struct {
         const char *what;
         int links;
@@ -106,10 +104,9 @@ static void events_within_a_stride_are_the_formulas(void **state)
         meetings formula = meetings_by(&p, &explicit_engine, angle, velocity, until);
 
         // the same events at the same times
-        if (stiff.count != cases[i].events || formula.count != cases[i].events) {
-            fail_msg("%s: %d events by the stiff engine, %d by the formula", cases[i].what,
-                     stiff.count, formula.count);
-        }
+        fail_if(stiff.count != cases[i].events || formula.count != cases[i].events,
+                "%s: %d events by the stiff engine, %d by the formula", cases[i].what, stiff.count,
+                formula.count);
         for (int k = 0; k < stiff.count; k++) {
             assert_int_equal(stiff.event[k], formula.event[k]);
             check_close(stiff.time[k], formula.time[k], cases[i].tolerance);
@@ -121,9 +118,8 @@ static void events_within_a_stride_are_the_formulas(void **state)
 
 // An arm of 1e-7 rad with bounces down to 1e-9 m/s: the stiff engine resolves them as far as the
 // formula does, and what comes afterwards is the same.
-static void bounces_end_where_no_engine_tells_them(void **state)
+TEST(bounces_end_where_no_engine_tells_them)
 {
-    (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=11", "arm.hub_joint=spring", "arm.damping_ratio=0.0211439",
                  "wall.restitution=0.2997", "wall.angle=1.2349084692906555e-7",
@@ -137,9 +133,8 @@ static void bounces_end_where_no_engine_tells_them(void **state)
 
 // An arm that strikes at 3e-7 m/s and comes to rest in some microseconds: an impact that is a
 // nanosecond late would leave another force.
-static void slow_impacts_are_in_time(void **state)
+TEST(slow_impacts_are_in_time)
 {
-    (void)state;
     const parameters p = fixture_parameters(SETTINGS(
         "arm.links=14", "arm.hub_joint=spring", "arm.damping_ratio=0.769416",
         "wall.restitution=0.600972", "wall.angle=1.0272161409848381e-7", "motor.voltage=2.00084e-6",
@@ -153,9 +148,8 @@ static void slow_impacts_are_in_time(void **state)
 
 // An arm that comes to the wall at 7e-9 m/s: first contact is no later for the tolerance of the
 // gap, which is a length.
-static void a_slow_arm_touches_in_time(void **state)
+TEST(a_slow_arm_touches_in_time)
 {
-    (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=10", "arm.hub_joint=beam", "arm.damping_ratio=0.423252",
                  "wall.angle=7.8856745847127184e-7", "motor.voltage=1.605e-7", "arm.k2=2.07622",
@@ -169,9 +163,8 @@ static void a_slow_arm_touches_in_time(void **state)
 
 // An arm that presses with 5e-7 N leaves the wall where the force is zero to a share of what it
 // was: a fixed tolerance of 1e-9 N would be 1e-4 s late.
-static void a_slow_arm_leaves_in_time(void **state)
+TEST(a_slow_arm_leaves_in_time)
 {
-    (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=24", "arm.hub_joint=spring", "arm.damping_ratio=0.00164715",
                  "wall.angle=5.1124406976777767e-8", "motor.voltage=1.6161e-6", "arm.k2=3.51557",
@@ -188,9 +181,8 @@ static void a_slow_arm_leaves_in_time(void **state)
 
 // Between bounces of some 1e-9 s the tip flies 1e-13 m high, and the motor presses: no impact is
 // faster than the one before, but for what it falls beyond the wall within 2e-14 m.
-static void bounces_lower_than_rounding_do_not_gain(void **state)
+TEST(bounces_lower_than_rounding_do_not_gain)
 {
-    (void)state;
     const parameters p = fixture_parameters(
         SETTINGS("arm.links=14", "arm.damping_ratio=0.477", "arm.k2=23.7", "arm.mass=0.865",
                  "arm.hub_inertia=0.0217", "motor.voltage=4.95", "wall.kind=plane",
@@ -225,9 +217,8 @@ static void bounces_lower_than_rounding_do_not_gain(void **state)
 
 // An arm of 5e-6 rad with flights lower than 1e-11 m: a step that ends while it rises changes
 // nothing of the bounce that follows.
-static void a_step_that_ends_in_a_flight_is_no_bounce(void **state)
+TEST(a_step_that_ends_in_a_flight_is_no_bounce)
 {
-    (void)state;
     const parameters p = fixture_parameters(SETTINGS(
         "arm.links=12", "arm.hub_joint=spring", "arm.damping_ratio=0.456079", "wall.kind=plane",
         "wall.restitution=0.868528", "wall.angle=4.51e-6", "motor.voltage=-6.74594e-7",
@@ -267,9 +258,8 @@ static bool grazes(const parameters *p, const engine *by, double wall)
 
 // The farthest wall that an arm which turns back just touches, the instant far within a stride, is
 // the same by the stiff engine and by the formula: a graze is an impact however short it is.
-static void a_graze_within_a_stride_is_found(void **state)
+TEST(a_graze_within_a_stride_is_found)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         parameters p = fixture_parameters(
             SETTINGS("arm.links=4", "arm.hub_joint=spring", "arm.hub_inertia=2.29663e-4",
@@ -292,17 +282,4 @@ static void a_graze_within_a_stride_is_found(void **state)
         const engine *by = &explicit_engine;
         assert_true(grazes(&p, by, touched - 1e-10) && !grazes(&p, by, touched + 1e-10));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(events_within_a_stride_are_the_formulas),
-                                       cmocka_unit_test(bounces_end_where_no_engine_tells_them),
-                                       cmocka_unit_test(slow_impacts_are_in_time),
-                                       cmocka_unit_test(a_slow_arm_touches_in_time),
-                                       cmocka_unit_test(a_slow_arm_leaves_in_time),
-                                       cmocka_unit_test(bounces_lower_than_rounding_do_not_gain),
-                                       cmocka_unit_test(a_step_that_ends_in_a_flight_is_no_bounce),
-                                       cmocka_unit_test(a_graze_within_a_stride_is_found)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

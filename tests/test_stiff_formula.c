@@ -1,6 +1,4 @@
 // The numbers of Radau IIA of seven stages are what they are said to be.
-#include <math.h>
-
 #include "src/engines/stiff/stiff_function.h"
 #include "tests/check.h"
 
@@ -14,9 +12,8 @@ static double power(double x, int n)
     return p;
 }
 
-static void stages_integrate_polynomials_to_degree_12(void **state)
+TEST(stages_integrate_polynomials_to_degree_12)
 {
-    (void)state;
     for (int n = 0; n <= 2 * RADAU_STAGES - 2; n++) {
         for (int i = 0; i < RADAU_STAGES && (n < RADAU_STAGES || i == RADAU_STAGES - 1); i++) {
             const bool last = i == RADAU_STAGES - 1;
@@ -29,9 +26,8 @@ static void stages_integrate_polynomials_to_degree_12(void **state)
     }
 }
 
-static void the_embedded_formula_has_degree_6(void **state)
+TEST(the_embedded_formula_has_degree_6)
 {
-    (void)state;
     for (int n = 0; n < RADAU_STAGES; n++) {
         double sum = n == 0 ? radau_start : 0;
         for (int j = 0; j < RADAU_STAGES; j++) {
@@ -43,9 +39,8 @@ static void the_embedded_formula_has_degree_6(void **state)
 }
 
 // a x = T diag(1/root) T^-1 x.
-static void systems_are_the_formula(void **state)
+TEST(systems_are_the_formula)
 {
-    (void)state;
     for (int i = 0; i < RADAU_STAGES; i++) {
         for (int k = 0; k < RADAU_STAGES; k++) {
             double one = 0, matrix = 0;
@@ -63,9 +58,8 @@ static void systems_are_the_formula(void **state)
     }
 }
 
-static void weights_are_those_of_the_polynomial(void **state)
+TEST(weights_are_those_of_the_polynomial)
 {
-    (void)state;
     for (double x = 0; x < 1.6; x += 0.19) {
         radau_weights w;
         radau_weights_at(x, &w);
@@ -92,9 +86,8 @@ static double polynomial(double x, double *slope, double *bend)
 }
 
 // Through nodes, integrated, divided: values, slopes and bounds of a polynomial of degree 7.
-static void functions_are_their_polynomials(void **state)
+TEST(functions_are_their_polynomials)
 {
-    (void)state;
     double nodes[RADAU_LANES], slope, bend, terms[4];
     for (int i = 0; i < RADAU_LANES; i++) {
         nodes[i] = polynomial(radau_node[i], &slope, &bend);
@@ -128,16 +121,4 @@ static void functions_are_their_polynomials(void **state)
     check_close(terms[1], 3, 1e-12);
     check_close(terms[2], -4, 1e-11);
     check_close(terms[3], 2, 1e-10);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stages_integrate_polynomials_to_degree_12),
-        cmocka_unit_test(the_embedded_formula_has_degree_6),
-        cmocka_unit_test(systems_are_the_formula),
-        cmocka_unit_test(weights_are_those_of_the_polynomial),
-        cmocka_unit_test(functions_are_their_polynomials),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 // The table of a run's results: its keys end in their units, and every number is found.
 #include "src/tables/summary.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "tests/check.h"
 
-static void every_key_is_unique_and_found(void **state)
+TEST(every_key_is_unique_and_found)
 {
-    (void)state;
     for (int i = 0; i < summary_count; i++) {
         assert_int_equal(summary_find(summary_table[i].key), i);
         assert_int_equal(summary_index(summary_table[i].key), i);
@@ -21,9 +16,8 @@ static void every_key_is_unique_and_found(void **state)
 }
 
 // "contact_impulse_Ns" is "contact_impulse" in "N s", "return_speed_m_s" one in "m/s".
-static void keys_are_names_with_units(void **state)
+TEST(keys_are_names_with_units)
 {
-    (void)state;
     for (int i = 0; i < summary_count; i++) {
         const summary_info *info = &summary_table[i];
         char key[64], label[64], unit[16] = "";
@@ -45,9 +39,8 @@ static void keys_are_names_with_units(void **state)
     }
 }
 
-static void indices_lead_to_their_numbers(void **state)
+TEST(indices_lead_to_their_numbers)
 {
-    (void)state;
     summary s;
     summary_init(&s);
     s.first_contact_s = 1;
@@ -60,9 +53,8 @@ static void indices_lead_to_their_numbers(void **state)
 }
 
 // Every number has its own place, from the first to the last.
-static void every_index_leads_to_another_number(void **state)
+TEST(every_index_leads_to_another_number)
 {
-    (void)state;
     summary s;
     summary_init(&s);
     double *first = &s.first_contact_s;
@@ -88,9 +80,8 @@ static void every_index_leads_to_another_number(void **state)
     assert_string_equal(f.path, "arm.k2");
 }
 
-static void nothing_is_known_at_first(void **state)
+TEST(nothing_is_known_at_first)
 {
-    (void)state;
     summary s;
     memset(&s, 0x5a, sizeof s);
     summary_init(&s);
@@ -100,16 +91,4 @@ static void nothing_is_known_at_first(void **state)
     for (int i = 0; i < summary_count; i++) {
         assert_true(isnan(summary_value(&s, i)));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_key_is_unique_and_found),
-        cmocka_unit_test(keys_are_names_with_units),
-        cmocka_unit_test(indices_lead_to_their_numbers),
-        cmocka_unit_test(nothing_is_known_at_first),
-        cmocka_unit_test(every_index_leads_to_another_number),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

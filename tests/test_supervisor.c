@@ -5,8 +5,6 @@
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -46,9 +44,8 @@ static int ended(const char *command)
     return supervised_program_end(&p);
 }
 
-static void the_status_of_a_program_that_ended_is_told(void **state)
+TEST(the_status_of_a_program_that_ended_is_told)
 {
-    (void)state;
     const int before = open_descriptors();
     assert_int_equal(ended("exit 0"), 0);
     assert_int_equal(ended("exit 7"), 7);
@@ -58,9 +55,8 @@ static void the_status_of_a_program_that_ended_is_told(void **state)
     assert_int_equal(open_descriptors(), before);
 }
 
-static void a_program_hears_and_answers(void **state)
+TEST(a_program_hears_and_answers)
 {
-    (void)state;
     supervised_program p;
     char line[64];
     assert_int_equal(supervised_program_start(&p, "read x; echo \"heard $x\"; exit 3"), 0);
@@ -72,9 +68,8 @@ static void a_program_hears_and_answers(void **state)
 }
 
 // Signals that the lab ignores or holds back are a program's as usual.
-static void a_program_takes_every_signal(void **state)
+TEST(a_program_takes_every_signal)
 {
-    (void)state;
     static const int some[] = {SIGHUP, SIGPIPE, SIGUSR1, SIGTERM, 64};
     sigset_t held, before;
     sigfillset(&held);
@@ -91,9 +86,8 @@ static void a_program_takes_every_signal(void **state)
 }
 
 // Its streams may have any numbers, those of the lab's own streams too.
-static void streams_may_be_closed_in_the_lab(void **state)
+TEST(streams_may_be_closed_in_the_lab)
 {
-    (void)state;
     supervised_program p;
     char line[64];
     const int before = open_descriptors(), kept = dup(STDIN_FILENO);
@@ -114,9 +108,8 @@ static void streams_may_be_closed_in_the_lab(void **state)
 }
 
 // Once ended there is nothing to end.
-static void an_end_is_told_once(void **state)
+TEST(an_end_is_told_once)
 {
-    (void)state;
     supervised_program p;
     assert_int_equal(supervised_program_start(&p, "exit 0"), 0);
     supervised_program_end(&p);
@@ -125,9 +118,8 @@ static void an_end_is_told_once(void **state)
 }
 
 // A program that continues, and the processes it has left, are gone when the supervisor has ended.
-static void nothing_is_left_of_what_goes_on(void **state)
+TEST(nothing_is_left_of_what_goes_on)
 {
-    (void)state;
     supervised_program p;
     char line[64];
     assert_int_equal(
@@ -141,9 +133,8 @@ static void nothing_is_left_of_what_goes_on(void **state)
     assert_int_equal(errno, ESRCH);
 }
 
-static void where_none_can_be_started_nothing_stays_open(void **state)
+TEST(where_none_can_be_started_nothing_stays_open)
 {
-    (void)state;
     const int before = open_descriptors();
     struct rlimit was, few;
     getrlimit(RLIMIT_NOFILE, &was);
@@ -171,14 +162,5 @@ int main(void)
     for (int fd = 3; fd < 1024; fd++) {
         close(fd);
     }
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_status_of_a_program_that_ended_is_told),
-        cmocka_unit_test(a_program_hears_and_answers),
-        cmocka_unit_test(a_program_takes_every_signal),
-        cmocka_unit_test(streams_may_be_closed_in_the_lab),
-        cmocka_unit_test(an_end_is_told_once),
-        cmocka_unit_test(nothing_is_left_of_what_goes_on),
-        cmocka_unit_test(where_none_can_be_started_nothing_stays_open),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+    return run_cases(NULL, NULL);
 }

@@ -1,7 +1,5 @@
 // The runs of a sweep and their store.
 #include <sqlite3.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,9 +11,8 @@
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
-static void every_run_is_what_the_scenario_gives_alone(void **state)
+TEST(every_run_is_what_the_scenario_gives_alone)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=0.5:2:4", NULL);
     sweep_store *store = must_open(NULL, &s);
@@ -39,9 +36,8 @@ static void every_run_is_what_the_scenario_gives_alone(void **state)
     sweep_finish(&s);
 }
 
-static void the_number_of_jobs_does_not_change_a_byte(void **state)
+TEST(the_number_of_jobs_does_not_change_a_byte)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_LATIN, 60, "motor.voltage=0.5:5", "arm.links=1:4");
     char *one = uninterrupted(&s, 1), *two = uninterrupted(&s, 2), *many = uninterrupted(&s, 7);
@@ -61,9 +57,8 @@ static void the_number_of_jobs_does_not_change_a_byte(void **state)
 
 // Runs of two links go side by side in the processor's vectors: with one lane, with all of them, on
 // one thread and on several, and where some of the runs are there already.
-static void the_number_of_lanes_does_not_change_a_byte(void **state)
+TEST(the_number_of_lanes_does_not_change_a_byte)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_LATIN, 201, "motor.voltage=0.5:5", "wall.restitution=0:1");
     taylor_limit_width(1);
@@ -97,14 +92,12 @@ static void assert_refused(const char *path, const sweep *s, status code, const 
     fault f = {0};
     assert_int_equal(sweep_store_open(&store, path, s, &f), code);
     assert_null(store);
-    if (strstr(f.text, says) == NULL || strstr(f.text, path) == NULL) {
-        fail_msg("'%s' does not say '%s' of '%s'", f.text, says, path);
-    }
+    fail_if(strstr(f.text, says) == NULL || strstr(f.text, path) == NULL,
+            "'%s' does not say '%s' of '%s'", f.text, says, path);
 }
 
-static void another_sweep_is_refused_with_the_difference(void **state)
+TEST(another_sweep_is_refused_with_the_difference)
 {
-    (void)state;
     sweep s, other;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     sweep_store_close(must_open("one.sqlite", &s));
@@ -130,9 +123,8 @@ static void another_sweep_is_refused_with_the_difference(void **state)
 }
 
 // A script belongs to what is swept, and an empty text is reported as such.
-static void a_changed_script_is_another_sweep(void **state)
+TEST(a_changed_script_is_another_sweep)
 {
-    (void)state;
     fault f;
     scenario with = base, without = base, settled = base;
     action script[] = {{.time = 0.1,
@@ -163,9 +155,8 @@ static void a_changed_script_is_another_sweep(void **state)
 }
 
 // A push acts on the corrected arm only, also where the model is varied.
-static void a_script_goes_with_every_run(void **state)
+TEST(a_script_goes_with_every_run)
 {
-    (void)state;
     fault f = {.text = ""};
     sweep s;
     action push = {.time = 0.2, .kind = ACTION_PUSH, .parameter = -1, .value = 0.01};
@@ -181,9 +172,8 @@ static void a_script_goes_with_every_run(void **state)
 }
 
 // A list as long as no command line can be.
-static void lists_have_an_end(void **state)
+TEST(lists_have_an_end)
 {
-    (void)state;
     enum { VALUES = 400000 };
     fault f = {.text = ""};
     sweep s;
@@ -197,9 +187,8 @@ static void lists_have_an_end(void **state)
 }
 
 // Values that are drawn together stay pairs, through a database's definition too.
-static void values_drawn_together_stay_pairs(void **state)
+TEST(values_drawn_together_stay_pairs)
 {
-    (void)state;
     fault f = {.text = ""};
     for (sweep_sampling how = SWEEP_RANDOM; how <= SWEEP_LATIN; how++) {
         sweep s, again;
@@ -240,9 +229,8 @@ static void values_drawn_together_stay_pairs(void **state)
 }
 
 // A name that begins with a colon is a file like any other.
-static void a_colon_begins_a_name(void **state)
+TEST(a_colon_begins_a_name)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     sweep_store_close(must_open(":memory:", &s));
@@ -251,9 +239,8 @@ static void a_colon_begins_a_name(void **state)
     sweep_finish(&s);
 }
 
-static void more_axes_than_there_may_be_are_refused(void **state)
+TEST(more_axes_than_there_may_be_are_refused)
 {
-    (void)state;
     enum { TOO_MANY = SWEEP_MOST_AXES + 1 };
     char text[TOO_MANY][48], *vary[TOO_MANY];
     int count = 0;
@@ -275,9 +262,8 @@ static void more_axes_than_there_may_be_are_refused(void **state)
 }
 
 // Rows of runs that the sweep does not have are the work of others.
-static void rows_that_are_no_runs_are_refused(void **state)
+TEST(rows_that_are_no_runs_are_refused)
 {
-    (void)state;
     static const char *const changes[] = {"UPDATE run SET run = 0 WHERE run = 1",
                                           "UPDATE run SET run = 9 WHERE run = 1"};
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
@@ -308,9 +294,8 @@ static void rows_that_are_no_runs_are_refused(void **state)
     }
 }
 
-static void what_is_no_sweep_is_left_alone(void **state)
+TEST(what_is_no_sweep_is_left_alone)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     FILE *stream = fopen("text", "w");
@@ -332,9 +317,8 @@ static void what_is_no_sweep_is_left_alone(void **state)
     unlink("theirs.sqlite");
 }
 
-static void two_sweeps_do_not_write_to_one_file_at_once(void **state)
+TEST(two_sweeps_do_not_write_to_one_file_at_once)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     sweep_store *store = must_open("busy.sqlite", &s);
@@ -345,9 +329,8 @@ static void two_sweeps_do_not_write_to_one_file_at_once(void **state)
     unlink("busy.sqlite");
 }
 
-static void a_file_deleted_within_a_transaction_is_missed(void **state)
+TEST(a_file_deleted_within_a_transaction_is_missed)
 {
-    (void)state;
     sweep s;
     fault f = {0};
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
@@ -363,9 +346,8 @@ static void a_file_deleted_within_a_transaction_is_missed(void **state)
     sweep_finish(&s);
 }
 
-static void a_failed_run_is_a_row_with_its_message(void **state)
+TEST(a_failed_run_is_a_row_with_its_message)
 {
-    (void)state;
     sweep s;
     fault f = {0};
     must_sweep(&s, SWEEP_GRID, 0, "arm.hub_joint=rigid,spring", NULL);
@@ -392,24 +374,4 @@ static void a_failed_run_is_a_row_with_its_message(void **state)
     sweep_finish(&s);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_run_is_what_the_scenario_gives_alone),
-        cmocka_unit_test(the_number_of_jobs_does_not_change_a_byte),
-        cmocka_unit_test(the_number_of_lanes_does_not_change_a_byte),
-        cmocka_unit_test(another_sweep_is_refused_with_the_difference),
-        cmocka_unit_test(a_changed_script_is_another_sweep),
-        cmocka_unit_test(a_script_goes_with_every_run),
-        cmocka_unit_test(lists_have_an_end),
-        cmocka_unit_test(values_drawn_together_stay_pairs),
-        cmocka_unit_test(a_colon_begins_a_name),
-        cmocka_unit_test(more_axes_than_there_may_be_are_refused),
-        cmocka_unit_test(rows_that_are_no_runs_are_refused),
-        cmocka_unit_test(what_is_no_sweep_is_left_alone),
-        cmocka_unit_test(two_sweeps_do_not_write_to_one_file_at_once),
-        cmocka_unit_test(a_file_deleted_within_a_transaction_is_missed),
-        cmocka_unit_test(a_failed_run_is_a_row_with_its_message),
-    };
-    return cmocka_run_group_tests(tests, sweep_fixture_open, sweep_fixture_close) != 0;
-}
+ALL_BETWEEN(sweep_fixture_open, sweep_fixture_close)

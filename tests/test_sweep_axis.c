@@ -1,8 +1,6 @@
 // The values of a varied parameter: grids, lists and shares of a range.
 #include "src/study/sweep_axis.h"
 
-#include <string.h>
-
 #include "tests/check.h"
 
 static sweep_axis parsed(const char *path, const char *values, bool drawn)
@@ -11,15 +9,13 @@ static sweep_axis parsed(const char *path, const char *values, bool drawn)
     fault f = {0};
     char text[128];
     snprintf(text, sizeof text, "%s", values);
-    if (sweep_axis_parse(&axis, text, drawn, &f) != STATUS_OK) {
-        fail_msg("%s=%s: %s", path, values, f.text);
-    }
+    fail_if(sweep_axis_parse(&axis, text, drawn, &f) != STATUS_OK, "%s=%s: %s", path, values,
+            f.text);
     return axis;
 }
 
-static void shares_of_a_range_are_even(void **state)
+TEST(shares_of_a_range_are_even)
 {
-    (void)state;
     sweep_axis axis = parsed("arm.k2", "4:8", true);
     check_close(sweep_axis_value_at(&axis, 0), 4, 0);
     check_close(sweep_axis_value_at(&axis, 0.25), 5, 1e-14);
@@ -41,9 +37,8 @@ static void shares_of_a_range_are_even(void **state)
 }
 
 // Whole numbers come alike often, the first and the last of the range, too.
-static void whole_numbers_have_equal_shares(void **state)
+TEST(whole_numbers_have_equal_shares)
 {
-    (void)state;
     sweep_axis axis = parsed("arm.links", "2:5", true);
     int found[8] = {0};
     for (int i = 0; i < 400; i++) {
@@ -57,9 +52,8 @@ static void whole_numbers_have_equal_shares(void **state)
     sweep_axis_finish(&axis);
 }
 
-static void values_of_a_list_have_equal_shares(void **state)
+TEST(values_of_a_list_have_equal_shares)
 {
-    (void)state;
     sweep_axis axis = parsed("arm.k2", "7,3,5", true);
     check_close(sweep_axis_value_at(&axis, 0.1), 7, 0);
     check_close(sweep_axis_value_at(&axis, 0.5), 3, 0);
@@ -67,9 +61,8 @@ static void values_of_a_list_have_equal_shares(void **state)
     sweep_axis_finish(&axis);
 }
 
-static void a_grid_has_both_ends(void **state)
+TEST(a_grid_has_both_ends)
 {
-    (void)state;
     sweep_axis axis = parsed("arm.k2", "1:16:3:log", false);
     assert_int_equal(axis.count, 3);
     check_close(axis.values[0], 1, 0);
@@ -78,9 +71,8 @@ static void a_grid_has_both_ends(void **state)
     sweep_axis_finish(&axis);
 }
 
-static void what_is_no_axis_is_refused(void **state)
+TEST(what_is_no_axis_is_refused)
 {
-    (void)state;
     static const char *const wrong[] = {"",          "1:2",   "1:2:0", "1:2:3:lag", "1:2:3:log:4",
                                         "0:1:3:log", "x:1:3", "1,,2",  "1:2:1e9",   "-1:2:3",
                                         "1:2:2.5"};
@@ -89,9 +81,8 @@ static void what_is_no_axis_is_refused(void **state)
         fault f = {0};
         char text[64];
         snprintf(text, sizeof text, "%s", wrong[i]);
-        if (sweep_axis_parse(&axis, text, false, &f) == STATUS_OK) {
-            fail_msg("'%s' was accepted", wrong[i]);
-        }
+        fail_if(sweep_axis_parse(&axis, text, false, &f) == STATUS_OK, "'%s' was accepted",
+                wrong[i]);
         assert_true(strlen(f.text) > 0);
         sweep_axis_finish(&axis);
     }
@@ -106,15 +97,13 @@ static void check_refused(const char *name, const char *values, bool drawn, cons
     snprintf(text, sizeof text, "%s", values);
     status code = sweep_axis_find(&axis, name, &f);
     code = code == STATUS_OK ? sweep_axis_parse(&axis, text, drawn, &f) : code;
-    if (code == STATUS_OK || strstr(f.text, what) == NULL) {
-        fail_msg("%s=%s: expected a refusal about '%s', not '%s'", name, values, what, f.text);
-    }
+    fail_if(code == STATUS_OK || strstr(f.text, what) == NULL,
+            "%s=%s: expected a refusal about '%s', not '%s'", name, values, what, f.text);
     sweep_axis_finish(&axis);
 }
 
-static void a_refusal_says_what_is_expected(void **state)
+TEST(a_refusal_says_what_is_expected)
 {
-    (void)state;
     check_refused("motor.volts", "1:2:3", false, "motor.volt");
     check_refused("control.settings", "1:2:3", false, "is a text");
     check_refused("arm.joint_stiffness", "1:2:3", false, "its first number is");
@@ -141,9 +130,8 @@ static void a_refusal_says_what_is_expected(void **state)
 }
 
 // One number of a list is exchanged, the others stay as they are.
-static void a_number_of_a_list_is_set_alone(void **state)
+TEST(a_number_of_a_list_is_set_alone)
 {
-    (void)state;
     static const double numbers[] = {5.25, 12, 30.5};
     for (int k = 1; k <= 3; k++) {
         parameters p;
@@ -187,9 +175,8 @@ static void a_number_of_a_list_is_set_alone(void **state)
 }
 
 // Every value of a grid, a list or a draw, and the text by which a database knows it.
-static void values_and_texts_are_those_that_were_asked_for(void **state)
+TEST(values_and_texts_are_those_that_were_asked_for)
 {
-    (void)state;
     static const struct {
         const char *path, *asked;
         bool drawn;
@@ -225,9 +212,8 @@ static void values_and_texts_are_those_that_were_asked_for(void **state)
         char text[64];
         snprintf(text, sizeof text, "%s", cases[i].asked);
         assert_int_equal(sweep_axis_find(&axis, cases[i].path, &f), STATUS_OK);
-        if (sweep_axis_parse(&axis, text, cases[i].drawn, &f) != STATUS_OK) {
-            fail_msg("%s=%s: %s", cases[i].path, cases[i].asked, f.text);
-        }
+        fail_if(sweep_axis_parse(&axis, text, cases[i].drawn, &f) != STATUS_OK, "%s=%s: %s",
+                cases[i].path, cases[i].asked, f.text);
         assert_int_equal(axis.count, cases[i].count);
         assert_int_equal(axis.is_range, strchr(cases[i].asked, ':') != NULL);
         for (size_t k = 0; k < axis.count; k++) {
@@ -245,19 +231,4 @@ static void values_and_texts_are_those_that_were_asked_for(void **state)
     check_refused("arm.k2", "4:5:6:log:7", false, "a:b:n");
     check_refused("arm.k2", "4:5:6:7", true, "a:b or a:b:n");
     check_refused("arm.k2", "4:log", true, "log");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shares_of_a_range_are_even),
-        cmocka_unit_test(whole_numbers_have_equal_shares),
-        cmocka_unit_test(values_of_a_list_have_equal_shares),
-        cmocka_unit_test(a_grid_has_both_ends),
-        cmocka_unit_test(a_number_of_a_list_is_set_alone),
-        cmocka_unit_test(values_and_texts_are_those_that_were_asked_for),
-        cmocka_unit_test(what_is_no_axis_is_refused),
-        cmocka_unit_test(a_refusal_says_what_is_expected),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

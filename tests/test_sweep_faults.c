@@ -2,8 +2,6 @@
 // refused in turn. What was not done is said, what was committed stands, and going on gives the
 // same rows; what cannot be read whole is not taken for less.
 #include <sqlite3.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "src/base/text_stream.h"
@@ -212,9 +210,8 @@ static status complete(char **rows, size_t *kept, fault *f)
 // A failure has a sentence that names the file.
 static void check_said(const fault *f)
 {
-    if (strstr(f->text, file) == NULL) {
-        fail_msg("call %ld: '%s' does not name '%s'", refused, f->text, file);
-    }
+    fail_if(strstr(f->text, file) == NULL, "call %ld: '%s' does not name '%s'", refused, f->text,
+            file);
 }
 
 static void remove_files(void)
@@ -223,9 +220,8 @@ static void remove_files(void)
     unlink("sweep.sqlite-journal");
 }
 
-static void what_was_committed_stands_and_the_rest_is_said(void **state)
+TEST(what_was_committed_stands_and_the_rest_is_said)
 {
-    (void)state;
     char *whole, *rows, *later;
     size_t kept, then;
     fault f = {0};
@@ -318,9 +314,8 @@ static status read_all(const char *whole, fault *f)
     return code;
 }
 
-static void what_cannot_be_read_whole_is_not_taken_for_less(void **state)
+TEST(what_cannot_be_read_whole_is_not_taken_for_less)
 {
-    (void)state;
     char *whole;
     size_t kept;
     fault f = {0};
@@ -347,11 +342,4 @@ static void what_cannot_be_read_whole_is_not_taken_for_less(void **state)
     remove_files();
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_was_committed_stands_and_the_rest_is_said),
-        cmocka_unit_test(what_cannot_be_read_whole_is_not_taken_for_less),
-    };
-    return cmocka_run_group_tests(tests, prepare, clean_up) != 0;
-}
+ALL_BETWEEN(prepare, clean_up)

@@ -1,7 +1,6 @@
 // Sweeps that are killed or stopped, and continue.
 #include <signal.h>
 #include <sqlite3.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -79,9 +78,8 @@ static long long number_from(const char *path, const char *sql)
     return number;
 }
 
-static void a_killed_sweep_goes_on_and_loses_and_doubles_nothing(void **state)
+TEST(a_killed_sweep_goes_on_and_loses_and_doubles_nothing)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_GRID, 0, MANY_RUNS, NULL);
     sweep_in_a_child_that_is_killed(&s, "killed.sqlite");
@@ -111,9 +109,8 @@ static void stop_soon(void *context, const sweep_progress *p)
     stop = p->done_now > 0;
 }
 
-static void a_stopped_sweep_keeps_what_it_has_and_goes_on(void **state)
+TEST(a_stopped_sweep_keeps_what_it_has_and_goes_on)
 {
-    (void)state;
     sweep s;
     sweep_progress progress;
     fault f = {0};
@@ -135,11 +132,4 @@ static void a_stopped_sweep_keeps_what_it_has_and_goes_on(void **state)
     unlink("stopped.sqlite");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_killed_sweep_goes_on_and_loses_and_doubles_nothing),
-        cmocka_unit_test(a_stopped_sweep_keeps_what_it_has_and_goes_on),
-    };
-    return cmocka_run_group_tests(tests, sweep_fixture_open, sweep_fixture_close) != 0;
-}
+ALL_BETWEEN(sweep_fixture_open, sweep_fixture_close)

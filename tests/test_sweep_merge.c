@@ -1,7 +1,5 @@
 // Parts of a sweep computed apart and merged: the rows of one sweep, and nothing else gets in.
 #include <sqlite3.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "src/study/store/sweep_store.h"
@@ -35,9 +33,7 @@ static void must_sweep(sweep *s, char *vary)
 {
     sweep_request request = {.vary = &vary, .vary_count = 1};
     fault f = {0};
-    if (sweep_init(s, &base, &request, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(sweep_init(s, &base, &request, &f) != STATUS_OK, "%s", f.text);
 }
 
 // Computes a share of a sweep into a file; returns all rows of the store as CSV, to be freed.
@@ -47,10 +43,9 @@ static char *compute(const sweep *s, const char *path, sweep_share share)
     sweep_progress progress;
     fault f = {0};
     const sweep_options options = {.share = share, .jobs = 2};
-    if (sweep_store_open(&store, path, s, &f) != STATUS_OK ||
-        sweep_run(s, store, &options, &progress, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(sweep_store_open(&store, path, s, &f) != STATUS_OK ||
+                sweep_run(s, store, &options, &progress, &f) != STATUS_OK,
+            "%s", f.text);
     assert_int_equal(progress.done, progress.total);
 
     char *text;
@@ -69,16 +64,13 @@ static void check_refused(char **files, int count, const char *says)
     sweep_merged merged;
     fault f = {0};
     assert_int_equal(sweep_merge(files, count, "refused", &merged, &f), STATUS_BAD_ARGUMENT);
-    if (strstr(f.text, says) == NULL) {
-        fail_msg("'%s' does not say '%s'", f.text, says);
-    }
+    fail_if(strstr(f.text, says) == NULL, "'%s' does not say '%s'", f.text, says);
     assert_int_not_equal(access("refused", F_OK), 0);
 }
 
 // The first parameter of the table is one like any other.
-static void parts_may_vary_the_model(void **state)
+TEST(parts_may_vary_the_model)
 {
-    (void)state;
     assert_string_equal(parameter_table[0].path, "arm.model");
     scenario first = base, either = base;
     fault f = {0};
@@ -92,9 +84,7 @@ static void parts_may_vary_the_model(void **state)
         free(compute(&s, parts[i], (sweep_share){i + 1, 2}));
     }
     sweep_merged merged;
-    if (sweep_merge(parts, 2, "models", &merged, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(sweep_merge(parts, 2, "models", &merged, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(merged.runs, 2);
     char *rows = compute(&s, "models", (sweep_share){0, 0});
     assert_string_equal(rows, whole);
@@ -110,9 +100,8 @@ static void parts_may_vary_the_model(void **state)
     unlink(parts[1]);
 }
 
-static void parts_in_any_order_give_the_rows_of_one_sweep(void **state)
+TEST(parts_in_any_order_give_the_rows_of_one_sweep)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, "motor.voltage=0.5:2:11");
     char *whole = compute(&s, "whole", (sweep_share){0, 0});
@@ -152,9 +141,8 @@ static void parts_in_any_order_give_the_rows_of_one_sweep(void **state)
 }
 
 // Every parameter that is varied has its column.
-static void parts_may_vary_several_parameters(void **state)
+TEST(parts_may_vary_several_parameters)
 {
-    (void)state;
     sweep s;
     char *vary[] = {(char[]){"motor.voltage=0.5,2"}, (char[]){"arm.k2=4,6"},
                     (char[]){"wall.kind=point,plane"}};
@@ -167,9 +155,7 @@ static void parts_may_vary_several_parameters(void **state)
         free(compute(&s, parts[i], (sweep_share){i + 1, 2}));
     }
     sweep_merged merged;
-    if (sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(merged.runs, 8);
     char *rows = compute(&s, "merged", (sweep_share){0, 0});
     assert_string_equal(rows, whole);
@@ -184,9 +170,8 @@ static void parts_may_vary_several_parameters(void **state)
 
 // What a database says of its values gives the plan again to the last bit: every kind of axis,
 // drawn and in a grid.
-static void the_plan_of_a_merge_is_that_of_the_sweep(void **state)
+TEST(the_plan_of_a_merge_is_that_of_the_sweep)
 {
-    (void)state;
     static char *const drawn[] = {"motor.voltage=1:2.7:log",
                                   "wall.angle=-0.0001:0.3333333333333333",
                                   "control.seed=1:1000",
@@ -209,17 +194,13 @@ static void the_plan_of_a_merge_is_that_of_the_sweep(void **state)
                                  .runs = draws ? 40 : 0,
                                  .seed = UINT64_MAX};
         sweep s;
-        if (sweep_init(&s, &base, &request, &f) != STATUS_OK) {
-            fail_msg("%s", f.text);
-        }
+        fail_if(sweep_init(&s, &base, &request, &f) != STATUS_OK, "%s", f.text);
         char *whole = compute(&s, "whole", (sweep_share){0, 0}), *parts[] = {"1", "2"};
         for (int k = 0; k < 2; k++) {
             free(compute(&s, parts[k], (sweep_share){k + 1, 2}));
         }
         sweep_merged merged;
-        if (sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK) {
-            fail_msg("%s", f.text);
-        }
+        fail_if(sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK, "%s", f.text);
         assert_int_equal(merged.runs, s.run_count);
         char *rows = compute(&s, "merged", (sweep_share){0, 0});
         assert_string_equal(rows, whole);
@@ -239,15 +220,13 @@ static void tamper(const char *path, const char *sql)
 {
     sqlite3 *database;
     assert_int_equal(sqlite3_open(path, &database), SQLITE_OK);
-    if (sqlite3_exec(database, sql, NULL, NULL, NULL) != SQLITE_OK) {
-        fail_msg("%s", sqlite3_errmsg(database));
-    }
+    fail_if(sqlite3_exec(database, sql, NULL, NULL, NULL) != SQLITE_OK, "%s",
+            sqlite3_errmsg(database));
     sqlite3_close(database);
 }
 
-static void foreign_parts_are_refused(void **state)
+TEST(foreign_parts_are_refused)
 {
-    (void)state;
     sweep s, other;
     must_sweep(&s, "motor.voltage=1:2:3");
     must_sweep(&other, "motor.voltage=1:2:4");
@@ -286,9 +265,8 @@ static void foreign_parts_are_refused(void **state)
     "CREATE TABLE bare AS SELECT * FROM run; DROP TABLE run; ALTER TABLE bare RENAME TO run; "
 
 // What a file has after others changed it, and why it is refused: as a part, and to go on from.
-static void what_others_changed_is_refused(void **state)
+TEST(what_others_changed_is_refused)
 {
-    (void)state;
     static const struct {
         const char *sql;
         const char *says;
@@ -367,9 +345,8 @@ static void what_others_changed_is_refused(void **state)
 }
 
 // A missing part, and one with overwritten pages.
-static void what_cannot_be_read_is_said(void **state)
+TEST(what_cannot_be_read_is_said)
 {
-    (void)state;
     sweep s;
     sweep_merged merged;
     fault f = {0};
@@ -439,9 +416,8 @@ static void write_journal(const char *database, const char *named)
 }
 
 // A journal beside a database that came from elsewhere deletes nothing.
-static void a_journal_names_no_file_to_delete(void **state)
+TEST(a_journal_names_no_file_to_delete)
 {
-    (void)state;
     char notes[300];
     sweep s;
     must_sweep(&s, "motor.voltage=1:2:3");
@@ -475,17 +451,4 @@ static void a_journal_names_no_file_to_delete(void **state)
     unlink(notes);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_may_vary_the_model),
-        cmocka_unit_test(parts_in_any_order_give_the_rows_of_one_sweep),
-        cmocka_unit_test(parts_may_vary_several_parameters),
-        cmocka_unit_test(the_plan_of_a_merge_is_that_of_the_sweep),
-        cmocka_unit_test(foreign_parts_are_refused),
-        cmocka_unit_test(what_others_changed_is_refused),
-        cmocka_unit_test(what_cannot_be_read_is_said),
-        cmocka_unit_test(a_journal_names_no_file_to_delete),
-    };
-    return cmocka_run_group_tests(tests, prepare, clean_up) != 0;
-}
+ALL_BETWEEN(prepare, clean_up)

@@ -1,7 +1,4 @@
 // Pictures of each kind of sweep.
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,9 +28,7 @@ static void must_draw(const char *a, const char *b, sweep_sampling sampling, siz
     sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
     assert_int_equal(sweep_plot_check(&s, path, &f), STATUS_OK);
     owned_figure *drawn = sweep_figure_create(&shown);
-    if (figure_write(&drawn->figure, path, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(figure_write(&drawn->figure, path, &f) != STATUS_OK, "%s", f.text);
     owned_figure_destroy(drawn);
     struct stat about;
     assert_int_equal(stat(path, &about), 0);
@@ -43,9 +38,8 @@ static void must_draw(const char *a, const char *b, sweep_sampling sampling, siz
     sweep_finish(&s);
 }
 
-static void every_kind_of_sweep_can_be_drawn(void **state)
+TEST(every_kind_of_sweep_can_be_drawn)
 {
-    (void)state;
     must_draw("motor.voltage=1:2:9", NULL, SWEEP_GRID, 0, "a.png", 0);
     must_draw("motor.voltage=3,1,2", NULL, SWEEP_GRID, 0, "a.pdf", 0);
     must_draw("arm.k2=1:1e6:200:log", NULL, SWEEP_GRID, 0, "a.svg", 0);
@@ -59,9 +53,8 @@ static void every_kind_of_sweep_can_be_drawn(void **state)
 }
 
 // Methods beside a number: a curve for each over the number, whichever was varied first.
-static void words_have_a_curve_each(void **state)
+TEST(words_have_a_curve_each)
 {
-    (void)state;
     static const char *const varied[2][2] = {{"method.name=event,newmark", "motor.voltage=1,2,4"},
                                              {"motor.voltage=1,2,4", "method.name=event,newmark"}};
     for (int k = 0; k < 2; k++) {
@@ -90,9 +83,8 @@ static void words_have_a_curve_each(void **state)
     }
 }
 
-static void a_picture_shows_two_parameters_at_most(void **state)
+TEST(a_picture_shows_two_parameters_at_most)
 {
-    (void)state;
     char *vary[] = {"arm.k1=1,2", "arm.k2=1,2", "arm.mass=1,2"};
     sweep_request request = {.vary = vary, .vary_count = 3};
     sweep s;
@@ -107,12 +99,4 @@ static void a_picture_shows_two_parameters_at_most(void **state)
     sweep_finish(&s);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_of_sweep_can_be_drawn),
-        cmocka_unit_test(words_have_a_curve_each),
-        cmocka_unit_test(a_picture_shows_two_parameters_at_most),
-    };
-    return cmocka_run_group_tests(tests, sweep_fixture_open, close_all) != 0;
-}
+ALL_BETWEEN(sweep_fixture_open, close_all)

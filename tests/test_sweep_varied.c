@@ -1,13 +1,9 @@
 // The varied values of a sweep: grids, lists, random values; invalid requests.
-#include <math.h>
-#include <string.h>
-
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
-static void the_last_parameter_of_a_grid_changes_fastest(void **state)
+TEST(the_last_parameter_of_a_grid_changes_fastest)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", "method.name=event,newmark");
     static const double voltage[] = {1, 1, 1.5, 1.5, 2, 2};
@@ -23,9 +19,8 @@ static void the_last_parameter_of_a_grid_changes_fastest(void **state)
     sweep_finish(&s);
 }
 
-static void ranges_meet_their_ends_and_are_spaced_as_asked(void **state)
+TEST(ranges_meet_their_ends_and_are_spaced_as_asked)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "arm.k2=0.1:0.7:7", NULL);
     check_close(sweep_value(&s, 0, 0), 0.1, 0);
@@ -49,9 +44,8 @@ static void ranges_meet_their_ends_and_are_spaced_as_asked(void **state)
 }
 
 // One number of a list, named with its place from 1 on; the others stay as the scenario has them.
-static void a_number_of_a_list_is_varied_by_its_place(void **state)
+TEST(a_number_of_a_list_is_varied_by_its_place)
 {
-    (void)state;
     static const char text[] = "title: Springs\narm: {links: 4, joint_stiffness: [12, 10, 8]}\n";
     scenario springs;
     sweep s;
@@ -87,9 +81,8 @@ static void a_number_of_a_list_is_varied_by_its_place(void **state)
     scenario_finish(&springs);
 }
 
-static void bad_requests_are_refused_with_a_sentence(void **state)
+TEST(bad_requests_are_refused_with_a_sentence)
 {
-    (void)state;
     static const struct {
         const char *a, *b;
         sweep_sampling sampling;
@@ -134,15 +127,12 @@ static void bad_requests_are_refused_with_a_sentence(void **state)
         fault f = {0};
         assert_int_equal(sweep_of(&s, bad[i].sampling, bad[i].runs, 0, &f, bad[i].a, bad[i].b),
                          STATUS_BAD_ARGUMENT);
-        if (strstr(f.text, bad[i].says) == NULL) {
-            fail_msg("'%s' does not say '%s'", f.text, bad[i].says);
-        }
+        fail_if(strstr(f.text, bad[i].says) == NULL, "'%s' does not say '%s'", f.text, bad[i].says);
     }
 }
 
-static void a_latin_hypercube_meets_every_part_of_every_range_once(void **state)
+TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
 {
-    (void)state;
     enum { RUNS = 1000 };
     sweep s;
     must_sweep(&s, SWEEP_LATIN, RUNS, "motor.voltage=2:1", "arm.k2=0.1:1000:log");
@@ -163,9 +153,8 @@ static void a_latin_hypercube_meets_every_part_of_every_range_once(void **state)
     sweep_finish(&s);
 }
 
-static void whole_numbers_and_words_are_drawn_evenly(void **state)
+TEST(whole_numbers_and_words_are_drawn_evenly)
 {
-    (void)state;
     sweep s;
     must_sweep(&s, SWEEP_LATIN, 120, "arm.links=2:5", "method.name=event,newmark");
     int links[8] = {0}, methods[4] = {0};
@@ -183,9 +172,8 @@ static void whole_numbers_and_words_are_drawn_evenly(void **state)
     sweep_finish(&s);
 }
 
-static void the_seed_decides_what_is_drawn(void **state)
+TEST(the_seed_decides_what_is_drawn)
 {
-    (void)state;
     sweep a, b, c;
     fault f;
     assert_int_equal(sweep_of(&a, SWEEP_RANDOM, 50, 5, &f, "arm.k2=1:3", NULL), STATUS_OK);
@@ -204,16 +192,4 @@ static void the_seed_decides_what_is_drawn(void **state)
     sweep_finish(&c);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_last_parameter_of_a_grid_changes_fastest),
-        cmocka_unit_test(ranges_meet_their_ends_and_are_spaced_as_asked),
-        cmocka_unit_test(a_number_of_a_list_is_varied_by_its_place),
-        cmocka_unit_test(bad_requests_are_refused_with_a_sentence),
-        cmocka_unit_test(a_latin_hypercube_meets_every_part_of_every_range_once),
-        cmocka_unit_test(whole_numbers_and_words_are_drawn_evenly),
-        cmocka_unit_test(the_seed_decides_what_is_drawn),
-    };
-    return cmocka_run_group_tests(tests, sweep_fixture_open, sweep_fixture_close) != 0;
-}
+ALL_BETWEEN(sweep_fixture_open, sweep_fixture_close)

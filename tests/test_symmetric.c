@@ -1,9 +1,6 @@
 // Eigenvalues and factors of symmetric matrices against what defines them.
 #include "src/base/dense.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "src/base/random.h"
 #include "tests/check.h"
 
@@ -22,9 +19,8 @@ static void fill(int n, double diagonal, double *matrix)
     }
 }
 
-static void vectors_and_values_make_the_matrix_again(void **state)
+TEST(vectors_and_values_make_the_matrix_again)
 {
-    (void)state;
     for (int n = 1; n <= LARGEST; n++) {
         double matrix[LARGEST * LARGEST], vectors[LARGEST * LARGEST], values[LARGEST];
         double scratch[2 * LARGEST];
@@ -48,9 +44,8 @@ static void vectors_and_values_make_the_matrix_again(void **state)
 }
 
 // The second difference with fixed ends has the values 2 - 2 cos(pi k / (n + 1)).
-static void the_second_difference_has_its_closed_form(void **state)
+TEST(the_second_difference_has_its_closed_form)
 {
-    (void)state;
     enum { N = 16 };
     double matrix[N * N] = {0}, values[N], scratch[2 * N];
     for (int i = 0; i < N; i++) {
@@ -65,9 +60,8 @@ static void the_second_difference_has_its_closed_form(void **state)
     }
 }
 
-static void equal_values_and_zero_matrices_are_fine(void **state)
+TEST(equal_values_and_zero_matrices_are_fine)
 {
-    (void)state;
     double matrix[9] = {3, 0, 0, 0, 3, 0, 0, 0, 3}, values[3], scratch[6];
     assert_true(symmetric_eigen(3, matrix, values, scratch));
     check_close(values[0], 3, 0);
@@ -84,9 +78,8 @@ static void equal_values_and_zero_matrices_are_fine(void **state)
 }
 
 // Pairs of matrices: A x = value B x, and the vectors make both diagonal.
-static void vectors_of_a_pair_make_both_diagonal(void **state)
+TEST(vectors_of_a_pair_make_both_diagonal)
 {
-    (void)state;
     for (int n = 1; n <= LARGEST; n++) {
         double matrix[LARGEST * LARGEST], mass[LARGEST * LARGEST], vectors[LARGEST * LARGEST];
         double lost[LARGEST * LARGEST], values[LARGEST], scratch[2 * LARGEST];
@@ -116,9 +109,8 @@ static void vectors_of_a_pair_make_both_diagonal(void **state)
     assert_false(symmetric_eigen_pair(2, matrix, indefinite, values, scratch));
 }
 
-static void a_factor_solves_its_system(void **state)
+TEST(a_factor_solves_its_system)
 {
-    (void)state;
     for (int n = 1; n <= LARGEST; n++) {
         double matrix[LARGEST * LARGEST], factor[LARGEST * LARGEST], x[LARGEST];
         fill(n, n, matrix);
@@ -139,24 +131,10 @@ static void a_factor_solves_its_system(void **state)
     }
 }
 
-static void what_is_not_positive_definite_has_no_factor(void **state)
+TEST(what_is_not_positive_definite_has_no_factor)
 {
-    (void)state;
     double indefinite[4] = {1, 2, 2, 1}, singular[4] = {1, 1, 1, 1}, negative[1] = {-1};
     assert_false(symmetric_factor(2, indefinite));
     assert_false(symmetric_factor(2, singular));
     assert_false(symmetric_factor(1, negative));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(vectors_and_values_make_the_matrix_again),
-        cmocka_unit_test(the_second_difference_has_its_closed_form),
-        cmocka_unit_test(equal_values_and_zero_matrices_are_fine),
-        cmocka_unit_test(vectors_of_a_pair_make_both_diagonal),
-        cmocka_unit_test(a_factor_solves_its_system),
-        cmocka_unit_test(what_is_not_positive_definite_has_no_factor),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,7 +1,5 @@
 #include "tests/check.h"
 
-#include <string.h>
-
 #include "src/study/thesis_tables.h"
 
 static thesis_tables tables;
@@ -32,9 +30,8 @@ static const table_row *row_of(const char *table, const char *model, const char 
 
 static const char *const names[3] = {"4.1", "4.2", "4.3"};
 
-static void every_row_is_there_once(void **state)
+TEST(every_row_is_there_once)
 {
-    (void)state;
     assert_int_equal(tables.row_count, 30);
     const double voltage[4] = {1, 2, 5, 10}, factor[3] = {100, 10, 1};
     for (int i = 0; i < 4; i++) {
@@ -49,9 +46,8 @@ static void every_row_is_there_once(void **state)
     check_close(row_of("4.3", "printed", "delay_dynamics")->printed[3], 0.109, 0);
 }
 
-static void printed_model_reproduces_the_forces_of_the_thesis(void **state)
+TEST(printed_model_reproduces_the_forces_of_the_thesis)
 {
-    (void)state;
     check_below(tables_mean_error(&tables, "printed", "max_force_energy"), 0.02);
     check_below(tables_mean_error(&tables, "printed", "max_force_dynamics"), 0.035);
     check_below(tables_mean_error(&tables, "printed", "max_force_simulation"), 0.04);
@@ -67,18 +63,16 @@ static void printed_model_reproduces_the_forces_of_the_thesis(void **state)
 }
 
 // Delays are not reproduced: by a factor and by a grid of 1 ms.
-static void printed_delays_are_of_the_right_size(void **state)
+TEST(printed_delays_are_of_the_right_size)
 {
-    (void)state;
     check_below(tables_mean_error(&tables, "printed", "delay_dynamics"), 0.18);
     check_below(tables_mean_error(&tables, "printed", "delay_simulation"), 0.30);
 }
 
 // What docs/explanation/thesis.md says of the delays: one set fits forces and delays of all cells,
 // and the impact dynamics are late by one factor.
-static void one_set_of_numbers_fits_the_delays(void **state)
+TEST(one_set_of_numbers_fits_the_delays)
 {
-    (void)state;
     thesis_tables fitted;
     tables_compute_fitted(&fitted);
     assert_int_equal(fitted.row_count, 9);
@@ -88,9 +82,8 @@ static void one_set_of_numbers_fits_the_delays(void **state)
     assert_true(isnan(tables_mean_error(&fitted, "fitted", "max_force_energy")));
 }
 
-static void a_touch_that_does_not_hold_leaves_its_cell_empty_in_all_rows(void **state)
+TEST(a_touch_that_does_not_hold_leaves_its_cell_empty_in_all_rows)
 {
-    (void)state;
     int held = 0;
     for (int i = 0; i < 3; i++) {
         const table_row *seen = row_of(names[i], "corrected", "max_force_simulation");
@@ -108,9 +101,8 @@ static void a_touch_that_does_not_hold_leaves_its_cell_empty_in_all_rows(void **
     assert_true(held >= 8);
 }
 
-static void corrected_prediction_meets_the_corrected_simulation_for_a_stiff_beam(void **state)
+TEST(corrected_prediction_meets_the_corrected_simulation_for_a_stiff_beam)
 {
-    (void)state;
     const table_row *seen = row_of("4.1", "corrected", "max_force_simulation");
     const table_row *dynamics = row_of("4.1", "corrected", "max_force_dynamics");
     const table_row *energy = row_of("4.1", "corrected", "max_force_energy");
@@ -125,9 +117,8 @@ static void corrected_prediction_meets_the_corrected_simulation_for_a_stiff_beam
     }
 }
 
-static void mean_error_leaves_empty_cells_out(void **state)
+TEST(mean_error_leaves_empty_cells_out)
 {
-    (void)state;
     thesis_tables t = {.row_count = 2};
     t.rows[0] = (table_row){.model = "printed",
                             .quantity = "q",
@@ -148,9 +139,8 @@ static void mean_error_leaves_empty_cells_out(void **state)
     assert_false(tables_printed("4.1", "unknown", values));
 }
 
-static void same_tables_every_time(void **state)
+TEST(same_tables_every_time)
 {
-    (void)state;
     static thesis_tables again;
     assert_int_equal(tables_compute(&again, NULL), STATUS_OK);
     for (int i = 0; i < tables.row_count; i++) {
@@ -159,17 +149,4 @@ static void same_tables_every_time(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_row_is_there_once),
-        cmocka_unit_test(printed_model_reproduces_the_forces_of_the_thesis),
-        cmocka_unit_test(printed_delays_are_of_the_right_size),
-        cmocka_unit_test(one_set_of_numbers_fits_the_delays),
-        cmocka_unit_test(a_touch_that_does_not_hold_leaves_its_cell_empty_in_all_rows),
-        cmocka_unit_test(corrected_prediction_meets_the_corrected_simulation_for_a_stiff_beam),
-        cmocka_unit_test(mean_error_leaves_empty_cells_out),
-        cmocka_unit_test(same_tables_every_time),
-    };
-    return cmocka_run_group_tests(tests, compute, NULL) != 0;
-}
+ALL_BETWEEN(compute, NULL)

@@ -1,6 +1,5 @@
 // The two-link arm by power series: that they solve the equations of chain.h all over the stride,
 // that the bounds hold, and that whole runs through events come out of it.
-#include <math.h>
 
 #include "src/base/random.h"
 #include "src/run/run.h"
@@ -83,9 +82,8 @@ static void check_place(moving_arm *moving, double h)
     check_close(gap_acceleration, m->trial[SLOT_GAP_ACCELERATION], 2e-10 * scale);
 }
 
-static void the_series_solve_the_equations_all_over_the_stride(void **state)
+TEST(the_series_solve_the_equations_all_over_the_stride)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 1);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
@@ -104,9 +102,8 @@ static void the_series_solve_the_equations_all_over_the_stride(void **state)
 }
 
 // Several instants side by side, in vectors of any width, are those that are taken one by one.
-static void instants_together_are_those_one_by_one(void **state)
+TEST(instants_together_are_those_one_by_one)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 3);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
@@ -145,9 +142,8 @@ static void instants_together_are_those_one_by_one(void **state)
 }
 
 // A long stride and the short ones of lower order that make it up end in the same state.
-static void orders_agree_and_the_ledger_closes(void **state)
+TEST(orders_agree_and_the_ledger_closes)
 {
-    (void)state;
     random_generator g;
     random_seed(&g, 2);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
@@ -195,9 +191,8 @@ static motion_event step_cut(const moving_arm *moving, double until, double afte
 // A motion that is cut where nothing happens goes on in the same stride: it comes to where one does
 // that nobody cuts, but for rounding. One that is handed over at each cut, to a motion that knows
 // the state alone, comes there to the last bit.
-static void cut_strides_go_on(void **state)
+TEST(cut_strides_go_on)
 {
-    (void)state;
     enum { UNTIL = 1 };
     random_generator g;
     random_seed(&g, 7);
@@ -244,9 +239,8 @@ static void cut_strides_go_on(void **state)
 // No watched function is anywhere below what its ends and the bound on its bend leave room for, and
 // none falls in a stride over which the kernel has it stay above zero, nor is the force above the
 // kernel's bound.
-static void the_bounds_hold(void **state)
+TEST(the_bounds_hold)
 {
-    (void)state;
     random_generator g;
     int looked_at = 0;
     random_seed(&g, 3);
@@ -297,9 +291,8 @@ static void the_bounds_hold(void **state)
 }
 
 // Where the kernel has found a root, the watched function falls there, and not before.
-static void known_roots_are_the_first(void **state)
+TEST(known_roots_are_the_first)
 {
-    (void)state;
     enum { LOOKS = 100 };
     random_generator g;
     int known = 0;
@@ -339,16 +332,13 @@ static run_result run(const char *const *settings)
 {
     scenario s = {.parameters = fixture_parameters(settings)};
     run_result r;
-    if (run_scenario(&s, true, &r) != STATUS_OK) {
-        fail_msg("%s", r.summary.message);
-    }
+    fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s", r.summary.message);
     return r;
 }
 
 // Rows so near each other that none of them misses the peak by more than rounding.
-static void peaks_are_the_largest_force_there_is(void **state)
+TEST(peaks_are_the_largest_force_there_is)
 {
-    (void)state;
     const char *const voltages[] = {"motor.voltage=0.5537109375", "motor.voltage=1",
                                     "motor.voltage=3.3"};
     for (int i = 0; i < 3; i++) {
@@ -364,9 +354,8 @@ static void peaks_are_the_largest_force_there_is(void **state)
 }
 
 // Rows are read off the stride: the more of them, the more strides are the same.
-static void rows_change_nothing(void **state)
+TEST(rows_change_nothing)
 {
-    (void)state;
     run_result few = run(SETTINGS("method.step=0.1")), many = run(SETTINGS("method.step=1e-4"));
     assert_true(few.summary.first_contact_s == many.summary.first_contact_s);
     assert_true(few.summary.peak_force_N == many.summary.peak_force_N);
@@ -377,9 +366,8 @@ static void rows_change_nothing(void **state)
 }
 
 // An impact, a release and a touch within microseconds of each other.
-static void events_that_nearly_coincide_are_told_apart(void **state)
+TEST(events_that_nearly_coincide_are_told_apart)
 {
-    (void)state;
     run_result r =
         run(SETTINGS("motor.voltage=0.63671875", "arm.k2=6.909140625", "wall.angle=0.141015625"));
     check_close(r.summary.first_contact_s, 0.452259, 1e-6);
@@ -388,9 +376,8 @@ static void events_that_nearly_coincide_are_told_apart(void **state)
 }
 
 // Motor, arm, wall and restitution at random.
-static void random_runs_neither_fail_nor_lose_energy(void **state)
+TEST(random_runs_neither_fail_nor_lose_energy)
 {
-    (void)state;
     enum { RUNS = 3000 };
     random_generator g;
     random_seed(&g, 4);
@@ -409,9 +396,7 @@ static void random_runs_neither_fail_nor_lose_energy(void **state)
         p->wall.kind = i % 2 ? WALL_POINT : WALL_PLANE;
         p->arm.damping_ratio = u[5] < 0.5 ? 0 : 0.1 * (u[5] - 0.5);
         run_result r;
-        if (run_scenario(&s, false, &r) != STATUS_OK) {
-            fail_msg("run %d: %s", i, r.summary.message);
-        }
+        fail_if(run_scenario(&s, false, &r) != STATUS_OK, "run %d: %s", i, r.summary.message);
         check_below(r.summary.energy_residual_J, 1e-11 * (1 + r.summary.motor_work_J));
         run_finish(&r);
     }
@@ -439,9 +424,8 @@ static moving_arm started(const char *const *settings)
 
 // An arm that starts on the wall and goes into it, however slowly, strikes it at once, though the
 // motor throws it back.
-static void a_slow_start_into_the_wall_is_an_impact(void **state)
+TEST(a_slow_start_into_the_wall_is_an_impact)
 {
-    (void)state;
     const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
     for (int i = 0; i < 2; i++) {
         for (double speed = 1e-8; speed < 1e-3; speed *= 10) {
@@ -474,9 +458,8 @@ static int count_releases(moving_arm moving, double until)
 
 // Light arms that turn at a hundred rad/s leave the wall once for each time that they have touched
 // it: what the series leave out is no force that holds them.
-static void an_arm_in_fast_rotation_is_released_once(void **state)
+TEST(an_arm_in_fast_rotation_is_released_once)
 {
-    (void)state;
     int releases = 0;
     for (int i = 0; i < 60; i++) {
         char voltage[64];
@@ -491,9 +474,8 @@ static void an_arm_in_fast_rotation_is_released_once(void **state)
 }
 
 // So do random arms with an amplifier a hundred times too strong, whose last bits count for more.
-static void a_strong_motor_releases_once(void **state)
+TEST(a_strong_motor_releases_once)
 {
-    (void)state;
     const char *const *const strong[] = {
         SETTINGS("motor.amplifier_gain=1000", "motor.voltage=-9.8976274932817212",
                  "motor.viscous_friction=0", "wall.angle=0.0087266395815328579",
@@ -510,24 +492,4 @@ static void a_strong_motor_releases_once(void **state)
     for (int i = 0; i < 2; i++) {
         assert_true(count_releases(started(strong[i]), 0.6) > 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_series_solve_the_equations_all_over_the_stride),
-        cmocka_unit_test(instants_together_are_those_one_by_one),
-        cmocka_unit_test(orders_agree_and_the_ledger_closes),
-        cmocka_unit_test(cut_strides_go_on),
-        cmocka_unit_test(the_bounds_hold),
-        cmocka_unit_test(known_roots_are_the_first),
-        cmocka_unit_test(peaks_are_the_largest_force_there_is),
-        cmocka_unit_test(rows_change_nothing),
-        cmocka_unit_test(events_that_nearly_coincide_are_told_apart),
-        cmocka_unit_test(a_slow_start_into_the_wall_is_an_impact),
-        cmocka_unit_test(an_arm_in_fast_rotation_is_released_once),
-        cmocka_unit_test(a_strong_motor_releases_once),
-        cmocka_unit_test(random_runs_neither_fail_nor_lose_energy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -35,9 +35,8 @@ static double root_found(const double *r, double sign)
     return first_root(&f);
 }
 
-static void of_three_roots_the_first_is_found(void **state)
+TEST(of_three_roots_the_first_is_found)
 {
-    (void)state;
     random_generator g;
     int found = 0, last = 0;
     random_seed(&g, 31);
@@ -58,12 +57,4 @@ static void of_three_roots_the_first_is_found(void **state)
     // many are, some of functions that fall again later
     assert_true(found > FUNCTIONS / 20);
     assert_true(last > FUNCTIONS / 50);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_three_roots_the_first_is_found),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

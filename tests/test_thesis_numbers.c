@@ -1,10 +1,5 @@
 // The numbers of docs/explanation/thesis.md and claims.tsv are those that the program computes:
 // each is computed anew and, in their own words and digits, looked up in them.
-#include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/run/run.h"
 #include "src/study/thesis_tables.h"
@@ -66,9 +61,8 @@ static double number(const char *name, const char *const *sets, const char *key)
 
 // ---- chapters 1 to 4
 
-static void numbers_of_the_first_chapters(void **state)
+TEST(numbers_of_the_first_chapters)
 {
-    (void)state;
     const double pulse = number("corrected/first-impact", SETS(NULL), "first_pulse_s");
     const double stiff = number("corrected/stiff-beam", SETS(NULL), "first_pulse_s");
     page_says("lasts %.0f times as long as that of one a hundred times as stiff", pulse / stiff);
@@ -94,9 +88,8 @@ static void numbers_of_the_first_chapters(void **state)
 
 // ---- the single run of 3.1.3
 
-static void the_table_of_the_single_run(void **state)
+TEST(the_table_of_the_single_run)
 {
-    (void)state;
     static const char *const pairs[][2] = {
         {"0.2", "0.5"}, {"0.3", "0.5"}, {"0.4", "0.5"}, {"0.4", "0.6"}, {"0.5", "0.5"},
         {"0.5", "0.7"}, {"0.6", "0.5"}, {"0.6", "0.9"}, {"0.7", "0.5"}, {"0.7", "0.9"}};
@@ -191,9 +184,8 @@ static const table_row *row_of(const thesis_tables *t, const char *table, const 
     return NULL;
 }
 
-static void errors_of_the_tables(void **state)
+TEST(errors_of_the_tables)
 {
-    (void)state;
     thesis_tables printed, fitted;
     fault f = {.text = ""};
     assert_int_equal(tables_compute(&printed, &f), STATUS_OK);
@@ -250,9 +242,8 @@ static void errors_of_the_tables(void **state)
 }
 
 // What was tried to explain the delays of the impact dynamics.
-static void what_was_tried_on_the_delays(void **state)
+TEST(what_was_tried_on_the_delays)
 {
-    (void)state;
     thesis_tables t;
     fault f = {.text = ""};
     assert_int_equal(tables_compute(&t, &f), STATUS_OK);
@@ -321,9 +312,8 @@ static double rise_time(const computed *c)
     return a->time + (goal - a->force) / (b->force - a->force) * (b->time - a->time) - touch;
 }
 
-static void figures_of_the_hybrid_controller(void **state)
+TEST(figures_of_the_hybrid_controller)
 {
-    (void)state;
     double off[2][2];
     for (int i = 0; i < 2; i++) {
         computed c = run_with("thesis/fig-5-2", i == 0 ? SETS(NULL) : SETS("arm.links=8"));
@@ -359,9 +349,8 @@ static void figures_of_the_hybrid_controller(void **state)
     forget(&angle);
 }
 
-static void numbers_of_the_control_laws(void **state)
+TEST(numbers_of_the_control_laws)
 {
-    (void)state;
     const double hybrid = number("compare/hybrid", SETS(NULL), "peak_force_N");
     page_says("agrees: %.2f N against %.2f N",
               number("compare/bang-bang", SETS(NULL), "peak_force_N"), hybrid);
@@ -441,20 +430,11 @@ static bool read_pages(char *const *files, int count)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_of_the_first_chapters),
-        cmocka_unit_test(the_table_of_the_single_run),
-        cmocka_unit_test(errors_of_the_tables),
-        cmocka_unit_test(what_was_tried_on_the_delays),
-        cmocka_unit_test(figures_of_the_hybrid_controller),
-        cmocka_unit_test(numbers_of_the_control_laws),
-    };
     if (argc < 2 || !read_pages(argv + 1, argc - 1)) {
         fputs("the pages cannot be read\n", stderr);
         return 1;
     }
-    const int failed =
-        cmocka_run_group_tests_name("numbers of the thesis's page", tests, NULL, NULL);
+    const int failed = run_cases(NULL, NULL);
     free(page);
     return failed != 0;
 }

@@ -1,10 +1,6 @@
 // Ticks: a published example, properties that must hold for any axis, and labels.
 #include "tests/check.h"
 
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "render/plot/ticks.h"
 
 static void expect_ticks(const ticks *t, int count, const double *expected)
@@ -27,9 +23,8 @@ static void expect_labels(const ticks *t, int count, const char *const *expected
 
 // 8, 10, 12, 14 are the ticks of extended(8.1, 14.1, 4) of the R package labeling; on an axis that
 // ends at the outermost of them none is left out
-static void published_example(void **state)
+TEST(published_example)
 {
-    (void)state;
     ticks t;
     ticks_between(&t, 8, 14, 4);
     expect_ticks(&t, 4, (double[]){8, 10, 12, 14});
@@ -38,9 +33,8 @@ static void published_example(void **state)
     expect_ticks(&t, 4, (double[]){8, 10, 12, 14});
 }
 
-static void round_ranges(void **state)
+TEST(round_ranges)
 {
-    (void)state;
     ticks t;
     ticks_between(&t, 0, 1, 6);
     expect_ticks(&t, 6, (double[]){0, 0.2, 0.4, 0.6, 0.8, 1});
@@ -49,9 +43,8 @@ static void round_ranges(void **state)
 }
 
 // 0.04, 0.06 and never 0.045, 0.055: a reader looks for whole multiples of the step
-static void ticks_are_multiples_of_their_step(void **state)
+TEST(ticks_are_multiples_of_their_step)
 {
-    (void)state;
     for (double low = 0.031; low < 0.06; low += 0.0013) {
         for (int wanted = 2; wanted < 9; wanted++) {
             ticks t;
@@ -65,9 +58,8 @@ static void ticks_are_multiples_of_their_step(void **state)
 }
 
 // every tick is the double nearest to its decimal number, so that printing shows no noise
-static void values_are_decimal(void **state)
+TEST(values_are_decimal)
 {
-    (void)state;
     for (int power = -12; power <= 12; power++) {
         ticks t;
         double scale = pow(10, power);
@@ -89,9 +81,8 @@ static double next_random(unsigned long long *seed)
     return (double)(*seed >> 11) / 9007199254740992.0;
 }
 
-static void between_stays_inside_and_misses_none(void **state)
+TEST(between_stays_inside_and_misses_none)
 {
-    (void)state;
     unsigned long long seed = 7;
     for (int trial = 0; trial < 3000; trial++) {
         ticks t;
@@ -112,9 +103,8 @@ static void between_stays_inside_and_misses_none(void **state)
     }
 }
 
-static void about_as_many_as_wanted(void **state)
+TEST(about_as_many_as_wanted)
 {
-    (void)state;
     unsigned long long seed = 11;
     for (int wanted = 3; wanted <= 10; wanted++) {
         double total = 0;
@@ -128,9 +118,8 @@ static void about_as_many_as_wanted(void **state)
     }
 }
 
-static void labels_are_short_and_have_a_true_minus(void **state)
+TEST(labels_are_short_and_have_a_true_minus)
 {
-    (void)state;
     ticks t;
     ticks_between(&t, -1.2, 1.2, 5);
     expect_labels(&t, 5, (const char *[]){"\u22121.0", "\u22120.5", "0.0", "0.5", "1.0"});
@@ -138,9 +127,8 @@ static void labels_are_short_and_have_a_true_minus(void **state)
     expect_labels(&t, 4, (const char *[]){"8", "10", "12", "14"});
 }
 
-static void small_and_large_numbers_get_a_factor(void **state)
+TEST(small_and_large_numbers_get_a_factor)
 {
-    (void)state;
     ticks t;
     char factor[64];
     ticks_between(&t, 0, 4e-6, 5);
@@ -155,9 +143,8 @@ static void small_and_large_numbers_get_a_factor(void **state)
     assert_string_equal(factor, "");
 }
 
-static void narrow_range_far_from_zero(void **state)
+TEST(narrow_range_far_from_zero)
 {
-    (void)state;
     ticks t;
     char first[TICK_TEXT], second[TICK_TEXT];
     ticks_between(&t, 0.293412, 0.293462, 4);
@@ -168,9 +155,8 @@ static void narrow_range_far_from_zero(void **state)
     check_close(strtod(first, NULL), t.value[0], 1e-12);
 }
 
-static void hopeless_limits(void **state)
+TEST(hopeless_limits)
 {
-    (void)state;
     ticks t;
     const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
     for (int i = 0; i < 3; i++) {
@@ -189,9 +175,8 @@ static void hopeless_limits(void **state)
     assert_true(t.count >= 2);
 }
 
-static void minor_ticks_are_round(void **state)
+TEST(minor_ticks_are_round)
 {
-    (void)state;
     unsigned long long seed = 3;
     for (int trial = 0; trial < 300; trial++) {
         ticks t;
@@ -201,22 +186,4 @@ static void minor_ticks_are_round(void **state)
         bool round_number = fabs(digits - round(digits)) < 1e-9 || fabs(digits - 2.5) < 1e-9;
         assert_true(round_number || t.minor == 1);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(published_example),
-        cmocka_unit_test(round_ranges),
-        cmocka_unit_test(values_are_decimal),
-        cmocka_unit_test(ticks_are_multiples_of_their_step),
-        cmocka_unit_test(between_stays_inside_and_misses_none),
-        cmocka_unit_test(about_as_many_as_wanted),
-        cmocka_unit_test(labels_are_short_and_have_a_true_minus),
-        cmocka_unit_test(small_and_large_numbers_get_a_factor),
-        cmocka_unit_test(narrow_range_far_from_zero),
-        cmocka_unit_test(hopeless_limits),
-        cmocka_unit_test(minor_ticks_are_round),
-    };
-    return cmocka_run_group_tests_name("ticks", tests, NULL, NULL) != 0;
 }

@@ -1,8 +1,5 @@
 // An arm in a tilted plane, whose weight acts along the angle -pi/2: pendulum, sag and frequencies
 // of beams.
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/arm/chain.h"
 #include "src/arm/modes.h"
@@ -24,9 +21,8 @@ static arm beam_of(const char *const *settings)
 
 // Deflection of the tip of a clamped beam under its weight w: w L^3/8EI; where the tip is held the
 // wall bears 3/8 of w.
-static void a_level_beam_sags_as_eulers_does(void **state)
+TEST(a_level_beam_sags_as_eulers_does)
 {
-    (void)state;
     const arm a = beam_of(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1e-3"));
     const double length = a.link_length * LINKS, weight = a.link_mass * LINKS * a.gravity;
     const double EI = a.joint_stiffness * a.link_length;
@@ -70,9 +66,8 @@ static void frequencies_of_a_hanging_beam(const arm *a, double *frequency, int c
     }
 }
 
-static void a_hanging_beam_has_its_frequencies(void **state)
+TEST(a_hanging_beam_has_its_frequencies)
 {
-    (void)state;
     enum { COUNT = 3 };
     const arm a = beam_of(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1.5707963267949",
                                    "initial.angle=-1.5707963267949"));
@@ -97,9 +92,8 @@ static void a_hanging_beam_has_its_frequencies(void **state)
 }
 
 // One link without friction swings through the lowest point at the speed of its fall.
-static void a_single_link_is_a_pendulum(void **state)
+TEST(a_single_link_is_a_pendulum)
 {
-    (void)state;
     const parameters p = fixture_parameters(SETTINGS(
         "arm.links=1", "wall.kind=none", "motor.voltage=0", "motor.stiction=0",
         "motor.viscous_friction=0", "motor.back_emf=0", "arm.tilt=-0.6", "initial.angle=0.3"));
@@ -124,9 +118,8 @@ static void a_single_link_is_a_pendulum(void **state)
 }
 
 // What knows no weight says so.
-static void what_knows_no_weight_says_so(void **state)
+TEST(what_knows_no_weight_says_so)
 {
-    (void)state;
     static const char *const engines[] = {"pair", NULL}; // NULL: the printed model
     for (size_t i = 0; i < sizeof engines / sizeof *engines; i++) {
         fault f = {0};
@@ -140,15 +133,4 @@ static void what_knows_no_weight_says_so(void **state)
         assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
         assert_non_null(strstr(f.text, "level"));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_level_beam_sags_as_eulers_does),
-        cmocka_unit_test(a_hanging_beam_has_its_frequencies),
-        cmocka_unit_test(a_single_link_is_a_pendulum),
-        cmocka_unit_test(what_knows_no_weight_says_so),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,5 @@
 // The force that the rig predicts for a touch at every sample: from hub readings alone it says what
 // the predictor says of the true state, and a law that keeps to it keeps the impact below a limit.
-#include <math.h>
 
 #include "src/predict/predict.h"
 #include "src/rig/estimation/touch_forecast.h"
@@ -19,9 +18,8 @@ static double predicted_of(const parameters *p, const sample *row)
 }
 
 // At a constant command the beam swings in flight; the rig derives it from the hub's readings.
-static void readings_of_the_hub_say_what_the_state_says(void **state)
+TEST(readings_of_the_hub_say_what_the_state_says)
 {
-    (void)state;
     const char *const volts[] = {"control.approach_voltage=1", "control.approach_voltage=4"};
     const char *const ways[] = {"initial.angle=-0.1", "initial.angle=-0.3"};
     for (int i = 0; i < 4; i++) {
@@ -57,9 +55,8 @@ static void readings_of_the_hub_say_what_the_state_says(void **state)
 }
 
 // It is there only with a limit, and only without contact.
-static void there_is_none_in_contact_or_without_a_limit(void **state)
+TEST(there_is_none_in_contact_or_without_a_limit)
 {
-    (void)state;
     run_result with = rig_run(SETTINGS("control.law=hybrid", "control.force_limit=1.5"), true);
     run_result without = rig_run(SETTINGS("control.law=hybrid"), true);
     for (size_t k = 0; k < without.trace.row_count; k++) {
@@ -83,9 +80,8 @@ static void there_is_none_in_contact_or_without_a_limit(void **state)
 }
 
 // An arm that swings back is not on its way to the wall.
-static void a_receding_tip_predicts_nothing(void **state)
+TEST(a_receding_tip_predicts_nothing)
 {
-    (void)state;
     const parameters p = rig_parameters(SETTINGS("control.law=open-loop", "control.force_limit=1"));
     const controller_setup setup = {.torque_per_volt = 1,
                                     .hub_damping = 0.1,
@@ -110,9 +106,8 @@ static void a_receding_tip_predicts_nothing(void **state)
 
 // From near and far, with noise: the first 0.15 s of contact stay below the limit, and without one
 // they do not.
-static void the_speed_limit_law_keeps_to_a_force(void **state)
+TEST(the_speed_limit_law_keeps_to_a_force)
 {
-    (void)state;
     const char *const limits[] = {"control.force_limit=1", "control.force_limit=2"};
     const double bound[] = {1, 2};
     const char *const ways[] = {"initial.angle=-0.1", "initial.angle=-0.2", "initial.angle=-0.4"};
@@ -145,9 +140,8 @@ static void the_speed_limit_law_keeps_to_a_force(void **state)
 
 // What is told is what the predictor is asked with, and the bend between samples is that of its
 // equation, whatever the hub does.
-static void the_bend_obeys_its_equation(void **state)
+TEST(the_bend_obeys_its_equation)
 {
-    (void)state;
     for (int kind = 0; kind < 4; kind++) {
         const bool spring = kind % 2;
         parameters p =
@@ -234,16 +228,4 @@ static void the_bend_obeys_its_equation(void **state)
         touch_forecast_sample(&t, &free_again);
         check_close(fabs(t.bend) + fabs(t.bend_rate), 0, 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(readings_of_the_hub_say_what_the_state_says),
-        cmocka_unit_test(there_is_none_in_contact_or_without_a_limit),
-        cmocka_unit_test(a_receding_tip_predicts_nothing),
-        cmocka_unit_test(the_bend_obeys_its_equation),
-        cmocka_unit_test(the_speed_limit_law_keeps_to_a_force),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,8 +1,6 @@
 // Rows and events of a run: where an instant lies among them, copies, and shared beginnings.
 #include "src/run/trace.h"
 
-#include <string.h>
-
 #include "tests/check.h"
 
 enum { ROWS = 5000, ANGLES = 3, EVENTS = 40 };
@@ -40,9 +38,8 @@ static void check_rows(const trace *t, int rows, int events)
     }
 }
 
-static void an_instant_has_its_place_among_the_rows(void **state)
+TEST(an_instant_has_its_place_among_the_rows)
 {
-    (void)state;
     trace t;
     trace_init(&t, ANGLES);
     assert_int_equal(trace_rows_until(&t, 3), 0);
@@ -63,9 +60,8 @@ static void an_instant_has_its_place_among_the_rows(void **state)
     trace_finish(&t);
 }
 
-static void a_copy_outlives_the_original(void **state)
+TEST(a_copy_outlives_the_original)
 {
-    (void)state;
     trace t, copy, empty;
     trace_init(&t, ANGLES);
     assert_int_equal(trace_copy(&empty, &t), STATUS_OK);
@@ -79,9 +75,8 @@ static void a_copy_outlives_the_original(void **state)
 }
 
 // Rows that stay where they are are shared up to a row, and go on differently.
-static void a_shared_beginning_goes_on_by_itself(void **state)
+TEST(a_shared_beginning_goes_on_by_itself)
 {
-    (void)state;
     trace t, other;
     assert_int_equal(trace_reserve(&t, ANGLES, 10, ROWS), STATUS_OK);
     const sample *first = t.rows;
@@ -102,9 +97,8 @@ static void a_shared_beginning_goes_on_by_itself(void **state)
 }
 
 // An arm without angles of its own still has all its rows.
-static void rows_need_no_angles(void **state)
+TEST(rows_need_no_angles)
 {
-    (void)state;
     trace t, copy;
     trace_init(&t, 0);
     for (int i = 0; i < ROWS; i++) {
@@ -121,9 +115,8 @@ static void rows_need_no_angles(void **state)
 }
 
 // A signal is there if one row has it, whichever.
-static void a_signal_is_there_if_one_row_has_it(void **state)
+TEST(a_signal_is_there_if_one_row_has_it)
 {
-    (void)state;
     enum { COUNT = 5 };
     for (int row = 0; row <= COUNT; row++) {
         sample rows[COUNT];
@@ -133,16 +126,4 @@ static void a_signal_is_there_if_one_row_has_it(void **state)
         const trace t = {.rows = rows, .row_count = COUNT};
         assert_int_equal(trace_has(&t, SIGNAL_INDEX(force)), row < COUNT);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_instant_has_its_place_among_the_rows),
-        cmocka_unit_test(a_copy_outlives_the_original),
-        cmocka_unit_test(a_shared_beginning_goes_on_by_itself),
-        cmocka_unit_test(rows_need_no_angles),
-        cmocka_unit_test(a_signal_is_there_if_one_row_has_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

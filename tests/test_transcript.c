@@ -2,10 +2,6 @@
 // and not without a transcript.
 #include "src/rig/external/process_lines.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "tests/check.h"
 
 static controller_output volts(double command)
@@ -13,9 +9,8 @@ static controller_output volts(double command)
     return (controller_output){.command = command};
 }
 
-static void long_ways_are_found_again(void **state)
+TEST(long_ways_are_found_again)
 {
-    (void)state;
     enum { SAMPLES = 3000 };
     process_transcript *t = process_transcript_create();
     assert_non_null(t);
@@ -51,9 +46,8 @@ static void long_ways_are_found_again(void **state)
 }
 
 // A transcript that is full stays as it is: what comes after it has no place.
-static void a_full_transcript_stays_as_it_is(void **state)
+TEST(a_full_transcript_stays_as_it_is)
 {
-    (void)state;
     process_transcript *t = process_transcript_create();
     const size_t length = (size_t)8 << 20;
     char *question = malloc(length + 1);
@@ -76,13 +70,4 @@ static void a_full_transcript_stays_as_it_is(void **state)
     process_transcript_destroy(t);
     process_transcript_destroy(NULL);
     free(question);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(long_ways_are_found_again),
-        cmocka_unit_test(a_full_transcript_stays_as_it_is),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -1,9 +1,6 @@
 // Tuning: expressions, and that the search finds what is known otherwise.
 #include "src/study/tune.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/study/expression.h"
 #include "src/study/linear/linear.h"
 #include "src/study/store/sweep_store.h"
@@ -19,9 +16,8 @@ static bool find(void *context, const char *name, double *value, const char **ne
     return strcmp(name, "seven") == 0;
 }
 
-static void expressions_are_arithmetic(void **state)
+TEST(expressions_are_arithmetic)
 {
-    (void)state;
     static const struct {
         const char *text;
         double value;
@@ -51,9 +47,8 @@ static void expressions_are_arithmetic(void **state)
     assert_true(isnan(value));
 }
 
-static void faults_of_expressions_name_the_column(void **state)
+TEST(faults_of_expressions_name_the_column)
 {
-    (void)state;
     static const struct {
         const char *text;
         int column;
@@ -70,9 +65,8 @@ static void faults_of_expressions_name_the_column(void **state)
         fault f = {0};
         assert_int_equal(expression_evaluate(wrong[i].text, find, NULL, &value, &f),
                          STATUS_BAD_ARGUMENT);
-        if (f.column != wrong[i].column || strstr(f.text, wrong[i].says) == NULL) {
-            fail_msg("'%s': column %d, %s", wrong[i].text, f.column, f.text);
-        }
+        fail_if(f.column != wrong[i].column || strstr(f.text, wrong[i].says) == NULL,
+                "'%s': column %d, %s", wrong[i].text, f.column, f.text);
     }
 
     // as many brackets as anybody wants, and no stack without end
@@ -90,22 +84,17 @@ static void search(tuning *t, const tune_request *asked, int jobs)
 {
     fault f = {0};
     sweep_store *store;
-    if (tune_init(t, asked, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(tune_init(t, asked, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(sweep_store_open(&store, NULL, &t->plan, &f), STATUS_OK);
     const sweep_options options = {.jobs = jobs};
-    if (tune_run(t, store, &options, &f) != STATUS_OK) {
-        fail_msg("%s", f.text);
-    }
+    fail_if(tune_run(t, store, &options, &f) != STATUS_OK, "%s", f.text);
     sweep_store_close(store);
 }
 
 // The force of a stiff arm that strikes is proportional to the voltage's effect on its speed: a
 // peak is asked for, and that voltage is sought which the search by halves finds, too.
-static void one_parameter_is_that_of_bisection(void **state)
+TEST(one_parameter_is_that_of_bisection)
 {
-    (void)state;
     char *vary[] = {"motor.voltage=0.5:3"};
     scenario base = {.name = "touch", .parameters = rig_parameters(NULL)};
     base.parameters.run.duration = 0.3;
@@ -134,9 +123,8 @@ static void one_parameter_is_that_of_bisection(void **state)
 }
 
 // What is not allowed ranks behind all that is.
-static void a_condition_binds(void **state)
+TEST(a_condition_binds)
 {
-    (void)state;
     char *vary[] = {"motor.voltage=0.5:3"};
     scenario base = {.name = "touch", .parameters = rig_parameters(NULL)};
     base.parameters.run.duration = 0.3;
@@ -166,9 +154,8 @@ static void a_condition_binds(void **state)
 
 // The hub's velocity gain whose sampled pole in contact decays fastest, kp = 20 at 200 Hz: 2.162 by
 // the matrix exponential of M x'' + D x' + 4 k2 x = K u, on a grid of 0.0005.
-static void the_most_damped_pole_is_that_of_eigenvalues(void **state)
+TEST(the_most_damped_pole_is_that_of_eigenvalues)
 {
-    (void)state;
     char *vary[] = {"control.kv=0.5:3.5"};
     scenario base = {.name = "hold",
                      .parameters = rig_parameters(
@@ -187,9 +174,8 @@ static void the_most_damped_pole_is_that_of_eigenvalues(void **state)
     tune_finish(&t);
 }
 
-static void what_cannot_be_asked_is_refused(void **state)
+TEST(what_cannot_be_asked_is_refused)
 {
-    (void)state;
     static const struct {
         const char *vary, *minimise, *subject, *says;
     } wrong[] = {
@@ -213,21 +199,6 @@ static void what_cannot_be_asked_is_refused(void **state)
         tuning t;
         fault f = {0};
         assert_int_equal(tune_init(&t, &asked, &f), STATUS_BAD_ARGUMENT);
-        if (strstr(f.text, wrong[i].says) == NULL) {
-            fail_msg("%s: %s", wrong[i].says, f.text);
-        }
+        fail_if(strstr(f.text, wrong[i].says) == NULL, "%s: %s", wrong[i].says, f.text);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(expressions_are_arithmetic),
-        cmocka_unit_test(faults_of_expressions_name_the_column),
-        cmocka_unit_test(one_parameter_is_that_of_bisection),
-        cmocka_unit_test(a_condition_binds),
-        cmocka_unit_test(the_most_damped_pole_is_that_of_eigenvalues),
-        cmocka_unit_test(what_cannot_be_asked_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,10 +2,6 @@
 // before it is any different.
 #include "tests/check.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 #include "tests/session_fixture.h"
@@ -13,12 +9,9 @@
 static void change(session *s, const char *path, const char *value)
 {
     fault f = {0};
-    if (session_change(s, parameter_index(path), value, &f) != STATUS_OK) {
-        fail_msg("%s: %s", path, f.text);
-    }
-    if (s->run.summary.status != STATUS_OK) {
-        fail_msg("%s: %s", path, s->run.summary.message);
-    }
+    fail_if(session_change(s, parameter_index(path), value, &f) != STATUS_OK, "%s: %s", path,
+            f.text);
+    fail_if(s->run.summary.status != STATUS_OK, "%s: %s", path, s->run.summary.message);
 }
 
 // Rows before an instant are the same to the last bit, and some after it differ.
@@ -36,9 +29,8 @@ static void assert_changes_from(const run_result *before, const run_result *afte
     assert_true(first >= time - 1e-12 && first <= until);
 }
 
-static void test_a_gain_holds_from_the_next_sample_on(void **state)
+TEST(test_a_gain_holds_from_the_next_sample_on)
 {
-    (void)state;
     static const struct {
         const char *path, *value;
         double at;
@@ -64,9 +56,8 @@ static void test_a_gain_holds_from_the_next_sample_on(void **state)
     }
 }
 
-static void test_another_rate_samples_at_its_own_period(void **state)
+TEST(test_another_rate_samples_at_its_own_period)
 {
-    (void)state;
     session s;
     open_session(&s, "compare/hybrid");
     session_seek(&s, 0.502);
@@ -91,9 +82,8 @@ static void test_another_rate_samples_at_its_own_period(void **state)
 
 // The rate changes again and again. A sample comes one period of the rate that holds then after the
 // one before; an equal rate moves nothing.
-static void test_rates_that_change_again_and_again(void **state)
+TEST(test_rates_that_change_again_and_again)
 {
-    (void)state;
     static const struct {
         double time, rate;
     } changes[] = {{0.0137, 50},   {0.0503, 200}, {0.0588, 125}, {0.0652, 40}, {0.0653, 40},
@@ -159,9 +149,8 @@ static const char *count_telling(void *memory, const controller_setup *setup)
 
 // A controller hears of what concerns it, once, and of nothing else: not of the arm, its sensors or
 // parameters that are what they were.
-static void test_a_controller_is_told_what_changed_for_it(void **state)
+TEST(test_a_controller_is_told_what_changed_for_it)
 {
-    (void)state;
     static const struct {
         const char *path, *text;
         bool told;
@@ -197,9 +186,8 @@ static void test_a_controller_is_told_what_changed_for_it(void **state)
 }
 
 // A ramp leads where a step does, later; a wave makes the force swing at its frequency.
-static void test_setpoints_are_steps_ramps_and_waves(void **state)
+TEST(test_setpoints_are_steps_ramps_and_waves)
 {
-    (void)state;
     session step, ramp, wave;
     open_session(&step, "compare/force-integral");
     open_session(&ramp, "compare/force-integral");
@@ -234,9 +222,8 @@ static void test_setpoints_are_steps_ramps_and_waves(void **state)
 
 // The force that is wanted at an instant: as far along the ramp as its rate allows, up or down, the
 // wave upon it, and never below zero.
-static void test_the_wanted_force_is_its_ramp_and_its_wave(void **state)
+TEST(test_the_wanted_force_is_its_ramp_and_its_wave)
 {
-    (void)state;
     for (int kind = 0; kind < 4; kind++) {
         const double rate = kind & 1 ? 2 : 0, amplitude = kind & 2 ? 0.4 : 0;
         parameters p = rig_parameters(
@@ -269,9 +256,8 @@ static void test_the_wanted_force_is_its_ramp_and_its_wave(void **state)
 }
 
 // What a change of the rig's own numbers makes of delay, jitter, limits and periods.
-static void test_delays_and_limits_follow_a_change(void **state)
+TEST(test_delays_and_limits_follow_a_change)
 {
-    (void)state;
     parameters p = rig_parameters(SETTINGS("control.law=hybrid", "control.delay=1e-3",
                                            "control.delay_periods=0.25", "control.rate=200"));
     rig *r;
@@ -306,9 +292,8 @@ static void test_delays_and_limits_follow_a_change(void **state)
     rig_destroy(r);
 }
 
-static void test_a_law_that_plans_at_its_start_takes_no_dated_change(void **state)
+TEST(test_a_law_that_plans_at_its_start_takes_no_dated_change)
 {
-    (void)state;
     session s;
     open_session(&s, "compare/inverse-dynamics");
     session_seek(&s, 0.3);
@@ -318,9 +303,8 @@ static void test_a_law_that_plans_at_its_start_takes_no_dated_change(void **stat
     session_finish(&s);
 }
 
-static void test_a_saved_tuned_run_is_the_same(void **state)
+TEST(test_a_saved_tuned_run_is_the_same)
 {
-    (void)state;
     session s;
     scenario saved;
     run_result again;
@@ -347,9 +331,8 @@ static void test_a_saved_tuned_run_is_the_same(void **state)
 }
 
 // Without a law, or under one that hears of every change, all of control.* may change at any time.
-static void what_nobody_took_at_the_start_can_change(void **state)
+TEST(what_nobody_took_at_the_start_can_change)
 {
-    (void)state;
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     const int force = PARAMETER_INDEX(control.force);
@@ -366,21 +349,4 @@ static void what_nobody_took_at_the_start_can_change(void **state)
     p.control.law = LAW_INVERSE_DYNAMICS;
     assert_false(rig_can_change(&p, PARAMETER_INDEX(motor.voltage_limit)));
     assert_true(rig_can_change(&p, PARAMETER_INDEX(arm.k2)));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_wanted_force_is_its_ramp_and_its_wave),
-        cmocka_unit_test(test_delays_and_limits_follow_a_change),
-        cmocka_unit_test(what_nobody_took_at_the_start_can_change),
-        cmocka_unit_test(test_a_gain_holds_from_the_next_sample_on),
-        cmocka_unit_test(test_another_rate_samples_at_its_own_period),
-        cmocka_unit_test(test_rates_that_change_again_and_again),
-        cmocka_unit_test(test_a_controller_is_told_what_changed_for_it),
-        cmocka_unit_test(test_setpoints_are_steps_ramps_and_waves),
-        cmocka_unit_test(test_a_law_that_plans_at_its_start_takes_no_dated_change),
-        cmocka_unit_test(test_a_saved_tuned_run_is_the_same),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -11,9 +11,8 @@ static wall_model wall_of(const char *const *settings)
     return w;
 }
 
-static void the_contact_point_lies_the_arms_length_from_the_hub(void **state)
+TEST(the_contact_point_lies_the_arms_length_from_the_hub)
 {
-    (void)state;
     wall_model w = wall_of(SETTINGS("wall.angle=0.7", "arm.length=1.5"));
     check_close(hypot(w.x, w.y), 1.5, 1e-15);
     check_close(atan2(w.y, w.x), 0.7, 1e-15);
@@ -51,9 +50,8 @@ static double rate_of(const wall_model *w, link_motion l)
     return wall_penetration_rate(&at, l.vx, l.vy, lever, l.omega);
 }
 
-static void rates_are_the_derivatives_of_the_penetration(void **state)
+TEST(rates_are_the_derivatives_of_the_penetration)
 {
-    (void)state;
     const link_motion now = {0.49, 0.08, -0.3, 0.7, 2, -1.5, 0.25, -1.1, 4};
     const char *const kinds[] = {"wall.kind=point", "wall.kind=plane"};
     for (int k = 0; k < 2; k++) {
@@ -71,9 +69,8 @@ static void rates_are_the_derivatives_of_the_penetration(void **state)
     }
 }
 
-static void a_straight_arm_at_the_walls_angle_touches_it(void **state)
+TEST(a_straight_arm_at_the_walls_angle_touches_it)
 {
-    (void)state;
     const char *const kinds[] = {"wall.kind=point", "wall.kind=plane"};
     for (int k = 0; k < 2; k++) {
         wall_model w = wall_of(SETTINGS(kinds[k], "wall.angle=0.3"));
@@ -91,9 +88,8 @@ static void a_straight_arm_at_the_walls_angle_touches_it(void **state)
     assert_false(wall_stands(&none));
 }
 
-static void slow_impacts_are_plastic(void **state)
+TEST(slow_impacts_are_plastic)
 {
-    (void)state;
     wall_model w = wall_of(SETTINGS("wall.restitution=0.6", "method.rest_speed=0.01"));
     check_close(wall_restitution(&w, 0.5), 0.6, 0);
     check_close(wall_restitution(&w, 0.01), 0.6, 0);
@@ -106,9 +102,8 @@ static void slow_impacts_are_plastic(void **state)
 }
 
 // Force, its rate and what the spring stores, against differences and the integral.
-static void a_soft_walls_force_has_its_slope_and_energy(void **state)
+TEST(a_soft_walls_force_has_its_slope_and_energy)
 {
-    (void)state;
     static const char *const laws[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
     for (int k = 0; k < 2; k++) {
         const wall_model w = wall_of(
@@ -138,9 +133,8 @@ static void a_soft_walls_force_has_its_slope_and_energy(void **state)
 }
 
 // A face swings back at its own rate; one that rests in its place does nothing.
-static void a_face_at_rest_has_no_rate(void **state)
+TEST(a_face_at_rest_has_no_rate)
 {
-    (void)state;
     const wall_model w = wall_of(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=1e4",
                                           "wall.damping=1", "wall.mass=0.04"));
     check_close(wall_face_rate(&w, (wall_face){0, 0}), 0, 0);
@@ -150,9 +144,8 @@ static void a_face_at_rest_has_no_rate(void **state)
 
 // A mass that meets the wall: its rate is that of the wall's spring where it is deepest, or of its
 // damper where that is faster; the deepest point is found by following the mass.
-static void the_rate_is_that_at_the_deepest_point(void **state)
+TEST(the_rate_is_that_at_the_deepest_point)
 {
-    (void)state;
     const double mass = 0.04, speeds[] = {0.1, 0.7, 3};
     for (size_t i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
         wall_model w =
@@ -178,9 +171,8 @@ static void the_rate_is_that_at_the_deepest_point(void **state)
 
 // Where a damper that grows with the depth stops the mass, the rate is that of the damper there,
 // whether the mass has just met the wall or is in it already.
-static void a_damper_that_grows_stops_the_mass(void **state)
+TEST(a_damper_that_grows_stops_the_mass)
 {
-    (void)state;
     const double mass = 0.04, speed = 0.7, begins[] = {0, 1e-3};
     const wall_model w =
         wall_of(SETTINGS("wall.contact=hunt-crossley", "wall.stiffness=1", "wall.damping=1e6"));
@@ -195,19 +187,4 @@ static void a_damper_that_grows_stops_the_mass(void **state)
         const double damping = wall_force(&w, depth, 1) - wall_force(&w, depth, 0);
         check_relative(wall_rate(&w, 1 / mass, begins[i], speed), damping / mass, 1e-4);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_soft_walls_force_has_its_slope_and_energy),
-        cmocka_unit_test(the_contact_point_lies_the_arms_length_from_the_hub),
-        cmocka_unit_test(rates_are_the_derivatives_of_the_penetration),
-        cmocka_unit_test(a_straight_arm_at_the_walls_angle_touches_it),
-        cmocka_unit_test(a_face_at_rest_has_no_rate),
-        cmocka_unit_test(slow_impacts_are_plastic),
-        cmocka_unit_test(the_rate_is_that_at_the_deepest_point),
-        cmocka_unit_test(a_damper_that_grows_stops_the_mass),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

@@ -4,9 +4,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -65,9 +62,8 @@ static void assert_holds(const char *path, const char *expected)
     assert_string_equal(text, expected);
 }
 
-static void appears_only_when_committed(void **state)
+TEST(appears_only_when_committed)
 {
-    (void)state;
     whole_file w;
     fault f;
     put("old", "old");
@@ -81,9 +77,8 @@ static void appears_only_when_committed(void **state)
     unlink("old");
 }
 
-static void abandoning_leaves_the_target_and_nothing_else(void **state)
+TEST(abandoning_leaves_the_target_and_nothing_else)
 {
-    (void)state;
     whole_file w;
     fault f;
     put("old", "old");
@@ -111,9 +106,8 @@ static void write_new(const char *path)
     assert_int_equal(whole_file_commit(&w, &f), STATUS_OK);
 }
 
-static void mode_follows_the_umask_or_the_old_file(void **state)
+TEST(mode_follows_the_umask_or_the_old_file)
 {
-    (void)state;
     mode_t before = umask(027);
     write_new("fresh");
     assert_int_equal(mode_of("fresh"), 0640);
@@ -124,9 +118,8 @@ static void mode_follows_the_umask_or_the_old_file(void **state)
     unlink("fresh");
 }
 
-static void a_link_stays_a_link(void **state)
+TEST(a_link_stays_a_link)
 {
-    (void)state;
     struct stat about;
     put("target", "old");
     assert_int_equal(symlink("target", "link"), 0);
@@ -138,9 +131,8 @@ static void a_link_stays_a_link(void **state)
     unlink("target");
 }
 
-static void a_link_to_nothing_leads_to_the_new_file(void **state)
+TEST(a_link_to_nothing_leads_to_the_new_file)
 {
-    (void)state;
     struct stat about;
     assert_int_equal(symlink("later", "link"), 0);
     write_new("link");
@@ -151,9 +143,8 @@ static void a_link_to_nothing_leads_to_the_new_file(void **state)
     unlink("later");
 }
 
-static void a_full_device_is_reported_and_stays_a_device(void **state)
+TEST(a_full_device_is_reported_and_stays_a_device)
 {
-    (void)state;
     struct stat about;
     whole_file w;
     fault f = {0};
@@ -188,9 +179,8 @@ static status write_to_output(const char *path, fault *f)
     return code;
 }
 
-static void the_standard_output_is_written_or_said_to_be_full(void **state)
+TEST(the_standard_output_is_written_or_said_to_be_full)
 {
-    (void)state;
     fault f = {0};
     assert_int_equal(write_to_output("output", &f), STATUS_OK);
     assert_holds("output", "new");
@@ -200,9 +190,8 @@ static void the_standard_output_is_written_or_said_to_be_full(void **state)
     assert_non_null(strstr(f.text, strerror(ENOSPC)));
 }
 
-static void what_cannot_be_written_is_said_beforehand(void **state)
+TEST(what_cannot_be_written_is_said_beforehand)
 {
-    (void)state;
     const char *const bad[] = {"nowhere/file", ".", "", "nothing/"};
     put("file", "");
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -219,9 +208,8 @@ static void what_cannot_be_written_is_said_beforehand(void **state)
     unlink("file");
 }
 
-static void a_reader_that_left_is_told_from_a_full_disk(void **state)
+TEST(a_reader_that_left_is_told_from_a_full_disk)
 {
-    (void)state;
     int ends[2];
     assert_int_equal(pipe(ends), 0);
     close(ends[0]);
@@ -237,9 +225,8 @@ static void a_reader_that_left_is_told_from_a_full_disk(void **state)
 }
 
 // Who reads the standard output may leave when he has enough; of any other pipe it is a failure.
-static void only_the_reader_of_the_standard_output_may_leave(void **state)
+TEST(only_the_reader_of_the_standard_output_may_leave)
 {
-    (void)state;
     int ends[2];
     whole_file w;
     fault f = {0};
@@ -270,9 +257,8 @@ static void only_the_reader_of_the_standard_output_may_leave(void **state)
 
 // Where the standard input is closed a file gets its descriptor, and is written all the same, whole
 // or in its place.
-static void a_file_may_have_the_first_descriptor(void **state)
+TEST(a_file_may_have_the_first_descriptor)
 {
-    (void)state;
     const char *const names[] = {"first", "/dev/null"};
     const int input = dup(0);
     assert_true(input > 0);
@@ -295,9 +281,8 @@ static void a_file_may_have_the_first_descriptor(void **state)
 }
 
 // A write that failed at once leaves nothing to be flushed, and is still a failure.
-static void a_failure_before_the_last_flush_is_one(void **state)
+TEST(a_failure_before_the_last_flush_is_one)
 {
-    (void)state;
     FILE *stream = fopen("/dev/full", "w");
     assert_non_null(stream);
     setvbuf(stream, NULL, _IONBF, 0);
@@ -309,9 +294,8 @@ static void a_failure_before_the_last_flush_is_one(void **state)
 
 // The stream loses the reason of an earlier failed write; it is still reported when the file is
 // closed.
-static void why_a_write_failed_is_known_at_the_end(void **state)
+TEST(why_a_write_failed_is_known_at_the_end)
 {
-    (void)state;
     struct rlimit before, small;
     whole_file file;
     fault f = {0};
@@ -337,9 +321,8 @@ static void why_a_write_failed_is_known_at_the_end(void **state)
 
 // A run that was killed leaves its temporary; the next one removes it, but none of a run that
 // lives.
-static void what_killed_runs_left_goes(void **state)
+TEST(what_killed_runs_left_goes)
 {
-    (void)state;
     int told[2];
     char byte;
     assert_int_equal(mkdir("folder", 0777), 0);
@@ -386,9 +369,8 @@ static void what_killed_runs_left_goes(void **state)
 }
 
 // In a folder like /tmp a link of somebody else's leads nowhere, as the kernel has it.
-static void a_strangers_link_is_not_followed(void **state)
+TEST(a_strangers_link_is_not_followed)
 {
-    (void)state;
     whole_file file;
     fault f = {0};
     assert_int_equal(mkdir("shared", 0777), 0);
@@ -417,9 +399,8 @@ static void a_strangers_link_is_not_followed(void **state)
 }
 
 // More at once than are recorded for a signal: each is still complete.
-static void several_files_are_written_at_once(void **state)
+TEST(several_files_are_written_at_once)
 {
-    (void)state;
     enum { FILES = 12 };
     const int before = files();
     whole_file all[FILES];
@@ -438,9 +419,8 @@ static void several_files_are_written_at_once(void **state)
 }
 
 // Called by a signal handler: no unfinished file stays, and former files do.
-static void a_signal_leaves_no_temporaries(void **state)
+TEST(a_signal_leaves_no_temporaries)
 {
-    (void)state;
     whole_file one, two;
     const int before = files();
     put("one", "old");
@@ -478,9 +458,8 @@ static void a_signal_leaves_no_temporaries(void **state)
 }
 
 // Something else took the place of the target meanwhile.
-static void what_cannot_be_renamed_goes(void **state)
+TEST(what_cannot_be_renamed_goes)
 {
-    (void)state;
     whole_file w;
     fault f = {0};
     const int before = files();
@@ -493,9 +472,8 @@ static void what_cannot_be_renamed_goes(void **state)
     assert_int_equal(files(), before);
 }
 
-static void devices_and_the_standard_output_can_be_abandoned(void **state)
+TEST(devices_and_the_standard_output_can_be_abandoned)
 {
-    (void)state;
     whole_file w;
     struct stat about;
     assert_int_equal(whole_file_open(&w, "/dev/null", NULL), STATUS_OK);
@@ -513,9 +491,8 @@ static void devices_and_the_standard_output_can_be_abandoned(void **state)
     unlink("closed");
 }
 
-static void a_link_may_be_absolute(void **state)
+TEST(a_link_may_be_absolute)
 {
-    (void)state;
     char there[64];
     snprintf(there, sizeof there, "%s/target", folder);
     assert_int_equal(mkdir("below", 0700), 0);
@@ -528,9 +505,8 @@ static void a_link_may_be_absolute(void **state)
 }
 
 // Only what is a temporary by name and kind is cleaned away.
-static void what_only_looks_left_behind_stays(void **state)
+TEST(what_only_looks_left_behind_stays)
 {
-    (void)state;
     static const char *const others[] = {".impactlab-1-2.party", ".impactlab-1.part",
                                          ".impactlab-x-2.part", ".impactlab-1-2.par"};
     const int before = files();
@@ -556,9 +532,8 @@ static void what_only_looks_left_behind_stays(void **state)
 }
 
 // Names that are all taken by others' temporaries are no reason to touch these.
-static void a_folder_without_a_free_name_is_said(void **state)
+TEST(a_folder_without_a_free_name_is_said)
 {
-    (void)state;
     whole_file first, w;
     fault f = {0};
     char name[64];
@@ -583,9 +558,8 @@ static void a_folder_without_a_free_name_is_said(void **state)
 }
 
 // A stranger's file with a temporary's name is none of ours.
-static void what_another_user_left_stays(void **state)
+TEST(what_another_user_left_stays)
 {
-    (void)state;
     if (geteuid() != 0) {
         skip(); // only root can make a file somebody else's
     }
@@ -596,9 +570,8 @@ static void what_another_user_left_stays(void **state)
     unlink(".impactlab-1-8.part");
 }
 
-static void a_link_to_itself_leads_nowhere(void **state)
+TEST(a_link_to_itself_leads_nowhere)
 {
-    (void)state;
     fault f = {0};
     whole_file w;
     assert_int_equal(symlink("itself", "itself"), 0);
@@ -608,9 +581,8 @@ static void a_link_to_itself_leads_nowhere(void **state)
 }
 
 // A program that was started without a standard input has its number for the next file.
-static void a_file_may_have_the_number_of_the_standard_input(void **state)
+TEST(a_file_may_have_the_number_of_the_standard_input)
 {
-    (void)state;
     fault f = {0};
     whole_file w;
     const int input = dup(STDIN_FILENO);
@@ -633,32 +605,5 @@ static void a_file_may_have_the_number_of_the_standard_input(void **state)
 int main(void)
 {
     alarm(120); // where somebody waits for what never comes, this fails
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(appears_only_when_committed),
-        cmocka_unit_test(abandoning_leaves_the_target_and_nothing_else),
-        cmocka_unit_test(mode_follows_the_umask_or_the_old_file),
-        cmocka_unit_test(a_link_stays_a_link),
-        cmocka_unit_test(a_link_to_nothing_leads_to_the_new_file),
-        cmocka_unit_test(a_full_device_is_reported_and_stays_a_device),
-        cmocka_unit_test(the_standard_output_is_written_or_said_to_be_full),
-        cmocka_unit_test(what_cannot_be_written_is_said_beforehand),
-        cmocka_unit_test(a_reader_that_left_is_told_from_a_full_disk),
-        cmocka_unit_test(a_failure_before_the_last_flush_is_one),
-        cmocka_unit_test(a_file_may_have_the_first_descriptor),
-        cmocka_unit_test(only_the_reader_of_the_standard_output_may_leave),
-        cmocka_unit_test(why_a_write_failed_is_known_at_the_end),
-        cmocka_unit_test(what_killed_runs_left_goes),
-        cmocka_unit_test(a_strangers_link_is_not_followed),
-        cmocka_unit_test(several_files_are_written_at_once),
-        cmocka_unit_test(a_signal_leaves_no_temporaries),
-        cmocka_unit_test(what_cannot_be_renamed_goes),
-        cmocka_unit_test(devices_and_the_standard_output_can_be_abandoned),
-        cmocka_unit_test(a_link_may_be_absolute),
-        cmocka_unit_test(what_only_looks_left_behind_stays),
-        cmocka_unit_test(a_folder_without_a_free_name_is_said),
-        cmocka_unit_test(what_another_user_left_stays),
-        cmocka_unit_test(a_link_to_itself_leads_nowhere),
-        cmocka_unit_test(a_file_may_have_the_number_of_the_standard_input),
-    };
-    return cmocka_run_group_tests(tests, enter_folder, leave_folder) != 0;
+    return run_cases(enter_folder, leave_folder);
 }

@@ -2,13 +2,10 @@
 #include "src/base/text_stream.h"
 #include "tests/check.h"
 
-#include <string.h>
-
 #include "src/base/words.h"
 
-static void distances_count_single_edits(void **state)
+TEST(distances_count_single_edits)
 {
-    (void)state;
     assert_int_equal(edit_distance("force", "force", 9), 0);
     assert_int_equal(edit_distance("force", "forces", 9), 1);
     assert_int_equal(edit_distance("force", "fore", 9), 1);
@@ -19,9 +16,8 @@ static void distances_count_single_edits(void **state)
     assert_int_equal(edit_distance("kitten", "sitting", 2), 2);
 }
 
-static void distances_are_symmetric_and_obey_the_triangle(void **state)
+TEST(distances_are_symmetric_and_obey_the_triangle)
 {
-    (void)state;
     static const char *const words[] = {"arm.k2", "arm.k1", "wall.angle", "motor.voltage", ""};
     enum { COUNT = sizeof words / sizeof words[0] };
     for (int i = 0; i < COUNT; i++) {
@@ -36,9 +32,8 @@ static void distances_are_symmetric_and_obey_the_triangle(void **state)
     }
 }
 
-static void words_too_long_for_the_table_are_far(void **state)
+TEST(words_too_long_for_the_table_are_far)
 {
-    (void)state;
     char word[66];
     memset(word, 'a', sizeof word - 1);
     word[sizeof word - 1] = '\0';
@@ -54,9 +49,8 @@ static const char *nearest_of(const char *word, const char *const *candidates)
     return nearest.best;
 }
 
-static void the_nearest_word_is_found_or_none(void **state)
+TEST(the_nearest_word_is_found_or_none)
 {
-    (void)state;
     static const char *const candidates[] = {"thesis/fig-3-4", "arm.length", "arm.links",
                                              "motor.voltage", NULL};
     assert_string_equal(nearest_of("arm.lenght", candidates), "arm.length");
@@ -65,9 +59,8 @@ static void the_nearest_word_is_found_or_none(void **state)
     assert_null(nearest_of("quite another thing", candidates));
 }
 
-static void of_equally_near_words_the_first_is_kept(void **state)
+TEST(of_equally_near_words_the_first_is_kept)
 {
-    (void)state;
     static const char *const candidates[] = {"k1", "k2", NULL};
     assert_string_equal(nearest_of("k3", candidates), "k1");
 }
@@ -80,9 +73,8 @@ static void check_printable(const char *text, const char *expected)
     assert_string_equal(copy, expected);
 }
 
-static void control_characters_and_broken_text_become_question_marks(void **state)
+TEST(control_characters_and_broken_text_become_question_marks)
 {
-    (void)state;
     check_printable("plain, with \xc3\xa4 and \xe2\x86\x92",
                     "plain, with \xc3\xa4 and \xe2\x86\x92");
     check_printable("\x1b[2J\n", "?[2J?");
@@ -98,9 +90,8 @@ static void control_characters_and_broken_text_become_question_marks(void **stat
     check_printable("\xe0\x80\x8a", "???");      // a line feed written longer than it is
 }
 
-static void what_turns_the_direction_of_text_becomes_question_marks(void **state)
+TEST(what_turns_the_direction_of_text_becomes_question_marks)
 {
-    (void)state;
     check_printable("a\u202eb", "a???b");
     check_printable("\u2066x\u2069", "???x???");
     check_printable("\u200e\u061c", "?????");
@@ -109,17 +100,15 @@ static void what_turns_the_direction_of_text_becomes_question_marks(void **state
     check_printable("\u200b\u2030", "\u200b\u2030"); // their neighbours stay
 }
 
-static void lines_keep_their_ends(void **state)
+TEST(lines_keep_their_ends)
 {
-    (void)state;
     char text[] = "one\ntwo\r\n\tthree";
     make_lines_printable(text);
     assert_string_equal(text, "one\ntwo?\n?three");
 }
 
-static void distances_of_words(void **state)
+TEST(distances_of_words)
 {
-    (void)state;
     assert_int_equal(edit_distance("", "", 9), 0);
     assert_int_equal(edit_distance("abc", "", 9), 3);
     assert_int_equal(edit_distance("kitten", "sitting", 9), 3);
@@ -128,9 +117,8 @@ static void distances_of_words(void **state)
 }
 
 // U+0080 is a control character; the others of the shortest forms are not, and one less is broken.
-static void the_first_characters_of_each_length_are_whole(void **state)
+TEST(the_first_characters_of_each_length_are_whole)
 {
-    (void)state;
     check_printable("\u07ff", "\u07ff");
     check_printable("\xe0\xa0\x80", "\xe0\xa0\x80");
     check_printable("\xe0\x9f\xbf", "???");
@@ -146,9 +134,8 @@ static void the_first_characters_of_each_length_are_whole(void **state)
 
 // Every character there is, written in UTF-8: as long as it is, but for those that a terminal must
 // not get; cut short anywhere or with a byte that is none of its own it is none.
-static void every_character_is_whole_or_hidden(void **state)
+TEST(every_character_is_whole_or_hidden)
 {
-    (void)state;
     for (uint32_t number = 1; number < 0x110400; number++) {
         const int length = number < 0x80 ? 1 : number < 0x800 ? 2 : number < 0x10000 ? 3 : 4;
         char text[5] = "";
@@ -163,9 +150,8 @@ static void every_character_is_whole_or_hidden(void **state)
         const bool hidden = control || turning || number == 0x2028 || number == 0x2029;
         const bool none = (number >= 0xd800 && number <= 0xdfff) || number > 0x10ffff;
         assert_int_equal(is_unprintable(number), hidden);
-        if (printable_length(text) != (hidden || none ? 0 : length)) {
-            fail_msg("U+%04X has %d bytes", number, printable_length(text));
-        }
+        fail_if(printable_length(text) != (hidden || none ? 0 : length), "U+%04X has %d bytes",
+                number, printable_length(text));
 
         // of some of them: cut short, and with another byte in each place
         for (int i = 1; i < length && number % 509 == 0; i++) {
@@ -205,9 +191,8 @@ static int distance_of(const char *a, int la, const char *b, int lb)
     return least;
 }
 
-static void all_short_words_have_their_distance(void **state)
+TEST(all_short_words_have_their_distance)
 {
-    (void)state;
     enum { WORDS = 121 }; // of up to four letters out of three
     char words[WORDS][5] = {""};
     int count = 1;
@@ -249,9 +234,8 @@ static void all_short_words_have_their_distance(void **state)
 }
 
 // What is printed is filtered, and a stream that takes nothing keeps its error.
-static void what_cannot_be_printed_is_said(void **state)
+TEST(what_cannot_be_printed_is_said)
 {
-    (void)state;
     char text[64] = "";
     FILE *into = fmemopen(text, sizeof text, "w"), *full = fopen("/dev/full", "w");
     assert_non_null(into);
@@ -265,24 +249,4 @@ static void what_cannot_be_printed_is_said(void **state)
     assert_true(ferror(full));
     assert_false(loss_noted());
     fclose(full);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_first_characters_of_each_length_are_whole),
-        cmocka_unit_test(every_character_is_whole_or_hidden),
-        cmocka_unit_test(all_short_words_have_their_distance),
-        cmocka_unit_test(distances_of_words),
-        cmocka_unit_test(distances_count_single_edits),
-        cmocka_unit_test(distances_are_symmetric_and_obey_the_triangle),
-        cmocka_unit_test(words_too_long_for_the_table_are_far),
-        cmocka_unit_test(the_nearest_word_is_found_or_none),
-        cmocka_unit_test(of_equally_near_words_the_first_is_kept),
-        cmocka_unit_test(control_characters_and_broken_text_become_question_marks),
-        cmocka_unit_test(what_turns_the_direction_of_text_becomes_question_marks),
-        cmocka_unit_test(lines_keep_their_ends),
-        cmocka_unit_test(what_cannot_be_printed_is_said),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }

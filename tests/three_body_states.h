@@ -1,8 +1,6 @@
 // States of the thesis's arm at the wall, for tests of its predictors.
 #pragma once
 
-#include <math.h>
-
 #include "src/predict/predict.h"
 #include "tests/check.h"
 

@@ -1,8 +1,6 @@
 // Traces compared to the last bit.
 #pragma once
 
-#include <string.h>
-
 #include "src/run/trace.h"
 #include "tests/check.h"
 
@@ -14,10 +12,9 @@ static inline void check_same_events(const trace *a, const trace *b, size_t coun
         const event *x = &a->events[i], *y = &b->events[i];
         double of_x[] = {x->time, x->impulse, x->speed, x->loss};
         double of_y[] = {y->time, y->impulse, y->speed, y->loss};
-        if (memcmp(of_x, of_y, sizeof of_x) != 0 || x->kind != y->kind || x->index != y->index ||
-            x->delivered_by_step != y->delivered_by_step) {
-            fail_msg("event %zu, %s at %.17g s, is %s at %.17g s in the other trace", i,
-                     event_name(x->kind), x->time, event_name(y->kind), y->time);
-        }
+        fail_if(memcmp(of_x, of_y, sizeof of_x) != 0 || x->kind != y->kind ||
+                    x->index != y->index || x->delivered_by_step != y->delivered_by_step,
+                "event %zu, %s at %.17g s, is %s at %.17g s in the other trace", i,
+                event_name(x->kind), x->time, event_name(y->kind), y->time);
     }
 }

@@ -2,9 +2,6 @@
 // contact on, and chains from rest, in processor time.
 //
 //   many_links [DAMPING LINKS...]     share of critical damping, 0.01 or 0; the usual rows without
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "src/base/clock.h"
 #include "src/contact/contact_machine.h"
