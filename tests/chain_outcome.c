@@ -19,7 +19,7 @@ static void take_samples(const arm *a, motion *m, double before, double impulses
         if (time > m->state[SLOT_TIME]) {
             return;
         }
-        double *state = time > before ? motion_between(a, m, time) : m->trial;
+        double *state = time > before ? motion_between(a, m, time, STATE_WHOLE) : m->trial;
         assert_non_null(state);
         o->momentum[o->samples++] = impulses + state_quadratures(m, state)[QUADRATURE_FORCE];
     }

@@ -162,8 +162,9 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
     }
 }
 
-static status step(const arm *a, motion *m, double h)
+static status step(const arm *a, motion *m, double h, state_extent extent)
 {
+    (void)extent;
     if (chain_is_loaded(a)) {
         explicit_step(a, m, h, long_weights, LONG_STAGES, true);
     } else {
@@ -283,25 +284,26 @@ static double longest_step(const arm *a, motion *m, double rate, double remainin
     return remaining < longest * (1 + 1e-9) ? remaining : longest;
 }
 
-static double begin(const arm *a, motion *m, double remaining, double step_length)
+static double advance(const arm *a, motion *m, double remaining, double step_length)
 {
     return longest_step(a, m, a->fastest_rate, remaining, step_length);
 }
 
 // Steps that follow decays, too, and half as long.
-static double begin_fine(const arm *a, motion *m, double remaining, double step_length)
+static double advance_fine(const arm *a, motion *m, double remaining, double step_length)
 {
     const double rate = 2 * fmax(a->fastest_rate, a->fastest_decay);
     return longest_step(a, m, rate, remaining, step_length);
 }
 
 // The stages' derivatives of the state's smooth part.
-static size_t memory_for(const arm *a)
+static size_t init(const arm *a, void *memory)
 {
+    (void)memory; // scratch
     return (LONG_STAGES + 1) * (size_t)(2 * a->dof + QUADRATURE_COUNT) * sizeof(double);
 }
 
 const engine explicit_engine = {
-    .name = "Runge-Kutta 8", .begin = begin, .state_at = step, .memory_for = memory_for};
+    .name = "Runge-Kutta 8", .init = init, .advance = advance, .state_at = step};
 const engine explicit_fine_engine = {
-    .name = "Runge-Kutta 8, fine", .begin = begin_fine, .state_at = step, .memory_for = memory_for};
+    .name = "Runge-Kutta 8, fine", .init = init, .advance = advance_fine, .state_at = step};

@@ -1,16 +1,16 @@
 // Where an engine steps, the instants of events are found by stepping again from the step's start:
-// they are those that an engine finds which needs no steps, and few looks lead there.
+// they are those that an engine finds which needs no steps, and few steps lead there.
 #include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 
 static const engine *counted;
-static int looks;
+static int steps_tried;
 
-static status count_look(const arm *a, motion *m, double h)
+static status count_step(const arm *a, motion *m, double h, state_extent extent)
 {
-    looks++;
-    return counted->state_at(a, m, h);
+    steps_tried++;
+    return counted->state_at(a, m, h, extent);
 }
 
 typedef struct found {
@@ -36,16 +36,16 @@ static int events_of(const char *const *settings, const engine *by, double step,
     // its engine, counted
     counted = m->engine;
     engine counting = *counted;
-    counting.state_at = count_look;
+    counting.state_at = count_step;
     m->engine = &counting;
     motion_start(&a, m, p.initial.angle, p.initial.velocity);
     int count = 0;
     while (m->state[SLOT_TIME] < until && count < MOST) {
         motion_report report;
-        looks = 0;
+        steps_tried = 0;
         assert_int_equal(motion_step(&a, m, until, step, &report), STATUS_OK);
         if (report.event != MOTION_REACHED) {
-            events[count++] = (found){report.event, m->state[SLOT_TIME], looks, m->pulse_peak,
+            events[count++] = (found){report.event, m->state[SLOT_TIME], steps_tried, m->pulse_peak,
                                       m->largest_penetration};
         }
         motion_apply(&a, m, &report);

@@ -64,7 +64,7 @@ static passage go_through(const char *const *settings)
         seen.strides++;
         seen.events[report.event]++;
         double middle = 0.5 * (m->trial[SLOT_TIME] + m->state[SLOT_TIME]);
-        assert_non_null(motion_between(&a, m, middle));
+        assert_non_null(motion_between(&a, m, middle, STATE_WHOLE));
         if (report.event != MOTION_REACHED) {
             motion_apply(&a, m, &report);
         }

@@ -24,7 +24,7 @@ static void step_once(const arm *a, motion *m, double h)
 {
     memcpy(m->trial, m->state, SLOT_COUNT * sizeof(double));
     m->trial[SLOT_JUMPED] = 0;
-    assert_int_equal(m->engine->state_at(a, m, h), STATUS_OK);
+    assert_int_equal(m->engine->state_at(a, m, h, STATE_WHOLE), STATUS_OK);
     motion_evaluate(a, m, m->trial);
     double *next = m->trial;
     m->trial = m->state;

@@ -204,11 +204,11 @@ TEST(a_run_that_could_not_end_says_why)
         assert_non_null(m);
         motion_start(&a, m, cases[i].angle, cases[i].velocity);
 
-        // the first look only begins to count, and none has passed since
+        // the first check only begins to count, and none has passed since
         pace looked = pace_begin();
         fault f = {.text = ""};
-        assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), STATUS_OK);
-        assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
+        assert_int_equal(pace_check(&looked, &a, m, 1, 1e-3, &f), STATUS_OK);
+        assert_int_equal(pace_check(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
         fail_if(strstr(f.text, cases[i].cause) == NULL, "case %zu, '%s': %s", i, cases[i].cause,
                 f.text);
         motion_destroy(m);
@@ -250,7 +250,7 @@ TEST(a_run_that_stands_still_at_a_wall_says_so)
     motion_start(&a, m, 0, 0);
     pace looked = {.strides = PACE_STRIDES, .touching = PACE_STRIDES / 2};
     fault f = {.text = ""};
-    assert_int_equal(pace_look(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
+    assert_int_equal(pace_check(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
     assert_non_null(strstr(f.text, "wall.damping"));
     motion_destroy(m);
 }

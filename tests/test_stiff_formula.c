@@ -112,7 +112,7 @@ TEST(functions_are_their_polynomials)
         check_close(function_at(&sum, x).slope, 2 * value, 1e-13);
         check_close(function_at(&divided, x).value, (2 * value - 1) / x, 1e-11);
         check_close(function_at(&lifted, x).value, (value - 0.5 - 3 * x) / (x * x), 1e-9);
-        assert_true(function_bend(&f, x - 0.05, x) * (1 + 1e-12) >= fabs(bend));
+        assert_true(function_curvature(&f, x - 0.05, x) * (1 + 1e-12) >= fabs(bend));
         assert_true(value >= function_least(&f));
         assert_true(function_greatest(&f) >= value);
     }

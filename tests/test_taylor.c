@@ -282,7 +282,8 @@ TEST(the_bounds_hold)
                             e->event_function(&moving.arm, m, watched[n], t).value > 0);
             }
             if (contact) {
-                check_below(e->force_at(&moving.arm, m, t).value, block[AT_FORCE_MOST] + 1e-12);
+                check_below(motion_output(&moving.arm, m, OUTPUT_FORCE, t).value,
+                            block[AT_FORCE_MOST] + 1e-12);
             }
         }
         motion_destroy(m);

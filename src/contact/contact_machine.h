@@ -58,17 +58,16 @@ bool motion_starts_in_contact(const motion *m);
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report);
 
 // Determines in advance, in m->ahead, how far the next motion_step(a, m, until, step, ...) will go,
-// and updates the recorded peak force for that step. For a dense engine and an arm that is not held
-// still; motion_step does it itself if nobody has. An arm that is held folded has no step.
-void motion_examine_step(const arm *a, motion *m, double until, double step);
-// The same, but the step may go on to `far` [s] while its stride lasts; the stride itself is chosen
-// for `until` only. For engines that know the hub within a stride (engine.hub_at).
-void motion_look_far(const arm *a, motion *m, double until, double far, double step);
+// and updates the recorded peak force for that step. The step may go on to `far` [s], `until` or
+// later, while its stride lasts, which is chosen for `until` only. For a dense engine and an arm
+// that is not held still; motion_step does it itself, up to `until`, if nobody has. An arm that is
+// held folded has no step.
+void motion_examine_step(const arm *a, motion *m, double until, double far, double step);
 
-// The state at `time` within the last step, by stepping again from its start; a pointer that is
-// good until the next call of any function here. To be called before motion_apply. NULL if the step
-// fails.
-double *motion_between(const arm *a, motion *m, double time);
+// The state at `time` within the last step, as much of it as `extent` says, by stepping again from
+// its start; a pointer that is good until the next call of any function here. To be called before
+// motion_apply. NULL if the step fails.
+double *motion_between(const arm *a, motion *m, double time, state_extent extent);
 
 // Takes the transition of the event that motion_step reported; completes *report.
 void motion_apply(const arm *a, motion *m, motion_report *report);

@@ -29,11 +29,10 @@ static double guess_root(point lo, point hi)
     return guess > lo.time && guess < hi.time ? guess : chord;
 }
 
-// The root of a function that falls from `lo` to `hi`, the function taken from `look`, its slope
-// too, and `bend` that bounds its second derivative: Newton's method within the bracket, halved
-// where that leaves it or gains too little.
+// The root of an event function that falls from `lo` to `hi`, `second` a bound on its second
+// derivative: Newton's method within the bracket, halved where that leaves it or gains too little.
 static double root_between(const arm *a, const motion *m, event_function w, point lo, point hi,
-                           double bend)
+                           double second)
 {
     double from = lo.time, to = hi.time;
     double t = guess_root(lo, hi);
@@ -54,7 +53,7 @@ static double root_between(const arm *a, const motion *m, event_function w, poin
         // time, or the bracket has closed
         double next = t - g.value / g.slope;
         const double step = fabs(next - t), resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
-        if (step <= resolution || bend * step * step <= resolution * fabs(g.slope) ||
+        if (step <= resolution || second * step * step <= resolution * fabs(g.slope) ||
             to - from <= resolution) {
             return fmin(fmax(next, lo.time), hi.time);
         }
@@ -78,29 +77,29 @@ static double first_zero_crossing(const arm *a, const motion *m, event_function 
                                   point hi, int cuts, double known)
 {
     const double length = hi.time - lo.time;
-    const double bend =
+    const double second =
         isfinite(known) ? known : m->engine->second_derivative(a, m, w, lo.time, hi.time);
-    const double room = bend * length * length / 8;
+    const double room = second * length * length / 8;
     if (fmin(lo.at.value, hi.at.value) > room || !isfinite(room)) {
         return -1;
     }
 
     // at most one root, or no dip deeper than the tolerance
     const bool falls = hi.at.value < 0;
-    const bool steady = fmax(lo.at.slope, hi.at.slope) + bend * length / 2 < 0;
+    const bool steady = fmax(lo.at.slope, hi.at.slope) + second * length / 2 < 0;
     const bool flat = cuts == 0 || room <= event_tolerance(w);
     if (steady || flat) {
-        return falls ? root_between(a, m, w, lo, hi, bend) : -1;
+        return falls ? root_between(a, m, w, lo, hi, second) : -1;
     }
 
     // each half by itself, the earlier one first
     double time = 0.5 * (lo.time + hi.time);
     point middle = {time, m->engine->event_function(a, m, w, time)};
     if (middle.at.value < 0) {
-        return first_zero_crossing(a, m, w, lo, middle, cuts - 1, bend);
+        return first_zero_crossing(a, m, w, lo, middle, cuts - 1, second);
     }
-    double first = first_zero_crossing(a, m, w, lo, middle, cuts - 1, bend);
-    return first >= 0 ? first : first_zero_crossing(a, m, w, middle, hi, cuts - 1, bend);
+    double first = first_zero_crossing(a, m, w, lo, middle, cuts - 1, second);
+    return first >= 0 ? first : first_zero_crossing(a, m, w, middle, hi, cuts - 1, second);
 }
 
 void dense_search_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
@@ -110,7 +109,7 @@ void dense_search_event(const arm *a, motion *m, double *h, event_function *firs
 
     // each function that is watched, as far as the first fall so far
     for (event_function w = EVENT_OF_GAP; w < EVENT_FUNCTION_COUNT; w++) {
-        if (!event_function_active(a, m, w) || m->engine->clear(a, m, w, *h)) {
+        if (!event_function_active(a, m, w) || m->engine->excludes_event(a, m, w, *h)) {
             continue;
         }
         point start = {0, m->engine->event_function(a, m, w, 0)},
@@ -134,7 +133,7 @@ static void note_force(motion *m, point p)
 
 // Where the force stops growing between `lo`, where it grows, and `hi`, where it falls: secants of
 // the slope within the bracket, halved where they gain too little.
-static point summit(const arm *a, const motion *m, point lo, point hi)
+static point summit(const arm *a, motion *m, point lo, point hi)
 {
     point top = lo.at.value > hi.at.value ? lo : hi;
 
@@ -147,7 +146,7 @@ static point summit(const arm *a, const motion *m, point lo, point hi)
         // which side of the summit it is on
         double time = lo.time + share * (hi.time - lo.time);
         double last = top.time;
-        top = (point){time, m->engine->force_at(a, m, time)};
+        top = (point){time, motion_output(a, m, OUTPUT_FORCE, time)};
         if (fabs(time - last) <= resolution) {
             break;
         }
@@ -164,11 +163,11 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
 {
     // no larger force is possible here, or the slope keeps its sign
     const double length = hi.time - lo.time;
-    const double bend = isfinite(known)
-                            ? known
-                            : m->engine->second_derivative(a, m, EVENT_OF_FORCE, lo.time, hi.time);
-    const double most = fmax(lo.at.value, hi.at.value) + bend * length * length / 8;
-    const double change = bend * length / 2; // of the slope from the nearer end
+    const double second =
+        isfinite(known) ? known
+                        : m->engine->second_derivative(a, m, EVENT_OF_FORCE, lo.time, hi.time);
+    const double most = fmax(lo.at.value, hi.at.value) + second * length * length / 8;
+    const double change = second * length / 2; // of the slope from the nearer end
     if (most <= m->pulse_peak * (1 + SAME_PEAK) || fmin(lo.at.slope, hi.at.slope) > change ||
         fmax(lo.at.slope, hi.at.slope) < -change) {
         return;
@@ -183,16 +182,16 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
 
     // each half by itself
     double time = 0.5 * (lo.time + hi.time);
-    point middle = {time, m->engine->force_at(a, m, time)};
+    point middle = {time, motion_output(a, m, OUTPUT_FORCE, time)};
     note_force(m, middle);
-    raise_peak(a, m, lo, middle, cuts - 1, bend);
-    raise_peak(a, m, middle, hi, cuts - 1, bend);
+    raise_peak(a, m, lo, middle, cuts - 1, second);
+    raise_peak(a, m, middle, hi, cuts - 1, second);
 }
 
 // The gap to the wall at rest and its rate at h in the stride.
-static value_and_slope rest_gap_at(const arm *a, const motion *m, double h)
+static value_and_slope rest_gap_at(const arm *a, motion *m, double h)
 {
-    value_and_slope gap = m->engine->gap_at(a, m, h);
+    value_and_slope gap = motion_output(a, m, OUTPUT_GAP, h);
     if (state_face_swings(m->state)) {
         const wall_face face = wall_face_after(&a->wall, state_face(m->state), h);
         gap.value -= face.position;
@@ -228,12 +227,13 @@ void dense_deepest(const arm *a, motion *m, double h)
 void dense_peak(const arm *a, motion *m, double h)
 {
     enum { CUTS = 4 };
-    if (m->engine->bounded(a, m, h, m->pulse_peak)) {
+    if (m->most_force <= m->pulse_peak) {
         return;
     }
 
     // both ends, and what may rise between them
-    point start = {0, m->engine->force_at(a, m, 0)}, end = {h, m->engine->force_at(a, m, h)};
+    point start = {0, motion_output(a, m, OUTPUT_FORCE, 0)},
+          end = {h, motion_output(a, m, OUTPUT_FORCE, h)};
     note_force(m, start);
     note_force(m, end);
     raise_peak(a, m, start, end, CUTS, HUGE_VAL);

@@ -1,15 +1,15 @@
 // Events and peaks within the stride of a dense engine (engine.h), without another stride.
 //
-// Guarantee: the first fall of a watched function below zero by more than its tolerance (1e-12 m,
+// Guarantee: the first fall of an event function below zero by more than its tolerance (1e-12 m,
 // 1e-9 N, 1e-12 N m, 1e-12 rad/s) is found, and its root is exact to rounding; a dip that stays
 // above minus the tolerance may be missed.
 #pragma once
 
 #include "src/contact/motion.h"
 
-// The first instant in [0, *h] of the stride at which a function that is watched leaves its
-// admissible side, by the engine's look, bend and clear: *any, *first and *h as locate_first_event
-// has them; m->trial is left alone.
+// The first instant in [0, *h] of the stride at which an event function leaves its admissible side,
+// by finding the roots of those that the engine's excludes_event leaves: *any, *first and *h as
+// locate_first_event has them; m->trial is left alone.
 void dense_search_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
 
 // Raises m->pulse_peak to the largest force in [0, h] of a stride in contact.

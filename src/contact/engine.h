@@ -2,30 +2,35 @@
 // state, stride by stride, and answers questions about the stride in hand. The contact machine uses
 // every engine through this interface alone.
 //
-//     begin      prepares a stride from m->state, in its contact state, as long as is asked for or
-//                accuracy allows;
-//     state_at   gives the state anywhere within the stride: at its end, at an event, at a row;
-//     look, bend (dense engines) let locate.h find events and peaks without another stride.
+//     init            how much memory it needs, and its contents at first;
+//     advance         takes a step from m->state, in its contact state, as long as is asked for or
+//                     accuracy allows: the stride;
+//     state_at        the state anywhere within it: at its end, at an event, at a row.
+//
+// A dense engine has dense output: after `advance` it holds the whole stride as a function of time
+// (a power series, a collocation polynomial), so state_at is one evaluation, and
+//
+//     states_at, dense_output     give several states at once, or the course of one quantity;
+//     event_function, second_derivative, excludes_event, first_event
+//                     locate events by finding roots (dense_location.h), without another stride.
+//
+// In a stepping engine state_at takes one step of the method from the stride's start, and locate.h
+// repeats such steps to locate events and peaks.
 //
 // Of a wall that gives an engine follows the arm alone. In contact the wall's law is a force on it
 // (wall_force) or, where the face has a mass, one more mass (wall.h); the face goes along. In free
-// flight the arm knows nothing of the face, which motion.c moves by its closed form; but gap and
-// gap_at are those to it, so that with state_face_swings(m->state)
+// flight the arm knows nothing of the face, which motion.c moves by its closed form; but gaps are
+// those to it, so that with state_face_swings(m->state)
 //
 //     gap(h) = wall_face_after(wall, state_face(m->state), h).position - penetration(h),
 //
-// `bend` counts both, and a stride lasts at most wall_face_lasts(). Just after a release gap and
-// rate start at zero, to rounding (motion_gap_edges).
+// the second derivative is that of both, and a stride lasts at most wall_face_lasts(). Just after a
+// release gap and rate start at zero, to rounding (motion_gap_edges).
 //
-// A dense engine provides dense output: after `begin` it holds the whole stride as a function of
-// time (a power series, a collocation polynomial), so state_at is one evaluation. A
-// stepping engine does not: there state_at takes one step of the method from the stride's start,
-// and locate.h repeats such steps to locate events and peaks.
-//
-// A stride depends only on m->state and on the arguments of `begin`: a motion continued from a copy
-// of its state gives the same bits. In particular it must not depend on m->cut, where a step may
-// end early. A stride may be longer than the step for which it was begun: what the state keeps of
-// it (motion_kept in motion.h) lets the next `begin` continue it.
+// A stride depends only on m->state and on the arguments of `advance`: a motion continued from a
+// copy of its state gives the same bits. In particular it must not depend on m->cut, where a step
+// may end early. A stride may be longer than the step for which it was begun: what the state keeps
+// of it (motion_kept in motion.h) lets the next `advance` continue it.
 #pragma once
 
 #include <stdbool.h>
@@ -36,7 +41,7 @@
 
 typedef struct motion motion;
 
-// Watched functions (event functions): each is positive as long as the present contact state can
+// Event functions: each is positive as long as the present contact state can
 // last, and falls below zero where it ends.
 typedef enum event_function {
     EVENT_OF_GAP,      // the gap, in free flight; the depth, in contact without a constraint [m]
@@ -59,24 +64,51 @@ typedef struct state_energy {
     double kinetic, strain; // [J]
 } state_energy;
 
+// How much of a state is wanted: all of it, or what sensors and the history of the force see of it,
+// angles, velocities and accelerations of the hub, the first and the last link, SLOT_FORCE and
+// QUADRATURE_FORCE. An engine may always give all.
+typedef enum state_extent { STATE_WHOLE, STATE_SENSED } state_extent;
+
+// Quantities of dense output.
+typedef enum output_quantity {
+    OUTPUT_FORCE, // of the contact [N]
+    OUTPUT_GAP,   // in free flight and within walls that give [m]
+    OUTPUT_HUB,   // the hub's angle [rad]
+} output_quantity;
+
 typedef struct engine {
     const char *name;
+
+    // Initialises the engine's memory, which is aligned to a cache line; NULL: does nothing.
+    // Returns the bytes that it needs.
+    size_t (*init)(const arm *a, void *memory);
 
     // Prepares a stride from m->state, of an arm that is not held still, at most `remaining` [s]
     // long. `step` is the time step of the method's parameters [s]; an engine that controls its own
     // accuracy ignores it. Returns the stride's length [s], or a value that is not positive if no
-    // stride is possible.
-    double (*begin)(const arm *a, motion *m, double remaining, double step);
+    // stride is possible. A dense engine sets m->most_force.
+    double (*advance)(const arm *a, motion *m, double remaining, double step);
 
     // Angles, velocities, quadratures, accelerations, algorithmic accelerations, reactions and gap
     // at h in (0, length] into m->trial, whose other slots are set already; in contact the state is
     // projected onto the constraint. STATUS_NEWTON_FAILED or STATUS_UNSTABLE ask for a shorter
     // stride.
-    status (*state_at)(const arm *a, motion *m, double h);
+    status (*state_at)(const arm *a, motion *m, double h, state_extent extent);
 
-    // Dense engines, else NULL. The watched function and its slope at h in [0, length]. Where it
-    // starts at zero (after a release, a bounce or a break-away) the engine may divide it by a
-    // power of h: that removes the root at the start and keeps the sign and all other roots.
+    // Dense engines, or NULL: state_at, to the last bit, for several h at once, up to
+    // MOTION_TOGETHER, into states[count], whose other slots are set already, with the energy that
+    // each holds.
+    void (*states_at)(const arm *a, motion *m, const double *h, int count, double *const *states,
+                      state_energy *energies);
+
+    // Dense engines, else NULL: a quantity and its slope at h = `from` in the stride and at the
+    // ends of `count` equal pieces of what lies between `from` and `to` [s], into at[count + 1].
+    void (*dense_output)(const arm *a, motion *m, output_quantity of, double from, double to,
+                         int count, value_and_slope *at);
+
+    // Dense engines. The event function and its slope at h in [0, length]. Where it starts at zero
+    // (after a release, a bounce or a break-away) the engine may divide it by a power of h: that
+    // removes the root at the start and keeps the sign and all other roots.
     value_and_slope (*event_function)(const arm *a, const motion *m, event_function w, double h);
 
     // Dense engines: a bound on the magnitude of the event function's second derivative by time,
@@ -86,43 +118,9 @@ typedef struct engine {
     double (*second_derivative)(const arm *a, const motion *m, event_function w, double from,
                                 double to);
 
-    // Dense engines: cheap tests after which most strides need no search. `clear`: the
-    // watched function certainly stays above zero up to h; `bounded`: the contact force certainly
-    // stays at or below `most` [N]. False means that the test cannot tell.
-    bool (*clear)(const arm *a, motion *m, event_function w, double h);
-    bool (*bounded)(const arm *a, motion *m, double h, double most);
-
-    // Dense engines: the contact force [N] and its slope [N/s], never divided by a power of h.
-    value_and_slope (*force_at)(const arm *a, const motion *m, double h);
-
-    // Dense engines, or NULL: force_at at the start and at the ends of `count` equal pieces of a
-    // stride of length h [s], into at[count + 1].
-    void (*forces_at)(const arm *a, const motion *m, double h, int count, value_and_slope *at);
-
-    // Dense engines: the gap [m] and its rate [m/s] in free flight and within walls that
-    // give, never divided by a power of h.
-    value_and_slope (*gap_at)(const arm *a, const motion *m, double h);
-
-    // Dense engines: the hub's angle [rad] and velocity [rad/s].
-    value_and_slope (*hub_at)(const arm *a, const motion *m, double h);
-
-    // Dense engines, or NULL: into `state`, at an instant [s] of the last step, what sensors and
-    // the history of the force see, as the stride has it and not evaluated: angles, velocities and
-    // accelerations of the hub, the first and the last link, SLOT_FORCE and QUADRATURE_FORCE.
-    void (*sense_at)(const arm *a, const motion *m, double time, double *state);
-    int parabolas; // that represent the force over a whole stride of such an engine
-
-    // Dense engines, or NULL: state_at, to the last bit, for several h at once and from the
-    // stride's start in `start`, into states[count], whose other slots are set already, with the
-    // energy that each holds. Up to MOTION_TOGETHER; false if this arm's states must be computed
-    // one by one.
-    bool (*states_at)(const arm *a, motion *m, double *start, const double *h, int count,
-                      double *const *states, state_energy *energies);
-
-    // Dense engines, or NULL: state_at into m->state itself, whose other slots stay, and the energy
-    // that it holds. Returns false and changes nothing if the state needs projection onto the
-    // constraint or is not finite.
-    bool (*move_to)(const arm *a, motion *m, double h, state_energy *has);
+    // Dense engines: a cheap test after which most strides need no search: the event function
+    // certainly stays above zero up to h. False means that the test cannot tell.
+    bool (*excludes_event)(const arm *a, motion *m, event_function w, double h);
 
     // Dense engines: the first event, as dense_search_event (dense_location.h) has it.
     void (*first_event)(const arm *a, motion *m, double *h, event_function *first, bool *any);
@@ -132,21 +130,15 @@ typedef struct engine {
     // hub slides and the contact state stays the same.
     void (*retorque)(const arm *a, motion *m, double change);
 
-    // Engines whose states keep more of a stride than KEPT_COUNT (motion.h), else NULL: so many
-    // numbers of theirs follow it. Their states keep the energy ledger from the stride's start on.
-    size_t (*kept_for)(const arm *a);
+    // Numbers that states keep of a stride behind KEPT_COUNT (motion.h), and more for each body.
+    // Where there are any, states keep the energy ledger from the stride's start on.
+    int kept, kept_for_body;
 
-    // Engines whose memory grows with the arm, else NULL: bytes needed in m->memory, and the
-    // function that initialises them.
-    size_t (*memory_for)(const arm *a);
-    void (*open)(const arm *a, motion *m);
+    int parabolas; // that represent the force over a whole stride, 0 if that is not known
 
     // Truncation error of the gap's acceleration at a release, as a multiple of the additional
     // rounding of stiff or fast arms (motion_rounding beyond 1); 0: nothing beyond rounding.
     double left_out;
-
-    size_t link_scratch; // bytes needed in m->sweeps for each link
-    size_t memory_size;  // bytes needed in m->memory, aligned to a cache line
 } engine;
 
 extern const engine newmark_engine;           // implicit, stepping
@@ -162,5 +154,5 @@ bool taylor_engine_suits(const arm *a);
 // Whether the engine has dense output: events and peaks are located without further steps.
 static inline bool engine_is_dense(const engine *e)
 {
-    return e->force_at != NULL;
+    return e->dense_output != NULL;
 }

@@ -154,7 +154,7 @@ static bool held_folded(const arm *a, motion *m)
 static bool went_through_fold(const arm *a, const motion *m)
 {
     const double *before = state_angles(m, m->trial), *now = state_angles(m, m->state);
-    bool through = (!engine_is_dense(m->engine) || m->engine->kept_for != NULL) &&
+    bool through = (!engine_is_dense(m->engine) || m->engine->kept > 0) &&
                    m->trial[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m) &&
                    a->wall.kind == WALL_PLANE && a->links > 1;
     for (int k = a->first; k < a->dof && through; k++) {
@@ -173,8 +173,8 @@ static double left_of_stride(motion *m)
     return kept[KEPT_LENGTH] - kept[KEPT_USED];
 }
 
-// The body of motion_look_far, for an arm that can move on.
-static void look_ahead(const arm *a, motion *m, double until, double far, double step)
+// The body of motion_examine_step, for an arm that can move on.
+static void examine(const arm *a, motion *m, double until, double far, double step)
 {
     const double now = m->state[SLOT_TIME];
     double h = motion_begin_stride(a, m, until - now, step);
@@ -209,17 +209,11 @@ static void look_ahead(const arm *a, motion *m, double until, double far, double
     m->ahead.first = first;
 }
 
-void motion_examine_step(const arm *a, motion *m, double until, double step)
-{
-    motion_look_far(a, m, until, until, step);
-}
-
-void motion_look_far(const arm *a, motion *m, double until, double far, double step)
+void motion_examine_step(const arm *a, motion *m, double until, double far, double step)
 {
     assert(a != NULL && m != NULL && step > 0 && engine_is_dense(m->engine));
-    assert(!(far > until) || m->engine->hub_at != NULL);
     if (!m->out_of_memory && !held_folded(a, m)) {
-        look_ahead(a, m, until, far, step);
+        examine(a, m, until, far, step);
     }
 }
 
@@ -228,7 +222,7 @@ static status dense_stride(const arm *a, motion *m, double until, double step, d
                            event_function *first, bool *any)
 {
     if (!m->ahead.known) {
-        look_ahead(a, m, until, until, step);
+        examine(a, m, until, until, step);
     }
     m->ahead.known = false;
     *h = m->ahead.length;
@@ -252,40 +246,6 @@ static void meet_stop(motion *m, double until)
     if (!instant_after(stop, m->state[SLOT_TIME])) {
         m->state[SLOT_TIME] = stop;
     }
-}
-
-// The stride of a dense engine where no event ends it and the engine can move the state in place;
-// m->trial gets its start. Otherwise returns false and does nothing.
-static bool glide(const arm *a, motion *m, double until, double step)
-{
-    if (m->engine->move_to == NULL || !motion_wall_is_rigid(m)) {
-        return false;
-    }
-    if (!m->ahead.known) {
-        look_ahead(a, m, until, until, step);
-    }
-    if (!m->ahead.begun || m->ahead.any) {
-        return false;
-    }
-
-    // to its end
-    double *state = m->state, *start = m->trial;
-    const double h = m->ahead.length;
-    memcpy(start, state, (size_t)m->size * sizeof *state);
-    if (!m->engine->move_to(a, m, h, &m->reached)) {
-        return false;
-    }
-    m->ahead.known = false;
-    m->made = h;
-
-    // time and the ledger
-    state[SLOT_TIME] += h;
-    state[SLOT_JUMPED] = state[SLOT_IMPULSE] = 0;
-    motion_book(a, m, state_angles(m, start)[0], state);
-    count_step(m, state[SLOT_TIME] - start[SLOT_TIME], step);
-    come_to_rest(m);
-    meet_stop(m, until);
-    return true;
 }
 
 // The step of an arm that is held still: time passes up to `until` or the cut [s], and its force
@@ -315,9 +275,6 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     if (!m->ahead.known && (m->out_of_memory || held_folded(a, m))) {
         m->failure_time = m->state[SLOT_TIME];
         return m->out_of_memory ? STATUS_NO_MEMORY : STATUS_FOLDED;
-    }
-    if ((m->ahead.known || !motion_held_still(m)) && glide(a, m, until, step)) {
-        return STATUS_OK;
     }
     if (motion_held_still(m)) {
         rest(m, until, step);
@@ -359,7 +316,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     return STATUS_OK;
 }
 
-double *motion_between(const arm *a, motion *m, double time)
+double *motion_between(const arm *a, motion *m, double time, state_extent extent)
 {
     assert(a != NULL && m != NULL && isfinite(time));
     // step again from the step's start, which is where m->trial was left, into m->between
@@ -367,7 +324,7 @@ double *motion_between(const arm *a, motion *m, double time)
     m->state = start;
     m->trial = m->between;
     m->aim = time;
-    status s = motion_try_step(a, m, time - start[SLOT_TIME]);
+    status s = motion_try_step_for(a, m, time - start[SLOT_TIME], extent);
     m->state = now;
     m->trial = start;
     m->between[SLOT_TIME] = time;

@@ -301,7 +301,7 @@ status locate_first_event(const arm *a, motion *m, double *h, event_function *fi
 // Records the deepest point of a step within which the arm turns back, m->trial being its end.
 static status locate_depth(const arm *a, motion *m, double h)
 {
-    enum { MOST_LOOKS = 40 };
+    enum { MOST_ITERATIONS = 40 };
     double v0 = -m->state[SLOT_GAP_VELOCITY], v1 = -m->trial[SLOT_GAP_VELOCITY], lo = 0, hi = h;
     if (motion_wall_is_rigid(m) || !(v0 > 0 && v1 < 0)) {
         return STATUS_OK;
@@ -309,7 +309,7 @@ static status locate_depth(const arm *a, motion *m, double h)
 
     // false position on the rate, the end that stays halved
     memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
-    for (int i = 0; i < MOST_LOOKS && hi - lo > 1e-9 * h; i++) {
+    for (int i = 0; i < MOST_ITERATIONS && hi - lo > 1e-9 * h; i++) {
         double s = lo + (hi - lo) * v0 / (v0 - v1); // false position, the end that stays halved
         status failed = motion_try_step(a, m, s);
         if (failed != STATUS_OK) {
@@ -334,9 +334,9 @@ static status locate_depth(const arm *a, motion *m, double h)
 
 status locate_peak(const arm *a, motion *m, double h)
 {
-    status looked = locate_depth(a, m, h);
-    if (looked != STATUS_OK) {
-        return looked;
+    status located = locate_depth(a, m, h);
+    if (located != STATUS_OK) {
+        return located;
     }
 
     // the ends

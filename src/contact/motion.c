@@ -201,7 +201,7 @@ bool motion_project(const arm *a, motion *m, double *state)
 
 double motion_begin_stride(const arm *a, motion *m, double remaining, double step)
 {
-    return motion_held_still(m) ? remaining : m->engine->begin(a, m, remaining, step);
+    return motion_held_still(m) ? remaining : m->engine->advance(a, m, remaining, step);
 }
 
 // A step of an arm that is held still: only time passes.
@@ -237,7 +237,9 @@ static void book(const arm *a, const motion *m, double *from, double *state)
         state_quadratures(m, state)[QUADRATURE_WALL] +=
             motion_wall_energy(a, m, from) - motion_wall_energy(a, m, state);
     }
-    motion_book(a, m, state_angles(m, from)[0], state);
+    const double turned = state_angles(m, state)[0] - state_angles(m, from)[0];
+    state[SLOT_MOTOR_WORK] += a->motor.torque * turned;
+    state[SLOT_FRICTION_LOSS] += state[SLOT_FRICTION] * a->motor.stiction * turned;
 }
 
 static bool is_finite(const motion *m, double *state)
@@ -251,6 +253,11 @@ static bool is_finite(const motion *m, double *state)
 
 status motion_try_step(const arm *a, motion *m, double h)
 {
+    return motion_try_step_for(a, m, h, STATE_WHOLE);
+}
+
+status motion_try_step_for(const arm *a, motion *m, double h, state_extent extent)
+{
     double *trial = m->trial;
     m->holds = unknown_energy;
     if (motion_held_still(m)) {
@@ -259,12 +266,12 @@ status motion_try_step(const arm *a, motion *m, double h)
     }
 
     set_slots(a, m, m->state, h, trial);
-    status s = m->engine->state_at(a, m, h);
+    status s = m->engine->state_at(a, m, h, extent);
     if (s != STATUS_OK) {
         return s;
     }
 
-    if (m->engine->kept_for == NULL) {
+    if (m->engine->kept == 0) {
         book(a, m, m->state, trial);
     }
     return is_finite(m, trial) ? STATUS_OK : STATUS_NOT_FINITE;
@@ -284,9 +291,7 @@ bool motion_between_all(const arm *a, motion *m, const double *times, int count,
         h[i] = times[i] - start[SLOT_TIME];
         set_slots(a, m, start, h[i], states[i]);
     }
-    if (!m->engine->states_at(a, m, start, h, count, states, energies)) {
-        return false;
-    }
+    m->engine->states_at(a, m, h, count, states, energies);
 
     bool finite = true;
     for (int i = 0; i < count; i++) {

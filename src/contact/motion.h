@@ -112,8 +112,8 @@ struct motion {
     double *scratch; // vectors of length dof
     chain_link *links;
     arm *moved;           // the arm with its wall at an instant, where that moves, else NULL
-    void *sweeps;         // the implicit solver's scratch, one element a link
     void *memory;         // the engine's own: the stride it is in
+    double most_force;    // upper bound of the force in the stride of a dense engine [N]
     bool history_invalid; // that stride may be another arm's: only what the state keeps of it is
                           // valid
 
@@ -297,21 +297,23 @@ static inline bool motion_held_still(const motion *m)
     return state_is_held_still(m, m->state);
 }
 
-// Begins a stride from m->state that is not to go beyond `remaining` [s]; `step` as engine.begin
-// has it. Returns its length [s]: all that remains for an arm that is held still.
+// Begins a stride from m->state that is not to go beyond `remaining` [s]; `step` as
+// engine.advance has it. Returns its length [s]: all that remains for an arm that is held still.
 double motion_begin_stride(const arm *a, motion *m, double remaining, double step);
 
 // Computes the state at h in the stride in hand into m->trial, updates its energy ledger and checks
 // that it is finite. Stepping engines need no stride: they step from m->state.
 status motion_try_step(const arm *a, motion *m, double h);
 
-// Adds to the energy ledger of an evaluated state the work of motor and friction since the hub was
-// at an angle [rad].
-static inline void motion_book(const arm *a, const motion *m, double hub, double *state)
+// The same with no more of the state than `extent`.
+status motion_try_step_for(const arm *a, motion *m, double h, state_extent extent);
+
+// A quantity of the stride of a dense engine, and its slope, at h.
+static inline value_and_slope motion_output(const arm *a, motion *m, output_quantity of, double h)
 {
-    const double turned = state_angles(m, state)[0] - hub;
-    state[SLOT_MOTOR_WORK] += a->motor.torque * turned;
-    state[SLOT_FRICTION_LOSS] += state[SLOT_FRICTION] * a->motor.stiction * turned;
+    value_and_slope at;
+    m->engine->dense_output(a, m, of, h, h, 0, &at);
+    return at;
 }
 
 // Computes the states at `count` instants [s], at most MOTION_TOGETHER, within the step just made,

@@ -88,7 +88,7 @@ void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *tex
 
 pace pace_begin(void)
 {
-    return (pace){.looked_from = -1};
+    return (pace){.checked_at = -1};
 }
 
 long pace_strides(const arm *a)
@@ -102,10 +102,10 @@ long pace_strides(const arm *a)
     return strides;
 }
 
-status pace_look(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f)
+status pace_check(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f)
 {
     assert(p != NULL && a != NULL && m != NULL && duration > 0 && asked > 0);
-    const double now = m->state[SLOT_TIME], from = p->looked_from;
+    const double now = m->state[SLOT_TIME], from = p->checked_at;
 
     // the first stride only begins to count
     const double slowest = is_damped(a, m) ? DAMPED_PACE : SLOWEST_PACE;
@@ -115,7 +115,7 @@ status pace_look(pace *p, const arm *a, const motion *m, double duration, double
     const bool meets_wall = p->touching * FEW_TOUCHING > p->strides;
     p->strides = p->touching = 0;
     p->due = strides;
-    p->looked_from = now;
+    p->checked_at = now;
     if (passes) {
         return STATUS_OK;
     }

@@ -10,10 +10,10 @@ enum {
 };
 
 typedef struct pace {
-    long strides;       // since the last look
-    long due;           // of them at which to look again
-    long touching;      // of them, those that ended in contact
-    double looked_from; // instant of the last look, -1 before the first stride [s]
+    long strides;      // since the last check
+    long due;          // of them at which to check again
+    long touching;     // of them, those that ended in contact
+    double checked_at; // instant of the last check, -1 before the first stride [s]
 } pace;
 
 // The pace of a motion before its first stride.
@@ -23,7 +23,7 @@ pace pace_begin(void);
 // cause, if at this pace a run of that duration [s], or one second of it, would take tens of
 // millions of strides. A time step of the requested length `asked` [s] that takes fewer than a
 // thousand strides is always accepted.
-status pace_look(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f);
+status pace_check(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f);
 
 // Writes into `text` what of the arm or the wall makes strides short, or lets events follow one
 // another without time passing, and which parameter to change. `last` is the event that the motion
@@ -40,6 +40,6 @@ static inline status pace_keep(pace *p, const arm *a, const motion *m, double du
 {
     p->strides++;
     p->touching += m->state[SLOT_CONTACT] != 0;
-    const bool looks = p->looked_from < 0 || p->strides >= p->due;
-    return looks ? pace_look(p, a, m, duration, asked, f) : STATUS_OK;
+    const bool is_due = p->checked_at < 0 || p->strides >= p->due;
+    return is_due ? pace_check(p, a, m, duration, asked, f) : STATUS_OK;
 }

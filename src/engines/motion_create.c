@@ -91,10 +91,9 @@ static char *first_line(void *block)
 static void lay_out_engine(const arm *a, motion *m, layout *l)
 {
     const engine *e = m->engine;
-    const size_t state = (size_t)m->size * sizeof(double), links = (size_t)a->links;
-    m->memory = add_part(l, e->memory_for != NULL ? e->memory_for(a) : e->memory_size);
+    const size_t state = (size_t)m->size * sizeof(double);
+    m->memory = add_part(l, e->init(a, NULL));
     m->between = add_part(l, e->states_at != NULL ? MOTION_TOGETHER * state : state);
-    m->sweeps = add_part(l, links * e->link_scratch);
 }
 
 // Lays out everything else.
@@ -119,16 +118,14 @@ static bool open_engine(const arm *a, motion *m)
     }
     l = (layout){.block = first_line(m->engine_block)};
     lay_out_engine(a, m, &l);
-    if (m->engine->open != NULL) {
-        m->engine->open(a, m);
-    }
+    m->engine->init(a, m->memory);
     return true;
 }
 
 // Numbers in a state of an engine.
 static int size_of_states(const arm *a, const motion *m, const engine *e)
 {
-    return m->head_size + (e->kept_for != NULL ? (int)e->kept_for(a) : 0);
+    return m->head_size + e->kept + e->kept_for_body * a->dof;
 }
 
 // The same of the engine that has the most of those that a changed arm may get.
@@ -195,22 +192,19 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
                    .scratch = m->scratch,
                    .links = m->links,
                    .moved = m->moved,
-                   .sweeps = m->sweeps,
                    .memory = m->memory,
                    .history_invalid = true,
                    .block = m->block,
                    .engine_block = m->engine_block};
     choose_engine(a, &next, method, NULL);
     next.most_size = most_size(a, &next);
-    if (next.engine != m->engine || next.engine->memory_for != NULL ||
-        next.most_size > m->most_size || next.wall_moves != m->wall_moves) {
+    if (next.engine != m->engine || next.engine->kept > 0 || next.most_size > m->most_size ||
+        next.wall_moves != m->wall_moves) {
         motion_destroy(m);
         return motion_create(a, method);
     }
     *m = next;
-    if (m->engine->open != NULL) {
-        m->engine->open(a, m);
-    }
+    m->engine->init(a, m->memory);
     return m;
 }
 

@@ -111,12 +111,7 @@ way corrected_way_at(const corrected_run *c, double time, double *state)
 static bool go_to(const corrected_run *c, way *w, double time)
 {
     motion *m = c->motion;
-    double *state = m->between;
-    if (m->engine->sense_at != NULL) {
-        m->engine->sense_at(&c->arm, m, time, state);
-    } else {
-        state = motion_between(&c->arm, m, time);
-    }
+    double *state = motion_between(&c->arm, m, time, STATE_SENSED);
     if (state != NULL) {
         *w = corrected_way_at(c, time, state);
     }
@@ -160,7 +155,7 @@ static bool falls_at_once(value_and_slope first, value_and_slope last, double wi
 static status record_equal_pieces(corrected_run *c, const force_step *rest, double before,
                                   int count)
 {
-    const motion *m = c->motion;
+    motion *m = c->motion;
     value_and_slope at[MOST_PIECES + 1];
     force_step *kept = recording_add_steps(c->recording, count);
     if (kept == NULL) {
@@ -169,13 +164,7 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
 
     // the force at the start and at the ends of all pieces
     const double since = rest->start - m->trial[SLOT_TIME], width = (m->made - since) / count;
-    if (m->engine->forces_at != NULL && since == 0) {
-        m->engine->forces_at(&c->arm, m, m->made, count, at);
-    } else {
-        for (int i = 0; i <= count; i++) {
-            at[i] = m->engine->force_at(&c->arm, m, since + i * width);
-        }
-    }
+    m->engine->dense_output(&c->arm, m, OUTPUT_FORCE, since, m->made, count, at);
 
     const double slope_share = width / 12;
     double start = rest->start;
@@ -321,9 +310,10 @@ static status follow_bounds(corrected_run *c, const force_step *whole)
     for (int i = 0; i <= halves; i++) {
         const bool inner = i > 0 && i < halves;
         const double share = (inner ? i % 2 != 0 ? 4 : 2 : 1) * length / (3 * halves);
-        double *state = inner    ? motion_between(&c->arm, m, whole->start + i * length / halves)
-                        : i == 0 ? m->trial
-                                 : m->state;
+        double *state =
+            inner    ? motion_between(&c->arm, m, whole->start + i * length / halves, STATE_WHOLE)
+            : i == 0 ? m->trial
+                     : m->state;
         if (state == NULL) {
             return STATUS_NOT_FINITE;
         }
@@ -374,11 +364,11 @@ enum { SEPARATION_BISECTIONS = 30, FASTEST_THIRDS = 24, MOST_FLIGHT_PIECES = 16 
 static bool gap_within(const arm *a, motion *m, double time, value_and_slope *gap)
 {
     *gap = (value_and_slope){0, 0};
-    if (m->engine->gap_at != NULL && !state_is_held_still(m, m->trial)) {
-        *gap = m->engine->gap_at(a, m, time - m->trial[SLOT_TIME]);
+    if (engine_is_dense(m->engine) && !state_is_held_still(m, m->trial)) {
+        *gap = motion_output(a, m, OUTPUT_GAP, time - m->trial[SLOT_TIME]);
         return true;
     }
-    const double *state = motion_between(a, m, time);
+    const double *state = motion_between(a, m, time, STATE_WHOLE);
     if (state != NULL) {
         *gap = (value_and_slope){state[SLOT_GAP], state[SLOT_GAP_VELOCITY]};
     }
@@ -459,7 +449,7 @@ double flight_closing_speed(const arm *a, motion *m)
 
     // the piece of the step at whose end the tip is fastest
     const double pieces =
-        m->engine->gap_at != NULL ? length * a->highest_frequency / RATE_REACH : 1;
+        engine_is_dense(m->engine) ? length * a->highest_frequency / RATE_REACH : 1;
     const int count =
         pieces < MOST_FLIGHT_PIECES ? (int)larger(ceil(pieces), 1) : MOST_FLIGHT_PIECES;
     int fastest = 0;

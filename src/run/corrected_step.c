@@ -88,7 +88,7 @@ static status record_step(corrected_run *c, motion_report *report)
 static bool flies_beyond_samples(const corrected_run *c)
 {
     const motion *m = c->motion;
-    return c->recording->rig != NULL && m->state[SLOT_CONTACT] == 0 && m->engine->hub_at != NULL &&
+    return c->recording->rig != NULL && m->state[SLOT_CONTACT] == 0 && engine_is_dense(m->engine) &&
            !m->out_of_memory && !motion_held_still(m);
 }
 
@@ -98,13 +98,13 @@ void corrected_begin_step(corrected_run *c)
     const double step = c->recording->now.method.step;
     assert(!c->under_way.goes_on);
     if (!flies_beyond_samples(c)) {
-        motion_examine_step(&c->arm, m, c->stop, step);
+        motion_examine_step(&c->arm, m, c->stop, c->stop, step);
         return;
     }
 
     // as far as its stride lasts
     const double now = m->state[SLOT_TIME];
-    motion_look_far(&c->arm, m, c->stop, c->recording->scenario->parameters.run.duration, step);
+    motion_examine_step(&c->arm, m, c->stop, c->recording->scenario->parameters.run.duration, step);
     memcpy(m->trial, m->state, (size_t)m->size * sizeof *m->state);
     c->under_way = (open_step){.goes_on = true,
                                .begun_for = c->stop,
@@ -127,14 +127,14 @@ static bool sensed_within(const corrected_run *c, double time, sensed_motion *at
     const sensor_parameters *fitted = &c->recording->rig->sensors.p;
     *at = (sensed_motion){.force = 0};
     if (fitted->film || fitted->accelerometer) {
-        double *state = motion_between(&c->arm, m, time);
+        double *state = motion_between(&c->arm, m, time, STATE_WHOLE);
         if (state == NULL) {
             return false;
         }
         *at = corrected_sensed_motion(c, state);
     }
 
-    const value_and_slope hub = m->engine->hub_at(&c->arm, m, time - m->state[SLOT_TIME]);
+    const value_and_slope hub = motion_output(&c->arm, m, OUTPUT_HUB, time - m->state[SLOT_TIME]);
     at->angle = hub.value;
     at->velocity = hub.slope;
     return true;
@@ -233,7 +233,8 @@ status corrected_end_step(corrected_run *c, fault *f)
 double *corrected_present(const corrected_run *c)
 {
     motion *m = c->motion;
-    double *within = c->under_way.goes_on ? motion_between(&c->arm, m, c->under_way.now) : m->state;
+    double *within =
+        c->under_way.goes_on ? motion_between(&c->arm, m, c->under_way.now, STATE_WHOLE) : m->state;
     return within != NULL ? within : m->state;
 }
 
@@ -369,7 +370,7 @@ static status record_within(corrected_run *c, const double *times, int count)
         if (together) {
             failed = record_row_of(c, m->between + i * m->size, has[i], 0);
         } else {
-            double *state = motion_between(&c->arm, m, times[i]);
+            double *state = motion_between(&c->arm, m, times[i], STATE_WHOLE);
             failed = state ? corrected_record_row(c, state, 0) : STATUS_NOT_FINITE;
         }
         failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;

@@ -93,7 +93,7 @@ static status solve_step(const arm *a, motion *m, double h, const coefficients *
         }
 
         // its correction
-        it->force += implicit_correction(a, m->sweeps, it, t, dq, unit);
+        it->force += implicit_correction(a, m->memory, it, t, dq, unit);
         double size = 0, largest = 1;
         for (int i = 0; i < n; i++) {
             q1[i] += dq[i];
@@ -184,8 +184,9 @@ static bool makes_energy(const arm *a, const motion *m)
     return gained > fmax(a->motor.torque * turned, 0) + 1e-3 * energy[0] + 1e-9;
 }
 
-static status step(const arm *a, motion *m, double h)
+static status step(const arm *a, motion *m, double h, state_extent extent)
 {
+    (void)extent;
     const contact_state mode = contact_state_of(m->state);
     const bool resolved = !motion_unresolved(a, m);
 
@@ -234,15 +235,19 @@ static status step(const arm *a, motion *m, double h)
 }
 
 // A time step, or what remains.
-static double begin(const arm *a, motion *m, double remaining, double step_length)
+static double advance(const arm *a, motion *m, double remaining, double step_length)
 {
     (void)a, (void)m;
     return remaining < step_length * (1 + 1e-9) ? remaining : step_length;
 }
 
+static size_t init(const arm *a, void *memory)
+{
+    (void)memory; // scratch
+    return (size_t)a->links * sizeof(implicit_sweep);
+}
+
 const engine newmark_engine = {
-    .name = "Newmark", .begin = begin, .state_at = step, .link_scratch = sizeof(implicit_sweep)};
-const engine generalized_alpha_engine = {.name = "generalised-alpha",
-                                         .begin = begin,
-                                         .state_at = step,
-                                         .link_scratch = sizeof(implicit_sweep)};
+    .name = "Newmark", .init = init, .advance = advance, .state_at = step};
+const engine generalized_alpha_engine = {
+    .name = "generalised-alpha", .init = init, .advance = advance, .state_at = step};

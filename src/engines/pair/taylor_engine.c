@@ -189,7 +189,7 @@ static double length_of_stride(const arm *a, const taylor_lane *lane)
     return turn > LONGEST_TURN * left ? allowed * (LONGEST_TURN * left / turn) : allowed;
 }
 
-static double begin(const arm *a, motion *m, double remaining, double step)
+static double advance(const arm *a, motion *m, double remaining, double step)
 {
     taylor_stride *s = m->memory;
     double *kept = state_kept(m, m->state);
@@ -215,17 +215,21 @@ static double begin(const arm *a, motion *m, double remaining, double step)
 
     s->ready = false;
     m->history_invalid = false;
+    m->most_force = s->lane.block[AT_FORCE_MOST];
     memcpy(s->kept, kept, sizeof s->kept);
     s->used = kept[KEPT_USED];
     return smaller(kept[KEPT_LENGTH] - s->used, remaining);
 }
 
 // No stride is known yet.
-static void open(const arm *a, motion *m)
+static size_t init(const arm *a, void *memory)
 {
-    taylor_stride *s = m->memory;
+    taylor_stride *s = memory;
     (void)a;
-    s->ready = s->own = false;
+    if (s != NULL) {
+        s->ready = s->own = false;
+    }
+    return sizeof *s;
 }
 
 taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
@@ -243,20 +247,14 @@ taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
 }
 
 const engine taylor_engine = {.name = "pair",
-                              .begin = begin,
+                              .init = init,
+                              .advance = advance,
                               .state_at = taylor_state_at,
                               .states_at = taylor_states_at,
-                              .move_to = taylor_move_to,
+                              .dense_output = taylor_dense_output,
                               .event_function = taylor_event_function,
                               .second_derivative = taylor_second_derivative,
-                              .clear = taylor_clear,
-                              .bounded = taylor_bounded,
-                              .force_at = taylor_force_at,
-                              .forces_at = taylor_forces_at,
-                              .gap_at = taylor_gap_at,
-                              .hub_at = taylor_hub_at,
+                              .excludes_event = taylor_excludes_event,
                               .first_event = taylor_first_event,
-                              .open = open,
                               .retorque = taylor_retorque,
-                              .left_out = LEFT_OUT,
-                              .memory_size = sizeof(taylor_stride)};
+                              .left_out = LEFT_OUT};

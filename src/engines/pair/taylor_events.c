@@ -86,54 +86,16 @@ double taylor_second_derivative(const arm *a, const motion *m, event_function w,
     taylor_stride *s = m->memory;
     const polynomial *p = watched(a, m, w);
     const double t = s->used + to;
-    double near = bend_of(p, t);
+    double near = curvature_bound(p, t);
     (void)from;
     if (w == EVENT_OF_FORCE && p->divided) {
         // divided by the time: the force itself may bend more
         polynomial force;
         set_polynomial(&force, taylor_term(&s->lane, AT_FORCE), taylor_spacing(&s->lane),
                        s->lane.form.order, 1);
-        return fmax(near, bend_of(&force, t));
+        return fmax(near, curvature_bound(&force, t));
     }
     return near; // that of both limits of stiction
-}
-
-value_and_slope taylor_force_at(const arm *a, const motion *m, double h)
-{
-    taylor_stride *s = m->memory;
-    (void)a;
-    const int order = s->lane.form.order;
-    const double *force = taylor_terms(&s->lane, AT_FORCE, order), t = s->used + h;
-    return t > 0 ? value_and_slope_at(force, order, t) : (value_and_slope){force[0], force[1]};
-}
-
-void taylor_forces_at(const arm *a, const motion *m, double h, int count, value_and_slope *at)
-{
-    const taylor_stride *s = m->memory;
-    const double width = h / count;
-    const taylor_lane *lane = &s->lane;
-
-    // evaluated with others', which began their strides with the steps, or here
-    if (lane->pieces == count && lane->end == h) {
-        const taylor_pieces *pieces = &lane->group->pieces;
-        at[0] = (value_and_slope){*taylor_term(lane, AT_FORCE), *taylor_term(lane, AT_FORCE + 1)};
-        for (int i = 0; i < count; i++) {
-            at[i + 1] =
-                (value_and_slope){pieces->force[i][lane->number], pieces->slope[i][lane->number]};
-        }
-    } else {
-        for (int i = 0; i <= count; i++) {
-            at[i] = taylor_force_at(a, m, i * width);
-        }
-    }
-}
-
-value_and_slope taylor_gap_at(const arm *a, const motion *m, double h)
-{
-    taylor_stride *s = m->memory;
-    (void)a;
-    const int count = s->lane.form.order + 2;
-    return value_and_slope_at(taylor_terms(&s->lane, AT_GAP, count), count, s->used + h);
 }
 
 // Whether the watched function is above zero from the start, or rises from it, and stays above zero
@@ -185,7 +147,7 @@ void taylor_first_event(const arm *a, motion *m, double *h, event_function *firs
     }
 }
 
-bool taylor_clear(const arm *a, motion *m, event_function w, double h)
+bool taylor_excludes_event(const arm *a, motion *m, event_function w, double h)
 {
     const taylor_stride *s = m->memory;
     const double t = s->used + h;
@@ -200,11 +162,4 @@ bool taylor_clear(const arm *a, motion *m, event_function w, double h)
     const polynomial *p = watched(a, m, w);
     double low = low_of(p, t);
     return w == EVENT_OF_STICTION ? fmin(low, low_of(&s->far_limit, t)) > 0 : low > 0;
-}
-
-bool taylor_bounded(const arm *a, motion *m, double h, double most)
-{
-    const taylor_stride *s = m->memory;
-    (void)a, (void)h;
-    return s->lane.block[AT_FORCE_MOST] <= most;
 }

@@ -82,7 +82,7 @@ static inline value_and_slope value_and_slope_at(const double *terms, int count,
 }
 
 // The largest second derivative for times from 0 to t, from the magnitudes of the terms.
-static inline double bend_of(const polynomial *p, double t)
+static inline double curvature_bound(const polynomial *p, double t)
 {
     const double u = t * t, v = u * u;
     turns bound = {{0, 0}, {0, 0}};

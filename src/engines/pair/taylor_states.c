@@ -4,14 +4,16 @@
 
 #include "src/engines/pair/taylor_stride.h"
 
-// What one of the instants comes to, into `state`, but for what is kept of the stride; in contact
-// the gap and its derivatives ought to be zero, and the second one is taken so.
-static void take_motion(const arm *a, const motion *m, const taylor_instants *at, int i,
-                        double *state)
+// What one of the instants comes to, into `state`; in contact the gap and its derivatives ought to
+// be zero, and the second one is taken so.
+static void take_instant(const arm *a, const motion *m, const taylor_instants *at, int i,
+                         double *state)
 {
     const taylor_stride *s = m->memory;
     const double *before = s->kept + KEPT_QUADRATURES;
     double *quadrature = state_quadratures(m, state);
+    memcpy(state_kept(m, state), s->kept, sizeof s->kept);
+    state_kept(m, state)[KEPT_USED] = at->time[i];
 
     // the motion
     double *q = state_angles(m, state), *acceleration = state_accelerations(m, state);
@@ -47,16 +49,6 @@ static void take_motion(const arm *a, const motion *m, const taylor_instants *at
     }
 }
 
-// The same with where in the stride it is.
-static void take_instant(const arm *a, const motion *m, const taylor_instants *at, int i,
-                         double *state)
-{
-    const taylor_stride *s = m->memory;
-    memcpy(state_kept(m, state), s->kept, sizeof s->kept);
-    state_kept(m, state)[KEPT_USED] = at->time[i];
-    take_motion(a, m, at, i, state);
-}
-
 // The instant h: evaluated with others', where *place says, or into `one`.
 static const taylor_instants *instant_at(taylor_stride *s, double h, taylor_instants *one,
                                          int *place)
@@ -71,8 +63,9 @@ static const taylor_instants *instant_at(taylor_stride *s, double h, taylor_inst
     return one;
 }
 
-status taylor_state_at(const arm *a, motion *m, double h)
+status taylor_state_at(const arm *a, motion *m, double h, state_extent extent)
 {
+    (void)extent;
     taylor_stride *s = m->memory;
     taylor_instants one;
     int place;
@@ -85,35 +78,11 @@ status taylor_state_at(const arm *a, motion *m, double h)
     return STATUS_OK;
 }
 
-bool taylor_move_to(const arm *a, motion *m, double h, state_energy *has)
-{
-    taylor_stride *s = m->memory;
-    taylor_instants one;
-    int place;
-    const taylor_instants *at = instant_at(s, h, &one, &place);
-    double sum = s->lane.form.contact ? at->force[place] : 0;
-    for (int body = a->first == 0 ? 1 : 0; body < 3; body++) {
-        sum += at->angle[body][place] + at->velocity[body][place];
-    }
-    const bool drifted =
-        s->lane.form.contact && motion_drifted(at->gap[place], at->gap_velocity[place]);
-    if (drifted || !isfinite(sum)) {
-        return false;
-    }
-
-    // the state keeps the stride that it is in
-    take_motion(a, m, at, place, m->state);
-    state_kept(m, m->state)[KEPT_USED] = at->time[place];
-    *has = (state_energy){at->kinetic[place], at->strain[place]};
-    return true;
-}
-
-bool taylor_states_at(const arm *a, motion *m, double *start, const double *h, int count,
-                      double *const *states, state_energy *energies)
+void taylor_states_at(const arm *a, motion *m, const double *h, int count, double *const *states,
+                      state_energy *energies)
 {
     taylor_stride *s = m->memory;
     const int width = taylor_width();
-    (void)start;
     for (int done = 0; done < count; done += width) {
         taylor_instants at;
         const int more = count - done < width ? count - done : width;
@@ -130,15 +99,38 @@ bool taylor_states_at(const arm *a, motion *m, double *start, const double *h, i
             }
         }
     }
-    return true;
 }
 
-value_and_slope taylor_hub_at(const arm *a, const motion *m, double h)
+void taylor_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
+                         int count, value_and_slope *at)
 {
     taylor_stride *s = m->memory;
-    const int count = s->lane.form.order + 2;
-    const double *angle = taylor_terms(&s->lane, a->first == 0 ? AT_ANGLE_1 : AT_ANGLE_0, count);
-    value_and_slope hub = value_and_slope_at(angle, count, s->used + h);
-    hub.slope = m->state[SLOT_FRICTION] == HUB_STICK ? 0 : hub.slope;
-    return hub;
+    taylor_lane *lane = &s->lane;
+    const double width = count > 0 ? (to - from) / count : 0;
+    const int order = lane->form.order;
+
+    // forces may be evaluated with others', which began their strides with the steps
+    if (of == OUTPUT_FORCE && count > 0 && lane->pieces == count && from == 0 && lane->end == to) {
+        const taylor_pieces *pieces = &lane->group->pieces;
+        at[0] = (value_and_slope){*taylor_term(lane, AT_FORCE), *taylor_term(lane, AT_FORCE + 1)};
+        for (int i = 0; i < count; i++) {
+            at[i + 1] =
+                (value_and_slope){pieces->force[i][lane->number], pieces->slope[i][lane->number]};
+        }
+        return;
+    }
+
+    const int hub = a->first == 0 ? AT_ANGLE_1 : AT_ANGLE_0;
+    const int place = of == OUTPUT_FORCE ? AT_FORCE : of == OUTPUT_GAP ? AT_GAP : hub;
+    const int terms = of == OUTPUT_FORCE ? order : order + 2;
+    const double *term = taylor_terms(lane, place, terms);
+    for (int i = 0; i <= count; i++) {
+        const double t = s->used + (from + i * width);
+        at[i] = t > 0 ? value_and_slope_at(term, terms, t) : (value_and_slope){term[0], term[1]};
+    }
+    if (of == OUTPUT_HUB && m->state[SLOT_FRICTION] == HUB_STICK) {
+        for (int i = 0; i <= count; i++) {
+            at[i].slope = 0;
+        }
+    }
 }

@@ -20,23 +20,17 @@ typedef struct taylor_stride {
 
 // --- states --------------------------------------------------------------------------------------
 
-// engine.state_at, .states_at, .move_to and .hub_at of the series' engine.
-status taylor_state_at(const arm *a, motion *m, double h);
-bool taylor_states_at(const arm *a, motion *m, double *start, const double *h, int count,
-                      double *const *states, state_energy *energies);
-bool taylor_move_to(const arm *a, motion *m, double h, state_energy *has);
-value_and_slope taylor_hub_at(const arm *a, const motion *m, double h);
+// The engine's functions of these names (engine.h).
+status taylor_state_at(const arm *a, motion *m, double h, state_extent extent);
+void taylor_states_at(const arm *a, motion *m, const double *h, int count, double *const *states,
+                      state_energy *energies);
+void taylor_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
+                         int count, value_and_slope *at);
 
 // --- events --------------------------------------------------------------------------------------
 
-// engine.event_function, .second_derivative, .clear, .bounded, .force_at, .forces_at, .gap_at and
-// .first_event.
 value_and_slope taylor_event_function(const arm *a, const motion *m, event_function w, double h);
 double taylor_second_derivative(const arm *a, const motion *m, event_function w, double from,
                                 double to);
-bool taylor_clear(const arm *a, motion *m, event_function w, double h);
-bool taylor_bounded(const arm *a, motion *m, double h, double most);
-value_and_slope taylor_force_at(const arm *a, const motion *m, double h);
-void taylor_forces_at(const arm *a, const motion *m, double h, int count, value_and_slope *at);
-value_and_slope taylor_gap_at(const arm *a, const motion *m, double h);
+bool taylor_excludes_event(const arm *a, motion *m, event_function w, double h);
 void taylor_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);

@@ -54,26 +54,18 @@ static size_t lay_out(stiff_stride *s, const arm *a, char *base)
     return used;
 }
 
-static size_t memory_for(const arm *a)
+static size_t init(const arm *a, void *memory)
 {
-    stiff_stride none = {.known = false};
-    return lay_out(&none, a, NULL);
-}
-
-static void open(const arm *a, motion *m)
-{
-    stiff_stride *s = m->memory;
+    stiff_stride none, *s = memory != NULL ? memory : &none;
     memset(s, 0, sizeof *s);
-    lay_out(s, a, m->memory);
     s->loops = &stiff_loops_1;
 #if defined __x86_64__
     s->loops = taylor_width() >= 4 ? &stiff_loops_4 : s->loops;
 #endif
-    s->known = false;
+    return lay_out(s, a, memory);
 }
 
-// --- a step in hand
-// -------------------------------------------------------------------------------
+// --- a step in hand ------------------------------------------------------------------------------
 
 // Goes on in the step that the state keeps.
 static void take_up(stiff_stride *s, const arm *a, motion *m)
@@ -96,7 +88,7 @@ static void take_up(stiff_stride *s, const arm *a, motion *m)
     s->used = kept[KEPT_USED];
 }
 
-static double begin(const arm *a, motion *m, double remaining, double step)
+static double advance(const arm *a, motion *m, double remaining, double step)
 {
     stiff_stride *s = m->memory;
     const double *kept = state_kept(m, m->state);
@@ -111,24 +103,21 @@ static double begin(const arm *a, motion *m, double remaining, double step)
         return 0;
     }
     m->history_invalid = false;
+    m->most_force = function_greatest(&s->force);
     memcpy(state_kept(m, m->state), s->kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
     state_kept(m, m->state)[KEPT_USED] = s->used;
     return smaller(s->kept[KEPT_LENGTH] - s->used, remaining);
 }
 
 const engine stiff_engine = {.name = "stiff",
-                             .begin = begin,
+                             .init = init,
+                             .advance = advance,
                              .state_at = stiff_state_at,
+                             .dense_output = stiff_dense_output,
                              .event_function = stiff_event_function,
                              .second_derivative = stiff_second_derivative,
-                             .clear = stiff_clear,
-                             .bounded = stiff_bounded,
-                             .force_at = stiff_force_at,
-                             .gap_at = stiff_gap_at,
-                             .hub_at = stiff_hub_at,
-                             .sense_at = stiff_sense_at,
-                             .parabolas = 32,
+                             .excludes_event = stiff_excludes_event,
                              .first_event = stiff_first_event,
-                             .kept_for = stiff_kept_size,
-                             .memory_for = memory_for,
-                             .open = open};
+                             .kept = STIFF_HEAD - KEPT_COUNT,
+                             .kept_for_body = 2 + RADAU_LANES,
+                             .parabolas = 32};

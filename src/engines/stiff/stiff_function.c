@@ -102,7 +102,7 @@ value_and_slope function_at(const stiff_function *f, double x)
     return (value_and_slope){y * b[0] + x * b[1], n * (b[1] - b[0])};
 }
 
-double function_bend(const stiff_function *f, double from, double to)
+double function_curvature(const stiff_function *f, double from, double to)
 {
     // the second derivative's coefficients, those of the part: first cut at its end, then its start
     double b[FUNCTION_MOST];

@@ -33,7 +33,7 @@ void function_start(const stiff_function *f, double powers[4]);
 // Value and derivative by x.
 value_and_slope function_at(const stiff_function *f, double x);
 // A bound on the magnitude of the second derivative by x from one x to another.
-double function_bend(const stiff_function *f, double from, double to);
+double function_curvature(const stiff_function *f, double from, double to);
 // The least and the greatest coefficient.
 double function_least(const stiff_function *f);
 double function_greatest(const stiff_function *f);

@@ -78,7 +78,40 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
            (size_t)m->dof * sizeof(double));
 }
 
-status stiff_state_at(const arm *a, motion *m, double h)
+// What sensors see of the state at `time` after the step's start, as the stages have it and not
+// evaluated.
+static void sense_within(const stiff_stride *s, const arm *a, const motion *m, double time,
+                         double *state)
+{
+    const double h = s->kept[STIFF_LENGTH], x = time / h;
+    const int seen[] = {0, a->first, a->dof - 1};
+    radau_weights weight;
+    radau_weights_at(x, &weight);
+    for (int i = 0; i < (int)(sizeof seen / sizeof *seen); i++) {
+        const int k = seen[i];
+        const double *of_body = stiff_accelerations(s) + RADAU_LANES * k;
+        const double w0 = stiff_velocities(s)[k];
+        double value = 0, once = 0, twice = 0;
+        for (int j = 0; j < RADAU_STAGES; j++) {
+            value += weight.value[j] * of_body[j];
+            once += weight.integral[j] * of_body[j];
+            twice += weight.twice[j] * of_body[j];
+        }
+        state_angles(m, state)[k] = stiff_angles(s)[k] + h * (x * w0 + h * twice);
+        state_velocities(m, state)[k] = w0 + h * once;
+        state_accelerations(m, state)[k] = value;
+    }
+    const double *force = s->kept + STIFF_FORCE;
+    double pressed = 0;
+    for (int j = 0; j < RADAU_STAGES; j++) {
+        pressed += weight.integral[j] * force[j];
+    }
+    state[SLOT_FORCE] = function_at(&s->force, x).value;
+    state_quadratures(m, state)[QUADRATURE_FORCE] =
+        s->kept[STIFF_QUADRATURES + QUADRATURE_FORCE] + h * pressed;
+}
+
+status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
 {
     const stiff_stride *s = m->memory;
     double *kept = state_kept(m, m->trial);
@@ -86,6 +119,10 @@ status stiff_state_at(const arm *a, motion *m, double h)
     // by the instant itself, which is the same whatever stops were made on the way
     double time = m->state[SLOT_TIME] + h;
     time = fabs(time - m->aim) <= 4 * DBL_EPSILON * time ? m->aim : time;
+    if (extent == STATE_SENSED) {
+        sense_within(s, a, m, time - s->kept[STIFF_TIME], m->trial);
+        return STATUS_OK;
+    }
     const bool whole = s->used + h >= s->kept[KEPT_LENGTH];
     const double used = whole ? s->kept[KEPT_LENGTH] : time - s->kept[STIFF_TIME];
     if (whole && s->ended) {
@@ -129,18 +166,18 @@ double stiff_second_derivative(const arm *a, const motion *m, event_function w, 
     const double length = s->step.length;
     const double x0 = (s->used + from) / length, x1 = (s->used + to) / length;
     const stiff_function *f = s->used > 0 && w == EVENT_OF_FORCE ? &s->force : &s->watched[w];
-    double most = function_bend(f, x0, x1);
+    double most = function_curvature(f, x0, x1);
     if (w >= EVENT_OF_STICTION) {
         const stiff_function *far = w == EVENT_OF_CURRENT ? &s->far_current : &s->far_limit;
-        most = larger(most, function_bend(far, x0, x1));
+        most = larger(most, function_curvature(far, x0, x1));
     } else if (w == EVENT_OF_FORCE) {
-        most = larger(most, function_bend(&s->force, x0, x1));
+        most = larger(most, function_curvature(&s->force, x0, x1));
     }
     (void)a;
     return most / (length * length);
 }
 
-bool stiff_clear(const arm *a, motion *m, event_function w, double h)
+bool stiff_excludes_event(const arm *a, motion *m, event_function w, double h)
 {
     const stiff_stride *s = m->memory;
     const stiff_function *far = w == EVENT_OF_CURRENT ? &s->far_current : &s->far_limit;
@@ -149,34 +186,10 @@ bool stiff_clear(const arm *a, motion *m, event_function w, double h)
                                        (w < EVENT_OF_STICTION || function_least(far) > 0));
 }
 
-bool stiff_bounded(const arm *a, motion *m, double h, double most)
+// The hub's angle and velocity at x of the step.
+static value_and_slope hub_at(const stiff_stride *s, double x)
 {
-    const stiff_stride *s = m->memory;
-    (void)a, (void)h;
-    return function_greatest(&s->force) <= most;
-}
-
-value_and_slope stiff_force_at(const arm *a, const motion *m, double h)
-{
-    const stiff_stride *s = m->memory;
-    (void)a;
-    return by_time(s, function_at(&s->force, (s->used + h) / s->step.length));
-}
-
-value_and_slope stiff_gap_at(const arm *a, const motion *m, double h)
-{
-    const stiff_stride *s = m->memory;
-    if (!wall_stands(&a->wall)) {
-        return (value_and_slope){HUGE_VAL, 0};
-    }
-    return by_time(s, function_at(&s->gap, (s->used + h) / s->step.length));
-}
-
-value_and_slope stiff_hub_at(const arm *a, const motion *m, double h)
-{
-    const stiff_stride *s = m->memory;
-    const double length = s->step.length, x = (s->used + h) / length;
-    const double *of_hub = stiff_accelerations(s);
+    const double length = s->step.length, *of_hub = stiff_accelerations(s);
     radau_weights w;
     radau_weights_at(x, &w);
     double once = 0, twice = 0;
@@ -185,40 +198,25 @@ value_and_slope stiff_hub_at(const arm *a, const motion *m, double h)
         twice += w.twice[j] * of_hub[j];
     }
     const double velocity = stiff_velocities(s)[0];
-    (void)a;
     return (value_and_slope){stiff_angles(s)[0] + length * (x * velocity + length * twice),
                              velocity + length * once};
 }
 
-void stiff_sense_at(const arm *a, const motion *m, double time, double *state)
+void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
+                        int count, value_and_slope *at)
 {
     const stiff_stride *s = m->memory;
-    const double h = s->kept[STIFF_LENGTH], x = (time - s->kept[STIFF_TIME]) / h;
-    const int seen[] = {0, a->first, a->dof - 1};
-    radau_weights weight;
-    radau_weights_at(x, &weight);
-    for (int i = 0; i < (int)(sizeof seen / sizeof *seen); i++) {
-        const int k = seen[i];
-        const double *of_body = stiff_accelerations(s) + RADAU_LANES * k;
-        const double w0 = stiff_velocities(s)[k];
-        double value = 0, once = 0, twice = 0;
-        for (int j = 0; j < RADAU_STAGES; j++) {
-            value += weight.value[j] * of_body[j];
-            once += weight.integral[j] * of_body[j];
-            twice += weight.twice[j] * of_body[j];
+    const double width = count > 0 ? (to - from) / count : 0;
+    for (int i = 0; i <= count; i++) {
+        const double x = (s->used + (from + i * width)) / s->step.length;
+        if (of == OUTPUT_HUB) {
+            at[i] = hub_at(s, x);
+        } else if (of == OUTPUT_GAP && !wall_stands(&a->wall)) {
+            at[i] = (value_and_slope){HUGE_VAL, 0};
+        } else {
+            at[i] = by_time(s, function_at(of == OUTPUT_GAP ? &s->gap : &s->force, x));
         }
-        state_angles(m, state)[k] = stiff_angles(s)[k] + h * (x * w0 + h * twice);
-        state_velocities(m, state)[k] = w0 + h * once;
-        state_accelerations(m, state)[k] = value;
     }
-    const double *force = s->kept + STIFF_FORCE;
-    double pressed = 0;
-    for (int j = 0; j < RADAU_STAGES; j++) {
-        pressed += weight.integral[j] * force[j];
-    }
-    state[SLOT_FORCE] = function_at(&s->force, x).value;
-    state_quadratures(m, state)[QUADRATURE_FORCE] =
-        s->kept[STIFF_QUADRATURES + QUADRATURE_FORCE] + h * pressed;
 }
 
 void stiff_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any)

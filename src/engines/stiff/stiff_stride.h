@@ -120,14 +120,11 @@ bool stiff_make_step(stiff_stride *s, const arm *a, motion *m);
 void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double time, double *state);
 
 // The engine's functions of these names (engine.h).
-status stiff_state_at(const arm *a, motion *m, double h);
+status stiff_state_at(const arm *a, motion *m, double h, state_extent extent);
+void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
+                        int count, value_and_slope *at);
 value_and_slope stiff_event_function(const arm *a, const motion *m, event_function w, double h);
 double stiff_second_derivative(const arm *a, const motion *m, event_function w, double from,
                                double to);
-bool stiff_clear(const arm *a, motion *m, event_function w, double h);
-bool stiff_bounded(const arm *a, motion *m, double h, double most);
-value_and_slope stiff_force_at(const arm *a, const motion *m, double h);
-value_and_slope stiff_gap_at(const arm *a, const motion *m, double h);
-value_and_slope stiff_hub_at(const arm *a, const motion *m, double h);
-void stiff_sense_at(const arm *a, const motion *m, double time, double *state);
+bool stiff_excludes_event(const arm *a, motion *m, event_function w, double h);
 void stiff_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
