@@ -3,12 +3,12 @@
 
 #include "src/engines/pair/taylor_products.h"
 
-// A function over a stride, which is looked at in four equal pieces.
+// A function over a stride, bounded in four equal pieces.
 typedef struct course {
     real start;
-    four ends; // its values where pieces end
-    real bend; // its largest second derivative at most
-    real off;  // how far at most it leaves the chord between the ends of a piece
+    four ends;      // its values where pieces end
+    real curvature; // its largest second derivative at most
+    real off;       // how far at most it leaves the chord between the ends of a piece
 } course;
 
 // One more term of four sums.
@@ -43,11 +43,11 @@ KERNEL course enclosure_of(const real *terms, int count, real t)
     add_term(&even, &squared, terms[0]);
     add_term(&odd, &squared, terms[1]);
 
-    course c = {.start = terms[0], .bend = even2 + t * odd2};
+    course c = {.start = terms[0], .curvature = even2 + t * odd2};
     for (int i = 0; i < 4; i++) {
         PART(c.ends, i) = PART(even, i) + PART(time, i) * PART(odd, i);
     }
-    const real sag = c.bend * u * 0.125;
+    const real sag = c.curvature * u * 0.125;
     c.off = sag * 0.0625 + 1e-12 * (sag + magnitude(c.start) + magnitude(PART(c.ends, 3)));
     return c;
 }
@@ -79,15 +79,15 @@ typedef struct edge_limits {
 
 // Lower bound of sign times a function in the first piece; where an event has left it at zero and
 // it grows from there, the bound of the function divided by the time, or by its square: in that
-// piece, of length h, p = p0 + p1 t + p2 t^2 + r has |p - p0 - p1 t| <= bend t^2/2, and |r| <=
-// (bend - 2 |p2|) t^2/6 h/t_end.
+// piece, of length h, p = p0 + p1 t + p2 t^2 + r has |p - p0 - p1 t| <= curvature t^2/2, and |r| <=
+// (curvature - 2 |p2|) t^2/6 h/t_end.
 KERNEL real least_at_first(const course *c, const real *terms, real sign, real t, mask jumped,
                            const edge_limits *limits)
 {
     const real first = sign * c->start - c->off;
     const real rate = sign * terms[1], more = sign * terms[2];
-    const real once = rate - c->bend * t * (0.125 * (1 + 1e-12)) - limits->rate;
-    const real rest = c->bend - 2 * magnitude(more) + 1e-12 * c->bend;
+    const real once = rate - c->curvature * t * (0.125 * (1 + 1e-12)) - limits->rate;
+    const real rest = c->curvature - 2 * magnitude(more) + 1e-12 * c->curvature;
     const real twice = more - rest * (1. / 24) - limits->more;
     const mask off_edge = MASK(magnitude(c->start) > limits->value);
     const mask leaves = MASK(magnitude(rate) > limits->rate);

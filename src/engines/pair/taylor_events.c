@@ -89,7 +89,7 @@ double taylor_second_derivative(const arm *a, const motion *m, event_function w,
     double near = curvature_bound(p, t);
     (void)from;
     if (w == EVENT_OF_FORCE && p->divided) {
-        // divided by the time: the force itself may bend more
+        // divided by the time: the force itself may be more curved
         polynomial force;
         set_polynomial(&force, taylor_term(&s->lane, AT_FORCE), taylor_spacing(&s->lane),
                        s->lane.form.order, 1);
@@ -155,7 +155,7 @@ bool taylor_excludes_event(const arm *a, motion *m, event_function w, double h)
         return true;
     }
     if (s->kept[KEPT_JUMPED] == 0 && t >= s->kept[KEPT_LENGTH]) {
-        return false; // the bounds of the whole stride leave it to be looked for
+        return false; // the bounds of the whole stride leave it to the search
     }
 
     // what begins on the edge, or is not asked for as far as the stride goes

@@ -63,8 +63,8 @@ KERNEL void look_at(const enclosed_function *f, real t, real *value, real *slope
 
 // The first instant at which it falls through zero; -1 if it is not found here. Newton's method,
 // until the error of the next step is below the resolution of time. Between the piece's start and a
-// root at a distance l from it the function lies at most bend l^2/8 below its chord, and stays
-// above zero if it starts above bend l^2/2.
+// root at a distance l from it the function lies at most curvature l^2/8 below its chord, and stays
+// above zero if it starts above curvature l^2/2.
 static __attribute__((noinline)) real first_root(const enclosed_function *f)
 {
     const real zero = (real){0};
@@ -74,7 +74,7 @@ static __attribute__((noinline)) real first_root(const enclosed_function *f)
         return root;
     }
 
-    const real bend = f->course->bend, to = in.from + in.length;
+    const real curvature = f->course->curvature, to = in.from + in.length;
     const real resolution = 1e-16 + 2e-16 * to;
     real t = in.from + in.length * (in.above / (in.above - in.below));
     mask open = in.there;
@@ -83,8 +83,8 @@ static __attribute__((noinline)) real first_root(const enclosed_function *f)
         look_at(f, t, &value, &slope);
         const real step = value / slope, next = t - step, way = next - in.from;
         const mask within = MASK(next > in.from) & MASK(next < to) & MASK(slope < 0);
-        const mask settled = MASK(bend * step * step <= resolution * magnitude(slope));
-        const mask first = MASK(bend * way * way * (0.5 + 1e-9) < in.above);
+        const mask settled = MASK(curvature * step * step <= resolution * magnitude(slope));
+        const mask first = MASK(curvature * way * way * (0.5 + 1e-9) < in.above);
         root = choose(open & settled & within & first, next, root);
         open &= ~settled & within;
         t = choose(open, next, t);
