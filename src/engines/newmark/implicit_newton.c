@@ -83,138 +83,153 @@ static double rate_change(const arm *a, const implicit_sweep *link, contact_poin
     return sum + (-p.g * v[last] - along) * x[last];
 }
 
-// One function, since its sweeps share what they keep in registers.
+// The links beyond a node, eliminated: how they answer it (implicit_newton.h).
+typedef struct beyond {
+    double pxx, pxy, pyx, pyy; // P, not symmetric
+    double hx, hy;             // p_f
+    double gx, gy, yy;         // p_t and y of the joint beyond
+    double fx, fy, torque0;    // F0, T0 of the residual
+    double ex, ey, torque1;    // and of a unit contact force
+    double outer;              // torque of the joint beyond
+} beyond;
+
+// Eliminates the angle of link k, with what it lacks of its balance of torques about its node.
+static inline __attribute__((always_inline)) void eliminate(const arm *a, implicit_sweep *link,
+                                                            int k, implicit_iterate *it,
+                                                            implicit_tangent t, double lever,
+                                                            beyond *b)
+{
+    const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
+    const double *q = it->q, *w = it->w;
+    const int first = a->first;
+    implicit_sweep *L = &link[k];
+    const double c = L->c, s = L->s, omega = w[first + k], alpha = it->acceleration[first + k];
+
+    // how the node's acceleration changes with the link's angle
+    const double across = t.beta - omega * omega, along = alpha + 2 * t.gamma * omega;
+    L->zx = -s * across - c * along;
+    L->zy = c * across - s * along;
+
+    // the joint's torque, and what it changes with
+    double kappa = 0, inner = 0;
+    if (first + k > 0) {
+        const double stiffness = k > 0 ? a->joint_stiffness : a->hub_stiffness;
+        const double damping = k > 0 ? a->joint_damping : a->hub_joint_damping;
+        kappa = stiffness + damping * t.gamma;
+        inner =
+            stiffness * (q[first + k] - q[first + k - 1]) + damping * (omega - w[first + k - 1]);
+    }
+
+    // the balance of torques: residual, and its slope by the angle
+    double residual = a->link_inertia * alpha + half * m * (c * L->com_y - s * L->com_x) +
+                      l * (c * L->force_y - s * L->force_x) - b->outer + inner;
+    residual += it->force * lever;
+    const double zpx = b->pxx * L->zx + b->pxy * L->zy; // P z
+    const double zpy = b->pyx * L->zx + b->pyy * L->zy;
+    double pivot = a->link_inertia * t.beta - half * m * (c * L->com_x + s * L->com_y) -
+                   l * (c * L->force_x + s * L->force_y) +
+                   half * half * m * (c * L->zy - s * L->zx) +
+                   l * (c * (l * zpy + b->hy) - s * (l * zpx + b->hx)) -
+                   (l * (b->gx * L->zx + b->gy * L->zy) + b->yy) + kappa;
+    const double vx = -half * m * s + l * (c * b->pyx - s * b->pxx) - b->gx;
+    const double vy = half * m * c + l * (c * b->pyy - s * b->pxy) - b->gy;
+    double right = -residual - l * (c * b->fy - s * b->fx) + b->torque0;
+    double right1 = -lever - l * (c * b->ey - s * b->ex) + b->torque1;
+    if (first + k == 0) {
+        // the first link turns with the hub
+        pivot += a->hub_inertia * t.beta + a->motor.damping * t.gamma;
+        right -= a->hub_inertia * alpha + a->motor.damping * omega - a->motor.torque - it->sliding;
+        if (it->stuck) {
+            it->excess =
+                -residual - a->hub_inertia * alpha - a->motor.damping * omega + a->motor.torque;
+            right = right1 = 0;
+        }
+    }
+
+    // the angle as a function of what comes before the link
+    L->vx = vx / pivot;
+    L->vy = vy / pivot;
+    L->to_parent = kappa / pivot;
+    L->free = right / pivot;
+    L->unit = right1 / pivot;
+
+    // the answer of this link and all beyond it
+    const double px = m * half * L->zx + l * zpx + b->hx, py = m * half * L->zy + l * zpy + b->hy;
+    b->pxx += m - px * L->vx;
+    b->pxy -= px * L->vy;
+    b->pyx -= py * L->vx;
+    b->pyy += m - py * L->vy;
+    b->hx = px * L->to_parent;
+    b->hy = py * L->to_parent;
+    b->fx += px * L->free;
+    b->fy += py * L->free;
+    b->ex += px * L->unit;
+    b->ey += py * L->unit;
+    b->gx = -kappa * L->vx;
+    b->gy = -kappa * L->vy;
+    b->yy = kappa * L->to_parent - kappa;
+    b->torque0 = kappa * L->free;
+    b->torque1 = kappa * L->unit;
+    b->outer = inner;
+}
+
+// From hub to tip: dq for the residual, `unit` for a unit contact force.
+static void substitute(const arm *a, const implicit_sweep *link, bool stuck, double *dq,
+                       double *unit)
+{
+    double ax = 0, ay = 0, bx = 0, by = 0;
+    for (int k = 0; k < a->links; k++) {
+        const implicit_sweep *L = &link[k];
+        const int i = a->first + k;
+        const bool fixed = i == 0 && stuck; // a stuck hub stays
+        const double parent = i > 0 ? dq[i - 1] : 0, parent1 = i > 0 ? unit[i - 1] : 0;
+        const double d = fixed ? 0 : L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
+        const double d1 = fixed ? 0 : L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
+        dq[i] = d;
+        unit[i] = d1;
+        ax += a->link_length * L->zx * d;
+        ay += a->link_length * L->zy * d;
+        bx += a->link_length * L->zx * d1;
+        by += a->link_length * L->zy * d1;
+    }
+}
+
 double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate *it,
                            implicit_tangent t, double *dq, double *unit)
 {
-    const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
-    const double *q = it->q, *w = it->w, *al = it->acceleration;
-    const int first = a->first, last = a->links - 1;
-    contact_point point = {0};
+    const int last = a->links - 1;
+    const double *w = it->w;
 
     // residual quantities of the iterate
+    contact_point point = {0};
     for (int k = 0; k <= last; k++) {
-        inline_sincos(q[first + k], &link[k].s, &link[k].c);
+        inline_sincos(it->q[a->first + k], &link[k].s, &link[k].c);
     }
     if (it->contact) {
         point = contact_at(a, link);
     }
-    forces_between_links(a, link, w, al, it->force * point.ex, it->force * point.ey);
+    forces_between_links(a, link, w, it->acceleration, it->force * point.ex, it->force * point.ey);
 
-    // elimination from tip to hub
-    double pxx = a->tip_mass, pxy = 0, pyx = 0, pyy = a->tip_mass; // P, no longer symmetric
-    double hx = -it->force * point.angle_force * link[last].c; // p_f: the point wall's force turns
-    double hy = -it->force * point.angle_force * link[last].s; // with the last link
-    double gx = 0, gy = 0, yy = 0;                             // p_t and y of the joint beyond
-    double fx = 0, fy = 0, torque0 = 0;                        // F0, T0 of the residual
-    double ex = point.ex, ey = point.ey, torque1 = 0;          // and of a unit force
-    double outer = 0;                                          // torque of the joint beyond
+    // elimination from tip to hub; a point wall's force turns with the last link
+    beyond b = {.pxx = a->tip_mass, .pyy = a->tip_mass, .ex = point.ex, .ey = point.ey};
+    b.hx = -it->force * point.angle_force * link[last].c;
+    b.hy = -it->force * point.angle_force * link[last].s;
     for (int k = last; k >= 0; k--) {
-        implicit_sweep *L = &link[k];
-        double c = L->c, s = L->s, omega = w[first + k], alpha = al[first + k];
-
-        // how the node's acceleration changes with the link's angle
-        double across = t.beta - omega * omega, along = alpha + 2 * t.gamma * omega;
-        L->zx = -s * across - c * along;
-        L->zy = c * across - s * along;
-
-        // the joint's torque, and what it changes with
-        double kappa = 0, inner = 0;
-        if (first + k > 0) {
-            double stiffness = k > 0 ? a->joint_stiffness : a->hub_stiffness;
-            double damping = k > 0 ? a->joint_damping : a->hub_joint_damping;
-            kappa = stiffness + damping * t.gamma;
-            inner = stiffness * (q[first + k] - q[first + k - 1]) +
-                    damping * (omega - w[first + k - 1]);
-        }
-
-        // the link's balance of torques about its node: residual, and its slope by the angle
-        double residual = a->link_inertia * alpha + half * m * (c * L->com_y - s * L->com_x) +
-                          l * (c * L->force_y - s * L->force_x) - outer + inner;
-        double lever_force = 0;
-        if (k == last) {
-            residual += it->force * point.lever;
-            lever_force = point.lever;
-        }
-        double zpx = pxx * L->zx + pxy * L->zy, zpy = pyx * L->zx + pyy * L->zy; // P z
-        double pivot = a->link_inertia * t.beta - half * m * (c * L->com_x + s * L->com_y) -
-                       l * (c * L->force_x + s * L->force_y) +
-                       half * half * m * (c * L->zy - s * L->zx) +
-                       l * (c * (l * zpy + hy) - s * (l * zpx + hx)) -
-                       (l * (gx * L->zx + gy * L->zy) + yy) + kappa;
-        double vx = -half * m * s + l * (c * pyx - s * pxx) - gx;
-        double vy = half * m * c + l * (c * pyy - s * pxy) - gy;
-        double right = -residual - l * (c * fy - s * fx) + torque0;
-        double right1 = -lever_force - l * (c * ey - s * ex) + torque1;
-        if (first + k == 0) {
-            // the first link turns with the hub
-            pivot += a->hub_inertia * t.beta + a->motor.damping * t.gamma;
-            right -=
-                a->hub_inertia * alpha + a->motor.damping * omega - a->motor.torque - it->sliding;
-            if (it->stuck) {
-                it->excess =
-                    -residual - a->hub_inertia * alpha - a->motor.damping * omega + a->motor.torque;
-                right = right1 = 0;
-            }
-        }
-
-        // the angle as a function of what comes before the link
-        L->vx = vx / pivot;
-        L->vy = vy / pivot;
-        L->to_parent = kappa / pivot;
-        L->free = right / pivot;
-        L->unit = right1 / pivot;
-
-        // the answer of this link and all beyond it
-        double px = m * half * L->zx + l * zpx + hx, py = m * half * L->zy + l * zpy + hy;
-        pxx += m - px * L->vx;
-        pxy -= px * L->vy;
-        pyx -= py * L->vx;
-        pyy += m - py * L->vy;
-        hx = px * L->to_parent;
-        hy = py * L->to_parent;
-        fx += px * L->free;
-        fy += py * L->free;
-        ex += px * L->unit;
-        ey += py * L->unit;
-        gx = -kappa * L->vx;
-        gy = -kappa * L->vy;
-        yy = kappa * L->to_parent - kappa;
-        torque0 = kappa * L->free;
-        torque1 = kappa * L->unit;
-        outer = inner;
+        eliminate(a, link, k, it, t, k == last ? point.lever : 0, &b);
     }
 
     // the hub on its spring
     dq[0] = unit[0] = 0;
     if (a->hub_spring && it->stuck) {
-        it->excess = a->motor.torque + outer;
+        it->excess = a->motor.torque + b.outer;
     } else if (a->hub_spring) {
-        double pivot = a->hub_inertia * t.beta + a->motor.damping * t.gamma - yy;
-        double residual = a->hub_inertia * al[0] + a->motor.damping * w[0] - a->motor.torque -
-                          it->sliding - outer;
-        dq[0] = (torque0 - residual) / pivot;
-        unit[0] = torque1 / pivot;
+        const double pivot = a->hub_inertia * t.beta + a->motor.damping * t.gamma - b.yy;
+        const double residual = a->hub_inertia * it->acceleration[0] + a->motor.damping * w[0] -
+                                a->motor.torque - it->sliding - b.outer;
+        dq[0] = (b.torque0 - residual) / pivot;
+        unit[0] = b.torque1 / pivot;
     }
-
-    // substitution from hub to tip: dq for the residual, `unit` for a unit contact force
-    double ax = 0, ay = 0, bx = 0, by = 0;
-    for (int k = 0; k <= last; k++) {
-        implicit_sweep *L = &link[k];
-        double parent = first + k > 0 ? dq[first + k - 1] : 0;
-        double parent1 = first + k > 0 ? unit[first + k - 1] : 0;
-        bool fixed = first + k == 0 && it->stuck;
-
-        // a stuck hub stays
-        double d = fixed ? 0 : L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
-        double d1 = fixed ? 0 : L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
-        dq[first + k] = d;
-        unit[first + k] = d1;
-        ax += l * L->zx * d;
-        ay += l * L->zy * d;
-        bx += l * L->zx * d1;
-        by += l * L->zy * d1;
-    }
+    substitute(a, link, it->stuck, dq, unit);
     if (!it->contact) {
         return 0;
     }
@@ -222,7 +237,7 @@ double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate 
     // the force that meets the constraint
     double df;
     if (it->velocity_level) {
-        double rate = rate_along(a, link, point, w);
+        const double rate = rate_along(a, link, point, w);
         df = -(rate + rate_change(a, link, point, w, t.gamma, dq)) /
              rate_change(a, link, point, w, t.gamma, unit);
     } else {

@@ -175,15 +175,19 @@ KERNEL lanes law(const stiff_step *s, lanes depth, lanes rate, lanes acceleratio
     return force;
 }
 
-KERNEL bool sweep(stiff_step *s, int half, bool account)
+// What the tip of the arm does at the stages: its acceleration, those, velocities and places of the
+// last link's base, and what the arm has lost.
+typedef struct stiff_tip {
+    lanes ax, ay, base_ax, base_ay, base_vx, base_vy, base_x, base_y, lost;
+} stiff_tip;
+
+// From hub to tip: directions, accelerations, and the forces that they take; weight is what it
+// would take to accelerate all upwards. False where a link turns too far.
+KERNEL bool sweep_outwards(stiff_step *s, int half, bool account, stiff_tip *tip)
 {
     const lanes zero = all(0);
     lanes ax = zero, ay = all(s->gravity), vx = zero, vy = zero, x = zero, y = zero, lost = zero;
     within_turn within = all(0) == zero;
-    lanes bx = zero, by = zero, bvx = zero, bvy = zero, px = zero, py = zero;
-
-    // outwards: directions, accelerations, and the forces that they take; weight is what it would
-    // take to accelerate all upwards
     for (int k = 0; k < s->links; k++) {
         const stiff_link *l = &s->link[k];
         const stiff_stage *g = &s->stage[s->first + k];
@@ -196,7 +200,8 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
         const lanes c = l->cosine * cz - l->sine * sz, sn = l->sine * cz + l->cosine * sz;
         b->c[half] = c;
         b->s[half] = sn;
-        bx = ax, by = ay, bvx = vx, bvy = vy, px = x, py = y;
+        tip->base_ax = ax, tip->base_ay = ay, tip->base_vx = vx, tip->base_vy = vy;
+        tip->base_x = x, tip->base_y = y;
         const lanes dx = -l->length * (sn * al + c * w2), dy = l->length * (c * al - sn * w2);
         const lanes dvx = -l->length * sn * w, dvy = l->length * c * w;
         lanes fx = l->mass * (ax + 0.5 * dx), fy = l->mass * (ay + 0.5 * dy);
@@ -213,63 +218,131 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
         ax += dx, ay += dy, vx += dvx, vy += dvy;
         x += l->length * c, y += l->length * sn;
     }
+    tip->ax = ax, tip->ay = ay;
+    tip->lost = lost;
     for (int i = 0; i < 4; i++) {
         if (!within[i]) {
             return false;
         }
     }
+    return true;
+}
 
-    // the wall: gap, rate and force (wall_contact_at of wall.h, for lanes)
+// How the wall acts at the stages: direction, lever and force.
+typedef struct stiff_contact {
+    lanes ex, ey, lever, force;
+} stiff_contact;
+
+// The wall: gap, rate and force (wall_contact_at of wall.h, for lanes).
+KERNEL stiff_contact press(stiff_step *s, int half, bool account, const stiff_tip *tip)
+{
+    const wall_model *wall = s->wall;
     const int last = s->links - 1;
-    const stiff_link *tip = &s->link[last];
+    const double length = s->link[last].length;
     const lanes c = s->body[last].c[half], sn = s->body[last].s[half];
     const lanes w = s->stage[s->first + last].w[half];
-    lanes ex = zero, ey = zero, lever = zero, force = zero;
-    if (wall_stands(s->wall)) {
-        const lanes comes = s->shift[1].half[half];
-        px -= s->wall->sine * s->shift[0].half[half];
-        py += s->wall->cosine * s->shift[0].half[half];
-        lanes depth, bends; // bends: what velocities add to the depth's second derivative
-        if (s->wall->kind == WALL_POINT) {
-            const lanes dx = s->wall->x - px, dy = s->wall->y - py;
-            ex = -sn;
-            ey = c;
-            lever = c * dx + sn * dy - tip->length;
-            depth = sn * dx - c * dy;
-            bends =
-                -depth * w * w -
-                2 * w * (c * (bvx - s->wall->sine * comes) + sn * (bvy + s->wall->cosine * comes));
-        } else {
-            ex = all(-s->wall->sine);
-            ey = all(s->wall->cosine);
-            depth = ex * (px + tip->length * c) + ey * (py + tip->length * sn);
-            bends = -tip->length * w * w * (ex * c + ey * sn);
+    const lanes comes = s->shift[1].half[half];
+    const lanes px = tip->base_x - wall->sine * s->shift[0].half[half];
+    const lanes py = tip->base_y + wall->cosine * s->shift[0].half[half];
+    stiff_contact at = {all(0), all(0), all(0), all(0)};
+    lanes depth, bends; // bends: what velocities add to the depth's second derivative
+    if (wall->kind == WALL_POINT) {
+        const lanes dx = wall->x - px, dy = wall->y - py;
+        at.ex = -sn;
+        at.ey = c;
+        at.lever = c * dx + sn * dy - length;
+        depth = sn * dx - c * dy;
+        bends = -depth * w * w - 2 * w *
+                                     (c * (tip->base_vx - wall->sine * comes) +
+                                      sn * (tip->base_vy + wall->cosine * comes));
+    } else {
+        at.ex = all(-wall->sine);
+        at.ey = all(wall->cosine);
+        depth = at.ex * (px + length * c) + at.ey * (py + length * sn);
+        bends = -length * w * w * (at.ex * c + at.ey * sn);
+    }
+    const lanes reach = at.lever + length * (c * at.ey - sn * at.ex);
+    const lanes along = wall->cosine * at.ey - wall->sine * at.ex; // of the wall's normal, e
+    const lanes rate = at.ex * tip->base_vx + at.ey * tip->base_vy + reach * w + comes * along;
+    s->gap.half[half] = -depth;
+    s->rate.half[half] = -rate;
+    if (s->contact == STIFF_GIVES) {
+        const lanes rate2 = at.ex * tip->base_ax + at.ey * (tip->base_ay - s->gravity) +
+                            reach * s->stage[s->first + last].a[half] + bends;
+        s->force.half[half] = law(s, depth, rate, rate2);
+    }
+    if (s->contact == STIFF_FREE) {
+        s->force.half[half] = all(0);
+    }
+    at.force = s->force.half[half];
+    if (account) {
+        s->pushed.half[half] = at.force * comes * along;
+        s->wall_lost.half[half] = all(0);
+    }
+    if (account && s->contact == STIFF_GIVES) {
+        lanes power = wall->damping * rate * rate;
+        for (int i = 0; i < 4 && wall->law == WALL_HUNT_CROSSLEY; i++) {
+            power[i] = (at.force[i] - wall_spring_force(wall, depth[i])) * rate[i];
         }
-        const lanes reach = lever + tip->length * (c * ey - sn * ex);
-        const lanes along = s->wall->cosine * ey - s->wall->sine * ex; // of the wall's normal, e
-        const lanes rate = ex * bvx + ey * bvy + reach * w + comes * along;
-        s->gap.half[half] = -depth;
-        s->rate.half[half] = -rate;
-        if (s->contact == STIFF_GIVES) {
-            const lanes rate2 = ex * bx + ey * (by - s->gravity) +
-                                reach * s->stage[s->first + last].a[half] + bends;
-            s->force.half[half] = law(s, depth, rate, rate2);
-        }
-        if (s->contact == STIFF_FREE) {
-            s->force.half[half] = zero;
-        }
-        force = s->force.half[half];
-        if (account) {
-            s->pushed.half[half] = force * comes * along;
-            s->wall_lost.half[half] = zero;
-        }
-        if (account && s->contact == STIFF_GIVES) {
-            lanes power = s->wall->damping * rate * rate;
-            for (int i = 0; i < 4 && s->wall->law == WALL_HUNT_CROSSLEY; i++) {
-                power[i] = (force[i] - wall_spring_force(s->wall, depth[i])) * rate[i];
+        s->wall_lost.half[half] = power;
+    }
+    return at;
+}
+
+// From tip to hub: forces, and what each link's equation lacks; `sum` are those of damped modes.
+// Returns the torque of the joint at the hub, 0 of a rigid one.
+KERNEL lanes sweep_inwards(stiff_step *s, int half, bool account, const stiff_contact *at,
+                           const lanes *sum, stiff_tip *tip)
+{
+    const int last = s->links - 1;
+    lanes fx = s->tip_mass * tip->ax + at->force * at->ex;
+    lanes fy = s->tip_mass * tip->ay + at->force * at->ey, outer = all(0);
+    for (int k = last; k >= 0; k--) {
+        const stiff_link *l = &s->link[k];
+        const stiff_body *b = &s->body[k];
+        stiff_stage *g = &s->stage[s->first + k];
+        const lanes hx = l->length * (fx + 0.5 * b->fx[half]);
+        const lanes hy = l->length * (fy + 0.5 * b->fy[half]);
+        lanes inner = all(0);
+        if (k + s->first > 0) {
+            const stiff_stage *before = g - 1;
+            const lanes bend = g->q[half] - before->q[half], rate = g->w[half] - before->w[half];
+            inner = l->stiffness * bend + l->damping * rate;
+            if (s->stiffens) {
+                inner += l->stiffening * bend * bend * bend;
             }
-            s->wall_lost.half[half] = power;
+            if (account) {
+                tip->lost += l->damping * rate * rate;
+            }
         }
+        lanes r = l->inertia * g->a[half] + b->c[half] * hy - b->s[half] * hx - outer + inner;
+        if (s->drags) {
+            r += l->turning * g->w[half];
+        }
+        if (k == last) {
+            r += at->force * at->lever;
+        }
+        for (int i = 0; i < s->modes; i++) {
+            r += s->mode[i * s->dof + s->first + k] * sum[i];
+        }
+        g->r[half] = r;
+        fx += b->fx[half];
+        fy += b->fy[half];
+        outer = inner;
+    }
+    return outer;
+}
+
+KERNEL bool sweep(stiff_step *s, int half, bool account)
+{
+    const lanes zero = all(0);
+    stiff_tip tip = {.lost = zero};
+    if (!sweep_outwards(s, half, account, &tip)) {
+        return false;
+    }
+    stiff_contact at = {zero, zero, zero, zero};
+    if (wall_stands(s->wall)) {
+        at = press(s, half, account, &tip);
     }
 
     // damped modes: sums of the bends' rates
@@ -280,45 +353,10 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
             sum[i] += s->mode[i * s->dof + k] * s->stage[k].w[half];
         }
         if (account) {
-            lost += sum[i] * sum[i];
+            tip.lost += sum[i] * sum[i];
         }
     }
-
-    // inwards: forces, and what each equation lacks
-    lanes fx = s->tip_mass * ax + force * ex, fy = s->tip_mass * ay + force * ey, outer = zero;
-    for (int k = last; k >= 0; k--) {
-        const stiff_link *l = &s->link[k];
-        const stiff_body *b = &s->body[k];
-        stiff_stage *g = &s->stage[s->first + k];
-        const lanes hx = l->length * (fx + 0.5 * b->fx[half]);
-        const lanes hy = l->length * (fy + 0.5 * b->fy[half]);
-        lanes inner = zero;
-        if (k + s->first > 0) {
-            const stiff_stage *before = g - 1;
-            const lanes bend = g->q[half] - before->q[half], rate = g->w[half] - before->w[half];
-            inner = l->stiffness * bend + l->damping * rate;
-            if (s->stiffens) {
-                inner += l->stiffening * bend * bend * bend;
-            }
-            if (account) {
-                lost += l->damping * rate * rate;
-            }
-        }
-        lanes r = l->inertia * g->a[half] + b->c[half] * hy - b->s[half] * hx - outer + inner;
-        if (s->drags) {
-            r += l->turning * g->w[half];
-        }
-        if (k == last) {
-            r += force * lever;
-        }
-        for (int i = 0; i < s->modes; i++) {
-            r += s->mode[i * s->dof + s->first + k] * sum[i];
-        }
-        g->r[half] = r;
-        fx += b->fx[half];
-        fy += b->fy[half];
-        outer = inner;
-    }
+    const lanes outer = sweep_inwards(s, half, account, &at, sum, &tip);
 
     // the hub
     stiff_stage *hub = &s->stage[0];
@@ -333,7 +371,7 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
     hub->r[half] = s->stuck ? zero : r + s->friction;
     if (account) {
         s->hold.half[half] = r;
-        s->lost.half[half] = lost;
+        s->lost.half[half] = tip.lost;
         s->viscous.half[half] = s->hub_damping * hub->w[half] * hub->w[half];
         if (s->drive != STIFF_DIRECT) {
             s->electric.half[half] =
