@@ -171,6 +171,8 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     real *hub_square = block + AT_HUB_SQUARE, *dissipation = block + AT_DISSIPATION;
     factors x;
     sums sum = no_sums;
+    const int directions = TURNING | (point ? 0 : TURNING1);
+    const int all_sums = PRODUCTS | directions | (contact ? LEVERED : 0);
     real *v = x.v, hub_rate[TAYLOR_MOST + 1]; // of the bend and the hub spring
 
     // inertias of the links about their bases, the first carrying the second, and what couples them
@@ -250,12 +252,11 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         const real hub = hub_spring ? w0[n] : rate1;
         const real bend_rate = rate2 - rate1;
         keep_rates(&x, n, bend_rate, rate1, rate2);
-        ADD_TURNING(sum, &x, n, n - 1);
+        add_products(&sum, &x, n, n - 1, directions, point);
         four next;
         turn(&sum.turning, share, &next);
         DIRECTIONS(&x, n + 1) = next;
         if (!point) {
-            ADD_TURNING1(sum, &x, n, n - 1);
             turn_one(&sum.turning1, share, &DIRECTION1(&x, n + 1));
         }
 
@@ -265,18 +266,12 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         if (contact) {
             keep_levers(&x, n, point);
         }
-        inner_sums(&x, n, contact, point, &sum);
+        inner_sums(&x, n, all_sums, point, &sum);
         if (n > 0) {
-            ADD_PRODUCTS(sum, &x, 0, n);
-            ADD_TURNING(sum, &x, n, n);
-            if (!point) {
-                ADD_TURNING1(sum, &x, n, n);
-            }
+            add_products(&sum, &x, 0, n, PRODUCTS, point);
+            add_products(&sum, &x, n, n, directions, point);
         }
-        ADD_TURNING(sum, &x, 0, n);
-        if (!point) {
-            ADD_TURNING1(sum, &x, 0, n);
-        }
+        add_products(&sum, &x, 0, n, directions, point);
         product = PART(sum.products, 1) + rate1 * first2;
         hub_square[n] = PART(sum.products, 3) + hub * first_hub;
         const real swung = PART(sum.products, 0) + PART(next, 0) * first2;
@@ -298,7 +293,7 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
             push1 += driven - viscous * rate1;
         }
         if (contact && n > 0) {
-            ADD_LEVERED(sum, &x, 0, n);
+            add_products(&sum, &x, 0, n, LEVERED, point);
             const real first = point ? l * PART(sum.levered, 0) : PART(sum.levered, 0);
             push1 -= first;
             push2 -= point ? PART(sum.levered, 1) - first : PART(sum.levered, 1);
@@ -390,10 +385,9 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     // the gap, as far as the angles are known
     if (!contact) {
         keep_rates(&x, order, w2[order] - w1[order], w1[order], w2[order]);
-        ADD_TURNING(sum, &x, order, order - 1);
+        add_products(&sum, &x, order, order - 1, directions, point);
         turn(&sum.turning, inverse[order + 1], &DIRECTIONS(&x, order + 1));
         if (!point) {
-            ADD_TURNING1(sum, &x, order, order - 1);
             turn_one(&sum.turning1, inverse[order + 1], &DIRECTION1(&x, order + 1));
         }
         for (int n = 0; n <= order + 1; n++) {

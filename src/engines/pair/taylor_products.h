@@ -58,13 +58,8 @@ typedef struct factors {
     real v[TAYLOR_MOST + 2]; // of the bend
 } factors;
 
-#define DIRECTIONS(x, n)         ((x)->of[n].directions)
-#define DIRECTION1(x, n)         ((x)->of[n].direction1)
-#define TURNING(s, op, x, j, n)  ((s).turning op(x)->of[j].rates * (x)->of[(n) + 1 - (j)].directions)
-#define PRODUCTS(s, op, x, j, n) ((s).products op(x)->of[j].left * (x)->of[(n) - (j)].right)
-#define LEVERED(s, op, x, j, n)  ((s).levered op(x)->of[j].forces * (x)->of[(n) - (j)].levers)
-#define TURNING1(s, op, x, j, n)                                                                   \
-    ((s).turning1 op(x)->of[j].rate1 * (x)->of[(n) + 1 - (j)].direction1)
+#define DIRECTIONS(x, n) ((x)->of[n].directions)
+#define DIRECTION1(x, n) ((x)->of[n].direction1)
 #else
 #define DIRECTIONS(x, n) ((x)->directions[n])
 #define DIRECTION1(x, n) ((x)->direction1[n])
@@ -74,82 +69,105 @@ typedef struct factors {
     real v[TAYLOR_MOST + 2], coupled[TAYLOR_MOST + 2]; // of the bend; (w1 w2)_(n-1)
     const real *w1, *w2, *hub, *f;                     // in the block
 } factors;
-
-#define TURNING(s, op, x, j, n)                                                                    \
-    ((s).turning.part[0] op(x)->v[j] * (x)->directions[(n) + 1 - (j)].part[0],                     \
-     (s).turning.part[1] op(x)->v[j] * (x)->directions[(n) + 1 - (j)].part[1],                     \
-     (s).turning.part[2] op(x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[2],                    \
-     (s).turning.part[3] op(x)->w2[j] * (x)->directions[(n) + 1 - (j)].part[3])
-#define PRODUCTS(s, op, x, j, n)                                                                   \
-    ((s).products.part[0] op(x)->directions[(j) + 1].part[0] * (x)->w2[(n) - (j)],                 \
-     (s).products.part[1] op(x)->w1[j] * (x)->w2[(n) - (j)],                                       \
-     (s).products.part[2] op(x)->directions[(j) + 1].part[1] * (x)->coupled[(n) - (j)],            \
-     (s).products.part[3] op(x)->hub[j] * (x)->hub[(n) - (j)])
-#define LEVERED(s, op, x, j, n)                                                                    \
-    ((s).levered.part[0] op(x)->f[j] *                                                             \
-         (point ? (x)->directions[(n) - (j)].part[0] : (x)->direction1[(n) - (j)].part[0]),        \
-     (s).levered.part[1] op(x)->f[j] * (x)->directions[(n) - (j)].part[2])
-#define TURNING1(s, op, x, j, n)                                                                   \
-    ((s).turning1.part[0] op(x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[0],                   \
-     (s).turning1.part[1] op(x)->w1[j] * (x)->direction1[(n) + 1 - (j)].part[1])
 #endif
 
-#define ADD_TURNING(s, x, j, n)  TURNING(s, +=, x, j, n)
-#define ADD_PRODUCTS(s, x, j, n) PRODUCTS(s, +=, x, j, n)
-#define ADD_LEVERED(s, x, j, n)  LEVERED(s, +=, x, j, n)
-#define ADD_TURNING1(s, x, j, n) TURNING1(s, +=, x, j, n)
+// Which sums a product is for, all of `sums` unless more is said there.
+enum product_sum { TURNING = 1, PRODUCTS = 2, LEVERED = 4, TURNING1 = 8 };
+
+// Adds the j-th products for the n-th coefficient to these sums.
+#if LANES == 1
+KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n, const int to,
+                         const int point)
+{
+    const order_factors *at = &x->of[j];
+    (void)point;
+    if (to & TURNING) {
+        s->turning += at->rates * x->of[n + 1 - j].directions;
+    }
+    if (to & PRODUCTS) {
+        s->products += at->left * x->of[n - j].right;
+    }
+    if (to & LEVERED) {
+        s->levered += at->forces * x->of[n - j].levers;
+    }
+    if (to & TURNING1) {
+        s->turning1 += at->rate1 * x->of[n + 1 - j].direction1;
+    }
+}
+#else
+KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n, const int to,
+                         const int point)
+{
+    if (to & TURNING) {
+        const four *next = &x->directions[n + 1 - j];
+        s->turning.part[0] += x->v[j] * next->part[0];
+        s->turning.part[1] += x->v[j] * next->part[1];
+        s->turning.part[2] += x->w2[j] * next->part[2];
+        s->turning.part[3] += x->w2[j] * next->part[3];
+    }
+    if (to & PRODUCTS) {
+        s->products.part[0] += x->directions[j + 1].part[0] * x->w2[n - j];
+        s->products.part[1] += x->w1[j] * x->w2[n - j];
+        s->products.part[2] += x->directions[j + 1].part[1] * x->coupled[n - j];
+        s->products.part[3] += x->hub[j] * x->hub[n - j];
+    }
+    if (to & LEVERED) {
+        const four *other = &x->directions[n - j];
+        s->levered.part[0] += x->f[j] * (point ? other->part[0] : x->direction1[n - j].part[0]);
+        s->levered.part[1] += x->f[j] * other->part[2];
+    }
+    if (to & TURNING1) {
+        s->turning1.part[0] += x->w1[j] * x->direction1[n + 1 - j].part[0];
+        s->turning1.part[1] += x->w1[j] * x->direction1[n + 1 - j].part[1];
+    }
+}
+#endif
 
 // Sums for the n-th coefficient from j = 1 to n - 1, two at least: the first and the last are left
 // to be added.
-#define IN_TURNS(SUM)                                                                              \
-    do {                                                                                           \
-        ptrdiff_t j = 3;                                                                           \
-        SUM(even, =, x, 1, n);                                                                     \
-        SUM(odd, =, x, 2, n);                                                                      \
-        for (; j + 1 < n; j += 2) {                                                                \
-            SUM(even, +=, x, j, n);                                                                \
-            SUM(odd, +=, x, j + 1, n);                                                             \
-        }                                                                                          \
-        if (j < n) {                                                                               \
-            SUM(even, +=, x, j, n);                                                                \
-        }                                                                                          \
-    } while (0)
-
-KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int contact, const int point,
-                       sums *result)
+KERNEL void add_in_turns(sums *even, sums *odd, const factors *x, ptrdiff_t n, const int to,
+                         const int point)
 {
-    // none, or one of them
-#define SUM_ALL(s, op, x, j, n)                                                                    \
-    do {                                                                                           \
-        TURNING(s, op, x, j, n);                                                                   \
-        PRODUCTS(s, op, x, j, n);                                                                  \
-        if (contact) {                                                                             \
-            LEVERED(s, op, x, j, n);                                                               \
-        }                                                                                          \
-        if (!point) {                                                                              \
-            TURNING1(s, op, x, j, n);                                                              \
-        }                                                                                          \
-    } while (0)
+    ptrdiff_t j = 3;
+    add_products(even, x, 1, n, to, point);
+    add_products(odd, x, 2, n, to, point);
+    for (; j + 1 < n; j += 2) {
+        add_products(even, x, j, n, to, point);
+        add_products(odd, x, j + 1, n, to, point);
+    }
+    if (j < n) {
+        add_products(even, x, j, n, to, point);
+    }
+}
+
+KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int to, const int point, sums *result)
+{
+    // a sum begins with -0, to which any number adds up to itself
+    const real none = -(real){0};
+    const four four_none = FOUR(none, none, none, none);
+    const two two_none = TWO(none, none);
+    const sums nothing = {four_none, four_none, two_none, two_none};
     if (n < 3) {
         *result = no_sums;
-        if (n == 2) {
-            SUM_ALL(*result, =, x, 1, n);
+        if (n == 2) { // one of them
+            *result = nothing;
+            add_products(result, x, 1, n, to, point);
         }
         return;
     }
 
-    sums even, odd;
+    sums even = nothing, odd = nothing;
 #if LANES == 1 || LANES == 8
     // all together, as one arm and AVX-512 leave registers enough
-    IN_TURNS(SUM_ALL);
+    add_in_turns(&even, &odd, x, n, to, point);
 #else
-    IN_TURNS(TURNING);
-    IN_TURNS(PRODUCTS);
-    if (contact) {
-        IN_TURNS(LEVERED);
+    add_in_turns(&even, &odd, x, n, TURNING, point);
+    add_in_turns(&even, &odd, x, n, PRODUCTS, point);
+    if (to & LEVERED) {
+        add_in_turns(&even, &odd, x, n, LEVERED, point);
     }
-    if (!point) {
-        IN_TURNS(TURNING1);
+    if (to & TURNING1) {
+        add_in_turns(&even, &odd, x, n, TURNING1, point);
     }
 #endif
     for (int i = 0; i < 4; i++) {
@@ -157,12 +175,8 @@ KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int contact, const i
         PART(result->products, i) = PART(even.products, i) + PART(odd.products, i);
     }
     for (int i = 0; i < 2; i++) {
-        if (contact) {
-            PART(result->levered, i) = PART(even.levered, i) + PART(odd.levered, i);
-        }
-        if (!point) {
-            PART(result->turning1, i) = PART(even.turning1, i) + PART(odd.turning1, i);
-        }
+        PART(result->levered, i) = PART(even.levered, i) + PART(odd.levered, i);
+        PART(result->turning1, i) = PART(even.turning1, i) + PART(odd.turning1, i);
     }
 }
 
