@@ -1,6 +1,6 @@
 // Two links on a rigid hub against a rigid wall, in closed form: what chain.h has of any chain, for
 // the arm that nearly every run is of. With the bend d = q2 - q1, S and C the sine and cosine of a
-// link's angle from the wall times its reach (taylor_kernel.h):
+// link's angle from the wall times its reach (taylor_order.h):
 //
 //     m11 a1 + m12 cos d a2 = hub torque + joint + m12 sin d w2^2 - J1 f
 //     m12 cos d a1 + m22 a2 =           - joint - m12 sin d w1^2 - J2 f

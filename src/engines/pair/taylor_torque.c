@@ -2,7 +2,7 @@
 #include "src/base/sincos.h"
 #include "src/engines/pair/taylor_lanes.h"
 
-// J, the entries of dg/dq, as taylor_kernel.h has them [m].
+// J, the entries of dg/dq, as taylor_order.h has them [m].
 static void levers(const arm *a, const double *q, double bend_cosine, double j[2])
 {
     const wall_model *w = &a->wall;
