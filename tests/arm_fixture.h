@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/arm/arm.h"
+#include "src/contact/motion.h"
 #include "src/scenario/scenario.h"
 #include "tests/check.h"
 
@@ -23,6 +24,15 @@ static inline parameters fixture_parameters(const char *const *settings)
 }
 
 #define SETTINGS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+static inline arm arm_of(const parameters *p)
+{
+    arm a;
+    arm_init(&a, p);
+    return a;
+}
+
+GIVEN_BACK(motion, motion_destroy)
 
 // x' K y of equal joints, by the bends: no digit of a slow mode is lost in differences.
 static inline double bend_product(const arm *a, const double *x, const double *y)

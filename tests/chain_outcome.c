@@ -3,6 +3,8 @@
 #include "src/contact/contact_machine.h"
 #include "tests/check.h"
 
+GIVEN_BACK(motion, motion_destroy)
+
 #define SENSOR 1e-3  // time constant [s]
 #define LOWEST 1e-11 // flight, its time by its speed at the end [m]
 #define SLOWEST                                                                                    \
@@ -53,7 +55,7 @@ chain_outcome chain_outcome_of(const chain_start *start)
     const parameters *p = start->parameters;
     arm a;
     arm_init(&a, p);
-    motion *m = motion_create_by(&a, &p->method, start->by);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, start->by);
     assert_non_null(m);
     motion_start(&a, m, start->angle, start->velocity);
     chain_outcome o = {.first_contact = (double)NAN};
@@ -116,7 +118,6 @@ chain_outcome chain_outcome_of(const chain_start *start)
                            quadrature[QUADRATURE_VISCOUS], quadrature[QUADRATURE_DAMPING],
                            quadrature[QUADRATURE_WALL],    -quadrature[QUADRATURE_PUSHED]};
     memcpy(o.lost, lost, sizeof o.lost);
-    motion_destroy(m);
     return o;
 }
 

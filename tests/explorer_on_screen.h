@@ -14,6 +14,11 @@ static inline void open_explorer(explorer *ex, const char *name)
     fail_if(explorer_init(ex, &s, HUGE_VAL, &f) != STATUS_OK, "%s", f.text);
 }
 
+// The same for as long as its block.
+#define OPEN_EXPLORER(ex, name)                                                                    \
+    SCOPED(explorer_finish) explorer ex;                                                           \
+    open_explorer(&ex, name)
+
 static inline void press(explorer *ex, const char *keys)
 {
     fault f = {0};
@@ -23,7 +28,7 @@ static inline void press(explorer *ex, const char *keys)
 // The screen as text, to be freed.
 static inline char *picture(explorer *ex, int width, int height, glyph_set set)
 {
-    screen s = {0};
+    SCOPED(screen_finish) screen s = {0};
     char *text = NULL;
     size_t size = 0;
     assert_true(screen_resize(&s, width, height));
@@ -32,15 +37,13 @@ static inline char *picture(explorer *ex, int width, int height, glyph_set set)
     assert_non_null(stream);
     screen_dump(&s, set, stream);
     fclose(stream);
-    screen_finish(&s);
     return text;
 }
 
 static inline void assert_shows_at(explorer *ex, int width, int height, const char *wanted)
 {
-    char *text = picture(ex, width, height, GLYPHS_BRAILLE);
+    SCOPED(free_kept) char *text = picture(ex, width, height, GLYPHS_BRAILLE);
     fail_if(strstr(text, wanted) == NULL, "'%s' is not on the screen:\n%s", wanted, text);
-    free(text);
 }
 
 static inline void assert_shows(explorer *ex, const char *wanted)
@@ -50,9 +53,8 @@ static inline void assert_shows(explorer *ex, const char *wanted)
 
 static inline void assert_hides(explorer *ex, const char *unwanted)
 {
-    char *text = picture(ex, 120, 40, GLYPHS_BRAILLE);
+    SCOPED(free_kept) char *text = picture(ex, 120, 40, GLYPHS_BRAILLE);
     fail_if(strstr(text, unwanted) != NULL, "'%s' is on the screen:\n%s", unwanted, text);
-    free(text);
 }
 
 // The uppermost part of this kind on a screen of 120 x 40.

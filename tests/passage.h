@@ -44,13 +44,11 @@ static inline passage move_on(const arm *a, motion *m, double until, int most_st
 static inline passage passage_by(const parameters *p, const engine *by, double angle,
                                  double velocity, double until, int most_steps)
 {
-    arm a;
-    arm_init(&a, p);
-    motion *m = motion_create_by(&a, &p->method, by);
+    arm a = arm_of(p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, by);
     assert_non_null(m);
     motion_start(&a, m, angle, velocity);
     passage result = move_on(&a, m, until, most_steps);
-    motion_destroy(m);
     return result;
 }
 

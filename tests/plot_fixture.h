@@ -261,12 +261,10 @@ static inline char *read_file(const char *path, size_t *length)
 static inline void expect_same_bytes(const char *a, const char *b)
 {
     size_t a_length, b_length;
-    char *a_bytes = read_file(a, &a_length), *b_bytes = read_file(b, &b_length);
+    SCOPED(free_kept) char *a_bytes = read_file(a, &a_length), *b_bytes = read_file(b, &b_length);
     assert_true(a_length > 500);
     assert_int_equal(a_length, b_length);
     assert_memory_equal(a_bytes, b_bytes, a_length);
-    free(a_bytes);
-    free(b_bytes);
 }
 
 static inline void write_figure(const figure *fig, const char *path)

@@ -339,8 +339,7 @@ static chain_outcome by_reference(const random_arm *r, const options *o, double 
                                formula,
                                OUTCOME_CONTACTS};
     if (strcmp(o->by, "explicit") == 0) {
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         p.method.step = fmin(1e-5, SUBSTEPS / a.fastest_rate) / finer;
         return chain_outcome_of(&start);
     }
@@ -366,8 +365,7 @@ static double rate_of(const random_arm *r)
     static double q[PARAMETER_LINKS_MOST + 1], response[PARAMETER_LINKS_MOST + 1];
     const parameters *p = &r->parameters;
     const double speed = (fabs(r->velocity) + 1) * p->arm.length;
-    arm a;
-    arm_init(&a, p);
+    arm a = arm_of(p);
     double compliance, rate = a.fastest_rate;
     if (p->motor.inductance > 0) {
         rate = fmax(rate, p->motor.resistance / p->motor.inductance);

@@ -29,19 +29,17 @@ static inline run_result rig_run(const char *const *settings, bool keep_trace)
 // Runs them and keeps the summary only.
 static inline summary rig_summary(const char *const *settings)
 {
-    run_result result = rig_run(settings, false);
+    SCOPED(run_finish) run_result result = rig_run(settings, false);
     summary s = result.summary;
-    run_finish(&result);
     return s;
 }
 
 // The run under these settings cannot be made, and the sentence says why.
 static inline void check_refused(const char *const *settings, const char *sentence)
 {
-    run_result r;
+    SCOPED(run_finish) run_result r;
     scenario s = {.parameters = rig_parameters(settings)};
     assert_int_not_equal(run_scenario(&s, false, &r), STATUS_OK);
     fail_if(strstr(r.summary.message, sentence) == NULL, "'%s' does not say '%s'",
             r.summary.message, sentence);
-    run_finish(&r);
 }

@@ -24,12 +24,11 @@ static inline status parse(scenario *s, const char *text, sentences *all)
 {
     // a text of so many bytes, behind which there is none: a sanitizer sees who looks there
     const size_t size = strlen(text);
-    char *bytes = malloc(size + (size == 0));
+    SCOPED(free_kept) char *bytes = malloc(size + (size == 0));
     assert_non_null(bytes);
     memcpy(bytes, text, size);
     *all = (sentences){0};
     const status code = scenario_parse(s, bytes, size, "f.yaml", NULL, keep_sentence, all);
-    free(bytes);
     return code;
 }
 

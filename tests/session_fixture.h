@@ -19,6 +19,11 @@ static inline void open_session(session *s, const char *name)
     assert_int_equal(session_open(s, &base, HUGE_VAL, &f), STATUS_OK);
 }
 
+// The same for as long as its block.
+#define OPEN_SESSION(s, name)                                                                      \
+    SCOPED(session_finish) session s;                                                              \
+    open_session(&s, name)
+
 static inline void assert_same_trace(const trace *a, const trace *b)
 {
     assert_int_equal(a->row_count, b->row_count);
@@ -37,14 +42,12 @@ static inline char *save_and_compare(const session *s)
     assert_non_null(stream);
     scenario_write(stream, &s->effective);
     fclose(stream);
-    scenario saved;
-    run_result again;
+    SCOPED(scenario_finish) scenario saved;
+    SCOPED(run_finish) run_result again;
     assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
                      STATUS_OK);
     run_scenario(&saved, true, &again);
     assert_same_trace(&s->run.trace, &again.trace);
-    run_finish(&again);
-    scenario_finish(&saved);
     return text;
 }
 

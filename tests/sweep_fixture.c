@@ -4,6 +4,8 @@
 
 #include "tests/check.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
 static char folder[] = "/tmp/sweep-XXXXXX";
 scenario base;
 
@@ -78,11 +80,10 @@ sweep_progress must_run(const sweep *s, sweep_store *store, int jobs)
 
 char *uninterrupted(const sweep *s, int jobs)
 {
-    sweep_store *store = must_open(NULL, s);
+    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, s);
     sweep_progress progress = must_run(s, store, jobs);
     assert_int_equal(progress.done, s->run_count);
     assert_int_equal(progress.done_now, s->run_count);
     char *csv = csv_of(store);
-    sweep_store_close(store);
     return csv;
 }

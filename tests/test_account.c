@@ -19,9 +19,8 @@ static void check_says(const char *wanted)
 // Numbers found independently: touch and release from the summary, energies from the rows.
 TEST(test_a_first_impact_is_told_in_five_sentences)
 {
-    session s;
     char wanted[128];
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     const summary *m = &s.run.summary;
     const trace *t = &s.run.trace;
     assert_int_equal(run_account(&s.effective, &s.run, sentences), 5);
@@ -46,7 +45,6 @@ TEST(test_a_first_impact_is_told_in_five_sentences)
     snprintf(wanted, sizeof wanted, "give back %.2g %%",
              100 * t->rows[free].kinetic_energy / t->rows[high].strain_energy);
     check_says(wanted);
-    session_finish(&s);
 }
 
 // Whatever ships: at least a sentence, each ends, and no number is missing.
@@ -59,8 +57,7 @@ TEST(test_every_scenario_has_an_account)
         "compare/force-pd",         "compare/observer",     "corrected/push-in-contact",
         "corrected/spring-hub",     "corrected/newmark",    "corrected/clamped-vibration"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        session s;
-        open_session(&s, names[i]);
+        OPEN_SESSION(s, names[i]);
         const int count = run_account(&s.effective, &s.run, sentences);
         assert_true(count >= 1 && count <= ACCOUNT_SENTENCES);
         for (int k = 0; k < count; k++) {
@@ -69,6 +66,5 @@ TEST(test_every_scenario_has_an_account)
                         strstr(sentences[k], "inf") != NULL,
                     "%s: %s", names[i], sentences[k]);
         }
-        session_finish(&s);
     }
 }

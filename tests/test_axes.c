@@ -22,8 +22,7 @@ static void check_axis(explorer *ex, int index, double low, double high)
 
 TEST(test_an_automatic_axis_spans_what_is_visible)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     double peak = ex.state.session.run.summary.first_pulse_peak_N;
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     check_relative(ex.layout.axes[0].high, peak, 1e-3);
@@ -33,13 +32,11 @@ TEST(test_an_automatic_axis_spans_what_is_visible)
     carry_out(&ex, "zoom 0.85 1");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     check_below(ex.layout.axes[0].high, 0.95);
-    explorer_finish(&ex);
 }
 
 TEST(test_a_growing_axis_never_shrinks)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     carry_out(&ex, "axis grow 1");
     double highest = 0;
     for (double t = 0; t <= 1; t += 0.05) {
@@ -57,13 +54,11 @@ TEST(test_a_growing_axis_never_shrinks)
     carry_out(&ex, "seek 0.1");
     carry_out(&ex, "set motor.voltage 0.3");
     check_axis(&ex, 0, 0, highest);
-    explorer_finish(&ex);
 }
 
 TEST(test_a_fixed_axis_stays)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     carry_out(&ex, "axis -1 4 1");
     check_axis(&ex, 0, -1, 4);
     assert_shows(&ex, "fixed");
@@ -78,13 +73,11 @@ TEST(test_a_fixed_axis_stays)
     carry_out(&ex, "axis auto all");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_AUTO);
-    explorer_finish(&ex);
 }
 
 TEST(test_keys_change_the_axis_of_the_pane_in_focus)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     press(&ex, "w");
     assert_int_equal(panes_focused(&ex.state.panes), 2);
@@ -109,13 +102,11 @@ TEST(test_keys_change_the_axis_of_the_pane_in_focus)
     press(&ex, "a");
     assert_true(ex.state.message.warning);
     assert_shows(&ex, "no pane of curves");
-    explorer_finish(&ex);
 }
 
 TEST(test_wrong_axes_are_told)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     static const char *const wrong[] = {
         "axis",          "axis 2 1",     "axis 1 1",     "axis 1",      "axis nan 2",
         "axis 0 x 1",    "axis purple",  "axis auto 25", "axis auto 0", "axis 0 2 all more",
@@ -132,13 +123,11 @@ TEST(test_wrong_axes_are_told)
     // signals of several units tell each its own
     carry_out(&ex, "trace gap force");
     assert_shows(&ex, "gap 0.09983 m");
-    explorer_finish(&ex);
 }
 
 TEST(test_ticks_are_round)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
     assert_shows(&ex, "1.2\u2524");
     assert_shows(&ex, "0.0\u2524");
@@ -150,14 +139,12 @@ TEST(test_ticks_are_round)
     assert_shows(&ex, " 3  rad/s");
     carry_out(&ex, "zoom 0.293 0.294");
     assert_shows(&ex, "0.2935");
-    explorer_finish(&ex);
 }
 
 TEST(test_the_visible_part_follows_the_cursor_until_it_is_panned)
 {
-    explorer ex;
     double from, to;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "zz");
     for (double t = 0; t <= 1; t += 0.07) {
         session_seek(&ex.state.session, t);
@@ -189,13 +176,11 @@ TEST(test_the_visible_part_follows_the_cursor_until_it_is_panned)
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     state_window(&ex.state, &from, &to);
     check_close(to, 0.5, 1e-12);
-    explorer_finish(&ex);
 }
 
 TEST(test_a_controlled_run_shows_readings_and_commands)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>28");
     char *text = picture(&ex, 160, 60, GLYPHS_BRAILLE);
     static const char *const wanted[] = {
@@ -211,15 +196,13 @@ TEST(test_a_controlled_run_shows_readings_and_commands)
     press(&ex, ":set control.law hybrid<Enter>");
     free(picture(&ex, 160, 60, GLYPHS_BRAILLE));
     assert_int_equal(ex.state.panes.pane[0].count, 3);
-    explorer_finish(&ex);
 }
 
 TEST(test_curves_of_one_pane_look_different)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":panes 2<Enter>:seek 0.2<Enter>");
-    screen s = {0};
+    SCOPED(screen_finish) screen s = {0};
     assert_true(screen_resize(&s, 160, 50));
     explorer_draw(&ex, &s);
     area curves = ex.layout.plot;
@@ -242,15 +225,12 @@ TEST(test_curves_of_one_pane_look_different)
             assert_int_not_equal(lines[i], lines[j]);
         }
     }
-    screen_finish(&s);
-    explorer_finish(&ex);
 }
 
 // Blocks of rows give the same range as the rows themselves.
 TEST(test_ranges_of_long_runs_are_exact)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     carry_out(&ex, "extend 99");
     carry_out(&ex, "seek end");
     const trace *t = &ex.state.session.run.trace;
@@ -281,7 +261,6 @@ TEST(test_ranges_of_long_runs_are_exact)
     carry_out(&ex, "zoom all");
     carry_out(&ex, "axis grow all");
     free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
-    explorer_finish(&ex);
 }
 
 // Columns of the time axis that show contact.
@@ -301,15 +280,12 @@ static int columns_in_contact(const screen *s)
 // Touches of a few milliseconds are seen where a column of the axis is twenty.
 TEST(test_brief_touches_are_on_the_axis)
 {
-    explorer ex;
-    screen s = {0};
-    open_explorer(&ex, "corrected/first-impact");
+    SCOPED(screen_finish) screen s = {0};
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     carry_out(&ex, "set wall.contact hunt-crossley");
     carry_out(&ex, "seek 1");
     assert_true(screen_resize(&s, 80, 24));
     explorer_draw(&ex, &s);
     assert_true(ex.state.session.run.summary.separations >= 5);
     assert_int_equal(columns_in_contact(&s), (int)ex.state.session.run.summary.separations);
-    screen_finish(&s);
-    explorer_finish(&ex);
 }

@@ -29,20 +29,18 @@ static void check_same(const summary *a, const summary *b)
 
 TEST(batches_equal_single_runs_to_the_last_bit)
 {
-    summary *batch = calloc(RUNS, sizeof *batch);
+    SCOPED(free_kept) summary *batch = calloc(RUNS, sizeof *batch);
     for (int jobs = 1; jobs <= 3; jobs++) {
         memset(batch, 0, RUNS * sizeof *batch);
         assert_int_equal(batch_run(make, NULL, RUNS, jobs, batch), STATUS_OK);
         for (size_t i = 0; i < RUNS; i++) {
             scenario s = {0};
-            run_result single;
+            SCOPED(run_finish) run_result single;
             make(NULL, i, &s);
             run_scenario(&s, false, &single);
             check_same(&batch[i], &single.summary);
-            run_finish(&single);
         }
     }
-    free(batch);
 }
 
 static void make_bad(void *context, size_t i, scenario *made)
@@ -53,13 +51,12 @@ static void make_bad(void *context, size_t i, scenario *made)
 
 TEST(a_failing_run_does_not_touch_the_others)
 {
-    summary *batch = calloc(RUNS, sizeof *batch);
+    SCOPED(free_kept) summary *batch = calloc(RUNS, sizeof *batch);
     assert_int_equal(batch_run(make_bad, NULL, RUNS, 2, batch), STATUS_OK);
     for (int i = 0; i < RUNS; i++) {
         assert_int_equal(batch[i].status, i == 7 ? STATUS_NOT_FINITE : STATUS_OK);
     }
     assert_non_null(strstr(batch[7].message, "t = "));
-    free(batch);
 }
 
 typedef struct random_base {
@@ -98,6 +95,7 @@ static double compare_widths(size_t first, size_t runs)
     random_base from = {.first = first};
     from.scenario = (scenario){.name = name, .file = none, .title = none, .description = none};
     from.scenario.parameters = fixture_parameters(NULL);
+    SCOPED(free_kept)
     summary *scalar = calloc(runs, sizeof *scalar), *wide = calloc(runs, sizeof *wide);
     assert_int_equal(taylor_limit_width(1), 1);
     assert_int_equal(batch_run(make_random, &from, runs, 2, scalar), STATUS_OK);
@@ -119,8 +117,6 @@ static double compare_widths(size_t first, size_t runs)
         impacts += scalar[i].impacts;
         assert_int_equal(scalar[i].status, STATUS_OK);
     }
-    free(scalar);
-    free(wide);
     return impacts;
 }
 

@@ -8,10 +8,9 @@
 static arm beam_of(int links, parameters *p)
 {
     char n[32];
-    arm a;
     snprintf(n, sizeof n, "arm.links=%d", links);
     *p = fixture_parameters(SETTINGS(n, "arm.hub_joint=beam"));
-    arm_init(&a, p);
+    arm a = arm_of(p);
     return a;
 }
 
@@ -80,15 +79,13 @@ static double frequency_ratio(int links, tip_end tip, int mode, double beta_leng
     parameters p;
     arm a = beam_of(links, &p);
     int count;
-    double *frequencies = calloc((size_t)a.dof, sizeof *frequencies);
-    double *shapes = calloc((size_t)(a.dof * a.dof), sizeof *shapes);
+    SCOPED(free_kept) double *frequencies = calloc((size_t)a.dof, sizeof *frequencies);
+    SCOPED(free_kept) double *shapes = calloc((size_t)(a.dof * a.dof), sizeof *shapes);
     assert_int_equal(modes_compute(&a, HUB_LOCKED, tip, &count, frequencies, shapes), STATUS_OK);
     assert_true(mode < count);
     double density = p.arm.mass / p.arm.length;
     double beam = beta_length * beta_length * sqrt(p.arm.EI / (density * pow(p.arm.length, 4)));
     double ratio = frequencies[mode] / beam;
-    free(frequencies);
-    free(shapes);
     return ratio;
 }
 
@@ -117,8 +114,7 @@ TEST(first_mode_has_the_damping_asked_for)
     const double wanted = 0.02;
     parameters p =
         fixture_parameters(SETTINGS("arm.links=8", "arm.hub_joint=beam", "arm.damping_ratio=0.02"));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     int count;
     double frequencies[9], shapes[81];
     assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes),
@@ -143,9 +139,8 @@ TEST(any_arm_has_the_damping_asked_for)
     };
     for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
         parameters p = fixture_parameters(arms[i]);
-        arm a;
         p.arm.damping_ratio = 0.02;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         int count;
         double frequencies[9], shapes[81];
         assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes),
@@ -161,8 +156,7 @@ TEST(any_arm_has_the_damping_asked_for)
 
     // a rigid arm has no mode
     parameters p = fixture_parameters(SETTINGS("arm.links=1", "arm.damping_ratio=0.02"));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     check_close(a.joint_damping, 0, 0);
 }
 
@@ -177,8 +171,7 @@ TEST(the_highest_frequency_bounds_the_modes)
                                    {"arm.links=8", "arm.hub_joint=rigid"}};
     for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
         parameters p = fixture_parameters(SETTINGS(arms[i][0], arms[i][1]));
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         int count;
         double frequencies[9], shapes[81];
         assert_int_equal(modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes),
@@ -193,8 +186,7 @@ TEST(the_highest_frequency_bounds_the_modes)
 TEST(an_overdamped_mode_decays_by_the_roots_of_its_equation)
 {
     parameters p = fixture_parameters(SETTINGS("arm.links=8", "arm.damping_ratio=0.1"));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     const double w = a.highest_frequency, fast = a.fastest_decay, slow = w * w / fast;
     assert_true(fast > 2 * w);
     check_relative(fast + slow, w * w * a.joint_damping / a.joint_stiffness, 1e-12);
@@ -208,8 +200,7 @@ TEST(whatever_decays_faster_is_followed)
     for (int spring = 0; spring < 2; spring++) {
         const char *joint = spring ? "arm.hub_joint=spring" : "arm.hub_joint=rigid";
         parameters p = fixture_parameters(SETTINGS(joint, "motor.viscous_friction=1e3"));
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         const motor_parameters *m = &p.motor;
         const double emf = m->torque_constant * m->back_emf / m->resistance;
         const double hub = p.arm.hub_inertia + (spring ? 0 : mass * l * l / 12);
@@ -234,9 +225,8 @@ TEST(whatever_decays_faster_is_followed)
 
     // a hub that weighs nothing has nothing that brakes it, its link has
     parameters p = fixture_parameters(SETTINGS("arm.links=2"));
-    arm a;
     p.arm.hub_inertia = 0;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     check_relative(a.fastest_decay, a.motor.damping / (mass * l * l / 12), 1e-12);
 }
 
@@ -245,8 +235,7 @@ TEST(whatever_decays_faster_is_followed)
 TEST(damping_by_mode_is_followed)
 {
     const parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.modal_ratios=0.9"));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     int count;
     double held, free[2], shapes[4];
     assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, &held, shapes), STATUS_OK);
@@ -261,8 +250,7 @@ TEST(an_arm_has_nothing_of_the_one_before)
     const parameters stiff =
         fixture_parameters(SETTINGS("arm.links=4", "arm.joint_stiffness=9,500,500"));
     const parameters soft = fixture_parameters(SETTINGS("arm.links=3", "arm.joint_stiffness=7,5"));
-    arm a;
-    arm_init(&a, &stiff);
+    arm a = arm_of(&stiff);
     arm_init(&a, &soft);
     check_close(a.joint_stiffness, 7, 0);
 }
@@ -274,8 +262,7 @@ TEST(the_longest_chain_has_the_damping_of_a_beam)
     for (int i = 0; i < 2; i++) {
         const parameters p =
             fixture_parameters(SETTINGS("arm.links=1024", "arm.damping_ratio=0.03", hubs[i]));
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         const double w = 1.8751 * 1.8751 * sqrt(p.arm.k2 / (2 * p.arm.mass)) / p.arm.length;
         check_relative(a.joint_damping, 2 * 0.03 / w * a.joint_stiffness, 0.01);
     }
@@ -304,8 +291,7 @@ TEST(a_mass_at_the_tip_lowers_the_frequencies)
         snprintf(n, sizeof n, "arm.links=%d", 8 << i);
         parameters p = fixture_parameters(
             SETTINGS(n, "arm.hub_joint=beam", "arm.tip_mass=0.1", "arm.damping_ratio=0.02"));
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         int count;
         double frequencies[17], shapes[17 * 17];
         assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes),
@@ -327,7 +313,7 @@ static double swing(const arm *a, const method_parameters *method, double expect
     motion_report report;
     assert_true(a->dof <= MOST);
     modes_compute(a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes);
-    motion *m = motion_create(a, method);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(a, method);
     motion_start(a, m, 0, 0);
     for (int i = 0; i < a->dof; i++) {
         state_angles(m, m->state)[i] = 1e-4 * shapes[i];
@@ -344,7 +330,6 @@ static double swing(const arm *a, const method_parameters *method, double expect
         crossing = now <= 0 ? (i - now / (now - before)) * h : 0;
         before = now;
     }
-    motion_destroy(m);
     return M_PI / 2 / crossing;
 }
 
@@ -363,8 +348,7 @@ TEST(every_engine_carries_the_mass_of_a_stiff_chain)
             fixture_parameters(SETTINGS(n, methods[i % 3], "arm.hub_joint=beam", "arm.k2=2e4",
                                         "motor.stiction=1000", "motor.voltage=0", "wall.kind=none",
                                         implicit ? "method.step=1e-5" : "method.step=1e-3"));
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         p.arm.tip_mass = 0.1;
         arm_init(&a, &p);
         const double beam = first * sqrt(p.arm.EI / p.arm.mass);

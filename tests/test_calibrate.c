@@ -78,12 +78,12 @@ TEST(the_commanded_force_chooses_the_entry)
     const double wanted[] = {0.25 * 0.5 / (2 * 2), 0.5 / (2 * 3), 2 * 0.5 / (2 * 4)};
     for (int i = 0; i < 3; i++) {
         for (int doubted = 0; doubted < 2; doubted++) {
+            SCOPED(run_finish)
             run_result r = rig_run(SETTINGS("control.law=hybrid", table, forces[i],
                                             doubted ? "belief.k2_factor=2" : "belief.k2_factor=1"),
                                    true);
             double angle = r.trace.rows[r.trace.row_count - 1].desired_angle;
             check_close(angle, wanted[i] / (doubted ? 2 : 1), 1e-12);
-            run_finish(&r);
         }
     }
 }
@@ -123,13 +123,13 @@ TEST(stiction_does_not_spoil_the_ratio)
     double force[3], k2[3];
     const char *const starts[] = {"initial.angle=0", "initial.angle=-0.1", "initial.angle=-0.3"};
     for (int i = 0; i < 3; i++) {
+        SCOPED(run_finish)
         run_result r = rig_run(SETTINGS("control.law=open-loop", "sensor.ideal=true", starts[i],
                                         "control.approach_voltage=2.25", "run.duration=6"),
                                true);
         const sample *last = &r.trace.rows[r.trace.row_count - 1];
         force[i] = last->force_reading;
         k2[i] = last->force_reading * 0.5 / (2 * last->encoder);
-        run_finish(&r);
     }
     double low = fmin(force[0], fmin(force[1], force[2])),
            high = fmax(force[0], fmax(force[1], force[2]));

@@ -35,8 +35,7 @@ static arm make_arm(int links, const char *hub, const char *wall)
         beam.length[k] = 1.0 / links;
         beam.stiffness[k] = k > 0 ? 4.92 * links / 2 : 90;
     }
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     return a;
 }
 
@@ -60,8 +59,7 @@ static arm make_uneven_arm(int links, const char *wall, bool rooted)
     }
     parameters p = fixture_parameters(SETTINGS(n, kind, lengths, springs, "arm.air_drag=0.3",
                                                rooted ? "arm.hub_joint=beam" : "run.duration=1"));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     return a;
 }
 
@@ -77,8 +75,7 @@ static arm make_stiffening_arm(int links, const char *wall)
         beam.length[k] = 1.0 / links;
         beam.stiffness[k] = 4.92 * links / 2;
     }
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     return a;
 }
 
@@ -302,7 +299,9 @@ TEST(a_turn_changes_the_penetration)
             const arm a = kind < 4 ? make_arm(links, kind & 1 ? "spring" : "rigid", wall)
                                    : make_uneven_arm(links, wall, kind & 1);
             const size_t size = (size_t)a.dof * sizeof(double);
-            double *q = malloc(size), *turn = malloc(size), *turned = malloc(size), before, after;
+            SCOPED(free_kept)
+            double *q = malloc(size), *turn = malloc(size), *turned = malloc(size);
+            double before, after;
             assert_true(q != NULL && turn != NULL && turned != NULL);
             for (int power = 0; power <= 24; power += 6) {
                 some_state(&a, 7 * links + kind, q, turn);
@@ -320,9 +319,6 @@ TEST(a_turn_changes_the_penetration)
                     check_close(change, rate, 1e-12 * fabs(rate) + 20 * pow(10, -2 * power));
                 }
             }
-            free(q);
-            free(turn);
-            free(turned);
         }
     }
 }

@@ -13,8 +13,7 @@ static double value_of(const explorer *ex, int parameter)
 TEST(test_typing_replaces_the_value)
 {
     const int voltage = PARAMETER_INDEX(motor.voltage);
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.2<Enter><Enter>0.5<Enter>");
     check_close(value_of(&ex, voltage), 0.5, 0);
 
@@ -34,7 +33,6 @@ TEST(test_typing_replaces_the_value)
     press(&ex, "<Enter>20<Enter>");
     assert_shows(&ex, "the command saturates at 10 V");
     assert_true(ex.state.message.warning);
-    explorer_finish(&ex);
 }
 
 // The first event of a kind after an instant; fails if there is none.
@@ -53,8 +51,7 @@ static double event_after(const explorer *ex, event_kind kind, double time)
 static void change_before_contact(const char *name, const char *setting)
 {
     char line[96];
-    explorer ex;
-    open_explorer(&ex, name);
+    OPEN_EXPLORER(ex, name);
     press(&ex, "<End>II");
     const session *s = &ex.state.session;
     const double instant = s->now;
@@ -79,7 +76,6 @@ static void change_before_contact(const char *name, const char *setting)
     check_close(s->now, instant, 0);
     press(&ex, "U");
     check_close(s->now, changed, 1e-12);
-    explorer_finish(&ex);
 }
 
 TEST(test_a_change_comes_before_the_contact_it_was_made_before)
@@ -92,8 +88,7 @@ TEST(test_a_change_comes_before_the_contact_it_was_made_before)
 
 TEST(test_what_has_no_effect_says_why)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     assert_int_equal(ex.state.parameters.parameter, PARAMETER_INDEX(control.force));
     press(&ex, ":set motor.voltage 2<Enter>");
     assert_shows(&ex, "without effect: the control law commands the voltage");
@@ -114,7 +109,6 @@ TEST(test_what_has_no_effect_says_why)
     press(&ex, ":set printed.newton_iterations 5<Enter>:set control.kp 3<Enter>:set arm.k1 100"
                "<Enter>:seek end<Enter>");
     check_close(session_sample(&ex.state.session)->hub_angle, end, 0);
-    explorer_finish(&ex);
 }
 
 // What one link's springs and a limited current do is not called without effect, and the other way
@@ -135,19 +129,16 @@ TEST(test_inert_is_what_has_no_effect)
         {"", PARAMETER_INDEX(motor.current_limit), false},
         {"", PARAMETER_INDEX(motor.transconductance), true}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        explorer ex;
-        open_explorer(&ex, "corrected/first-impact");
+        OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, cases[i].lines);
         assert_int_equal(state_inert_reason(&ex.state, cases[i].parameter) != NULL, cases[i].inert);
-        explorer_finish(&ex);
     }
 }
 
 TEST(test_predictors_take_the_voltage_in_force)
 {
-    explorer ex;
     char wanted[64];
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":set motor.voltage 0<Enter>i");
     const session *s = &ex.state.session;
     const sample *row = session_sample(s);
@@ -162,7 +153,6 @@ TEST(test_predictors_take_the_voltage_in_force)
     snprintf(wanted, sizeof wanted, "impact dynamics %.3f N in %.0f ms", answer.prediction.force,
              1e3 * answer.prediction.delay);
     assert_shows(&ex, wanted);
-    explorer_finish(&ex);
 }
 
 TEST(test_predictors_say_that_they_know_two_links)
@@ -214,8 +204,7 @@ TEST(test_values_that_have_no_room_are_cut_visibly)
 
 TEST(test_changes_to_come_are_seen_edited_and_dropped)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.5<Enter>:set motor.voltage 2<Enter>:seek 0.7<Enter>p<Home>");
     assert_shows(&ex, "\u25cf 2 changes, \u25cb 2 later");
     assert_shows(&ex, "0.50000 s  change motor.voltage = 2");
@@ -240,14 +229,12 @@ TEST(test_changes_to_come_are_seen_edited_and_dropped)
     check_close(session_parameters_at(&ex.state.session, 0.5).motor.voltage, 1, 0);
     press(&ex, ":drop 7<Enter>");
     assert_true(ex.state.message.warning);
-    explorer_finish(&ex);
 }
 
 TEST(test_nudges_are_one_change_and_reversible)
 {
     const int voltage = PARAMETER_INDEX(motor.voltage);
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.2<Enter><lt>");
     check_close(value_of(&ex, voltage), 0.9, 1e-15);
     press(&ex, "<lt><lt>");
@@ -273,17 +260,15 @@ TEST(test_nudges_are_one_change_and_reversible)
         fail_if(fabs(value_of(&ex, i) - before) > 1e-5 * fabs(before), "%s: %.17g and then %.17g",
                 info->path, before, value_of(&ex, i));
     }
-    explorer_finish(&ex);
 }
 
 TEST(test_saving_never_replaces_a_file_unasked)
 {
     char folder[] = "/tmp/impactlab-save-XXXXXX", before[1024], whole[256];
-    explorer ex;
     assert_non_null(mkdtemp(folder));
     assert_non_null(getcwd(before, sizeof before));
     assert_int_equal(chdir(folder), 0);
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":save run.csv<Enter>");
     snprintf(whole, sizeof whole, "saved %s/run.csv", folder);
     assert_shows(&ex, whole);
@@ -301,13 +286,11 @@ TEST(test_saving_never_replaces_a_file_unasked)
     assert_int_equal(unlink("first-impact-voltage-0.5.png"), 0);
     assert_int_equal(chdir(before), 0);
     assert_int_equal(rmdir(folder), 0);
-    explorer_finish(&ex);
 }
 
 TEST(test_everything_that_is_listed_can_be_filtered)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "/stic");
     assert_shows(&ex, "parameters /stic");
     assert_shows(&ex, "stiction");
@@ -331,13 +314,11 @@ TEST(test_everything_that_is_listed_can_be_filtered)
     // a filtered list of scenarios opens at once
     press(&ex, "o/five<Enter>");
     assert_string_equal(ex.state.session.base.name, "corrected/five-links");
-    explorer_finish(&ex);
 }
 
 TEST(test_groups_of_parameters_fold)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     assert_shows(&ex, "\u25be motor");
     assert_shows(&ex, "amplifier_gain");
     press(&ex, "k<Enter>");
@@ -349,13 +330,11 @@ TEST(test_groups_of_parameters_fold)
     assert_shows(&ex, "\u25b8 sensor");
     press(&ex, ":set film_gain<Enter>");
     assert_shows(&ex, "film_gain");
-    explorer_finish(&ex);
 }
 
 TEST(test_values_and_last_parts_are_completed_in_turn)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":set wall.kind p<Tab>");
     assert_shows(&ex, "point plane");
     press(&ex, "<Tab>");
@@ -373,24 +352,20 @@ TEST(test_values_and_last_parts_are_completed_in_turn)
     assert_string_equal(ex.state.prompt.text, "open corrected/three-links ");
     press(&ex, "<C-u>theme l<Tab>");
     assert_string_equal(ex.state.prompt.text, "theme light ");
-    explorer_finish(&ex);
 }
 
 TEST(test_descriptions_are_shown)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":info<Enter>");
     assert_shows(&ex, "The thesis's three modes with");
     press(&ex, "<Esc>o");
     assert_shows(&ex, "The thesis's three modes with");
-    explorer_finish(&ex);
 }
 
 TEST(test_leaving_asks_if_changes_would_be_lost)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.2<Enter><lt>q");
     assert_false(ex.state.quit);
     assert_shows(&ex, "1 change would be lost");
@@ -406,12 +381,11 @@ TEST(test_leaving_asks_if_changes_would_be_lost)
     ex.state.quit = false;
     press(&ex, "u<C-c>");
     assert_true(ex.state.quit);
-    explorer_finish(&ex);
 }
 
 TEST(test_an_interrupt_stops_a_computation_first)
 {
-    explorer ex;
+    SCOPED(explorer_finish) explorer ex;
     scenario s;
     fault f = {0};
     assert_int_equal(scenario_open(&s, "corrected/twenty-links", fail_on_fault, NULL), STATUS_OK);
@@ -423,7 +397,6 @@ TEST(test_an_interrupt_stops_a_computation_first)
     assert_false(ex.state.quit);
     press(&ex, "<C-c>");
     assert_true(ex.state.quit);
-    explorer_finish(&ex);
 }
 
 // The numbers of the panes that are shown on a screen of 120 columns.
@@ -442,8 +415,7 @@ static void assert_panes(explorer *ex, int height, const char *wanted)
 
 TEST(test_panes_follow_scenario_and_height)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     assert_panes(&ex, 24, "134");
     assert_panes(&ex, 60, "12345");
     press(&ex, ":open thesis/fig-3-2<Enter>");
@@ -458,26 +430,22 @@ TEST(test_panes_follow_scenario_and_height)
     assert_panes(&ex, 60, "1357");
     press(&ex, ":open corrected/first-impact<Enter>");
     assert_panes(&ex, 24, "1357");
-    explorer_finish(&ex);
 }
 
 TEST(test_setpoints_and_limits_are_lines)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     assert_shows(&ex, "\u2508force");
     press(&ex, ":axis -12 12 5<Enter>");
     assert_shows(&ex, "\u2508voltage_limit");
     press(&ex, ":open corrected/first-impact<Enter>2");
     assert_shows(&ex, "\u2508angle");
     assert_hides(&ex, "\u2508force");
-    explorer_finish(&ex);
 }
 
 TEST(test_ticks_are_even_and_names_whole)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.35<Enter>");
 
     // the force's axis in three rows: no tick is left out between two others
@@ -499,17 +467,15 @@ TEST(test_ticks_are_even_and_names_whole)
         press(&ex, "j");
     }
     assert_shows(&ex, "energy_residual");
-    explorer_finish(&ex);
 }
 
 // The head of the arrow stands in the column of its shaft, wherever the tip is.
 TEST(test_the_arrow_has_its_head_on)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>");
     for (int width = 90; width < 160; width++) {
-        screen s = {0};
+        SCOPED(screen_finish) screen s = {0};
         assert_true(screen_resize(&s, width, 40));
         explorer_draw(&ex, &s);
         int heads = 0;
@@ -521,17 +487,13 @@ TEST(test_the_arrow_has_its_head_on)
             }
         }
         assert_int_equal(heads, 1);
-        screen_finish(&s);
     }
-    explorer_finish(&ex);
 }
 
 TEST(test_a_filter_selects_what_has_an_effect)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     // motor.transconductance stands before control.transition_time, but the drive has none
     press(&ex, "/trans<Enter>");
     assert_shows(&ex, ":set control.transition_time");
-    explorer_finish(&ex);
 }

@@ -24,11 +24,10 @@ static sweep_axis varied_axis(const char *name)
 // The row of the impact of 5.4 under a law, named like it.
 static compare_row row_of(scenario *s, const char *name, const char *law)
 {
-    run_result r;
+    SCOPED(run_finish) run_result r;
     *s = (scenario){.name = (char *)name, .parameters = rig_parameters(SETTINGS(law))};
     assert_int_equal(run_scenario(s, false, &r), STATUS_OK);
     compare_row row = compare_row_of(s, &r);
-    run_finish(&r);
     return row;
 }
 
@@ -49,7 +48,8 @@ TEST(rows_reach_every_form)
                            row_of(&b, "bare", "control.law=none")};
     assert_string_equal(rows[0].law, "hybrid");
     assert_string_equal(rows[1].law, "none");
-    char *text, *csv;
+    char *csv;
+    SCOPED(free_kept) char *text;
     compare_table table = {
         .rows = rows, .count = 2, .against = rows, .group = 2, .tolerance = 0.05};
     keep(&text, &table, compare_text);
@@ -79,7 +79,6 @@ TEST(rows_reach_every_form)
     assert_null(json_object_get(whole, "tolerance"));
     assert_null(json_object_get(json_array_get(runs, 0), "differs"));
     json_decref(whole);
-    free(text);
     free(csv);
 }
 
@@ -106,7 +105,8 @@ TEST(varied_values_have_columns)
                        .group = 2,
                        .tolerance = 0.05};
     assert_int_equal(compare_choose(&t, "peak_force_N,impacts", &f), STATUS_OK);
-    char *page, *text, *csv;
+    char *text, *csv;
+    SCOPED(free_kept) char *page;
     keep(&page, &t, compare_markdown);
     keep(&text, &t, compare_text);
     keep(&csv, &t, compare_csv);
@@ -125,7 +125,6 @@ TEST(varied_values_have_columns)
     assert_int_equal(compare_choose(&t, "peak_force_N,impact", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "did you mean 'impacts'?"));
     json_decref(whole);
-    free(page);
     free(text);
     free(csv);
 }
@@ -138,7 +137,7 @@ TEST(nothing_beats_the_best)
     for (int i = 0; i < 4; i++) {
         for (int k = 1; k <= 8; k++) {
             char force[32];
-            run_result r;
+            SCOPED(run_finish) run_result r;
             snprintf(force, sizeof force, "control.force=%g", 0.5 * k);
             scenario s = {.name = (char *)"it",
                           .parameters = rig_parameters(SETTINGS(laws[i], force))};
@@ -147,20 +146,18 @@ TEST(nothing_beats_the_best)
             check_below(row.values[1], row.values[0]);
             check_below(row.values[4], row.values[3]);
             check_below(0.3, row.values[1]);
-            run_finish(&r);
         }
     }
     scenario s;
     const char *const beyond[] = {"arm.links=3", "arm.hub_joint=spring", "wall.restitution=0.5",
                                   "arm.model=printed", "arm.damping_ratio=0.01"};
     for (int i = 0; i < 5; i++) {
-        run_result r;
+        SCOPED(run_finish) run_result r;
         s = (scenario){.name = (char *)"it",
                        .parameters = rig_parameters(SETTINGS("control.law=hybrid", beyond[i]))};
         run_scenario(&s, false, &r);
         compare_row row = compare_row_of(&s, &r);
         assert_true(isnan(row.values[1]) && isnan(row.values[4]));
-        run_finish(&r);
     }
 }
 
@@ -174,14 +171,13 @@ TEST(a_gentle_run_is_held_against_its_band)
         snprintf(force, sizeof force, "control.force=%g", command[i / 2]);
         scenario s = {.name = (char *)"it",
                       .parameters = rig_parameters(SETTINGS("control.law=hybrid", force))};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         r.summary.peak_force_N = pressed[i % 2];
         const compare_row row = compare_row_of(&s, &r);
         const double allowed = fmax(1.05 * command[i / 2], pressed[i % 2]);
         check_relative(row.values[1], 0.789, 1e-3);
         assert_int_equal(isnan(row.values[4]), allowed < row.values[1]);
-        run_finish(&r);
     }
 }
 
@@ -198,7 +194,8 @@ TEST(a_failed_run_says_so)
     }
     const compare_table t = {
         .rows = rows, .count = 2, .varied = varied, .varied_count = 2, .group = 1};
-    char *page, *text, *csv;
+    char *text, *csv;
+    SCOPED(free_kept) char *page;
     keep(&page, &t, compare_markdown);
     keep(&text, &t, compare_text);
     keep(&csv, &t, compare_csv);
@@ -218,7 +215,6 @@ TEST(a_failed_run_says_so)
     assert_true(json_is_true(json_object_get(values, "printed.spring_counted_twice")));
     assert_string_equal(json_string_value(json_object_get(values, "arm.model")), "printed");
     json_decref(whole);
-    free(page);
     free(text);
     free(csv);
 }
@@ -243,7 +239,8 @@ TEST(forms_are_written_to_the_letter)
                        .group = 3,
                        .tolerance = 0.05};
     assert_int_equal(compare_choose(&t, "impacts,peak_force_N", &f), STATUS_OK);
-    char *page, *text, *csv;
+    char *text, *csv;
+    SCOPED(free_kept) char *page;
     keep(&page, &t, compare_markdown);
     keep(&text, &t, compare_text);
     keep(&csv, &t, compare_csv);
@@ -262,7 +259,6 @@ TEST(forms_are_written_to_the_letter)
                         "a,hybrid,0.5,true,ok,1.5,0,0,0,0,0,0,1000,0,0,0,0\n"
                         "much longer,none,12.25,false,failed,,0,0,0,0,0,0,999.75,0,0,0,0\n"
                         "c,recovering,1,true,ok,1.6,0,0,0,0,0,0,-1000,0,0,0,0\n");
-    free(page);
     free(text);
     free(csv);
 }
@@ -287,7 +283,7 @@ TEST(a_row_has_the_numbers_of_its_run)
                       .parameters = rig_parameters(cases[scripted ? 0 : i]),
                       .actions = scripted ? script : NULL,
                       .action_count = scripted};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         const summary *m = &r.summary;
         const compare_row row = compare_row_of(&s, &r);
@@ -320,6 +316,5 @@ TEST(a_row_has_the_numbers_of_its_run)
         }
         assert_true(row.ok);
         assert_ptr_equal(row.scenario, s.name);
-        run_finish(&r);
     }
 }

@@ -33,15 +33,13 @@ TEST(test_text_is_wrapped_at_blanks)
 
 static void check_small(explorer *ex, int width, int height, const char *wanted)
 {
-    char *text = picture(ex, width, height, GLYPHS_BRAILLE);
+    SCOPED(free_kept) char *text = picture(ex, width, height, GLYPHS_BRAILLE);
     fail_if(strncmp(text, wanted, strlen(wanted)) != 0, "%d x %d shows\n%s", width, height, text);
-    free(text);
 }
 
 TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     check_small(&ex, 1, 1, "<\n");
     check_small(&ex, 4, 3, "<\n");
     check_small(&ex, 5, 1, "small\n");
@@ -55,7 +53,8 @@ TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
                                         "(q",          "quits)", "<",     "small", "40x12"};
     for (int width = 1; width < 60; width++) {
         for (int height = 1; height < 12; height++) {
-            char *text = picture(&ex, width, height, GLYPHS_ASCII), *rest = text;
+            SCOPED(free_kept) char *text = picture(&ex, width, height, GLYPHS_ASCII);
+            char *rest = text;
             for (char *word; (word = strtok_r(rest, " \n", &rest)) != NULL;) {
                 bool known = strspn(word, "0123456789x.:") == strlen(word);
                 for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
@@ -63,24 +62,20 @@ TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
                 }
                 fail_if(!known, "'%s' at %d x %d", word, width, height);
             }
-            free(text);
         }
     }
-    explorer_finish(&ex);
 }
 
 static void assert_has(explorer *ex, int width, int height, const char *wanted)
 {
-    char *text = picture(ex, width, height, GLYPHS_BRAILLE);
+    SCOPED(free_kept) char *text = picture(ex, width, height, GLYPHS_BRAILLE);
     fail_if(strstr(text, wanted) == NULL, "'%s' is not on a screen of %d x %d:\n%s", wanted, width,
             height, text);
-    free(text);
 }
 
 TEST(test_the_status_keeps_what_matters)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>m");
     for (int width = 40; width < 200; width += 3) {
         assert_has(&ex, width, 24, "paused");
@@ -95,13 +90,11 @@ TEST(test_the_status_keeps_what_matters)
         assert_has(&ex, width, 24, "? help  q quit");
         assert_has(&ex, width, 24, "Space run/pause");
     }
-    explorer_finish(&ex);
 }
 
 TEST(test_eighty_columns_show_what_a_first_visit_needs)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
     static const char *const wanted[] = {"force 1.2", "w1 0.2", "gap 0",     "voltage",
                                          "0.0\u2524", "1 s",    "0.1\u2524", "N, 93 ms"};
@@ -118,13 +111,11 @@ TEST(test_eighty_columns_show_what_a_first_visit_needs)
     // a long prompt shows its end
     press(&ex, "<C-u>set control.plugin /a/long/name/of/a/folder/and/then/a/file.so");
     assert_has(&ex, 40, 12, "then/a/file.so");
-    explorer_finish(&ex);
 }
 
 TEST(test_a_narrow_screen_reaches_the_side)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     assert_has(&ex, 60, 20, "\u25b81      N");
     press(&ex, "<Tab>");
     assert_has(&ex, 60, 20, "parameters (Tab: values");
@@ -137,5 +128,4 @@ TEST(test_a_narrow_screen_reaches_the_side)
     // too many panes for the rows: the one in focus is there
     press(&ex, ":panes 123456789<Enter>ww");
     assert_has(&ex, 60, 20, "\u25b83  rad/s");
-    explorer_finish(&ex);
 }

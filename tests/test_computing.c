@@ -73,7 +73,7 @@ TEST(a_sweep_is_computed_into_rows_of_any_kind)
     rows r = {.store = {tell_present, put_row, commit_rows, tell_quantity}};
 
     // all runs, and then none
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     sweep_progress progress;
     fault f = {.text = ""};
     assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
@@ -85,10 +85,8 @@ TEST(a_sweep_is_computed_into_rows_of_any_kind)
     }
 
     // which can be judged
-    robust_law law;
+    SCOPED(robust_law_finish) robust_law law;
     assert_int_equal(robust_law_of(&law, "hybrid", &s, (sweep_share){0}, &r.store, &f), STATUS_OK);
     assert_int_equal(law.runs, RUNS);
     assert_true(isfinite(law.raw[ROBUST_MEDIAN]));
-    robust_law_finish(&law);
-    sweep_finish(&s);
 }

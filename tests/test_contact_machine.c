@@ -83,7 +83,7 @@ TEST(an_arm_that_starts_on_a_face_strikes_it)
     moving_rod r =
         start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt", "wall.stiffness=1e4",
                            "wall.mass=0.5", "initial.angle=0.1", "initial.velocity=0.2"));
-    motion *m = r.motion;
+    SCOPED(motion_destroy_kept) motion *m = r.motion;
     const double inertia = r.inertia, length = r.arm.link_length;
     assert_false(touches(&r));
     check_relative(m->start_energy, inertia * speed * speed / 2, 1e-12);
@@ -96,7 +96,6 @@ TEST(an_arm_that_starts_on_a_face_strikes_it)
     check_relative(report.speed, speed * length, 1e-9);
     check_relative(m->state[SLOT_FACE_VELOCITY],
                    inertia * speed * length / (inertia + mass * length * length), 1e-9);
-    motion_destroy(m);
 }
 
 // How fast a face is met decides whether the arm bounces: one that flees is met slowly.
@@ -106,7 +105,7 @@ TEST(a_face_that_flees_is_met_slowly)
         moving_rod r = start_rod(SETTINGS(
             "arm.links=1", "wall.contact=kelvin-voigt", "wall.stiffness=1e4", "wall.mass=0.5",
             "wall.restitution=0.5", "method.rest_speed=0.02", "initial.velocity=0.2"));
-        motion *m = r.motion;
+        SCOPED(motion_destroy_kept) motion *m = r.motion;
         const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
         const double met = i == 0 ? 0.01 : 0.03;
         m->state[SLOT_FACE_VELOCITY] = chain_penetration_rate(&r.arm, q, w) - met;
@@ -115,7 +114,6 @@ TEST(a_face_that_flees_is_met_slowly)
         const double left = chain_penetration_rate(&r.arm, q, w) - m->state[SLOT_FACE_VELOCITY];
         check_relative(impact.speed, met, 1e-9);
         check_close(left, i == 0 ? 0 : -0.5 * met, 1e-12);
-        motion_destroy(m);
     }
 }
 
@@ -490,7 +488,7 @@ TEST(the_peak_of_a_rising_force_is_at_its_end)
 {
     for (int i = 0; i < 2; i++) {
         moving_rod r = start_rod_by(NULL, i == 0 ? NULL : &explicit_engine);
-        motion *m = r.motion;
+        SCOPED(motion_destroy_kept) motion *m = r.motion;
         while (next_event(&r, 1).event != MOTION_IMPACT) {
         }
         const double touched = m->state[SLOT_TIME];
@@ -510,6 +508,5 @@ TEST(the_peak_of_a_rising_force_is_at_its_end)
             last = m->state[SLOT_FORCE];
         }
         assert_true(rising > 5);
-        motion_destroy(m);
     }
 }

@@ -167,15 +167,13 @@ TEST(settings_are_told_as_numbers_or_texts)
     strcpy(p.control.settings, "gain=2.5 way=fast mixed=3x bare");
     const controller_setup setup = {.period = 0.005};
     const controller_input in = {.time = 0.25, .piezo_force = (double)NAN};
-    char *first = process_question(&setup, &p.control, &in);
-    char *later = process_question(NULL, &p.control, &in);
+    SCOPED(free_kept) char *first = process_question(&setup, &p.control, &in);
+    SCOPED(free_kept) char *later = process_question(NULL, &p.control, &in);
     assert_true(first != NULL && later != NULL);
     assert_non_null(strstr(first, "\"gain\":2.5,\"way\":\"fast\",\"mixed\":\"3x\",\"bare\":\"\""));
     assert_non_null(strstr(first, "\"protocol\":"));
     assert_null(strstr(later, "settings"));
     assert_int_equal(first[strlen(first) - 1], '\n');
-    free(first);
-    free(later);
 }
 
 // An answer is an object with a command; what else it names has to be a number or null.
@@ -214,7 +212,7 @@ TEST(answers_are_numbers)
 TEST(manual_says_of_every_law_when_to_take_it)
 {
     FILE *file = fopen(manual, "rb");
-    char *text = calloc(1, 1 << 20);
+    SCOPED(free_kept) char *text = calloc(1, 1 << 20);
     assert_non_null(file);
     assert_non_null(text);
     text[fread(text, 1, (1 << 20) - 1, file)] = '\0';
@@ -228,7 +226,6 @@ TEST(manual_says_of_every_law_when_to_take_it)
         snprintf(word, sizeof word, "`%s`", control_law_table[law].word);
         fail_if(strstr(text, word) == NULL, "the first table of %s has no %s", manual, word);
     }
-    free(text);
 }
 
 int main(int count, char **arguments)

@@ -5,6 +5,8 @@
 #include "src/run/loop.h"
 #include "tests/rig_fixture.h"
 
+GIVEN_BACK(run_loop, loop_destroy)
+
 // The arm under a program in the shell, asked a hundred times a second.
 static scenario under(const char *program)
 {
@@ -28,11 +30,10 @@ TEST(odd_programs_are_understood)
     double peak[3];
     for (int i = 0; i < 3; i++) {
         scenario s = under(programs[i]);
-        run_result r;
+        SCOPED(run_finish) run_result r;
         fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", programs[i], r.summary.message);
         peak[i] = r.summary.peak_force_N;
         assert_true(i == 0 || peak[i] == peak[0]);
-        run_finish(&r);
     }
 }
 
@@ -48,11 +49,10 @@ TEST(programs_without_an_answer_are_said)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         scenario s = under(cases[i].program);
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_CONTROLLER_FAILED);
         fail_if(strstr(r.summary.message, cases[i].sentence) == NULL, "'%s' does not say '%s'",
                 r.summary.message, cases[i].sentence);
-        run_finish(&r);
     }
 }
 
@@ -78,14 +78,14 @@ TEST(a_program_is_led_back_and_on)
 {
     const scenario s = under(ANSWERS);
     const loop_options options = {.keep_trace = false};
-    run_loop *l;
+    SCOPED(loop_destroy_kept) run_loop *l;
     fault f = {.text = ""};
     assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
     const size_t size = loop_saved_size(l);
     (void)gone_to(l, 0.055);
-    void *early = kept(l);
+    SCOPED(free_kept) void *early = kept(l);
     const sample middle = gone_to(l, 0.105);
-    void *late = kept(l);
+    SCOPED(free_kept) void *late = kept(l);
     const sample end = gone_to(l, 0.155);
 
     for (int i = 0; i < 2; i++) {
@@ -96,9 +96,6 @@ TEST(a_program_is_led_back_and_on)
         const sample there = gone_to(l, 0.155);
         assert_memory_equal(&there, &end, sizeof there);
     }
-    free(early);
-    free(late);
-    loop_destroy(l);
 }
 
 // A program that answers otherwise when it is asked again cannot be led back. Its answers, from its
@@ -107,11 +104,11 @@ TEST(a_program_that_answers_otherwise_is_said)
 {
     const scenario s = under("n=$$; while read -r l; do echo \"{\\\"command\\\": 1.$n}\"; done");
     const loop_options options = {.keep_trace = false};
-    run_loop *l;
+    SCOPED(loop_destroy_kept) run_loop *l;
     fault f = {.text = ""};
     assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
     (void)gone_to(l, 0.055);
-    void *early = kept(l);
+    SCOPED(free_kept) void *early = kept(l);
     (void)gone_to(l, 0.105);
     assert_int_equal(loop_restore(l, early, loop_saved_size(l), &f), STATUS_OK);
 
@@ -119,8 +116,6 @@ TEST(a_program_that_answers_otherwise_is_said)
     assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k2), 7, &f), STATUS_OK);
     assert_int_equal(loop_until(l, 0.105, &f), STATUS_CONTROLLER_FAILED);
     assert_non_null(strstr(f.text, "not"));
-    free(early);
-    loop_destroy(l);
 }
 
 int main(void)

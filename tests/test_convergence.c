@@ -262,7 +262,7 @@ TEST(a_study_runs_each_method_at_each_step_once)
                                                 study_methods[m], &f),
                              STATUS_OK);
             s.parameters.method.step = point->step;
-            run_result result;
+            SCOPED(run_finish) run_result result;
             assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
                 const double value = summary_value(&result.summary, summary_index(study_keys[k]));
@@ -270,7 +270,6 @@ TEST(a_study_runs_each_method_at_each_step_once)
                 compared += isfinite(error);
                 assert_true(point->error[k] == error || (isnan(error) && isnan(point->error[k])));
             }
-            run_finish(&result);
         }
     }
     assert_true(compared > 2 * STUDY_METHODS);

@@ -26,7 +26,7 @@ static status read_table(csv_table *t, const char *text, size_t least, fault *f)
 
 TEST(columns_are_found_by_name_and_converted)
 {
-    csv_table t;
+    SCOPED(csv_table_finish) csv_table t;
     fault f;
     double *values;
     assert_int_equal(read_table(&t,
@@ -52,7 +52,6 @@ TEST(columns_are_found_by_name_and_converted)
         check_close(values[1], cases[i].second, 1e-15);
         free(values);
     }
-    csv_table_finish(&t);
 }
 
 TEST(what_cannot_be_read_is_named_with_line_and_column)

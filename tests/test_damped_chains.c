@@ -42,9 +42,8 @@ typedef struct bounces {
 static bounces bounces_of(const parameters *p, const engine *by, double gap, double velocity,
                           double until)
 {
-    arm a;
-    arm_init(&a, p);
-    motion *m = motion_create_by(&a, &p->method, by);
+    arm a = arm_of(p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, by);
     assert_non_null(m);
     motion_start(&a, m, p->wall.angle - gap, velocity);
     bounces all = {0};
@@ -61,7 +60,6 @@ static bounces bounces_of(const parameters *p, const engine *by, double gap, dou
     }
     all.peak = m->pulse_peak;
     all.peak_time = m->pulse_peak_time;
-    motion_destroy(m);
     return all;
 }
 
@@ -139,9 +137,8 @@ static void hub_events(double share, double instant[3])
     p.wall.angle *= share;
     p.motor.voltage *= share;
     p.motor.stiction *= share;
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create_by(&a, &p.method, &stiff_engine);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
     assert_non_null(m);
     motion_start(&a, m, 0, 0);
 
@@ -161,7 +158,6 @@ static void hub_events(double share, double instant[3])
         motion_apply(&a, m, &r);
     }
     assert_int_equal(count, 3);
-    motion_destroy(m);
 }
 
 // Within a stride a small arm's friction comes to its limit from next to it, and only there does

@@ -40,6 +40,7 @@ TEST(an_arm_that_coasts_comes_to_rest)
     static const char *const links[] = {"arm.links=1", "arm.links=2"};
     for (int k = 0; k < 2; k++) {
         arm a;
+        SCOPED(motion_destroy_kept)
         motion *m = fading_motion(&a, links[k], "method.name=event", "motor.stiction=0");
         motion_start(&a, m, 0, 1);
         go(&a, m, 100);
@@ -53,7 +54,6 @@ TEST(an_arm_that_coasts_comes_to_rest)
         }
         go(&a, m, 500);
         check_close(state_angles(m, m->state)[0], turned, 0);
-        motion_destroy(m);
     }
 }
 
@@ -61,6 +61,7 @@ TEST(an_arm_that_coasts_comes_to_rest)
 TEST(a_beam_that_vibrated_is_exactly_straight)
 {
     arm a;
+    SCOPED(motion_destroy_kept)
     motion *m = fading_motion(&a, "arm.links=2", "method.name=event", "motor.stiction=1");
     motion_start(&a, m, 0, 0);
     state_angles(m, m->state)[1] = 1e-3;
@@ -71,7 +72,6 @@ TEST(a_beam_that_vibrated_is_exactly_straight)
     for (int i = SLOT_COUNT; i < SLOT_COUNT + 2 * m->dof; i++) {
         check_close(m->state[i], 0, 0);
     }
-    motion_destroy(m);
 }
 
 // The implicit methods end in the rounding of their angles, single links beyond it.
@@ -81,6 +81,7 @@ TEST(the_implicit_methods_keep_nothing_that_faded)
     static const char *const frictions[] = {"motor.stiction=0", "motor.stiction=0.01"};
     for (int k = 0; k < 4; k++) {
         arm a;
+        SCOPED(motion_destroy_kept)
         motion *m = fading_motion(&a, k % 2 ? "arm.links=8" : "arm.links=2", methods[k / 2],
                                   frictions[k % 2]);
         motion_start(&a, m, 0, 1);
@@ -88,6 +89,5 @@ TEST(the_implicit_methods_keep_nothing_that_faded)
         for (int i = 0; i < m->dof; i++) {
             check_below(fabs(state_velocities(m, m->state)[i]), 1e-9);
         }
-        motion_destroy(m);
     }
 }

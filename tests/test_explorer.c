@@ -7,8 +7,8 @@
 
 TEST(test_text_is_cut_and_cleaned)
 {
-    screen s = {0};
-    char *text = NULL;
+    SCOPED(screen_finish) screen s = {0};
+    SCOPED(free_kept) char *text = NULL;
     size_t size = 0;
     assert_true(screen_resize(&s, 8, 2));
     assert_int_equal(screen_text(&s, 0, 0, 4, INK_TEXT, "\u03b8\tabcdef"), 4);
@@ -20,13 +20,11 @@ TEST(test_text_is_cut_and_cleaned)
     screen_dump(&s, GLYPHS_BRAILLE, stream);
     fclose(stream);
     assert_string_equal(text, "\u03b8?ab\nyz    ??\n");
-    free(text);
-    screen_finish(&s);
 }
 
 TEST(test_lines_of_dots_stay_within_their_canvas)
 {
-    screen s = {0};
+    SCOPED(screen_finish) screen s = {0};
     assert_true(screen_resize(&s, 6, 4));
     canvas c = {&s, 1, 1, 4, 2};
     canvas_line(&c, -1e12, 4, 1e12, 4, INK_ARM);
@@ -38,29 +36,24 @@ TEST(test_lines_of_dots_stay_within_their_canvas)
             assert_int_equal(s.cells[y * 6 + x].glyph != ' ', on_line);
         }
     }
-    screen_finish(&s);
 }
 
 TEST(test_every_glyph_has_a_twin_in_ascii)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     static const char *const pages[] = {"<End>bp", "?", "<Esc>c", "<Esc>o", "<Esc><Tab>m"};
     for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
         press(&ex, pages[i]);
-        char *text = picture(&ex, 150, 50, GLYPHS_ASCII);
+        SCOPED(free_kept) char *text = picture(&ex, 150, 50, GLYPHS_ASCII);
         for (const char *c = text; *c; c++) {
             assert_true((*c >= ' ' && *c < 127) || *c == '\n');
         }
-        free(text);
     }
-    explorer_finish(&ex);
 }
 
 TEST(test_playing_shows_an_impact_within_seconds)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     assert_shows(&ex, "free flight");
     press(&ex, "<Space>");
     explorer_advance(&ex, 2);
@@ -69,14 +62,12 @@ TEST(test_playing_shows_an_impact_within_seconds)
     explorer_advance(&ex, 100);
     assert_false(ex.state.playback.playing);
     assert_shows(&ex, "end of the run");
-    explorer_finish(&ex);
 }
 
 // A newcomer's way: watch, pause, go back to just before contact, lower the voltage, compare.
 TEST(test_a_lower_voltage_is_compared_with_the_run_before)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<Space>");
     explorer_advance(&ex, 3);
     press(&ex, "<Space>NNNN<Home>nN");
@@ -99,13 +90,12 @@ TEST(test_a_lower_voltage_is_compared_with_the_run_before)
     press(&ex, "U");
     check_below(ex.state.session.run.summary.peak_force_N,
                 ex.state.session.other.summary.peak_force_N);
-    explorer_finish(&ex);
 }
 
 // The number of dots drawn in the column of cells that shows an instant.
 static int tallest_column(explorer *ex, int width)
 {
-    screen s = {0};
+    SCOPED(screen_finish) screen s = {0};
     int tallest = 0;
     assert_true(screen_resize(&s, width, 40));
     explorer_draw(ex, &s);
@@ -118,37 +108,31 @@ static int tallest_column(explorer *ex, int width)
         }
         tallest = cells > tallest ? cells : tallest;
     }
-    screen_finish(&s);
     return tallest;
 }
 
 TEST(test_a_spike_of_one_row_is_drawn)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "134:extend 19<Enter><End>");
     press(&ex, ":trace impulse<Enter>");
     // the impulse is one row of twenty thousand, and its line goes up the whole pane
     assert_true(tallest_column(&ex, 120) >= ex.layout.plot.height - 4);
-    explorer_finish(&ex);
 }
 
 TEST(test_values_show_the_difference_to_the_mark)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.2<Enter>m<Tab>:seek 0.25<Enter>");
     assert_shows(&ex, "values, minus mark");
     assert_shows(&ex, "from mark 0.05 s");
     press(&ex, "<Esc>");
     assert_hides(&ex, "from mark");
-    explorer_finish(&ex);
 }
 
 TEST(test_the_list_filters_and_opens)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "o/three");
     assert_shows(&ex, "corrected/three-links");
     assert_shows(&ex, "Three links against a flat wall");
@@ -163,13 +147,11 @@ TEST(test_the_list_filters_and_opens)
     assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
     press(&ex, "[");
     assert_string_not_equal(ex.state.session.base.name, "thesis/fig-3-4");
-    explorer_finish(&ex);
 }
 
 TEST(test_what_is_typed_is_completed)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":comp<Tab>");
     assert_string_equal(ex.state.prompt.text, "compare ");
     press(&ex, "<C-u>set motor.vol<Tab>");
@@ -179,13 +161,11 @@ TEST(test_what_is_typed_is_completed)
     assert_shows(&ex, "did you mean 'motor.voltage'?");
     press(&ex, ":brunch<Enter>");
     assert_shows(&ex, "did you mean branch?");
-    explorer_finish(&ex);
 }
 
 TEST(test_help_lists_every_key)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "?");
     assert_shows(&ex, ":branch");
     press(&ex, "<End>");
@@ -195,13 +175,11 @@ TEST(test_help_lists_every_key)
     assert_false(ex.state.quit);
     press(&ex, "q");
     assert_true(ex.state.quit);
-    explorer_finish(&ex);
 }
 
 TEST(test_pages_scroll_to_their_ends)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "?GGjj");
     assert_shows(&ex, ":quit");
     press(&ex, "gkk");
@@ -209,15 +187,13 @@ TEST(test_pages_scroll_to_their_ends)
     // nothing is drawn between these, which would keep the line within the page
     press(&ex, "<Esc>cGjjjgk");
     assert_shows(&ex, "this run");
-    explorer_finish(&ex);
 }
 
 TEST(test_saved_scenario_and_screen)
 {
-    explorer ex;
     char folder[] = "/tmp/impactlab-screen-XXXXXX", line[128], path[64];
     assert_non_null(mkdtemp(folder));
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     ex.state.size.width = 100;
     ex.state.size.height = 30;
     press(&ex, ":seek 0.2<Enter>");
@@ -239,26 +215,22 @@ TEST(test_saved_scenario_and_screen)
         assert_int_equal(unlink(path), 0);
     }
     assert_int_equal(rmdir(folder), 0);
-    explorer_finish(&ex);
 }
 
 TEST(test_a_click_moves_the_cursor)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     click_at(&ex, ex.layout.plot.x + ex.layout.plot.width / 2, ex.layout.plot.y + 3);
     check_close(ex.state.session.now, 0.5, 0.02);
     click_at(&ex, 119, 39);
     click_at(&ex, -5, 1000);
     check_close(ex.state.session.now, 0.5, 0.02);
-    explorer_finish(&ex);
 }
 
 TEST(test_every_scenario_and_every_size_draws)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     static const int sizes[][2] = {{1, 1},   {300, 100}, {40, 12}, {41, 13}, {72, 20},
                                    {99, 29}, {100, 30},  {39, 50}, {200, 5}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
@@ -275,27 +247,23 @@ TEST(test_every_scenario_and_every_size_draws)
         session_seek(&ex.state.session, 0.6 * session_end(&ex.state.session));
         assert_shows(&ex, ex.state.session.base.name);
     }
-    explorer_finish(&ex);
 }
 
 // Beneath a lesson the arm may be left a row, or none, also from near by.
 TEST(test_a_lesson_leaves_the_arm_any_height)
 {
-    explorer ex;
-    open_explorer(&ex, "lessons/hybrid-law");
+    OPEN_EXPLORER(ex, "lessons/hybrid-law");
     press(&ex, ":closeup on<Enter>:seek 0.5<Enter>");
     for (int height = 1; height <= 40; height++) {
         free(picture(&ex, 110, height, GLYPHS_BRAILLE));
     }
-    explorer_finish(&ex);
 }
 
 // At the last row before a touch the linearised arm says what "impactlab predict" says, for as many
 // links as there are; while the run plays it is not asked.
 TEST(test_many_links_are_predicted_while_the_run_rests)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/five-links");
+    OPEN_EXPLORER(ex, "corrected/five-links");
     press(&ex, "i");
     const trace *t = &ex.state.session.run.trace;
     const sample *row = session_sample(&ex.state.session);
@@ -306,7 +274,6 @@ TEST(test_many_links_are_predicted_while_the_run_rests)
     assert_shows(&ex, "linearised      2.614 N in 7 ms");
     press(&ex, ":seek 0.1<Enter><Space>");
     assert_shows(&ex, "linearised      -");
-    explorer_finish(&ex);
 }
 
 static int chance(random_generator *r, int limit)
@@ -334,8 +301,7 @@ TEST(test_random_keys_do_no_harm)
                                0};
     random_generator r;
     random_seed(&r, 6);
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < 4000; i++) {
         bool saving = ex.state.prompt.open && (strncmp(ex.state.prompt.text, "s", 1) == 0 &&
                                                strncmp(ex.state.prompt.text, "set ", 4) != 0);
@@ -354,14 +320,14 @@ TEST(test_random_keys_do_no_harm)
     }
     // what was done can be saved, and gives the same run
     free(save_and_compare(&ex.state.session));
-    explorer_finish(&ex);
 }
 
 // The lab draws and takes keys while a long run is computed; what it shows in the end is what a
 // lab that waits for its runs shows.
 TEST(test_a_long_run_is_drawn_while_it_is_computed)
 {
-    explorer ex, patient;
+    explorer ex;
+    SCOPED(explorer_finish) explorer patient;
     scenario s;
     fault f = {0};
     assert_int_equal(scenario_open(&s, "corrected/twenty-links", fail_on_fault, NULL), STATUS_OK);
@@ -404,5 +370,4 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
     free(other);
     ex.state.session.input_count = 0;
     explorer_finish(&ex);
-    explorer_finish(&patient);
 }

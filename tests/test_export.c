@@ -35,11 +35,12 @@ static run_result stopped_result(void)
 
 TEST(object_holds_every_key)
 {
+    SCOPED(scenario_finish)
     scenario s = parse("title: T\narm: {links: 3}\nwall: {kind: plane}\n"
                        "expect:\n  impacts: {value: 1, tolerance: 0}\n  peak_force_N: null\n"
                        "  first_contact_s: {value: 0.3, tolerance: 0.01}\n"
                        "script:\n  - {at: 0.1 s, set: {motor.voltage: 2 V}}\n");
-    run_result result = stopped_result();
+    SCOPED(run_finish) run_result result = stopped_result();
     json_t *object = export_run(&s, &result);
     assert_string_equal(json_string_value(json_object_get(object, "scenario")), "t.yaml");
     assert_string_equal(json_string_value(json_object_get(object, "status")), "failed");
@@ -78,17 +79,16 @@ TEST(object_holds_every_key)
                          strcmp(quantity, "first_contact_s") != 0);
     }
     json_decref(object);
-    run_finish(&result);
-    scenario_finish(&s);
 }
 
 // A change of a word is told as the word; one whose place in the script is not known as an event
 // alone.
 TEST(changes_are_told_as_they_were_written)
 {
+    SCOPED(scenario_finish)
     scenario s = parse("title: T\ncontrol: {law: hybrid}\n"
                        "script:\n  - {at: 0.1 s, set: {control.lock: force}}\n");
-    run_result result = stopped_result();
+    SCOPED(run_finish) run_result result = stopped_result();
     trace_add_event(&result.trace, (event){0.3, EVENT_CHANGE, 0, 0, 0, 7});
     trace_add_event(&result.trace, (event){0.4, EVENT_CHANGE, 0, 0, 0, -1});
     json_t *object = export_run(&s, &result), *events = json_object_get(object, "events");
@@ -100,8 +100,6 @@ TEST(changes_are_told_as_they_were_written)
         assert_null(json_object_get(json_array_get(events, i), "parameter"));
     }
     json_decref(object);
-    run_finish(&result);
-    scenario_finish(&s);
 }
 
 // What a missed expectation says, one sentence after the other.
@@ -114,17 +112,16 @@ static void keep_sentences(void *context, const char *sentence)
 TEST(missed_expectations_say_what_is_and_what_was_expected)
 {
     char said[1024] = "";
+    SCOPED(scenario_finish)
     scenario s = parse("title: T\nexpect:\n"
                        "  impacts: null\n"
                        "  peak_force_N: {value: 2, tolerance: 0.5}\n"
                        "  first_contact_s: {value: 0.25, tolerance: 0.01}\n");
-    run_result result = stopped_result();
+    SCOPED(run_finish) run_result result = stopped_result();
     assert_int_equal(run_check_expectations(&s, &result, keep_sentences, said), 2);
     assert_string_equal(said,
                         "t.yaml:3:3: impacts is 1, expected null\n"
                         "t.yaml:4:3: peak_force_N is nothing (null), expected 2 within 0.5\n");
-    run_finish(&result);
-    scenario_finish(&s);
 }
 
 // CSV of a trace of two rows with three angles each, on the heap.
@@ -133,7 +130,7 @@ static char *csv_of(int links, double film)
 {
     char *text = NULL;
     size_t length = 0;
-    trace t;
+    SCOPED(trace_finish) trace t;
     trace_init(&t, 3);
     for (int i = 0; i < 2; i++) {
         sample row = {.time = 0.1 * i,
@@ -154,7 +151,6 @@ static char *csv_of(int links, double film)
     FILE *stream = open_memstream(&text, &length);
     export_csv(stream, &t, links);
     fclose(stream);
-    trace_finish(&t);
     return text;
 }
 
@@ -170,7 +166,7 @@ static int count_of(const char *text, char wanted)
 TEST(csv_has_one_header_and_a_column_for_each_value)
 {
     for (int links = 2; links <= 3; links++) {
-        char *text = csv_of(links, (double)NAN);
+        SCOPED(free_kept) char *text = csv_of(links, (double)NAN);
         int columns = (links > 2 ? 3 : 0);
         for (int i = 0; i < signal_count; i++) {
             columns += !signal_table[i].optional; // the run has no such sensor
@@ -183,19 +179,16 @@ TEST(csv_has_one_header_and_a_column_for_each_value)
             line = strchr(line, '\n') + 1;
         }
         assert_int_equal(*line, '\0');
-        free(text);
     }
 }
 
 TEST(csv_has_columns_of_fitted_sensors_only)
 {
-    char *without = csv_of(2, (double)NAN), *with = csv_of(2, -0.125);
+    SCOPED(free_kept) char *without = csv_of(2, (double)NAN), *with = csv_of(2, -0.125);
     assert_null(strstr(without, "film[rad]"));
     assert_non_null(strstr(with, ",film[rad],"));
     assert_non_null(strstr(with, ",-0.125,"));
     assert_null(strstr(with, "piezo_force"));
     assert_null(strstr(with, "accelerometer"));
     assert_int_equal(count_of(with, ','), count_of(without, ',') + 1);
-    free(without);
-    free(with);
 }

@@ -7,6 +7,8 @@
 #include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
 static void print_sentence(void *context, const char *sentence)
 {
     (void)context;
@@ -24,8 +26,8 @@ static void read_scenario(scenario *s, const char *text)
 static status ends_of_push(int links, double impulse)
 {
     char text[256];
-    run_result result;
-    scenario s;
+    SCOPED(run_finish) run_result result;
+    SCOPED(scenario_finish) scenario s;
     snprintf(text, sizeof text,
              "title: Pushed\narm: {links: %d}\nwall: {kind: none}\nscript:\n"
              "  - {at: 0.1 s, push: %g N s}\n",
@@ -34,8 +36,6 @@ static status ends_of_push(int links, double impulse)
 
     status code = run_scenario(&s, false, &result);
     assert_int_equal(code == STATUS_OK, result.summary.message[0] == '\0');
-    run_finish(&result);
-    scenario_finish(&s);
     return code;
 }
 
@@ -56,8 +56,9 @@ TEST(a_run_that_is_asked_to_end_does)
     static const char *const models[] = {"printed", "corrected"};
     for (int i = 0; i < 2; i++) {
         char text[128];
-        scenario s;
-        run_result whole, ended;
+        SCOPED(scenario_finish) scenario s;
+        run_result whole;
+        SCOPED(run_finish) run_result ended;
         run_monitor monitor = {.stop = true};
         const run_options options = {.keep_trace = true, .monitor = &monitor};
         snprintf(text, sizeof text, "title: Ended\narm: {model: %s}\nrun: {duration: 0.5 s}\n",
@@ -71,8 +72,6 @@ TEST(a_run_that_is_asked_to_end_does)
                             ended.trace.row_count * sizeof *whole.trace.rows);
         assert_int_equal(strncmp(ended.summary.message, "at t = ", 7), 0);
         run_finish(&whole);
-        run_finish(&ended);
-        scenario_finish(&s);
     }
 }
 
@@ -92,8 +91,8 @@ TEST(the_peak_of_a_damped_chain_is_at_its_impact)
     double before = 0;
     for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
         char text[200];
-        run_result result;
-        scenario s;
+        SCOPED(run_finish) run_result result;
+        SCOPED(scenario_finish) scenario s;
         snprintf(text, sizeof text,
                  "title: Damped\nmotor: {voltage: 5 V}\nwall: {kind: plane}\n"
                  "arm: {links: %d, damping_ratio: 1}\nrun: {duration: 0.2 s}\n",
@@ -105,8 +104,6 @@ TEST(the_peak_of_a_damped_chain_is_at_its_impact)
         check_close(result.summary.time_to_peak_s, 0, 1e-9);
         check_relative(coefficient, before > 0 ? before : coefficient, 0.03);
         before = coefficient;
-        run_finish(&result);
-        scenario_finish(&s);
     }
 }
 
@@ -115,8 +112,8 @@ TEST(a_touch_behind_the_link_is_told)
 {
     for (int way = -1; way <= 1; way += 2) {
         char text[160];
-        run_result result;
-        scenario s;
+        SCOPED(run_finish) run_result result;
+        SCOPED(scenario_finish) scenario s;
         snprintf(text, sizeof text,
                  "title: Round\nmotor: {voltage: %d V}\nwall: {angle: 2.9 rad}\n"
                  "run: {duration: 3 s}\n",
@@ -125,8 +122,6 @@ TEST(a_touch_behind_the_link_is_told)
         assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
         assert_true(result.summary.impacts > 0);
         assert_int_equal(result.summary.message[0] != '\0', way < 0);
-        run_finish(&result);
-        scenario_finish(&s);
     }
 }
 
@@ -150,9 +145,9 @@ TEST(runs_without_an_end_are_abandoned_and_not_stored)
     const sweep_options options = {
         .jobs = 2, .stop = &stop, .abandon = &abandoned, .report = give_up};
     fault f = {0};
-    scenario base;
-    sweep s;
-    sweep_store *store;
+    SCOPED(scenario_finish) scenario base;
+    SCOPED(sweep_finish) sweep s;
+    SCOPED(sweep_store_close_kept) sweep_store *store;
     sweep_progress progress;
     read_scenario(&base, text);
     assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
@@ -162,10 +157,6 @@ TEST(runs_without_an_end_are_abandoned_and_not_stored)
     assert_int_equal(progress.total, 3);
     assert_int_equal(progress.done, 0);
     assert_int_equal(progress.failed, 0);
-
-    sweep_store_close(store);
-    sweep_finish(&s);
-    scenario_finish(&base);
 }
 
 TEST(runs_abandoned_before_they_begin_are_not_set_up)
@@ -175,8 +166,8 @@ TEST(runs_abandoned_before_they_begin_are_not_set_up)
                                         "title: Under a law\ncontrol: {law: hybrid}\n"};
     const atomic_bool already = true;
     for (int i = 0; i < 3; i++) {
-        scenario s;
-        run_result result;
+        SCOPED(scenario_finish) scenario s;
+        SCOPED(run_finish) run_result result;
         side_by_side *storage = NULL;
         read_scenario(&s, texts[i]);
         run_together(&s, 1, &already, &result, &storage);
@@ -184,7 +175,5 @@ TEST(runs_abandoned_before_they_begin_are_not_set_up)
         assert_true(isnan(result.summary.steps) || result.summary.steps == 0);
         assert_int_equal(result.trace.event_count, 0);
         side_by_side_destroy(storage);
-        run_finish(&result);
-        scenario_finish(&s);
     }
 }

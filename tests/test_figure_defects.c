@@ -5,17 +5,10 @@
 #include "render/plot/curve.h"
 #include "render/plot/study_plot.h"
 
-// fontconfig keeps its cache until the process ends
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libfontconfig\n";
-}
-
 TEST(the_last_of_twenty_links_is_body_21)
 {
     static figure_report r;
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     fault f = {0};
     const trace_run run = {&s.scenario, &s.result, NULL};
@@ -26,14 +19,13 @@ TEST(the_last_of_twenty_links_is_body_21)
     record(&s.figure.figure, &r);
     expect_text(&r, "\u03b821  last link");
     assert_false(has_text(&r, "\u03b83  last link"));
-    synthetic_finish(&s);
 }
 
 // The peak lies between two rows: the mark's force must be among the drawn.
 TEST(the_peak_is_on_the_curve)
 {
     fault f = {0};
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     const trace_run run = {&s.scenario, &s.result, NULL};
     trace_figure_finish(&s.figure);
@@ -51,7 +43,6 @@ TEST(the_peak_is_on_the_curve)
     }
     assert_true(found);
     assert_int_equal(force->count, s.result.trace.row_count + 1);
-    synthetic_finish(&s);
 }
 
 // ---- labels of marks
@@ -81,8 +72,8 @@ static void check_labels(const char *name, double from, double to,
                          void (*check)(const figure_mark *m, const figure_text *t, double x,
                                        double y))
 {
-    scenario s;
-    run_result result;
+    SCOPED(scenario_finish) scenario s;
+    SCOPED(run_finish) run_result result;
     assert_int_equal(scenario_open(&s, name, ignore_sentence, NULL), STATUS_OK);
     assert_int_equal(run_scenario(&s, true, &result), STATUS_OK);
     const trace_run run = {&s, &result, NULL};
@@ -110,8 +101,6 @@ static void check_labels(const char *name, double from, double to,
         }
         trace_figure_finish(&t);
     }
-    run_finish(&result);
-    scenario_finish(&s);
 }
 
 static int arrows;
@@ -420,7 +409,7 @@ static cairo_surface_t *paint_sweep(const char *one, const char *other, figure_r
     scenario base = {.name = name};
     parameters_defaults(&base.parameters, ARM_CORRECTED);
     sweep_request request = {.vary = vary, .vary_count = other != NULL ? 2 : 1};
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     fault f = {0};
     fail_if(sweep_init(&s, &base, &request, &f) != STATUS_OK, "%s", f.text);
     double values[64];
@@ -432,7 +421,6 @@ static cairo_surface_t *paint_sweep(const char *one, const char *other, figure_r
     owned_figure *drawn = sweep_figure_create(&shown);
     cairo_surface_t *surface = paint_pixels(&drawn->figure, 2, r);
     owned_figure_destroy(drawn);
-    sweep_finish(&s);
     return surface;
 }
 

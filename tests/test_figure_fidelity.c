@@ -8,13 +8,6 @@
 #include "render/figures/figures.h"
 #include "render/page/text.h"
 
-// fontconfig keeps its cache until the process ends
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libfontconfig\n";
-}
-
 static artwork open_figure(const char *id)
 {
     fault f = {0};
@@ -28,9 +21,8 @@ static artwork open_figure(const char *id)
 
 static char *caption_of(const char *id)
 {
-    artwork drawn = open_figure(id);
+    SCOPED(artwork_finish) artwork drawn = open_figure(id);
     char *plain = text_plain(drawn.caption);
-    artwork_finish(&drawn);
     return plain;
 }
 

@@ -1,19 +1,12 @@
 // Figures as files: bytes, fonts, identifiers, data, faults.
 #include "tests/plot_fixture.h"
 
-// fontconfig keeps its cache until the process ends
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libfontconfig\n";
-}
-
 // ---- files
 
 TEST(same_bytes_also_for_later_figures)
 {
     static const char *const formats[] = {"png", "pdf", "svg"};
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     for (int n = 1; n <= 20; n++) {
         for (int i = 0; i < 3; i++) {
@@ -27,14 +20,13 @@ TEST(same_bytes_also_for_later_figures)
             }
         }
     }
-    synthetic_finish(&s);
 }
 
 // All bytes of a PDF with its packed streams unpacked behind them.
 static GString *unpack_pdf(const char *path)
 {
     size_t length;
-    char *bytes = read_file(path, &length);
+    SCOPED(free_kept) char *bytes = read_file(path, &length);
     GString *all = g_string_new_len(bytes, (gssize)length);
     for (size_t at = 0; at + 7 < length; at++) {
         if (memcmp(bytes + at, "stream\n", 7) != 0) {
@@ -51,7 +43,6 @@ static GString *unpack_pdf(const char *path)
             inflateEnd(&z);
         }
     }
-    free(bytes);
     return all;
 }
 
@@ -62,7 +53,7 @@ static bool contains(const GString *bytes, const char *wanted)
 
 TEST(pdf_embeds_fonts_and_has_no_type_3)
 {
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     write_figure(&s.figure.figure, path_of("fonts.pdf"));
     GString *pdf = unpack_pdf(path_of("fonts.pdf"));
@@ -76,12 +67,11 @@ TEST(pdf_embeds_fonts_and_has_no_type_3)
     // curves are lines, not pictures
     assert_false(contains(pdf, "/Subtype /Image"));
     g_string_free(pdf, TRUE);
-    synthetic_finish(&s);
 }
 
 TEST(png_knows_its_resolution_and_origin)
 {
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 2);
     s.figure.figure.width = 127;
     s.figure.figure.height = 101.6;
@@ -110,16 +100,15 @@ TEST(png_knows_its_resolution_and_origin)
     assert_int_equal(found, 3);
     png_destroy_read_struct(&png, &info, NULL);
     fclose(file);
-    synthetic_finish(&s);
 }
 
 TEST(svg_ids_are_unique_and_all_references_resolve)
 {
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     size_t length;
     synthetic_init(&s, run_panels, RUN_PANELS);
     write_figure(&s.figure.figure, path_of("ids.svg"));
-    char *svg = read_file(path_of("ids.svg"), &length);
+    SCOPED(free_kept) char *svg = read_file(path_of("ids.svg"), &length);
     assert_non_null(strstr(svg, "<metadata>"));
     assert_non_null(strstr(svg, "<title>Synthetic run &amp; &lt;more&gt;</title>"));
     GHashTable *ids = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
@@ -140,8 +129,6 @@ TEST(svg_ids_are_unique_and_all_references_resolve)
     }
     assert_true(references > 100);
     g_hash_table_destroy(ids);
-    free(svg);
-    synthetic_finish(&s);
 }
 
 TEST(csv_holds_what_is_drawn)
@@ -160,20 +147,19 @@ TEST(csv_holds_what_is_drawn)
     fault f = {0};
     size_t length;
     assert_int_equal(figure_write_csv(&fig, path_of("data.csv"), &f), STATUS_OK);
-    char *csv = read_file(path_of("data.csv"), &length);
+    SCOPED(free_kept) char *csv = read_file(path_of("data.csv"), &length);
     assert_string_equal(csv, "panel,series,x,value\n"
                              "force[N],\"force, \"\"raw\"\"\",0,1\n"
                              "force[N],\"force, \"\"raw\"\"\",0.1,\n"
                              "force[N],\"force, \"\"raw\"\"\",0.2,-2.5\n"
                              "force[N],impulse[N s],0.1,0.04\n"
                              "mark,contact,0.1,\n");
-    free(csv);
 }
 
 TEST(faults_are_sentences)
 {
     fault f = {0};
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     figure *fig = &s.figure.figure;
     assert_int_equal(figure_write(fig, path_of("x.gif"), &f), STATUS_BAD_ARGUMENT);
@@ -192,13 +178,12 @@ TEST(faults_are_sentences)
     // nothing was left behind
     assert_int_not_equal(access(path_of("x.png"), F_OK), 0);
     assert_int_not_equal(access(path_of("x.pdf"), F_OK), 0);
-    synthetic_finish(&s);
 }
 
 TEST(a_full_disk_is_noticed)
 {
     static const char *const names[] = {"full.png", "full.pdf", "full.svg"};
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     for (int i = 0; i < 3; i++) {
         fault f = {0};
@@ -207,7 +192,6 @@ TEST(a_full_disk_is_noticed)
                          STATUS_CANNOT_WRITE);
         assert_true(strlen(f.text) > 10);
     }
-    synthetic_finish(&s);
 }
 
 ALL_BETWEEN(make_work_folder, remove_work_folder)

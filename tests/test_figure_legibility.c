@@ -15,13 +15,6 @@
 #include "tests/colour_vision.h"
 #include "tests/rect_check.h"
 
-// fontconfig keeps its cache until the process ends
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libfontconfig\n";
-}
-
 static const double widths[] = {85, 180}; // [mm]
 
 #define SCALE 3.0 // pixels of a point
@@ -466,6 +459,7 @@ TEST(every_figure_can_be_read)
     for (int i = 0; i < thesis_figure_count(); i++) {
         for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
             const char *id = thesis_figure_at(i)->id;
+            SCOPED(artwork_finish)
             artwork drawn = open_figure(i, (figure_options){.look.width = widths[k]});
             cairo_surface_destroy(pixels_of(&drawn, &r));
             check_page(&drawn, &r, id, widths[k]);
@@ -477,7 +471,6 @@ TEST(every_figure_can_be_read)
                     check_legends(drawn.plotted, theme, id, widths[k]);
                 }
             }
-            artwork_finish(&drawn);
         }
     }
     assert_int_equal(complaints, 0);

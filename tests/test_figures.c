@@ -10,13 +10,6 @@
 #include "render/page/text.h"
 #include "tests/rect_check.h"
 
-// fontconfig keeps its cache until the process ends
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libfontconfig\n";
-}
-
 static char folder[64];
 
 static char *path_of(const char *name)
@@ -72,7 +65,7 @@ static figure_rect record(const artwork *a, figure_report *report)
 static void expect_tidy(const char *id, figure_options o)
 {
     static figure_report r;
-    artwork drawn = open_figure(id, o);
+    SCOPED(artwork_finish) artwork drawn = open_figure(id, o);
     figure_rect ink = record(&drawn, &r), page = {0, 0, ceil(drawn.width), ceil(drawn.height)};
     fail_if(!rect_is_within(&ink, &page, 0.5),
             "%s: ink at %g, %g of %g x %g leaves the page of %g x %g", id, ink.x, ink.y, ink.width,
@@ -86,7 +79,6 @@ static void expect_tidy(const char *id, figure_options o)
                     r.texts[i].text, r.texts[k].text);
         }
     }
-    artwork_finish(&drawn);
 }
 
 // But those that take long: test_figure_legibility looks at them.
@@ -126,12 +118,11 @@ static bool has_text(const figure_report *r, const char *wanted)
 static void expect_texts(const char *id, const char *const *texts)
 {
     static figure_report r;
-    artwork drawn = open_figure(id, (figure_options){0});
+    SCOPED(artwork_finish) artwork drawn = open_figure(id, (figure_options){0});
     record(&drawn, &r);
     for (; *texts != NULL; texts++) {
         fail_if(!has_text(&r, *texts), "%s: '%s' is not drawn", id, *texts);
     }
-    artwork_finish(&drawn);
 }
 
 TEST(figures_say_what_they_show)
@@ -151,7 +142,7 @@ TEST(the_predictors_figures_have_the_legends_colours)
     static const char *const ids[] = {"4.4", "4.5"};
     for (int k = 0; k < 2; k++) {
         fault f = {0};
-        artwork drawn = open_figure(ids[k], (figure_options){0});
+        SCOPED(artwork_finish) artwork drawn = open_figure(ids[k], (figure_options){0});
         int width = (int)drawn.width, height = (int)drawn.height, blue = 0;
         cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
         cairo_t *cr = cairo_create(surface);
@@ -170,7 +161,6 @@ TEST(the_predictors_figures_have_the_legends_colours)
         }
         assert_true(blue > 200);
         cairo_surface_destroy(surface);
-        artwork_finish(&drawn);
     }
 }
 
@@ -224,10 +214,9 @@ static status overlaid(const char *csv, const char *id, fault *f)
     assert_non_null(stream);
     fputs(csv, stream);
     fclose(stream);
-    char *path = strdup(path_of("measured.csv"));
+    SCOPED(free_kept) char *path = strdup(path_of("measured.csv"));
     const figure_options o = {.overlay = path};
     status code = figure_draw(id, &o, path_of("overlaid"), "svg", NULL, f);
-    free(path);
     return code;
 }
 
@@ -277,7 +266,7 @@ static double map_error(const char *csv, const char *step, double beta, double g
 
 TEST(the_map_tells_good_pairs_from_bad)
 {
-    char *csv = csv_of("beta-gamma");
+    SCOPED(free_kept) char *csv = csv_of("beta-gamma");
     // the thesis's pair at its step, and the same at a fifth of the step
     double at_1_ms = map_error(csv, "1", 0.4, 0.5);
     check_below(at_1_ms, 0.1);
@@ -288,7 +277,6 @@ TEST(the_map_tells_good_pairs_from_bad)
     double low = map_error(csv, "0.2", 0.1, 0.5), high = map_error(csv, "0.2", 0.1, 0.9);
     assert_true(isnan(low) || low > 10);
     assert_true(isnan(high) || high > 10);
-    free(csv);
 }
 
 TEST(table_cells_are_right)
@@ -317,11 +305,10 @@ static void expect_same_file(const char *name)
     size_t lengths[2];
     snprintf(first, sizeof first, "once/%s", name);
     snprintf(second, sizeof second, "twice/%s", name);
+    SCOPED(free_kept)
     char *a = read_file(path_of(first), &lengths[0]), *b = read_file(path_of(second), &lengths[1]);
     assert_int_equal(lengths[0], lengths[1]);
     assert_memory_equal(a, b, lengths[0]);
-    free(a);
-    free(b);
 }
 
 TEST(a_second_run_writes_the_same_bytes)
@@ -355,10 +342,9 @@ TEST(fonts_are_embedded_as_outlines)
         char name[64];
         assert_int_equal(draw_plain(ids[i], path_of("fonts"), "pdf", &f), STATUS_OK);
         snprintf(name, sizeof name, "fonts/%s.pdf", thesis_figure_find(ids[i])->file);
-        char *pdf = read_file(path_of(name), &length);
+        SCOPED(free_kept) char *pdf = read_file(path_of(name), &length);
         assert_null(memmem(pdf, length, "/Type3", 6));
         assert_non_null(memmem(pdf, length, "/FontFile2", 10));
-        free(pdf);
     }
 }
 
@@ -368,6 +354,7 @@ TEST(themes_change_the_page)
     fault f = {0};
     for (size_t i = 0; i < 3; i++) {
         for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
+            SCOPED(artwork_finish)
             artwork drawn = open_figure(ids[i], (figure_options){.look.theme = theme});
             cairo_surface_t *surface =
                 cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)drawn.width, 40);
@@ -378,7 +365,6 @@ TEST(themes_change_the_page)
             unsigned char corner = cairo_image_surface_get_data(surface)[4];
             assert_true(theme == THEME_DARK ? corner < 60 : corner > 250);
             cairo_surface_destroy(surface);
-            artwork_finish(&drawn);
         }
     }
 }
@@ -424,12 +410,11 @@ TEST(the_report_stands_alone)
     assert_non_null(first);
     assert_non_null(strstr(html, " id=\"i1-"));
     free(html);
-    char *pdf = read_file(path_of("report/report.pdf"), &length);
+    SCOPED(free_kept) char *pdf = read_file(path_of("report/report.pdf"), &length);
     assert_non_null(memmem(pdf, length, "%PDF-", 5));
     assert_null(memmem(pdf, length, "/Type3", 6));
     assert_non_null(memmem(pdf, length, "/Outlines", 9));
     assert_non_null(memmem(pdf, length, "/Annots", 7));
-    free(pdf);
 }
 
 TEST(a_report_without_a_folder_is_complained_about)

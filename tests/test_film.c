@@ -57,7 +57,7 @@ static film_options small_film(void)
 // Every impact is slowed down, not the first alone, and the speed told is the clock's own.
 TEST(test_clock_of_bounces)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     film_clock c = clock_of(&r, 10, 8);
     double speed, fastest = 0;
     int slowed = 0;
@@ -75,7 +75,6 @@ TEST(test_clock_of_bounces)
         slowed += seen;
     }
     assert_int_equal(slowed, c.impact_count);
-    forget(&r);
 }
 
 static int count_files(const char *path)
@@ -92,7 +91,7 @@ static int count_files(const char *path)
 
 TEST(test_frames)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
     char path[256];
@@ -108,7 +107,6 @@ TEST(test_frames)
     // frames of two films do not mix
     assert_int_equal(film_of(&r, &options, path, &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "not empty"));
-    forget(&r);
 }
 
 static void expect_same_frames(const char *one, const char *two, int count)
@@ -253,7 +251,7 @@ static void restore_encoder(char *old)
 // An encoder that gives up is quoted, and nothing of the film is left.
 TEST(test_encoder_fails)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
     char *old = with_encoder("#!/bin/sh\necho 'no such codec' >&2\nexit 1\n");
@@ -267,13 +265,12 @@ TEST(test_encoder_fails)
     assert_int_equal(film_of(&r, &options, in_folder("bad.mp4"), &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "install the package ffmpeg"));
     restore_encoder(old);
-    forget(&r);
 }
 
 // A GIF has the size and the frames that were asked for: nothing scales or drops them.
 TEST(test_gif_as_asked)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
     char *old = with_encoder("#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
@@ -288,7 +285,6 @@ TEST(test_gif_as_asked)
     assert_non_null(strstr(words, "-s 320x240 -r 10 "));
     assert_null(strstr(words, "scale="));
     assert_null(strstr(words, "fps="));
-    forget(&r);
 }
 
 static volatile sig_atomic_t stopped;
@@ -302,7 +298,7 @@ static void stop_soon(void *context, int done, int total)
 
 TEST(test_interrupted)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
     stopped = 0;
@@ -314,7 +310,6 @@ TEST(test_interrupted)
     assert_non_null(strstr(f.text, "interrupted after 2 of 5"));
     assert_int_equal(count_files(folder), before);
     restore_encoder(old);
-    forget(&r);
 }
 
 // An error message is a failure for any status of the encoder, as with a full disk; and what it
@@ -331,7 +326,7 @@ TEST(test_encoder_complains)
         {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho nonsense >\"${last#file:}\"\n",
          "no such film"},
     };
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
 
@@ -352,7 +347,6 @@ TEST(test_encoder_complains)
         assert_string_equal(text, "old");
     }
     unlink(in_folder("kept.mp4"));
-    forget(&r);
 }
 
 static void stop_now(int number)
@@ -366,7 +360,7 @@ TEST(test_encoder_hangs)
 {
     static const char *const scripts[] = {"#!/bin/sh\ntrap '' TERM\nexec sleep 1000\n",
                                           "#!/bin/sh\ncat >/dev/null\nexec sleep 1000\n"};
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
     options.stop = &stopped;
@@ -381,12 +375,11 @@ TEST(test_encoder_hangs)
         assert_int_equal(count_files(folder), before);
         restore_encoder(old);
     }
-    forget(&r);
 }
 
 TEST(test_film_refused)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
     assert_int_equal(film_file_check(in_folder("film.avi"), &f), STATUS_BAD_ARGUMENT);
@@ -396,7 +389,6 @@ TEST(test_film_refused)
     options = small_film();
     options.seconds = -1;
     assert_int_equal(film_of(&r, &options, in_folder("odd.mp4"), &f), STATUS_BAD_ARGUMENT);
-    forget(&r);
 }
 
 ALL_BETWEEN(set_up, tear_down)

@@ -8,6 +8,8 @@
 #include "tests/check.h"
 #include "tests/rig_fixture.h"
 
+GIVEN_BACK(run_loop, loop_destroy)
+
 enum { RUNS = 40, MOST_SETTINGS = 16, SETTING_SIZE = 64 };
 
 #define SAME      1e-7 // of a quantity's largest value
@@ -223,23 +225,20 @@ static void check_loops(uint64_t seed, looping how)
                             .title = none,
                             .description = none,
                             .parameters = drawn_parameters(&drawn)};
-        run_result whole;
+        SCOPED(run_finish) run_result whole;
         assert_int_equal(run_scenario(&s, true, &whole), STATUS_OK);
 
         const loop_options options = {.keep_trace = true};
-        run_loop *l;
+        SCOPED(loop_destroy_kept) run_loop *l;
         fault f;
         assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
-        void *bytes = malloc(loop_saved_size(l));
+        SCOPED(free_kept) void *bytes = malloc(loop_saved_size(l));
         assert_non_null(bytes);
         while (!loop_ended(l)) {
             go_on(l, &g, how, bytes);
         }
         const summary end = loop_summary(l);
         check_same_run(&whole, loop_result(l), &end, how);
-        free(bytes);
-        loop_destroy(l);
-        run_finish(&whole);
     }
 }
 
@@ -275,10 +274,9 @@ TEST(runs_side_by_side_are_single_runs)
     assert_int_equal(batch_run(make, NULL, RUNS, 1, together), STATUS_OK);
     for (size_t i = 0; i < RUNS; i++) {
         scenario s = {0};
-        run_result single;
+        SCOPED(run_finish) run_result single;
         make(NULL, i, &s);
         assert_int_equal(run_scenario(&s, false, &single), STATUS_OK);
         check_same_summary(&together[i], &single.summary);
-        run_finish(&single);
     }
 }

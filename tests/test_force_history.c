@@ -51,18 +51,16 @@ static double largest_mean(force_curve f, double from, double window)
 
 TEST(a_constant_force_has_settled_from_the_start)
 {
-    force_history h = history_of(flat);
+    SCOPED(force_history_finish) force_history h = history_of(flat);
     check_close(force_settled_since(&h, 3), 0, 0);
     // a run that ends outside the band has not settled
     assert_true(isnan(force_settled_since(&h, 4)));
-    force_history_finish(&h);
 }
 
 TEST(a_rising_force_settles_where_it_enters_the_band)
 {
-    force_history h = history_of(rising);
+    SCOPED(force_history_finish) force_history h = history_of(rising);
     check_close(force_settled_since(&h, 2), 0.95, 1e-12);
-    force_history_finish(&h);
 }
 
 TEST(the_band_is_entered_within_a_step)
@@ -92,13 +90,12 @@ TEST(a_line_that_meets_the_band_at_a_steps_end_settles_there)
         const force_step steps[] = {{0, 1, 0, final / 2, final / 4},
                                     {1, 2, final / 2, edge, (final / 2 + edge) / 2},
                                     {2, 3, edge, final, (final + edge) / 2}};
-        force_history h;
+        SCOPED(force_history_finish) force_history h;
         force_history_init(&h);
         for (int i = 0; i < 3; i++) {
             assert_int_equal(force_history_add(&h, steps[i]), STATUS_OK);
         }
         check_close(force_settled_since(&h, final), 2, 1e-12);
-        force_history_finish(&h);
     }
 }
 
@@ -114,19 +111,18 @@ TEST(a_force_at_the_edge_of_its_band_has_settled)
                                 {1, 2, 2 * final, edge, (2 * final + edge) / 2},
                                 parabolic_step(1, 2, edge + 2, -3, 1)};
     for (int last = 1; last < 3; last++) {
-        force_history h;
+        SCOPED(force_history_finish) force_history h;
         force_history_init(&h);
         assert_int_equal(force_history_add(&h, steps[0]), STATUS_OK);
         assert_int_equal(force_history_add(&h, steps[last]), STATUS_OK);
         check_close(force_settled_since(&h, final), 2, 1e-12);
-        force_history_finish(&h);
     }
 }
 
 TEST(a_history_keeps_all_of_its_steps)
 {
     enum { STEPS = 5000 };
-    force_history h;
+    SCOPED(force_history_finish) force_history h;
     force_history_init(&h);
     for (int i = 0; i < STEPS; i++) {
         assert_int_equal(force_history_add(&h, (force_step){i, i + 1, i, i, i}), STATUS_OK);
@@ -136,7 +132,6 @@ TEST(a_history_keeps_all_of_its_steps)
         check_close(force_steps(&h)[i].start, i, 0);
         check_close(force_steps(&h)[i].mean, i, 0);
     }
-    force_history_finish(&h);
 }
 
 // Steps as long as their lines are steep, with what rounding leaves of their curves: the instant of
@@ -153,11 +148,10 @@ TEST(lines_are_crossed_where_they_are)
         if (step.last > final * (1 + SETTLED_BAND)) {
             continue; // beyond the band again
         }
-        force_history h;
+        SCOPED(force_history_finish) force_history h;
         force_history_init(&h);
         assert_int_equal(force_history_add(&h, step), STATUS_OK);
         check_close(force_settled_since(&h, final), share, 1e-11);
-        force_history_finish(&h);
     }
 }
 
@@ -170,7 +164,8 @@ TEST(from_the_instant_found_the_force_stays)
     random_seed(&g, 6);
     int within = 0, between = 0;
     for (int round = 0; round < 300; round++) {
-        force_history h, scaled;
+        force_history h;
+        SCOPED(force_history_finish) force_history scaled;
         force_history_init(&h);
         force_history_init(&scaled);
         double force = 0, time = 0;
@@ -220,7 +215,6 @@ TEST(from_the_instant_found_the_force_stays)
             }
         }
         force_history_finish(&h);
-        force_history_finish(&scaled);
     }
     assert_true(within > 50 && between > 5);
 }
@@ -229,21 +223,19 @@ TEST(from_the_instant_found_the_force_stays)
 TEST(the_opposite_force_is_outside)
 {
     for (int sign = -1; sign <= 1; sign += 2) {
-        force_history h;
+        SCOPED(force_history_finish) force_history h;
         force_history_init(&h);
         assert_int_equal(force_history_add(&h, (force_step){0, 1, sign, -sign, 0}), STATUS_OK);
         assert_true(isnan(force_settled_since(&h, sign)));
         // the way from one to the other is a line of slope 2
         check_close(force_settled_since(&h, -sign), 1 - SETTLED_BAND / 2, 1e-12);
-        force_history_finish(&h);
     }
 }
 
 TEST(an_empty_history_has_no_answer)
 {
-    force_history h = {0};
+    SCOPED(force_history_finish) force_history h = {0};
     assert_true(isnan(force_settled_since(&h, 1)));
-    force_history_finish(&h);
 }
 
 TEST(the_largest_mean_is_where_the_curve_is_highest)
@@ -272,10 +264,9 @@ TEST(an_impulse_counts_as_long_as_the_window_holds_it)
 // Impulse of the force over a run, as the motion itself integrates it [N s].
 static double pressed(const parameters *p)
 {
-    arm a;
     motion_report report;
-    arm_init(&a, p);
-    motion *m = motion_create(&a, &p->method);
+    arm a = arm_of(p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p->method);
     assert_non_null(m);
     motion_start(&a, m, p->initial.angle, p->initial.velocity);
     while (m->state[SLOT_TIME] < p->run.duration) {
@@ -283,7 +274,6 @@ static double pressed(const parameters *p)
         motion_apply(&a, m, &report);
     }
     const double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
-    motion_destroy(m);
     return integral;
 }
 
@@ -301,7 +291,7 @@ TEST(the_force_kept_has_the_impulse_of_decays)
         const parameters p = rig_parameters(settings);
         const scenario one = {.parameters = p};
         const run_options kept = {.keep_trace = true, .rows_expected = 100};
-        run_result run;
+        SCOPED(run_finish) run_result run;
         assert_int_equal(run_scenario_with(&one, &kept, &run), STATUS_OK);
         const force_history *h = &run.history.forces;
         double sum = 0;
@@ -310,6 +300,5 @@ TEST(the_force_kept_has_the_impulse_of_decays)
             sum += step->mean * (step->end - step->start);
         }
         check_relative(sum, pressed(&p), 1e-4);
-        run_finish(&run);
     }
 }

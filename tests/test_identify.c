@@ -12,6 +12,8 @@
 #include "src/run/loop.h"
 #include "tests/rig_fixture.h"
 
+GIVEN_BACK(run_loop, loop_destroy)
+
 enum { SAMPLES = 1501, READINGS = 3, FITTED = 5, OWN = 3, RECORDINGS = 3 };
 #define PERIOD 1e-3
 
@@ -66,7 +68,7 @@ static scenario rig_scenario(const recording_made *r, const double *values, int 
 // Runs a recording with the true values and writes what its sensors read.
 static void record(recording_made *r, const double *values, int seed, int links)
 {
-    run_result run;
+    SCOPED(run_finish) run_result run;
     fault f;
     scenario s = rig_scenario(r, values, seed);
     parameters p = s.parameters;
@@ -85,7 +87,6 @@ static void record(recording_made *r, const double *values, int seed, int links)
                 row->tachometer, row->force_reading);
     }
     assert_int_equal(fclose(file), 0);
-    run_finish(&run);
 }
 
 static void set_up(identification *id, const scenario *base, recording_made *made, int count,
@@ -120,7 +121,7 @@ static void read_exactly(const recording_made *r, const double *values, double a
     s.parameters.sensor.encoder_counts = s.parameters.sensor.adc_bits = 0;
     s.parameters.sensor.tachometer_noise = s.parameters.sensor.fsr_noise = 0;
     const loop_options options = {.commanded = true};
-    run_loop *loop;
+    SCOPED(loop_destroy_kept) run_loop *loop;
     fault f;
     assert_int_equal(loop_create(&loop, &s, &options, &f), STATUS_OK);
     for (int k = 0; k < SAMPLES - 1; k++) {
@@ -134,7 +135,6 @@ static void read_exactly(const recording_made *r, const double *values, double a
     }
     const summary sum = loop_summary(loop);
     *touch = sum.first_contact_s;
-    loop_destroy(loop);
 }
 
 // Standard deviations that no unbiased estimate goes below: Fisher's information of all readings
@@ -241,7 +241,7 @@ static int compare_doubles(const void *a, const void *b)
 static void study(recording_made *made, int count, int fitted, bool bounded)
 {
     double(*errors)[FITTED] = calloc((size_t)seeds, sizeof *errors), least[FITTED];
-    double *sorted = calloc((size_t)seeds, sizeof *sorted);
+    SCOPED(free_kept) double *sorted = calloc((size_t)seeds, sizeof *sorted);
     int covered[FITTED] = {0}, white = 0;
     double values[FITTED];
     assert_true(errors != NULL && sorted != NULL);
@@ -287,7 +287,6 @@ static void study(recording_made *made, int count, int fitted, bool bounded)
     }
     print_message("white in %d of %d\n", white, seeds);
     free(errors);
-    free(sorted);
 }
 
 static const recording_made three[RECORDINGS] = {
@@ -328,7 +327,7 @@ TEST(one_combination_is_named)
     fault f;
     const scenario base = rig_scenario(&made, NULL, 1);
     record(&made, truth, 1, 2);
-    identification id = {.base = &base, .jobs = 1, .starts = 1};
+    SCOPED(identify_finish) identification id = {.base = &base, .jobs = 1, .starts = 1};
     for (int i = 2; i < 5; i++) {
         assert_int_equal(identify_add_path(&id, paths[i], &f), STATUS_OK);
     }
@@ -345,7 +344,6 @@ TEST(one_combination_is_named)
     parameters p;
     assert_int_equal(identify_parameters(&id, true, &p, &f), STATUS_OK);
     check_close(p.motor.torque_constant, base.parameters.motor.torque_constant, 0);
-    identify_finish(&id);
     unlink(made.file);
 }
 
@@ -357,11 +355,10 @@ TEST(two_links_leave_eight_unexplained)
     const scenario base = rig_scenario(&made[1], NULL, 1);
     for (int seed = 1; seed <= seeds; seed++) {
         record(&made[0], truth, seed, 8);
-        identification id;
+        SCOPED(identify_finish) identification id;
         set_up(&id, &base, made, 1, 4);
         fit(&id);
         rejected += !id.white;
-        identify_finish(&id);
         unlink(made[0].file);
     }
     print_message("whiteness rejected in %d of %d\n", rejected, seeds);

@@ -7,8 +7,7 @@ enum { LARGEST = 16 };
 static arm make_arm(const char *const *settings)
 {
     parameters p = fixture_parameters(settings);
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     return a;
 }
 

@@ -117,8 +117,7 @@ TEST(test_no_colour_in_mono)
 
 TEST(test_the_number_of_colours_is_a_setting)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     assert_int_equal(ex.state.looks.depth, DEPTH_AUTO);
     press(&ex, ":colours true<Enter>");
     assert_int_equal(ex.state.looks.depth, DEPTH_TRUE);
@@ -127,7 +126,6 @@ TEST(test_the_number_of_colours_is_a_setting)
     press(&ex, ":colours 17<Enter>");
     assert_int_equal(ex.state.looks.depth, DEPTH_256);
     assert_shows(&ex, "'17' is none of auto, true, 256, 16, mono");
-    explorer_finish(&ex);
 }
 
 // Two signals with colours that a terminal of 16 colours shows as one.
@@ -152,9 +150,8 @@ TEST(test_curves_of_a_pane_differ_with_few_colours)
 {
     static const char *const scenarios[] = {"compare/hybrid", "corrected/first-impact"};
     for (int n = 0; n < 4; n++) {
-        explorer ex;
-        screen s = {0};
-        open_explorer(&ex, scenarios[n % 2]);
+        SCOPED(screen_finish) screen s = {0};
+        OPEN_EXPLORER(ex, scenarios[n % 2]);
         const colour_theme theme = n < 2 ? COLOURS_LIGHT : COLOURS_DARK;
         ex.state.looks.theme = theme;
         ex.state.looks.shown_depth = DEPTH_16;
@@ -187,7 +184,5 @@ TEST(test_curves_of_a_pane_differ_with_few_colours)
                 }
             }
         }
-        screen_finish(&s);
-        explorer_finish(&ex);
     }
 }

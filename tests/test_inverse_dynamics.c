@@ -112,13 +112,12 @@ TEST(plan_needs_an_arm_that_it_can_invert)
 {
     const double values[] = {1, 0, TRAVEL_TIME, 0.35, 0.05};
     controller_setup heavy = default_setup(values), loose = heavy;
-    void *memory = calloc(1, inverse_dynamics_law.memory_size);
+    SCOPED(free_kept) void *memory = calloc(1, inverse_dynamics_law.memory_size);
     assert_non_null(memory);
     heavy.link_inertia = 0.2 * 0.25 / 4;
     assert_non_null(strstr(inverse_dynamics_law.start(memory, &heavy), "link inertia"));
     loose.torque_per_volt = 0;
     assert_non_null(strstr(inverse_dynamics_law.start(memory, &loose), "motor"));
-    free(memory);
 }
 
 // --- on the arm, in free motion -------------------------------------------------------------
@@ -143,7 +142,7 @@ static travelled travel(const char *const *settings)
                                  .link_inertia = p.arm.link_inertia,
                                  .k2 = p.arm.k2 * p.belief.k2_factor};
     double departs = departure(&believed), arrives = departs + TRAVEL_TIME;
-    run_result r = rig_run(all, true);
+    SCOPED(run_finish) run_result r = rig_run(all, true);
     travelled result = {0};
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (size_t i = 0; i < r.trace.row_count; i++) {
@@ -162,7 +161,6 @@ static travelled travel(const char *const *settings)
     }
     result.tip_error = sqrt(result.tip_error);
     result.left_moving = (high - low) / WAY;
-    run_finish(&r);
     return result;
 }
 
@@ -224,11 +222,11 @@ TEST(tip_meets_the_wall_as_fast_as_planned)
             char speed[48], random[32];
             snprintf(speed, sizeof speed, "control.arrival_speed=%g", speeds[i]);
             snprintf(random, sizeof random, "control.seed=%d", seed);
+            SCOPED(run_finish)
             run_result r = rig_run(SETTINGS("control.law=inverse-dynamics", speed, random), false);
             check_relative(first_impact(&r)->speed, speeds[i], 0.03);
             check_close(first_impact(&r)->time, 0.583, 0.006);
             check_close(r.summary.steady_force_N, 1, 0.03);
-            run_finish(&r);
         }
     }
 }
@@ -238,6 +236,7 @@ TEST(force_follows_its_plan)
 {
     const char *const speeds[] = {"control.arrival_speed=0", "control.arrival_speed=0.3"};
     for (int i = 0; i < 2; i++) {
+        SCOPED(run_finish)
         run_result r = rig_run(SETTINGS("control.law=inverse-dynamics", "sensor.ideal=true",
                                         "motor.stiction=0", "control.rate=5000",
                                         "control.transition_time=0.1", speeds[i]),
@@ -249,7 +248,6 @@ TEST(force_follows_its_plan)
         }
         check_close(first_impact(&r)->time, 0.583, 0.01);
         check_close(r.summary.steady_force_N, 1, 2e-3);
-        run_finish(&r);
     }
 }
 

@@ -21,7 +21,7 @@ TEST(json_is_what_jansson_reads)
     const char *source = "{\"b\": [1, 0.1, null, true], \"a\": {\"quote\\\" \\u00e9\\n\": \"\"}, "
                          "\"empty\": {}, \"none\": [], \"list\": [{\"x\": -1e-300}, []]}";
     json_t *value = json_loads(source, 0, NULL);
-    char *text = written(json_deep_copy(value));
+    SCOPED(free_kept) char *text = written(json_deep_copy(value));
     json_t *again = json_loads(text, 0, NULL);
     assert_non_null(again);
     assert_true(json_equal(value, again));
@@ -29,7 +29,6 @@ TEST(json_is_what_jansson_reads)
     assert_true(strstr(text, "\"b\"") < strstr(text, "\"a\""));
     json_decref(value);
     json_decref(again);
-    free(text);
 }
 
 TEST(text_without_utf8_is_made_readable)
@@ -57,17 +56,16 @@ TEST(numbers_that_are_missing_are_null)
 
 TEST(objects_have_a_line_a_member)
 {
+    SCOPED(free_kept)
     char *text = written(json_loads("{\"a\": 1, \"b\": {}, \"c\": [{\"d\": 2}]}", 0, NULL));
     assert_string_equal(text, "{\n  \"a\": 1,\n  \"b\": {},\n  \"c\": [\n    {\n      \"d\": 2\n"
                               "    }\n  ]\n}\n");
-    free(text);
 }
 
 TEST(lists_within_lists_have_lines_of_their_own)
 {
-    char *text = written(json_loads("[[1, 2], [], {}]", 0, NULL));
+    SCOPED(free_kept) char *text = written(json_loads("[[1, 2], [], {}]", 0, NULL));
     assert_string_equal(text, "[\n  [1, 2],\n  [],\n  {}\n]\n");
-    free(text);
 }
 
 TEST(what_cannot_be_put_is_noted_once)

@@ -17,8 +17,7 @@ TEST(test_opening_loses_nothing)
     static const char *const ways[] = {"]", "[", "o/three<Enter>", ":open thesis/fig-3-4<Enter>",
                                        ":lesson hybrid-law<Enter>"};
     for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
-        explorer ex;
-        open_explorer(&ex, "corrected/first-impact");
+        OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, ":seek 0.1<Enter>:set motor.voltage 0.5<Enter>b:seek 0.3<Enter>");
         const double changed = peak(&ex);
         press(&ex, ways[i]);
@@ -38,15 +37,13 @@ TEST(test_opening_loses_nothing)
         check_close(peak(&ex), other, 0);
         press(&ex, "uuU");
         check_close(peak(&ex), changed, 0);
-        explorer_finish(&ex);
     }
 }
 
 // As many openings as are kept, and more, are undone one by one; a new one forgets what was undone.
 TEST(test_openings_are_undone_one_by_one)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < VISITS + 3; i++) {
         press(&ex, i % 2 ? ":open corrected/first-impact<Enter>" : ":open thesis/fig-3-4<Enter>");
     }
@@ -59,14 +56,12 @@ TEST(test_openings_are_undone_one_by_one)
     assert_shows(&ex, "nothing to undo");
     press(&ex, "UU:open corrected/three-links<Enter>U");
     assert_shows(&ex, "nothing to redo");
-    explorer_finish(&ex);
 }
 
 // Two scenarios side by side: two keys, of at most six.
 TEST(test_a_pinned_run_of_another_scenario_is_drawn_and_taken)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     const double first = peak(&ex);
     press(&ex, "b]");
     assert_int_equal(state_run_count(&ex.state), 2);
@@ -82,14 +77,12 @@ TEST(test_a_pinned_run_of_another_scenario_is_drawn_and_taken)
     check_close(ex.state.session.other.summary.peak_force_N, second, 0);
     press(&ex, "u");
     check_close(peak(&ex), second, 0);
-    explorer_finish(&ex);
 }
 
 // Pins of another scenario do not do a lesson's step.
 TEST(test_a_lesson_wants_a_pin_of_its_own)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "b:lesson beta-and-gamma<Enter>y");
     assert_int_equal(ex.state.lesson.step, 0);
     press(&ex, "by");
@@ -98,7 +91,6 @@ TEST(test_a_lesson_wants_a_pin_of_its_own)
     // and is where it was on return
     press(&ex, "]u");
     assert_int_equal(ex.state.lesson.step, 1);
-    explorer_finish(&ex);
 }
 
 TEST(test_leaving_asks_for_everything_that_would_be_lost)
@@ -109,15 +101,13 @@ TEST(test_leaving_asks_for_everything_that_would_be_lost)
                  {"b:set arm.k2 5<Enter>b", "1 change and 2 pinned runs would"},
                  {":set arm.k2 5<Enter>]", "1 change would"}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        explorer ex;
-        open_explorer(&ex, "corrected/first-impact");
+        OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, cases[i].keys);
         press(&ex, "q");
         assert_false(ex.state.quit);
         assert_shows(&ex, cases[i].lost);
         press(&ex, "q");
         assert_true(ex.state.quit);
-        explorer_finish(&ex);
     }
 }
 
@@ -139,23 +129,18 @@ TEST(test_sentences_are_whole_and_numbers_short)
         {":seek end<Enter>", "in contact", "the run goes"},
     };
     for (size_t i = 0; i < SIZES * sizeof cases / sizeof cases[0]; i++) {
-        explorer ex;
         const int *size = sizes[i % SIZES];
-        open_explorer(&ex, "corrected/first-impact");
+        OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, cases[i / SIZES].keys);
         assert_shows_at(&ex, size[0], size[1], cases[i / SIZES].says);
-        char *text = picture(&ex, size[0], size[1], GLYPHS_BRAILLE);
+        SCOPED(free_kept) char *text = picture(&ex, size[0], size[1], GLYPHS_BRAILLE);
         assert_null(strstr(text, cases[i / SIZES].never));
-        free(text);
-        explorer_finish(&ex);
     }
 
     // a title that is too long ends in a sign
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":set arm.k2 5<Enter>");
     assert_shows_at(&ex, 66, 24, "First impact at\u2026");
-    explorer_finish(&ex);
 }
 
 // The lines of parameters between the edges of their panel.
@@ -177,8 +162,7 @@ static int parameter_rows(explorer *ex, int width, int height)
 // With a law and pinned runs the parameters keep six lines; what is folded is a tab.
 TEST(test_parameters_keep_their_rows)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, "b:set control.force 2<Enter>b:set control.force 3<Enter>");
     for (size_t i = 0; i < SIZES; i++) {
         assert_true(parameter_rows(&ex, sizes[i][0], sizes[i][1]) >= 6);
@@ -200,14 +184,12 @@ TEST(test_parameters_keep_their_rows)
     // a tall screen gives its rows to the curves
     free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
     assert_true(ex.layout.plot.height >= 36);
-    explorer_finish(&ex);
 }
 
 // One key hides a signal, and a click on its legend; neither moves the cursor.
 TEST(test_a_signal_is_hidden_by_a_key_or_a_click)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.5<Enter>K");
     assert_int_equal(ex.state.panes.pane[0].hidden, 4);
     press(&ex, "K");
@@ -227,7 +209,6 @@ TEST(test_a_signal_is_hidden_by_a_key_or_a_click)
     press(&ex, ":signal force_reading<Enter>");
     assert_true(state_pane_axis(&ex.state, 0, &calm));
     check_below(calm.high, all.high);
-    explorer_finish(&ex);
 }
 
 // --- what is asked for ------------------------------------------------------------------------
@@ -246,8 +227,7 @@ static int count_keys(const char *keys)
 TEST(test_a_limit_is_asked_for_in_few_keys)
 {
     static const char keys[] = ":so<Tab>vo<Tab> pea<Tab>N<lt>2<Enter>";
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.3<Enter>");
     const double before = peak(&ex);
     assert_true(count_keys(keys) <= 25);
@@ -276,14 +256,12 @@ TEST(test_a_limit_is_asked_for_in_few_keys)
     press(&ex, ":solve voltage<Enter>");
     assert_shows(&ex, "solve takes");
     assert_int_equal(ex.state.pinned.count, 1);
-    explorer_finish(&ex);
 }
 
 // Why a run is as it is, whole at every size.
 TEST(test_why_is_answered_on_the_screen)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "W");
     for (size_t i = 0; i < SIZES; i++) {
         assert_shows_at(&ex, sizes[i][0], sizes[i][1], "Driven by 1 V the arm touches");
@@ -292,14 +270,12 @@ TEST(test_why_is_answered_on_the_screen)
     }
     press(&ex, "<Esc>");
     assert_hides(&ex, "Driven by");
-    explorer_finish(&ex);
 }
 
 // F1 explains what one stands on; the palette knows other words for it.
 TEST(test_help_is_where_one_stands)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>NNNN<Home>n<F1>");
     for (size_t i = 0; i < SIZES; i++) {
         assert_shows_at(&ex, sizes[i][0], sizes[i][1], "motor.voltage");
@@ -318,15 +294,13 @@ TEST(test_help_is_where_one_stands)
         assert_shows(&ex, words[i][1]);
         press(&ex, "<Esc>");
     }
-    explorer_finish(&ex);
 }
 
 // Panes of one's own, any number: a second one takes at most twelve keys.
 TEST(test_own_panes_stand_side_by_side)
 {
     static const char keys[] = ":tr gap<Enter>";
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":trace impulse<Enter>");
     assert_true(count_keys(keys) <= 12);
     press(&ex, keys);
@@ -346,17 +320,14 @@ TEST(test_own_panes_stand_side_by_side)
     }
     press(&ex, ":trace 25<Enter>");
     assert_shows(&ex, "panes are numbered from 1 to 24");
-    explorer_finish(&ex);
 }
 
 // t_f three steps shorter: at most five keys.
 TEST(test_the_transition_is_three_steps_shorter_in_few_keys)
 {
     static const char keys[] = "<lt><lt><lt>";
-    explorer ex;
-    open_explorer(&ex, "lessons/hybrid-law");
+    OPEN_EXPLORER(ex, "lessons/hybrid-law");
     press(&ex, keys);
     assert_true(count_keys(keys) <= 5);
     check_close(ex.state.session.effective.parameters.control.transition_time, 0.32, 1e-9);
-    explorer_finish(&ex);
 }

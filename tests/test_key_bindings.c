@@ -9,8 +9,7 @@
 
 TEST(test_a_key_gets_another_command)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":key x step 5<Enter>");
     assert_shows(&ex, "x does 'step 5' now, no longer 'extend'");
     size_t before = ex.state.session.row;
@@ -33,13 +32,11 @@ TEST(test_a_key_gets_another_command)
     check_close(ex.state.session.effective.parameters.run.duration, 1, 0);
     press(&ex, ":unkey x<Enter>x");
     check_close(ex.state.session.effective.parameters.run.duration, 2, 0);
-    explorer_finish(&ex);
 }
 
 TEST(test_wrong_keys_are_told)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     static const struct {
         const char *line, *why;
         int at; // characters before the fault
@@ -71,14 +68,12 @@ TEST(test_wrong_keys_are_told)
     assert_false(explorer_carry_out(&ex, "key x play"));
     assert_true(explorer_carry_out(&ex, "unkey \u00e4"));
     assert_true(explorer_carry_out(&ex, "key x play"));
-    explorer_finish(&ex);
 }
 
 TEST(test_the_help_shows_the_keys_that_are)
 {
     static help_line lines[500];
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":key w step 5<Enter>:unkey x<Enter>?<End>");
     assert_shows(&ex, "Keys of your own");
     assert_shows(&ex, "step 5 (the lab's: focus)");
@@ -103,7 +98,6 @@ TEST(test_the_help_shows_the_keys_that_are)
                     lines[k].text);
         }
     }
-    explorer_finish(&ex);
 }
 
 // A folder of settings of its own, with a file of them if there is text.

@@ -23,10 +23,9 @@ static screen drawn(explorer *ex, int width, int height)
 
 TEST(test_the_contact_lane_is_where_rows_touch)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>b"); // beside another run
-    screen s = drawn(&ex, 120, 50);
+    SCOPED(screen_finish) screen s = drawn(&ex, 120, 50);
     const area lanes = find_part(&ex, PART_LANES);
     assert_true(lanes.width > 20 && lanes.height >= 2);
 
@@ -45,14 +44,11 @@ TEST(test_the_contact_lane_is_where_rows_touch)
         filled += touches;
     }
     assert_true(filled > 5 && filled < lanes.width - 5);
-    screen_finish(&s);
-    explorer_finish(&ex);
 }
 
 TEST(test_modes_are_named_and_changes_told)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.2<Enter>:set control.force 2<Enter><End>");
     char *text = picture(&ex, 120, 50, GLYPHS_BRAILLE);
     assert_non_null(strstr(text, "│approach───"));
@@ -74,13 +70,11 @@ TEST(test_modes_are_named_and_changes_told)
     press(&ex, ":lanes all<Enter>");
     free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
     assert_true(find_part(&ex, PART_LANES).height >= 2);
-    explorer_finish(&ex);
 }
 
 TEST(test_a_click_moves_the_cursor_or_the_window)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>");
     free(picture(&ex, 120, 50, GLYPHS_BRAILLE));
     const area lanes = find_part(&ex, PART_LANES);
@@ -99,5 +93,4 @@ TEST(test_a_click_moves_the_cursor_or_the_window)
                    (pointer_event){POINTER_PRESS, map.x + map.width * 3 / 4, map.y, false, false});
     check_close(ex.state.window.to - ex.state.window.from, 0.1, 1e-9);
     check_close((ex.state.window.to + ex.state.window.from) / 2, 0.75, 0.02);
-    explorer_finish(&ex);
 }

@@ -3,10 +3,9 @@
 
 static void assert_pictured(explorer *ex, int width, int height, glyph_set set, const char *wanted)
 {
-    char *text = picture(ex, width, height, set);
+    SCOPED(free_kept) char *text = picture(ex, width, height, set);
     fail_if(strstr(text, wanted) == NULL, "'%s' is not on the screen of %d x %d:\n%s", wanted,
             width, height, text);
-    free(text);
 }
 
 TEST(test_the_panel_is_whole_on_every_screen)
@@ -15,8 +14,7 @@ TEST(test_the_panel_is_whole_on_every_screen)
     static const char *const laws[] = {
         "hybrid",     "recovering",  "force-pd",  "force-integral", "discontinuous", "optimal",
         "predictive", "speed-limit", "open-loop", "bang-bang",      "reverse-torque"};
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
         char line[64], mode[MODE_NAME_SIZE], wanted[64];
         snprintf(line, sizeof line, "law %s", laws[i]);
@@ -41,34 +39,28 @@ TEST(test_the_panel_is_whole_on_every_screen)
     }
     press(&ex, ":law off<Enter>");
     assert_hides(&ex, ", 200 Hz");
-    explorer_finish(&ex);
 }
 
 TEST(test_a_narrow_screen_shows_the_panel_beside_the_parameters)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     free(picture(&ex, 60, 24, GLYPHS_BRAILLE));
     press(&ex, ":seek 0.5<Enter><Tab>");
     assert_pictured(&ex, 60, 24, GLYPHS_BRAILLE, "approach [impact] force");
-    explorer_finish(&ex);
 }
 
 TEST(test_a_command_beyond_the_limit_is_marked)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/bang-bang");
+    OPEN_EXPLORER(ex, "compare/bang-bang");
     session_seek(&ex.state.session, 0.02);
     assert_shows(&ex, "saturated");
     session_seek(&ex.state.session, 1.4);
     assert_hides(&ex, "saturated");
-    explorer_finish(&ex);
 }
 
 TEST(test_one_key_goes_through_the_modes)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.9<Enter>");
     static const char *const modes[] = {"approach", "impact", "force"};
     for (int i = 0; i < 3; i++) {
@@ -93,25 +85,20 @@ TEST(test_one_key_goes_through_the_modes)
     assert_shows(&ex, "not locked");
     press(&ex, "U");
     assert_shows(&ex, "locked: approach");
-    explorer_finish(&ex);
 }
 
 TEST(test_a_lock_is_saved_and_run_again_byte_for_byte)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/recovering");
+    OPEN_EXPLORER(ex, "compare/recovering");
     press(&ex, ":seek 0.4<Enter>:lock approach<Enter>:seek 0.6<Enter>LLb:seek 0.8<Enter>F");
     assert_false(ex.state.message.warning);
-    char *text = save_and_compare(&ex.state.session);
+    SCOPED(free_kept) char *text = save_and_compare(&ex.state.session);
     assert_non_null(strstr(text, "set: {control.lock: \"approach\"}"));
-    free(text);
-    explorer_finish(&ex);
 }
 
 TEST(test_laws_and_modes_are_completed_and_checked)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":lock app<Tab>");
     assert_string_equal(ex.state.prompt.text, "lock approach ");
     press(&ex, "<C-u>law rec<Tab><Enter>");
@@ -136,13 +123,11 @@ TEST(test_laws_and_modes_are_completed_and_checked)
     assert_shows(&ex, "locked: force");
     press(&ex, ">");
     assert_shows(&ex, "not locked");
-    explorer_finish(&ex);
 }
 
 TEST(test_the_log_names_modes)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, "nn");
     check_close(ex.state.session.now, 0.295, 0);
     assert_shows(&ex, "goes into its mode 'impact' at 0.295000 s");
@@ -159,5 +144,4 @@ TEST(test_the_log_names_modes)
     hit_area log = part_on_screen(&ex, PANEL_LOG, PART_LINES);
     click_at(&ex, log.area.x + 3, log.area.y + 2 - log.index);
     check_close(ex.state.session.now, 0.295, 0);
-    explorer_finish(&ex);
 }

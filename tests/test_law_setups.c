@@ -90,37 +90,34 @@ TEST(a_transition_leads_where_it_is_told)
                    {"control.transition_time", "0.35", 0.05, 1},
                    {"control.transition_time", "0.06", 0.1, 1}};
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_with_change(settings, changes[i].path, changes[i].text,
                                          touch + changes[i].after, &r),
                          STATUS_OK);
         check_relative(r.summary.steady_force_N, changes[i].force, 0.1);
-        run_finish(&r);
     }
 }
 
 // A rate that a script sets at the start is the rig's from its first sample on.
 TEST(a_rate_set_at_the_start_is_that_of_the_rig)
 {
-    run_result r;
+    SCOPED(run_finish) run_result r;
     const char *const *const settings = SETTINGS("control.law=hybrid", "control.rate=200");
     assert_int_equal(run_with_change(settings, "control.rate", "100", 0, &r), STATUS_OK);
+    SCOPED(run_finish)
     run_result from_the_start = rig_run(SETTINGS("control.law=hybrid", "control.rate=100"), false);
     check_relative(r.summary.peak_force_N, from_the_start.summary.peak_force_N, 1e-9);
     check_relative(r.summary.first_contact_s, from_the_start.summary.first_contact_s, 1e-9);
-    run_finish(&r);
-    run_finish(&from_the_start);
 }
 
 // A limit that changes during the run is passed to the forecast, too.
 TEST(a_limit_may_change)
 {
-    run_result r;
+    SCOPED(run_finish) run_result r;
     const char *const *const settings =
         SETTINGS("control.law=speed-limit", "control.force_limit=4", "control.approach_voltage=5",
                  "control.speed_limit=100", "control.force=0.3", "initial.angle=-0.4");
     assert_int_equal(run_with_change(settings, "control.force_limit", "1", 0.05, &r), STATUS_OK);
     const summary high = rig_summary(settings);
     check_below(r.summary.peak_force_N, high.peak_force_N);
-    run_finish(&r);
 }

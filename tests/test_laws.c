@@ -39,6 +39,7 @@ TEST(hybrid_force_follows_its_coefficients)
 // The impact mode starts where the hub is and ends at the angle that (5.23) gives.
 TEST(quintic_joins_contact_and_rest)
 {
+    SCOPED(run_finish)
     run_result r = rig_run(SETTINGS("control.law=hybrid", "sensor.ideal=true"), true);
     const trace *t = &r.trace;
     size_t first = 0, last = 0;
@@ -57,7 +58,6 @@ TEST(quintic_joins_contact_and_rest)
     check_close(t->rows[last + 1].controller_mode, 2, 0);
     // (5.14) with the model's own acceleration is the true force to the motion's nonlinearity
     check_close(t->rows[t->row_count - 1].calculated_force, r.summary.steady_force_N, 0.05);
-    run_finish(&r);
 }
 
 TEST(gains_have_both_readings)
@@ -218,8 +218,8 @@ TEST(bang_bang_hits_harder_than_the_plain_approach)
 static double peak_of_touch(const char *angle, double *tip_speed)
 {
     fault f;
-    scenario s;
-    run_result r;
+    SCOPED(scenario_finish) scenario s;
+    SCOPED(run_finish) run_result r;
     char setting[64];
     assert_int_equal(scenario_open(&s, "compare/vibration-phase", NULL, NULL), STATUS_OK);
     snprintf(setting, sizeof setting, "wall.angle=%s", angle);
@@ -228,8 +228,6 @@ static double peak_of_touch(const char *angle, double *tip_speed)
     assert_non_null(r.before_impact);
     *tip_speed = 0.5 * (r.before_impact[2] + r.before_impact[3]);
     double peak = r.summary.peak_force_N;
-    run_finish(&r);
-    scenario_finish(&s);
     return peak;
 }
 
@@ -270,6 +268,7 @@ TEST(every_law_ends_near_its_force)
 
 TEST(recovering_law_returns_to_position_control)
 {
+    SCOPED(run_finish)
     run_result r = rig_run(SETTINGS("control.law=recovering", "control.approach_voltage=7",
                                     "control.force=0.5", "run.duration=2"),
                            true);
@@ -280,7 +279,6 @@ TEST(recovering_law_returns_to_position_control)
     }
     assert_true(recovered);
     assert_true(pressed_after);
-    run_finish(&r);
 }
 
 // Spring and beam in series: a wall believed d rad off costs d k K/(k + K) of torque, K = 4 k2.

@@ -240,9 +240,8 @@ TEST(the_flight_is_that_of_the_straight_arm)
 {
     enum { SIZE = 5, STEPS = 400 }; // q, q', 1
     const parameters p = fixture_parameters(SETTINGS(START));
-    arm a;
     double m[4] = {0}, k[4] = {0};
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     modes_matrices(&a, m, k);
     const double damping = motor_damping(&p.motor), determinant = m[0] * m[3] - m[1] * m[2];
     const double inverse[4] = {m[3] / determinant, -m[1] / determinant, -m[2] / determinant,

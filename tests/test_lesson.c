@@ -31,7 +31,7 @@ static void go_through(explorer *ex, const char *name)
 // A scenario read from its own copy.
 static void read_copy(const scenario *s, scenario *copy)
 {
-    char *text = NULL;
+    SCOPED(free_kept) char *text = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
     assert_non_null(stream);
@@ -39,7 +39,6 @@ static void read_copy(const scenario *s, scenario *copy)
     fclose(stream);
     const status code = scenario_parse(copy, text, size, "copy.yaml", NULL, fail_on_fault, NULL);
     assert_int_equal(code, STATUS_OK);
-    free(text);
 }
 
 TEST(test_a_copy_keeps_its_lesson)
@@ -50,7 +49,7 @@ TEST(test_a_copy_keeps_its_lesson)
     for (size_t n = 0; n < sizeof names / sizeof names[0]; n++) {
         scenario s, copy;
         fault f = {0};
-        explorer ex;
+        SCOPED(explorer_finish) explorer ex;
         assert_int_equal(scenario_open(&s, names[n], fail_on_fault, NULL), STATUS_OK);
         read_copy(&s, &copy);
         assert_int_equal(copy.lesson.step_count, s.lesson.step_count);
@@ -66,7 +65,6 @@ TEST(test_a_copy_keeps_its_lesson)
         // and can be gone through like the lesson itself
         assert_int_equal(explorer_init(&ex, &copy, HUGE_VAL, &f), STATUS_OK);
         go_through(&ex, names[n]);
-        explorer_finish(&ex);
         scenario_finish(&s);
     }
 }
@@ -97,8 +95,7 @@ TEST(test_every_lesson_can_be_gone_through)
 
 TEST(test_every_step_fits_a_small_screen)
 {
-    explorer ex;
-    open_explorer(&ex, "lessons/impulse-and-force");
+    OPEN_EXPLORER(ex, "lessons/impulse-and-force");
     const lesson *l = &ex.state.session.base.lesson;
     for (int i = 0; i < l->step_count; i++) {
         ex.state.lesson = (lesson_progress){.on = true, .step = i};
@@ -113,7 +110,6 @@ TEST(test_every_step_fits_a_small_screen)
         assert_non_null(strstr(text, l->steps[i].choice_count == 0 ? last + 1 : say));
         free(text);
     }
-    explorer_finish(&ex);
 }
 
 // What a step names is on a screen of 80 x 24: when it is asked, or once it is done.
@@ -154,10 +150,9 @@ TEST(test_what_a_step_names_is_on_the_screen)
         {"what-a-sensor-sees", 5, false, "fsr_rise_time"},
     };
     for (size_t n = 0; n < sizeof named / sizeof named[0]; n++) {
-        explorer ex;
         char name[64];
         snprintf(name, sizeof name, "lessons/%s", named[n].lesson);
-        open_explorer(&ex, name);
+        OPEN_EXPLORER(ex, name);
         const lesson *l = &ex.state.session.base.lesson;
         for (int i = 0; i < named[n].step - !named[n].done; i++) {
             for (int k = 0; k < l->steps[i].command_count; k++) {
@@ -168,15 +163,13 @@ TEST(test_what_a_step_names_is_on_the_screen)
             }
         }
         assert_shows_at(&ex, 80, 24, named[n].shown);
-        explorer_finish(&ex);
     }
 }
 
 // Two keys open the first lesson of the list, which goes by number.
 TEST(test_the_list_of_lessons_opens_the_first)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":lesson<Enter>");
     char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE), *at = text;
     for (int i = 1; i <= 6; i++) {
@@ -188,13 +181,11 @@ TEST(test_the_list_of_lessons_opens_the_first)
     free(text);
     press(&ex, "<Enter>");
     assert_string_equal(ex.state.session.base.name, "lessons/impulse-and-force");
-    explorer_finish(&ex);
 }
 
 TEST(test_wrong_answers_are_not_taken)
 {
-    explorer ex;
-    open_explorer(&ex, "lessons/hybrid-law");
+    OPEN_EXPLORER(ex, "lessons/hybrid-law");
     press(&ex, "A1<Enter>");
     assert_false(ex.state.lesson.passed);
     assert_true(ex.state.message.warning);
@@ -215,5 +206,4 @@ TEST(test_wrong_answers_are_not_taken)
     assert_false(ex.state.lesson.on);
     press(&ex, ":lesson no-such<Enter>");
     assert_true(ex.state.message.warning);
-    explorer_finish(&ex);
 }

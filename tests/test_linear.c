@@ -24,11 +24,10 @@ static scenario opened(const char *name, const char *changes)
 
 static linear_arm linearised(const char *name, const char *changes, linear_place place)
 {
-    scenario s = opened(name, changes);
+    SCOPED(scenario_finish) scenario s = opened(name, changes);
     fault f = {.text = ""};
     linear_arm l;
     fail_if(linear_arm_init(&l, &s.parameters, place, &f) != STATUS_OK, "%s", f.text);
-    scenario_finish(&s);
     return l;
 }
 
@@ -90,7 +89,7 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
         char changes[128];
         snprintf(changes, sizeof changes, "arm.links=6 motor.voltage=0 arm.hub_joint=%s",
                  joints[i / 2]);
-        scenario s = opened(ROUND, changes);
+        SCOPED(scenario_finish) scenario s = opened(ROUND, changes);
         linear_arm with = linearised(ROUND, changes, place);
         double complex zeros[MOST];
         double frequencies[MOST], shapes[MOST];
@@ -109,7 +108,6 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
             check_close(creal(zeros[2 * k]), 0, 1e-8 * frequencies[k]);
         }
         linear_system_finish(&with.system);
-        scenario_finish(&s);
     }
 }
 
@@ -154,13 +152,12 @@ TEST(what_has_no_linear_form_is_refused)
         {"wall.contact=hunt-crossley wall.stiffness=1e6 motor.voltage=0", "Hunt", LINEAR_STUCK},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        scenario s = opened(ROUND, cases[i].changes);
+        SCOPED(scenario_finish) scenario s = opened(ROUND, cases[i].changes);
         linear_arm l;
         fault f = {.text = ""};
         assert_int_equal(linear_arm_init(&l, &s.parameters, cases[i].place, &f),
                          STATUS_BAD_ARGUMENT);
         assert_non_null(strstr(f.text, cases[i].says));
-        scenario_finish(&s);
     }
     linear_arm stuck = linearised(ROUND, "", LINEAR_STUCK);
     assert_int_equal(stuck.system.states, 0);
@@ -180,7 +177,7 @@ TEST(mat_files_are_read_element_by_element)
 {
     const double values[6] = {1, 2, 3, 4, 5, 6};
     const double complex roots[2] = {complex_of(1, 2), complex_of(3, -4)};
-    char *bytes = NULL;
+    SCOPED(free_kept) char *bytes = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&bytes, &size);
     mat_file_begin(stream);
@@ -218,5 +215,4 @@ TEST(mat_files_are_read_element_by_element)
         at = next;
     }
     assert_ptr_equal(at, end);
-    free(bytes);
 }

@@ -49,9 +49,9 @@ TEST(limits_are_those_found_otherwise)
         {"compare/force-pd", "control.rate=200", "control.force_gain", 1, 8, 4.12},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        scenario s = opened(cases[i].name, cases[i].changes);
+        SCOPED(scenario_finish) scenario s = opened(cases[i].name, cases[i].changes);
         char range[64], *vary[] = {range};
-        sweep between;
+        SCOPED(sweep_finish) sweep between;
         fault f = {.text = ""};
         double limit;
         snprintf(range, sizeof range, "%s=%g:%g:2", cases[i].path, cases[i].from, cases[i].to);
@@ -60,8 +60,6 @@ TEST(limits_are_those_found_otherwise)
             linear_limit(&between, LINEAR_CONTACT, false, cases[i].from, cases[i].to, &limit, &f),
             STATUS_OK);
         check_relative(limit, cases[i].known, 1e-2);
-        sweep_finish(&between);
-        scenario_finish(&s);
     }
 }
 
@@ -75,7 +73,7 @@ TEST(margins_are_met_by_the_poles)
         {"compare/hybrid", IDEAL "control.rate=300 control.delay=0.002"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        scenario s = opened(cases[i][0], cases[i][1]);
+        SCOPED(scenario_finish) scenario s = opened(cases[i][0], cases[i][1]);
         linear_arm l;
         linear_system loop = loop_of(&s, &l);
         linear_response r;
@@ -101,18 +99,16 @@ TEST(margins_are_met_by_the_poles)
             char delay[256];
             snprintf(delay, sizeof delay, "%s control.delay=%.12g", cases[i][1],
                      s.parameters.control.delay + m.delay_s);
-            scenario late = opened(cases[i][0], delay);
+            SCOPED(scenario_finish) scenario late = opened(cases[i][0], delay);
             double growth;
             bool stable;
             assert_int_equal(linear_stability(&late, LINEAR_CONTACT, false, &growth, &stable, &f),
                              STATUS_OK);
             check_close(growth * period, 0, 2e-2);
-            scenario_finish(&late);
         }
         free(r.frequency);
         linear_system_finish(&loop);
         linear_system_finish(&l.system);
-        scenario_finish(&s);
     }
 }
 
@@ -130,7 +126,7 @@ TEST(measured_loops_are_the_exact_ones)
         {"compare/force-pd", loaded}, {"compare/force-pd", IDEAL},
     };
     for (int i = 0; i < 5; i++) {
-        scenario s = opened(cases[i][0], cases[i][1]);
+        SCOPED(scenario_finish) scenario s = opened(cases[i][0], cases[i][1]);
         parameters *p = &s.parameters;
         p->code_allowed = i >= 3;
         if (i == 4) {
@@ -140,10 +136,9 @@ TEST(measured_loops_are_the_exact_ones)
 
         // one that does not hold the force is asked for that which it comes to
         for (int k = 0; k < 6 && i >= 3; k++) {
-            run_result result;
+            SCOPED(run_finish) run_result result;
             assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
             p->control.force = result.summary.steady_force_N;
-            run_finish(&result);
         }
         linear_arm l;
         linear_system loop = loop_of(&s, &l);
@@ -167,7 +162,6 @@ TEST(measured_loops_are_the_exact_ones)
         free(r.frequency);
         linear_system_finish(&loop);
         linear_system_finish(&l.system);
-        scenario_finish(&s);
     }
 }
 
@@ -199,7 +193,7 @@ static const char *start_scaled(void *memory, const controller_setup *setup)
 // How often the arm loses contact with the loop gain so many times larger.
 static double losses_with(double factor)
 {
-    scenario s = opened("compare/observer", IDEAL "run.duration=6");
+    SCOPED(scenario_finish) scenario s = opened("compare/observer", IDEAL "run.duration=6");
     scaled scale = {.factor = factor, .rest = (double)NAN};
     fault f = {.text = ""};
     run_loop *l;
@@ -216,7 +210,6 @@ static double losses_with(double factor)
     const double after = loop_summary(l).separations;
     loop_destroy(l);
     rig_destroy(scale.inner);
-    scenario_finish(&s);
     return after - before;
 }
 
@@ -246,11 +239,10 @@ TEST(measured_margins_are_those_of_runs)
         char changes[256];
         snprintf(changes, sizeof changes,
                  IDEAL "run.duration=3 control.delay=%.6g belief.delay_error=-%.6g", delay, delay);
-        run_result result;
+        SCOPED(run_finish) run_result result;
         s = opened("compare/observer", changes);
         assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
         assert_true((result.summary.settling_time_s < 1) == !more);
-        run_finish(&result);
         scenario_finish(&s);
     }
 }
@@ -259,6 +251,7 @@ TEST(measured_margins_are_those_of_runs)
 // it back after (p C)^2/(2 f C): a micrometre is a separation.
 TEST(the_least_push_lifts_the_arm_by_a_micrometre)
 {
+    SCOPED(scenario_finish)
     scenario s = opened("corrected/first-impact", "motor.stiction=0 run.duration=4");
     linear_arm l;
     fault f = {.text = ""};
@@ -279,7 +272,6 @@ TEST(the_least_push_lifts_the_arm_by_a_micrometre)
     chain_contact_response(&a, work, q, false, response, &compliance);
     check_relative(push, sqrt(2e-6 * force / compliance), 0.02);
     linear_system_finish(&l.system);
-    scenario_finish(&s);
 }
 
 int main(int argc, char **argv)

@@ -45,11 +45,10 @@ static comparison compare(double k2, double volts, const char *wall, const char 
 
     arm a;
     arm_init(&a, &s.parameters);
-    motion *m = before_impact(&a, &s.parameters.method);
+    SCOPED(motion_destroy_kept) motion *m = before_impact(&a, &s.parameters.method);
     assert_int_equal(predict_linearised(&a, m, state_angles(m, m->state),
                                         state_velocities(m, m->state), &c.predicted),
                      STATUS_OK);
-    motion_destroy(m);
     return c;
 }
 
@@ -171,9 +170,8 @@ TEST(in_flight_it_approaches_the_prediction_at_the_wall)
 {
     comparison at_wall = compare(4.92, 1, "wall.kind=point", "arm.links=2");
     parameters p = fixture_parameters(NULL);
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     motion_report report;
     prediction early, late;
     motion_start(&a, m, 0, 0);
@@ -184,34 +182,29 @@ TEST(in_flight_it_approaches_the_prediction_at_the_wall)
     check_relative(late.impulse, at_wall.predicted.impulse, 0.01);
     check_relative(late.force, at_wall.predicted.force, 0.01);
     assert_true(early.impulse > 0 && early.impulse < late.impulse);
-    motion_destroy(m);
 }
 
 TEST(a_receding_arm_does_not_touch)
 {
     parameters p = fixture_parameters(NULL);
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     double q[2] = {0.05, 0.05}, w[2] = {-1, -1};
     prediction out;
     predict_linearised(&a, m, q, w, &out);
     assert_false(out.holds);
     check_close(out.impulse, 0, 0);
-    motion_destroy(m);
 }
 
 // What is predicted of one link that touches at 0.6 rad/s, under commands.
 static prediction of_one_link(const char *const *settings, const voltage_profile *command)
 {
     parameters p = fixture_parameters(settings);
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     const double q[1] = {0.1}, w[1] = {0.6};
     prediction out;
     assert_int_equal(predict_pulse(&a, m, q, w, command, &out), STATUS_OK);
-    motion_destroy(m);
     return out;
 }
 
@@ -247,15 +240,13 @@ TEST(one_link_presses_with_its_motor)
 TEST(without_a_wall_there_is_no_touch)
 {
     parameters p = fixture_parameters(SETTINGS("wall.kind=none"));
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     const double q[2] = {0.1, 0.1}, w[2] = {0.6, 0.8};
     prediction out;
     assert_int_equal(predict_linearised(&a, m, q, w, &out), STATUS_OK);
     assert_false(out.holds);
     assert_true(isnan(out.force));
-    motion_destroy(m);
 }
 
 // What the motion does under commands that are given after the touch: peak of the pulse, its delay,
@@ -298,9 +289,8 @@ static prediction follow_motion(const arm *source, motion *m, const voltage_prof
 static void predict_and_follow(const char *joint, const char *links, const voltage_profile *command)
 {
     parameters p = fixture_parameters(SETTINGS(joint, links, "arm.k1=90", "motor.voltage=1"));
-    arm a;
-    arm_init(&a, &p);
-    motion *m = before_impact(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = before_impact(&a, &p.method);
     prediction out;
     assert_int_equal(predict_pulse(&a, m, state_angles(m, m->state), state_velocities(m, m->state),
                                    command, &out),
@@ -317,7 +307,6 @@ static void predict_and_follow(const char *joint, const char *links, const volta
     if (!isnan(out.restitution)) {
         check_close(out.restitution, is.restitution, 0.01);
     }
-    motion_destroy(m);
 }
 
 // The remark of 4.2: the voltage after the touch may be prescribed.
@@ -338,8 +327,7 @@ TEST(a_pulse_ends_where_the_arm_leaves)
     int ended = 0;
     for (int i = 0; i < 9; i++) {
         const parameters p = fixture_parameters(SETTINGS(stiffness_of[i / 3], volts_of[i % 3]));
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         motion *m = motion_create(&a, &p.method);
         motion_report report;
         motion_start(&a, m, 0, 0);
@@ -381,15 +369,13 @@ TEST(a_pulse_ends_where_the_arm_leaves)
 TEST(an_elastic_impact_does_not_hold)
 {
     parameters p = fixture_parameters(SETTINGS("wall.restitution=0.5"));
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     const double q[2] = {0.1, 0.1}, w[2] = {0.6, 0.8};
     prediction out;
     assert_int_equal(predict_linearised(&a, m, q, w, &out), STATUS_OK);
     assert_false(out.holds);
     assert_int_equal(out.doubt, DOUBT_NONE);
-    motion_destroy(m);
 }
 
 // Commands take the force down after its first peak and up to a higher one: the less is left of it
@@ -398,9 +384,8 @@ TEST(an_elastic_impact_does_not_hold)
 TEST(a_force_that_nearly_vanishes_is_not_answered)
 {
     parameters p = fixture_parameters(SETTINGS("motor.voltage=1"));
-    arm a;
-    arm_init(&a, &p);
-    motion *m = before_impact(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = before_impact(&a, &p.method);
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     prediction plain;
     assert_int_equal(predict_pulse(&a, m, q, w, NULL, &plain), STATUS_OK);
@@ -435,7 +420,6 @@ TEST(a_force_that_nearly_vanishes_is_not_answered)
     const double inertia = p.arm.hub_inertia + 2 * own, lever = (ml2 / 2 - own) / l;
     const double a_volt = lever * motor_torque_per_volt(&p.motor) / inertia;
     check_close(doubted, 0.04 * plain.force / (0.03 * a_volt), 2);
-    motion_destroy(m);
 }
 
 // A gentle touch is one damped oscillation of the hub, x'' = a - c x' - k x, and the force
@@ -456,8 +440,7 @@ TEST(a_gentle_touch_is_one_oscillation)
             SETTINGS(walls[i / 6 % 2], "motor.stiction=0", "wall.angle=0", "method.rest_speed=0"));
         p.arm.damping_ratio = ratio;
         p.motor.voltage = size * touches[i % 6].volts;
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         motion *m = motion_create(&a, &p.method);
         const double x0 = size * touches[i % 6].bend;
         const double q[2] = {x0, -x0};

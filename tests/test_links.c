@@ -5,14 +5,13 @@
 
 static links_study studied(const char *name, char *const *changes, int count)
 {
-    scenario s;
+    SCOPED(scenario_finish) scenario s;
     fault f;
     links_study study;
     assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
     assert_int_equal(scenario_override_all(&s, changes, count, NULL, NULL), STATUS_OK);
     fail_if(links_study_compute(&s, NULL, &study, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(study.count, LINKS_LENGTHS);
-    scenario_finish(&s);
     return study;
 }
 
@@ -95,7 +94,7 @@ TEST(uneven_arms_have_no_beam)
 
 TEST(what_has_no_contact_is_refused)
 {
-    scenario s;
+    SCOPED(scenario_finish) scenario s;
     fault f;
     links_study study;
     char *changes[] = {"motor.voltage=0"};
@@ -108,5 +107,4 @@ TEST(what_has_no_contact_is_refused)
     run_monitor monitor = {0};
     atomic_store(&monitor.stop, true);
     assert_int_equal(links_study_compute(&s, &monitor, &study, &f), STATUS_STOPPED);
-    scenario_finish(&s);
 }

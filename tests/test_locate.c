@@ -28,9 +28,8 @@ static int events_of(const char *const *settings, const engine *by, double step,
                      found *events)
 {
     parameters p = fixture_parameters(settings);
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create_by(&a, &p.method, by);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, by);
     assert_non_null(m);
 
     // its engine, counted
@@ -50,7 +49,6 @@ static int events_of(const char *const *settings, const engine *by, double step,
         }
         motion_apply(&a, m, &report);
     }
-    motion_destroy(m);
     return count;
 }
 
@@ -111,9 +109,8 @@ TEST(a_touch_between_the_ends_of_a_step_is_found)
         // it turns back after 2 ms, when `reach` of its way leads to the wall
         parameters p =
             fixture_parameters(SETTINGS("arm.links=1", "motor.voltage=-2", "motor.stiction=0"));
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create_by(&a, &p.method, &explicit_engine);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &explicit_engine);
         motion_start(&a, m, 0, 0);
         const double turn = 2e-3, pull = -state_accelerations(m, m->state)[0];
         const double way = pull * turn * turn / 2, touch = turn * (1 - sqrt(1 - reach[i]));
@@ -123,6 +120,5 @@ TEST(a_touch_between_the_ends_of_a_step_is_found)
         assert_int_equal(report.event, MOTION_IMPACT);
         check_relative(m->state[SLOT_TIME], touch, 0.01); // but for the friction
         check_close(m->state[SLOT_GAP], 0, 1e-15);
-        motion_destroy(m);
     }
 }

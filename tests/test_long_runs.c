@@ -66,7 +66,7 @@ static int wait_for_run(session *s)
 // The session's run is that of its scenario from the start, to the last bit.
 static void assert_as_from_the_start(const session *s)
 {
-    run_result whole;
+    SCOPED(run_finish) run_result whole;
     run_scenario(&s->effective, true, &whole);
     const trace *a = &s->run.trace, *b = &whole.trace;
     assert_null(s->computing);
@@ -90,7 +90,6 @@ static void assert_as_from_the_start(const session *s)
         assert_int_equal(s->run.before_impact_size, whole.before_impact_size);
         assert_memory_equal(s->run.before_impact, whole.before_impact, whole.before_impact_size);
     }
-    run_finish(&whole);
 }
 
 TEST(a_resumed_run_is_the_run_from_the_start)
@@ -102,7 +101,7 @@ TEST(a_resumed_run_is_the_run_from_the_start)
     random_generator random;
     random_seed(&random, 7);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        session s;
+        SCOPED(session_finish) session s;
         fault f = {0};
         open_lasting(&s, names[i], "3", HUGE_VAL);
         for (int k = 0; k < 8; k++) {
@@ -122,22 +121,20 @@ TEST(a_resumed_run_is_the_run_from_the_start)
             }
             assert_as_from_the_start(&s);
         }
-        session_finish(&s);
     }
 }
 
 TEST(test_a_long_run_is_looked_at_while_it_is_computed)
 {
-    session s;
+    SCOPED(session_finish) session s;
     open_while_computing(&s, 0);
     assert_true(wait_for_run(&s) > 0);
     assert_as_from_the_start(&s);
-    session_finish(&s);
 }
 
 TEST(test_a_change_supersedes_a_run_being_computed)
 {
-    session s;
+    SCOPED(session_finish) session s;
     fault f = {0};
     open_lasting(&s, "corrected/twenty-links", "4", 0);
     session_seek(&s, 1e-3);
@@ -152,7 +149,6 @@ TEST(test_a_change_supersedes_a_run_being_computed)
     }
     wait_for_run(&s);
     assert_as_from_the_start(&s);
-    session_finish(&s);
 }
 
 TEST(test_a_run_is_stopped_and_gone_on_with)
@@ -180,7 +176,7 @@ TEST(test_a_run_is_stopped_and_gone_on_with)
 
 TEST(test_the_cursor_waits_for_rows_to_come)
 {
-    session s;
+    SCOPED(session_finish) session s;
     open_lasting(&s, "corrected/twenty-links", "4", 0);
     wait_for_run(&s);
     session_seek(&s, 3.5);
@@ -197,15 +193,13 @@ TEST(test_the_cursor_waits_for_rows_to_come)
     change(&s, "run.duration", "2");
     wait_for_run(&s);
     check_close(s.now, 2, 1e-12);
-    session_finish(&s);
 }
 
 TEST(test_runs_end_with_their_session)
 {
     for (int i = 0; i < 10; i++) {
-        session s;
+        SCOPED(session_finish) session s;
         open_lasting(&s, "corrected/twenty-links", "30", 1e-3 * i);
-        session_finish(&s);
     }
     assert_int_equal(shared_array_memory(), 0);
 }

@@ -5,6 +5,8 @@
 
 #include "tests/arm_fixture.h"
 
+GIVEN_BACK(run_loop, loop_destroy)
+
 static run_loop *begun(const char *const *settings, const given_law *law)
 {
     scenario s = {.parameters = fixture_parameters(settings)};
@@ -24,7 +26,7 @@ TEST(the_end_stays)
     const char *const *const cases[] = {SETTINGS(BRIEF), SETTINGS(BRIEF, "control.law=hybrid"),
                                         SETTINGS("arm.model=printed", "run.duration=0.1")};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        run_loop *l = begun(cases[i], NULL);
+        SCOPED(loop_destroy_kept) run_loop *l = begun(cases[i], NULL);
         fault f;
         assert_int_equal(loop_summary(l).status, STATUS_STOPPED);
         assert_int_equal(loop_until(l, 1, &f), STATUS_OK);
@@ -38,7 +40,6 @@ TEST(the_end_stays)
         assert_true(loop_time(l) == end);
         assert_memory_equal(&still, &last, sizeof still);
         assert_int_equal(loop_summary(l).status, STATUS_OK);
-        loop_destroy(l);
     }
 }
 
@@ -55,7 +56,7 @@ static const controller gives_up = {
 TEST(what_stopped_it_is_said_again)
 {
     const given_law law = {&gives_up, NULL};
-    run_loop *l = begun(SETTINGS(BRIEF), &law);
+    SCOPED(loop_destroy_kept) run_loop *l = begun(SETTINGS(BRIEF), &law);
     fault f = {.text = ""}, again = {.text = ""};
     status code = STATUS_OK;
     while (code == STATUS_OK && loop_time(l) < 0.09) {
@@ -72,13 +73,12 @@ TEST(what_stopped_it_is_said_again)
     assert_string_equal(again.text, f.text);
     assert_true(loop_time(l) == time);
     assert_int_equal(loop_summary(l).status, code);
-    loop_destroy(l);
 }
 
 TEST(a_refused_input_changes_nothing)
 {
-    run_loop *l = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
-    run_loop *same = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
+    SCOPED(loop_destroy_kept) run_loop *l = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
+    SCOPED(loop_destroy_kept) run_loop *same = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
     fault f = {.text = ""};
     assert_int_equal(loop_until(l, 0.02, &f), STATUS_OK);
     assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k2), -1, &f), STATUS_BAD_SCENARIO);
@@ -92,8 +92,6 @@ TEST(a_refused_input_changes_nothing)
     assert_int_equal(loop_until(same, 0.08, &f), STATUS_OK);
     const sample here = loop_row(l), there = loop_row(same);
     assert_memory_equal(&here, &there, sizeof here);
-    loop_destroy(l);
-    loop_destroy(same);
 }
 
 // A state goes back into the loop it is of; from another one, or cut, it is refused.
@@ -102,12 +100,12 @@ TEST(a_state_belongs_to_its_loop)
     const given_law law = {&gives_up, NULL};
     const given_law *const laws[] = {NULL, &law};
     for (int i = 0; i < 2; i++) {
-        run_loop *l = begun(SETTINGS(BRIEF), laws[i]);
-        run_loop *other = begun(SETTINGS(BRIEF, "arm.k2=7"), laws[i]);
+        SCOPED(loop_destroy_kept) run_loop *l = begun(SETTINGS(BRIEF), laws[i]);
+        SCOPED(loop_destroy_kept) run_loop *other = begun(SETTINGS(BRIEF, "arm.k2=7"), laws[i]);
         fault f = {.text = ""};
         assert_int_equal(loop_until(l, 0.02, &f), STATUS_OK);
         const size_t size = loop_saved_size(l);
-        void *kept = malloc(size);
+        SCOPED(free_kept) void *kept = malloc(size);
         assert_non_null(kept);
         loop_save(l, kept);
         const sample before = loop_row(l);
@@ -120,9 +118,6 @@ TEST(a_state_belongs_to_its_loop)
         assert_int_equal(loop_restore(l, kept, size, &f), STATUS_OK);
         const sample now = loop_row(l);
         assert_memory_equal(&now, &before, sizeof now);
-        loop_destroy(l);
-        loop_destroy(other);
-        free(kept);
     }
 }
 
@@ -159,6 +154,7 @@ TEST(a_state_holds_no_addresses)
 // where it does without going back.
 TEST(a_state_has_the_face_on_its_way)
 {
+    SCOPED(loop_destroy_kept)
     run_loop *l = begun(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=100",
                                  "wall.damping=500", "run.duration=2"),
                         NULL);
@@ -169,7 +165,7 @@ TEST(a_state_has_the_face_on_its_way)
     assert_int_equal(loop_set_number(l, PARAMETER_INDEX(motor.voltage), 2, &f), STATUS_OK);
     const sample kept_at = loop_row(l);
     assert_true(kept_at.contact == 0 && kept_at.face_depth > 1e-4);
-    void *kept = malloc(loop_saved_size(l));
+    SCOPED(free_kept) void *kept = malloc(loop_saved_size(l));
     assert_non_null(kept);
     loop_save(l, kept);
 
@@ -184,8 +180,6 @@ TEST(a_state_has_the_face_on_its_way)
         assert_memory_equal(&now, &kept_at, sizeof now);
     }
     assert_memory_equal(&ends[0], &ends[1], sizeof ends[0]);
-    free(kept);
-    loop_destroy(l);
 }
 
 // Another voltage each millisecond, whose strides are made for no more than the next change or two:
@@ -194,7 +188,7 @@ TEST(changes_are_followed_wherever_steps_end)
 {
     const char *const *const settings =
         SETTINGS("initial.angle=0.09", "initial.velocity=0.5", "run.duration=0.1");
-    run_loop *l = begun(settings, NULL), *cut = begun(settings, NULL);
+    SCOPED(loop_destroy_kept) run_loop *l = begun(settings, NULL), *cut = begun(settings, NULL);
     fault f;
     for (int i = 0; i < 100; i++) {
         const double volts = 1 + 0.5 * (i % 7 - 3), next = 1e-3 * (i + 1);
@@ -215,8 +209,6 @@ TEST(changes_are_followed_wherever_steps_end)
     const summary s = loop_summary(l);
     assert_true(s.impacts > 0);
     assert_true(s.energy_residual_J < 1e-12);
-    loop_destroy(l);
-    loop_destroy(cut);
 }
 
 // Cut anywhere, a run of two links differs from the uninterrupted one by rounding alone.
@@ -227,6 +219,7 @@ TEST(a_cut_elsewhere_is_rounding)
         SETTINGS("wall.kind=plane", "run.duration=1"),
         SETTINGS("wall.angle=0", "initial.angle=-0.1", "control.law=hybrid", "sensor.ideal=true")};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        SCOPED(loop_destroy_kept)
         run_loop *whole = begun(cases[i], NULL), *cut = begun(cases[i], NULL);
         fault f;
         assert_int_equal(loop_until(whole, 10, &f), STATUS_OK);
@@ -242,8 +235,6 @@ TEST(a_cut_elsewhere_is_rounding)
         check_close(y.hub_angle, x.hub_angle, 1e-15);
         check_close(y.last_angle, x.last_angle, 1e-15);
         check_close(y.force, x.force, 1e-13);
-        loop_destroy(whole);
-        loop_destroy(cut);
     }
 }
 
@@ -258,6 +249,7 @@ TEST(a_cut_leaves_the_face_on_its_way)
                  "wall.contact=hunt-crossley", "wall.stiffness=1e4", "wall.damping=1e5",
                  "run.duration=0.3")};
     for (int i = 0; i < 2; i++) {
+        SCOPED(loop_destroy_kept)
         run_loop *whole = begun(walls[i], NULL), *cut = begun(walls[i], NULL);
         fault f;
         double left = 0;
@@ -273,7 +265,5 @@ TEST(a_cut_leaves_the_face_on_its_way)
         check_close(y.hub_angle, x.hub_angle, 1e-14);
         check_close(y.face_depth, x.face_depth, 1e-14);
         check_relative(y.wall_loss, x.wall_loss, 1e-12);
-        loop_destroy(whole);
-        loop_destroy(cut);
     }
 }

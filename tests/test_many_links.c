@@ -12,7 +12,7 @@ static void check_case(int links, const char *hub, const char *wall, double volt
     snprintf(v, sizeof v, "motor.voltage=%.17g", volts);
     scenario s = {.parameters = fixture_parameters(SETTINGS("method.name=generalized-alpha", n, hub,
                                                             wall, v, "run.duration=1"))};
-    run_result r;
+    SCOPED(run_finish) run_result r;
     fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%d links, %s, %s, %g V: %s", links, hub,
             wall, volts, r.summary.message);
     // motor torque within the friction's band, over the length of 1 m
@@ -24,7 +24,6 @@ static void check_case(int links, const char *hub, const char *wall, double volt
     check_below(r.summary.max_penetration_m, 1e-7);
     // a method's own damping may take energy, nothing may make any
     assert_true(r.summary.energy_residual_J < 0.35 * r.summary.motor_work_J);
-    run_finish(&r);
 }
 
 TEST(runs_stay_stable)
@@ -60,14 +59,13 @@ TEST(the_event_method_stays_exact)
         const char *const *c = cases[i];
         scenario s = {.parameters = fixture_parameters(
                           SETTINGS(c[0], c[1], c[2], c[3], c[4], "run.duration=0.32"))};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s, %s, %s, %s: %s", c[0], c[1], c[2],
                 c[3], r.summary.message);
         assert_string_equal(summary_status(&r.summary), "ok");
         check_below(r.summary.energy_residual_J, 1e-6 * r.summary.motor_work_J);
         check_below(r.summary.max_penetration_m, 1e-10);
         check_close(r.summary.first_contact_s, 0.302, 3e-3);
-        run_finish(&r);
     }
 }
 
@@ -82,13 +80,12 @@ static double momentum_of_50_ms(int links)
                                "run.duration=0.0571"))};
 
     // the run is shorter than the window of the steady force, which is then the mean of all of it
-    run_result r;
+    SCOPED(run_finish) run_result r;
     assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
     assert_string_equal(summary_status(&r.summary), "ok");
     check_close(r.summary.impacts, 1, 0);
     double momentum =
         r.summary.contact_impulse_Ns + r.summary.steady_force_N * s.parameters.run.duration;
-    run_finish(&r);
     return momentum;
 }
 
@@ -119,13 +116,12 @@ TEST(strides_follow_the_fastest_link)
                           SETTINGS("arm.links=3", "arm.hub_joint=beam", "wall.kind=plane",
                                    "wall.angle=0.1", "motor.voltage=1", "motor.viscous_friction=0",
                                    "motor.amplifier_gain=1000", "run.duration=1", steps[i]))};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         assert_string_equal(summary_status(&r.summary), "ok");
         first = i == 0 ? r.summary : first;
         check_relative(r.summary.motor_work_J, first.motor_work_J, 1e-5);
         check_relative(r.summary.peak_force_N, first.peak_force_N, 1e-6);
         check_close(r.summary.impacts, first.impacts, 0);
-        run_finish(&r);
     }
 }

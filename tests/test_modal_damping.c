@@ -32,8 +32,7 @@ TEST(only_joints_that_are_there_are_damped)
     for (int j = 0; j < 2; j++) {
         parameters p = fixture_parameters(arms[j]);
         double rows[PARAMETER_MODES_MOST][PARAMETER_LIST_MOST];
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         assert_int_equal(modal_damping_rows(&a, "0.1,0.2,0.3", rows), 3);
         for (int i = 0; i < 3; i++) {
             int damped = 0;
@@ -97,7 +96,7 @@ static void decay_of_mode(const parameters *p, int mode, double *rate, double *f
     held_modes m = modes_of(p);
     const double small = 1e-5, step = 0.4 / m.frequencies[mode];
     const double *shape = m.shapes + mode * m.arm.dof;
-    motion *run = motion_create(&m.arm, &p->method);
+    SCOPED(motion_destroy_kept) motion *run = motion_create(&m.arm, &p->method);
     assert_non_null(run);
     motion_start(&m.arm, run, 0, 0);
     for (int i = 1; i < m.arm.dof; i++) {
@@ -130,7 +129,6 @@ static void decay_of_mode(const parameters *p, int mode, double *rate, double *f
     check_below(fabs(motion_energy_residual(&m.arm, run, run->state)), 1e-9 * put_in);
     check_below(0.05 * put_in * *rate * 20 / m.frequencies[mode],
                 state_quadratures(run, run->state)[QUADRATURE_DAMPING]);
-    motion_destroy(run);
 }
 
 static void check_decay(const parameters *p, int mode, double ratio)
@@ -194,8 +192,7 @@ TEST(ratios_in_proportion_are_structural_damping)
         }
         parameters q =
             fixture_parameters(SETTINGS(hubs[hub], "arm.links=5", list, "wall.kind=plane"));
-        arm b;
-        arm_init(&b, &q);
+        arm b = arm_of(&q);
         assert_int_equal(b.damped_modes, m.count);
 
         // the same accelerations and losses

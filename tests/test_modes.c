@@ -10,18 +10,15 @@ static double beta_length(int links, tip_end tip, int mode)
     char n[32];
     snprintf(n, sizeof n, "arm.links=%d", links);
     parameters p = fixture_parameters(SETTINGS(n));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     int count;
-    double *frequencies = calloc((size_t)links, sizeof *frequencies);
-    double *shapes = calloc((size_t)(links * links), sizeof *shapes);
+    SCOPED(free_kept) double *frequencies = calloc((size_t)links, sizeof *frequencies);
+    SCOPED(free_kept) double *shapes = calloc((size_t)(links * links), sizeof *shapes);
     assert_int_equal(modes_compute(&a, HUB_LOCKED, tip, &count, frequencies, shapes), STATUS_OK);
     assert_true(mode < count);
     double stiffness = p.arm.k2 * p.arm.length / 2, density = p.arm.mass / p.arm.length;
     double result =
         sqrt(frequencies[mode] / sqrt(stiffness / density) * p.arm.length * p.arm.length);
-    free(frequencies);
-    free(shapes);
     return result;
 }
 
@@ -53,8 +50,7 @@ TEST(clamped_pinned_modes_converge)
 TEST(two_links_with_locked_hub_have_the_closed_form)
 {
     parameters p = fixture_parameters(NULL);
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     int count;
     double w[2], shapes[4], m = 0.20054, l = 0.5;
     assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, w, shapes), STATUS_OK);
@@ -67,8 +63,7 @@ TEST(two_links_with_locked_hub_have_the_closed_form)
 TEST(free_hub_has_one_mode_of_rigid_turning)
 {
     parameters p = fixture_parameters(SETTINGS("arm.links=4", "arm.hub_joint=spring"));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     int count;
     double w[5], shapes[25];
     assert_int_equal(modes_compute(&a, HUB_FREE, TIP_FREE, &count, w, shapes), STATUS_OK);
@@ -97,8 +92,7 @@ TEST(matrices_are_those_of_the_energies)
 {
     for (size_t i = 0; i < sizeof any_arms / sizeof any_arms[0]; i++) {
         parameters p = fixture_parameters(any_arms[i]);
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         const int n = a.dof;
         const double straight[9] = {0};
         double mass[81] = {0}, stiffness[81] = {0};
@@ -131,8 +125,7 @@ TEST(every_mode_balances_but_for_what_holds_the_arm)
         const hub_end hub = i % 2 ? HUB_LOCKED : HUB_FREE;
         const tip_end tip = i / 2 % 2 ? TIP_PINNED : TIP_FREE;
         parameters p = fixture_parameters(any_arms[i / 4]);
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         const int n = a.dof;
         double mass[81] = {0}, stiffness[81] = {0}, w[9], shapes[81];
         int count;

@@ -49,7 +49,7 @@ static double rod_angle(const rod *r, double t)
 TEST(a_single_rod_follows_its_closed_form)
 {
     rod r = one_rod();
-    run_result result = run(SETTINGS("arm.links=1", "run.duration=0.6"));
+    SCOPED(run_finish) run_result result = run(SETTINGS("arm.links=1", "run.duration=0.6"));
     double t = 0.2823; // contact: rod_angle(t) = 0.1, by Newton's method
     for (int i = 0; i < 20; i++) {
         t -= (rod_angle(&r, t) - 0.1) / (r.torque / r.damping * (1 - exp(-r.rate * t)));
@@ -61,7 +61,6 @@ TEST(a_single_rod_follows_its_closed_form)
     check_relative(result.summary.steady_force_N, r.torque + 0.045, 1e-12);
     check_close(result.trace.rows[200].last_angle, rod_angle(&r, 0.2), 1e-13);
     check_close(find_event(&result, EVENT_IMPACT, 0)->loss, 0.5 * r.inertia * w * w, 1e-12);
-    run_finish(&result);
 }
 
 // Without any damping its velocity is a straight line, however long the stride: what the gap makes
@@ -70,6 +69,7 @@ TEST(a_rod_that_gathers_speed_meets_the_wall_where_it_is)
 {
     static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
     for (int i = 0; i < 2; i++) {
+        SCOPED(run_finish)
         run_result r = run(SETTINGS("arm.links=1", "motor.back_emf=0", "motor.viscous_friction=0",
                                     "motor.stiction=0", "motor.voltage=8", "wall.angle=2.5",
                                     "wall.restitution=0.95", walls[i], "run.duration=3"));
@@ -78,13 +78,13 @@ TEST(a_rod_that_gathers_speed_meets_the_wall_where_it_is)
         check_close(r.summary.first_contact_s, t, 1e-12);
         check_below(r.summary.max_penetration_m, 1e-13);
         assert_true(r.summary.impacts >= 2);
-        run_finish(&r);
     }
 }
 
 TEST(a_coasting_rod_sticks_when_friction_says)
 {
     rod r = one_rod();
+    SCOPED(run_finish)
     run_result result = run(SETTINGS("arm.links=1", "wall.kind=none", "motor.voltage=0",
                                      "initial.velocity=0.5", "run.duration=1.2"));
     // I w' = -D w - c: w = 0 at t = ln(1 + D w0 / c) I / D
@@ -93,12 +93,12 @@ TEST(a_coasting_rod_sticks_when_friction_says)
     const sample *last = &result.trace.rows[result.trace.row_count - 1];
     check_close(last->sticking, 1, 0);
     check_close(last->hub_velocity, 0, 0);
-    run_finish(&result);
 }
 
 TEST(a_bouncing_rod_rebounds_by_e_and_comes_to_rest)
 {
     rod r = one_rod();
+    SCOPED(run_finish)
     run_result result = run(SETTINGS("arm.links=1", "wall.restitution=0.5", "run.duration=1.5"));
     const event *first = find_event(&result, EVENT_IMPACT, 0);
     check_relative(first->impulse, 1.5 * r.inertia * first->speed, 1e-12);
@@ -114,7 +114,6 @@ TEST(a_bouncing_rod_rebounds_by_e_and_comes_to_rest)
     check_below(find_event(&result, EVENT_IMPACT, impacts - 1)->speed, 1e-4);
     assert_true(find_event(&result, EVENT_IMPACT, impacts - 2)->speed >= 1e-4);
     check_relative(result.summary.steady_force_N, r.torque + 0.045, 1e-12);
-    run_finish(&result);
 }
 
 // Parameters refuse an arm that starts behind the wall; put there regardless, it cannot be relied
@@ -128,14 +127,13 @@ TEST(an_arm_inside_a_rigid_wall_is_never_ok)
         scenario s = {.parameters = fixture_parameters(
                           SETTINGS(methods[i % 3], kinds[i / 3 % 2], "wall.angle=2.9",
                                    i < 6 ? "arm.links=1" : "arm.links=2"))};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         s.parameters.initial.angle = -0.4;
         if (run_scenario(&s, true, &r) == STATUS_OK) {
             assert_true(r.summary.max_penetration_m > 0.1);
             assert_true(r.summary.inaccurate);
             assert_non_null(strstr(r.summary.message, "inside a rigid wall"));
         }
-        run_finish(&r);
     }
 }
 
@@ -146,9 +144,8 @@ TEST(a_hub_held_beyond_stiction_is_noted)
     static const char *const engines[] = {"method.engine=pair", "method.engine=stiff"};
     for (int i = 0; i < 2; i++) {
         const parameters p = fixture_parameters(SETTINGS("motor.stiction=1e3", engines[i]));
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create(&a, &p.method);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         motion_report r;
         assert_non_null(m);
         motion_start(&a, m, 0, 0);
@@ -158,7 +155,6 @@ TEST(a_hub_held_beyond_stiction_is_noted)
         motion_end_stride(m);
         assert_int_equal(motion_step(&a, m, 2e-3, 1e-3, &r), STATUS_OK);
         check_close(m->overheld, 0.5 * fabs(a.motor.torque), 1e-6);
-        motion_destroy(m);
     }
 }
 
@@ -166,12 +162,12 @@ TEST(a_hub_held_beyond_stiction_is_noted)
 // its far side, which the run says.
 TEST(a_start_on_the_point_behind_the_hub_is_a_touch_from_behind)
 {
+    SCOPED(run_finish)
     run_result r = run(SETTINGS("arm.links=1", "wall.angle=3", "initial.angle=-0.14159265358979312",
                                 "motor.voltage=-1", "run.duration=0.2"));
     check_close(r.summary.first_contact_s, 0, 0);
     check_relative(r.summary.steady_force_N, one_rod().torque + 0.045, 1e-12);
     assert_non_null(strstr(r.summary.message, "1 of the touches were behind it"));
-    run_finish(&r);
 }
 
 // An arm that starts on its wall does not know at what angle that is, which rounding of the gap
@@ -192,12 +188,12 @@ TEST(a_start_on_the_wall_is_the_same_at_any_angle)
             char wall[40], start[40];
             snprintf(wall, sizeof wall, "wall.angle=%.17g", angles[k]);
             snprintf(start, sizeof start, "initial.angle=%.17g", angles[k]);
+            SCOPED(run_finish)
             run_result r = run(SETTINGS(kind, walls[i / 2 % 3], arms[i / 6 % 3], motors[i / 18],
                                         wall, start, "motor.voltage=1.2", "run.duration=0.1"));
             peak = k == 0 ? r.summary.peak_force_N : peak;
             check_relative(r.summary.peak_force_N, peak, 1e-5);
             assert_false(r.summary.inaccurate);
-            run_finish(&r);
         }
     }
 }
@@ -233,23 +229,22 @@ TEST(gap_and_force_stay_complementary_and_energy_is_accounted_for)
 {
     const char *const links[] = {"arm.links=1", "arm.links=2", "arm.links=3", "arm.links=5"};
     for (int i = 0; i < 4 * 8; i++) {
+        SCOPED(run_finish)
         run_result r = run(SETTINGS(links[i % 4], i & 4 ? "wall.kind=plane" : "wall.kind=point",
                                     i & 8 ? "motor.voltage=5" : "motor.voltage=1",
                                     i & 16 ? "wall.restitution=0.4" : "wall.restitution=0"));
         check_complementarity(&r);
         check_ledger(&r);
-        run_finish(&r);
     }
-    run_result r = run(SETTINGS("arm.hub_joint=spring", "run.duration=0.6"));
+    SCOPED(run_finish) run_result r = run(SETTINGS("arm.hub_joint=spring", "run.duration=0.6"));
     check_complementarity(&r);
     check_ledger(&r);
-    run_finish(&r);
 }
 
 // With the arm at rest on the wall and the hub held by friction, the middle spring alone presses.
 TEST(the_steady_force_is_the_springs)
 {
-    run_result r = run(SETTINGS("run.duration=2"));
+    SCOPED(run_finish) run_result r = run(SETTINGS("run.duration=2"));
     const sample *last = &r.trace.rows[r.trace.row_count - 1];
     double d = last->last_angle - last->first_angle;
     double lever =
@@ -257,25 +252,24 @@ TEST(the_steady_force_is_the_springs)
     check_close(last->sticking, 1, 0);
     check_relative(last->force, -4.92 * d / lever, 1e-9);
     check_relative(r.summary.steady_force_N, last->force, 1e-9);
-    run_finish(&r);
 }
 
 TEST(the_located_peak_does_not_depend_on_the_step)
 {
+    SCOPED(run_finish)
     run_result coarse = run(SETTINGS("method.step=4e-3")), fine = run(SETTINGS("method.step=1e-4"));
     check_relative(coarse.summary.first_pulse_peak_N, fine.summary.first_pulse_peak_N, 1e-9);
     check_close(coarse.summary.first_pulse_time_to_peak_s, fine.summary.first_pulse_time_to_peak_s,
                 1e-5);
     check_close(coarse.summary.first_contact_s, fine.summary.first_contact_s, 1e-11);
     check_relative(coarse.summary.contact_impulse_Ns, fine.summary.contact_impulse_Ns, 1e-9);
-    run_finish(&coarse);
-    run_finish(&fine);
 }
 
 TEST(without_a_trace_the_summary_is_the_same)
 {
     scenario s = {.parameters = fixture_parameters(NULL)};
-    run_result with, without;
+    run_result with;
+    SCOPED(run_finish) run_result without;
     run_scenario(&s, true, &with);
     run_scenario(&s, false, &without);
     assert_int_equal(without.trace.row_count, 0);
@@ -286,7 +280,6 @@ TEST(without_a_trace_the_summary_is_the_same)
         assert_true(summary_table[i].timing || x == y || (isnan(x) && isnan(y)));
     }
     run_finish(&with);
-    run_finish(&without);
 }
 
 TEST(script_acts_at_its_time_and_is_booked)
@@ -300,7 +293,7 @@ TEST(script_acts_at_its_time_and_is_booked)
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=2")),
                   .actions = todo,
                   .action_count = 4};
-    run_result r;
+    SCOPED(run_finish) run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
     check_close(find_event(&r, EVENT_PUSH, 0)->time, 0.70005, 1e-12);
     check_close(find_event(&r, EVENT_CHANGE, 0)->time, 1.0, 1e-12);
@@ -317,7 +310,6 @@ TEST(script_acts_at_its_time_and_is_booked)
     }
     assert_true(apart);
     check_complementarity(&r);
-    run_finish(&r);
 }
 
 static void check_events_tell_the_state(const run_result *r)
@@ -351,10 +343,9 @@ TEST(events_tell_what_is_in_contact_and_what_sticks)
                                    "arm.k1=300", i < 20 ? "wall.kind=point" : "wall.kind=plane")),
                       .actions = todo,
                       .action_count = sizeof todo / sizeof *todo};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
         check_events_tell_the_state(&r);
-        run_finish(&r);
     }
 }
 
@@ -369,7 +360,7 @@ TEST(a_hub_that_stops_may_release_the_arm)
                       fixture_parameters(SETTINGS("motor.voltage=2", "motor.stiction=0.35")),
                   .actions = &todo,
                   .action_count = 1};
-    run_result r;
+    SCOPED(run_finish) run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
     int lifted = 0;
     for (size_t i = 0; i + 1 < r.trace.event_count; i++) {
@@ -378,7 +369,6 @@ TEST(a_hub_that_stops_may_release_the_arm)
     }
     assert_int_equal(lifted, 1);
     check_events_tell_the_state(&r);
-    run_finish(&r);
 }
 
 // A contact that a push or the script ends is released then.
@@ -400,11 +390,10 @@ TEST(a_contact_ended_from_outside_is_released)
                       .actions = &todo,
                       .action_count = 1};
         s.parameters.run.duration = 1.2;
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
         check_close(find_event(&r, EVENT_RELEASE, 0)->time, 1, 0);
         check_events_tell_the_state(&r);
-        run_finish(&r);
     }
 }
 
@@ -419,6 +408,7 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
                  {"arm.links=3", "wall.contact=rigid", 7.2441e-3},
                  {"arm.links=3", "wall.contact=kelvin-voigt", 7.5573e-3}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        SCOPED(run_finish)
         run_result r = run(SETTINGS(cases[i].links, cases[i].wall, "wall.angle=0"));
         double largest = 0;
         for (size_t k = 0; k < r.trace.row_count; k++) {
@@ -435,7 +425,6 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
         } else {
             check_close(r.summary.first_pulse_s, cases[i].released, 1e-6);
         }
-        run_finish(&r);
     }
     static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
     for (int i = 0; i < 2; i++) {
@@ -458,6 +447,7 @@ TEST(an_arm_that_moves_into_the_wall_is_in_contact)
 {
     static const char *const walls[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
     for (int i = 0; i < 2; i++) {
+        SCOPED(run_finish)
         run_result at = run(SETTINGS(walls[i], "wall.angle=0", "initial.velocity=1"));
         run_result before =
             run(SETTINGS(walls[i], "wall.angle=0", "initial.velocity=1", "initial.angle=-1e-9"));
@@ -465,7 +455,6 @@ TEST(an_arm_that_moves_into_the_wall_is_in_contact)
         check_relative(at.summary.first_pulse_peak_N, before.summary.first_pulse_peak_N, 1e-5);
         check_relative(at.summary.peak_force_N, before.summary.peak_force_N, 1e-5);
         check_close(find_event(&at, EVENT_CONTACT, 0)->time, 0, 0);
-        run_finish(&at);
         run_finish(&before);
     }
 }
@@ -480,11 +469,10 @@ TEST(an_arm_on_the_wall_does_not_strike_it)
                           "arm.links=3", arms[i & 1], walls[i >> 1 & 1], "run.duration=1e-3"))};
         s.parameters.wall.kind = i & 4 ? WALL_PLANE : WALL_POINT;
         s.parameters.wall.angle = s.parameters.initial.angle = 0.01 * (i / 2 - 100);
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         check_close(r.summary.first_contact_s, 0, 0);
         check_close(r.summary.impacts, 0, 0);
-        run_finish(&r);
     }
 }
 
@@ -519,11 +507,10 @@ TEST(a_step_that_cannot_be_taken_stops_with_time_and_reason)
     scenario s = {.parameters = fixture_parameters(SETTINGS(
                       "method.name=newmark", "method.step=0.5", "motor.voltage=10", "arm.k2=1e5"))};
     s.parameters.motor.stiction = (double)NAN; // a bad number that slipped in
-    run_result r;
+    SCOPED(run_finish) run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
     assert_non_null(strstr(r.summary.message, "t = "));
     assert_true(r.trace.row_count >= 1);
-    run_finish(&r);
 }
 
 // Newmark with gamma below 1/2 feeds energy into the motion: the ledger notices and the run stops.
@@ -531,10 +518,9 @@ TEST(a_run_that_makes_energy_from_nothing_is_stopped)
 {
     scenario s = {.parameters = fixture_parameters(SETTINGS(
                       "method.name=newmark", "method.gamma=0.3", "arm.links=8", "run.duration=3"))};
-    run_result r;
+    SCOPED(run_finish) run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_UNSTABLE);
     assert_non_null(strstr(r.summary.message, "method.step"));
-    run_finish(&r);
 }
 
 // Steps that lose a share of the energy do not go by as if nothing were wrong.
@@ -549,19 +535,17 @@ TEST(a_ledger_that_does_not_close_makes_a_run_inaccurate)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         scenario s = {.parameters = fixture_parameters(
                           SETTINGS("method.name=newmark", cases[i].step, cases[i].bound))};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         assert_int_equal(r.summary.inaccurate, cases[i].inaccurate);
         assert_int_equal(r.summary.message[0] != '\0', cases[i].inaccurate);
         assert_string_equal(summary_status(&r.summary), cases[i].inaccurate ? "inaccurate" : "ok");
-        run_finish(&r);
     }
 
     // the event method's own bound is narrow, and kept
-    run_result r = run(SETTINGS("run.duration=1"));
+    SCOPED(run_finish) run_result r = run(SETTINGS("run.duration=1"));
     check_below(r.summary.energy_residual_J, 1e-6 * r.summary.motor_work_J);
     assert_string_equal(summary_status(&r.summary), "ok");
-    run_finish(&r);
 }
 
 // A motion so small that the tolerances of events are a share of it does not go by either; a large
@@ -587,10 +571,10 @@ TEST(a_motion_too_small_to_follow_is_inaccurate)
         snprintf(voltage, sizeof voltage, "motor.voltage=%s", cases[i].voltage);
         snprintf(stiction, sizeof stiction, "motor.stiction=%s", cases[i].stiction);
         snprintf(angle, sizeof angle, "wall.angle=%s", cases[i].angle);
+        SCOPED(run_finish)
         run_result r = run(SETTINGS(voltage, stiction, angle, cases[i].links, "wall.kind=plane"));
         fail_if(r.summary.inaccurate != cases[i].inaccurate, "%s, %s, %s: %s %s", voltage, angle,
                 cases[i].links, summary_status(&r.summary), r.summary.message);
-        run_finish(&r);
     }
 }
 
@@ -613,6 +597,7 @@ TEST(fast_rotation_is_resolved_whatever_the_step)
 // Pressed on an elastic wall the arm does not bounce for ever: the chatter rule, and says so.
 TEST(elastic_chattering_is_bounded_and_said)
 {
+    SCOPED(run_finish)
     run_result r = run(SETTINGS("arm.links=20", "arm.damping_ratio=0.001", "wall.kind=plane",
                                 "wall.restitution=1", "motor.voltage=10", "run.duration=0.25"));
     check_ledger(&r);
@@ -623,13 +608,12 @@ TEST(elastic_chattering_is_bounded_and_said)
     }
     assert_true(chatters > 0);
     assert_non_null(strstr(r.summary.message, "chatter"));
-    run_finish(&r);
 }
 
 TEST(structural_damping_does_not_upset_the_event_method)
 {
+    SCOPED(run_finish)
     run_result r = run(SETTINGS("arm.links=20", "arm.damping_ratio=0.01", "run.duration=0.4"));
     check_ledger(&r);
     assert_true(r.trace.rows[r.trace.row_count - 1].damping_loss > 0);
-    run_finish(&r);
 }

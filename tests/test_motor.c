@@ -112,9 +112,8 @@ TEST(free_motion_is_that_of_the_drive)
         parameters p = fixture_parameters(SETTINGS(
             "arm.links=1", "wall.kind=none", "motor.stiction=0", "motor.viscous_friction=0",
             "motor.voltage=2", current ? "motor.drive=current" : "motor.drive=voltage"));
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create(&a, &p.method);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         motion_report report;
         const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
         const double torque = 2 * 6.02 * p.motor.torque_constant / p.motor.resistance, t = 0.4;
@@ -125,7 +124,6 @@ TEST(free_motion_is_that_of_the_drive)
                                : torque / motor_damping(&p.motor) * (1 - exp(-rate * t));
         check_relative(state_velocities(m, m->state)[0], speed, 1e-9);
         check_close(motion_energy_residual(&a, m, m->state), 0, 1e-10);
-        motion_destroy(m);
     }
 }
 
@@ -159,14 +157,12 @@ TEST(current_of_a_held_motor_rises_as_in_a_coil)
         snprintf(n, sizeof n, "arm.links=%d", links);
         parameters p = fixture_parameters(
             SETTINGS(n, "wall.kind=none", "motor.stiction=1000", "motor.inductance=0.1"));
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         for (int i = 1; i <= 4; i++) {
             const double t = 0.002 * i, full = 6.02 / 33.6;
-            motion *m = motion_until(&a, &p, t);
+            SCOPED(motion_destroy_kept) motion *m = motion_until(&a, &p, t);
             check_relative(current_of(m), full * (1 - exp(-33.6 / 0.1 * t)), 1e-9);
             check_close(state_velocities(m, m->state)[0], 0, 0);
-            motion_destroy(m);
         }
     }
 }
@@ -178,21 +174,19 @@ TEST(a_free_link_and_its_coil_are_two_exponentials)
     parameters p = fixture_parameters(SETTINGS("arm.links=1", "wall.kind=none", "motor.stiction=0",
                                                "motor.viscous_friction=0", "motor.inductance=0.5",
                                                "motor.voltage=2"));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
     const double kt = p.motor.torque_constant, kb = p.motor.back_emf, r = p.motor.resistance;
     const double half = r / inductance / 2,
                  root = sqrt(half * half - kt * kb / inertia / inductance);
     const double fast = -half - root, slow = -half + root, idle = 2 * 6.02 / kb;
-    motion *m = motion_until(&a, &p, t);
+    SCOPED(motion_destroy_kept) motion *m = motion_until(&a, &p, t);
     check_relative(state_velocities(m, m->state)[0],
                    idle * (1 + (fast * exp(slow * t) - slow * exp(fast * t)) / (slow - fast)),
                    1e-9);
     check_relative(
         current_of(m),
         inertia / kt * idle * fast * slow / (slow - fast) * (exp(slow * t) - exp(fast * t)), 1e-9);
-    motion_destroy(m);
 }
 
 // Cut at a limit the current accelerates evenly until back EMF takes it below the limit, at a speed
@@ -202,8 +196,7 @@ TEST(a_limited_current_accelerates_evenly_at_first)
     parameters p = fixture_parameters(SETTINGS("arm.links=1", "wall.kind=none", "motor.stiction=0",
                                                "motor.viscous_friction=0",
                                                "motor.current_limit=0.2", "motor.voltage=2"));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
     const double kt = p.motor.torque_constant, kb = p.motor.back_emf, r = p.motor.resistance;
     const double knee = (2 * 6.02 - r * 0.2) / kb, until = knee * inertia / (kt * 0.2);
@@ -211,9 +204,8 @@ TEST(a_limited_current_accelerates_evenly_at_first)
     const double times[2] = {0.7 * until, 2.5 * until};
     const double speeds[2] = {0.7 * knee, idle + (knee - idle) * exp(-rate * 1.5 * until)};
     for (int i = 0; i < 2; i++) {
-        motion *m = motion_until(&a, &p, times[i]);
+        SCOPED(motion_destroy_kept) motion *m = motion_until(&a, &p, times[i]);
         check_relative(state_velocities(m, m->state)[0], speeds[i], 1e-9);
-        motion_destroy(m);
     }
 
     // a coil reaches the limit on the way to more, and stays there with the hub held
@@ -221,12 +213,11 @@ TEST(a_limited_current_accelerates_evenly_at_first)
                                     "motor.current_limit=0.1"));
     arm_init(&a, &p);
     const double reached = -0.1 / 33.6 * log(1 - 0.1 * 33.6 / 6.02);
+    SCOPED(motion_destroy_kept)
     motion *before = motion_until(&a, &p, 0.9 * reached),
            *after = motion_until(&a, &p, 1.2 * reached);
     check_relative(current_of(before), 6.02 / 33.6 * (1 - exp(-336 * 0.9 * reached)), 1e-9);
     check_close(current_of(after), 0.1, 0);
-    motion_destroy(before);
-    motion_destroy(after);
 }
 
 // A coil that follows at once in the end: the arm's impact goes to that without one with L.
@@ -237,11 +228,10 @@ TEST(a_small_inductance_is_none_in_the_limit)
                                  "motor.inductance=1e-3"};
     for (int i = 0; i < 3; i++) {
         parameters p = fixture_parameters(SETTINGS(coils[i]));
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept)
         motion *m = motion_until(&a, &p, 0.5); // through impact and pulse
         momentum[i] = state_quadratures(m, m->state)[QUADRATURE_FORCE];
-        motion_destroy(m);
     }
     check_close(log2((momentum[1] - momentum[0]) / (momentum[2] - momentum[0])), 1, 0.1);
 }

@@ -17,8 +17,7 @@ static void click(explorer *ex, int x, int y)
 
 TEST(test_clicks_and_drags_in_curves_move_the_cursor)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     hit_area c = part_on_screen(&ex, PANEL_CURVES, PART_BODY);
     click(&ex, c.area.x + c.area.width / 2, c.area.y + 3);
     check_close(ex.state.session.now, 0.5, 0.02);
@@ -33,14 +32,12 @@ TEST(test_clicks_and_drags_in_curves_move_the_cursor)
     // a release without its press is a click, too
     point(&ex, POINTER_RELEASE, c.area.x + c.area.width / 2, c.area.y + 3);
     check_close(ex.state.session.now, 0.5, 0.02);
-    explorer_finish(&ex);
 }
 
 TEST(test_the_wheel_zooms_where_it_points)
 {
-    explorer ex;
     double from, to;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.3<Enter>");
     hit_area c = part_on_screen(&ex, PANEL_CURVES, PART_BODY);
     int x = c.area.x + (int)(0.3 * c.area.width);
@@ -58,13 +55,11 @@ TEST(test_the_wheel_zooms_where_it_points)
     }
     state_window(&ex.state, &from, &to);
     check_close(to - from, 1, 0);
-    explorer_finish(&ex);
 }
 
 TEST(test_the_time_axis_is_dragged)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     hit_area a = part_on_screen(&ex, PANEL_CURVES, PART_TIME_AXIS);
     click(&ex, a.area.x + a.area.width / 2, a.area.y);
     check_close(ex.state.session.now, 0.5, 0.02);
@@ -80,13 +75,11 @@ TEST(test_the_time_axis_is_dragged)
     point(&ex, POINTER_WHEEL_UP, a.area.x + 10, a.area.y + 1);
     check_below(ex.state.window.from, from + 10.0 / a.area.width * (to - from));
     assert_true(ex.state.window.adrift);
-    explorer_finish(&ex);
 }
 
 TEST(test_an_axis_of_values_is_dragged_and_zoomed)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     hit_area a = part_on_screen(&ex, PANEL_CURVES, PART_LABELS);
     assert_int_equal(a.index, 3);
     double low = ex.layout.axes[3].low, high = ex.layout.axes[3].high;
@@ -99,13 +92,11 @@ TEST(test_an_axis_of_values_is_dragged_and_zoomed)
     point(&ex, POINTER_WHEEL_UP, a.area.x + 2, a.area.y + 1);
     check_close(ex.state.panes.pane[3].fixed.high - ex.state.panes.pane[3].fixed.low,
                 0.8 * (high - low), 1e-9);
-    explorer_finish(&ex);
 }
 
 TEST(test_events_and_scenarios_are_clicked)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>");
     hit_area log = part_on_screen(&ex, PANEL_LOG, PART_LINES);
     const event *third = &ex.state.session.run.trace.events[log.index + 2];
@@ -128,13 +119,11 @@ TEST(test_events_and_scenarios_are_clicked)
     click(&ex, 1, 5);
     assert_int_equal(ex.state.page.panel, PANEL_NONE);
     assert_string_equal(ex.state.session.base.name, name);
-    explorer_finish(&ex);
 }
 
 TEST(test_the_wheel_scrolls_pages_and_panels)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "?");
     hit_area page = part_on_screen(&ex, PANEL_HELP, PART_BODY);
     point(&ex, POINTER_WHEEL_DOWN, page.area.x + 5, page.area.y + 5);
@@ -163,15 +152,13 @@ TEST(test_the_wheel_scrolls_pages_and_panels)
     press(&ex, ":set ");
     point(&ex, POINTER_WHEEL_UP, values.area.x + 5, values.area.y + 5);
     assert_string_equal(ex.state.prompt.text, "set ");
-    explorer_finish(&ex);
 }
 
 TEST(test_random_pointing_does_no_harm)
 {
     random_generator r;
     random_seed(&r, 11);
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     static const char *const pages[] = {"",           "?",       "<Esc>o", "<Esc>c",
                                         "<Esc><Tab>", "<Esc>:x", "<Esc>w"};
     for (int i = 0; i < 3000; i++) {
@@ -189,5 +176,4 @@ TEST(test_random_pointing_does_no_harm)
         assert_true(from >= 0 && from < to &&
                     to <= ex.state.session.effective.parameters.run.duration * (1 + 1e-12));
     }
-    explorer_finish(&ex);
 }

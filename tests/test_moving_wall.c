@@ -8,6 +8,8 @@
 #include "tests/rig_fixture.h"
 #include "tests/scenario_fixture.h"
 
+GIVEN_BACK(run_loop, loop_destroy)
+
 // One link without friction, pressed by its weight against a flat wall at the angle 0.
 #define PRESSED_LINK                                                                               \
     "arm.links=1", "wall.kind=plane", "wall.angle=0", "motor.voltage=0", "motor.stiction=0",       \
@@ -17,16 +19,14 @@
 static double angle_at(const char *const *settings, double time, double *force)
 {
     const parameters p = fixture_parameters(settings);
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     assert_ptr_equal(m->engine, &stiff_engine);
     motion_start(&a, m, p.initial.angle, 0);
     const passage done = move_on(&a, m, time, 100000);
     check_below(done.open, 1e-10);
     const double angle = state_angles(m, m->state)[0];
     *force = m->state[SLOT_FORCE];
-    motion_destroy(m);
     return angle;
 }
 
@@ -35,8 +35,7 @@ static double angle_at(const char *const *settings, double time, double *force)
 TEST(a_driven_spring_has_its_amplitude_and_phase)
 {
     const parameters p = fixture_parameters(SETTINGS(PRESSED_LINK));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     const double length = a.link_length, k = 2000, c = 20, u = 1e-5;
     const double inertia = a.hub_inertia + a.link_mass * length * length / 3;
     static const char *const frequencies[] = {"2", "15", "20", "60"};
@@ -68,8 +67,7 @@ TEST(a_driven_spring_has_its_amplitude_and_phase)
 TEST(a_rigid_wall_leads_the_tip)
 {
     const parameters p = fixture_parameters(SETTINGS(PRESSED_LINK));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     const double length = a.link_length, u0 = 1e-3, w = 2 * M_PI * 2;
     const double inertia = a.hub_inertia + a.link_mass * length * length / 3;
     for (int i = 1; i < 8; i++) {
@@ -103,9 +101,8 @@ TEST(a_wall_at_constant_speed_is_one_at_rest_seen_from_it)
         const parameters p =
             fixture_parameters(SETTINGS(PRESSED_LINK, "arm.tilt=0", "initial.angle=-0.01", e,
                                         "wall.motion_amplitude=10", "wall.motion_frequency=0.001"));
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create(&a, &p.method);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         motion_start(&a, m, -0.01, 0);
         const double w = 2 * M_PI * 1e-3, place = a.link_length * sin(0.01);
         const double meets = asin(place / 10) / w, speed = 10 * w * cos(w * meets);
@@ -116,7 +113,6 @@ TEST(a_wall_at_constant_speed_is_one_at_rest_seen_from_it)
         check_relative(state_velocities(m, m->state)[0], turns, 1e-5);
         check_relative(done.momentum, -inertia * turns / (a.link_length * cos(0.01)), 1e-5);
         check_below(done.open, 1e-10);
-        motion_destroy(m);
     }
 }
 
@@ -179,13 +175,11 @@ static const char *const walls[] = {
 TEST(a_wall_moved_in_flight_is_where_it_was_put)
 {
     for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
-        run_result moved = run_of(walls[i], 0.1, 0.05, 0.07, STATUS_OK);
-        run_result there = run_of(walls[i], 0.07, 0, 0.07, STATUS_OK);
+        SCOPED(run_finish) run_result moved = run_of(walls[i], 0.1, 0.05, 0.07, STATUS_OK);
+        SCOPED(run_finish) run_result there = run_of(walls[i], 0.07, 0, 0.07, STATUS_OK);
         check_close(moved.summary.first_contact_s, there.summary.first_contact_s, 1e-11);
         check_relative(moved.summary.motor_work_J, there.summary.motor_work_J, 1e-8);
         check_relative(moved.summary.peak_force_N, there.summary.peak_force_N, 1e-6);
-        run_finish(&moved);
-        run_finish(&there);
     }
 }
 
@@ -226,7 +220,7 @@ TEST(a_refused_wall_changes_nothing)
     double end[2];
     for (int asked = 0; asked < 2; asked++) {
         scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=0.5"))};
-        run_loop *l;
+        SCOPED(loop_destroy_kept) run_loop *l;
         fault f;
         assert_int_equal(loop_create(&l, &s, &(loop_options){0}, &f), STATUS_OK);
         assert_int_equal(loop_until(l, 0.3, &f), STATUS_OK);
@@ -237,7 +231,6 @@ TEST(a_refused_wall_changes_nothing)
         }
         assert_int_equal(loop_until(l, 0.5, &f), STATUS_OK);
         end[asked] = loop_state(l, &(int){0})[0];
-        loop_destroy(l);
     }
     assert_true(end[0] == end[1]);
 }
@@ -247,6 +240,7 @@ TEST(the_observer_holds_its_force_on_a_moving_wall)
 {
     static const char *const on[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
     for (size_t i = 0; i < 2; i++) {
+        SCOPED(run_finish)
         run_result r = rig_run(SETTINGS("control.law=observer", "control.force=1",
                                         "control.approach_voltage=1", "run.duration=3",
                                         "wall.motion=sine", on[i]),
@@ -256,6 +250,5 @@ TEST(the_observer_holds_its_force_on_a_moving_wall)
                 check_close(r.trace.rows[k].force, 1, 0.1);
             }
         }
-        run_finish(&r);
     }
 }

@@ -51,10 +51,9 @@ static passage go_through(const char *const *settings)
 {
     parameters p = fixture_parameters(settings);
     passage seen = {0};
-    arm a;
     motion_report report;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     motion_start(&a, m, p.initial.angle, p.initial.velocity);
     long before = allocations;
     bool pushed = false;
@@ -74,7 +73,6 @@ static passage go_through(const char *const *settings)
         }
     }
     seen.allocations = allocations - before;
-    motion_destroy(m);
     return seen;
 }
 
@@ -82,8 +80,7 @@ TEST(the_counter_counts)
 {
     long before = allocations;
     parameters p = fixture_parameters(NULL);
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     motion_destroy(motion_create(&a, &p.method));
     assert_true(allocations > before);
 }
@@ -133,11 +130,9 @@ TEST(a_prediction_allocates_nothing)
     parameters p = fixture_parameters(NULL);
     const double q[] = {0.1, 0.1}, w[] = {0.6, 0.9};
     prediction out;
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     long before = allocations;
     assert_int_equal(predict_linearised(&a, m, q, w, &out), STATUS_OK);
     assert_int_equal(allocations - before, 0);
-    motion_destroy(m);
 }

@@ -13,6 +13,8 @@
 #include "src/study/sweep_run.h"
 #include "tests/refused_requests.h"
 
+GIVEN_BACK(run_loop, loop_destroy)
+
 // Of all that a scenario may hold.
 static const char whole_scenario[] =
     "title: Stoß\n"
@@ -54,11 +56,10 @@ static status show(const scenario *s, run_result *result, FILE *out)
 static status run(scenario *s, FILE *out)
 {
     // with rows that can be shared, as a session keeps them
-    run_result result;
+    SCOPED(run_finish) run_result result;
     run_options options = {.keep_trace = true, .rows_expected = 1000};
     status code = run_scenario_with(s, &options, &result);
     code = code == STATUS_OK ? show(s, &result, out) : code;
-    run_finish(&result);
     return code;
 }
 
@@ -149,7 +150,7 @@ static status change_on_the_way(scenario *s, FILE *out)
 
 static status step_as_a_loop(scenario *s, FILE *out)
 {
-    run_loop *loop = NULL;
+    SCOPED(loop_destroy_kept) run_loop *loop = NULL;
     fault f = {0};
     const loop_options options = {.keep_trace = true};
     status code = loop_create(&loop, s, &options, &f);
@@ -163,7 +164,6 @@ static status step_as_a_loop(scenario *s, FILE *out)
     if (code == STATUS_OK) {
         fprintf(out, "%a\n", loop_row(loop).force);
     }
-    loop_destroy(loop);
     return code;
 }
 
@@ -215,7 +215,7 @@ static status sweep_over(scenario *s, FILE *out)
 
 static status put_side_by_side(scenario *s, FILE *out)
 {
-    run_result result;
+    SCOPED(run_finish) run_result result;
     status code = run_scenario(s, false, &result);
     if (code == STATUS_OK) {
         compare_row row = compare_row_of(s, &result);
@@ -224,7 +224,6 @@ static status put_side_by_side(scenario *s, FILE *out)
         json_write(out, object);
         json_decref(object);
     }
-    run_finish(&result);
     return code;
 }
 

@@ -12,6 +12,8 @@
 #include "src/study/thesis_tables.h"
 #include "tests/refused_requests.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
 // --- scenarios by name --------------------------------------------------------------------------
 
 static char folder[] = "/tmp/no-memory-XXXXXX";
@@ -60,10 +62,9 @@ static status list_all(const char *ignored, FILE *out)
 
 static status place_of(const char *name, FILE *out)
 {
-    char *path = scenario_folder_file(name);
+    SCOPED(free_kept) char *path = scenario_folder_file(name);
     fprintf(out, "%s\n", path != NULL ? path : "");
     const status code = path != NULL ? STATUS_OK : STATUS_NO_MEMORY;
-    free(path);
     return code;
 }
 
@@ -76,7 +77,7 @@ static char set_path[64]; // of the file with the cases
 
 static status draw_cases(scenario *s, FILE *out)
 {
-    robust_set set;
+    SCOPED(robust_set_finish) robust_set set;
     fault f = {0};
     scenario derived;
     status code = robust_set_read(&set, set_path, &f);
@@ -90,7 +91,6 @@ static status draw_cases(scenario *s, FILE *out)
             code = STATUS_NO_MEMORY; // the case's sentence says so
         }
     }
-    robust_set_finish(&set);
     return code;
 }
 
@@ -161,12 +161,11 @@ static status sweep_in_parts(scenario *s, FILE *out)
     status code = sweep_init(&w, s, &request, &f);
     const bool begun = code == STATUS_OK;
     for (int i = 0; i < 2 && code == STATUS_OK; i++) {
-        sweep_store *store = NULL;
+        SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
         sweep_progress progress;
         const sweep_options options = {.share = {i + 1, 2}, .jobs = 1};
         code = sweep_store_open(&store, files[i], &w, &f);
         code = code == STATUS_OK ? sweep_run(&w, store, &options, &progress, &f) : code;
-        sweep_store_close(store);
     }
 
     // and what they are together
@@ -205,10 +204,9 @@ static status show_rows(const run_result *result, FILE *out)
 
 static status run(scenario *s, FILE *out)
 {
-    run_result result;
+    SCOPED(run_finish) run_result result;
     const status code = run_scenario(s, true, &result);
     show_rows(&result, out);
-    run_finish(&result);
     return code;
 }
 
@@ -217,6 +215,7 @@ static status run(scenario *s, FILE *out)
 TEST(a_name_means_the_same_scenario)
 {
     put_file("own.yaml", "title: Own\n");
+    SCOPED(free_kept)
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     char path[64];
     setenv("IMPACTLAB_SCENARIOS", folder, 1);
@@ -228,7 +227,6 @@ TEST(a_name_means_the_same_scenario)
     try_all(list_all, "");
     try_all(place_of, "own.yaml");
     setenv("IMPACTLAB_SCENARIOS", before, 1);
-    free(before);
 }
 
 TEST(sets_and_studies)

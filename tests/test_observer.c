@@ -351,7 +351,7 @@ TEST(a_hub_on_a_spring_does_not_swing)
 static observer_arms arms_after(const char *const *settings)
 {
     scenario s = {.parameters = rig_parameters(settings)};
-    run_result r;
+    SCOPED(run_finish) run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
     controller_setup setup = setup_of(&s.parameters);
     observer_task task = {.force = 1, .stopping_force = 1, .approach_voltage = 1};
@@ -388,7 +388,6 @@ static observer_arms arms_after(const char *const *settings)
         }
         voltage = read->voltage;
     }
-    run_finish(&r);
     return arms;
 }
 
@@ -462,13 +461,12 @@ TEST(it_finds_the_wall_again)
         const char *const settings[] = {"control.law=observer", "run.duration=2", NULL};
         action push = {.time = 1, .kind = ACTION_PUSH, .parameter = -1, .value = sign * 0.05};
         scenario s = {.parameters = rig_parameters(settings), .actions = &push, .action_count = 1};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         check_close(r.summary.steady_error_N, 0, 0.05);
         // a blow against the wall does not reach the hub, and is not answered
         check_below(r.summary.force_over_command_N, sign > 0 ? 0.1 : 0.3);
         check_below(r.summary.first_contact_s + r.summary.settling_time_s, 1.6);
-        run_finish(&r);
     }
 }
 
@@ -545,7 +543,7 @@ TEST(it_follows_a_setpoint_in_contact)
     static const double steps[][2] = {{1, 1.5}, {1.5, 1}, {0.5, 1}, {1, 0.5}, {2.5, 3}};
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         const double to = steps[i][1], step = to - steps[i][0];
-        run_result r = force_after_change(steps[i][0], to, 0);
+        SCOPED(run_finish) run_result r = force_after_change(steps[i][0], to, 0);
         for (size_t k = 0; k < r.trace.row_count; k++) {
             const sample *row = &r.trace.rows[k];
             if (row->time > 1) {
@@ -555,17 +553,15 @@ TEST(it_follows_a_setpoint_in_contact)
                 check_close(row->force, to, 0.05 * to);
             }
         }
-        run_finish(&r);
     }
 
-    run_result r = force_after_change(1, 3, 5);
+    SCOPED(run_finish) run_result r = force_after_change(1, 3, 5);
     for (size_t k = 0; k < r.trace.row_count; k++) {
         const sample *row = &r.trace.rows[k];
         if (row->time > 1.1 && row->time < 1.4) {
             check_close(row->force, 1 + 5 * (row->time - 1), 0.05 * row->force);
         }
     }
-    run_finish(&r);
 }
 
 // A tip that drifts to the wall where no force is wanted is touched by, and nothing presses on it.
@@ -587,7 +583,7 @@ TEST(the_same_readings_give_the_same_commands)
                                         "run.duration=0.8", NULL};
         scenario s = {.parameters = rig_parameters(settings)};
         s.parameters.control.law = law;
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
 
         // the law alone, with its beliefs
@@ -598,7 +594,7 @@ TEST(the_same_readings_give_the_same_commands)
         assert_true(c->parameter_count <= 32);
         assert_int_equal(controller_values(c, &s.parameters, values, &f), STATUS_OK);
         setup.parameters = values;
-        void *memory = calloc(1, c->memory_size + 1);
+        SCOPED(free_kept) void *memory = calloc(1, c->memory_size + 1);
         assert_non_null(memory);
         assert_null(c->start != NULL ? c->start(memory, &setup) : NULL);
 
@@ -625,7 +621,5 @@ TEST(the_same_readings_give_the_same_commands)
             check_close(out.command, read->command, 0);
             voltage = converter_value(&dac, out.command);
         }
-        free(memory);
-        run_finish(&r);
     }
 }

@@ -6,6 +6,8 @@
 #include "src/contact/pace.h"
 #include "tests/scenario_fixture.h"
 
+GIVEN_BACK(motion, motion_destroy)
+
 // A run of the scenario with this text, which does not fail.
 static run_result run_of(const char *text)
 {
@@ -62,7 +64,7 @@ TEST(a_link_stuck_within_a_wall_slips_when_its_current_lets_it)
                  "arm: {links: 1}\nmotor: {voltage: 3, inductance: %g%s}\nwall: {angle: 0.1, %s}\n"
                  "script:\n  - at: 2.4 s\n    set: {motor.voltage: 0}\nrun: {duration: 2.42}\n",
                  inductance, cases[i].limit, cases[i].wall);
-        run_result r = run_of(text);
+        SCOPED(run_finish) run_result r = run_of(text);
         const trace *t = &r.trace;
         const size_t change = event_after(&r, EVENT_CHANGE, 0);
         assert_int_equal(t->events[change - 1].kind, EVENT_STICK);
@@ -75,18 +77,18 @@ TEST(a_link_stuck_within_a_wall_slips_when_its_current_lets_it)
         const double slips = 2.4 + inductance / resistance * log(last->motor_torque / left);
         check_close(t->events[change + 1].time, slips, 1e-9);
         check_close(row_at(&r, slips - 1e-3)->force, last->force, 1e-12);
-        run_finish(&r);
     }
 }
 
 // Where the hub sticks and slips without end, the hub is named, whatever it is in contact with.
 TEST(what_stands_still_names_the_event_that_repeats)
 {
+    SCOPED(scenario_finish)
     scenario s = good("arm: {links: 1}\nwall: {contact: kelvin-voigt}\n"
                       "initial: {angle: 0.1}\n");
     arm a;
     arm_init(&a, &s.parameters);
-    motion *m = motion_create(&a, &s.parameters.method);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &s.parameters.method);
     assert_non_null(m);
     motion_start(&a, m, 0.1, 0);
     assert_true(m->state[SLOT_CONTACT] != 0);
@@ -102,8 +104,6 @@ TEST(what_stands_still_names_the_event_that_repeats)
         pace_tell_cause(&a, m, cases[i].last, text, sizeof text);
         assert_non_null(strstr(text, cases[i].cause));
     }
-    motion_destroy(m);
-    scenario_finish(&s);
 }
 
 // A script that changes the command.
@@ -114,9 +114,8 @@ static const double kst = 0.045; // [N m]
 // Torque of the motor at rest under a command [N m].
 static double torque_of(double volts)
 {
-    scenario s = good("arm: {links: 1}\n");
+    SCOPED(scenario_finish) scenario s = good("arm: {links: 1}\n");
     const double per_volt = motor_torque_per_volt(&s.parameters.motor);
-    scenario_finish(&s);
     return per_volt * volts;
 }
 
@@ -154,7 +153,7 @@ TEST(wall_and_friction_leave_open_what_the_force_is)
             snprintf(text, sizeof text, "%s%srun: {duration: 4}\n" SETS,
                      strncmp(ways[i], "arm", 3) == 0 ? "" : "arm: {links: 1}\n", ways[i], 0.0,
                      volts[j]);
-            run_result r = run_of(text);
+            SCOPED(run_finish) run_result r = run_of(text);
             const summary *s = &r.summary;
             const double length = i == 6 ? 0.5 : 1;
             const double least = (torque_of(volts[j]) - kst) / length;
@@ -172,7 +171,6 @@ TEST(wall_and_friction_leave_open_what_the_force_is)
             // it comes to rest there, and is told so
             const size_t last = r.trace.event_count - 1;
             assert_int_equal(r.trace.events[last].kind, i == 8 ? EVENT_CHANGE : EVENT_STICK);
-            run_finish(&r);
         }
     }
 }
@@ -194,12 +192,11 @@ TEST(a_link_that_rests_may_be_pressed_or_not)
 
         // the same after an impact and less and less of a command
         snprintf(text, sizeof text, "arm: {links: 1}\n" SETS, 0.5, volts[i]);
-        run_result later = run_of(text);
+        SCOPED(run_finish) run_result later = run_of(text);
         s = &later.summary;
         check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
         check_bounds(s->peak_force_low_N, s->peak_force_high_N, torque_of(1) - kst,
                      torque_of(1) + kst);
-        run_finish(&later);
     }
 }
 
@@ -234,6 +231,7 @@ TEST(steady_bounds_are_means)
 // Once it has left, the first pulse's bounds stay, and no force is open any more.
 TEST(a_link_that_was_pushed_off_has_no_open_force)
 {
+    SCOPED(run_finish)
     run_result r = run_of("arm: {links: 1}\nscript:\n  - at: 0.5 s\n"
                           "    set: {motor.voltage: -3}\n");
     check_bounds(r.summary.first_pulse_peak_low_N, r.summary.first_pulse_peak_high_N,
@@ -241,7 +239,6 @@ TEST(a_link_that_was_pushed_off_has_no_open_force)
     check_bounds(r.summary.peak_force_low_N, r.summary.peak_force_high_N, torque_of(1) - kst,
                  torque_of(1) + kst);
     assert_true(isnan(r.summary.steady_force_low_N) && isnan(r.summary.steady_force_high_N));
-    run_finish(&r);
 }
 
 // Springs, depths and no friction determine the force; within a wall that gives the way there says
@@ -262,7 +259,7 @@ TEST(what_else_holds_still_has_one_force)
     for (int i = 0; i < 9; i++) {
         char text[200];
         snprintf(text, sizeof text, "%srun: {duration: 4}\n", texts[i]);
-        run_result r = run_of(text);
+        SCOPED(run_finish) run_result r = run_of(text);
         check_determined(&r.summary);
         const bool tells = strstr(r.summary.message, "where it came to rest") != NULL;
         const sample *last = &r.trace.rows[r.trace.row_count - 1];
@@ -271,7 +268,6 @@ TEST(what_else_holds_still_has_one_force)
             assert_true(last->force >= torque_of(1) - kst && last->force <= torque_of(1) + kst);
             assert_non_null(strstr(r.summary.message, "0.392661 to 0.482661 N"));
         }
-        run_finish(&r);
     }
 }
 
@@ -292,12 +288,11 @@ TEST(a_link_that_is_stopped_sticks_whatever_rounding_says)
                  "wall: {kind: %s, angle: %.17g}\nrun: {duration: 6}\n",
                  between(&g, 0.1, 1), between(&g, 0.3, 2), between(&g, 0.5, 9),
                  i % 2 ? "plane" : "point", between(&g, 0.05, 2.5));
-        run_result r = run_of(text);
+        SCOPED(run_finish) run_result r = run_of(text);
         const trace *t = &r.trace;
         assert_int_equal(t->event_count, 3);
         assert_int_equal(t->events[2].kind, EVENT_STICK);
         assert_true(t->rows[t->row_count - 1].sticking != 0);
-        run_finish(&r);
     }
 }
 
@@ -311,9 +306,8 @@ TEST(a_link_stops_in_long_steps)
                  "arm: {links: 1}\nmotor: {viscous_friction: 150, voltage: 9}\n"
                  "wall: {angle: 0.02}\nmethod: {name: %s, step: 0.01}\nrun: {duration: 2}\n",
                  methods[i]);
-        run_result r = run_of(text);
+        SCOPED(run_finish) run_result r = run_of(text);
         check_relative(r.summary.steady_force_N, torque_of(9), 1e-12);
         check_close(row_at(&r, 2)->hub_velocity, 0, 0);
-        run_finish(&r);
     }
 }

@@ -67,8 +67,8 @@ TEST(choice_of_the_piezo_fits_it)
 
 TEST(fitting_them_changes_no_other_signal)
 {
-    run_result without = rig_run(SETTINGS("control.law=optimal"), true);
-    run_result with = rig_run(SETTINGS("control.law=optimal", ALL_FITTED), true);
+    SCOPED(run_finish) run_result without = rig_run(SETTINGS("control.law=optimal"), true);
+    SCOPED(run_finish) run_result with = rig_run(SETTINGS("control.law=optimal", ALL_FITTED), true);
     assert_int_equal(without.trace.row_count, with.trace.row_count);
     size_t readings = 0; // three sensors, one each in every row
     for (size_t row = 0; row < with.trace.row_count; row++) {
@@ -81,8 +81,6 @@ TEST(fitting_them_changes_no_other_signal)
         }
     }
     assert_int_equal(readings, 3 * with.trace.row_count);
-    run_finish(&without);
-    run_finish(&with);
 }
 
 TEST(ideal_sensors_tell_the_truth)
@@ -383,7 +381,7 @@ TEST(sensors_feel_a_push_in_contact)
 {
     // a twentieth of a millisecond before a sample
     action push = {.kind = ACTION_PUSH, .time = 0.99995, .value = 0.02};
-    run_result run;
+    SCOPED(run_finish) run_result run;
     scenario s = {.parameters = rig_parameters(SETTINGS("control.law=force-pd", QUIET)),
                   .actions = &push,
                   .action_count = 1};
@@ -400,13 +398,13 @@ TEST(sensors_feel_a_push_in_contact)
     check_close(fsr, 10, 1e-9);
     check_close(piezo_force, 10, 1e-9);
     check_below(1, acceleration);
-    run_finish(&run);
 }
 
 // Steps that do not resolve an impact deliver it as a force, unless it rebounds: then it is a jump,
 // and an impulse like any other.
 TEST(sensors_feel_an_unresolved_rebound)
 {
+    SCOPED(run_finish)
     run_result run = rig_run(SETTINGS(QUIET, "control.law=open-loop", "control.rate=5000",
                                       "method.name=newmark", "arm.links=12", "wall.kind=plane",
                                       "wall.restitution=0.8", "run.duration=0.305"),
@@ -419,7 +417,6 @@ TEST(sensors_feel_an_unresolved_rebound)
     check_below(0.003, largest_impulse);
     // 0.003 N s over a time constant of 0.68 ms; the next sample comes within 0.2 ms
     check_below(0.003 / 0.68e-3 * exp(-0.2 / 0.68), fsr);
-    run_finish(&run);
 }
 
 // Which input the last controller got.
@@ -474,6 +471,7 @@ TEST(ideal_force_sensors_are_alike)
 
 TEST(printed_arm_feeds_the_sensors_too)
 {
+    SCOPED(run_finish)
     run_result run = rig_run(
         SETTINGS("control.law=open-loop", "arm.model=printed", "sensor.ideal=true", ALL_FITTED),
         true);
@@ -488,5 +486,4 @@ TEST(printed_arm_feeds_the_sensors_too)
         }
     }
     check_below(0.02, largest);
-    run_finish(&run);
 }

@@ -12,6 +12,8 @@
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
 static char *plugin_files[2];
 
 static void write_text(const char *path, const char *text)
@@ -244,13 +246,12 @@ static void check_refused(const char *path, const sweep *s, const char *name)
 
 static void must_compute(const sweep *s, const char *path, sweep_share share)
 {
-    sweep_store *store = must_open(path, s);
+    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(path, s);
     sweep_progress progress;
     fault f = {.text = ""};
     const sweep_options options = {.jobs = 2, .share = share};
     fail_if(sweep_run(s, store, &options, &progress, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(progress.failed, 0);
-    sweep_store_close(store);
 }
 
 // A program, plug-in or file that is another one when a sweep goes on, in a part or in a merge.
@@ -260,10 +261,10 @@ TEST(rows_of_what_is_gone_are_refused)
     for (int i = 0; i < CASES; i++) {
         base.parameters = parameters_of(&cases[i]);
         const char *name = parameter_table[parameter_at(cases[i].parameter)].path;
-        sweep s;
+        SCOPED(sweep_finish) sweep s;
         must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
         cases[i].write(0);
-        char *rows = uninterrupted(&s, 1);
+        SCOPED(free_kept) char *rows = uninterrupted(&s, 1);
         must_compute(&s, "first", (sweep_share){1, 2});
         must_compute(&s, "whole", (sweep_share){0, 0});
 
@@ -278,7 +279,7 @@ TEST(rows_of_what_is_gone_are_refused)
 
         // another one
         cases[i].write(1);
-        char *fresh = uninterrupted(&s, 1);
+        SCOPED(free_kept) char *fresh = uninterrupted(&s, 1);
         assert_string_not_equal(fresh, rows);
         check_refused("whole", &s, name);
         check_refused("first", &s, name);
@@ -299,9 +300,6 @@ TEST(rows_of_what_is_gone_are_refused)
         free(again);
         sweep_store_close(store);
 
-        free(fresh);
-        free(rows);
-        sweep_finish(&s);
         unlink(cases[i].file);
         unlink("first");
         unlink("second");
@@ -412,7 +410,7 @@ TEST(what_could_not_begin_is_no_row)
         base.parameters = parameters_of(&cases[i]);
         base.parameters.code_allowed = false;
         cases[i].write(0);
-        sweep s;
+        SCOPED(sweep_finish) sweep s;
         must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
         fault f = {.text = ""};
         sweep_store *store = must_open("rows", &s);
@@ -421,7 +419,6 @@ TEST(what_could_not_begin_is_no_row)
         sweep_store_close(store);
         base.parameters.code_allowed = true;
         must_compute(&s, "rows", (sweep_share){0, 0});
-        sweep_finish(&s);
         unlink("rows");
         unlink(cases[i].file);
     }
@@ -465,7 +462,8 @@ TEST(a_session_asks_the_program_of_now)
     for (int i = 0; i < CASES; i++) {
         base.parameters = parameters_of(&cases[i]);
         cases[i].write(0);
-        session s, fresh;
+        session s;
+        SCOPED(session_finish) session fresh;
         open_session(&s);
         const double before = last_command(&s);
         cases[i].write(1);
@@ -474,7 +472,6 @@ TEST(a_session_asks_the_program_of_now)
         check_close(last_command(&s), last_command(&fresh), 0);
         assert_true(last_command(&s) != before);
         session_finish(&s);
-        session_finish(&fresh);
         unlink(cases[i].file);
     }
     base.parameters = first;

@@ -4,8 +4,7 @@
 TEST(test_words_find_things_of_every_kind)
 {
     static palette_entry entries[PALETTE_ENTRIES];
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<C-p>");
     const scenario_menu *menu = &ex.state.scenarios;
     const key_bindings *keys = &ex.state.keys;
@@ -31,13 +30,11 @@ TEST(test_words_find_things_of_every_kind)
     // all of it without words, each once
     const int all = palette_find(menu, keys, "", entries);
     assert_int_equal(all, explorer_command_count + parameter_count + signal_count + menu->count);
-    explorer_finish(&ex);
 }
 
 TEST(test_enter_does_what_the_entry_is_for)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
 
     // a parameter opens the prompt for its value, which typing replaces
     press(&ex, ":seek 0.2<Enter><C-p>stiction<Enter>");
@@ -59,13 +56,11 @@ TEST(test_enter_does_what_the_entry_is_for)
     assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[0], SIGNAL_INDEX(energy_residual));
     press(&ex, "<C-p>fig-3-4<Enter>");
     assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
-    explorer_finish(&ex);
 }
 
 TEST(test_the_prompt_has_it_too)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":bra");
     assert_shows(&ex, ":branch");
     assert_shows(&ex, "pin this run");
@@ -83,13 +78,11 @@ TEST(test_the_prompt_has_it_too)
     assert_string_equal(ex.state.prompt.text, "set motor.voltage_limit 10");
     press(&ex, "<Esc>");
     assert_false(ex.state.prompt.open);
-    explorer_finish(&ex);
 }
 
 TEST(test_a_click_takes_an_entry)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<C-p>forget");
     free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
     for (int i = 0; i < ex.layout.hit_count; i++) {
@@ -100,5 +93,4 @@ TEST(test_a_click_takes_an_entry)
         }
     }
     assert_false(ex.state.prompt.open);
-    explorer_finish(&ex);
 }

@@ -7,7 +7,7 @@
 
 TEST(test_a_spectrum_names_the_highest_line)
 {
-    explorer ex;
+    SCOPED(explorer_finish) explorer ex;
 
     // the command follows a sine of 5 Hz on the commanded force
     open_explorer(&ex, "compare/force-pd");
@@ -35,13 +35,11 @@ TEST(test_a_spectrum_names_the_highest_line)
     assert_true(ex.state.message.warning);
     press(&ex, ":spectrum force gap<Enter>");
     assert_true(ex.state.message.warning);
-    explorer_finish(&ex);
 }
 
 TEST(test_a_phase_pane_ends_where_the_signals_end)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>:phase force gap<Enter>e");
     assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[1], SIGNAL_INDEX(gap));
     char *text = picture(&ex, 120, 40, GLYPHS_BRAILLE);
@@ -66,14 +64,12 @@ TEST(test_a_phase_pane_ends_where_the_signals_end)
     check_close(ex.state.session.now, now, 0);
     press(&ex, ":trace force<Enter>");
     assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE + 1].view, VIEW_TIME);
-    explorer_finish(&ex);
 }
 
 TEST(test_statistics_are_from_the_mark_to_the_cursor)
 {
-    explorer ex;
     char wanted[64], number[32];
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>:seek 0.45<Enter>m:seek 0.25<Enter>X");
     const signal_statistics s =
         trace_statistics(&ex.state.session.run.trace, SIGNAL_INDEX(force), 0.25, 0.45);
@@ -86,16 +82,14 @@ TEST(test_statistics_are_from_the_mark_to_the_cursor)
     assert_shows(&ex, wanted);
     press(&ex, "X");
     assert_hides(&ex, "mark and cursor,");
-    explorer_finish(&ex);
 }
 
 // Rows of a run, written and laid under another one, are shifted so that both touch at once, or as
 // they are told; what cannot be read leaves what is there.
 TEST(test_measured_data_touch_when_the_run_does)
 {
-    explorer ex;
     char path[] = "/tmp/impactlab-data-XXXXXX", line[96];
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     const int file = mkstemp(path);
     FILE *stream = fdopen(file, "w");
     assert_non_null(stream);
@@ -135,5 +129,4 @@ TEST(test_measured_data_touch_when_the_run_does)
     assert_int_equal(ex.state.measured.row_count, 0);
     free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
     unlink(path);
-    explorer_finish(&ex);
 }

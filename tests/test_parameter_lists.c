@@ -145,13 +145,11 @@ static run_result run_of(const char *const *settings)
 
 static void check_same_bytes(const char *const *settings, const char *const *listed)
 {
-    run_result one = run_of(settings), other = run_of(listed);
+    SCOPED(run_finish) run_result one = run_of(settings), other = run_of(listed);
     assert_int_equal(one.trace.row_count, other.trace.row_count);
     assert_memory_equal(one.trace.rows, other.trace.rows,
                         one.trace.row_count * sizeof *one.trace.rows);
     assert_true(one.summary.contact_impulse_Ns > 0);
-    run_finish(&one);
-    run_finish(&other);
 }
 
 TEST(equal_numbers_are_the_uniform_arm_to_the_last_bit)
@@ -168,15 +166,15 @@ TEST(equal_numbers_are_the_uniform_arm_to_the_last_bit)
 // Lists that differ from the uniform arm by nothing that counts.
 TEST(the_general_way_meets_the_uniform_one)
 {
+    SCOPED(run_finish)
     run_result one = run_of(SETTINGS("arm.links=4", "arm.k2=5", "run.duration=0.33"));
+    SCOPED(run_finish)
     run_result other = run_of(
         SETTINGS("arm.links=4", "arm.joint_stiffness=10,10.000000000001,10", "run.duration=0.33"));
     check_relative(other.summary.first_contact_s, one.summary.first_contact_s, 1e-12);
     check_relative(other.summary.contact_impulse_Ns, one.summary.contact_impulse_Ns, 1e-10);
     check_relative(other.summary.first_pulse_peak_N, one.summary.first_pulse_peak_N, 1e-9);
     check_below(fabs(other.summary.energy_residual_J), 1e-11);
-    run_finish(&one);
-    run_finish(&other);
 }
 
 // A tip load on the held arm: the sum of lever^2/stiffness over the joints.
@@ -233,10 +231,9 @@ TEST(a_beam_cut_into_unequal_links_converges)
                      k < n / 2 ? 1.2 / n : 0.8 / n);
         }
         parameters p = fixture_parameters(SETTINGS(links, lengths, "arm.hub_joint=beam"));
-        arm a;
         int count;
         double w[21], shapes[21 * 21];
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         assert_true(a.uneven);
         assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, w, shapes), STATUS_OK);
         const double x = 1.875104068711961;
@@ -266,11 +263,11 @@ TEST(predictors_take_lists_or_say_so)
         assert_int_equal(answer.outcome, PREDICTION_HOLDS);
 
         // against the run from there
+        SCOPED(run_finish)
         run_result r = run_of(SETTINGS("arm.links=3", "arm.joint_stiffness=8,5",
                                        "arm.link_lengths=0.4,0.35,0.25", "initial.angle=0.1",
                                        "initial.velocity=0.6", "run.duration=0.3"));
         check_relative(answer.prediction.force, r.summary.first_pulse_peak_N, 0.01);
         check_relative(answer.prediction.impulse, r.summary.contact_impulse_Ns, 1e-6);
-        run_finish(&r);
     }
 }

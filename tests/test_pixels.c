@@ -86,7 +86,7 @@ static int digit_of(char c)
 static decoded decode_kitty(const char *text, int *columns, int *rows)
 {
     decoded d = {0};
-    unsigned char *packed = malloc(strlen(text));
+    SCOPED(free_kept) unsigned char *packed = malloc(strlen(text));
     size_t size = 0;
     int number, more = 1, used;
     assert_int_equal(sscanf(text, "\033_Ga=T,i=%d,p=1,f=24,s=%d,v=%d,c=%d,r=%d,o=z,C=1,q=2,m=%d;%n",
@@ -118,7 +118,7 @@ static decoded decode_kitty(const char *text, int *columns, int *rows)
     assert_int_equal(*at, '\0');
 
     uLongf plain_size = 3 * (uLongf)d.width * (uLongf)d.height, wanted = plain_size;
-    unsigned char *plain = malloc(plain_size);
+    SCOPED(free_kept) unsigned char *plain = malloc(plain_size);
     assert_int_equal(uncompress(plain, &plain_size, packed, size), Z_OK);
     assert_int_equal(plain_size, wanted);
     d.pixels = malloc((size_t)d.width * (size_t)d.height * sizeof *d.pixels);
@@ -126,8 +126,6 @@ static decoded decode_kitty(const char *text, int *columns, int *rows)
         d.pixels[i] =
             (uint32_t)plain[3 * i] << 16 | (uint32_t)plain[3 * i + 1] << 8 | plain[3 * i + 2];
     }
-    free(plain);
-    free(packed);
     return d;
 }
 
@@ -189,10 +187,9 @@ static pixel_block block_of(cairo_surface_t *surface)
 
 TEST(test_what_is_written_is_the_picture)
 {
-    explorer ex;
-    screen s = {0};
-    picture_layer layer;
-    open_explorer(&ex, "corrected/first-impact");
+    SCOPED(screen_finish) screen s = {0};
+    SCOPED(pictures_finish) picture_layer layer;
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
     draw_pictures(&ex, &s, &layer);
     for (int i = 0; i < layer.count; i++) {
@@ -227,9 +224,6 @@ TEST(test_what_is_written_is_the_picture)
         free(text);
         free(png.pixels);
     }
-    pictures_finish(&layer);
-    screen_finish(&s);
-    explorer_finish(&ex);
 }
 
 TEST(test_few_registers_are_enough)
@@ -240,7 +234,7 @@ TEST(test_few_registers_are_enough)
         pixels[i] = i % 64 < 30 ? 0x000010 : i % 64 < 50 ? 0xf08020 : (uint32_t)(i % 64 * 0x030201);
     }
     const pixel_block block = {pixels, 64, 20, 64};
-    char *text = NULL;
+    SCOPED(free_kept) char *text = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
     assert_true(sixel_write(stream, &block, 4));
@@ -251,7 +245,6 @@ TEST(test_few_registers_are_enough)
     const decoded first = {30, 1, d.pixels}, wanted = {30, 1, pixels};
     assert_in_range(difference(&first, &wanted), 0, 2);
     free(d.pixels);
-    free(text);
 }
 
 // The colour that most pixels of a surface near to it have, other than the ground.
@@ -271,13 +264,12 @@ static long pixels_like(cairo_surface_t *surface, rgb c)
 
 TEST(test_arm_and_force_are_in_the_picture)
 {
-    explorer ex;
-    screen s = {0};
+    SCOPED(screen_finish) screen s = {0};
     picture_layer layer;
     rgb arm, force;
     ink_rgb(COLOURS_DARK, INK_ARM, &arm);
     ink_rgb(COLOURS_DARK, INK_FORCE, &force);
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
 
     // in flight no force, in contact an arrow; the close-up comes first
     draw_pictures(&ex, &s, &layer);
@@ -289,17 +281,14 @@ TEST(test_arm_and_force_are_in_the_picture)
     assert_true(pixels_like(layer.items[1].surface, force) > 100);
     assert_true(pixels_like(layer.items[0].surface, force) > 100);
     pictures_finish(&layer);
-    screen_finish(&s);
-    explorer_finish(&ex);
 }
 
 TEST(test_what_lies_over_a_picture_is_seen)
 {
-    explorer ex;
-    screen s = {0};
-    picture_layer layer;
+    SCOPED(screen_finish) screen s = {0};
+    SCOPED(pictures_finish) picture_layer layer;
     picture_region regions[PICTURE_REGIONS];
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":s");
     draw_pictures(&ex, &s, &layer);
 
@@ -327,16 +316,13 @@ TEST(test_what_lies_over_a_picture_is_seen)
     for (int i = 0; i < small; i++) {
         assert_true(regions[i].width <= 7 && regions[i].height <= 3);
     }
-    pictures_finish(&layer);
-    screen_finish(&s);
-    explorer_finish(&ex);
 }
 
 // What cairo could not draw is not shown: words stand there, and the next drawing begins anew.
 TEST(test_a_picture_that_failed_is_words)
 {
-    screen s = {0};
-    picture_layer layer = {.cell_width = 8, .cell_height = 16};
+    SCOPED(screen_finish) screen s = {0};
+    SCOPED(pictures_finish) picture_layer layer = {.cell_width = 8, .cell_height = 16};
     picture_region regions[PICTURE_REGIONS];
     s.pictures = &layer;
     assert_true(screen_resize(&s, 60, 20));
@@ -355,14 +341,11 @@ TEST(test_a_picture_that_failed_is_words)
     cairo_surface_flush(layer.items[0].surface);
     pictures_clear(&s);
     picture_end(&s, picture_begin(&s, 0, 0, 50, 5));
-    pictures_finish(&layer);
-    screen_finish(&s);
 }
 
 TEST(test_a_screen_without_pictures_has_dots)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
     assert_shows(&ex, "1.294 N");
     assert_hides(&ex, "tip, 100 mm");
@@ -370,7 +353,6 @@ TEST(test_a_screen_without_pictures_has_dots)
     assert_shows(&ex, "tip, 100 mm");
     press(&ex, ":bending 5<Enter>");
     assert_shows(&ex, "bent 5 times");
-    explorer_finish(&ex);
 }
 
 // --- answers ----------------------------------------------------------------------------------

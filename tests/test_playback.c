@@ -17,13 +17,12 @@ static void write_file(const char *path, const char *text)
 // Runs settings and keeps the trace as the lab's own CSV.
 static summary record(const char *const *settings)
 {
-    run_result r = rig_run(settings, true);
+    SCOPED(run_finish) run_result r = rig_run(settings, true);
     FILE *file = fopen(recorded_csv, "w");
     assert_non_null(file);
     export_csv(file, &r.trace, 2);
     assert_int_equal(fclose(file), 0);
     const summary s = r.summary;
-    run_finish(&r);
     return s;
 }
 

@@ -1,13 +1,6 @@
 // Figures, judged by their drawing: texts and their places, pixels.
 #include "tests/plot_fixture.h"
 
-// fontconfig keeps its cache until the process ends
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libfontconfig\n";
-}
-
 // ---- text
 
 // comes first: fontconfig reads its configuration once
@@ -83,7 +76,7 @@ TEST(units_are_set_as_the_si_brochure_has_them)
 TEST(all_texts_of_a_run_are_drawn)
 {
     static figure_report r;
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     record(&s.figure.figure, &r);
     static const char *const wanted[] = {"Synthetic run & <more>",
@@ -108,7 +101,6 @@ TEST(all_texts_of_a_run_are_drawn)
     assert_int_equal(r.panel_count, RUN_PANELS);
     assert_true(r.insets[0].width > 0);
     assert_true(r.insets[1].width == 0);
-    synthetic_finish(&s);
 }
 
 TEST(nothing_is_clipped_or_covered)
@@ -116,7 +108,7 @@ TEST(nothing_is_clipped_or_covered)
     static const double widths[] = {0, 85, 120, 260};
     for (int i = 0; i < 4; i++) {
         for (int theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
-            synthetic s;
+            SCOPED(synthetic_finish) synthetic s;
             synthetic_init(&s, run_panels, RUN_PANELS);
             s.figure.figure.width = widths[i];
             s.figure.figure.theme = theme;
@@ -125,7 +117,6 @@ TEST(nothing_is_clipped_or_covered)
                 s.figure.panels[p].legend = LEGEND_ENDS;
             }
             expect_tidy(&s.figure.figure);
-            synthetic_finish(&s);
         }
     }
 }
@@ -140,20 +131,19 @@ TEST(many_marks_and_impulses_stay_readable)
     for (int i = 0; i < 300; i++) {
         impulses[i] = (figure_impulse){0.3 + 0.5 * i / 299.0, i % 7 == 0 ? 1e-5 : 0.01 / (1 + i)};
     }
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     s.figure.figure.marks = marks;
     s.figure.figure.mark_count = 60;
     s.figure.panels[0].impulses = impulses;
     s.figure.panels[0].impulse_count = 300;
     expect_tidy(&s.figure.figure);
-    synthetic_finish(&s);
 }
 
 TEST(layout_is_the_same_on_every_surface)
 {
     static figure_report reference, other;
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     record(&s.figure.figure, &reference);
     for (double scale = 1; scale < 4; scale += 0.77) {
@@ -166,14 +156,13 @@ TEST(layout_is_the_same_on_every_surface)
             check_close(other.texts[i].place.width, reference.texts[i].place.width, 1e-6);
         }
     }
-    synthetic_finish(&s);
 }
 
 // An impulse has no place on the force axis: a huge one changes nothing there.
 TEST(impulses_do_not_touch_the_force_axis)
 {
     static figure_report r;
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 1);
     figure_impulse huge[] = {{0.31, 5000}};
     s.figure.panels[0].impulses = huge;
@@ -187,14 +176,13 @@ TEST(impulses_do_not_touch_the_force_axis)
             check_below(r.texts[i].place.y + r.texts[i].place.height, r.panels[0].y + 1);
         }
     }
-    synthetic_finish(&s);
 }
 
 // The unit of small impulses, a power of ten and all, is wider than their name: it has its place.
 TEST(the_unit_of_small_impulses_is_on_the_page)
 {
     static figure_report r;
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 1);
     figure_impulse small[] = {{0.31, 4.02e-3}};
     s.figure.panels[0].impulses = small;
@@ -204,7 +192,6 @@ TEST(the_unit_of_small_impulses_is_on_the_page)
     for (int i = 0; i < r.text_count; i++) {
         expect_inside(&r.texts[i].place, &r.page, r.texts[i].text);
     }
-    synthetic_finish(&s);
 }
 
 // Its raised exponent does not reach the letters of the name above: an empty row is between them.
@@ -212,7 +199,7 @@ TEST(the_exponent_of_small_impulses_stands_clear_of_their_name)
 {
     static figure_report r;
     enum { SCALE = 4, DARK = 128 };
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 1);
     figure_impulse small[] = {{0.31, 4.02e-3}};
     s.figure.panels[0].impulses = small;
@@ -236,7 +223,6 @@ TEST(the_exponent_of_small_impulses_stands_clear_of_their_name)
     }
     assert_int_equal(lines, 2);
     cairo_surface_destroy(image);
-    synthetic_finish(&s);
 }
 
 // ---- curves
@@ -244,7 +230,7 @@ TEST(the_exponent_of_small_impulses_stands_clear_of_their_name)
 TEST(a_spike_of_one_sample_is_visible)
 {
     enum { COUNT = 100000, SPIKE = 50003 };
-    double *x = calloc(COUNT, sizeof *x), *y = calloc(COUNT, sizeof *y);
+    SCOPED(free_kept) double *x = calloc(COUNT, sizeof *x), *y = calloc(COUNT, sizeof *y);
     assert_non_null(x);
     assert_non_null(y);
     for (int i = 0; i < COUNT; i++) {
@@ -272,8 +258,6 @@ TEST(a_spike_of_one_sample_is_visible)
         assert_int_equal(coloured_pixels(image, scale, left), 0);
         cairo_surface_destroy(image);
     }
-    free(x);
-    free(y);
 }
 
 TEST(points_that_are_not_finite_leave_a_gap)
@@ -359,7 +343,7 @@ TEST(far_away_points_are_clipped)
 TEST(legend_and_inset_keep_off_the_data)
 {
     static figure_report with, without;
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     figure *fig = &s.figure.figure;
     record(fig, &with);
@@ -377,7 +361,6 @@ TEST(legend_and_inset_keep_off_the_data)
     assert_true(with.insets[0].width > 0);
     assert_int_equal(coloured_pixels(image, 3, with.insets[0]), 0);
     cairo_surface_destroy(image);
-    synthetic_finish(&s);
 }
 
 // Data in one corner after the other: the legend has to go elsewhere and stay inside.
@@ -434,7 +417,7 @@ TEST(legend_leaves_a_full_panel)
 TEST(mono_has_no_colour)
 {
     static figure_report r;
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     cairo_surface_t *colour = paint_pixels(&s.figure.figure, 1.5, &r);
     assert_true(coloured_pixels(colour, 1.5, r.page) > 1000);
@@ -447,7 +430,6 @@ TEST(mono_has_no_colour)
     }
     cairo_surface_destroy(colour);
     cairo_surface_destroy(mono);
-    synthetic_finish(&s);
 }
 
 // ---- runs side by side
@@ -476,7 +458,7 @@ TEST(each_curve_of_a_comparison_says_run_and_signal)
     static trace_figure t;
     trace_run runs[TRACE_RUNS];
     char names[TRACE_RUNS][32];
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     for (int count = 2; count <= TRACE_RUNS; count += 6) {
         for (int i = 0; i < count; i++) {
@@ -528,7 +510,6 @@ TEST(each_curve_of_a_comparison_says_run_and_signal)
         }
         trace_figure_finish(&t);
     }
-    synthetic_finish(&s);
 }
 
 // ---- runs and the thesis's figures
@@ -542,7 +523,7 @@ static void ignore(void *context, const char *sentence)
 TEST(a_scenario_is_plotted)
 {
     fault f = {0};
-    scenario s;
+    SCOPED(scenario_finish) scenario s;
     run_result result;
     assert_int_equal(scenario_open(&s, "corrected/first-impact", ignore, NULL), STATUS_OK);
     assert_int_equal(run_scenario(&s, true, &result), STATUS_OK);
@@ -555,7 +536,6 @@ TEST(a_scenario_is_plotted)
     result.summary.status = STATUS_NOT_FINITE;
     strcpy(result.summary.message, "at t = 0 s: <nothing>");
     assert_int_equal(plot_run(&s, &result, NULL, path_of("none.pdf"), &f), STATUS_OK);
-    scenario_finish(&s);
 }
 
 ALL_BETWEEN(make_work_folder, remove_work_folder)

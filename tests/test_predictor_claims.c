@@ -137,8 +137,7 @@ static void describe(const parameters *p, const char *what, const prediction *ou
 // One random case into the tally.
 static void try_case(const parameters *p, tally *t)
 {
-    arm a;
-    arm_init(&a, p);
+    arm a = arm_of(p);
     motion *m = motion_create(&a, &p->method);
     prediction out;
     if (!move_to_touch(&a, m)) {

@@ -177,27 +177,25 @@ TEST(the_row_before_landing_is_asked_about)
     const double none[1] = {0};
     const sample on_the_wall = {.contact = 1}, struck = {.impulse = 0.1};
     for (int i = 0; i < 4; i++) {
-        run_result given = {.landing = {.time = i / 2}};
+        SCOPED(run_finish) run_result given = {.landing = {.time = i / 2}};
         trace_init(&given.trace, 1);
         assert_null(row_before_landing(&given));
         assert_int_equal(
             trace_add_row(&given.trace, i % 2 == 0 ? &on_the_wall : &struck, none, none),
             STATUS_OK);
         assert_null(row_before_landing(&given));
-        run_finish(&given);
     }
 
     scenario s = {.name = (char *)"printed"};
     parameters_defaults(&s.parameters, ARM_PRINTED);
     assert_int_equal(parameters_resolve(&s.parameters, NULL), STATUS_OK);
-    run_result r;
+    SCOPED(run_finish) run_result r;
     prediction_answer answers[PREDICTOR_COUNT];
     assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
     assert_null(r.before_impact);
     assert_non_null(predict_first_contact(&s, &r, NULL, answers));
     assert_int_equal(answers[PREDICTOR_LINEARISED].outcome, PREDICTION_CORRECTED_ONLY);
     assert_true(answers[PREDICTOR_ENERGY].prediction.force > 0);
-    run_finish(&r);
 }
 
 // A run up to its first contact and on, and what the predictors say of that.
@@ -277,7 +275,7 @@ TEST(an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns)
                           SETTINGS(start[0], start[1], start[2], "wall.angle=0", "run.duration=3",
                                    i % 2 ? "arm.links=3" : "arm.links=2"))};
         prediction_answer answers[PREDICTOR_COUNT];
-        run_result r = predicted_run(&s, answers);
+        SCOPED(run_finish) run_result r = predicted_run(&s, answers);
         const sample *row = row_before_landing(&r);
         assert_true(row->contact == 0 && row->gap < 1e-9 && row->time > 0);
         check_close(row->time, r.landing.time, 1e-12);
@@ -298,7 +296,6 @@ TEST(an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns)
             largest = fmax(largest, r.trace.rows[k].force);
         }
         check_below(largest, r.summary.peak_force_N * (1 + 1e-12));
-        run_finish(&r);
     }
     assert_true(held >= 5);
 }

@@ -57,26 +57,24 @@ TEST(rows_stand_on_the_time_grid_from_the_initial_state)
 {
     parameters p = printed_parameters_of(5, 0.6);
     p.initial.angle = -0.2;
-    recording *r = run(&p, NULL);
+    SCOPED(free_kept) recording *r = run(&p, NULL);
     assert_int_equal(r->count, 601);
     check_close(r->rows[0].angle[2], -0.2, 0);
     check_close(r->rows[0].force, 0, 0);
     for (int i = 0; i < r->count; i++) {
         check_close(r->rows[i].time, i * 1e-3, 1e-12);
     }
-    free(r);
 }
 
 static double first_contact(const parameters *p)
 {
-    recording *r = run(p, NULL);
+    SCOPED(free_kept) recording *r = run(p, NULL);
     double time = (double)NAN;
     for (int i = r->count - 1; i >= 0; i--) {
         if (r->rows[i].contact) {
             time = r->rows[i].time;
         }
     }
-    free(r);
     return time;
 }
 
@@ -94,7 +92,7 @@ TEST(contact_keeps_the_constraint_and_never_pulls)
 {
     parameters p = printed_parameters_of(1, 1);
     p.printed.newton_iterations = 5;
-    recording *r = run(&p, NULL);
+    SCOPED(free_kept) recording *r = run(&p, NULL);
     int in_contact = 0, pulses = 0;
     for (int i = 1; i < r->count; i++) {
         const printed_row *row = &r->rows[i];
@@ -110,7 +108,6 @@ TEST(contact_keeps_the_constraint_and_never_pulls)
     assert_true(in_contact > 50);
     // "a number of pulses precede the steady force"
     assert_true(pulses >= 2);
-    free(r);
 }
 
 // The listing's way of letting go: the constraint is left in the step after the one whose force
@@ -118,7 +115,7 @@ TEST(contact_keeps_the_constraint_and_never_pulls)
 TEST(contact_ends_after_the_step_without_force)
 {
     parameters p = printed_parameters_of(2, 1);
-    recording *r = run(&p, NULL);
+    SCOPED(free_kept) recording *r = run(&p, NULL);
     int releases = 0;
     for (int i = 1; i + 1 < r->count; i++) {
         if (r->rows[i].contact) {
@@ -127,7 +124,6 @@ TEST(contact_ends_after_the_step_without_force)
         }
     }
     assert_true(releases >= 1);
-    free(r);
 }
 
 TEST(steady_force_is_the_balance_of_the_printed_equations)
@@ -136,7 +132,7 @@ TEST(steady_force_is_the_balance_of_the_printed_equations)
     // printed give f l (1 + cos d) + f l = k1 (theta1 - theta2): three levers instead of two
     parameters p = printed_parameters_of(1, 6);
     p.arm.damping_ratio = 0;
-    recording *r = run(&p, NULL);
+    SCOPED(free_kept) recording *r = run(&p, NULL);
     const printed_row *end = &r->rows[r->count - 1];
     double mean = 0, hub_torque = 0;
     for (int i = 0; i < 1000; i++) {
@@ -147,20 +143,18 @@ TEST(steady_force_is_the_balance_of_the_printed_equations)
     check_relative(mean * 3 * 0.5, hub_torque, 0.03);
     assert_true(end->contact);
     check_close(hub_torque, 0.4377, 0.045 + 0.01);
-    free(r);
 }
 
 TEST(no_wall_no_contact)
 {
     parameters p = printed_parameters_of(5, 1);
     p.wall.kind = WALL_NONE;
-    recording *r = run(&p, NULL);
+    SCOPED(free_kept) recording *r = run(&p, NULL);
     assert_true(r->rows[r->count - 1].angle[2] > 0.5);
     for (int i = 0; i < r->count; i++) {
         assert_false(r->rows[i].contact);
         check_close(r->rows[i].force, 0, 0);
     }
-    free(r);
 }
 
 TEST(the_wall_stands_where_its_angle_says)
@@ -174,20 +168,16 @@ TEST(the_wall_stands_where_its_angle_says)
 TEST(command_saturates_at_its_limit)
 {
     parameters ten = printed_parameters_of(10, 0.3), twenty = printed_parameters_of(20, 0.3);
-    recording *a = run(&ten, NULL), *b = run(&twenty, NULL);
+    SCOPED(free_kept) recording *a = run(&ten, NULL), *b = run(&twenty, NULL);
     assert_memory_equal(a->rows, b->rows, (size_t)a->count * sizeof a->rows[0]);
-    free(a);
-    free(b);
 }
 
 TEST(same_input_gives_the_same_bytes)
 {
     parameters p = printed_parameters_of(5, 1);
-    recording *a = run(&p, NULL), *b = run(&p, NULL);
+    SCOPED(free_kept) recording *a = run(&p, NULL), *b = run(&p, NULL);
     assert_int_equal(a->count, b->count);
     assert_memory_equal(a->rows, b->rows, sizeof a->rows);
-    free(a);
-    free(b);
 }
 
 static void switch_off_at_100_ms(double time, parameters *p)
@@ -198,20 +188,18 @@ static void switch_off_at_100_ms(double time, parameters *p)
 TEST(script_changes_parameters_between_steps)
 {
     parameters p = printed_parameters_of(2, 1);
-    recording *driven = run(&p, NULL), *coasting = run(&p, switch_off_at_100_ms);
+    SCOPED(free_kept) recording *driven = run(&p, NULL), *coasting = run(&p, switch_off_at_100_ms);
     assert_memory_equal(driven->rows, coasting->rows, 101 * sizeof driven->rows[0]);
     check_below(coasting->rows[101].velocity[0], driven->rows[101].velocity[0]);
     // back EMF and friction stop it before the wall
     assert_false(coasting->rows[coasting->count - 1].contact);
-    free(driven);
-    free(coasting);
 }
 
 TEST(overflow_stops_the_run_with_a_sentence)
 {
     parameters p = printed_parameters_of(1, 1);
     p.initial.velocity = 1e200;
-    recording *r = calloc(1, sizeof *r);
+    SCOPED(free_kept) recording *r = calloc(1, sizeof *r);
     fault f = {.text = ""};
     assert_int_equal(run_into(r, p, NULL, &f), STATUS_NOT_FINITE);
     assert_non_null(strstr(f.text, "t = 0 s"));
@@ -219,7 +207,6 @@ TEST(overflow_stops_the_run_with_a_sentence)
     for (int i = 0; i < 3; i++) {
         assert_true(isfinite(r->rows[0].velocity[i]));
     }
-    free(r);
 }
 
 // A smooth torque from nothing, sampled at the end of each step as Newmark's method does.
@@ -275,14 +262,13 @@ static void runge_kutta(const parameters *p, double duration, int steps, double 
 static double newmark_error(parameters p, const double exact[6], double h)
 {
     p.method.step = ramp_step = h;
-    recording *r = run(&p, follow_ramp);
+    SCOPED(free_kept) recording *r = run(&p, follow_ramp);
     const printed_row *end = &r->rows[r->count - 1];
     double error = 0;
     for (int i = 0; i < 3; i++) {
         error = fmax(error, fabs(end->angle[i] - exact[i]));
         error = fmax(error, 0.05 * fabs(end->velocity[i] - exact[3 + i]));
     }
-    free(r);
     return error;
 }
 
@@ -310,23 +296,20 @@ TEST(beta_matters_little_in_free_flight)
     parameters p = printed_parameters_of(1, 0.3), q = p;
     p.wall.kind = q.wall.kind = WALL_NONE;
     p.method.beta = 0.25;
-    recording *a = run(&p, NULL), *b = run(&q, NULL);
+    SCOPED(free_kept) recording *a = run(&p, NULL), *b = run(&q, NULL);
     check_close(a->rows[a->count - 1].angle[2], b->rows[b->count - 1].angle[2], 2e-3);
-    free(a);
-    free(b);
 }
 
 // Largest force of a run that may fail on its way, huge if it does.
 static double largest_force(const parameters *p)
 {
-    recording *r = calloc(1, sizeof *r);
+    SCOPED(free_kept) recording *r = calloc(1, sizeof *r);
     fault f = {.text = ""};
     assert_non_null(r);
     double largest = run_into(r, *p, NULL, &f) == STATUS_OK ? 0 : HUGE_VAL;
     for (int i = 0; i < r->count; i++) {
         largest = fmax(largest, r->rows[i].force);
     }
-    free(r);
     return largest;
 }
 
@@ -363,9 +346,9 @@ TEST(a_single_run_gives_no_force_whatever_beta_and_gamma)
 TEST(negative_forces_change_no_peak)
 {
     parameters p = printed_parameters_of(5, 1);
-    recording *clamped = run(&p, NULL);
+    SCOPED(free_kept) recording *clamped = run(&p, NULL);
     p.printed.clamp_force = false;
-    recording *free_sign = run(&p, NULL);
+    SCOPED(free_kept) recording *free_sign = run(&p, NULL);
     double largest[2] = {0, 0}, smallest = 0;
     for (int i = 0; i < clamped->count; i++) {
         largest[0] = fmax(largest[0], clamped->rows[i].force);
@@ -374,8 +357,6 @@ TEST(negative_forces_change_no_peak)
     }
     check_below(smallest, 0);
     check_close(largest[1], largest[0], 0);
-    free(clamped);
-    free(free_sign);
 }
 
 // Every step under every combination of switches: Newmark's relations between both ends, the

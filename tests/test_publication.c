@@ -6,13 +6,6 @@
 #include "render/figures/recipe.h"
 #include "render/figures/run_figure.h"
 
-// fontconfig keeps its cache until the process ends
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libfontconfig\n";
-}
-
 static artwork open_figure(const char *id, const figure_options *o)
 {
     fault f = {0};
@@ -37,6 +30,7 @@ TEST(bare_pages_have_no_title_and_no_caption)
     static const char *const some[] = {"2.2", "3.4", "4.3", "T3.1"};
     for (size_t k = 0; k < G_N_ELEMENTS(some); k++) {
         figure_options dressed = {.look.width = 120}, bare = {.look = {.width = 120, .bare = true}};
+        SCOPED(artwork_finish)
         artwork a = open_figure(some[k], &dressed), b = open_figure(some[k], &bare);
         check_below(b.height, a.height - 12);
         report_of(&b, &r);
@@ -45,8 +39,6 @@ TEST(bare_pages_have_no_title_and_no_caption)
             assert_null(strstr(r.texts[t].text, start));
         }
         g_free(start);
-        artwork_finish(&a);
-        artwork_finish(&b);
     }
 }
 
@@ -112,9 +104,8 @@ TEST(files_know_the_command_and_tell_what_they_show)
     assert_non_null(strstr(svg, "<desc>A title &amp; more. 1 panel over Time in s"));
     free(svg);
     publish(&o, path_of("m.png"));
-    char *png = read_file(path_of("m.png"), &length);
+    SCOPED(free_kept) char *png = read_file(path_of("m.png"), &length);
     assert_non_null(memmem(png, length, "impactlab run x --set arm.k2=3", 30));
-    free(png);
 }
 
 TEST(a_transparent_picture_has_no_ground)
@@ -153,7 +144,7 @@ TEST(measured_data_have_a_panel_of_residuals)
 {
     static figure_report r;
     fault f = {0};
-    synthetic s;
+    SCOPED(synthetic_finish) synthetic s;
     run_figure drawn;
     synthetic_init(&s, run_panels, RUN_PANELS);
     write_measured("bench.csv", "time[s],cell[N]\n0.30,0\n0.325,2\n0.345,1.6\n");
@@ -182,7 +173,6 @@ TEST(measured_data_have_a_panel_of_residuals)
     assert_int_equal(run_figure_init(&drawn, "t", NULL, 0, &run, 1, &mixed, &f),
                      STATUS_BAD_ARGUMENT);
     g_free(spec);
-    synthetic_finish(&s);
 }
 
 // ---- recipes
@@ -262,16 +252,14 @@ TEST(multiples_are_runs_at_their_values)
     artwork_finish(&drawn);
 
     // the same rows, for any other contents of the file
-    char *many = read_file(path_of("many.csv"), &length);
-    char *one = read_file(path_of("one.csv"), &length);
+    SCOPED(free_kept) char *many = read_file(path_of("many.csv"), &length);
+    SCOPED(free_kept) char *one = read_file(path_of("one.csv"), &length);
     const char *row = ",arm 2 V force,0.3,";
     const char *a = strstr(many, row), *b = strstr(one, row);
     assert_non_null(a);
     assert_non_null(b);
     check_close(atof(a + strlen(row)), atof(b + strlen(row)), 0);
     assert_true(atof(a + strlen(row)) > 1);
-    free(many);
-    free(one);
 }
 
 // A recipe of figure 3.4 shows the numbers that figure 3.4 does, and their difference.
@@ -287,8 +275,8 @@ TEST(a_recipe_shows_what_its_runs_give)
     g_free(path);
     assert_int_equal(figure_draw("3.4", &(figure_options){0}, path_of("thesis"), "svg", NULL, &f),
                      STATUS_OK);
-    char *recipe = read_file(path_of("recipe.csv"), &length);
-    char *thesis = read_file(path_of("thesis/fig-3-4.csv"), &length);
+    SCOPED(free_kept) char *recipe = read_file(path_of("recipe.csv"), &length);
+    SCOPED(free_kept) char *thesis = read_file(path_of("thesis/fig-3-4.csv"), &length);
     const char *const rows[][2] = {{"printed force,0.4,", ",force,0.4,"},
                                    {"corrected force,0.4,", ",force corrected,0.4,"}};
     double values[2];
@@ -302,8 +290,6 @@ TEST(a_recipe_shows_what_its_runs_give)
     const char *difference = strstr(recipe, ",difference,0.4,");
     assert_non_null(difference);
     check_close(atof(difference + strlen(",difference,0.4,")), values[1] - values[0], 1e-12);
-    free(recipe);
-    free(thesis);
 }
 
 TEST(faults_of_recipes_have_their_places)

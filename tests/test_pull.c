@@ -32,8 +32,7 @@ static void pull(explorer *ex, int down, double seconds)
 
 TEST(test_a_place_is_in_its_cell)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     free(picture(&ex, WIDTH, HEIGHT, GLYPHS_BRAILLE));
     const arm_stage *g = &ex.state.stage;
     for (int x = g->x; x < g->x + g->width; x++) {
@@ -44,13 +43,11 @@ TEST(test_a_place_is_in_its_cell)
             assert_int_equal(row, y);
         }
     }
-    explorer_finish(&ex);
 }
 
 TEST(test_a_pull_gives_the_spring_s_impulse)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":slow off<Enter>:set motor.voltage 0<Enter>");
     const session *s = &ex.state.session;
     pull(&ex, 3, 0.1);
@@ -81,15 +78,13 @@ TEST(test_a_pull_gives_the_spring_s_impulse)
     assert_true(impulse < 0 && row->last_angle < s->run.trace.rows[0].last_angle);
     assert_true(row->external_work > 0);
     check_close(row->energy_residual, 0, 1e-9);
-    explorer_finish(&ex);
 }
 
 TEST(test_a_pull_is_one_change_and_comes_again)
 {
-    explorer ex;
     scenario again;
     run_result result;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.1<Enter>");
     const size_t rows = ex.state.session.run.trace.row_count;
     pull(&ex, 2, 0.05);
@@ -117,14 +112,12 @@ TEST(test_a_pull_is_one_change_and_comes_again)
     assert_int_equal(s->run.trace.row_count, rows);
     press(&ex, "U");
     assert_int_equal(s->input_count, pushes);
-    explorer_finish(&ex);
 }
 
 TEST(test_what_is_far_from_the_tip_holds_nothing)
 {
-    explorer ex;
     int x, y;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     find_tip(&ex, &x, &y);
     explorer_point(&ex, (pointer_event){.kind = POINTER_PRESS, .x = x - 20, .y = y});
     assert_false(ex.state.pull.held);
@@ -133,13 +126,11 @@ TEST(test_what_is_far_from_the_tip_holds_nothing)
     find_tip(&ex, &x, &y);
     explorer_point(&ex, (pointer_event){.kind = POINTER_PRESS, .x = x, .y = y});
     assert_false(ex.state.pull.held);
-    explorer_finish(&ex);
 }
 
 TEST(test_impacts_are_slow_and_the_rest_is_not)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     explorer_state *st = &ex.state;
     const trace *t = &st->session.run.trace;
     const double duration = st->session.effective.parameters.run.duration;
@@ -157,5 +148,4 @@ TEST(test_impacts_are_slow_and_the_rest_is_not)
     session_seek(&st->session, impact);
     explorer_advance(&ex, 0.01);
     check_close(st->session.now - impact, 0.001, 1e-12);
-    explorer_finish(&ex);
 }

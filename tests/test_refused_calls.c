@@ -164,8 +164,8 @@ TEST(answers_that_cannot_be_read)
     int failed = 0;
     bool reached = true;
     for (long k = 1; reached; k++) {
-        scenario s;
-        run_result result;
+        SCOPED(scenario_finish) scenario s;
+        SCOPED(run_finish) run_result result;
         assert_int_equal(make_scenario(&s, "control.rate=100"), STATUS_OK);
         char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
         char law[] = "control.law=process";
@@ -183,8 +183,6 @@ TEST(answers_that_cannot_be_read)
             assert_non_null(strstr(result.summary.message, "cannot be read: Input/output error"));
             failed++;
         }
-        run_finish(&result);
-        scenario_finish(&s);
     }
     assert_true(failed > 8);
 }

@@ -15,6 +15,10 @@
 #include "src/study/tune.h"
 #include "tests/refused_requests.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
+GIVEN_BACK(run_loop, loop_destroy)
+
 static char folder[] = "/tmp/refused-inits-XXXXXX";
 
 static const char *put(const char *name, const char *text)
@@ -35,12 +39,11 @@ static status table(const char *text, FILE *out)
     (void)out;
     csv_table t = {0};
     fault f = {0};
-    double *times = NULL;
+    SCOPED(free_kept) double *times = NULL;
     status code = csv_table_read(&t, put("t.csv", text), 1, &f);
     if (code == STATUS_OK) {
         code = csv_table_times(&t, "time", &times, &f);
     }
-    free(times);
     csv_table_finish(&t);
     csv_table_finish(&t);
     return code;
@@ -49,20 +52,18 @@ static status table(const char *text, FILE *out)
 static status set(const char *text, FILE *out)
 {
     (void)out;
-    robust_set s = {0};
+    SCOPED(robust_set_finish) robust_set s = {0};
     fault f = {0};
     const status code = robust_set_read(&s, put("a.set", text), &f);
-    robust_set_finish(&s);
     return code;
 }
 
 static status session_of_lines(const char *text, FILE *out)
 {
     (void)out;
-    session_file s = {0};
+    SCOPED(session_file_finish) session_file s = {0};
     fault f = {0};
     const status code = session_file_read(&s, put("a.session", text), &f);
-    session_file_finish(&s);
     return code;
 }
 
@@ -75,9 +76,8 @@ static void ignore(void *context, const char *sentence)
 static status parsed(const char *text, FILE *out)
 {
     (void)out;
-    scenario s = {0};
+    SCOPED(scenario_finish) scenario s = {0};
     const status code = scenario_parse(&s, text, strlen(text), "p.yaml", NULL, ignore, NULL);
-    scenario_finish(&s);
     return code;
 }
 
@@ -97,16 +97,15 @@ static status plan_of(const char *text, sweep_sampling how, bool tuned)
         vary[count++] = one;
     }
     if (tuned) {
-        tuning t = {0};
+        SCOPED(tune_finish) tuning t = {0};
         const tune_request asked = {
             .base = &s, .vary = vary, .vary_count = count, .minimise = "peak_force_N", .runs = 4};
         code = tune_init(&t, &asked, &f);
-        tune_finish(&t);
     } else {
-        sweep w = {0};
-        sweep again = {0};
-        definition d = {0};
-        sweep_store *store = NULL;
+        SCOPED(sweep_finish) sweep w = {0};
+        SCOPED(sweep_finish) sweep again = {0};
+        SCOPED(definition_finish) definition d = {0};
+        SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
         const sweep_request request = {
             .vary = vary, .vary_count = count, .sampling = how, .runs = how == SWEEP_GRID ? 0 : 3};
         code = sweep_init(&w, &s, &request, &f);
@@ -119,10 +118,6 @@ static status plan_of(const char *text, sweep_sampling how, bool tuned)
         if (code == STATUS_OK) {
             code = sweep_store_open(&store, NULL, &w, &f);
         }
-        sweep_store_close(store);
-        sweep_finish(&again);
-        definition_finish(&d);
-        sweep_finish(&w);
     }
     scenario_finish(&s);
     return code;
@@ -155,7 +150,7 @@ static status fitted(const char *text, FILE *out)
     if (code != STATUS_OK) {
         return code;
     }
-    identification id = {.base = &s};
+    SCOPED(identify_finish) identification id = {.base = &s};
     code = identify_add_path(&id, text, &f);
     if (code == STATUS_OK) {
         code = identify_add_trace(&id,
@@ -163,7 +158,6 @@ static status fitted(const char *text, FILE *out)
                                                "0.001,1,0\n0.002,1,0.001\n"),
                                   NULL, 0, &f);
     }
-    identify_finish(&id);
     scenario_finish(&s);
     return code;
 }
@@ -172,9 +166,8 @@ static status looped(scenario *s, FILE *out)
 {
     (void)out;
     fault f = {0};
-    run_loop *l = NULL;
+    SCOPED(loop_destroy_kept) run_loop *l = NULL;
     const status code = loop_create(&l, s, &(loop_options){.keep_trace = true}, &f);
-    loop_destroy(l);
     return code;
 }
 

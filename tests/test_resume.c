@@ -87,15 +87,13 @@ TEST(bounds_and_landing_are_resumed)
         scenario later = s;
         s.action_count = 1;
         later.action_count = 2;
+        SCOPED(run_finish)
         run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
         assert_true(resumed(&old, &s, &later, &result));
         check_same_run(&result, &whole);
         assert_int_equal(isnan(result.summary.steady_force_low_N), i == 2);
         assert_true(whole.landing.time > 0);
         assert_memory_equal(&result.landing, &whole.landing, sizeof result.landing);
-        run_finish(&old);
-        run_finish(&result);
-        run_finish(&whole);
     }
 }
 
@@ -114,6 +112,7 @@ TEST(a_face_on_its_way_back_is_resumed_where_it_was)
         scenario later = s;
         s.action_count = 1;
         later.action_count = 2;
+        SCOPED(run_finish)
         run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
         assert_true(run_resume(&old, &s, &later, ROWS, &result));
         const sample *last = &result.trace.rows[result.trace.row_count - 1];
@@ -128,9 +127,6 @@ TEST(a_face_on_its_way_back_is_resumed_where_it_was)
             met |= e->kind == EVENT_CONTACT && e->time > 2.5;
         }
         assert_true(met);
-        run_finish(&old);
-        run_finish(&result);
-        run_finish(&whole);
     }
 }
 
@@ -149,13 +145,11 @@ TEST(an_arm_made_stiff_is_resumed_as_it_is)
         s.actions = later.actions = changes;
         s.action_count = 1;
         later.action_count = 2;
+        SCOPED(run_finish)
         run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
         assert_true(whole.summary.steps < 1e5);
         assert_true(resumed(&old, &s, &later, &result));
         check_same_run(&result, &whole);
-        run_finish(&old);
-        run_finish(&result);
-        run_finish(&whole);
     }
 }
 
@@ -230,21 +224,19 @@ TEST(a_longer_run_goes_on_from_a_shorter_one)
 {
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
     scenario longer = {.parameters = fixture_parameters(SETTINGS("run.duration=5"))};
+    SCOPED(run_finish)
     run_result old = run_keeping_history(&s), whole = run_keeping_history(&longer), result;
     assert_true(resumed(&old, &s, &longer, &result));
     check_same_run(&result, &whole);
-    run_finish(&old);
-    run_finish(&result);
-    run_finish(&whole);
 }
 
 TEST(another_arm_has_nothing_in_common)
 {
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
     scenario other = {.parameters = fixture_parameters(SETTINGS("run.duration=3", "arm.k2=5"))};
-    run_result old = run_keeping_history(&s), result;
+    SCOPED(run_finish) run_result old = run_keeping_history(&s);
+    run_result result;
     assert_false(run_resume(&old, &s, &other, ROWS, &result));
-    run_finish(&old);
 }
 
 TEST(a_run_without_history_cannot_be_resumed)
@@ -273,25 +265,21 @@ TEST(a_run_of_the_rig_is_shared_without_history)
 {
     scenario s = {.parameters =
                       fixture_parameters(SETTINGS("run.duration=1", "control.law=open-loop"))};
-    run_result old = run_keeping_history(&s), shared;
+    SCOPED(run_finish) run_result old = run_keeping_history(&s), shared;
     assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
     check_same_run(&shared, &old);
     assert_int_equal(shared.history.forces.array.reserved, 0);
     assert_int_equal(shared.history.checkpoints.reserved, 0);
-    run_finish(&old);
-    run_finish(&shared);
 }
 
 TEST(equal_rows_are_kept_once)
 {
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
-    run_result a = run_keeping_history(&s), b = run_keeping_history(&s);
+    SCOPED(run_finish) run_result a = run_keeping_history(&s), b = run_keeping_history(&s);
     size_t before = shared_array_memory();
     shared_chunks same = run_compare_rows(&a, &b);
     assert_true(same.rows > 0);
     run_merge(&a, &b, &same);
     assert_true(before - shared_array_memory() >= same.rows * ARRAY_CHUNK);
     check_same_run(&a, &b);
-    run_finish(&a);
-    run_finish(&b);
 }

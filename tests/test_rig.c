@@ -4,9 +4,11 @@
 #include "src/contact/contact_machine.h"
 #include "tests/rig_fixture.h"
 
+GIVEN_BACK(run_loop, loop_destroy)
+
 TEST(command_holds_between_samples)
 {
-    run_result r = rig_run(SETTINGS("control.law=hybrid"), true);
+    SCOPED(run_finish) run_result r = rig_run(SETTINGS("control.law=hybrid"), true);
     const trace *t = &r.trace;
     int changes = 0;
     for (size_t i = 1; i < t->row_count; i++) {
@@ -18,11 +20,11 @@ TEST(command_holds_between_samples)
         }
     }
     assert_true(changes > 50);
-    run_finish(&r);
 }
 
 TEST(delay_shifts_the_command)
 {
+    SCOPED(run_finish)
     run_result r = rig_run(SETTINGS("control.law=hybrid", "control.delay=0.002"), true);
     const trace *t = &r.trace;
     for (size_t i = 1; i < t->row_count; i++) {
@@ -31,7 +33,6 @@ TEST(delay_shifts_the_command)
             check_close(since - floor(since), 0.002 * 200, 1e-6);
         }
     }
-    run_finish(&r);
 }
 
 // A command that is still on its way when the run ends has moved nothing: the largest is the
@@ -41,6 +42,7 @@ TEST(a_command_still_on_its_way_does_not_count)
     static const char *const ends[] = {"run.duration=0.32", "run.duration=0.3102",
                                        "run.duration=0.305"};
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+        SCOPED(run_finish)
         run_result r = rig_run(SETTINGS("control.law=force-pd", "control.force_gain=5",
                                         "control.delay=0.003068", "control.seed=423", ends[i]),
                                true);
@@ -49,7 +51,6 @@ TEST(a_command_still_on_its_way_does_not_count)
             largest = fmax(largest, fabs(r.trace.rows[k].voltage));
         }
         check_close(r.summary.largest_command_V, largest, 0);
-        run_finish(&r);
     }
 }
 
@@ -172,7 +173,7 @@ TEST(energy_under_a_limit_that_changes)
                                                             "control.approach_voltage=5")),
                       .actions = &lower,
                       .action_count = 1};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
 
         // the printed arm's row has the voltage of the step before it
@@ -186,7 +187,6 @@ TEST(energy_under_a_limit_that_changes)
                 volts / m->resistance * (volts * (to->time - from->time) - m->back_emf * turn);
         }
         check_relative(r.summary.electrical_energy_J, energy, 1e-10);
-        run_finish(&r);
     }
 }
 
@@ -198,7 +198,7 @@ TEST(errors_are_from_the_last_command)
     scenario s = {.parameters = rig_parameters(SETTINGS("control.law=force-pd", "run.duration=3")),
                   .actions = &raise,
                   .action_count = 1};
-    run_result r;
+    SCOPED(run_finish) run_result r;
     assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
     const summary *m = &r.summary;
     check_close(m->force_command_N, 2, 0);
@@ -206,20 +206,19 @@ TEST(errors_are_from_the_last_command)
     check_close(m->steady_error_N, m->steady_force_N - 2, 0);
     check_close(m->force_over_command_N, m->peak_force_N - 2, 0);
     check_close(m->smoothed_over_command_N, m->force_over_command_N, 0.02);
-    run_finish(&r);
 }
 
 TEST(same_seed_same_bytes)
 {
+    SCOPED(run_finish)
     run_result a = rig_run(SETTINGS("control.law=optimal", "control.jitter=0.0005"), true);
+    SCOPED(run_finish)
     run_result b = rig_run(SETTINGS("control.law=optimal", "control.jitter=0.0005"), true);
     run_result c =
         rig_run(SETTINGS("control.law=optimal", "control.jitter=0.0005", "control.seed=2"), true);
     assert_int_equal(a.trace.row_count, b.trace.row_count);
     assert_memory_equal(a.trace.rows, b.trace.rows, a.trace.row_count * sizeof(sample));
     assert_true(a.summary.peak_force_N != c.summary.peak_force_N);
-    run_finish(&a);
-    run_finish(&b);
     run_finish(&c);
 }
 
@@ -262,7 +261,7 @@ TEST(a_command_that_alternates_passes_time)
     const loop_options options = {.commanded = true};
     for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
         const scenario s = {.parameters = fixture_parameters(arms[i])};
-        run_loop *l;
+        SCOPED(loop_destroy_kept) run_loop *l;
         fault f = {.text = ""};
         assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
         for (long k = 0; !loop_ended(l); k++) {
@@ -271,7 +270,6 @@ TEST(a_command_that_alternates_passes_time)
         }
         assert_true(loop_summary(l).peak_force_N > 0.5);
         check_below(loop_summary(l).energy_residual_J, 1e-12);
-        loop_destroy(l);
     }
 }
 
@@ -279,9 +277,8 @@ TEST(a_command_that_alternates_passes_time)
 // [s]: its impulses, and its force in strides that grow by a twentieth of the time since.
 static double lagged_force(const parameters *p, double time_constant, double after)
 {
-    arm a;
-    arm_init(&a, p);
-    motion *m = motion_create(&a, &p->method);
+    arm a = arm_of(p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p->method);
     assert_non_null(m);
     motion_start(&a, m, p->initial.angle, p->initial.velocity);
 
@@ -308,7 +305,6 @@ static double lagged_force(const parameters *p, double time_constant, double aft
             touched = touched < 0 ? last : touched;
         }
     }
-    motion_destroy(m);
     return touched < 0 ? (double)NAN : felt;
 }
 
@@ -336,7 +332,7 @@ TEST(sensors_feel_the_spike_of_a_damped_chain)
                                         "sensor.dac_bits=0",
                                         NULL};
         const parameters p = rig_parameters(settings);
-        run_result run = rig_run(settings, true);
+        SCOPED(run_finish) run_result run = rig_run(settings, true);
 
         // the first readings after the touch
         const double touch = run.summary.first_contact_s;
@@ -351,7 +347,6 @@ TEST(sensors_feel_the_spike_of_a_damped_chain)
             }
         }
         assert_true(compared == 3);
-        run_finish(&run);
     }
 }
 
@@ -369,7 +364,7 @@ TEST(the_approach_speed_is_the_largest_of_the_flight)
         for (int k = 0; k < 7; k++) {
             settings[5 + k] = arms[i][k];
         }
-        run_result r = rig_run(settings, true);
+        SCOPED(run_finish) run_result r = rig_run(settings, true);
         double fastest = 0;
         for (size_t k = 0; k < r.trace.row_count; k++) {
             const sample *row = &r.trace.rows[k];
@@ -377,6 +372,5 @@ TEST(the_approach_speed_is_the_largest_of_the_flight)
             fastest = after ? fastest : fmax(fastest, -row->gap_velocity);
         }
         check_relative(r.summary.approach_speed_m_s, fastest, 1e-4);
-        run_finish(&r);
     }
 }

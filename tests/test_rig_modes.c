@@ -37,7 +37,7 @@ TEST(every_lockable_law_stays_in_every_mode_of_its_own)
         lockable += c->lockable;
         for (int mode = 0; c->lockable && c->modes[mode] != NULL; mode++) {
             snprintf(setting, sizeof setting, "control.law=%s", c->name);
-            run_result r = locked_run(SETTINGS(setting), c->modes[mode]);
+            SCOPED(run_finish) run_result r = locked_run(SETTINGS(setting), c->modes[mode]);
             for (size_t i = 0; i < r.trace.row_count; i++) {
                 const sample *row = &r.trace.rows[i];
                 fail_if(row->time > LOCK_TIME && row->time < RELEASE_TIME &&
@@ -45,7 +45,6 @@ TEST(every_lockable_law_stays_in_every_mode_of_its_own)
                         "%s leaves %s for mode %g at %g s", c->name, c->modes[mode],
                         row->controller_mode, row->time);
             }
-            run_finish(&r);
         }
     }
     assert_true(lockable >= 10);
@@ -59,13 +58,13 @@ TEST(approach_means_the_approach_command)
     for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
         char setting[64];
         snprintf(setting, sizeof setting, "control.law=%s", laws[i]);
+        SCOPED(run_finish)
         run_result r = locked_run(SETTINGS(setting, "control.approach_voltage=0.8"), "approach");
         check_close(answer_at(&r, 0.6)->command, 0.8, 0);
         check_close(answer_at(&r, 0.89)->command, 0.8, 0);
         // it is in contact, and detects it once it is free
         check_close(answer_at(&r, 0.89)->contact, 1, 0);
         assert_true(answer_at(&r, 0.92)->controller_mode > 0);
-        run_finish(&r);
     }
 }
 
@@ -86,6 +85,7 @@ TEST(force_means_the_force_law_at_once)
 
 TEST(impact_mode_is_planned_anew_and_waits_at_its_end)
 {
+    SCOPED(run_finish)
     run_result r = locked_run(
         SETTINGS("control.law=hybrid", "sensor.ideal=true", "control.transition_time=0.2"),
         "impact");
@@ -101,7 +101,6 @@ TEST(impact_mode_is_planned_anew_and_waits_at_its_end)
     const sample *last = answer_at(&r, RELEASE_TIME - 0.005), *next = answer_at(&r, RELEASE_TIME);
     check_close(next->controller_mode, 2, 0);
     check_close(next->command, last->command, 0.15); // friction's part is the difference
-    run_finish(&r);
 }
 
 TEST(release_goes_on_from_the_command_in_effect)
@@ -114,12 +113,12 @@ TEST(release_goes_on_from_the_command_in_effect)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char setting[64];
         snprintf(setting, sizeof setting, "control.law=%s", cases[i][0]);
+        SCOPED(run_finish)
         run_result r = locked_run(SETTINGS(setting, "sensor.ideal=true"), cases[i][1]);
         double last = answer_at(&r, RELEASE_TIME - 0.005)->command;
         double next = answer_at(&r, RELEASE_TIME)->command;
         fail_if(fabs(next - last) > 0.1, "%s released from %s jumps from %g V to %g V", cases[i][0],
                 cases[i][1], last, next);
-        run_finish(&r);
     }
 }
 
@@ -197,7 +196,7 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
 {
     const int lock = PARAMETER_INDEX(control.lock);
     scenario s, saved;
-    session e;
+    SCOPED(session_finish) session e;
     fault f = {0};
     run_result free_run, again;
     assert_int_equal(scenario_open(&s, "compare/hybrid", fail_on_fault, NULL), STATUS_OK);
@@ -232,7 +231,6 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
     assert_int_equal(session_redo(&e, &f), STATUS_OK);
     check_close(e.run.trace.rows[trace_row_at(&e.run.trace, 0.6)].controller_mode, 0, 0);
     run_finish(&free_run);
-    session_finish(&e);
 }
 
 // Held in the pressing mode before there is a wall to press on, the observer follows the flight and
@@ -288,14 +286,13 @@ TEST(every_mode_is_gone_into_from_every_other)
                           SETTINGS(setting, models[law / LAW_PLUGIN], "run.duration=0.8")),
                       .actions = script,
                       .action_count = count};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s: %s", c->name, r.summary.message);
         for (int i = 0; i < count; i++) {
             const double then = script[i].time + 0.006, is = answer_at(&r, then)->controller_mode;
             fail_if(is != mode[i], "%s, %s: mode %g, not %d, at %g s", c->name,
                     models[law / LAW_PLUGIN], is, mode[i], then);
         }
-        run_finish(&r);
     }
 }
 

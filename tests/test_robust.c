@@ -6,6 +6,8 @@
 #include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
 // A file with the text; the name is in `path`.
 static void write_set(char *path, const char *text)
 {
@@ -140,7 +142,7 @@ TEST(pushes_of_a_case_must_act)
              derived;
     base.parameters.control.law = LAW_NONE;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        robust_set set;
+        SCOPED(robust_set_finish) robust_set set;
         fault f = {0};
         write_set(path, wrong[i].text);
         assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
@@ -148,18 +150,16 @@ TEST(pushes_of_a_case_must_act)
         fail_if(strstr(f.text, wrong[i].says) == NULL, "'%s' does not say '%s'", f.text,
                 wrong[i].says);
         robust_case_finish(&derived);
-        robust_set_finish(&set);
         unlink(path);
     }
 
     // at the very end there is still a run
-    robust_set set;
+    SCOPED(robust_set_finish) robust_set set;
     fault f = {0};
     write_set(path, "a=1\ncase last: push=1@1\n");
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
     assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
     robust_case_finish(&derived);
-    robust_set_finish(&set);
     unlink(path);
 }
 
@@ -182,8 +182,8 @@ TEST(what_is_no_set_is_refused)
 static char *judged(int law, char *const *lines, int count, size_t runs, int jobs,
                     robust_law *found)
 {
-    sweep s;
-    sweep_store *store;
+    SCOPED(sweep_finish) sweep s;
+    SCOPED(sweep_store_close_kept) sweep_store *store;
     sweep_progress progress;
     fault f;
     scenario base = {.name = "test", .parameters = rig_parameters(SETTINGS("run.duration=1"))};
@@ -201,8 +201,6 @@ static char *judged(int law, char *const *lines, int count, size_t runs, int job
     json_t *json = robust_json(&table);
     char *text = json_dumps(json, JSON_INDENT(2));
     json_decref(json);
-    sweep_store_close(store);
-    sweep_finish(&s);
     return text;
 }
 
@@ -302,22 +300,20 @@ TEST(sets_have_limits)
 TEST(threads_change_nothing)
 {
     char *const lines[] = {"belief.k2_factor=0.75:1.25", "control.seed=1:1000"};
-    robust_law one, two;
-    char *alone = judged(LAW_HYBRID, lines, 2, 12, 1, &one);
-    char *shared = judged(LAW_HYBRID, lines, 2, 12, 3, &two);
+    robust_law one;
+    SCOPED(robust_law_finish) robust_law two;
+    SCOPED(free_kept) char *alone = judged(LAW_HYBRID, lines, 2, 12, 1, &one);
+    SCOPED(free_kept) char *shared = judged(LAW_HYBRID, lines, 2, 12, 3, &two);
     assert_string_equal(alone, shared);
     assert_memory_equal(one.overshoots, two.overshoots, 12 * sizeof(double));
-    free(alone);
-    free(shared);
     robust_law_finish(&one);
-    robust_law_finish(&two);
 }
 
 // One run: every quantile is its value.
 TEST(one_run_is_all_its_quantiles)
 {
     char *const lines[] = {"wall.kind=point"};
-    robust_law found;
+    SCOPED(robust_law_finish) robust_law found;
     free(judged(LAW_HYBRID, lines, 1, 1, 1, &found));
     summary s = rig_summary(SETTINGS("control.law=hybrid", "run.duration=1"));
     for (int i = 0; i < ROBUST_QUANTILES; i++) {
@@ -327,7 +323,6 @@ TEST(one_run_is_all_its_quantiles)
     }
     check_close(found.settled, 1, 0);
     check_close(found.exceeded, 1, 0); // by 77 % of the command
-    robust_law_finish(&found);
 }
 
 TEST(quantiles_rise_and_the_observer_law_stands_the_set)
@@ -335,7 +330,8 @@ TEST(quantiles_rise_and_the_observer_law_stands_the_set)
     char *const lines[] = {"belief.mass_factor=0.85:1.15", "belief.torque_factor=0.85:1.15",
                            "belief.friction_factor=0.7:1.3", "belief.wall_error=-0.03:0.03",
                            "control.seed=1:1000"};
-    robust_law hybrid, observer;
+    robust_law hybrid;
+    SCOPED(robust_law_finish) robust_law observer;
     free(judged(LAW_HYBRID, lines, 5, 24, 2, &hybrid));
     free(judged(LAW_OBSERVER, lines, 5, 24, 2, &observer));
     check_below(hybrid.overshoot[ROBUST_MEDIAN], hybrid.overshoot[ROBUST_WORST]);
@@ -345,18 +341,16 @@ TEST(quantiles_rise_and_the_observer_law_stands_the_set)
     check_below(observer.overshoot[ROBUST_WORST], hybrid.overshoot[ROBUST_MEDIAN]);
     check_close(observer.settled, 1, 0);
     robust_law_finish(&hybrid);
-    robust_law_finish(&observer);
 }
 
 // A run that never settles counts as the worst.
 TEST(what_never_settles_is_in_no_quantile)
 {
     char *const lines[] = {"initial.angle=-2.9,-0.1"};
-    robust_law found;
+    SCOPED(robust_law_finish) robust_law found;
     free(judged(LAW_HYBRID, lines, 1, 4, 1, &found));
     check_close(found.settled, 0.5, 0);
     assert_true(isnan(found.settling[ROBUST_WORST]));
-    robust_law_finish(&found);
 }
 
 // How often a character stands in a line.
@@ -373,7 +367,7 @@ static int count_in_line(const char *line, char sought)
 static void check_table(void (*writes)(FILE *, const robust_table *), const robust_table *t,
                         char separator, int lines)
 {
-    char *text = NULL;
+    SCOPED(free_kept) char *text = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);
     writes(stream, t);
@@ -390,7 +384,6 @@ static void check_table(void (*writes)(FILE *, const robust_table *), const robu
         assert_non_null(strstr(text, t->laws[i].law));
         assert_true(t->laws[i].case_title == NULL || strstr(text, t->laws[i].case_title) != NULL);
     }
-    free(text);
 }
 
 TEST(tables_have_a_line_a_law)
@@ -470,7 +463,7 @@ TEST(a_limit_says_what_is_too_much)
                  {"arm.links=3", "smoothed"},
                  {"arm.links=2,3", "peak and smoothed"}};
     for (int i = 0; i < 3; i++) {
-        char *text = judged(LAW_HYBRID, &kinds[i].line, 1, 2, 1, &found);
+        SCOPED(free_kept) char *text = judged(LAW_HYBRID, &kinds[i].line, 1, 2, 1, &found);
         assert_string_equal(robust_overshoot_of(&found), kinds[i].of);
         char expected[64];
         snprintf(expected, sizeof expected, "\"overshoot_of\": \"%s\"", kinds[i].of);
@@ -485,7 +478,6 @@ TEST(a_limit_says_what_is_too_much)
         assert_non_null(strstr(text, "\"smoothed_overshoot_median_percent\": "));
         assert_non_null(strstr(text, "\"smoothed_overshoot_nine_tenths_percent\": "));
         assert_non_null(strstr(text, "\"smoothed_overshoot_worst_percent\": "));
-        free(text);
         robust_law_finish(&found);
     }
     const summary two = rig_summary(SETTINGS("control.law=hybrid", "run.duration=1"));

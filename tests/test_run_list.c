@@ -8,8 +8,7 @@ static double peak(const explorer *ex)
 
 TEST(test_runs_are_pinned_with_what_was_changed)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     const run_list *list = &ex.state.pinned;
     press(&ex, "b:seek 0.1<Enter>:set motor.voltage 0.5<Enter>b");
     assert_int_equal(list->count, 2);
@@ -32,14 +31,12 @@ TEST(test_runs_are_pinned_with_what_was_changed)
     press(&ex, "uu");
     run_list_differences(&list->runs[1], &ex.state.session, text, sizeof text);
     assert_string_equal(text, "voltage 0.5 from 0.1 s");
-    explorer_finish(&ex);
 }
 
 // A number that is cut reads like another one.
 TEST(test_names_are_cut_between_words)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.1234<Enter>:set motor.voltage 0.25<Enter>b");
     const char name[] = "voltage 0.25 from 0.1234 s";
     assert_string_equal(ex.state.pinned.runs[0].name, name);
@@ -53,14 +50,12 @@ TEST(test_names_are_cut_between_words)
     assert_shows(&ex, "of the second series, with… ");
     press(&ex, "r");
     assert_shows(&ex, "with 12345678901234567890 samples");
-    explorer_finish(&ex);
 }
 
 TEST(test_no_more_than_seven_and_none_is_lost)
 {
-    explorer ex;
     char keys[64];
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < PINNED_RUNS; i++) {
         snprintf(keys, sizeof keys, ":set arm.k2 %d<Enter>b", 4 + i);
         press(&ex, keys);
@@ -78,13 +73,11 @@ TEST(test_no_more_than_seven_and_none_is_lost)
     }
     assert_int_equal(ex.state.pinned.count, 0);
     assert_false(ex.state.session.has_other);
-    explorer_finish(&ex);
 }
 
 TEST(test_taking_a_run_brings_all_of_it_back)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     const double opened = peak(&ex);
     press(&ex, ":seek 0.1<Enter>b:set motor.voltage 0.5<Enter>");
     const double halved = peak(&ex);
@@ -99,13 +92,11 @@ TEST(test_taking_a_run_brings_all_of_it_back)
     check_close(peak(&ex), halved, 0);
     press(&ex, "u");
     check_close(peak(&ex), opened, 0);
-    explorer_finish(&ex);
 }
 
 TEST(test_hidden_runs_are_not_drawn)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "b:set arm.k2 5<Enter>b:set arm.k2 6<Enter>");
     assert_int_equal(state_run_count(&ex.state), 3);
     press(&ex, ":hide 1<Enter>");
@@ -117,24 +108,20 @@ TEST(test_hidden_runs_are_not_drawn)
     assert_int_equal(state_run_count(&ex.state), 3);
     press(&ex, ":rename 1 soft arm<Enter>");
     assert_string_equal(state_run_name(&ex.state, 1), "soft arm");
-    explorer_finish(&ex);
 }
 
 TEST(test_a_run_of_a_few_rows_is_pinned_too)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":set run.duration 0.005<Enter>b");
     assert_int_equal(ex.state.pinned.count, 1);
     press(&ex, ":set motor.voltage<Enter>>");
     assert_true(ex.state.session.has_ghost);
-    explorer_finish(&ex);
 }
 
 TEST(test_the_difference_is_that_of_the_runs)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.1<Enter>b");
 
     // of the run from itself nothing
@@ -154,15 +141,13 @@ TEST(test_the_difference_is_that_of_the_runs)
     assert_shows(&ex, "minus baseline");
     press(&ex, "D");
     assert_int_equal(state_run_count(&ex.state), 2);
-    explorer_finish(&ex);
 }
 
 // Contact, sticking and modes are no amounts: beside the differences they are the present run's, in
 // the curves, at the cursor, in the lanes and in the statistics.
 TEST(test_states_are_not_subtracted)
 {
-    explorer ex;
-    open_explorer(&ex, "compare/hybrid");
+    OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.4<Enter>b:set control.force 2<Enter>:seek 1<Enter>8D");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     const trace *d = &ex.state.difference.trace, *run = &ex.state.session.run.trace;
@@ -181,18 +166,18 @@ TEST(test_states_are_not_subtracted)
     assert_hides(&ex, "stick 1                    minus baseline");
     press(&ex, "X");
     assert_shows(&ex, "minus baseline, visible part");
-    explorer_finish(&ex);
 }
 
 // An integral over time has a unit of its own, where the panel is narrow, too.
 TEST(test_an_integral_has_its_own_unit)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "X:trace force gap_velocity hub_acceleration contact<Enter>");
     static const char *const units[] = {" N s ", " m ", " rad/s "};
     for (int narrow = 0; narrow < 2; narrow++) {
-        char *text = picture(&ex, narrow ? 100 : 140, 40, GLYPHS_BRAILLE), *line = text;
+        SCOPED(free_kept)
+        char *text = picture(&ex, narrow ? 100 : 140, 40, GLYPHS_BRAILLE);
+        char *line = text;
         for (int i = 0; i < 3; i++) {
             line = strstr(line + 1, narrow ? "\u222b" : "integral");
             assert_non_null(line);
@@ -203,15 +188,12 @@ TEST(test_an_integral_has_its_own_unit)
 
         // a state has the time that it is on
         assert_non_null(strstr(line, " s in all"));
-        free(text);
     }
-    explorer_finish(&ex);
 }
 
 TEST(test_a_sweep_gives_what_single_runs_give)
 {
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":sweep motor.voltage=0.5:2:4<Enter>");
     const lab_sweep *sweep = &ex.state.sweep;
     assert_int_equal(sweep->count, 4);
@@ -250,5 +232,4 @@ TEST(test_a_sweep_gives_what_single_runs_give)
     free(text);
     press(&ex, ":sweep motor.volts=1:2:4<Enter>");
     assert_shows(&ex, "did you mean");
-    explorer_finish(&ex);
 }

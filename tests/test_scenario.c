@@ -7,6 +7,7 @@
 
 TEST(a_whole_scenario_is_read)
 {
+    SCOPED(scenario_finish)
     scenario s = good("# a comment\n"
                       "title: 'Contact force: 1 V'\n"
                       "description: >\n"
@@ -44,7 +45,6 @@ TEST(a_whole_scenario_is_read)
     assert_int_equal(s.expectations[0].line, 15);
     assert_int_equal(s.expectations[0].column, 3);
     assert_true(s.expectations[1].is_null);
-    scenario_finish(&s);
 }
 
 TEST(what_is_left_out_has_a_default)
@@ -70,10 +70,10 @@ TEST(what_is_left_out_has_a_default)
 
 TEST(the_order_of_groups_does_not_matter)
 {
+    SCOPED(scenario_finish)
     scenario s = good("script: [{at: 4 s, push: -0.02 N s}]\nrun: {duration: 5 s}\n");
     assert_int_equal(s.actions[0].kind, ACTION_PUSH);
     check_close(s.actions[0].value, -0.02, 0);
-    scenario_finish(&s);
 }
 
 TEST(a_byte_order_mark_and_windows_lines_are_fine)
@@ -90,9 +90,8 @@ TEST(a_byte_order_mark_and_windows_lines_are_fine)
 
 TEST(times_at_both_ends_of_the_run_are_inside)
 {
-    scenario s = good("script: [{at: 0, push: 1}, {at: 1 s, push: 2}]");
+    SCOPED(scenario_finish) scenario s = good("script: [{at: 0, push: 1}, {at: 1 s, push: 2}]");
     assert_int_equal(s.action_count, 2);
-    scenario_finish(&s);
 }
 
 // ---- faults of parameters -----------------------------------------------------------------------
@@ -246,9 +245,8 @@ TEST(prose_is_text)
     check_fault("title: ' '\n", 1, 8, "title is empty, expected text");
     check_fault("title: t\ndescription: \" \\n \"\n", 2, 14, "expected text");
     check_fault("title: \"a \\x9b\"\n", 1, 8, "a control character");
-    scenario s = good("title: '5 \u00b5s  '\n");
+    SCOPED(scenario_finish) scenario s = good("title: '5 \u00b5s  '\n");
     assert_string_equal(s.title, "5 \u00b5s");
-    scenario_finish(&s);
 }
 
 TEST(a_title_has_a_limit)
@@ -384,14 +382,13 @@ TEST(lists_are_read_in_both_forms)
 // A value that the parameter does not accept changes nothing, for any origin of the action.
 TEST(an_action_that_cannot_be_changes_nothing)
 {
-    scenario s = good("title: t\n");
+    SCOPED(scenario_finish) scenario s = good("title: t\n");
     const parameters before = s.parameters;
     const action wrong = {.kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k2), .value = -1};
     fault f = {.text = ""};
     assert_int_equal(action_apply(&wrong, &s.parameters, &f), STATUS_BAD_SCENARIO);
     assert_non_null(strstr(f.text, "arm.k2"));
     assert_memory_equal(&s.parameters, &before, sizeof before);
-    scenario_finish(&s);
 }
 
 // One that the law does not know from the start is said even where a script follows.
@@ -408,12 +405,11 @@ TEST(a_list_has_a_limit)
             check_fault(text, 5, 5, "too long");
             continue;
         }
-        scenario s = good(text);
+        SCOPED(scenario_finish) scenario s = good(text);
         double numbers[PARAMETER_LIST_MOST];
         assert_int_equal(parameter_list_numbers(s.parameters.arm.joint_stiffness, numbers), 2);
         check_close(numbers[0], 6, 0);
         check_close(numbers[1], 7.5, 0);
-        scenario_finish(&s);
     }
 }
 

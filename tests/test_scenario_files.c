@@ -63,12 +63,12 @@ static int remove_folder(void **state)
 // Opens with the folder of this test as the scenario folder.
 static status open_here(scenario *s, const char *name, sentences *all)
 {
+    SCOPED(free_kept)
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     *all = (sentences){0};
     setenv("IMPACTLAB_SCENARIOS", folder, 1);
     status result = scenario_open(s, name, keep_sentence, all);
     setenv("IMPACTLAB_SCENARIOS", before, 1);
-    free(before);
     return result;
 }
 
@@ -159,6 +159,7 @@ TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, remove_folder)
     char **names;
     int count;
     fault f;
+    SCOPED(free_kept)
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     setenv("IMPACTLAB_SCENARIOS", folder, 1);
     assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
@@ -187,15 +188,15 @@ TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, remove_folder)
                      STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(all.text, "/nonexistent: no such folder"));
     setenv("IMPACTLAB_SCENARIOS", before, 1);
-    free(before);
 }
 
 // However many folders are named, the last one counts too.
 TEST_BETWEEN(every_folder_is_looked_into, make_folder, remove_folder)
 {
     enum { FOLDERS = 100 };
+    SCOPED(free_kept)
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
-    char *all = NULL;
+    SCOPED(free_kept) char *all = NULL;
     size_t length;
     FILE *list = open_memstream(&all, &length);
     for (int i = 1; i < FOLDERS; i++) {
@@ -222,8 +223,6 @@ TEST_BETWEEN(every_folder_is_looked_into, make_folder, remove_folder)
     scenario_finish(&s);
 
     setenv("IMPACTLAB_SCENARIOS", before, 1);
-    free(before);
-    free(all);
 }
 
 TEST(every_shipped_scenario_reads_clean)
@@ -259,7 +258,7 @@ TEST(every_shipped_scenario_reads_clean)
 TEST(every_figure_and_table_of_the_thesis_has_its_scenario)
 {
     for (int i = 1; i <= 14; i++) {
-        scenario s;
+        SCOPED(scenario_finish) scenario s;
         sentences all = {0};
         char name[64];
         snprintf(name, sizeof name, i <= 11 ? "thesis/fig-3-%d" : "thesis/table-4-%d",
@@ -273,7 +272,6 @@ TEST(every_figure_and_table_of_the_thesis_has_its_scenario)
         check_close(s.parameters.wall.angle, 0.1, 0);
         double factor = i == 12 ? 100 : i == 13 ? 10 : 1;
         check_relative(s.parameters.arm.k2, 4.92 * factor, 1e-12);
-        scenario_finish(&s);
     }
 }
 
@@ -281,20 +279,19 @@ TEST(every_figure_and_table_of_the_thesis_has_its_scenario)
 
 TEST(an_override_sets_and_resolves)
 {
-    scenario s = good("arm: {k2: 5}\n");
+    SCOPED(scenario_finish) scenario s = good("arm: {k2: 5}\n");
     fault f;
     assert_int_equal(scenario_override(&s, "arm.k2=49.2 N m/rad", &f), STATUS_OK);
     check_close(s.parameters.arm.k2, 49.2, 0);
     assert_int_equal(scenario_override(&s, "arm.model=printed", &f), STATUS_OK);
     assert_int_equal(s.parameters.arm.hub_joint, HUB_SPRING);
     check_close(s.parameters.arm.link_inertia, 1.67e-5, 0);
-    scenario_finish(&s);
 }
 
 // The assignment is refused with a sentence that says `what`, and nothing changes.
 static void check_override(const char *text, const char *assignment, const char *what)
 {
-    scenario s = good(text);
+    SCOPED(scenario_finish) scenario s = good(text);
     parameters before = s.parameters;
     fault f = {0};
     char beginning[128];
@@ -304,7 +301,6 @@ static void check_override(const char *text, const char *assignment, const char 
     fail_if(strncmp(f.text, beginning, strlen(beginning)) != 0 || strstr(f.text, what) == NULL,
             "'%s' does not begin with '%s' and say '%s'", f.text, beginning, what);
     assert_memory_equal(&s.parameters, &before, sizeof before);
-    scenario_finish(&s);
 }
 
 TEST(a_wrong_override_changes_nothing)
@@ -327,18 +323,17 @@ TEST(a_wrong_override_changes_nothing)
                    "arm.hub_joint=beam", "arm.k1");
 
     // nor does a whole set of parameters that contradict one another
-    scenario s = good("{}");
+    SCOPED(scenario_finish) scenario s = good("{}");
     parameters wrong = s.parameters, before = s.parameters;
     fault f = {0};
     assert_int_equal(parameter_set_text(&wrong, PARAMETER_INDEX(wall.angle), "-2", &f), STATUS_OK);
     assert_int_equal(scenario_take_parameters(&s, &wrong, &f), STATUS_BAD_SCENARIO);
     assert_memory_equal(&s.parameters, &before, sizeof before);
-    scenario_finish(&s);
 }
 
 TEST(an_endless_override_is_refused)
 {
-    scenario s = good("{}");
+    SCOPED(scenario_finish) scenario s = good("{}");
     fault f;
     char text[5000];
     memset(text, 'a', sizeof text - 1);
@@ -347,7 +342,6 @@ TEST(an_endless_override_is_refused)
     memcpy(text, "arm.k2=", 7);
     assert_int_not_equal(scenario_override(&s, text, &f), STATUS_OK);
     assert_int_not_equal(scenario_override(&s, text, NULL), STATUS_OK);
-    scenario_finish(&s);
 }
 
 // ---- writing ------------------------------------------------------------------------------------
@@ -355,12 +349,12 @@ TEST(an_endless_override_is_refused)
 // Everything but the expectations comes back from what scenario_write writes.
 static void check_written(const scenario *s)
 {
-    char *text = NULL;
+    SCOPED(free_kept) char *text = NULL;
     size_t size;
     FILE *stream = open_memstream(&text, &size);
     scenario_write(stream, s);
     fclose(stream);
-    scenario back = good(text);
+    SCOPED(scenario_finish) scenario back = good(text);
     assert_string_equal(back.title, s->title);
     assert_string_equal(back.description, s->description);
     assert_int_equal(back.action_count, s->action_count);
@@ -376,8 +370,6 @@ static void check_written(const scenario *s)
         assert_string_equal(one, other);
         assert_int_equal(s->parameters.set[i], back.parameters.set[i]);
     }
-    scenario_finish(&back);
-    free(text);
 }
 
 TEST(written_scenarios_read_back)
@@ -393,12 +385,12 @@ TEST(written_scenarios_read_back)
         free(names[i]);
     }
     free(names);
+    SCOPED(scenario_finish)
     scenario odd = good("title: '\"a\\b\" # no comment: {'\ndescription: \"one\\ntwo\\t'\"\n"
                         "control: {plugin: \"a b: 'c'\"}\n"
                         "script: [{at: 0.1 s, push: -0.02 N s}, {at: 0.2, set: {wall.restitution: "
                         "0.5}}]\n");
     check_written(&odd);
-    scenario_finish(&odd);
 }
 
 // The file that a scenario would be written as, to be freed.
@@ -415,14 +407,11 @@ static char *file_of(const scenario *s)
 // What YAML takes for the end of a line within a text comes back as it was.
 TEST(other_line_ends_read_back)
 {
-    scenario s = good("title: \"a \\L b\\P c\\\"f\"\n");
+    SCOPED(scenario_finish) scenario s = good("title: \"a \\L b\\P c\\\"f\"\n");
     assert_string_equal(s.title, "a \xe2\x80\xa8 b\xe2\x80\xa9 c\"f");
-    char *file = file_of(&s);
-    scenario again = good(file);
+    SCOPED(free_kept) char *file = file_of(&s);
+    SCOPED(scenario_finish) scenario again = good(file);
     assert_string_equal(again.title, s.title);
-    free(file);
-    scenario_finish(&s);
-    scenario_finish(&again);
 }
 
 // However long the title is and however much was changed, the file can be read, and tells of it.
@@ -450,15 +439,13 @@ TEST(changed_scenarios_read_back)
             }
 
             // with no change, some, and all of them
-            char *text = file_of(&s);
-            scenario back = good(text);
+            SCOPED(free_kept) char *text = file_of(&s);
+            SCOPED(scenario_finish) scenario back = good(text);
             assert_memory_equal(back.title, s.title, strlen(s.title));
             char changes[SCENARIO_CHANGES];
             const bool told = strlen(back.title) > strlen(s.title);
             const bool any = scenario_changes(&s, changes)[0] != '\0';
             assert_true(told == any || (any && length > SCENARIO_TITLE - 20));
-            scenario_finish(&back);
-            free(text);
         }
         scenario_finish(&s);
     }
@@ -467,6 +454,7 @@ TEST(changed_scenarios_read_back)
 // A lesson with every check, with and without what may be left out, is read back as it was.
 TEST(written_lessons_read_back)
 {
+    SCOPED(scenario_finish)
     scenario s = good("title: t\n"
                       "lesson:\n"
                       "  parameters: [arm.k2]\n"
@@ -478,9 +466,9 @@ TEST(written_lessons_read_back)
                       "  - {say: e, value: {arm.k2: 5}}\n"
                       "  - {say: f, pinned: 3}\n"
                       "  - {say: g, ratio: {quantity: peak_force_N, from: 0.5, to: 2}}\n");
-    char *first = file_of(&s);
-    scenario back = good(first);
-    char *second = file_of(&back);
+    SCOPED(free_kept) char *first = file_of(&s);
+    SCOPED(scenario_finish) scenario back = good(first);
+    SCOPED(free_kept) char *second = file_of(&back);
     assert_string_equal(second, first);
     assert_int_equal(back.lesson.step_count, 7);
     for (int i = 0; i < 7; i++) {
@@ -495,10 +483,6 @@ TEST(written_lessons_read_back)
 
     // a control character does not leave the program
     assert_string_equal(back.lesson.steps[0].say, "with a bell , and tab");
-    free(first);
-    free(second);
-    scenario_finish(&s);
-    scenario_finish(&back);
 }
 
 TEST(a_copy_shares_nothing_with_the_original)

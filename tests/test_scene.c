@@ -49,7 +49,7 @@ TEST(test_curve)
 // At a row the joints are the row's; between rows the tip is between.
 TEST(test_joints)
 {
-    recorded r = record("corrected/five-links");
+    SCOPED(forget) recorded r = record("corrected/five-links");
     const trace *t = &r.result.trace;
     const parameters *p = &r.scenario.parameters;
     vector joints[6];
@@ -69,12 +69,11 @@ TEST(test_joints)
     // beyond the ends the arm stays where it is
     check_close(scene_joints(t, p, 1e9, joints).last_angle, t->rows[t->row_count - 1].last_angle,
                 1e-15);
-    forget(&r);
 }
 
 TEST(test_instants)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     const summary *m = &r.result.summary;
     double times[6];
     scene_instants(&r.result, times, 6);
@@ -83,7 +82,6 @@ TEST(test_instants)
         check_below(times[i - 1], times[i]);
     }
     check_close(times[5], m->first_contact_s + m->first_pulse_time_to_peak_s, 1e-12);
-    forget(&r);
 }
 
 // Whatever is to be seen lies within the window, and fills it in one direction.
@@ -129,7 +127,7 @@ TEST(test_camera)
 // The beam is there, the arrow only while the wall pushes.
 TEST(test_content)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     const scene_options cairo = {.renderer = RENDER_CAIRO, .plain = true};
     double before = 0.1, peak = 0.3634, pair[] = {0, 0.3634};
     cairo_surface_t *free_arm = scene_picture_of(&r, cairo, &before, 1);
@@ -145,7 +143,6 @@ TEST(test_content)
     cairo_surface_destroy(free_arm);
     cairo_surface_destroy(pushed);
     cairo_surface_destroy(both);
-    forget(&r);
 }
 
 // Presets, and two given angles.
@@ -168,7 +165,7 @@ TEST(test_camera_words)
 // arrow at its tip the same.
 TEST(test_exaggerated)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     const double peak = 0.3634;
     scene_options o = {.renderer = RENDER_CAIRO, .plain = true, .camera = {.kind = CAMERA_TOP}};
     cairo_surface_t *as_it_is = scene_picture_of(&r, o, &peak, 1);
@@ -182,13 +179,12 @@ TEST(test_exaggerated)
     cairo_surface_destroy(as_it_is);
     cairo_surface_destroy(once);
     cairo_surface_destroy(larger);
-    forget(&r);
 }
 
 // Four samples a pixel's edge are the same picture as two but for edges, without steps between.
 TEST(test_samples)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     const double peak = 0.3634;
     scene_options o = {.renderer = RENDER_CAIRO, .plain = true, .samples = SAMPLES_QUICK};
     cairo_surface_t *quick = scene_picture_of(&r, o, &peak, 1);
@@ -198,14 +194,13 @@ TEST(test_samples)
     check_below(0, count_different(quick, fine, 4));
     cairo_surface_destroy(quick);
     cairo_surface_destroy(fine);
-    forget(&r);
 }
 
 // Where the floor fades, squares of 8 x 8 pixels that hold no line mix two levels: a gradient
 // without dithering would be flat in nearly all of them and jump between.
 TEST(test_no_bands)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     const double start = 0;
     int smooth = 0, mixed = 0;
     cairo_surface_t *s = scene_picture_of(
@@ -226,7 +221,6 @@ TEST(test_no_bands)
     check_below(100, smooth);
     check_below(smooth / 2, mixed);
     cairo_surface_destroy(s);
-    forget(&r);
 }
 
 static const struct {
@@ -243,7 +237,7 @@ static const struct {
 static void compare_golden(size_t index, scene_renderer renderer, const char *name)
 {
     char path[512];
-    recorded r = record(goldens[index].scenario);
+    SCOPED(forget) recorded r = record(goldens[index].scenario);
     const scene_options options = {
         .camera = {.kind = goldens[index].camera}, .renderer = renderer, .plain = true};
     cairo_surface_t *drawn =
@@ -263,7 +257,6 @@ static void compare_golden(size_t index, scene_renderer renderer, const char *na
     }
     cairo_surface_destroy(golden);
     cairo_surface_destroy(drawn);
-    forget(&r);
 }
 
 TEST(test_golden_cairo)
@@ -290,7 +283,7 @@ TEST(test_golden_gl)
 // The file says what drew it, and a second one has the same bytes.
 TEST(test_file)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     const double time = 0.3;
     const scene_picture p = {
         .scenario = &r.scenario,
@@ -309,12 +302,11 @@ TEST(test_file)
     assert_int_equal(scene_write(&p, in_folder("second.png"), &f), STATUS_OK);
     snprintf(command, sizeof command, "cmp %s %s", first, in_folder("second.png"));
     assert_int_equal(system(command), 0);
-    forget(&r);
 }
 
 TEST(test_refused)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
     const double late = 7, good = 0.1;
     scene_picture p = {.scenario = &r.scenario,
                        .result = &r.result,
@@ -330,7 +322,6 @@ TEST(test_refused)
     p.options.width = 3;
     assert_int_equal(scene_write(&p, in_folder("x.png"), &f), STATUS_BAD_ARGUMENT);
     assert_int_not_equal(access(in_folder("x.png"), F_OK), 0);
-    forget(&r);
 }
 
 int main(void)

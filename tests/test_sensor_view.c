@@ -341,7 +341,7 @@ TEST(an_arm_against_the_wall_is_felt_from_the_start)
             SETTINGS("wall.kind=plane", "wall.angle=0.1", "initial.angle=0.1", "motor.voltage=5",
                      "arm.links=3", "method.step=1e-5", "run.duration=0.02", walls[i]));
         const run_options options = {.keep_trace = true};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         sensor_view view;
         fault f;
         assert_int_equal(run_scenario_with(&s, &options, &r), STATUS_OK);
@@ -362,6 +362,5 @@ TEST(an_arm_against_the_wall_is_felt_from_the_start)
         }
         check_relative(view.momentum, momentum, 1e-3);
         check_relative(view.sensed[1], largest, 1e-3);
-        run_finish(&r);
     }
 }

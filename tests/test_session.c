@@ -12,8 +12,7 @@ static void change(session *s, const char *path, const char *value)
 
 TEST(test_stepping_back_and_forth_gives_the_same_states)
 {
-    session s;
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     change(&s, "run.duration", "12");
     session_seek(&s, 11.5);
     sample before = *session_sample(&s);
@@ -25,14 +24,12 @@ TEST(test_stepping_back_and_forth_gives_the_same_states)
         assert_true(session_step(&s, 1));
     }
     assert_memory_equal(&before, session_sample(&s), sizeof before);
-    session_finish(&s);
 }
 
 TEST(test_a_run_that_cannot_start_names_its_parameter)
 {
-    session s;
     fault f = {.path = ""};
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     change(&s, "control.law", "hybrid");
     unsigned version = s.version;
     assert_int_equal(session_change(&s, PARAMETER_INDEX(control.lock), "nowhere", &f),
@@ -40,13 +37,11 @@ TEST(test_a_run_that_cannot_start_names_its_parameter)
     assert_string_equal(f.path, "control.lock");
     // the run there was stays
     assert_int_equal(s.version, version);
-    session_finish(&s);
 }
 
 TEST(test_the_cursor_stays_within_the_run)
 {
-    session s;
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     assert_false(session_step(&s, -1));
     session_seek(&s, -5);
     check_close(s.now, 0, 0);
@@ -55,13 +50,11 @@ TEST(test_the_cursor_stays_within_the_run)
     assert_false(session_step(&s, 1));
     session_seek(&s, (double)NAN);
     check_close(s.now, 0, 0);
-    session_finish(&s);
 }
 
 TEST(test_the_cursor_stands_behind_an_event)
 {
-    session s;
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     assert_null(session_event(&s));
     do {
         assert_true(seek_next_event(&s));
@@ -70,14 +63,12 @@ TEST(test_the_cursor_stands_behind_an_event)
     // on the far side of the impact
     check_close(s.now, 0.293412296, 1e-6);
     check_close(session_sample(&s)->contact, 1, 0);
-    session_finish(&s);
 }
 
 TEST(test_a_lower_voltage_before_contact_hits_less_hard)
 {
-    session s;
     fault f = {0};
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     double hard = s.run.summary.first_pulse_peak_N;
     session_seek(&s, 0.25);
     sample before = *session_sample(&s);
@@ -91,7 +82,6 @@ TEST(test_a_lower_voltage_before_contact_hits_less_hard)
     check_close(s.other.summary.first_pulse_peak_N, hard, 0);
     check_close(session_parameters_at(&s, 0.2).motor.voltage, 1, 0);
     check_close(session_parameters_at(&s, 0.3).motor.voltage, 0.5, 0);
-    session_finish(&s);
 }
 
 // Rows and events before an instant are the same to the last bit.
@@ -125,9 +115,8 @@ TEST(test_what_is_before_a_change_stays_to_the_last_bit)
     random_generator random;
     random_seed(&random, 6);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        session s;
         fault f = {0};
-        open_session(&s, names[i]);
+        OPEN_SESSION(s, names[i]);
         for (int k = 0; k < 24; k++) {
             session_seek(&s, random_uniform(&random) * session_end(&s));
             // most changes are right behind an event, where a stride is likely to span both
@@ -144,15 +133,13 @@ TEST(test_what_is_before_a_change_stays_to_the_last_bit)
             assert_same_before(&s.other.trace, &s.run.trace, instant);
             assert_int_equal(session_undo(&s, &f), STATUS_OK);
         }
-        session_finish(&s);
     }
 }
 
 TEST(test_undo_and_redo)
 {
-    session s;
     fault f = {0};
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     double first = s.run.summary.peak_force_N;
     assert_int_equal(session_undo(&s, &f), STATUS_BAD_ARGUMENT);
     change(&s, "wall.angle", "0.2");
@@ -173,14 +160,12 @@ TEST(test_undo_and_redo)
     assert_int_equal(session_undo(&s, &f), STATUS_OK);
     change(&s, "arm.k2", "10");
     assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
-    session_finish(&s);
 }
 
 TEST(test_an_input_taken_out_is_put_in_again)
 {
-    session s;
     fault f = {0};
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     change(&s, "wall.angle", "0.2");
     change(&s, "arm.k2", "10");
     const double both = s.run.summary.peak_force_N;
@@ -193,14 +178,12 @@ TEST(test_an_input_taken_out_is_put_in_again)
     check_close(s.effective.parameters.wall.angle, 0.2, 0);
     check_close(s.run.summary.peak_force_N, both, 0);
     assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
-    session_finish(&s);
 }
 
 TEST(test_a_refused_change_changes_nothing)
 {
-    session s;
     fault f = {0};
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     unsigned version = s.version;
     assert_int_not_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "strong", &f), 0);
     assert_non_null(strstr(f.text, "motor.voltage"));
@@ -213,14 +196,12 @@ TEST(test_a_refused_change_changes_nothing)
     // a combination that is refused takes its input out again
     assert_int_not_equal(session_change(&s, PARAMETER_INDEX(arm.link_inertia), "-1", &f), 0);
     assert_int_equal(s.input_count, 1);
-    session_finish(&s);
 }
 
 TEST(test_no_change_puts_the_arm_behind_the_wall)
 {
-    session s;
     fault f = {0};
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     change(&s, "wall.angle", "2.9");
     assert_int_not_equal(session_change(&s, PARAMETER_INDEX(initial.angle), "-0.4", &f), 0);
     assert_non_null(strstr(f.text, "initial.angle = -0.4 rad lies behind the wall"));
@@ -228,7 +209,6 @@ TEST(test_no_change_puts_the_arm_behind_the_wall)
     assert_int_not_equal(session_change(&s, PARAMETER_INDEX(wall.angle), "2.95", &f), 0);
     assert_non_null(strstr(f.text, "lies behind the wall"));
     assert_int_equal(s.input_count, 2);
-    session_finish(&s);
 }
 
 TEST(test_a_saved_scenario_reproduces_the_run)
@@ -236,9 +216,8 @@ TEST(test_a_saved_scenario_reproduces_the_run)
     static const char *const names[] = {"corrected/first-impact", "corrected/voltage-step",
                                         "corrected/three-links"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        session s;
         fault f = {0};
-        open_session(&s, names[i]);
+        OPEN_SESSION(s, names[i]);
         session_seek(&s, 0.123);
         change(&s, "motor.voltage", "0.7");
         change(&s, "arm.k2", "6.1");
@@ -246,7 +225,6 @@ TEST(test_a_saved_scenario_reproduces_the_run)
         assert_int_equal(session_push(&s, -0.01, &f), STATUS_OK);
         change(&s, "wall.restitution", "0.3");
         free(save_and_compare(&s));
-        session_finish(&s);
     }
     // a run that ends before an action of its script
     session shorter;
@@ -254,21 +232,17 @@ TEST(test_a_saved_scenario_reproduces_the_run)
     change(&shorter, "run.duration", "0.7");
     free(save_and_compare(&shorter));
     session_finish(&shorter);
-    session printed;
-    open_session(&printed, "thesis/fig-3-4");
+    OPEN_SESSION(printed, "thesis/fig-3-4");
     session_seek(&printed, 0.1);
     change(&printed, "motor.voltage", "2");
     free(save_and_compare(&printed));
-    session_finish(&printed);
 }
 
 TEST(test_the_model_can_be_exchanged)
 {
-    session s;
-    open_session(&s, "corrected/first-impact");
+    OPEN_SESSION(s, "corrected/first-impact");
     double corrected = s.run.summary.first_contact_s;
     change(&s, "arm.model", "printed");
     assert_int_equal(s.effective.parameters.arm.hub_joint, HUB_SPRING);
     assert_true(s.run.summary.first_contact_s != corrected);
-    session_finish(&s);
 }

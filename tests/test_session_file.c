@@ -60,15 +60,15 @@ TEST(test_what_was_done_comes_back)
         "2<Enter>:limit force 2.5<Enter>"
         ":zoom 0.1 0.9<Enter>:mark 0.3<Enter>"
         ":seek 0.5<Enter>";
-    explorer ex, again;
+    explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, keys);
     save(&ex);
-    char *first = strdup(contents(path));
+    SCOPED(free_kept) char *first = strdup(contents(path));
     press(&ex, "q");
     assert_true(ex.state.quit);
 
-    open_explorer(&again, "corrected/three-links");
+    OPEN_EXPLORER(again, "corrected/three-links");
     fail_if(!explorer_open_session(&again.state, path), "%s", again.state.message.text);
     assert_same_trace(&again.state.session.run.trace, &ex.state.session.run.trace);
     assert_int_equal(again.state.pinned.count, ex.state.pinned.count);
@@ -103,18 +103,15 @@ TEST(test_what_was_done_comes_back)
     assert_int_equal(again.state.session.input_count, ex.state.session.input_count - 2);
     press(&again, "uuu");
     assert_string_equal(again.state.session.base.name, "corrected/three-links");
-    free(first);
-    explorer_finish(&again);
     explorer_finish(&ex);
 }
 
 // No file of others is replaced; the visit's own is.
 TEST(test_only_the_visits_own_file_is_replaced)
 {
-    explorer ex;
     char line[128];
     put("precious");
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     snprintf(line, sizeof line, "session save %s", path);
     assert_false(explorer_carry_out(&ex, line));
     assert_string_equal(contents(path), "precious");
@@ -123,7 +120,6 @@ TEST(test_only_the_visits_own_file_is_replaced)
     snprintf(line, sizeof line, "session open %s/none.session", folder);
     assert_false(explorer_carry_out(&ex, line));
     assert_shows(&ex, "cannot be opened");
-    explorer_finish(&ex);
 }
 
 // A session whose law is a program asks before it starts it, and its lines do nothing but look.
@@ -137,13 +133,11 @@ TEST(test_a_file_from_elsewhere_starts_nothing)
              "cursor: 0 0\nbaseline: 0\nview: save %s\nview: allow\n",
              mark, mark);
     put(text);
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     explorer_open_session(&ex.state, path);
     assert_int_equal(ex.state.session.run.summary.status, STATUS_NOT_ALLOWED);
     assert_shows(&ex, "does not belong into a session");
     assert_int_equal(access(mark, F_OK), -1);
-    explorer_finish(&ex);
 }
 
 // Each fault is told with its line, and nothing is taken.
@@ -174,8 +168,7 @@ TEST(test_broken_files_are_refused_with_their_line)
         {BASE "present:\nbaseline: 1\n", ":5:1: no baseline"},
         {BASE "| arm: {k3: 1}\npresent:\n", "k3"},
     };
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "b:set arm.k2 5<Enter>");
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         put(cases[i].text);
@@ -188,10 +181,10 @@ TEST(test_broken_files_are_refused_with_their_line)
 
     // any beginning of a good one is told, or is whole; none crashes
     save(&ex);
-    char *good = strdup(contents(path));
+    SCOPED(free_kept) char *good = strdup(contents(path));
     const size_t length = strlen(good);
     for (size_t cut = 0; cut < length; cut += 37) {
-        char *part = strndup(good, cut);
+        SCOPED(free_kept) char *part = strndup(good, cut);
         put(part);
         session_file file;
         fault f = {0};
@@ -200,18 +193,14 @@ TEST(test_broken_files_are_refused_with_their_line)
         } else {
             assert_true(f.text[0] != '\0');
         }
-        free(part);
     }
-    free(good);
-    explorer_finish(&ex);
 }
 
 // More pins than there is room for change nothing.
 TEST(test_pins_without_room_are_refused)
 {
-    explorer ex;
     char keys[64];
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < 4; i++) {
         snprintf(keys, sizeof keys, ":set arm.k2 %d<Enter>b", 4 + i);
         press(&ex, keys);
@@ -223,7 +212,6 @@ TEST(test_pins_without_room_are_refused)
     assert_false(explorer_open_session(&ex.state, path));
     assert_shows(&ex, "have no room");
     assert_int_equal(ex.state.pinned.count, 4);
-    explorer_finish(&ex);
 }
 
 ALL_BETWEEN(make_folder, remove_folder)

@@ -28,7 +28,7 @@ static const char brief[] = "title: t\nwall: {angle: 0}\ninitial: {angle: -0.02}
 // Pushes of one gesture are undone and redone together, and a new gesture has a number of its own.
 TEST(a_gesture_is_one_step)
 {
-    session s = opened(brief);
+    SCOPED(session_finish) session s = opened(brief);
     fault f = {0};
     assert_int_equal(session_new_gesture(&s), 1);
     static const struct {
@@ -74,7 +74,6 @@ TEST(a_gesture_is_one_step)
     }
     assert_int_equal(session_push(&s, (double)INFINITY, &f), STATUS_BAD_ARGUMENT);
     assert_int_equal(s.input_total, 40);
-    session_finish(&s);
 }
 
 TEST(what_is_too_long_or_no_value_is_refused)
@@ -122,16 +121,16 @@ TEST(what_is_too_long_or_no_value_is_refused)
     assert_string_equal(s.inputs[0].text, "2");
     session_finish(&s);
 
+    SCOPED(session_finish)
     session printed = opened("title: t\narm: {model: printed}\nrun: {duration: 0.1 s}\n");
     assert_int_equal(session_push(&printed, 0.01, &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "no pushes"));
-    session_finish(&printed);
 }
 
 // Small steps of one parameter are one input; what is refused on the way is none of them.
 TEST(adjusting_keeps_what_was_before)
 {
-    session s = opened(brief);
+    SCOPED(session_finish) session s = opened(brief);
     fault f = {0};
     const int voltage = PARAMETER_INDEX(motor.voltage);
     session_seek(&s, 0.1);
@@ -154,13 +153,12 @@ TEST(adjusting_keeps_what_was_before)
     assert_int_equal(s.input_count, 3);
     assert_int_equal(session_adjust(&s, PARAMETER_INDEX(arm.k2), "5", &f), STATUS_OK);
     assert_int_equal(s.input_count, 4);
-    session_finish(&s);
 }
 
 // An input that another one needs stays, and so do all where the run of others cannot be.
 TEST(inputs_that_cannot_go_stay)
 {
-    session s = opened(brief);
+    SCOPED(session_finish) session s = opened(brief);
     fault f = {0};
     assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.links), "3", &f), STATUS_OK);
     assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.joint_stiffness), "7,8", &f),
@@ -177,13 +175,12 @@ TEST(inputs_that_cannot_go_stay)
     assert_int_equal(s.version, version);
     assert_int_equal(session_take_inputs(&s, NULL, 0, &f), STATUS_OK);
     assert_int_equal(s.input_count, 0);
-    session_finish(&s);
 }
 
 // A gesture that nothing comes before, and one whose number another one had that was undone.
 TEST(gestures_end_where_their_inputs_end)
 {
-    session s = opened(brief);
+    SCOPED(session_finish) session s = opened(brief);
     fault f = {0};
     for (int i = 0; i < 3; i++) {
         session_seek(&s, 0.05 * (i + 1));
@@ -196,13 +193,12 @@ TEST(gestures_end_where_their_inputs_end)
     assert_int_equal(session_redo(&s, &f), STATUS_OK);
     assert_int_equal(s.input_count, 1);
     assert_int_equal(session_redo(&s, &f), STATUS_BAD_ARGUMENT);
-    session_finish(&s);
 }
 
 // An input that may not go leaves all of them as and where they were, whichever it is.
 TEST(a_refused_drop_keeps_the_order)
 {
-    session s = opened(brief);
+    SCOPED(session_finish) session s = opened(brief);
     fault f = {0};
     session_input before[5];
     assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.mass), "0.45", &f), STATUS_OK);
@@ -228,7 +224,6 @@ TEST(a_refused_drop_keeps_the_order)
     assert_int_equal(session_drop_input(&s, 0, &f), STATUS_OK);
     assert_int_equal(s.input_count, 2);
     assert_memory_equal(before + 1, s.inputs, 2 * sizeof *before);
-    session_finish(&s);
 }
 
 // Where another input went meanwhile, the run has other rows at the instant that undoing leads to:
@@ -242,7 +237,7 @@ TEST(undoing_leads_to_the_instant_in_another_run)
                  {"method.step", "0.0005", 0.1},
                  {"method.step", "0.002", 0.1}};
     for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) {
-        session s = opened(brief);
+        SCOPED(session_finish) session s = opened(brief);
         fault f = {0};
         assert_int_equal(session_change(&s, parameter_find(first[i].path), first[i].value, &f),
                          STATUS_OK);
@@ -255,13 +250,13 @@ TEST(undoing_leads_to_the_instant_in_another_run)
         check_close(s.now, fmin(first[i].at, s.run.trace.rows[s.run.trace.row_count - 1].time),
                     1e-9);
         check_close(session_sample(&s)->time, s.now, 1e-3);
-        session_finish(&s);
     }
 }
 
 // An arm that starts on the wall meets it at once: what is done at the row before is done at 0.
 TEST(a_push_before_a_contact_at_once_is_at_the_start)
 {
+    SCOPED(session_finish)
     session s = opened("title: t\nwall: {angle: 0}\nrun: {duration: 0.1 s}\n"
                        "initial: {velocity: 0.5}\n");
     fault f = {0};
@@ -271,13 +266,12 @@ TEST(a_push_before_a_contact_at_once_is_at_the_start)
     }
     assert_int_equal(session_push(&s, 1e-4, &f), STATUS_OK);
     assert_true(s.inputs[0].time == 0);
-    session_finish(&s);
 }
 
 // A session that takes the inputs of another one has its run to the last bit.
 TEST(taken_inputs_make_the_same_run)
 {
-    session from = opened(brief), to = opened(brief);
+    SCOPED(session_finish) session from = opened(brief), to = opened(brief);
     fault f = {0};
     assert_int_equal(session_change(&from, PARAMETER_INDEX(arm.k2), "7", &f), STATUS_OK);
     for (int i = 1; i <= 3; i++) {
@@ -303,15 +297,13 @@ TEST(taken_inputs_make_the_same_run)
             assert_int_equal(to.input_count, taken + i);
         }
     }
-    session_finish(&from);
-    session_finish(&to);
 }
 
 // A change given at the row before an event takes effect before it, one at the row after it does
 // not change the event.
 TEST(a_change_at_an_event_belongs_to_its_row)
 {
-    session s = opened(brief);
+    SCOPED(session_finish) session s = opened(brief);
     fault f = {0};
     const double contact = s.run.summary.first_contact_s;
     assert_true(contact > 0);
@@ -333,13 +325,13 @@ TEST(a_change_at_an_event_belongs_to_its_row)
     assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "9", &f), STATUS_OK);
     assert_true(s.inputs[0].time == contact);
     assert_true(s.run.summary.first_contact_s == contact);
-    session_finish(&s);
 }
 
 // So it is at every event of a run, the first and the last, and before nothing else is anything
 // moved.
 TEST(what_is_done_at_any_event_belongs_to_its_row)
 {
+    SCOPED(session_finish)
     session s = opened("title: t\nwall: {angle: 0.3, restitution: 0.6}\nmotor: {stiction: 0.02}\n"
                        "run: {duration: 0.6 s}\n");
     fault f = {0};
@@ -375,13 +367,12 @@ TEST(what_is_done_at_any_event_belongs_to_its_row)
         changes += twice && now == change;
     }
     assert_true(events >= 3 && changes > 0);
-    session_finish(&s);
 }
 
 // A long run is available as far as it is computed; when stopped it continues to the same rows.
 TEST(a_stopped_run_goes_on)
 {
-    session s;
+    SCOPED(session_finish) session s;
     fault f = {0};
     scenario base = read_text("title: t\nmotor: {voltage: 0.001 V}\nwall: {angle: 3 rad}\n"
                               "arm: {links: 24, damping_ratio: 0}\nrun: {duration: 300 s}\n");
@@ -402,7 +393,7 @@ TEST(a_stopped_run_goes_on)
     assert_false(session_stop(&s));
     assert_int_equal(s.run.summary.status, STATUS_STOPPED);
     const size_t count = s.run.trace.row_count;
-    sample *before = malloc(count * sizeof *before);
+    SCOPED(free_kept) sample *before = malloc(count * sizeof *before);
     assert_non_null(before);
     memcpy(before, s.run.trace.rows, count * sizeof *before);
 
@@ -415,13 +406,12 @@ TEST(a_stopped_run_goes_on)
     for (size_t i = 0; i + 1 < count; i++) { // the last one is where it was cut
         assert_memory_equal(&before[i], &s.run.trace.rows[i], sizeof *before);
     }
-    free(before);
-    session_finish(&s);
 }
 
 // Code that is allowed and cannot be loaded: the session is as it was, and not allowed.
 TEST(code_that_cannot_be_loaded_stays_withheld)
 {
+    SCOPED(session_finish)
     session s = opened("title: t\ncontrol: {law: plugin, plugin: /nonexistent.so, force: 1 N}\n"
                        "run: {duration: 0.1 s}\n");
     fault f = {0};
@@ -431,5 +421,4 @@ TEST(code_that_cannot_be_loaded_stays_withheld)
     assert_false(s.base.parameters.code_allowed);
     assert_int_equal(s.version, version);
     assert_true(s.run.trace.row_count > 0);
-    session_finish(&s);
 }

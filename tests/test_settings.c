@@ -64,7 +64,7 @@ TEST(what_is_no_number_or_no_name_is_refused)
         {"control.settings.name_of_a_number_that_is_far_too_long_to_be_one=3", "names no setting"},
     };
     char said[1024];
-    scenario s;
+    SCOPED(scenario_finish) scenario s;
     assert_int_equal(parse(&s, "observer", "", said), STATUS_OK);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         fault f = {0};
@@ -87,7 +87,6 @@ TEST(what_is_no_number_or_no_name_is_refused)
     char *both[] = {"control.settings.a=1", "control.settings=b=2"};
     assert_int_not_equal(scenario_override_all(&s, both, 2, keep_fault, said), STATUS_OK);
     assert_non_null(strstr(said, "are set together"));
-    scenario_finish(&s);
 }
 
 TEST(a_file_has_a_map_or_the_text)
@@ -125,8 +124,10 @@ TEST(a_file_has_a_map_or_the_text)
 TEST(a_script_sets_one_of_them)
 {
     char said[1024];
-    scenario plain, scripted, again;
-    run_result before, after;
+    scenario plain, again;
+    SCOPED(scenario_finish) scenario scripted;
+    run_result before;
+    SCOPED(run_finish) run_result after;
     const char *law = "impedance";
     assert_int_equal(parse(&plain, law, "  settings: {force: 0.5}\n", said), STATUS_OK);
     assert_int_equal(parse(&scripted, law,
@@ -146,7 +147,7 @@ TEST(a_script_sets_one_of_them)
     check_close(before.trace.rows[rows - 1].hub_angle, after.trace.rows[rows - 1].hub_angle, 0);
 
     // written and read
-    char *text;
+    SCOPED(free_kept) char *text;
     size_t size;
     FILE *stream = open_memstream(&text, &size);
     scenario_write(stream, &scripted);
@@ -156,12 +157,9 @@ TEST(a_script_sets_one_of_them)
                      STATUS_OK);
     assert_int_equal(again.action_count, 1);
     assert_string_equal(again.actions[0].text, scripted.actions[0].text);
-    free(text);
 
     run_finish(&before);
-    run_finish(&after);
     scenario_finish(&plain);
-    scenario_finish(&scripted);
     scenario_finish(&again);
 }
 
@@ -170,7 +168,7 @@ TEST(a_session_undoes_each_by_itself)
 {
     char said[1024];
     scenario s;
-    session lab;
+    SCOPED(session_finish) session lab;
     const int index = PARAMETER_INDEX(control.settings);
     assert_int_equal(parse(&s, "impedance", "", said), STATUS_OK);
     assert_int_equal(session_open(&lab, &s, 10, NULL), STATUS_OK);
@@ -184,12 +182,11 @@ TEST(a_session_undoes_each_by_itself)
     assert_int_equal(session_undo(&lab, NULL), STATUS_OK);
     p = session_parameters_at(&lab, 0.2);
     assert_string_equal(p.control.settings, "stiffness=50");
-    session_finish(&lab);
 }
 
 TEST(an_axis_varies_one_of_them)
 {
-    sweep_axis axis = {0};
+    SCOPED(sweep_axis_finish) sweep_axis axis = {0};
     char values[] = "0.1:0.3:3", text[64];
     parameters p = rig_parameters(NULL);
     fault f = {0};
@@ -202,7 +199,6 @@ TEST(an_axis_varies_one_of_them)
     sweep_axis_format(&axis, 0.2, text, sizeof text);
     assert_string_equal(text, "0.2");
     assert_string_equal(axis.name, "control.settings.gain");
-    sweep_axis_finish(&axis);
 }
 
 // A name that the law does not have is known when the run starts.

@@ -37,7 +37,7 @@ static shared_array filled(size_t count)
 
 TEST(plain_arrays_keep_their_elements_as_they_grow)
 {
-    shared_array a;
+    SCOPED(shared_array_finish) shared_array a;
     shared_array_init(&a, sizeof(uint64_t));
     int moves = 0;
     for (size_t count = 1; count < 5000; count++) {
@@ -50,12 +50,11 @@ TEST(plain_arrays_keep_their_elements_as_they_grow)
 
     // twice as much each time, so that an element is moved a few times only
     assert_in_range(moves, 1, 8);
-    shared_array_finish(&a);
 }
 
 TEST(shared_arrays_keep_their_place_as_they_grow)
 {
-    shared_array a = filled(1);
+    SCOPED(shared_array_finish) shared_array a = filled(1);
     const void *place = a.base;
     fill(&a, 1, MANY);
     assert_ptr_equal(a.base, place);
@@ -67,41 +66,36 @@ TEST(shared_arrays_keep_their_place_as_they_grow)
     assert_int_equal(shared_array_memory(), memory);
     assert_true(shared_array_grow(&a, room + 1));
     assert_int_equal(shared_array_memory(), memory + ARRAY_CHUNK);
-    shared_array_finish(&a);
 }
 
 // Of elements of another size nothing is the same, whatever the bytes.
 TEST(arrays_of_other_elements_are_not_the_same)
 {
-    shared_array a = filled(MANY), pairs;
+    SCOPED(shared_array_finish) shared_array a = filled(MANY), pairs;
     assert_true(shared_array_reserve(&pairs, 2 * sizeof(uint64_t), MANY, MANY));
     assert_true(shared_array_grow(&pairs, MANY / 2));
     memcpy(pairs.base, a.base, 2 * ARRAY_CHUNK);
     assert_int_equal(shared_array_same_chunks(&a, &pairs, MANY / 2), 0);
-    shared_array_finish(&a);
-    shared_array_finish(&pairs);
 }
 
 // An array of many chunks.
 TEST(a_long_array_keeps_its_elements)
 {
-    shared_array a;
+    SCOPED(shared_array_finish) shared_array a;
     const size_t many = 40 * PER_CHUNK;
     assert_true(shared_array_reserve(&a, sizeof(uint64_t), many, many));
     fill(&a, 0, many);
     check_numbers(&a, many);
     assert_int_equal(a.chunk_count, 40);
-    shared_array_finish(&a);
 }
 
 TEST(growing_beyond_the_address_space_fails_and_changes_nothing)
 {
-    shared_array a;
+    SCOPED(shared_array_finish) shared_array a;
     assert_true(shared_array_reserve(&a, sizeof(uint64_t), 10, 10));
     fill(&a, 0, 10);
     assert_false(shared_array_grow(&a, 10 * PER_CHUNK));
     check_numbers(&a, 10);
-    shared_array_finish(&a);
 }
 
 TEST(a_beginning_is_shared_and_the_rest_is_each_ones_own)
@@ -126,7 +120,8 @@ TEST(a_beginning_is_shared_and_the_rest_is_each_ones_own)
 // A plain array has no chunks that others could have too.
 TEST(the_beginning_of_a_plain_array_is_copied)
 {
-    shared_array plain, a;
+    shared_array plain;
+    SCOPED(shared_array_finish) shared_array a;
     shared_array_init(&plain, sizeof(uint64_t));
     fill(&plain, 0, MANY);
     assert_true(shared_array_reserve(&a, sizeof(uint64_t), MANY, 4 * MANY));
@@ -135,7 +130,6 @@ TEST(the_beginning_of_a_plain_array_is_copied)
     assert_int_equal(shared_array_same_chunks(&a, &plain, MANY), 0);
     shared_array_finish(&plain);
     check_numbers(&a, MANY);
-    shared_array_finish(&a);
 }
 
 TEST(equal_beginnings_are_found_and_merged)
@@ -153,23 +147,19 @@ TEST(equal_beginnings_are_found_and_merged)
 
 TEST(a_difference_ends_what_is_equal)
 {
-    shared_array a = filled(MANY), b = filled(MANY);
+    SCOPED(shared_array_finish) shared_array a = filled(MANY), b = filled(MANY);
     numbers(&b)[PER_CHUNK + 3] = 0;
     assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 1);
     numbers(&b)[0] = 1;
     assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 0);
-    shared_array_finish(&a);
-    shared_array_finish(&b);
 }
 
 // As many as the shorter one has: neither is looked at beyond its end.
 TEST(the_shorter_array_ends_what_is_equal)
 {
-    shared_array a = filled(MANY), b = filled(PER_CHUNK);
+    SCOPED(shared_array_finish) shared_array a = filled(MANY), b = filled(PER_CHUNK);
     assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 1);
     assert_int_equal(shared_array_same_chunks(&b, &a, MANY), 1);
-    shared_array_finish(&a);
-    shared_array_finish(&b);
 }
 
 TEST(memory_goes_back_with_the_last_array)

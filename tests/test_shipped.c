@@ -10,8 +10,8 @@ static void print_fault(void *context, const char *sentence)
 
 static void check_scenario(const char *name)
 {
-    scenario s;
-    run_result r;
+    SCOPED(scenario_finish) scenario s;
+    SCOPED(run_finish) run_result r;
     fail_if(scenario_open(&s, name, print_fault, NULL) != STATUS_OK, "%s cannot be read", name);
     fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", name, r.summary.message);
     fail_if(run_check_expectations(&s, &r, print_fault, NULL) != 0,
@@ -29,8 +29,6 @@ static void check_scenario(const char *name)
         fail_if(!(r.summary.energy_residual_J < 1e-6 * (turned_over + pushed)),
                 "%s: energy residual %g J of %g J", name, r.summary.energy_residual_J, turned_over);
     }
-    run_finish(&r);
-    scenario_finish(&s);
 }
 
 TEST(every_scenario_is_its_own_test)

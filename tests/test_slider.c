@@ -74,8 +74,7 @@ TEST(test_ranges_over_decades_are_logarithmic)
 TEST(test_the_run_follows_a_drag)
 {
     const int voltage = PARAMETER_INDEX(motor.voltage);
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.2<Enter>");
     hit_area s = slider_of(&ex, voltage);
     unsigned computed = ex.state.session.version;
@@ -102,14 +101,12 @@ TEST(test_the_run_follows_a_drag)
     press(&ex, "u");
     check_close(value_of(&ex, voltage), 1, 0);
     assert_false(ex.state.session.has_ghost);
-    explorer_finish(&ex);
 }
 
 TEST(test_clicks_select_and_the_wheel_nudges)
 {
     const int limit = PARAMETER_INDEX(motor.voltage_limit);
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     hit_area s = slider_of(&ex, limit);
     // the line of it, not its slider
     point(&ex, POINTER_PRESS, s.area.x - 10, s.area.y);
@@ -121,16 +118,14 @@ TEST(test_clicks_select_and_the_wheel_nudges)
     check_close(value_of(&ex, limit), 11, 0);
     point(&ex, POINTER_WHEEL_DOWN, s.area.x + 1, s.area.y);
     check_close(value_of(&ex, limit), 10, 0);
-    explorer_finish(&ex);
 }
 
 // The wide slider, ends and all.
 static void assert_slider(explorer *ex, int width, int height, glyph_set set, const char *track)
 {
-    char *text = picture(ex, width, height, set);
+    SCOPED(free_kept) char *text = picture(ex, width, height, set);
     fail_if(!strstr(text, " -5 ") || !strstr(text, track) || !strstr(text, " 5 "),
             "no slider on the screen of %d x %d:\n%s", width, height, text);
-    free(text);
 }
 
 TEST(test_the_selected_number_has_a_slider_on_every_screen)
@@ -138,11 +133,9 @@ TEST(test_the_selected_number_has_a_slider_on_every_screen)
     static const int sizes[][2] = {{45, 16}, {60, 24}, {80, 24}, {120, 40}, {200, 60}};
     static const glyph_set sets[] = {GLYPHS_BRAILLE, GLYPHS_BLOCKS, GLYPHS_ASCII};
     static const char *const tracks[] = {"\u2500\u25cf\u2500", "\u2500\u25cf\u2500", "-o-"};
-    explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     ex.state.side.in_front = true;
     for (int i = 0; i < 15; i++) {
         assert_slider(&ex, sizes[i / 3][0], sizes[i / 3][1], sets[i % 3], tracks[i % 3]);
     }
-    explorer_finish(&ex);
 }

@@ -67,7 +67,7 @@ TEST(a_mass_on_kelvin_voigt_has_the_closed_form)
         char c[40];
         snprintf(c, sizeof c, "wall.damping=%g", damping[i]);
         parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", c);
-        run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_of(&p, true);
         double w = sqrt(k / mass), zeta = damping[i] / (2 * sqrt(k * mass));
         double root = sqrt(1 - zeta * zeta), length = atan2(2 * zeta * root, 2 * zeta * zeta - 1);
         length = (zeta > 0 ? length : M_PI) / (w * root);
@@ -81,7 +81,6 @@ TEST(a_mass_on_kelvin_voigt_has_the_closed_form)
                     1e-8 * kinetic(SPEED));
         check_close(r.summary.impacts, 0, 0);
         check_rows(&r);
-        run_finish(&r);
     }
 }
 
@@ -96,7 +95,7 @@ TEST(a_face_with_a_mass_has_the_closed_form)
         snprintf(c, sizeof c, "wall.damping=%g", damping[i]);
         parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", c);
         p.wall.mass = face;
-        run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_of(&p, true);
 
         // the impact, and the swing of the joined masses until x'' = 0
         double w = sqrt(k / both), zeta = damping[i] / (2 * sqrt(k * both));
@@ -127,7 +126,6 @@ TEST(a_face_with_a_mass_has_the_closed_form)
         }
         check_close(r.summary.impacts, 1, 0);
         check_face_rows(&r);
-        run_finish(&r);
     }
 }
 
@@ -178,7 +176,7 @@ TEST(an_arm_leaves_a_light_face_once)
                  "motor.current_limit=0.0082505", "wall.kind=plane", "wall.contact=kelvin-voigt",
                  "wall.stiffness=2.8373e6", "wall.damping=0", "wall.mass=3.886e-5",
                  "initial.angle=0.0483042", "initial.velocity=2.96367", "run.duration=0.1"));
-    run_result r = run_of(&p, true);
+    SCOPED(run_finish) run_result r = run_of(&p, true);
     double released = -1;
     for (size_t i = 0; i < r.trace.event_count; i++) {
         if (r.trace.events[i].kind == EVENT_RELEASE) {
@@ -188,7 +186,6 @@ TEST(an_arm_leaves_a_light_face_once)
     }
     assert_true(released > 0);
     check_face_rows(&r);
-    run_finish(&r);
 }
 
 // An arm that leaves a face without a mass does so once, however fast that returns: where the two
@@ -201,7 +198,7 @@ TEST(an_arm_leaves_a_returning_face_once)
     for (int i = 0; i < 2 * 46; i++) {
         p.wall.contact = i < 46 ? WALL_KELVIN_VOIGT : WALL_HUNT_CROSSLEY;
         p.wall.damping = pow(10, -10 + i % 46 / 3.0); // to a return in 0.3 s
-        run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_of(&p, true);
         double released = -1;
         for (size_t e = 0; e < r.trace.event_count; e++) {
             const event *now = &r.trace.events[e];
@@ -210,7 +207,6 @@ TEST(an_arm_leaves_a_returning_face_once)
         }
         assert_true(released > 0);
         check_face_rows(&r);
-        run_finish(&r);
     }
 }
 
@@ -222,10 +218,9 @@ TEST(a_face_bounces_the_arm_like_two_masses)
         single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e4", "wall.damping=10");
     p.wall.mass = face;
     p.wall.restitution = e;
-    arm a;
     motion_report report;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     motion_start(&a, m, p.initial.angle, SPEED);
     assert_int_equal(motion_advance(&a, m, 1, p.method.step, &report), STATUS_OK);
     assert_int_equal(report.event, MOTION_IMPACT);
@@ -235,7 +230,6 @@ TEST(a_face_bounces_the_arm_like_two_masses)
     check_close(state_velocities(m, m->state)[0], SPEED * (mass - e * face) / both, 1e-9);
     check_relative(m->state[SLOT_FACE_VELOCITY], SPEED * (1 + e) * mass / both, 1e-8);
     assert_false(report.holds);
-    motion_destroy(m);
 }
 
 // First pulse of two links at a face of the given mass; impulse counted in.
@@ -252,24 +246,20 @@ TEST(a_face_lies_between_the_two_walls)
 {
     const char *const light[] = {"wall.mass=1e-5", "wall.mass=1e-6"};
     const char *const heavy[] = {"wall.mass=1e3", "wall.mass=1e4"};
-    run_result none = face_run("wall.contact=kelvin-voigt", "wall.mass=0");
-    run_result rigid = face_run("wall.contact=rigid", "wall.mass=0");
+    SCOPED(run_finish) run_result none = face_run("wall.contact=kelvin-voigt", "wall.mass=0");
+    SCOPED(run_finish) run_result rigid = face_run("wall.contact=rigid", "wall.mass=0");
     double off[2], impulse[2];
     for (int i = 0; i < 2; i++) {
-        run_result l = face_run("wall.contact=kelvin-voigt", light[i]);
-        run_result h = face_run("wall.contact=kelvin-voigt", heavy[i]);
+        SCOPED(run_finish) run_result l = face_run("wall.contact=kelvin-voigt", light[i]);
+        SCOPED(run_finish) run_result h = face_run("wall.contact=kelvin-voigt", heavy[i]);
         off[i] = fabs(l.summary.first_pulse_peak_N - none.summary.first_pulse_peak_N);
         impulse[i] = fabs(h.summary.contact_impulse_Ns - rigid.summary.contact_impulse_Ns);
         check_relative(l.summary.first_pulse_s, none.summary.first_pulse_s, 1e-4);
-        run_finish(&l);
-        run_finish(&h);
     }
     print_message("peak off by %.3g, %.3g N; impulse by %.3g, %.3g N s\n", off[0], off[1],
                   impulse[0], impulse[1]);
     check_close(log10(off[0] / off[1]), 1, 0.02);
     check_close(log10(impulse[0] / impulse[1]), 1, 0.02);
-    run_finish(&none);
-    run_finish(&rigid);
 }
 
 // The same where the damper is so strong that a light face alone would stand still within m/c =
@@ -396,7 +386,7 @@ TEST(a_mass_on_hunt_crossley_has_the_closed_form)
         double c = damping[i];
         snprintf(text, sizeof text, "wall.damping=%g", c);
         parameters p = single_mass("wall.contact=hunt-crossley", "wall.stiffness=1e8", text);
-        run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_of(&p, true);
         double deepest = pow(2.5 * spent(SPEED, k, c), 1 / 2.5), lo = 0, hi = SPEED;
         for (int bisection = 0; bisection < 200; bisection++) {
             double v = (lo + hi) / 2;
@@ -415,7 +405,6 @@ TEST(a_mass_on_hunt_crossley_has_the_closed_form)
             check_relative(r.summary.first_pulse_s, 2 * half * deepest / SPEED, 1e-8);
         }
         check_rows(&r);
-        run_finish(&r);
     }
 }
 
@@ -424,9 +413,8 @@ TEST(a_mass_on_hunt_crossley_has_the_closed_form)
 TEST(the_force_changes_as_fast_as_the_wall)
 {
     parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", "wall.damping=0");
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     motion_start(&a, m, p.initial.angle, p.initial.velocity);
     check_close(motion_vibration(&a, m, m->state), a.highest_frequency, 0);
     motion_report r;
@@ -434,7 +422,6 @@ TEST(the_force_changes_as_fast_as_the_wall)
     assert_int_equal(r.event, MOTION_TOUCH);
     motion_apply(&a, m, &r);
     check_relative(motion_vibration(&a, m, m->state), sqrt(1e6 / mass), 1e-3);
-    motion_destroy(m);
 }
 
 // Energy that a step of length h from the touch on Hertz's wall leaves over.
@@ -442,14 +429,12 @@ static double step_error(double h)
 {
     parameters p =
         single_mass("wall.contact=hunt-crossley", "wall.stiffness=1e8", "wall.damping=0");
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create_by(&a, &p.method, &explicit_engine);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &explicit_engine);
     motion_start(&a, m, 0, SPEED); // right at the wall
     assert_true(m->state[SLOT_CONTACT] != 0);
     assert_int_equal(motion_try_step(&a, m, h), STATUS_OK);
     double error = fabs(motion_energy_residual(&a, m, m->trial));
-    motion_destroy(m);
     return error;
 }
 
@@ -474,17 +459,15 @@ static void bounce(const char *contact, double stiffness, double velocities[2])
     parameters p = fixture_parameters(SETTINGS(contact, k, "wall.damping=0", "initial.angle=0.09",
                                                "initial.velocity=0.5", "motor.voltage=2",
                                                rigid ? "wall.restitution=1" : "arm.links=2"));
-    arm a;
     motion_report report;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     motion_start(&a, m, p.initial.angle, p.initial.velocity);
     do {
         assert_int_equal(motion_advance(&a, m, 1, p.method.step, &report), STATUS_OK);
         motion_apply(&a, m, &report);
     } while (report.event != MOTION_RELEASE && report.event != MOTION_IMPACT);
     memcpy(velocities, state_velocities(m, m->state), 2 * sizeof(double));
-    motion_destroy(m);
 }
 
 // A pulse lasts as long as its frequency's half period, so what finite torques do in it falls with
@@ -518,9 +501,8 @@ TEST(a_stiff_wall_holds_like_a_rigid_one)
         parameters p = fixture_parameters(
             SETTINGS(walls[i][0], walls[i][1], "wall.damping=5", "arm.damping_ratio=0.3",
                      "motor.stiction=0", "motor.voltage=5", "wall.kind=point", "run.duration=8"));
-        run_result r = run_of(&p, false);
+        SCOPED(run_finish) run_result r = run_of(&p, false);
         force[i] = r.summary.steady_force_N;
-        run_finish(&r);
     }
     double order = log10(fabs((force[1] - force[0]) / (force[2] - force[0])));
     print_message("at rest: %.9g N on a rigid wall, %.9g and %.9g N on softer ones, order %.3f\n",
@@ -537,10 +519,9 @@ TEST(a_wall_without_damping_takes_nothing)
     for (size_t i = 0; i < 6; i++) {
         const parameters p =
             fixture_parameters(SETTINGS(walls[i / 3], stiffness[i % 3], "wall.damping=0"));
-        run_result r = run_of(&p, false);
+        SCOPED(run_finish) run_result r = run_of(&p, false);
         assert_false(isnan(r.summary.first_contact_s));
         check_close(r.summary.wall_loss_J, 0, 0);
-        run_finish(&r);
     }
 }
 
@@ -557,7 +538,7 @@ TEST(a_slow_face_lets_go_behind_the_wall)
                                               "motor.voltage=8", "wall.kind=plane",
                                               "wall.contact=hunt-crossley", "wall.stiffness=1e5",
                                               "wall.damping=1e6", "run.duration=0.2"));
-        run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_of(&p, true);
         const event *release = r.trace.events;
         while (release->kind != EVENT_RELEASE) {
             release++;
@@ -588,7 +569,6 @@ TEST(a_slow_face_lets_go_behind_the_wall)
             assert_true(v < 0);
             check_close(r.summary.wall_loss_J, kinetic(SPEED) - kinetic(v), 1e-12);
         }
-        run_finish(&r);
     }
 }
 
@@ -651,13 +631,12 @@ TEST(a_mass_at_the_tip_strikes_a_rigid_wall)
         parameters p = fixture_parameters(SETTINGS(methods[i][0], methods[i][1], "arm.links=3",
                                                    "arm.hub_joint=beam", "arm.tip_mass=0.05",
                                                    "run.duration=0.4"));
-        run_result r = run_of(&p, false);
+        SCOPED(run_finish) run_result r = run_of(&p, false);
         impulse[i] = r.summary.contact_impulse_Ns;
         contact[i] = r.summary.first_contact_s;
         if (i == 0) {
             check_below(r.summary.energy_residual_J, 1e-9);
         }
-        run_finish(&r);
     }
     check_close(log10(fabs((impulse[1] - impulse[0]) / (impulse[2] - impulse[0]))), 2, 0.1);
     check_close(log10(fabs((contact[1] - contact[0]) / (contact[2] - contact[0]))), 2, 0.1);

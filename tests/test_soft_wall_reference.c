@@ -59,7 +59,7 @@ static void library_agrees(void **state)
     set_number(&p, "run.duration", c->duration);
     fail_if(parameters_resolve(&p, &f) != STATUS_OK, "%s", f.text);
     scenario s = {.parameters = p};
-    run_result result;
+    SCOPED(run_finish) run_result result;
     char name[] = "test";
     s.name = s.file = s.title = s.description = name;
     run_scenario(&s, true, &result);
@@ -96,7 +96,6 @@ static void library_agrees(void **state)
         check_relative(l->contact_impulse_Ns, r.impulse, 1e-8);
         check_relative(last->impact_loss, r.impact_loss, 1e-8);
     }
-    run_finish(&result);
 }
 
 // Hunt and Crossley's face without a mass is what light ones of the independent integrator come to,

@@ -43,13 +43,12 @@ static solution solved(const scenario *s, const sweep_axis *axis, const char *te
 static double quantity_at(const scenario *s, const char *path, double value, const char *key)
 {
     scenario changed = *s;
-    run_result result;
+    SCOPED(run_finish) run_result result;
     parameters p = s->parameters;
     assert_int_equal(parameter_set_number(&p, parameter_find(path), value, NULL), STATUS_OK);
     assert_int_equal(scenario_take_parameters(&changed, &p, NULL), STATUS_OK);
     assert_int_equal(run_scenario(&changed, false, &result), STATUS_OK);
     const double quantity = summary_value(&result.summary, summary_find(key));
-    run_finish(&result);
     return quantity;
 }
 
@@ -59,7 +58,7 @@ TEST(statics_have_the_limit_of_statics)
 {
     char *changes[] = {"motor.stiction=0", "arm.links=1", "initial.angle=0", "wall.angle=0",
                        "run.duration=0.2"};
-    scenario s = opened("corrected/first-impact", changes, 5);
+    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", changes, 5);
     sweep_axis axis = axis_of("motor.voltage", 0.1, 4);
     const double at_one = quantity_at(&s, "motor.voltage", 1, "steady_force_N");
     char text[64];
@@ -70,14 +69,13 @@ TEST(statics_have_the_limit_of_statics)
     check_close(found.limits[0].value, 2, 1e-12);
     check_relative(found.limits[0].reached, 2 * at_one, 1e-12);
     assert_true(found.limits[0].holds_below);
-    scenario_finish(&s);
 }
 
 // The condition holds at the limit and no longer a little beyond it, and neither the number of
 // values nor that of threads has a say in where it is.
 TEST(limits_are_where_the_condition_ceases_to_hold)
 {
-    scenario s = opened("corrected/first-impact", NULL, 0);
+    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("motor.voltage", 0.5, 5);
     const solution few = solved(&s, &axis, "peak_force_N<2", 5, 1),
                    many = solved(&s, &axis, "peak_force_N<2", 40, 3);
@@ -96,14 +94,13 @@ TEST(limits_are_where_the_condition_ceases_to_hold)
     assert_int_equal(above.count, 1);
     assert_false(above.limits[0].holds_below);
     check_close(above.limits[0].value, limit, 1e-11);
-    scenario_finish(&s);
 }
 
 // A count jumps; its limits come in the order of the range, each with a value that holds beside
 // those that do not. Within 1e-9 V of a grazing impact rounding decides whether it is one.
 TEST(jumps_are_located_and_told)
 {
-    scenario s = opened("corrected/first-impact", NULL, 0);
+    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("motor.voltage", 5, 0.5);
     const solution found = solved(&s, &axis, "impacts<3", 65, 1);
     assert_true(found.count >= 2);
@@ -116,12 +113,11 @@ TEST(jumps_are_located_and_told)
         assert_true(i == 0 || limit->value > found.limits[i - 1].value);
         assert_true(i == 0 || limit->holds_below != found.limits[i - 1].holds_below);
     }
-    scenario_finish(&s);
 }
 
 TEST(whole_numbers_have_a_last_one)
 {
-    scenario s = opened("corrected/first-impact", NULL, 0);
+    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("arm.links", 2, 20);
 
     // run one by one, and with most of them left out
@@ -134,13 +130,12 @@ TEST(whole_numbers_have_a_last_one)
     check_close(some.limits[0].value, last, 0);
     assert_true(quantity_at(&s, "arm.links", last, "peak_force_N") < 6);
     assert_true(quantity_at(&s, "arm.links", last + 1, "peak_force_N") >= 6);
-    scenario_finish(&s);
 }
 
 // Where the quantity is missing or the run fails, there is no limit of its value.
 TEST(what_is_not_there_has_no_limit)
 {
-    scenario s = opened("corrected/first-impact", NULL, 0);
+    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
 
     // a voltage too small to reach the wall
     sweep_axis axis = axis_of("motor.voltage", 0, 1);
@@ -155,7 +150,6 @@ TEST(what_is_not_there_has_no_limit)
     const solution behind = solved(&s, &start, "peak_force_N<100", 5, 1);
     assert_int_equal(behind.unknown, 2);
     assert_non_null(strstr(behind.reason, "wall"));
-    scenario_finish(&s);
 }
 
 TEST(conditions_say_what_they_lack)
@@ -186,13 +180,12 @@ TEST(conditions_say_what_they_lack)
 TEST(parameters_that_are_no_numbers_have_no_range)
 {
     fault f;
-    scenario s = opened("corrected/first-impact", NULL, 0);
+    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("method.name", 0, 1);
     assert_int_equal(solve_usual_range(&axis, &s, &f), STATUS_BAD_ARGUMENT);
     axis = axis_of("motor.voltage", 0, 0);
     assert_int_equal(solve_usual_range(&axis, &s, &f), STATUS_OK);
     assert_true(axis.low < 1 && axis.high > 1);
-    scenario_finish(&s);
 }
 
 TEST(one_can_be_stopped)
@@ -200,10 +193,9 @@ TEST(one_can_be_stopped)
     fault f;
     solution found;
     run_monitor monitor = {0};
-    scenario s = opened("corrected/first-impact", NULL, 0);
+    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("motor.voltage", 0, 5);
     const solve_condition c = condition_of("peak_force_N<2");
     atomic_store(&monitor.stop, true);
     assert_int_equal(solve(&s, &axis, &c, 5, 1, &monitor, &found, &f), STATUS_STOPPED);
-    scenario_finish(&s);
 }

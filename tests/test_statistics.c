@@ -14,7 +14,7 @@ static void add(trace *t, double time, double force)
 TEST(a_ramp_and_a_step)
 {
     const int force = SIGNAL_INDEX(force);
-    trace t;
+    SCOPED(trace_finish) trace t;
     trace_init(&t, 1);
 
     // from 0 to 2 in a second, a jump to 5, that for another second
@@ -43,7 +43,7 @@ TEST(a_ramp_and_a_step)
 
     // a value that is missing ends the pieces on both of its sides
     for (int missing = 0; missing < 2; missing++) {
-        trace part;
+        SCOPED(trace_finish) trace part;
         trace_init(&part, 1);
         add(&part, 0, missing == 0 ? (double)NAN : 1);
         add(&part, 1, missing == 1 ? (double)NAN : 1);
@@ -52,7 +52,6 @@ TEST(a_ramp_and_a_step)
         s = trace_statistics(&part, force, 0, 3);
         check_close(s.duration, missing == 0 ? 2 : 1, 0);
         check_close(s.mean, 1, 1e-15);
-        trace_finish(&part);
     }
 
     // of an instant, beyond the run, and of what has no value
@@ -66,7 +65,6 @@ TEST(a_ramp_and_a_step)
     }
     s = trace_statistics(&t, SIGNAL_INDEX(command), 0, 2);
     assert_true(isnan(s.mean) && isnan(s.maximum) && s.duration == 0);
-    trace_finish(&t);
 }
 
 // Sums over the pieces between two rows, each cut, by Simpson's rule, which is exact for them.
@@ -107,7 +105,7 @@ TEST(whatever_is_cut_is_the_sum_of_its_pieces)
     random_seed(&g, 9);
     for (int trial = 0; trial < 3000; trial++) {
         double times[ROWS], values[ROWS];
-        trace t;
+        SCOPED(trace_finish) trace t;
         trace_init(&t, 1);
         for (int i = 0; i < ROWS; i++) {
             times[i] = i == 0 ? 0 : times[i - 1] + (double)random_below(&g, 3) / 8;
@@ -140,7 +138,6 @@ TEST(whatever_is_cut_is_the_sum_of_its_pieces)
         } else {
             check_close(s.duration, 0, 0);
         }
-        trace_finish(&t);
     }
 }
 
@@ -151,13 +148,12 @@ TEST(extremes_are_values_of_rows)
     random_seed(&g, 3);
     for (int trial = 0; trial < 200; trial++) {
         const double value[] = {random_uniform(&g), random_uniform(&g)};
-        trace t;
+        SCOPED(trace_finish) trace t;
         trace_init(&t, 1);
         add(&t, random_uniform(&g), value[0]);
         add(&t, 1 + random_uniform(&g), value[1]);
         const signal_statistics s = trace_statistics(&t, SIGNAL_INDEX(force), 0, 3);
         check_close(s.minimum, fmin(value[0], value[1]), 0);
         check_close(s.maximum, fmax(value[0], value[1]), 0);
-        trace_finish(&t);
     }
 }

@@ -13,8 +13,7 @@ static arm oscillator(double frequency, const char *method, const char *more, me
     parameters p =
         fixture_parameters(SETTINGS("arm.links=1", "arm.hub_joint=spring", k1, "wall.kind=none",
                                     "motor.voltage=0", "motor.stiction=1000", method, more));
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     *mp = p.method;
     return a;
 }
@@ -46,7 +45,7 @@ static double spectral_radius(double frequency_step, const char *method, const c
     const double h = 1, wanted = 1e-2;
     method_parameters mp;
     arm a = oscillator(frequency_step / h, method, more, &mp);
-    motion *m = motion_by(&a, &mp);
+    SCOPED(motion_destroy_kept) motion *m = motion_by(&a, &mp);
     motion_start(&a, m, 0, 0);
     state_angles(m, m->state)[1] = wanted;
     state_velocities(m, m->state)[1] = wanted * frequency_step / h / 3;
@@ -64,7 +63,6 @@ static double spectral_radius(double frequency_step, const char *method, const c
         motion_evaluate(&a, m, m->state);
         step_once(&a, m, h);
     }
-    motion_destroy(m);
     return exp(growth / (STEPS / 2.0 - 1));
 }
 
@@ -74,7 +72,7 @@ static double error_at(const char *method, const char *more, double h)
     method_parameters mp;
     double frequency = 40, until = 0.2, amplitude = 0.3;
     arm a = oscillator(frequency, method, more, &mp);
-    motion *m = motion_by(&a, &mp);
+    SCOPED(motion_destroy_kept) motion *m = motion_by(&a, &mp);
     motion_start(&a, m, 0, 0);
     state_angles(m, m->state)[1] = amplitude;
     motion_evaluate(&a, m, m->state);
@@ -83,7 +81,6 @@ static double error_at(const char *method, const char *more, double h)
         step_once(&a, m, h);
     }
     double error = fabs(state_angles(m, m->state)[1] - amplitude * cos(frequency * until));
-    motion_destroy(m);
     return error;
 }
 
@@ -146,9 +143,8 @@ static double energy_drift(const char *links, const char *hub, double duration)
     parameters p = fixture_parameters(SETTINGS(links, hub, "wall.kind=none", "motor.voltage=0",
                                                "motor.stiction=0", "motor.viscous_friction=0",
                                                "motor.back_emf=0"));
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     motion_start(&a, m, 0, 1);
     for (int i = 0; i < a.dof; i++) {
         state_angles(m, m->state)[i] += 0.3 * sin(1.0 + 2 * i / (double)a.dof);
@@ -165,7 +161,6 @@ static double energy_drift(const char *links, const char *hub, double duration)
         double now = chain_kinetic_energy(&a, q, w) + chain_strain_energy(&a, q);
         drift = fmax(drift, fabs(now / energy - 1));
     }
-    motion_destroy(m);
     return drift;
 }
 
@@ -184,9 +179,8 @@ static double distance_to_event_method(const char *links, const char *wall, cons
     for (int side = 0; side < 2; side++) {
         parameters p = fixture_parameters(
             SETTINGS(links, wall, "arm.damping_ratio=0.02", side ? "method.name=event" : method));
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create(&a, &p.method);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         motion_start(&a, m, 0, 0);
         motion_report report = {.event = MOTION_IMPACT};
         while (m->state[SLOT_TIME] < 0.33) { // through the impact, into contact
@@ -198,7 +192,6 @@ static double distance_to_event_method(const char *links, const char *wall, cons
             check_close(m->state[SLOT_GAP], 0, 1e-12);
             check_close(m->state[SLOT_GAP_VELOCITY], 0, 1e-11);
         }
-        motion_destroy(m);
     }
     return fabs(angle[0] - angle[1]);
 }

@@ -110,8 +110,7 @@ TEST(air_on_one_link_that_turns_far_closes_the_ledger)
 static size_t motion_to_end(const parameters *p, double interval, bool forgetful, double *end)
 {
     enum { MOST_COPY = 4096 };
-    arm a;
-    arm_init(&a, p);
+    arm a = arm_of(p);
     motion *m = motion_create_by(&a, &p->method, &stiff_engine);
     assert_non_null(m);
     motion_start(&a, m, START_ANGLE, 0.7);
@@ -298,9 +297,8 @@ TEST(a_force_that_stays_has_its_peak_at_its_start)
         "arm.k2=17.381623622079722", "motor.inductance=0.011351328772705165"));
     const double end = 0.06;
     double held = 0;
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create_by(&a, &p.method, &stiff_engine);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
     assert_non_null(m);
     motion_start(&a, m, 0.099711351379691532, 0.058592421014174362);
     while (m->state[SLOT_TIME] < end) {
@@ -313,7 +311,6 @@ TEST(a_force_that_stays_has_its_peak_at_its_start)
     assert_true(held > 0 && held < 0.8 * end);
     check_close(m->pulse_peak_time, held, 1e-9);
     check_close(m->pulse_peak, m->state[SLOT_FORCE], 1e-9 * m->pulse_peak);
-    motion_destroy(m);
 }
 
 // Tip against a flat wall through the hub's axis, where the force has a pole.
@@ -362,9 +359,8 @@ TEST(decays_of_any_rate_are_passed_over)
     };
     for (size_t i = 0; i < sizeof fast / sizeof *fast; i++) {
         const parameters p = fixture_parameters(fast[i]);
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create_by(&a, &p.method, &stiff_engine);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
         assert_non_null(m);
         motion_start(&a, m, 0, 0);
         int steps = 0;
@@ -379,7 +375,6 @@ TEST(decays_of_any_rate_are_passed_over)
         assert_true(touched);
         const double put_in = motion_motor_work(m, m->state);
         check_below(fabs(motion_energy_residual(&a, m, m->state)), 1e-9 * put_in);
-        motion_destroy(m);
     }
 }
 
@@ -396,9 +391,8 @@ TEST(a_force_of_rounding_hides_no_slip)
                  "motor.inductance=0.92955259258329925", "motor.current_limit=0.90031986558427557",
                  "wall.contact=kelvin-voigt", "wall.stiffness=7616.9205058752668",
                  "wall.damping=68.236035295918327", "arm.damping_ratio=0.026265943154315696"));
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     assert_non_null(m);
     motion_start(&a, m, p.initial.angle, 0);
     bool slid = false;
@@ -410,7 +404,6 @@ TEST(a_force_of_rounding_hides_no_slip)
         slid = slid || r.event == MOTION_SLIP;
     }
     assert_true(slid);
-    motion_destroy(m);
 }
 
 static bool is_refused(const char *const *settings)

@@ -40,13 +40,11 @@ TEST(each_arm_has_its_engine)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const parameters p = fixture_parameters(cases[i].settings);
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create(&a, &p.method);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         assert_non_null(m);
         fail_if(m->engine != cases[i].by, "case %zu goes by %s, not %s", i, m->engine->name,
                 cases[i].by->name);
-        motion_destroy(m);
     }
 }
 
@@ -86,7 +84,7 @@ TEST(an_arm_made_stiff_changes_its_engine)
         p.arm.links = links;
         arm before, after;
         arm_init(&before, &p);
-        motion *m = motion_create(&before, &p.method);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&before, &p.method);
         motion_start(&before, m, 0, 0);
         move_on(&before, m, 0.1, 100000);
         const engine *soft = m->engine;
@@ -98,7 +96,7 @@ TEST(an_arm_made_stiff_changes_its_engine)
         assert_true(after.fastest_decay > 1e6);
         motion_rebind(&before, &after, m);
         assert_int_equal(m->engine != soft, links == 2);
-        motion *copy = motion_create(&after, &p.method);
+        SCOPED(motion_destroy_kept) motion *copy = motion_create(&after, &p.method);
         assert_ptr_equal(copy->engine, m->engine);
         memcpy(copy->state, m->state, (size_t)m->size * sizeof(double));
         copy->start_energy = m->start_energy;
@@ -111,8 +109,6 @@ TEST(an_arm_made_stiff_changes_its_engine)
         // and back
         motion_rebind(&after, &before, m);
         assert_ptr_equal(m->engine, soft);
-        motion_destroy(m);
-        motion_destroy(copy);
     }
 }
 
@@ -126,7 +122,7 @@ TEST(a_stride_that_begins_does_not_unsettle_the_force)
             "arm.mass=0.230311454988", "arm.hub_inertia=2.421274642e-4", "arm.k2=3.677424150693",
             "arm.damping_ratio=1", "wall.kind=plane", "wall.angle=1.722191930126",
             "motor.stiction=0.01", "motor.voltage=-0.965138971621489", "run.duration=2"))};
-    run_result r;
+    SCOPED(run_finish) run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
     const double steady = r.summary.steady_force_N;
     size_t outside = 0;
@@ -135,7 +131,6 @@ TEST(a_stride_that_begins_does_not_unsettle_the_force)
     }
     const double settled = r.trace.rows[outside + 1].time - r.summary.first_contact_s;
     check_close(r.summary.settling_time_s, settled, 2e-3);
-    run_finish(&r);
 }
 
 // A damper so strong that the arm rests on it for ever: a run that could not end says so after a
@@ -147,12 +142,11 @@ TEST(a_run_that_could_not_end_says_so)
         scenario s = {.parameters = fixture_parameters(SETTINGS("wall.contact=kelvin-voigt",
                                                                 dampers[i], "initial.angle=0.099",
                                                                 "initial.velocity=0.7"))};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
         assert_int_equal(r.summary.status, STATUS_NO_PROGRESS);
         assert_true(r.summary.message[0] != '\0');
         assert_true(r.summary.steps > 0);
-        run_finish(&r);
     }
 }
 
@@ -170,11 +164,10 @@ TEST(decays_do_not_shorten_strides)
     };
     for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
         scenario s = {.parameters = fixture_parameters(arms[i])};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         assert_true(r.summary.steps < 2000);
         check_below(r.summary.energy_residual_J, 1e-7 * r.summary.motor_work_J);
-        run_finish(&r);
     }
 }
 
@@ -198,9 +191,8 @@ TEST(a_run_that_could_not_end_says_why)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         parameters p = fixture_parameters(cases[i].settings);
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create(&a, &p.method);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         assert_non_null(m);
         motion_start(&a, m, cases[i].angle, cases[i].velocity);
 
@@ -211,7 +203,6 @@ TEST(a_run_that_could_not_end_says_why)
         assert_int_equal(pace_check(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
         fail_if(strstr(f.text, cases[i].cause) == NULL, "case %zu, '%s': %s", i, cases[i].cause,
                 f.text);
-        motion_destroy(m);
     }
 }
 
@@ -234,25 +225,22 @@ TEST(a_run_that_stands_still_at_a_wall_says_so)
         scenario s = {.parameters = fixture_parameters(cases[i].settings)};
         s.parameters.initial.angle = 0.099;
         s.parameters.initial.velocity = 0.7;
-        run_result r;
+        SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
         fail_if(strstr(r.summary.message, cases[i].cause) == NULL, "case %zu, '%s': %s", i,
                 cases[i].cause, r.summary.message);
-        run_finish(&r);
     }
 
     // strides half of which end in contact, and a look in flight
     parameters p = fixture_parameters(SETTINGS("wall.contact=kelvin-voigt"));
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     assert_non_null(m);
     motion_start(&a, m, 0, 0);
     pace looked = {.strides = PACE_STRIDES, .touching = PACE_STRIDES / 2};
     fault f = {.text = ""};
     assert_int_equal(pace_check(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
     assert_non_null(strstr(f.text, "wall.damping"));
-    motion_destroy(m);
 }
 
 // Where strides are expensive, with many links, fewer of them are enough to give a run up.
@@ -267,9 +255,8 @@ TEST(expensive_strides_are_given_up_sooner)
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const parameters p = fixture_parameters(cases[i].settings);
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create(&a, &p.method);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         assert_non_null(m);
         motion_start(&a, m, 0.099, 0.7);
         pace kept = pace_begin();
@@ -283,7 +270,6 @@ TEST(expensive_strides_are_given_up_sooner)
             s = pace_keep(&kept, &a, m, 1, 1e-3, &f);
         }
         assert_int_equal(s, STATUS_NO_PROGRESS);
-        motion_destroy(m);
     }
 }
 
@@ -300,7 +286,7 @@ TEST(a_loop_makes_as_many_strides_as_are_asked_for)
     fault f;
     assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
     const size_t size = loop_saved_size(l);
-    char *kept = malloc(2 * size);
+    SCOPED(free_kept) char *kept = malloc(2 * size);
     assert_non_null(kept);
     loop_save(l, kept);
     assert_int_equal(loop_until(l, 0.5, &f), STATUS_OK);
@@ -324,7 +310,6 @@ TEST(a_loop_makes_as_many_strides_as_are_asked_for)
         assert_int_equal(loop_until(l, i * 1e-9, &f), STATUS_OK);
     }
     check_close(loop_time(l), INSTANTS * 1e-9, 0);
-    free(kept);
     loop_destroy(l);
 }
 
@@ -410,9 +395,8 @@ TEST(an_arm_without_damping_loses_nothing_to_it)
             joints ? "arm.damping_ratio=1e-3" : "arm.damping_ratio=0",
             hub ? "motor.viscous_friction=0.01" : "motor.viscous_friction=0", "motor.back_emf=0",
             "motor.voltage=0.5", stands ? "wall.kind=point" : "wall.kind=none"));
-        arm a;
-        arm_init(&a, &p);
-        motion *m = motion_create_by(&a, &p.method, &stiff_engine);
+        arm a = arm_of(&p);
+        SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
         motion_start(&a, m, 0.09, 0.3);
         const passage all = move_on(&a, m, 0.1, 5000);
         assert_int_equal(all.impacts > 0, stands);
@@ -420,6 +404,5 @@ TEST(an_arm_without_damping_loses_nothing_to_it)
         const double *lost = state_quadratures(m, m->state);
         assert_int_equal(lost[QUADRATURE_DAMPING] != 0, joints);
         assert_int_equal(lost[QUADRATURE_VISCOUS] != 0, hub);
-        motion_destroy(m);
     }
 }

@@ -20,9 +20,8 @@ static meetings meetings_by(const parameters *p, const engine *by, double angle,
                             double until)
 {
     const double step = by == &explicit_engine ? 1e-5 : p->method.step;
-    arm a;
-    arm_init(&a, p);
-    motion *m = motion_create_by(&a, &p->method, by);
+    arm a = arm_of(p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, by);
     assert_non_null(m);
     motion_start(&a, m, angle, velocity);
 
@@ -40,7 +39,6 @@ static meetings meetings_by(const parameters *p, const engine *by, double angle,
 
     all.peak = m->pulse_peak;
     all.peak_time = m->pulse_peak_time;
-    motion_destroy(m);
     return all;
 }
 
@@ -92,8 +90,7 @@ TEST(events_within_a_stride_are_the_formulas)
         p.arm.links = cases[i].links; // with the springs of the default arm
         p.arm.hub_joint = HUB_SPRING;
         p.wall.kind = WALL_POINT;
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         motion *m = motion_create(&a, &p.method);
         assert_ptr_equal(m->engine, &stiff_engine);
         motion_destroy(m);
@@ -188,8 +185,7 @@ TEST(bounces_lower_than_rounding_do_not_gain)
                  "arm.hub_inertia=0.0217", "motor.voltage=4.95", "wall.kind=plane",
                  "wall.angle=1.043", "wall.restitution=0.0189"));
     for (int i = 0; i < 12; i++) {
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         motion *m = motion_create(&a, &p.method);
         assert_non_null(m);
         motion_start(&a, m, p.wall.angle - 2e-3, 0.4 + 2e-3 * i);
@@ -229,9 +225,8 @@ TEST(a_step_that_ends_in_a_flight_is_no_bounce)
     assert_true(all.count > 10);
 
     // the same with a step that ends early in each flight
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create_by(&a, &p.method, &stiff_engine);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
     assert_non_null(m);
     motion_start(&a, m, angle, velocity);
     for (int k = 0; k < all.count; k++) {
@@ -245,7 +240,6 @@ TEST(a_step_that_ends_in_a_flight_is_no_bounce)
         assert_int_equal(r.event, all.event[k]);
         check_close(m->state[SLOT_TIME], all.time[k], 1e-7);
     }
-    motion_destroy(m);
 }
 
 // Whether an arm that swings towards the wall and is pulled back touches it.
@@ -265,8 +259,7 @@ TEST(a_graze_within_a_stride_is_found)
             SETTINGS("arm.links=4", "arm.hub_joint=spring", "arm.hub_inertia=2.29663e-4",
                      "arm.damping_ratio=7.92665e-4", "arm.k1=169468", "motor.voltage=-1",
                      "motor.stiction=0", i == 0 ? "wall.kind=point" : "wall.kind=plane"));
-        arm a;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         motion *m = motion_create(&a, &p.method);
         assert_ptr_equal(m->engine, &stiff_engine);
         motion_destroy(m);

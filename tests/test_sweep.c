@@ -11,11 +11,13 @@
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
 TEST(every_run_is_what_the_scenario_gives_alone)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=0.5:2:4", NULL);
-    sweep_store *store = must_open(NULL, &s);
+    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, &s);
     must_run(&s, store, 2);
     double peaks[4], contacts[4];
     fault f = {0};
@@ -23,23 +25,21 @@ TEST(every_run_is_what_the_scenario_gives_alone)
     assert_int_equal(sweep_store_quantity(store, "first_contact_s", contacts, NULL, &f), STATUS_OK);
     for (int run = 0; run < 4; run++) {
         scenario alone = base;
-        run_result result;
+        SCOPED(run_finish) run_result result;
         alone.parameters.motor.voltage = 0.5 + 0.5 * run;
         assert_int_equal(run_scenario(&alone, false, &result), STATUS_OK);
         check_close(peaks[run], result.summary.peak_force_N, 0);
         check_close(contacts[run], result.summary.first_contact_s, 0);
-        run_finish(&result);
     }
     // a higher voltage brings the arm to the wall earlier
     check_below(contacts[3], contacts[0]);
-    sweep_store_close(store);
-    sweep_finish(&s);
 }
 
 TEST(the_number_of_jobs_does_not_change_a_byte)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_LATIN, 60, "motor.voltage=0.5:5", "arm.links=1:4");
+    SCOPED(free_kept)
     char *one = uninterrupted(&s, 1), *two = uninterrupted(&s, 2), *many = uninterrupted(&s, 7);
     assert_string_equal(one, two);
     assert_string_equal(one, many);
@@ -49,41 +49,32 @@ TEST(the_number_of_jobs_does_not_change_a_byte)
     assert_int_equal(strncmp(one, header, sizeof header - 1), 0);
     assert_non_null(strstr(one, "peak_force[N]"));
     assert_null(strstr(one, "wall_time"));
-    free(one);
-    free(two);
-    free(many);
-    sweep_finish(&s);
 }
 
 // Runs of two links go side by side in the processor's vectors: with one lane, with all of them, on
 // one thread and on several, and where some of the runs are there already.
 TEST(the_number_of_lanes_does_not_change_a_byte)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_LATIN, 201, "motor.voltage=0.5:5", "wall.restitution=0:1");
     taylor_limit_width(1);
-    char *alone = uninterrupted(&s, 1);
+    SCOPED(free_kept) char *alone = uninterrupted(&s, 1);
     taylor_limit_width(0);
     for (int jobs = 1; jobs <= 3; jobs++) {
-        char *together = uninterrupted(&s, jobs);
+        SCOPED(free_kept) char *together = uninterrupted(&s, jobs);
         assert_string_equal(together, alone);
-        free(together);
     }
 
     // every third run first, the rest around them
-    sweep_store *store = must_open(NULL, &s);
+    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, &s);
     sweep_progress progress;
     fault f = {0};
     const sweep_options third = {.jobs = 2, .share = {.part = 2, .parts = 3}};
     assert_int_equal(sweep_run(&s, store, &third, &progress, &f), STATUS_OK);
     assert_int_equal(progress.done_now, 67);
     must_run(&s, store, 2);
-    char *csv = csv_of(store);
+    SCOPED(free_kept) char *csv = csv_of(store);
     assert_string_equal(csv, alone);
-    sweep_store_close(store);
-    free(csv);
-    free(alone);
-    sweep_finish(&s);
 }
 
 static void assert_refused(const char *path, const sweep *s, status code, const char *says)
@@ -135,7 +126,8 @@ TEST(a_changed_script_is_another_sweep)
     with.actions = script;
     with.action_count = 2;
     assert_int_equal(scenario_override(&settled, "control.settings=kp=2", &f), STATUS_OK);
-    sweep s, other;
+    sweep s;
+    SCOPED(sweep_finish) sweep other;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     other = s;
     s.base = &with;
@@ -150,7 +142,6 @@ TEST(a_changed_script_is_another_sweep)
     s.base = &settled;
     assert_refused("script.sqlite", &s, STATUS_BAD_ARGUMENT,
                    "control.settings was empty, now it is kp=2");
-    sweep_finish(&other);
     unlink("script.sqlite");
 }
 
@@ -177,13 +168,14 @@ TEST(lists_have_an_end)
     enum { VALUES = 400000 };
     fault f = {.text = ""};
     sweep s;
-    char *text = malloc(16 + 8 * VALUES), *end = text + sprintf(text, "control.seed=0");
+    SCOPED(free_kept)
+    char *text = malloc(16 + 8 * VALUES);
+    char *end = text + sprintf(text, "control.seed=0");
     for (int i = 1; i < VALUES; i++) {
         end += sprintf(end, ",%d", i);
     }
     assert_int_equal(sweep_of(&s, SWEEP_GRID, 0, 1, &f, text, NULL), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "at most 20000 values, here are 400000"));
-    free(text);
 }
 
 // Values that are drawn together stay pairs, through a database's definition too.
@@ -191,9 +183,10 @@ TEST(values_drawn_together_stay_pairs)
 {
     fault f = {.text = ""};
     for (sweep_sampling how = SWEEP_RANDOM; how <= SWEEP_LATIN; how++) {
-        sweep s, again;
+        sweep s;
+        SCOPED(sweep_finish) sweep again;
         must_sweep(&s, how, 60, "arm.k2=1,2,3", "with arm.mass=0.1,0.2,0.2");
-        definition d = {0};
+        SCOPED(definition_finish) definition d = {0};
         assert_int_equal(definition_init(&d, &s, &f), STATUS_OK);
         assert_int_equal(definition_plan(&d, "here", &again, &f), STATUS_OK);
         bool seen[4] = {false};
@@ -205,8 +198,6 @@ TEST(values_drawn_together_stay_pairs)
             check_close(sweep_value(&again, run, 1), mass, 0);
         }
         assert_true(seen[1] && seen[2] && seen[3]);
-        definition_finish(&d);
-        sweep_finish(&again);
         sweep_finish(&s);
     }
 
@@ -231,12 +222,11 @@ TEST(values_drawn_together_stay_pairs)
 // A name that begins with a colon is a file like any other.
 TEST(a_colon_begins_a_name)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     sweep_store_close(must_open(":memory:", &s));
     assert_int_equal(access("./:memory:", F_OK), 0);
     unlink("./:memory:");
-    sweep_finish(&s);
 }
 
 TEST(more_axes_than_there_may_be_are_refused)
@@ -267,7 +257,7 @@ TEST(rows_that_are_no_runs_are_refused)
     static const char *const changes[] = {"UPDATE run SET run = 0 WHERE run = 1",
                                           "UPDATE run SET run = 9 WHERE run = 1"};
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
-        sweep s;
+        SCOPED(sweep_finish) sweep s;
         must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
         sweep_store *store = must_open("rows.sqlite", &s);
         must_run(&s, store, 1);
@@ -289,14 +279,13 @@ TEST(rows_that_are_no_runs_are_refused)
         assert_non_null(strstr(f.text, "no run of the sweep"));
         sweep_store_close(store);
         assert_refused("rows.sqlite", &s, STATUS_BAD_ARGUMENT, "of a sweep of 3");
-        sweep_finish(&s);
         unlink("rows.sqlite");
     }
 }
 
 TEST(what_is_no_sweep_is_left_alone)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     FILE *stream = fopen("text", "w");
     assert_non_null(stream);
@@ -312,29 +301,27 @@ TEST(what_is_no_sweep_is_left_alone)
     sqlite3_close(database);
     assert_refused("theirs.sqlite", &s, STATUS_BAD_ARGUMENT, "holds no sweep");
     assert_refused("nowhere/x.sqlite", &s, STATUS_CANNOT_WRITE, "No such file");
-    sweep_finish(&s);
     unlink("text");
     unlink("theirs.sqlite");
 }
 
 TEST(two_sweeps_do_not_write_to_one_file_at_once)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     sweep_store *store = must_open("busy.sqlite", &s);
     assert_refused("busy.sqlite", &s, STATUS_CANNOT_WRITE, "another sweep is writing");
     sweep_store_close(store);
     sweep_store_close(must_open("busy.sqlite", &s));
-    sweep_finish(&s);
     unlink("busy.sqlite");
 }
 
 TEST(a_file_deleted_within_a_transaction_is_missed)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     fault f = {0};
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
-    sweep_store *store = must_open("gone.sqlite", &s);
+    SCOPED(sweep_store_close_kept) sweep_store *store = must_open("gone.sqlite", &s);
     const summary result = {.peak_force_N = 2};
     assert_int_equal(sweep_store_put(store, 0, &result, &f), STATUS_OK);
     assert_int_equal(sweep_store_commit(store, &f), STATUS_OK);
@@ -342,16 +329,14 @@ TEST(a_file_deleted_within_a_transaction_is_missed)
     unlink("gone.sqlite");
     assert_int_equal(sweep_store_commit(store, &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "'gone.sqlite' was deleted, moved or replaced"));
-    sweep_store_close(store);
-    sweep_finish(&s);
 }
 
 TEST(a_failed_run_is_a_row_with_its_message)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     fault f = {0};
     must_sweep(&s, SWEEP_GRID, 0, "arm.hub_joint=rigid,spring", NULL);
-    sweep_store *store = must_open(NULL, &s);
+    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, &s);
     summary good = {.peak_force_N = 2, .impacts = (double)NAN}, bad = {.peak_force_N = 1e9};
     bad.status = STATUS_UNSTABLE;
     strcpy(bad.message, "went off, \"far\"");
@@ -365,13 +350,10 @@ TEST(a_failed_run_is_a_row_with_its_message)
     check_close(values[0], 2, 0);
     assert_true(isnan(values[1]));
     assert_int_equal(failed, 1);
-    char *csv = csv_of(store);
+    SCOPED(free_kept) char *csv = csv_of(store);
     assert_non_null(strstr(csv, "\n1,rigid,ok,,"));
     assert_non_null(strstr(csv, "\n2,spring,failed,\"went off, \"\"far\"\"\","));
     assert_null(strstr(csv, "nan"));
-    free(csv);
-    sweep_store_close(store);
-    sweep_finish(&s);
 }
 
 ALL_BETWEEN(sweep_fixture_open, sweep_fixture_close)

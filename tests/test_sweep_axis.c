@@ -39,7 +39,7 @@ TEST(shares_of_a_range_are_even)
 // Whole numbers come alike often, the first and the last of the range, too.
 TEST(whole_numbers_have_equal_shares)
 {
-    sweep_axis axis = parsed("arm.links", "2:5", true);
+    SCOPED(sweep_axis_finish) sweep_axis axis = parsed("arm.links", "2:5", true);
     int found[8] = {0};
     for (int i = 0; i < 400; i++) {
         const double value = sweep_axis_value_at(&axis, (i + 0.5) / 400);
@@ -49,26 +49,23 @@ TEST(whole_numbers_have_equal_shares)
     for (int links = 2; links <= 5; links++) {
         assert_int_equal(found[links], 100);
     }
-    sweep_axis_finish(&axis);
 }
 
 TEST(values_of_a_list_have_equal_shares)
 {
-    sweep_axis axis = parsed("arm.k2", "7,3,5", true);
+    SCOPED(sweep_axis_finish) sweep_axis axis = parsed("arm.k2", "7,3,5", true);
     check_close(sweep_axis_value_at(&axis, 0.1), 7, 0);
     check_close(sweep_axis_value_at(&axis, 0.5), 3, 0);
     check_close(sweep_axis_value_at(&axis, 0.999), 5, 0);
-    sweep_axis_finish(&axis);
 }
 
 TEST(a_grid_has_both_ends)
 {
-    sweep_axis axis = parsed("arm.k2", "1:16:3:log", false);
+    SCOPED(sweep_axis_finish) sweep_axis axis = parsed("arm.k2", "1:16:3:log", false);
     assert_int_equal(axis.count, 3);
     check_close(axis.values[0], 1, 0);
     check_relative(axis.values[1], 4.0, 1e-14);
     check_close(axis.values[2], 16, 0);
-    sweep_axis_finish(&axis);
 }
 
 TEST(what_is_no_axis_is_refused)
@@ -77,21 +74,20 @@ TEST(what_is_no_axis_is_refused)
                                         "0:1:3:log", "x:1:3", "1,,2",  "1:2:1e9",   "-1:2:3",
                                         "1:2:2.5"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        sweep_axis axis = {.parameter = parameter_find("arm.k2")};
+        SCOPED(sweep_axis_finish) sweep_axis axis = {.parameter = parameter_find("arm.k2")};
         fault f = {0};
         char text[64];
         snprintf(text, sizeof text, "%s", wrong[i]);
         fail_if(sweep_axis_parse(&axis, text, false, &f) == STATUS_OK, "'%s' was accepted",
                 wrong[i]);
         assert_true(strlen(f.text) > 0);
-        sweep_axis_finish(&axis);
     }
 }
 
 // Refusals are reported: the values of a parameter, and the words of a sentence.
 static void check_refused(const char *name, const char *values, bool drawn, const char *what)
 {
-    sweep_axis axis = {0};
+    SCOPED(sweep_axis_finish) sweep_axis axis = {0};
     fault f = {0};
     char text[64];
     snprintf(text, sizeof text, "%s", values);
@@ -99,7 +95,6 @@ static void check_refused(const char *name, const char *values, bool drawn, cons
     code = code == STATUS_OK ? sweep_axis_parse(&axis, text, drawn, &f) : code;
     fail_if(code == STATUS_OK || strstr(f.text, what) == NULL,
             "%s=%s: expected a refusal about '%s', not '%s'", name, values, what, f.text);
-    sweep_axis_finish(&axis);
 }
 
 TEST(a_refusal_says_what_is_expected)
@@ -135,7 +130,7 @@ TEST(a_number_of_a_list_is_set_alone)
     static const double numbers[] = {5.25, 12, 30.5};
     for (int k = 1; k <= 3; k++) {
         parameters p;
-        sweep_axis axis = {0};
+        SCOPED(sweep_axis_finish) sweep_axis axis = {0};
         fault f = {0};
         char name[64], text[PARAMETER_TEXT_SIZE];
         double found[PARAMETER_LIST_MOST];
@@ -160,7 +155,6 @@ TEST(a_number_of_a_list_is_set_alone)
         assert_string_equal(f.path, "arm.joint_stiffness");
         axis.element = k;
         assert_int_not_equal(sweep_axis_apply(&axis, -1, &p, &f), STATUS_OK);
-        sweep_axis_finish(&axis);
     }
 
     // the last number that a list can have
@@ -207,7 +201,7 @@ TEST(values_and_texts_are_those_that_were_asked_for)
         {"arm.joint_stiffness[2]", "4.5,6", false, 2, {4.5, 6}, "4.5,6"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        sweep_axis axis = {0};
+        SCOPED(sweep_axis_finish) sweep_axis axis = {0};
         fault f = {0};
         char text[64];
         snprintf(text, sizeof text, "%s", cases[i].asked);
@@ -220,7 +214,6 @@ TEST(values_and_texts_are_those_that_were_asked_for)
             check_relative(axis.values[k], cases[i].values[k], 1e-14);
         }
         assert_string_equal(axis.text, cases[i].text);
-        sweep_axis_finish(&axis);
     }
 
     // the same value twice is refused wherever it stands

@@ -8,6 +8,8 @@
 #include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
 enum { RUNS = 60, COMMIT_EVERY = 25 };
 
 static char folder[] = "/tmp/sweep-faults-XXXXXX";
@@ -181,7 +183,7 @@ static char *rows_of(sweep_store *store, status *code, fault *f)
 // *kept: how many of the rows were committed, as far as it was told.
 static status complete(char **rows, size_t *kept, fault *f)
 {
-    sweep_store *store;
+    SCOPED(sweep_store_close_kept) sweep_store *store;
     unsigned char present[RUNS];
     size_t added = 0;
     *rows = NULL;
@@ -203,7 +205,6 @@ static status complete(char **rows, size_t *kept, fault *f)
     if (code == STATUS_OK) {
         *rows = rows_of(store, &code, f);
     }
-    sweep_store_close(store);
     return code;
 }
 
@@ -222,7 +223,8 @@ static void remove_files(void)
 
 TEST(what_was_committed_stands_and_the_rest_is_said)
 {
-    char *whole, *rows, *later;
+    char *rows, *later;
+    SCOPED(free_kept) char *whole;
     size_t kept, then;
     fault f = {0};
     refused = 0;
@@ -266,7 +268,6 @@ TEST(what_was_committed_stands_and_the_rest_is_said)
         }
     }
     assert_true(failures > 20);
-    free(whole);
 }
 
 // Reads the sweep in every way there is; the first failure, else STATUS_OK.
@@ -300,17 +301,15 @@ static status read_all(const char *whole, fault *f)
     assert_int_equal(merged.runs, RUNS);
 
     // and to go on from
-    sweep_store *store;
+    SCOPED(sweep_store_close_kept) sweep_store *store;
     double values[RUNS];
     code = sweep_store_open(&store, file, &swept, f);
     code = code == STATUS_OK ? sweep_store_quantity(store, "peak_force_N", values, NULL, f) : code;
-    char *rows = code == STATUS_OK ? rows_of(store, &code, f) : NULL;
+    SCOPED(free_kept) char *rows = code == STATUS_OK ? rows_of(store, &code, f) : NULL;
     if (code == STATUS_OK) {
         check_close(values[RUNS - 1], RUNS, 0);
         assert_string_equal(rows, whole);
     }
-    free(rows);
-    sweep_store_close(store);
     return code;
 }
 

@@ -80,7 +80,7 @@ static long long number_from(const char *path, const char *sql)
 
 TEST(a_killed_sweep_goes_on_and_loses_and_doubles_nothing)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, MANY_RUNS, NULL);
     sweep_in_a_child_that_is_killed(&s, "killed.sqlite");
     long long kept = number_from("killed.sqlite", "SELECT count(*) FROM run");
@@ -89,15 +89,12 @@ TEST(a_killed_sweep_goes_on_and_loses_and_doubles_nothing)
     sweep_progress progress = must_run(&s, store, 2);
     assert_int_equal(progress.done, MANY);
     assert_int_equal(progress.done_now, MANY - kept);
-    char *resumed = csv_of(store), *whole = uninterrupted(&s, 2);
+    SCOPED(free_kept) char *resumed = csv_of(store), *whole = uninterrupted(&s, 2);
     sweep_store_close(store);
     assert_string_equal(resumed, whole);
     assert_int_equal(number_from("killed.sqlite", "SELECT count(*) FROM run"), MANY);
     assert_int_equal(number_from("killed.sqlite", "SELECT sum(run) FROM run"),
                      (long long)MANY * (MANY + 1) / 2);
-    free(resumed);
-    free(whole);
-    sweep_finish(&s);
     unlink("killed.sqlite");
 }
 
@@ -111,7 +108,7 @@ static void stop_soon(void *context, const sweep_progress *p)
 
 TEST(a_stopped_sweep_keeps_what_it_has_and_goes_on)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     sweep_progress progress;
     fault f = {0};
     sweep_options options = {.jobs = 2, .stop = &stop, .report = stop_soon};
@@ -128,7 +125,6 @@ TEST(a_stopped_sweep_keeps_what_it_has_and_goes_on)
     // nothing is left to do
     assert_int_equal(must_run(&s, store, 2).done_now, 0);
     sweep_store_close(store);
-    sweep_finish(&s);
     unlink("stopped.sqlite");
 }
 

@@ -6,6 +6,8 @@
 #include "src/study/sweep_run.h"
 #include "tests/check.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
 static char folder[] = "/tmp/sweep-merge-XXXXXX";
 static scenario base;
 
@@ -39,7 +41,7 @@ static void must_sweep(sweep *s, char *vary)
 // Computes a share of a sweep into a file; returns all rows of the store as CSV, to be freed.
 static char *compute(const sweep *s, const char *path, sweep_share share)
 {
-    sweep_store *store;
+    SCOPED(sweep_store_close_kept) sweep_store *store;
     sweep_progress progress;
     fault f = {0};
     const sweep_options options = {.share = share, .jobs = 2};
@@ -54,7 +56,6 @@ static char *compute(const sweep *s, const char *path, sweep_share share)
     assert_non_null(stream);
     assert_int_equal(sweep_store_csv(store, stream, &f), STATUS_OK);
     fclose(stream);
-    sweep_store_close(store);
     return text;
 }
 
@@ -143,7 +144,7 @@ TEST(parts_in_any_order_give_the_rows_of_one_sweep)
 // Every parameter that is varied has its column.
 TEST(parts_may_vary_several_parameters)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     char *vary[] = {(char[]){"motor.voltage=0.5,2"}, (char[]){"arm.k2=4,6"},
                     (char[]){"wall.kind=point,plane"}};
     sweep_request request = {.vary = vary, .vary_count = 3};
@@ -157,11 +158,9 @@ TEST(parts_may_vary_several_parameters)
     sweep_merged merged;
     fail_if(sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(merged.runs, 8);
-    char *rows = compute(&s, "merged", (sweep_share){0, 0});
+    SCOPED(free_kept) char *rows = compute(&s, "merged", (sweep_share){0, 0});
     assert_string_equal(rows, whole);
-    free(rows);
     free(whole);
-    sweep_finish(&s);
     unlink("1");
     unlink("2");
     unlink("whole");
@@ -193,7 +192,7 @@ TEST(the_plan_of_a_merge_is_that_of_the_sweep)
                                  .sampling = (sweep_sampling)i,
                                  .runs = draws ? 40 : 0,
                                  .seed = UINT64_MAX};
-        sweep s;
+        SCOPED(sweep_finish) sweep s;
         fail_if(sweep_init(&s, &base, &request, &f) != STATUS_OK, "%s", f.text);
         char *whole = compute(&s, "whole", (sweep_share){0, 0}), *parts[] = {"1", "2"};
         for (int k = 0; k < 2; k++) {
@@ -202,11 +201,9 @@ TEST(the_plan_of_a_merge_is_that_of_the_sweep)
         sweep_merged merged;
         fail_if(sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK, "%s", f.text);
         assert_int_equal(merged.runs, s.run_count);
-        char *rows = compute(&s, "merged", (sweep_share){0, 0});
+        SCOPED(free_kept) char *rows = compute(&s, "merged", (sweep_share){0, 0});
         assert_string_equal(rows, whole);
-        free(rows);
         free(whole);
-        sweep_finish(&s);
         unlink("1");
         unlink("2");
         unlink("whole");
@@ -321,7 +318,7 @@ TEST(what_others_changed_is_refused)
         {"DELETE FROM sweep WHERE key = 'runs'", "runs"},
         {"DELETE FROM run; DELETE FROM sweep; DROP TABLE run; DROP TABLE sweep", "is empty"},
     };
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, "motor.voltage=1:2:3");
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
         char *part[] = {"part"};
@@ -341,13 +338,12 @@ TEST(what_others_changed_is_refused)
         }
         unlink("part");
     }
-    sweep_finish(&s);
 }
 
 // A missing part, and one with overwritten pages.
 TEST(what_cannot_be_read_is_said)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     sweep_merged merged;
     fault f = {0};
     char *part[] = {"part"};
@@ -371,7 +367,6 @@ TEST(what_cannot_be_read_is_said)
     sweep_store *store;
     assert_int_equal(sweep_store_open(&store, "part", &s, &f), STATUS_CANNOT_READ);
     assert_int_not_equal(access("out", F_OK), 0);
-    sweep_finish(&s);
     unlink("part");
 }
 
@@ -419,7 +414,7 @@ static void write_journal(const char *database, const char *named)
 TEST(a_journal_names_no_file_to_delete)
 {
     char notes[300];
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, "motor.voltage=1:2:3");
     free(compute(&s, "part", (sweep_share){0, 0}));
     assert_non_null(getcwd(notes, 200));
@@ -445,7 +440,6 @@ TEST(a_journal_names_no_file_to_delete)
     // without it all is well
     unlink("part-journal");
     free(compute(&s, "part", (sweep_share){0, 0}));
-    sweep_finish(&s);
     unlink("part");
     unlink("link");
     unlink(notes);

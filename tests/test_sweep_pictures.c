@@ -17,10 +17,10 @@ static int close_all(void **state)
 static void must_draw(const char *a, const char *b, sweep_sampling sampling, size_t runs,
                       const char *path, double offset)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     fault f = {0};
     must_sweep(&s, sampling, runs, a, b);
-    double *values = malloc(s.run_count * sizeof *values);
+    SCOPED(free_kept) double *values = malloc(s.run_count * sizeof *values);
     assert_non_null(values);
     for (size_t run = 0; run < s.run_count; run++) {
         values[run] = run % 7 == 3 ? (double)NAN : offset + (double)(run % 11);
@@ -34,8 +34,6 @@ static void must_draw(const char *a, const char *b, sweep_sampling sampling, siz
     assert_int_equal(stat(path, &about), 0);
     assert_true(about.st_size > 1000);
     unlink(path);
-    free(values);
-    sweep_finish(&s);
 }
 
 TEST(every_kind_of_sweep_can_be_drawn)
@@ -58,7 +56,7 @@ TEST(words_have_a_curve_each)
     static const char *const varied[2][2] = {{"method.name=event,newmark", "motor.voltage=1,2,4"},
                                              {"motor.voltage=1,2,4", "method.name=event,newmark"}};
     for (int k = 0; k < 2; k++) {
-        sweep s;
+        SCOPED(sweep_finish) sweep s;
         double values[6];
         must_sweep(&s, SWEEP_GRID, 0, varied[k][0], varied[k][1]);
         assert_int_equal(s.run_count, 6);
@@ -79,7 +77,6 @@ TEST(words_have_a_curve_each)
             assert_true(fig->panels[0].series[1].y[i] == 100 + fig->panels[0].series[1].x[i]);
         }
         owned_figure_destroy(drawn);
-        sweep_finish(&s);
     }
 }
 

@@ -4,7 +4,7 @@
 
 TEST(the_last_parameter_of_a_grid_changes_fastest)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", "method.name=event,newmark");
     static const double voltage[] = {1, 1, 1.5, 1.5, 2, 2};
     assert_int_equal(s.run_count, 6);
@@ -16,7 +16,6 @@ TEST(the_last_parameter_of_a_grid_changes_fastest)
         assert_int_equal(derived.parameters.method.name, run % 2 ? METHOD_NEWMARK : METHOD_EVENT);
         check_close(derived.parameters.run.duration, 0.6, 0);
     }
-    sweep_finish(&s);
 }
 
 TEST(ranges_meet_their_ends_and_are_spaced_as_asked)
@@ -47,7 +46,7 @@ TEST(ranges_meet_their_ends_and_are_spaced_as_asked)
 TEST(a_number_of_a_list_is_varied_by_its_place)
 {
     static const char text[] = "title: Springs\narm: {links: 4, joint_stiffness: [12, 10, 8]}\n";
-    scenario springs;
+    SCOPED(scenario_finish) scenario springs;
     sweep s;
     fault f = {0};
     assert_int_equal(scenario_parse(&springs, text, strlen(text), "springs.yaml", "springs",
@@ -78,7 +77,6 @@ TEST(a_number_of_a_list_is_varied_by_its_place)
     vary[0] = (char[]){"arm.joint_stiffness[4]=5,6"};
     assert_int_equal(sweep_init(&s, &springs, &request, &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "has 3 numbers"));
-    scenario_finish(&springs);
 }
 
 TEST(bad_requests_are_refused_with_a_sentence)
@@ -134,7 +132,7 @@ TEST(bad_requests_are_refused_with_a_sentence)
 TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
 {
     enum { RUNS = 1000 };
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_LATIN, RUNS, "motor.voltage=2:1", "arm.k2=0.1:1000:log");
     unsigned char seen[2][RUNS] = {{0}};
     double together = 0;
@@ -150,12 +148,11 @@ TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
     }
     // the two are independent of each other: five standard deviations of their correlation
     check_close(together / RUNS, 0, 5 / sqrt(RUNS));
-    sweep_finish(&s);
 }
 
 TEST(whole_numbers_and_words_are_drawn_evenly)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_LATIN, 120, "arm.links=2:5", "method.name=event,newmark");
     int links[8] = {0}, methods[4] = {0};
     for (size_t run = 0; run < 120; run++) {
@@ -169,12 +166,12 @@ TEST(whole_numbers_and_words_are_drawn_evenly)
     }
     assert_int_equal(methods[METHOD_EVENT], 60);
     assert_int_equal(methods[METHOD_NEWMARK], 60);
-    sweep_finish(&s);
 }
 
 TEST(the_seed_decides_what_is_drawn)
 {
-    sweep a, b, c;
+    sweep a, c;
+    SCOPED(sweep_finish) sweep b;
     fault f;
     assert_int_equal(sweep_of(&a, SWEEP_RANDOM, 50, 5, &f, "arm.k2=1:3", NULL), STATUS_OK);
     assert_int_equal(sweep_of(&b, SWEEP_RANDOM, 50, 5, &f, "arm.k2=1:3:10", NULL), STATUS_OK);
@@ -188,7 +185,6 @@ TEST(the_seed_decides_what_is_drawn)
     }
     assert_int_equal(same, 0);
     sweep_finish(&a);
-    sweep_finish(&b);
     sweep_finish(&c);
 }
 

@@ -148,7 +148,7 @@ TEST(orders_agree_and_the_ledger_closes)
     random_seed(&g, 2);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
-        motion *m = moving.motion;
+        SCOPED(motion_destroy_kept) motion *m = moving.motion;
         double *q = state_angles(m, m->state);
         m->start_energy = chain_kinetic_energy(&moving.arm, q, state_velocities(m, m->state)) +
                           chain_strain_energy(&moving.arm, q);
@@ -173,7 +173,6 @@ TEST(orders_agree_and_the_ledger_closes)
         for (int k = 0; k < 2 * m->dof + QUADRATURE_COUNT; k++) {
             check_close(m->state[SLOT_COUNT + k], whole[SLOT_COUNT + k], 1e-12);
         }
-        motion_destroy(m);
     }
 }
 
@@ -343,6 +342,7 @@ TEST(peaks_are_the_largest_force_there_is)
     const char *const voltages[] = {"motor.voltage=0.5537109375", "motor.voltage=1",
                                     "motor.voltage=3.3"};
     for (int i = 0; i < 3; i++) {
+        SCOPED(run_finish)
         run_result r = run(SETTINGS(voltages[i], "method.step=2e-6", "run.duration=0.7"));
         double largest = 0;
         for (size_t k = 0; k < r.trace.row_count; k++) {
@@ -350,20 +350,18 @@ TEST(peaks_are_the_largest_force_there_is)
         }
         check_close(r.summary.peak_force_N, largest, 1e-9);
         check_below(largest, r.summary.peak_force_N * (1 + 1e-13));
-        run_finish(&r);
     }
 }
 
 // Rows are read off the stride: the more of them, the more strides are the same.
 TEST(rows_change_nothing)
 {
+    SCOPED(run_finish)
     run_result few = run(SETTINGS("method.step=0.1")), many = run(SETTINGS("method.step=1e-4"));
     assert_true(few.summary.first_contact_s == many.summary.first_contact_s);
     assert_true(few.summary.peak_force_N == many.summary.peak_force_N);
     assert_true(few.summary.motor_work_J == many.summary.motor_work_J);
     assert_true(few.summary.energy_residual_J == many.summary.energy_residual_J);
-    run_finish(&few);
-    run_finish(&many);
 }
 
 // An impact, a release and a touch within microseconds of each other.
@@ -396,10 +394,9 @@ TEST(random_runs_neither_fail_nor_lose_energy)
         p->wall.restitution = u[4] < 0.4 ? 0 : u[4];
         p->wall.kind = i % 2 ? WALL_POINT : WALL_PLANE;
         p->arm.damping_ratio = u[5] < 0.5 ? 0 : 0.1 * (u[5] - 0.5);
-        run_result r;
+        SCOPED(run_finish) run_result r;
         fail_if(run_scenario(&s, false, &r) != STATUS_OK, "run %d: %s", i, r.summary.message);
         check_below(r.summary.energy_residual_J, 1e-11 * (1 + r.summary.motor_work_J));
-        run_finish(&r);
     }
 }
 

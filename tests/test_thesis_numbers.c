@@ -53,9 +53,8 @@ static void forget(computed *c)
 // A number of a run's summary.
 static double number(const char *name, const char *const *sets, const char *key)
 {
-    computed c = run_with(name, sets);
+    SCOPED(forget) computed c = run_with(name, sets);
     const double value = summary_value(&c.result.summary, summary_index(key));
-    forget(&c);
     return value;
 }
 
@@ -74,7 +73,7 @@ TEST(numbers_of_the_first_chapters)
     check_close(number("compare/reverse-torque", SETS(NULL), "separations"), 1, 0);
 
     // where the hub turns back
-    computed first = run_with("corrected/first-impact", SETS(NULL));
+    SCOPED(forget) computed first = run_with("corrected/first-impact", SETS(NULL));
     const summary *m = &first.result.summary;
     const trace *t = &first.result.trace;
     size_t e = 0;
@@ -83,7 +82,6 @@ TEST(numbers_of_the_first_chapters)
     }
     page_says("(%.1f ms after the touch; the hub turns at %.1f ms)",
               1e3 * m->first_pulse_time_to_peak_s, 1e3 * (t->events[e].time - m->first_contact_s));
-    forget(&first);
 }
 
 // ---- the single run of 3.1.3
@@ -101,6 +99,7 @@ TEST(the_table_of_the_single_run)
             snprintf(beta, sizeof beta, "method.beta=%s", pairs[i][0]);
             snprintf(gamma, sizeof gamma, "method.gamma=%s", pairs[i][1]);
             snprintf(step, sizeof step, "method.step=%s", steps[k]);
+            SCOPED(forget)
             computed c = run_with("thesis/fig-3-4", SETS("printed.reevaluation=none",
                                                          "run.duration=0.6", beta, gamma, step));
             const summary *m = &c.result.summary;
@@ -108,7 +107,6 @@ TEST(the_table_of_the_single_run)
                 m->status == STATUS_OK
                     ? snprintf(row + used, sizeof row - (size_t)used, " %.0f |", m->peak_force_N)
                     : snprintf(row + used, sizeof row - (size_t)used, " fails |");
-            forget(&c);
         }
         page_says("%s", row);
     }
@@ -131,7 +129,7 @@ static void run_cell(const char *table, const char *const *more, double voltage,
     for (int i = 0; more[i] != NULL; i++) {
         sets[i + 2] = more[i];
     }
-    computed c = run_with(table, sets);
+    SCOPED(forget) computed c = run_with(table, sets);
     const trace *t = &c.result.trace;
     double touch = -1;
     *peak = 0;
@@ -143,7 +141,6 @@ static void run_cell(const char *table, const char *const *more, double voltage,
             *delay = row->time - touch;
         }
     }
-    forget(&c);
 }
 
 // Mean |relative error| of forces and delays against what the thesis prints, over some tables.
@@ -316,6 +313,7 @@ TEST(figures_of_the_hybrid_controller)
 {
     double off[2][2];
     for (int i = 0; i < 2; i++) {
+        SCOPED(forget)
         computed c = run_with("thesis/fig-5-2", i == 0 ? SETS(NULL) : SETS("arm.links=8"));
         const trace *t = &c.result.trace;
         off[i][0] = off_the_plan(t, offsetof(sample, encoder), offsetof(sample, desired_angle));
@@ -324,18 +322,18 @@ TEST(figures_of_the_hybrid_controller)
         if (i == 1) {
             page_says("they hit %.0f times", c.result.summary.impacts);
         }
-        forget(&c);
     }
     page_says("%.1f %% and %.1f %% of the plan's span off it", off[0][0], off[0][1]);
     page_says("and are %.0f %% and %.0f %% off\n", off[1][0], off[1][1]);
 
     // 5.6 and 5.7 are the run of 5.1 at twice the force
+    SCOPED(forget)
     computed one = run_with("thesis/fig-5-1", SETS(NULL)),
              two = run_with("thesis/fig-5-7", SETS(NULL));
-    computed angle = run_with("thesis/fig-5-6", SETS(NULL));
+    SCOPED(forget) computed angle = run_with("thesis/fig-5-6", SETS(NULL));
     assert_true(one.scenario.parameters.initial.angle == two.scenario.parameters.initial.angle &&
                 one.scenario.parameters.initial.angle == angle.scenario.parameters.initial.angle);
-    computed far = run_with("thesis/fig-5-7", SETS("initial.angle=-0.1"));
+    SCOPED(forget) computed far = run_with("thesis/fig-5-7", SETS("initial.angle=-0.1"));
     page_says(
         "agrees at 1 N: one contact, 90 %% of the steady force after %.3f s, settled after %.2f "
         "s; at 2 N one contact, settled after %.2f s, but 90 %% only after %.3f s, and after "
@@ -343,10 +341,6 @@ TEST(figures_of_the_hybrid_controller)
         rise_time(&one), one.result.summary.settling_time_s, two.result.summary.settling_time_s,
         rise_time(&two), rise_time(&far));
     assert_true(one.result.summary.separations == 0 && two.result.summary.separations == 0);
-    forget(&one);
-    forget(&two);
-    forget(&far);
-    forget(&angle);
 }
 
 TEST(numbers_of_the_control_laws)
@@ -384,12 +378,11 @@ TEST(numbers_of_the_control_laws)
     static const char *const gains[] = {"control.force_gain=1", "control.force_gain=3",
                                         "control.force_gain=4", "control.force_gain=6"};
     for (int i = 0; i < 4; i++) {
-        computed c = run_with("compare/force-pd", SETS(gains[i]));
+        SCOPED(forget) computed c = run_with("compare/force-pd", SETS(gains[i]));
         const summary *m = &c.result.summary;
         assert_true(i == 0   ? m->separations == 0 && m->settling_time_s > 0
                     : i == 1 ? m->separations == 1 && m->settling_time_s > 0
                              : m->separations > 1 && isnan(m->settling_time_s));
-        forget(&c);
     }
     page_says(
         "at 1 V/N one contact, at 3 V/N a bounce, from 4 V/N on it bounces and never settles");
@@ -411,7 +404,7 @@ static bool read_pages(char *const *files, int count)
 {
     size_t size = 0, length = 0;
     FILE *all = open_memstream(&page, &length);
-    char *text = NULL;
+    SCOPED(free_kept) char *text = NULL;
     bool complete = all != NULL;
 
     for (int i = 0; complete && i < count; i++) {
@@ -424,7 +417,6 @@ static bool read_pages(char *const *files, int count)
             fclose(stream);
         }
     }
-    free(text);
     return all != NULL && fclose(all) == 0 && complete;
 }
 

@@ -14,8 +14,7 @@ enum { LINKS = 64 };
 static arm beam_of(const char *const *settings)
 {
     const parameters p = fixture_parameters(settings);
-    arm a;
-    arm_init(&a, &p);
+    arm a = arm_of(&p);
     return a;
 }
 
@@ -72,7 +71,7 @@ TEST(a_hanging_beam_has_its_frequencies)
     const arm a = beam_of(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1.5707963267949",
                                    "initial.angle=-1.5707963267949"));
     double expected[COUNT];
-    double *w = calloc((LINKS + 1) * (LINKS + 2), sizeof *w);
+    SCOPED(free_kept) double *w = calloc((LINKS + 1) * (LINKS + 2), sizeof *w);
     int count;
     assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, w, w + LINKS + 1), STATUS_OK);
     frequencies_of_a_hanging_beam(&a, expected, COUNT);
@@ -88,7 +87,6 @@ TEST(a_hanging_beam_has_its_frequencies)
                          pow(a.link_length * LINKS, 4)) *
                     1.05,
                 w[0]);
-    free(w);
 }
 
 // One link without friction swings through the lowest point at the speed of its fall.
@@ -97,9 +95,8 @@ TEST(a_single_link_is_a_pendulum)
     const parameters p = fixture_parameters(SETTINGS(
         "arm.links=1", "wall.kind=none", "motor.voltage=0", "motor.stiction=0",
         "motor.viscous_friction=0", "motor.back_emf=0", "arm.tilt=-0.6", "initial.angle=0.3"));
-    arm a;
-    arm_init(&a, &p);
-    motion *m = motion_create(&a, &p.method);
+    arm a = arm_of(&p);
+    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     assert_ptr_equal(m->engine, &stiff_engine);
     motion_start(&a, m, 0.3, 0);
     const double inertia = a.hub_inertia + a.link_mass * a.link_length * a.link_length / 3;
@@ -114,7 +111,6 @@ TEST(a_single_link_is_a_pendulum)
         fastest = fmax(fastest, fabs(w));
     }
     check_below(0.98 * sqrt(2 * torque * (1 - sin(0.3)) / inertia), fastest);
-    motion_destroy(m);
 }
 
 // What knows no weight says so.

@@ -28,7 +28,7 @@ TEST(readings_of_the_hub_say_what_the_state_says)
                                         "run.duration=0.6",  volts[i & 1],
                                         ways[i >> 1],        NULL};
         const parameters p = rig_parameters(settings);
-        run_result r = rig_run(settings, true);
+        SCOPED(run_finish) run_result r = rig_run(settings, true);
         double worst = 0, largest = 0;
         int compared = 0, turns = 0;
 
@@ -50,15 +50,15 @@ TEST(readings_of_the_hub_say_what_the_state_says)
         assert_true(compared > 100);
         assert_true(turns <= 1);
         check_below(worst, 0.01 * largest);
-        run_finish(&r);
     }
 }
 
 // It is there only with a limit, and only without contact.
 TEST(there_is_none_in_contact_or_without_a_limit)
 {
+    SCOPED(run_finish)
     run_result with = rig_run(SETTINGS("control.law=hybrid", "control.force_limit=1.5"), true);
-    run_result without = rig_run(SETTINGS("control.law=hybrid"), true);
+    SCOPED(run_finish) run_result without = rig_run(SETTINGS("control.law=hybrid"), true);
     for (size_t k = 0; k < without.trace.row_count; k++) {
         assert_true(isnan(without.trace.rows[k].predicted_force));
     }
@@ -75,8 +75,6 @@ TEST(there_is_none_in_contact_or_without_a_limit)
 
     // the limit alone changes nothing for a law that does not ask
     assert_true(with.summary.peak_force_N == without.summary.peak_force_N);
-    run_finish(&with);
-    run_finish(&without);
 }
 
 // An arm that swings back is not on its way to the wall.
@@ -116,6 +114,7 @@ TEST(the_speed_limit_law_keeps_to_a_force)
         const int limit = i & 1;
         double peak[2] = {0};
         for (int without = 0; without < 2; without++) {
+            SCOPED(run_finish)
             run_result r = rig_run(
                 SETTINGS("control.law=speed-limit", "control.force=0.3", "control.speed_limit=100",
                          "control.approach_voltage=5", "run.duration=1.6", seeds[i / 6],
@@ -129,7 +128,6 @@ TEST(the_speed_limit_law_keeps_to_a_force)
                     peak[without] = fmax(peak[without], row->force);
                 }
             }
-            run_finish(&r);
         }
         print_message("%s, %s: %.3g N, without %.3g N\n", limits[limit], ways[i / 2 % 3], peak[0],
                       peak[1]);

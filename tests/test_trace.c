@@ -40,7 +40,7 @@ static void check_rows(const trace *t, int rows, int events)
 
 TEST(an_instant_has_its_place_among_the_rows)
 {
-    trace t;
+    SCOPED(trace_finish) trace t;
     trace_init(&t, ANGLES);
     assert_int_equal(trace_rows_until(&t, 3), 0);
     assert_int_equal(trace_row_at(&t, 3), 0);
@@ -57,12 +57,12 @@ TEST(an_instant_has_its_place_among_the_rows)
         assert_int_equal(trace_row_at(&t, time), until > 0 ? until - 1 : 0);
     }
     assert_int_equal(trace_rows_until(&t, HUGE_VAL), ROWS);
-    trace_finish(&t);
 }
 
 TEST(a_copy_outlives_the_original)
 {
-    trace t, copy, empty;
+    trace t, empty;
+    SCOPED(trace_finish) trace copy;
     trace_init(&t, ANGLES);
     assert_int_equal(trace_copy(&empty, &t), STATUS_OK);
     check_rows(&empty, 0, 0);
@@ -70,14 +70,14 @@ TEST(a_copy_outlives_the_original)
     assert_int_equal(trace_copy(&copy, &t), STATUS_OK);
     trace_finish(&t);
     check_rows(&copy, ROWS, EVENTS);
-    trace_finish(&copy);
     trace_finish(&empty);
 }
 
 // Rows that stay where they are are shared up to a row, and go on differently.
 TEST(a_shared_beginning_goes_on_by_itself)
 {
-    trace t, other;
+    trace t;
+    SCOPED(trace_finish) trace other;
     assert_int_equal(trace_reserve(&t, ANGLES, 10, ROWS), STATUS_OK);
     const sample *first = t.rows;
     fill(&t);
@@ -93,13 +93,13 @@ TEST(a_shared_beginning_goes_on_by_itself)
     trace_finish(&t);
     other.row_count = 1234;
     check_rows(&other, 1234, 7);
-    trace_finish(&other);
 }
 
 // An arm without angles of its own still has all its rows.
 TEST(rows_need_no_angles)
 {
-    trace t, copy;
+    trace t;
+    SCOPED(trace_finish) trace copy;
     trace_init(&t, 0);
     for (int i = 0; i < ROWS; i++) {
         sample row = {.time = time_of(i)};
@@ -111,7 +111,6 @@ TEST(rows_need_no_angles)
     for (int i = 0; i < ROWS; i++) {
         check_close(copy.rows[i].time, time_of(i), 0);
     }
-    trace_finish(&copy);
 }
 
 // A signal is there if one row has it, whichever.

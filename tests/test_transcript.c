@@ -50,7 +50,7 @@ TEST(a_full_transcript_stays_as_it_is)
 {
     process_transcript *t = process_transcript_create();
     const size_t length = (size_t)8 << 20;
-    char *question = malloc(length + 1);
+    SCOPED(free_kept) char *question = malloc(length + 1);
     assert_true(t != NULL && question != NULL);
     memset(question, 'x', length);
     question[length] = '\0';
@@ -69,5 +69,4 @@ TEST(a_full_transcript_stays_as_it_is)
     assert_int_equal(strlen(last->question), length);
     process_transcript_destroy(t);
     process_transcript_destroy(NULL);
-    free(question);
 }

@@ -6,6 +6,8 @@
 #include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 
+GIVEN_BACK(sweep_store, sweep_store_close)
+
 // --- expressions ----------------------------------------------------------------------------
 
 static bool find(void *context, const char *name, double *value, const char **near)
@@ -83,12 +85,11 @@ TEST(faults_of_expressions_name_the_column)
 static void search(tuning *t, const tune_request *asked, int jobs)
 {
     fault f = {0};
-    sweep_store *store;
+    SCOPED(sweep_store_close_kept) sweep_store *store;
     fail_if(tune_init(t, asked, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(sweep_store_open(&store, NULL, &t->plan, &f), STATUS_OK);
     const sweep_options options = {.jobs = jobs};
     fail_if(tune_run(t, store, &options, &f) != STATUS_OK, "%s", f.text);
-    sweep_store_close(store);
 }
 
 // The force of a stiff arm that strikes is proportional to the voltage's effect on its speed: a
@@ -104,7 +105,7 @@ TEST(one_parameter_is_that_of_bisection)
                                 .minimise = "max(peak_force_N - 2, 2 - peak_force_N)",
                                 .runs = 80,
                                 .seed = 3};
-    tuning t;
+    SCOPED(tune_finish) tuning t;
     search(&t, &asked, 2);
     assert_true(t.done > 20 && t.done <= 80);
 
@@ -112,14 +113,12 @@ TEST(one_parameter_is_that_of_bisection)
     for (int i = 0; i < 40; i++) {
         const double middle = (low + high) / 2;
         scenario s = base;
-        run_result r;
+        SCOPED(run_finish) run_result r;
         s.parameters.motor.voltage = middle;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         *(r.summary.peak_force_N < 2 ? &low : &high) = middle;
-        run_finish(&r);
     }
     assert_true(fabs(t.found[0] - high) <= 1e-3 * high);
-    tune_finish(&t);
 }
 
 // What is not allowed ranks behind all that is.
@@ -168,10 +167,9 @@ TEST(the_most_damped_pole_is_that_of_eigenvalues)
                                 .minimise = "growth_per_s",
                                 .runs = 60,
                                 .growth = linear_growth};
-    tuning t;
+    SCOPED(tune_finish) tuning t;
     search(&t, &asked, 1);
     assert_true(fabs(t.found[0] - 2.162) <= 0.01 * 2.162);
-    tune_finish(&t);
 }
 
 TEST(what_cannot_be_asked_is_refused)

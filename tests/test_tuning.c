@@ -42,9 +42,8 @@ TEST(test_a_gain_holds_from_the_next_sample_on)
         {"motor.voltage_limit", "1", 0.5}, {"sensor.tachometer_noise", "0.2", 0.4},
     };
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
-        session s;
         fault f = {0};
-        open_session(&s, "compare/hybrid");
+        OPEN_SESSION(s, "compare/hybrid");
         session_seek(&s, changes[i].at + 0.0021);
         assert_int_equal(session_keep_beside(&s, &s.run, &f), STATUS_OK);
         change(&s, changes[i].path, changes[i].value);
@@ -52,14 +51,12 @@ TEST(test_a_gain_holds_from_the_next_sample_on)
 
         // the change itself has a row; then nothing is felt before a sample, at most two periods on
         assert_changes_from(&s.other, &s.run, s.inputs[0].time, s.inputs[0].time + 0.0101);
-        session_finish(&s);
     }
 }
 
 TEST(test_another_rate_samples_at_its_own_period)
 {
-    session s;
-    open_session(&s, "compare/hybrid");
+    OPEN_SESSION(s, "compare/hybrid");
     session_seek(&s, 0.502);
     change(&s, "control.rate", "50");
     const trace *t = &s.run.trace;
@@ -77,7 +74,6 @@ TEST(test_another_rate_samples_at_its_own_period)
         command = t->rows[i].command;
     }
     assert_true(samples >= 3);
-    session_finish(&s);
 }
 
 // The rate changes again and again. A sample comes one period of the rate that holds then after the
@@ -294,23 +290,20 @@ TEST(test_delays_and_limits_follow_a_change)
 
 TEST(test_a_law_that_plans_at_its_start_takes_no_dated_change)
 {
-    session s;
-    open_session(&s, "compare/inverse-dynamics");
+    OPEN_SESSION(s, "compare/inverse-dynamics");
     session_seek(&s, 0.3);
     assert_false(rig_can_change(&s.effective.parameters, PARAMETER_INDEX(control.force)));
     change(&s, "control.force", "0.8");
     assert_int_equal(s.inputs[0].kind, SESSION_INPUT_START);
-    session_finish(&s);
 }
 
 TEST(test_a_saved_tuned_run_is_the_same)
 {
-    session s;
-    scenario saved;
-    run_result again;
-    char *text = NULL;
+    SCOPED(scenario_finish) scenario saved;
+    SCOPED(run_finish) run_result again;
+    SCOPED(free_kept) char *text = NULL;
     size_t size = 0;
-    open_session(&s, "compare/hybrid");
+    OPEN_SESSION(s, "compare/hybrid");
     session_seek(&s, 0.4);
     change(&s, "control.kp", "14");
     session_seek(&s, 0.7);
@@ -324,10 +317,6 @@ TEST(test_a_saved_tuned_run_is_the_same)
     assert_int_equal(again.trace.row_count, s.run.trace.row_count);
     assert_memory_equal(again.trace.rows, s.run.trace.rows,
                         again.trace.row_count * sizeof *again.trace.rows);
-    run_finish(&again);
-    scenario_finish(&saved);
-    free(text);
-    session_finish(&s);
 }
 
 // Without a law, or under one that hears of every change, all of control.* may change at any time.

@@ -23,11 +23,10 @@ int make_handles(void **state)
 
 int free_handles(void **state)
 {
-    handles *h = *state;
+    SCOPED(free_kept) handles *h = *state;
     impactlab_loop_destroy(h->loop);
     impactlab_run_destroy(h->run);
     impactlab_scenario_destroy(h->scenario);
-    free(h);
     return 0;
 }
 

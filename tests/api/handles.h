@@ -1,16 +1,7 @@
 // Shared by tests of the library: handles of each kind, and checks of the sentences of calls.
 #pragma once
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
+#include "../check.h"
 
 #include <impactlab/controller.h>
 #include <impactlab/impactlab.h>
@@ -35,4 +26,5 @@ int free_handles(void **state);
 // A call that must be refused with a sentence that has the words.
 void check_refused(const handles *h, int status, const char *words);
 
-#define TEST(test) cmocka_unit_test_setup_teardown(test, make_handles, free_handles)
+// A case whose *state is the handles.
+#define TEST_OF_HANDLES(name) TEST_BETWEEN(name, make_handles, free_handles)

@@ -12,7 +12,7 @@
         assert_int_equal(__VA_ARGS__, IMPACTLAB_BAD_ARGUMENT);                                     \
     } while (0)
 
-static void scenarios_say_what_they_lack(void **state)
+TEST_OF_HANDLES(scenarios_say_what_they_lack)
 {
     handles *h = *state;
     impactlab_scenario *s = h->scenario, *made;
@@ -53,7 +53,7 @@ static void scenarios_say_what_they_lack(void **state)
     LACKS("yaml", impactlab_scenario_yaml(s, NULL, error));
 }
 
-static void runs_say_what_they_lack(void **state)
+TEST_OF_HANDLES(runs_say_what_they_lack)
 {
     handles *h = *state;
     impactlab_run *made;
@@ -88,7 +88,7 @@ static void runs_say_what_they_lack(void **state)
     LACKS("count", impactlab_modes(h->scenario, 0, 0, &value, NULL, 1, NULL, error));
 }
 
-static void loops_say_what_they_lack(void **state)
+TEST_OF_HANDLES(loops_say_what_they_lack)
 {
     handles *h = *state;
     impactlab_loop *l = h->loop, *made;
@@ -125,7 +125,7 @@ static void loops_say_what_they_lack(void **state)
 }
 
 // What has no error to fill answers as if there were nothing.
-static void nothing_has_nothing(void **state)
+TEST_OF_HANDLES(nothing_has_nothing)
 {
     impactlab_event event;
     double value;
@@ -153,7 +153,7 @@ static void nothing_has_nothing(void **state)
 
 // --- wrong arguments --------------------------------------------------------------------------
 
-static void names_that_are_not_known(void **state)
+TEST_OF_HANDLES(names_that_are_not_known)
 {
     handles *h = *state;
     impactlab_error *error = &h->error;
@@ -179,7 +179,7 @@ static void names_that_are_not_known(void **state)
     assert_string_equal(room, "untouched");
 }
 
-static void numbers_that_cannot_be(void **state)
+TEST_OF_HANDLES(numbers_that_cannot_be)
 {
     handles *h = *state;
     impactlab_error *error = &h->error;
@@ -210,7 +210,7 @@ static void numbers_that_cannot_be(void **state)
 }
 
 // What follows from another parameter does not change by itself, neither now nor later.
-static void what_follows_cannot_be_scripted(void **state)
+TEST_OF_HANDLES(what_follows_cannot_be_scripted)
 {
     handles *h = *state;
     impactlab_error *error = &h->error;
@@ -220,7 +220,7 @@ static void what_follows_cannot_be_scripted(void **state)
     assert_string_equal(error->parameter, "arm.k1");
 }
 
-static void sets_are_taken_whole_or_not(void **state)
+TEST_OF_HANDLES(sets_are_taken_whole_or_not)
 {
     handles *h = *state;
     const char *const wrong[] = {"motor.voltage=3", "arm.k2=soft"};
@@ -249,7 +249,7 @@ static void push(void *memory, const controller_input *in, controller_output *ou
 }
 
 // The rig calls parts of a controller without asking again, so that one without them is refused.
-static void controllers_are_whole(void **state)
+TEST_OF_HANDLES(controllers_are_whole)
 {
     handles *h = *state;
     static const char *const modes[] = {"push", NULL};
@@ -304,7 +304,7 @@ static int take(void *context, const impactlab_outcome *outcome)
     return 0;
 }
 
-static void batches_look_before_they_run(void **state)
+TEST_OF_HANDLES(batches_look_before_they_run)
 {
     handles *h = *state;
     impactlab_error *error = &h->error;
@@ -336,12 +336,12 @@ static void batches_look_before_they_run(void **state)
     assert_int_equal(taken, 8);
 }
 
-static void states_of_others_are_refused(void **state)
+TEST_OF_HANDLES(states_of_others_are_refused)
 {
     handles *h = *state;
     impactlab_loop *other;
     const size_t size = impactlab_loop_state_size(h->loop);
-    void *bytes = malloc(size);
+    SCOPED(free_kept) void *bytes = malloc(size);
     check_refused(h, impactlab_loop_save_state(h->loop, bytes, size - 1, &h->error), "room");
     check_done(impactlab_loop_save_state(h->loop, bytes, size, &h->error), &h->error);
     check_done(impactlab_scenario_set(h->scenario, "motor.voltage", "2", &h->error), &h->error);
@@ -363,11 +363,10 @@ static void states_of_others_are_refused(void **state)
                   "another scenario");
     impactlab_loop_destroy(other);
     impactlab_loop_destroy(scripted);
-    free(bytes);
 }
 
 // A caller who passes no fault gets the same status, on success and on failure.
-static void an_error_may_be_left_out(void **state)
+TEST_OF_HANDLES(an_error_may_be_left_out)
 {
     handles *h = *state;
     static const char *const wrong[] = {"arm.k2=stiff", "motor.voltage=high"};
@@ -393,17 +392,4 @@ static void an_error_may_be_left_out(void **state)
     assert_int_equal(impactlab_run_quantity(h->run, "impacts", &value, NULL), IMPACTLAB_OK);
     assert_int_equal(impactlab_run_quantity(h->run, "no such", &value, NULL),
                      IMPACTLAB_BAD_ARGUMENT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(scenarios_say_what_they_lack), TEST(runs_say_what_they_lack),
-        TEST(loops_say_what_they_lack),     TEST(nothing_has_nothing),
-        TEST(names_that_are_not_known),     TEST(numbers_that_cannot_be),
-        TEST(sets_are_taken_whole_or_not),  TEST(controllers_are_whole),
-        TEST(batches_look_before_they_run), TEST(states_of_others_are_refused),
-        TEST(an_error_may_be_left_out),     TEST(what_follows_cannot_be_scripted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,8 @@
 // Contents of the handles of libimpactlab, and queries for what they do not contain.
 #include "handles.h"
 
-static void codes_have_texts(void **state)
+TEST_OF_HANDLES(codes_have_texts)
 {
-    (void)state;
     assert_string_equal(impactlab_status_text(IMPACTLAB_OK), "done");
     assert_string_equal(impactlab_status_text(IMPACTLAB_NO_MEMORY), "out of memory");
     assert_string_equal(impactlab_status_text(-1), impactlab_status_text(10000));
@@ -16,7 +15,7 @@ static void codes_have_texts(void **state)
 }
 
 // Every row of the tables is whole, and the tables are those that names are looked up in.
-static void tables_are_whole(void **state)
+TEST_OF_HANDLES(tables_are_whole)
 {
     handles *h = *state;
     size_t rows = 0, timed = 0;
@@ -48,7 +47,7 @@ static void tables_are_whole(void **state)
     assert_true(strspn(impactlab_version(), "0123456789.") == strlen(impactlab_version()));
 }
 
-static void names_copies_and_defaults(void **state)
+TEST_OF_HANDLES(names_copies_and_defaults)
 {
     handles *h = *state;
     impactlab_scenario *copy, *made;
@@ -82,7 +81,7 @@ static void names_copies_and_defaults(void **state)
 }
 
 // What a run has only where it is asked for, or where it came to pass.
-static void runs_have_what_was_asked_for(void **state)
+TEST_OF_HANDLES(runs_have_what_was_asked_for)
 {
     handles *h = *state;
     impactlab_run *bare, *free_run;
@@ -119,7 +118,7 @@ static void runs_have_what_was_asked_for(void **state)
 }
 
 // The printed equations have no modes, and a run that fails has what it came to.
-static void what_there_is_not(void **state)
+TEST_OF_HANDLES(what_there_is_not)
 {
     handles *h = *state;
     impactlab_run *failed;
@@ -148,7 +147,7 @@ static void what_there_is_not(void **state)
 
 // The reason why a loop stopped is kept for all later calls; a law that is not available gives no
 // loop.
-static void loops_stay_stopped(void **state)
+TEST_OF_HANDLES(loops_stay_stopped)
 {
     handles *h = *state;
     impactlab_error first;
@@ -173,14 +172,4 @@ static void loops_stay_stopped(void **state)
     impactlab_scenario_allow_code(h->scenario, 1);
     check_refused(h, impactlab_loop_create(&loop, h->scenario, 0, &h->error), "none.so");
     assert_null(loop);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(codes_have_texts),          TEST(tables_are_whole),
-        TEST(names_copies_and_defaults), TEST(runs_have_what_was_asked_for),
-        TEST(what_there_is_not),         TEST(loops_stay_stopped),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

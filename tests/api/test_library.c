@@ -1,26 +1,7 @@
 // libimpactlab through its public header and shared library alone.
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#include <impactlab/controller.h>
-#include <impactlab/impactlab.h>
+#include "handles.h"
 
 static const char first_impact[] = "corrected/first-impact";
-
-static void check_done(int status, const impactlab_error *error)
-{
-    if (status != IMPACTLAB_OK) {
-        fail_msg("status %d: %s", status, error->sentence);
-    }
-}
 
 static impactlab_scenario *opened(const char *name)
 {
@@ -62,9 +43,8 @@ static void check_same(double a, double b)
 
 // --- runs -------------------------------------------------------------------------------------
 
-static void rows_are_read_in_place(void **state)
+TEST(rows_are_read_in_place)
 {
-    (void)state;
     impactlab_error error;
     impactlab_scenario *scenario = opened(first_impact);
     impactlab_run *run;
@@ -105,9 +85,8 @@ static void rows_are_read_in_place(void **state)
     impactlab_scenario_destroy(scenario);
 }
 
-static void predictions_and_modes(void **state)
+TEST(predictions_and_modes)
 {
-    (void)state;
     impactlab_error error;
     impactlab_scenario *scenario = opened(first_impact);
     impactlab_run *run;
@@ -135,9 +114,8 @@ static void predictions_and_modes(void **state)
 
 // --- errors -----------------------------------------------------------------------------------
 
-static void mistakes_are_told(void **state)
+TEST(mistakes_are_told)
 {
-    (void)state;
     impactlab_error error;
     impactlab_scenario *scenario = opened(first_impact), *none;
     impactlab_run *run;
@@ -184,9 +162,8 @@ static void mistakes_are_told(void **state)
     impactlab_scenario_destroy(scenario);
 }
 
-static void files_with_faults_are_refused(void **state)
+TEST(files_with_faults_are_refused)
 {
-    (void)state;
     // the fault, its place in the text and whose value it is
     static const struct {
         const char *text, *parameter;
@@ -229,9 +206,8 @@ static void files_with_faults_are_refused(void **state)
 // --- loops ------------------------------------------------------------------------------------
 
 // The corrected arm and the printed one, with a rig and bare.
-static void a_stepped_run_is_the_run(void **state)
+TEST(a_stepped_run_is_the_run)
 {
-    (void)state;
     static const char *const names[] = {"compare/hybrid", "compare/hybrid-printed-arm",
                                         "thesis/fig-3-4"};
     static const char *const keys[] = {"peak_force_N", "first_pulse_peak_N", "time_to_peak_s",
@@ -259,9 +235,8 @@ static void a_stepped_run_is_the_run(void **state)
 
 // The printed model knows nothing between its rows: a loop ends at the first one that is due. An
 // input there is what the script does at that instant.
-static void the_printed_arm_stops_at_its_rows(void **state)
+TEST(the_printed_arm_stops_at_its_rows)
 {
-    (void)state;
     impactlab_error error;
     impactlab_scenario *scenario = opened("thesis/fig-3-4");
     impactlab_run *run;
@@ -318,9 +293,8 @@ static void push_softly(void *memory, const controller_input *in, controller_out
 }
 
 // A program that reads and commands in a loop is the same controller as one that is called back.
-static void commands_come_from_outside(void **state)
+TEST(commands_come_from_outside)
 {
-    (void)state;
     static const char *const modes[] = {"push", NULL};
     static const controller law = {.interface = CONTROLLER_INTERFACE,
                                    .name = "outside",
@@ -360,9 +334,8 @@ static void step_to(impactlab_loop *loop, double time)
 }
 
 // A state goes into another loop, and back into its own, to the last bit; noise and all.
-static void states_come_back(void **state)
+TEST(states_come_back)
 {
-    (void)state;
     static const char *const names[] = {"corrected/first-impact", "compare/hybrid",
                                         "compare/optimal", "corrected/twenty-links",
                                         "compare/hybrid-printed-arm"};
@@ -379,7 +352,7 @@ static void states_come_back(void **state)
         for (double share = 0.2; share < 1; share += 0.4) {
             step_to(loop, share * end);
             size_t size = impactlab_loop_state_size(loop);
-            void *bytes = malloc(size);
+            SCOPED(free_kept) void *bytes = malloc(size);
             check_done(impactlab_loop_save_state(loop, bytes, size, &error), &error);
             step_to(loop, (share + 0.1) * end);
             check_done(impactlab_loop_signal(loop, "force", &force, &error), &error);
@@ -402,7 +375,6 @@ static void states_come_back(void **state)
             }
             check_done(impactlab_loop_signal(loop, "force", &again, &error), &error);
             check_same(force, again);
-            free(bytes);
         }
         impactlab_loop_destroy(loop);
         impactlab_loop_destroy(other);
@@ -411,9 +383,8 @@ static void states_come_back(void **state)
 }
 
 // The loop keeps the answers of a program; only new questions are asked.
-static void a_process_goes_on_from_a_state(void **state)
+TEST(a_process_goes_on_from_a_state)
 {
-    (void)state;
     impactlab_error error;
     impactlab_scenario *scenario = opened(first_impact);
     impactlab_loop *loop;
@@ -433,7 +404,7 @@ static void a_process_goes_on_from_a_state(void **state)
     // on, back and on: the same; another way and back: the same again
     step_to(loop, 0.05);
     const size_t size = impactlab_loop_state_size(loop);
-    void *bytes = malloc(size);
+    SCOPED(free_kept) void *bytes = malloc(size);
     check_done(impactlab_loop_save_state(loop, bytes, size, &error), &error);
     step_to(loop, 0.2);
     check_done(impactlab_loop_signal(loop, "gap", &gap, &error), &error);
@@ -451,15 +422,13 @@ static void a_process_goes_on_from_a_state(void **state)
     check_done(impactlab_loop_signal(loop, "gap", &again, &error), &error);
     check_same(gap, again);
 
-    free(bytes);
     impactlab_loop_destroy(loop);
     impactlab_scenario_destroy(scenario);
 }
 
 // A mode's name holds a law in it as the script's action does; a name that it has not is refused.
-static void texts_act_at_once(void **state)
+TEST(texts_act_at_once)
 {
-    (void)state;
     impactlab_error error;
     impactlab_scenario *scenario = opened("compare/hybrid");
     impactlab_run *run;
@@ -483,9 +452,8 @@ static void texts_act_at_once(void **state)
     impactlab_scenario_destroy(scenario);
 }
 
-static void inputs_act_at_once(void **state)
+TEST(inputs_act_at_once)
 {
-    (void)state;
     impactlab_error error;
     impactlab_scenario *scenario = opened(first_impact);
     impactlab_loop *loop;
@@ -534,9 +502,8 @@ static int collect(void *context, const impactlab_outcome *outcome)
     return c->count == c->most;
 }
 
-static void batches_are_runs(void **state)
+TEST(batches_are_runs)
 {
-    (void)state;
     static const char *const paths[] = {"motor.voltage"};
     impactlab_error error;
     impactlab_scenario *scenario = opened(first_impact);
@@ -570,9 +537,8 @@ static void batches_are_runs(void **state)
     impactlab_scenario_destroy(scenario);
 }
 
-static void scenarios_are_written_and_read(void **state)
+TEST(scenarios_are_written_and_read)
 {
-    (void)state;
     impactlab_error error;
     impactlab_scenario *scenario = opened(first_impact), *again;
     char *yaml, text[64];
@@ -602,24 +568,4 @@ static void scenarios_are_written_and_read(void **state)
     impactlab_text_free(yaml);
     impactlab_scenario_destroy(scenario);
     impactlab_scenario_destroy(again);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_are_read_in_place),
-        cmocka_unit_test(predictions_and_modes),
-        cmocka_unit_test(mistakes_are_told),
-        cmocka_unit_test(files_with_faults_are_refused),
-        cmocka_unit_test(a_stepped_run_is_the_run),
-        cmocka_unit_test(the_printed_arm_stops_at_its_rows),
-        cmocka_unit_test(commands_come_from_outside),
-        cmocka_unit_test(states_come_back),
-        cmocka_unit_test(a_process_goes_on_from_a_state),
-        cmocka_unit_test(inputs_act_at_once),
-        cmocka_unit_test(texts_act_at_once),
-        cmocka_unit_test(batches_are_runs),
-        cmocka_unit_test(scenarios_are_written_and_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

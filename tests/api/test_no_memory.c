@@ -10,9 +10,8 @@ static status call_library(const char *ignored, FILE *out)
     return call_everything(out) == 0 ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-static void every_call_says_that_it_was_refused(void **state)
+TEST(every_call_says_that_it_was_refused)
 {
-    (void)state;
     try_all(call_library, "");
 }
 
@@ -21,6 +20,5 @@ int main(int count, char **arguments)
 {
     (void)arguments;
     everywhere = count > 1;
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_call_says_that_it_was_refused)};
-    return cmocka_run_group_tests(tests, use_refusing_allocators, NULL) != 0;
+    return run_cases(use_refusing_allocators, NULL);
 }

@@ -29,8 +29,7 @@ static passage pass(const parameters *p, double angle, double velocity, double a
 {
     const double began = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     passage o = {0};
-    arm a;
-    arm_init(&a, p);
+    arm a = arm_of(p);
     motion *m = motion_create(&a, &p->method);
     if (m == NULL) {
         give_up("out of memory");
