@@ -82,7 +82,7 @@ KERNEL void derivatives_of(coefficients x, int count, real t, real u, real resul
 
 // Value and first derivative, by the operations of value_and_slope_at (taylor_polynomial.h): terms
 // in pairs, the pairs by turns.
-KERNEL void glance_of(coefficients x, int count, real t, double *value, double *slope)
+KERNEL void value_slope_of(coefficients x, int count, real t, double *value, double *slope)
 {
     const real u = t * t, v = u * u;
     real even[2] = {(real){0}, (real){0}}, odd[2] = {(real){0}, (real){0}};
@@ -296,7 +296,7 @@ void PIECES(const double *block, int order, int count, taylor_pieces *pieces)
     const real width = lanes_at(pieces->width);
     const coefficients force = from((coefficients){block, false}, AT_FORCE);
     for (int i = 0; i < count; i++) {
-        glance_of(force, order, (i + 1) * width, pieces->force[i], pieces->slope[i]);
+        value_slope_of(force, order, (i + 1) * width, pieces->force[i], pieces->slope[i]);
     }
 }
 #endif

@@ -3,7 +3,7 @@
 
 #include "src/engines/pair/taylor_enclosure.h"
 
-enum { MOST_LOOKS = 6 }; // of Newton's method
+enum { MOST_ITERATIONS = 6 }; // of Newton's method
 
 // A function over strides of length t, positive times its sign at first: what it stays above in
 // the first piece, and whether it has jumped there.
@@ -45,7 +45,7 @@ KERNEL fall first_zero_crossing(const enclosed_function *f)
 }
 
 // Value and slope.
-KERNEL void look_at(const enclosed_function *f, real t, real *value, real *slope)
+KERNEL void value_slope_at(const enclosed_function *f, real t, real *value, real *slope)
 {
     const real zero = (real){0}, u = t * t;
     const int pairs = f->count - f->count % 2;
@@ -78,9 +78,9 @@ static __attribute__((noinline)) real first_root(const enclosed_function *f)
     const real resolution = 1e-16 + 2e-16 * to;
     real t = in.from + in.length * (in.above / (in.above - in.below));
     mask open = in.there;
-    for (int i = 0; i < MOST_LOOKS && any(open); i++) {
+    for (int i = 0; i < MOST_ITERATIONS && any(open); i++) {
         real value, slope;
-        look_at(f, t, &value, &slope);
+        value_slope_at(f, t, &value, &slope);
         const real step = value / slope, next = t - step, way = next - in.from;
         const mask within = MASK(next > in.from) & MASK(next < to) & MASK(slope < 0);
         const mask settled = MASK(curvature * step * step <= resolution * magnitude(slope));
