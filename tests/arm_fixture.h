@@ -10,16 +10,14 @@
 static inline parameters fixture_parameters(const char *const *settings)
 {
     parameters p;
-    fault f;
     parameters_defaults(&p, ARM_CORRECTED);
     for (int i = 0; settings != NULL && settings[i] != NULL; i++) {
         char path[64];
         const char *equals = strchr(settings[i], '=');
         snprintf(path, sizeof path, "%.*s", (int)(equals - settings[i]), settings[i]);
-        fail_if(parameter_set_text(&p, parameter_find(path), equals + 1, &f) != STATUS_OK, "%s",
-                f.text);
+        DONE(parameter_set_text(&p, parameter_find(path), equals + 1, &f));
     }
-    fail_if(parameters_resolve(&p, &f) != STATUS_OK, "%s", f.text);
+    DONE(parameters_resolve(&p, &f));
     return p;
 }
 

@@ -69,6 +69,13 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
         }                                                                                          \
     } while (0)
 
+// The call is done; else the test fails with the sentence that it writes to `f`.
+#define DONE(...)                                                                                  \
+    do {                                                                                           \
+        fault f = {0};                                                                             \
+        fail_if((__VA_ARGS__) != STATUS_OK, "%s: %s", #__VA_ARGS__, f.text);                       \
+    } while (0)
+
 // A variable that is given back when its block is left, and must be whole by then:
 // SCOPED(run_finish) run_result r;
 #define SCOPED(finish) __attribute__((cleanup(finish)))

@@ -9,9 +9,8 @@
 static inline void open_explorer(explorer *ex, const char *name)
 {
     scenario s;
-    fault f = {0};
     assert_int_equal(scenario_open(&s, name, fail_on_fault, NULL), STATUS_OK);
-    fail_if(explorer_init(ex, &s, HUGE_VAL, &f) != STATUS_OK, "%s", f.text);
+    DONE(explorer_init(ex, &s, HUGE_VAL, &f));
 }
 
 // The same for as long as its block.

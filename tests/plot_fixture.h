@@ -59,10 +59,9 @@ static inline void synthetic_init(synthetic *s, const trace_panel *panels, int c
 {
     static const double impulses[] = {0.044, 0.009, 0.0021};
     static const double times[] = {0.31, 0.45, 0.52};
-    fault f = {0};
     memset(s, 0, sizeof *s);
     parameters_defaults(&s->scenario.parameters, ARM_PRINTED);
-    assert_int_equal(parameters_resolve(&s->scenario.parameters, &f), STATUS_OK);
+    DONE(parameters_resolve(&s->scenario.parameters, &f));
     s->scenario.name = (char *)"synthetic";
     s->scenario.title = (char *)"Synthetic run & <more>";
     trace_init(&s->result.trace, 3);
@@ -89,7 +88,7 @@ static inline void synthetic_init(synthetic *s, const trace_panel *panels, int c
     s->result.summary.first_pulse_time_to_peak_s = 0.035;
     s->result.summary.first_pulse_peak_N = 2.1;
     const trace_run run = {&s->scenario, &s->result, NULL};
-    assert_int_equal(trace_figure_init(&s->figure, NULL, panels, count, &run, 1, &f), STATUS_OK);
+    DONE(trace_figure_init(&s->figure, NULL, panels, count, &run, 1, &f));
 }
 
 static inline void synthetic_finish(synthetic *s)
@@ -193,14 +192,13 @@ static inline void expect_tidy(const figure *fig)
 // The whole figure as pixels, `scale` to a point.
 static inline cairo_surface_t *paint_pixels(const figure *fig, double scale, figure_report *report)
 {
-    fault f = {0};
     double width, height;
     figure_size(fig, &width, &height);
     cairo_surface_t *surface = cairo_image_surface_create(
         CAIRO_FORMAT_RGB24, (int)ceil(width * scale), (int)ceil(height * scale));
     cairo_surface_set_device_scale(surface, scale, scale);
     cairo_t *cr = cairo_create(surface);
-    assert_int_equal(figure_paint(cr, fig, report, &f), STATUS_OK);
+    DONE(figure_paint(cr, fig, report, &f));
     cairo_destroy(cr);
     cairo_surface_flush(surface);
     return surface;
@@ -269,8 +267,7 @@ static inline void expect_same_bytes(const char *a, const char *b)
 
 static inline void write_figure(const figure *fig, const char *path)
 {
-    fault f = {0};
-    fail_if(figure_write(fig, path, &f) != STATUS_OK, "%s", f.text);
+    DONE(figure_write(fig, path, &f));
 }
 
 // ---- a folder for files

@@ -27,10 +27,8 @@
 // be refused, and no other for where it starts.
 #include <time.h>
 
-#include "src/arm/chain.h"
 #include "src/base/random.h"
 #include "tests/arm_fixture.h"
-#include "tests/chain_outcome.h"
 #include "tests/explicit_stepper.h"
 #include "tests/reference/implicit_arm.h"
 

@@ -61,13 +61,12 @@ static inline cairo_surface_t *scene_picture_of(const recorded *r, scene_options
                                                 const double *times, int count)
 {
     scene *sc;
-    fault f = {0};
     options.width = options.width ? options.width : WIDTH;
     options.height = options.height ? options.height : HEIGHT;
-    fail_if(scene_create(&sc, &r->scenario, &r->result, &options, &f) != STATUS_OK, "%s", f.text);
+    DONE(scene_create(&sc, &r->scenario, &r->result, &options, &f));
     cairo_surface_t *surface =
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, options.width, options.height);
-    assert_int_equal(scene_paint(sc, times, count, surface, &f), STATUS_OK);
+    DONE(scene_paint(sc, times, count, surface, &f));
     scene_destroy(sc);
     cairo_surface_flush(surface);
     return surface;

@@ -14,9 +14,8 @@ static inline void fail_on_fault(void *context, const char *sentence)
 static inline void open_session(session *s, const char *name)
 {
     scenario base;
-    fault f = {0};
     assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
-    assert_int_equal(session_open(s, &base, HUGE_VAL, &f), STATUS_OK);
+    DONE(session_open(s, &base, HUGE_VAL, &f));
 }
 
 // The same for as long as its block.

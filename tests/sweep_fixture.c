@@ -45,15 +45,13 @@ status sweep_of(sweep *s, sweep_sampling sampling, size_t runs, uint64_t seed, f
 
 void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a, const char *b)
 {
-    fault f = {0};
-    fail_if(sweep_of(s, sampling, runs, 1, &f, a, b) != STATUS_OK, "%s", f.text);
+    DONE(sweep_of(s, sampling, runs, 1, &f, a, b));
 }
 
 sweep_store *must_open(const char *path, const sweep *s)
 {
     sweep_store *store;
-    fault f = {0};
-    fail_if(sweep_store_open(&store, path, s, &f) != STATUS_OK, "%s", f.text);
+    DONE(sweep_store_open(&store, path, s, &f));
     return store;
 }
 
@@ -61,10 +59,9 @@ char *csv_of(sweep_store *store)
 {
     char *text;
     size_t size;
-    fault f = {0};
     FILE *stream = open_memstream(&text, &size);
     assert_non_null(stream);
-    assert_int_equal(sweep_store_csv(store, stream, &f), STATUS_OK);
+    DONE(sweep_store_csv(store, stream, &f));
     fclose(stream);
     return text;
 }
@@ -72,9 +69,8 @@ char *csv_of(sweep_store *store)
 sweep_progress must_run(const sweep *s, sweep_store *store, int jobs)
 {
     sweep_progress progress;
-    fault f = {0};
     sweep_options options = {.jobs = jobs};
-    fail_if(sweep_run(s, store, &options, &progress, &f) != STATUS_OK, "%s", f.text);
+    DONE(sweep_run(s, store, &options, &progress, &f));
     return progress;
 }
 

@@ -16,9 +16,8 @@ static cairo_surface_t *paint(const figure *fig)
     cairo_surface_t *image =
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
     cairo_t *cr = cairo_create(image);
-    fault f;
     cairo_scale(cr, SCALE, SCALE);
-    fail_if(figure_paint(cr, fig, NULL, &f) != STATUS_OK, "%s", f.text);
+    DONE(figure_paint(cr, fig, NULL, &f));
     cairo_destroy(cr);
     cairo_surface_flush(image);
     return image;

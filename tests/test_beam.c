@@ -1,7 +1,5 @@
 // The chain with the beam's own root against the Euler-Bernoulli beam: order two in 1/N.
-#include "src/arm/chain.h"
 #include "src/arm/modes.h"
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

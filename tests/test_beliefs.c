@@ -1,5 +1,4 @@
 // The parameters that a controller is told: the true ones, changed by belief.* of the scenario.
-#include "src/arm/motor.h"
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 
@@ -7,10 +6,9 @@
 static controller_setup told(const char *const *settings)
 {
     rig *r = NULL;
-    fault f;
     parameters p = rig_parameters(settings);
     p.control.law = LAW_HYBRID;
-    fail_if(rig_create(&r, &p, NULL, &f) != STATUS_OK, "%s", f.text);
+    DONE(rig_create(&r, &p, NULL, &f));
     controller_setup setup = *(const controller_setup *)r->memory; // it stands first
     rig_destroy(r);
     return setup;

@@ -27,9 +27,8 @@ TEST(median_and_extremes_leave_out_the_first)
 {
     const benchmark b = {"name", "us", false, count_up, "", 0};
     bench_result r;
-    fault f;
     calls = 0;
-    assert_int_equal(bench_run(&b, &r, &f), STATUS_OK);
+    DONE(bench_run(&b, &r, &f));
     assert_int_equal(calls, BENCH_REPETITIONS + 1);
     check_close(r.min, 1, 0);
     check_close(r.max, BENCH_REPETITIONS, 0);
@@ -83,8 +82,7 @@ TEST(what_is_written_is_read_back)
     make_file(path, text);
     bench_result *read;
     int count;
-    fault f;
-    assert_int_equal(bench_read(path, &read, &count, &f), STATUS_OK);
+    DONE(bench_read(path, &read, &count, &f));
     assert_int_equal(count, 2);
     for (int i = 0; i < 2; i++) {
         assert_string_equal(read[i].name, written[i].name);

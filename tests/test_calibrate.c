@@ -7,10 +7,9 @@ enum { COMMANDS = 4 };
 
 static calibration calibrated(const char *const *settings)
 {
-    fault f;
     calibration c;
     scenario s = {.parameters = rig_parameters(settings)};
-    fail_if(calibrate(&s, commands, COMMANDS, NULL, &c, &f) != STATUS_OK, "%s", f.text);
+    DONE(calibrate(&s, commands, COMMANDS, NULL, &c, &f));
     assert_int_equal(c.count, COMMANDS);
     return c;
 }
@@ -18,10 +17,9 @@ static calibration calibrated(const char *const *settings)
 // "control.k2_table=..." as --set takes it.
 static void table_setting(const calibration *c, char *text, size_t size)
 {
-    fault f;
     k2_table t;
     size_t length = (size_t)snprintf(text, size, "control.k2_table=");
-    fail_if(calibration_table(c, &t, &f) != STATUS_OK, "%s", f.text);
+    DONE(calibration_table(c, &t, &f));
     assert_true(k2_table_write(&t, text + length, size - length));
 }
 

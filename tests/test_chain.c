@@ -1,5 +1,4 @@
 // The O(N) chain against dense matrices written from the Lagrangian.
-#include "src/arm/chain.h"
 #include "tests/arm_fixture.h"
 
 enum { LARGEST = 12 };

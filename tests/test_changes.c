@@ -387,10 +387,9 @@ TEST(test_an_interrupt_stops_a_computation_first)
 {
     SCOPED(explorer_finish) explorer ex;
     scenario s;
-    fault f = {0};
     assert_int_equal(scenario_open(&s, "corrected/twenty-links", fail_on_fault, NULL), STATUS_OK);
-    assert_int_equal(scenario_override(&s, "run.duration=20", &f), STATUS_OK);
-    assert_int_equal(explorer_init(&ex, &s, 0, &f), STATUS_OK);
+    DONE(scenario_override(&s, "run.duration=20", &f));
+    DONE(explorer_init(&ex, &s, 0, &f));
     assert_non_null(ex.state.session.computing);
     press(&ex, "<C-c>");
     assert_null(ex.state.session.computing);

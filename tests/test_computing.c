@@ -75,10 +75,9 @@ TEST(a_sweep_is_computed_into_rows_of_any_kind)
     // all runs, and then none
     SCOPED(sweep_finish) sweep s;
     sweep_progress progress;
-    fault f = {.text = ""};
-    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
+    DONE(sweep_init(&s, &base, &request, &f));
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(sweep_run(&s, &r.store, &options, &progress, &f), STATUS_OK);
+        DONE(sweep_run(&s, &r.store, &options, &progress, &f));
         assert_int_equal(progress.done, RUNS);
         assert_int_equal(progress.done_now, i == 0 ? RUNS : 0);
         assert_int_equal(r.committed, RUNS);
@@ -86,7 +85,7 @@ TEST(a_sweep_is_computed_into_rows_of_any_kind)
 
     // which can be judged
     SCOPED(robust_law_finish) robust_law law;
-    assert_int_equal(robust_law_of(&law, "hybrid", &s, (sweep_share){0}, &r.store, &f), STATUS_OK);
+    DONE(robust_law_of(&law, "hybrid", &s, (sweep_share){0}, &r.store, &f));
     assert_int_equal(law.runs, RUNS);
     assert_true(isfinite(law.raw[ROBUST_MEDIAN]));
 }

@@ -1,11 +1,8 @@
 // Transitions of the contact machine on one rod, taken one by one: what each event does to the
 // state, and what the state is found to be afterwards. Whole runs are in test_motion.c.
-
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 #include "tests/explicit_stepper.h"
-
-#include "src/contact/contact_machine.h"
 
 // A rod on its hub with its motion.
 typedef struct moving_rod {

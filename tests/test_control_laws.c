@@ -11,10 +11,9 @@ TEST(every_word_chooses_the_controller_of_that_name)
     const int index = PARAMETER_INDEX(control.law);
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
         parameters p;
-        fault f;
         parameters_defaults(&p, ARM_CORRECTED);
         const char *word = control_law_table[law].word;
-        assert_int_equal(parameter_set_text(&p, index, word, &f), STATUS_OK);
+        DONE(parameter_set_text(&p, index, word, &f));
         assert_int_equal(p.control.law, law);
         const controller *c = controller_of(law);
         assert_true((c == NULL) == (law == LAW_NONE || law == LAW_PLUGIN || law == LAW_PROCESS));
@@ -52,9 +51,8 @@ TEST(parameters_of_the_scenario_are_described_there_alone)
 static double value_of(int index, const char *const *settings)
 {
     double values[16];
-    fault f;
     parameters p = rig_parameters(settings);
-    assert_int_equal(controller_values(controller_of(LAW_HYBRID), &p, values, &f), STATUS_OK);
+    DONE(controller_values(controller_of(LAW_HYBRID), &p, values, &f));
     return values[index];
 }
 

@@ -67,8 +67,7 @@ static void *kept(const run_loop *l)
 
 static sample gone_to(run_loop *l, double time)
 {
-    fault f = {.text = ""};
-    fail_if(loop_until(l, time, &f) != STATUS_OK, "%s", f.text);
+    DONE(loop_until(l, time, &f));
     return loop_row(l);
 }
 
@@ -79,8 +78,7 @@ TEST(a_program_is_led_back_and_on)
     const scenario s = under(ANSWERS);
     const loop_options options = {.keep_trace = false};
     SCOPED(loop_destroy_kept) run_loop *l;
-    fault f = {.text = ""};
-    assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
+    DONE(loop_create(&l, &s, &options, &f));
     const size_t size = loop_saved_size(l);
     (void)gone_to(l, 0.055);
     SCOPED(free_kept) void *early = kept(l);
@@ -89,10 +87,10 @@ TEST(a_program_is_led_back_and_on)
     const sample end = gone_to(l, 0.155);
 
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(loop_restore(l, early, size, &f), STATUS_OK);
+        DONE(loop_restore(l, early, size, &f));
         const sample again = gone_to(l, i == 0 ? 0.105 : 0.065);
         assert_true(i == 1 || memcmp(&again, &middle, sizeof again) == 0);
-        assert_int_equal(loop_restore(l, late, size, &f), STATUS_OK);
+        DONE(loop_restore(l, late, size, &f));
         const sample there = gone_to(l, 0.155);
         assert_memory_equal(&there, &end, sizeof there);
     }

@@ -31,8 +31,7 @@ static convergence_panel panel_of(const char *const *settings)
     static char name[] = "test";
     scenario s = {.name = name, .parameters = fixture_parameters(settings)};
     convergence_panel panel;
-    fault f = {0};
-    fail_if(convergence_compute(&s, NULL, &panel, &f) != STATUS_OK, "%s", f.text);
+    DONE(convergence_compute(&s, NULL, &panel, &f));
     return panel;
 }
 
@@ -243,8 +242,7 @@ TEST(a_study_runs_each_method_at_each_step_once)
                       fixture_parameters(SETTINGS("run.duration=0.1", "wall.angle=0",
                                                   "initial.angle=-1e-4", "motor.voltage=1"))};
     run_monitor monitor = {0};
-    fault f = {0};
-    assert_int_equal(method_study_compute(&s, &monitor, &both.study, &f), STATUS_OK);
+    DONE(method_study_compute(&s, &monitor, &both.study, &f));
     assert_int_equal(atomic_load(&monitor.pieces), STUDY_RUNS);
     assert_memory_equal(&both.untouched, &none, sizeof none);
     for (int m = 0; m < STUDY_METHODS; m++) {
@@ -258,9 +256,8 @@ TEST(a_study_runs_each_method_at_each_step_once)
     for (int m = 0; m < STUDY_METHODS; m++) {
         for (int i = 0; i < STUDY_STEPS; i += 4) {
             const study_point *point = &both.study.points[m][i];
-            assert_int_equal(parameter_set_text(&s.parameters, PARAMETER_INDEX(method.name),
-                                                study_methods[m], &f),
-                             STATUS_OK);
+            DONE(parameter_set_text(&s.parameters, PARAMETER_INDEX(method.name), study_methods[m],
+                                    &f));
             s.parameters.method.step = point->step;
             SCOPED(run_finish) run_result result;
             assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);

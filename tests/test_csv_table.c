@@ -27,13 +27,11 @@ static status read_table(csv_table *t, const char *text, size_t least, fault *f)
 TEST(columns_are_found_by_name_and_converted)
 {
     SCOPED(csv_table_finish) csv_table t;
-    fault f;
     double *values;
-    assert_int_equal(read_table(&t,
-                                "\xEF\xBB\xBF\"t\" [ms],speed[rpm],\"a, \"\"b\"\"[V]\",plain\r\n"
-                                "0, 60 ,1,2\r\n\n500,30,-1e3,3",
-                                2, &f),
-                     STATUS_OK);
+    DONE(read_table(&t,
+                    "\xEF\xBB\xBF\"t\" [ms],speed[rpm],\"a, \"\"b\"\"[V]\",plain\r\n"
+                    "0, 60 ,1,2\r\n\n500,30,-1e3,3",
+                    2, &f));
     assert_int_equal(t.rows, 2);
     assert_int_equal(t.lines[1], 4);
     const struct {
@@ -46,8 +44,7 @@ TEST(columns_are_found_by_name_and_converted)
                  {"plain[mV]", "V", 2e-3, 3e-3},
                  {"plain", "N", 2, 3}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        assert_int_equal(csv_table_numbers(&t, cases[i].heading, cases[i].unit, &values, &f),
-                         STATUS_OK);
+        DONE(csv_table_numbers(&t, cases[i].heading, cases[i].unit, &values, &f));
         check_close(values[0], cases[i].first, 1e-15);
         check_close(values[1], cases[i].second, 1e-15);
         free(values);

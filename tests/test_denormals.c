@@ -1,6 +1,5 @@
 // An arm that dies away comes to rest: velocities, bends and accelerations become exactly zero
 // instead of fading through denormal numbers, on which processors compute slowly.
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

@@ -3,8 +3,6 @@
 
 #include <unistd.h>
 
-#include "src/base/random.h"
-
 TEST(test_text_is_cut_and_cleaned)
 {
     SCOPED(screen_finish) screen s = {0};
@@ -329,10 +327,9 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
     explorer ex;
     SCOPED(explorer_finish) explorer patient;
     scenario s;
-    fault f = {0};
     assert_int_equal(scenario_open(&s, "corrected/twenty-links", fail_on_fault, NULL), STATUS_OK);
-    assert_int_equal(scenario_override(&s, "run.duration=20", &f), STATUS_OK);
-    assert_int_equal(explorer_init(&ex, &s, 0, &f), STATUS_OK);
+    DONE(scenario_override(&s, "run.duration=20", &f));
+    DONE(explorer_init(&ex, &s, 0, &f));
     assert_shows(&ex, "computing");
     assert_shows(&ex, "of 20 s (Esc stops)");
     press(&ex, ":save never-written.csv<Enter>");

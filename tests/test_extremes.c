@@ -144,16 +144,15 @@ TEST(runs_without_an_end_are_abandoned_and_not_stored)
     const sweep_request request = {.vary = vary, .vary_count = 1};
     const sweep_options options = {
         .jobs = 2, .stop = &stop, .abandon = &abandoned, .report = give_up};
-    fault f = {0};
     SCOPED(scenario_finish) scenario base;
     SCOPED(sweep_finish) sweep s;
     SCOPED(sweep_store_close_kept) sweep_store *store;
     sweep_progress progress;
     read_scenario(&base, text);
-    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
-    assert_int_equal(sweep_store_open(&store, NULL, &s, &f), STATUS_OK);
+    DONE(sweep_init(&s, &base, &request, &f));
+    DONE(sweep_store_open(&store, NULL, &s, &f));
 
-    assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_OK);
+    DONE(sweep_run(&s, store, &options, &progress, &f));
     assert_int_equal(progress.total, 3);
     assert_int_equal(progress.done, 0);
     assert_int_equal(progress.failed, 0);

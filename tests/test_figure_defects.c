@@ -10,12 +10,10 @@ TEST(the_last_of_twenty_links_is_body_21)
     static figure_report r;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    fault f = {0};
     const trace_run run = {&s.scenario, &s.result, NULL};
     trace_figure_finish(&s.figure);
     s.scenario.parameters.arm.links = 20;
-    assert_int_equal(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f),
-                     STATUS_OK);
+    DONE(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f));
     record(&s.figure.figure, &r);
     expect_text(&r, "\u03b821  last link");
     assert_false(has_text(&r, "\u03b83  last link"));
@@ -24,15 +22,13 @@ TEST(the_last_of_twenty_links_is_body_21)
 // The peak lies between two rows: the mark's force must be among the drawn.
 TEST(the_peak_is_on_the_curve)
 {
-    fault f = {0};
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     const trace_run run = {&s.scenario, &s.result, NULL};
     trace_figure_finish(&s.figure);
     s.result.summary.first_pulse_peak_N = 2.125;
     s.result.summary.first_pulse_time_to_peak_s = 0.0354;
-    assert_int_equal(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f),
-                     STATUS_OK);
+    DONE(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f));
     const figure_series *force = &s.figure.panels[0].series[0];
     bool found = false;
     double before = -1;
@@ -333,7 +329,6 @@ TEST(a_map_without_colours_is_grey)
 // The CSV of a figure is headed by the axes' names and units.
 TEST(numbers_have_names_and_units)
 {
-    fault f = {0};
     size_t length;
     double x[] = {0, 1};
     figure_series series = {.name = "run", .x = x, .y = x, .count = 2};
@@ -341,12 +336,12 @@ TEST(numbers_have_names_and_units)
         {.y = {.name = "force", .unit = "N"}, .series = &series, .series_count = 1},
         {.y = {.name = "angle", .unit = "rad"}, .series = &series, .series_count = 1}};
     figure fig = {.x = {.name = "time", .unit = "s"}, .panels = panels, .panel_count = 1};
-    assert_int_equal(figure_write_csv(&fig, path_of("one.csv"), &f), STATUS_OK);
+    DONE(figure_write_csv(&fig, path_of("one.csv"), &f));
     char *csv = read_file(path_of("one.csv"), &length);
     assert_ptr_equal(strstr(csv, "panel,series,time[s],force[N]\n"), csv);
     free(csv);
     fig.panel_count = 2;
-    assert_int_equal(figure_write_csv(&fig, path_of("two.csv"), &f), STATUS_OK);
+    DONE(figure_write_csv(&fig, path_of("two.csv"), &f));
     csv = read_file(path_of("two.csv"), &length);
     assert_ptr_equal(strstr(csv, "panel,series,time[s],value\n"), csv);
     assert_non_null(strstr(csv, "\nangle[rad],run,1,1\n"));
@@ -410,8 +405,7 @@ static cairo_surface_t *paint_sweep(const char *one, const char *other, figure_r
     parameters_defaults(&base.parameters, ARM_CORRECTED);
     sweep_request request = {.vary = vary, .vary_count = other != NULL ? 2 : 1};
     SCOPED(sweep_finish) sweep s;
-    fault f = {0};
-    fail_if(sweep_init(&s, &base, &request, &f) != STATUS_OK, "%s", f.text);
+    DONE(sweep_init(&s, &base, &request, &f));
     double values[64];
     assert_true(s.run_count <= 64);
     for (size_t i = 0; i < s.run_count; i++) {

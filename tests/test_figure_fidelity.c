@@ -82,11 +82,10 @@ TEST(chapters_2_and_3_have_one_time_axis)
     static const char *const ids[] = {"2.4", "2.5", "2.6", "3.2"};
     for (size_t i = 0; i < G_N_ELEMENTS(ids); i++) {
         static figure_report r;
-        fault f = {0};
         artwork drawn = open_figure(ids[i]);
         cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR, NULL);
         cairo_t *cr = cairo_create(surface);
-        assert_int_equal(drawn.paint(cr, drawn.what, &r, &f), STATUS_OK);
+        DONE(drawn.paint(cr, drawn.what, &r, &f));
         cairo_destroy(cr);
         cairo_surface_destroy(surface);
         artwork_finish(&drawn);

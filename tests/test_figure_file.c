@@ -144,9 +144,8 @@ TEST(csv_holds_what_is_drawn)
                           .impulse_unit = "N s"};
     figure_mark mark = {0.1, "<i>contact</i>"};
     figure fig = {.panels = &panel, .panel_count = 1, .marks = &mark, .mark_count = 1};
-    fault f = {0};
     size_t length;
-    assert_int_equal(figure_write_csv(&fig, path_of("data.csv"), &f), STATUS_OK);
+    DONE(figure_write_csv(&fig, path_of("data.csv"), &f));
     SCOPED(free_kept) char *csv = read_file(path_of("data.csv"), &length);
     assert_string_equal(csv, "panel,series,x,value\n"
                              "force[N],\"force, \"\"raw\"\"\",0,1\n"

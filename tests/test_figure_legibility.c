@@ -136,12 +136,11 @@ static artwork open_figure(int i, figure_options o)
 
 static cairo_surface_t *pixels_of(const artwork *a, figure_report *report)
 {
-    fault f = {0};
     cairo_surface_t *surface = cairo_image_surface_create(
         CAIRO_FORMAT_RGB24, (int)ceil(a->width * SCALE), (int)ceil(a->height * SCALE));
     cairo_surface_set_device_scale(surface, SCALE, SCALE);
     cairo_t *cr = cairo_create(surface);
-    assert_int_equal(a->paint(cr, a->what, report, &f), STATUS_OK);
+    DONE(a->paint(cr, a->what, report, &f));
     cairo_destroy(cr);
     cairo_surface_flush(surface);
     return surface;
@@ -257,11 +256,10 @@ static void check_texts(const artwork *a, const char *id, double width)
 // Nothing leaves the page, no text covers another, none is smaller than can be read.
 static void check_page(const artwork *a, const figure_report *r, const char *id, double width)
 {
-    fault f = {0};
     figure_rect ink, page = {0, 0, a->width, a->height};
     cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
     cairo_t *cr = cairo_create(surface);
-    assert_int_equal(a->paint(cr, a->what, NULL, &f), STATUS_OK);
+    DONE(a->paint(cr, a->what, NULL, &f));
     cairo_recording_surface_ink_extents(surface, &ink.x, &ink.y, &ink.width, &ink.height);
     cairo_destroy(cr);
     cairo_surface_destroy(surface);
@@ -315,14 +313,13 @@ static void recolour(recoloured *out, const figure *fig, int shift)
 
 static cairo_surface_t *pixels_of_plot(const figure *fig, figure_report *report)
 {
-    fault f = {0};
     double width, height;
     figure_size(fig, &width, &height);
     cairo_surface_t *surface = cairo_image_surface_create(
         CAIRO_FORMAT_RGB24, (int)ceil(width * SCALE), (int)ceil(height * SCALE));
     cairo_surface_set_device_scale(surface, SCALE, SCALE);
     cairo_t *cr = cairo_create(surface);
-    assert_int_equal(figure_paint(cr, fig, report, &f), STATUS_OK);
+    DONE(figure_paint(cr, fig, report, &f));
     cairo_destroy(cr);
     cairo_surface_flush(surface);
     return surface;

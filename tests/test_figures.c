@@ -141,12 +141,11 @@ TEST(the_predictors_figures_have_the_legends_colours)
 {
     static const char *const ids[] = {"4.4", "4.5"};
     for (int k = 0; k < 2; k++) {
-        fault f = {0};
         SCOPED(artwork_finish) artwork drawn = open_figure(ids[k], (figure_options){0});
         int width = (int)drawn.width, height = (int)drawn.height, blue = 0;
         cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
         cairo_t *cr = cairo_create(surface);
-        assert_int_equal(drawn.paint(cr, drawn.what, NULL, &f), STATUS_OK);
+        DONE(drawn.paint(cr, drawn.what, NULL, &f));
         cairo_destroy(cr);
         cairo_surface_flush(surface);
         const unsigned char *bytes = cairo_image_surface_get_data(surface);
@@ -315,12 +314,11 @@ TEST(a_second_run_writes_the_same_bytes)
 {
     static const char *const ids[] = {"2.3", "4.2", "4.6", "5.7", "T4.2"};
     static const char *const folders[] = {"once", "twice"};
-    fault f = {0};
     for (int pass = 0; pass < 2; pass++) {
         // in another order, so that nothing drawn before shows
         for (int i = 0; i < 5; i++) {
             const char *id = ids[pass == 0 ? i : 4 - i];
-            assert_int_equal(draw_plain(id, path_of(folders[pass]), "png,pdf,svg", &f), STATUS_OK);
+            DONE(draw_plain(id, path_of(folders[pass]), "png,pdf,svg", &f));
         }
     }
     for (int i = 0; i < 5; i++) {
@@ -336,11 +334,10 @@ TEST(a_second_run_writes_the_same_bytes)
 TEST(fonts_are_embedded_as_outlines)
 {
     static const char *const ids[] = {"2.1", "T3.2", "4.4"};
-    fault f = {0};
     for (size_t i = 0; i < 3; i++) {
         size_t length;
         char name[64];
-        assert_int_equal(draw_plain(ids[i], path_of("fonts"), "pdf", &f), STATUS_OK);
+        DONE(draw_plain(ids[i], path_of("fonts"), "pdf", &f));
         snprintf(name, sizeof name, "fonts/%s.pdf", thesis_figure_find(ids[i])->file);
         SCOPED(free_kept) char *pdf = read_file(path_of(name), &length);
         assert_null(memmem(pdf, length, "/Type3", 6));
@@ -351,7 +348,6 @@ TEST(fonts_are_embedded_as_outlines)
 TEST(themes_change_the_page)
 {
     static const char *const ids[] = {"3.4", "4.1", "T2.1"};
-    fault f = {0};
     for (size_t i = 0; i < 3; i++) {
         for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
             SCOPED(artwork_finish)
@@ -359,7 +355,7 @@ TEST(themes_change_the_page)
             cairo_surface_t *surface =
                 cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)drawn.width, 40);
             cairo_t *cr = cairo_create(surface);
-            assert_int_equal(drawn.paint(cr, drawn.what, NULL, &f), STATUS_OK);
+            DONE(drawn.paint(cr, drawn.what, NULL, &f));
             cairo_destroy(cr);
             cairo_surface_flush(surface);
             unsigned char corner = cairo_image_surface_get_data(surface)[4];
@@ -387,9 +383,8 @@ TEST(figures_are_asked_for_by_id)
 
 TEST(the_report_stands_alone)
 {
-    fault f = {0};
     size_t length;
-    fail_if(report_write(path_of("report"), NULL, 0, NULL, &f) != STATUS_OK, "%s", f.text);
+    DONE(report_write(path_of("report"), NULL, 0, NULL, &f));
     char *html = read_file(path_of("report/report.html"), &length);
     for (const char *at = strstr(html, "src="); at != NULL; at = strstr(at + 1, "src=")) {
         assert_int_equal(strncmp(at, "src=\"data:image/png;base64,", 27), 0);

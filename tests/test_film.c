@@ -131,11 +131,8 @@ TEST(test_threads)
     for (int k = 0; k < 2; k++) {
         for (int threads = 1; threads <= 2; threads++) {
             film_options options = small_film();
-            fault f = {0};
             options.threads = threads;
-            fail_if(film_write(runs, k == 0 ? 1 : 3, &options, in_folder(names[k][threads - 1]),
-                               &f) != STATUS_OK,
-                    "%s", f.text);
+            DONE(film_write(runs, k == 0 ? 1 : 3, &options, in_folder(names[k][threads - 1]), &f));
         }
         expect_same_frames(names[k][0], names[k][1], 5);
     }
@@ -151,8 +148,7 @@ TEST(test_split_screen)
     const film_run runs[2] = {{&r[0].scenario, &r[0].result, "one"},
                               {&r[1].scenario, &r[1].result, "two"}};
     film_options options = small_film();
-    fault f = {0};
-    fail_if(film_write(runs, 2, &options, in_folder("split"), &f) != STATUS_OK, "%s", f.text);
+    DONE(film_write(runs, 2, &options, in_folder("split"), &f));
     cairo_surface_t *frame =
         cairo_image_surface_create_from_png(in_folder("split/frame-00003.png"));
     assert_int_equal(cairo_image_surface_get_width(frame), 320);
@@ -196,8 +192,7 @@ TEST(test_one_scale_of_force)
     options.width = 640;
     options.height = 480;
     options.view.plain = true;
-    fault f = {0};
-    fail_if(film_write(runs, 2, &options, in_folder("scale"), &f) != STATUS_OK, "%s", f.text);
+    DONE(film_write(runs, 2, &options, in_folder("scale"), &f));
     cairo_surface_t *frame =
         cairo_image_surface_create_from_png(in_folder("scale/frame-00005.png"));
     const int one = arrow_of_view(frame, false), four = arrow_of_view(frame, true);
@@ -272,10 +267,9 @@ TEST(test_gif_as_asked)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
-    fault f = {0};
     char *old = with_encoder("#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
                              "printf 'GIF89a %s;' \"$*\" >\"${last#file:}\"\n");
-    fail_if(film_of(&r, &options, in_folder("asked.gif"), &f) != STATUS_OK, "%s", f.text);
+    DONE(film_of(&r, &options, in_folder("asked.gif"), &f));
     restore_encoder(old);
     char words[4096] = "";
     FILE *stream = fopen(in_folder("asked.gif"), "r");

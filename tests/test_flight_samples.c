@@ -1,11 +1,9 @@
 // Samples of the rig that are taken in flight while a step goes on: a loop from one to the next is
 // the run to the last bit, and what they read is what is read where every one of them ends a step,
 // with a piezo film, which these laws do not read, and in a loop that a program stops anywhere.
-
 #include "src/base/random.h"
 #include "src/run/loop.h"
 #include "src/study/batch.h"
-#include "tests/check.h"
 #include "tests/rig_fixture.h"
 
 GIVEN_BACK(run_loop, loop_destroy)
@@ -143,7 +141,6 @@ typedef enum looping {
 // Queries everything of a loop, continues it and restores it. It is then in its former state.
 static void ask_and_return(run_loop *l, random_generator *g, void *bytes)
 {
-    fault f;
     int freedoms;
     const sample row = loop_row(l);
     const double first = *loop_state(l, &freedoms);
@@ -151,28 +148,27 @@ static void ask_and_return(run_loop *l, random_generator *g, void *bytes)
     check_close(loop_summary(l).motor_work_J, row.motor_work, 0);
     loop_save(l, bytes);
     if (random_below(g, 2) == 0) {
-        assert_int_equal(loop_until(l, loop_time(l) + 0.03 * random_uniform(g), &f), STATUS_OK);
+        DONE(loop_until(l, loop_time(l) + 0.03 * random_uniform(g), &f));
     }
-    assert_int_equal(loop_restore(l, bytes, loop_saved_size(l), &f), STATUS_OK);
+    DONE(loop_restore(l, bytes, loop_saved_size(l), &f));
     const sample again = loop_row(l);
     assert_memory_equal(&row, &again, sizeof row);
 }
 
 static void go_on(run_loop *l, random_generator *g, looping how, void *bytes)
 {
-    fault f;
     if (how == LOOPING_ANYWHERE) {
         const double until = loop_time(l) + 0.03 * random_uniform(g);
-        assert_int_equal(loop_until(l, until, &f), STATUS_OK);
+        DONE(loop_until(l, until, &f));
         assert_true(loop_ended(l) || fabs(loop_time(l) - until) < SAME_TIME);
         return;
     }
-    assert_int_equal(loop_step(l, &f), STATUS_OK);
+    DONE(loop_step(l, &f));
     if (how == LOOPING_AT_SAMPLES && random_below(g, 4) == 0) {
         ask_and_return(l, g, bytes);
     }
     if (how == LOOPING_ENDED && !loop_ended(l)) { // an input, which changes nothing
-        assert_int_equal(loop_set_number(l, PARAMETER_INDEX(motor.voltage), 1, &f), STATUS_OK);
+        DONE(loop_set_number(l, PARAMETER_INDEX(motor.voltage), 1, &f));
     }
 }
 
@@ -230,8 +226,7 @@ static void check_loops(uint64_t seed, looping how)
 
         const loop_options options = {.keep_trace = true};
         SCOPED(loop_destroy_kept) run_loop *l;
-        fault f;
-        assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
+        DONE(loop_create(&l, &s, &options, &f));
         SCOPED(free_kept) void *bytes = malloc(loop_saved_size(l));
         assert_non_null(bytes);
         while (!loop_ended(l)) {

@@ -1,9 +1,6 @@
 // When a force has settled, and the largest mean over a window, on forces known in closed form.
-#include "tests/check.h"
-
 #include "src/base/random.h"
 #include "src/run/largest_mean.h"
-#include "src/run/run_result.h"
 #include "src/contact/contact_machine.h"
 #include "tests/rig_fixture.h"
 

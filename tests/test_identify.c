@@ -69,11 +69,10 @@ static scenario rig_scenario(const recording_made *r, const double *values, int 
 static void record(recording_made *r, const double *values, int seed, int links)
 {
     SCOPED(run_finish) run_result run;
-    fault f;
     scenario s = rig_scenario(r, values, seed);
     parameters p = s.parameters;
-    assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, &f), STATUS_OK);
-    assert_int_equal(scenario_take_parameters(&s, &p, &f), STATUS_OK);
+    DONE(parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, &f));
+    DONE(scenario_take_parameters(&s, &p, &f));
     assert_int_equal(run_scenario(&s, true, &run), STATUS_OK);
     snprintf(r->file, sizeof r->file, "/tmp/test_identify.XXXXXX");
     FILE *file = fdopen(mkstemp(r->file), "w");
@@ -92,20 +91,18 @@ static void record(recording_made *r, const double *values, int seed, int links)
 static void set_up(identification *id, const scenario *base, recording_made *made, int count,
                    int fitted)
 {
-    fault f = {.text = ""};
     *id = (identification){.base = base, .jobs = 2, .starts = 1};
     for (int i = 0; i < fitted; i++) {
-        assert_int_equal(identify_add_path(id, paths[i], &f), STATUS_OK);
+        DONE(identify_add_path(id, paths[i], &f));
     }
     for (int i = 0; i < count; i++) {
-        fail_if(identify_add_trace(id, made[i].file, NULL, 0, &f) != STATUS_OK, "%s", f.text);
+        DONE(identify_add_trace(id, made[i].file, NULL, 0, &f));
     }
 }
 
 static void fit(identification *id)
 {
-    fault f = {.text = ""};
-    fail_if(identify_fit(id, &f) != STATUS_OK, "%s", f.text);
+    DONE(identify_fit(id, &f));
 }
 
 // --- the bound --------------------------------------------------------------------------------
@@ -122,8 +119,7 @@ static void read_exactly(const recording_made *r, const double *values, double a
     s.parameters.sensor.tachometer_noise = s.parameters.sensor.fsr_noise = 0;
     const loop_options options = {.commanded = true};
     SCOPED(loop_destroy_kept) run_loop *loop;
-    fault f;
-    assert_int_equal(loop_create(&loop, &s, &options, &f), STATUS_OK);
+    DONE(loop_create(&loop, &s, &options, &f));
     for (int k = 0; k < SAMPLES - 1; k++) {
         sensor_reading now;
         assert_true(loop_sense(loop, &now));
@@ -131,7 +127,7 @@ static void read_exactly(const recording_made *r, const double *values, double a
         read[1][k] = now.tachometer;
         read[2][k] = fsr_volts(&s.parameters.sensor, now.force_reading);
         loop_command(loop, r->command[k]);
-        assert_int_equal(loop_step(loop, &f), STATUS_OK);
+        DONE(loop_step(loop, &f));
     }
     const summary sum = loop_summary(loop);
     *touch = sum.first_contact_s;
@@ -324,14 +320,13 @@ TEST(one_combination_is_named)
 {
     recording_made made = {.law = "open-loop", .angle = -2.9, .voltage = 3, .no_wall = true};
     char words[512];
-    fault f;
     const scenario base = rig_scenario(&made, NULL, 1);
     record(&made, truth, 1, 2);
     SCOPED(identify_finish) identification id = {.base = &base, .jobs = 1, .starts = 1};
     for (int i = 2; i < 5; i++) {
-        assert_int_equal(identify_add_path(&id, paths[i], &f), STATUS_OK);
+        DONE(identify_add_path(&id, paths[i], &f));
     }
-    assert_int_equal(identify_add_trace(&id, made.file, NULL, 0, &f), STATUS_OK);
+    DONE(identify_add_trace(&id, made.file, NULL, 0, &f));
     fit(&id);
     assert_int_equal(id.undetermined, 1);
     identify_words(&id, 0, words, sizeof words);
@@ -342,7 +337,7 @@ TEST(one_combination_is_named)
 
     // nothing of it is written
     parameters p;
-    assert_int_equal(identify_parameters(&id, true, &p, &f), STATUS_OK);
+    DONE(identify_parameters(&id, true, &p, &f));
     check_close(p.motor.torque_constant, base.parameters.motor.torque_constant, 0);
     unlink(made.file);
 }
@@ -383,10 +378,9 @@ TEST(another_trace_is_foretold)
     id.starts = 8;
     fit(&id);
     scenario fitted = base;
-    fault f;
     parameters p;
-    assert_int_equal(identify_parameters(&id, true, &p, &f), STATUS_OK);
-    assert_int_equal(scenario_take_parameters(&fitted, &p, &f), STATUS_OK);
+    DONE(identify_parameters(&id, true, &p, &f));
+    DONE(scenario_take_parameters(&fitted, &p, &f));
     set_up(&judged, &fitted, &other, 1, 0);
     fit(&judged);
     assert_true(judged.traces[0].contact_count > 0);

@@ -4,9 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "ui/explorer/panels/panel.h"
-#include "ui/explorer/explorer.h"
-
 TEST(test_a_key_gets_another_command)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");

@@ -62,11 +62,10 @@ TEST(a_forecast_knows_the_hubs_spring)
 static status run_with_change(const char *const *settings, const char *path, const char *text,
                               double time, run_result *r)
 {
-    fault f = {.text = ""};
     scenario s = {.parameters = rig_parameters(settings)};
     parameters p = s.parameters;
     const int index = parameter_index(path);
-    fail_if(parameter_set_text(&p, index, text, &f) != STATUS_OK, "%s", f.text);
+    DONE(parameter_set_text(&p, index, text, &f));
     action change = {
         .time = time, .kind = ACTION_SET, .parameter = index, .value = parameter_get(&p, index)};
     if (parameter_is_text(&parameter_table[index])) {

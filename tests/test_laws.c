@@ -217,13 +217,12 @@ TEST(bang_bang_hits_harder_than_the_plain_approach)
 // Speed of the tip at the first touch and the peak that follows, wall at `angle` [rad].
 static double peak_of_touch(const char *angle, double *tip_speed)
 {
-    fault f;
     SCOPED(scenario_finish) scenario s;
     SCOPED(run_finish) run_result r;
     char setting[64];
     assert_int_equal(scenario_open(&s, "compare/vibration-phase", NULL, NULL), STATUS_OK);
     snprintf(setting, sizeof setting, "wall.angle=%s", angle);
-    assert_int_equal(scenario_override(&s, setting, &f), STATUS_OK);
+    DONE(scenario_override(&s, setting, &f));
     assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
     assert_non_null(r.before_impact);
     *tip_speed = 0.5 * (r.before_impact[2] + r.before_impact[3]);
@@ -300,15 +299,14 @@ TEST(impedance_gives_way_by_its_stiffness)
 // All settings count, in any order and with blanks between them.
 TEST(several_settings_are_taken)
 {
-    fault f;
     const controller *law = controller_of(LAW_IMPEDANCE);
     parameters p = rig_parameters(SETTINGS("control.law=impedance"));
     double one[16], both[16];
     assert_true(law->parameter_count >= 2 && law->parameter_count <= 16);
     strcpy(p.control.settings, "stiffness=7");
-    assert_int_equal(controller_values(law, &p, one, &f), STATUS_OK);
+    DONE(controller_values(law, &p, one, &f));
     strcpy(p.control.settings, " force=3  stiffness=7 ");
-    assert_int_equal(controller_values(law, &p, both, &f), STATUS_OK);
+    DONE(controller_values(law, &p, both, &f));
 
     // the one alone changes its own value, the other one as well
     int differ = 0;

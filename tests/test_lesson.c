@@ -48,7 +48,6 @@ TEST(test_a_copy_keeps_its_lesson)
                                         "lessons/hybrid-law",        "lessons/what-a-sensor-sees"};
     for (size_t n = 0; n < sizeof names / sizeof names[0]; n++) {
         scenario s, copy;
-        fault f = {0};
         SCOPED(explorer_finish) explorer ex;
         assert_int_equal(scenario_open(&s, names[n], fail_on_fault, NULL), STATUS_OK);
         read_copy(&s, &copy);
@@ -63,7 +62,7 @@ TEST(test_a_copy_keeps_its_lesson)
         }
 
         // and can be gone through like the lesson itself
-        assert_int_equal(explorer_init(&ex, &copy, HUGE_VAL, &f), STATUS_OK);
+        DONE(explorer_init(&ex, &copy, HUGE_VAL, &f));
         go_through(&ex, names[n]);
         scenario_finish(&s);
     }
@@ -73,8 +72,7 @@ TEST(test_every_lesson_can_be_gone_through)
 {
     char **names;
     int count, lessons = 0;
-    fault f = {0};
-    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
         scenario s;
         assert_int_equal(scenario_open(&s, names[i], fail_on_fault, NULL), STATUS_OK);

@@ -25,17 +25,15 @@ static scenario opened(const char *name, const char *changes)
 static linear_arm linearised(const char *name, const char *changes, linear_place place)
 {
     SCOPED(scenario_finish) scenario s = opened(name, changes);
-    fault f = {.text = ""};
     linear_arm l;
-    fail_if(linear_arm_init(&l, &s.parameters, place, &f) != STATUS_OK, "%s", f.text);
+    DONE(linear_arm_init(&l, &s.parameters, place, &f));
     return l;
 }
 
 static void poles_of(const linear_arm *l, double complex *poles)
 {
-    fault f = {.text = ""};
     assert_true(l->system.states <= MOST);
-    fail_if(linear_poles(&l->system, poles, &f) != STATUS_OK, "%s", f.text);
+    DONE(linear_poles(&l->system, poles, &f));
 }
 
 #define ROUND "corrected/first-impact"
@@ -45,7 +43,6 @@ static void poles_of(const linear_arm *l, double complex *poles)
 TEST(two_links_have_their_closed_forms)
 {
     double complex poles[MOST], zeros[MOST];
-    fault f;
     int count;
     const double m = 0.40108 / 2, half = 0.5, own = m * half * half / 12, k2 = 4.92;
     const double K = 6.02 * 0.249092 * 9.80665 / 33.6;
@@ -59,7 +56,7 @@ TEST(two_links_have_their_closed_forms)
     check_relative(creal(poles[0]), -D / (2 * M), 1e-9);
     check_relative(cimag(poles[0]), sqrt(4 * k2 / M - D * D / (4 * M * M)), 1e-9);
     check_relative(l.system.b[1], K / M, 1e-9);
-    assert_int_equal(linear_zeros(&l.system, LINEAR_FORCE, &count, zeros, &f), STATUS_OK);
+    DONE(linear_zeros(&l.system, LINEAR_FORCE, &count, zeros, &f));
     assert_int_equal(count, 2);
     check_relative(creal(zeros[0]), -sqrt(4 * k2 / mu), 1e-9);
     check_relative(creal(zeros[1]), sqrt(4 * k2 / mu), 1e-9);
@@ -94,14 +91,12 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
         double complex zeros[MOST];
         double frequencies[MOST], shapes[MOST];
         arm a;
-        fault f;
         int modes, count;
         arm_init(&a, &s.parameters);
         assert_int_equal(modes_compute(&a, HUB_LOCKED, place == LINEAR_FREE ? TIP_FREE : TIP_PINNED,
                                        &modes, frequencies, shapes),
                          STATUS_OK);
-        assert_int_equal(linear_zeros(&with.system, LINEAR_HUB_ANGLE, &count, zeros, &f),
-                         STATUS_OK);
+        DONE(linear_zeros(&with.system, LINEAR_HUB_ANGLE, &count, zeros, &f));
         assert_int_equal(count, 2 * modes);
         for (int k = 0; k < modes; k++) {
             check_relative(cimag(zeros[2 * k]), frequencies[k], 1e-9);

@@ -28,11 +28,9 @@ static scenario opened(const char *name, const char *changes)
 // Its loop; the caller finishes both.
 static linear_system loop_of(const scenario *s, linear_arm *l)
 {
-    fault f = {.text = ""};
     linear_system loop = {0};
-    fail_if(linear_arm_init(l, &s->parameters, LINEAR_CONTACT, &f) != STATUS_OK ||
-                linear_loop(&loop, l, &s->parameters, &f) != STATUS_OK,
-            "%s", f.text);
+    DONE(linear_arm_init(l, &s->parameters, LINEAR_CONTACT, &f) != STATUS_OK ||
+         linear_loop(&loop, l, &s->parameters, &f));
     return loop;
 }
 
@@ -52,13 +50,10 @@ TEST(limits_are_those_found_otherwise)
         SCOPED(scenario_finish) scenario s = opened(cases[i].name, cases[i].changes);
         char range[64], *vary[] = {range};
         SCOPED(sweep_finish) sweep between;
-        fault f = {.text = ""};
         double limit;
         snprintf(range, sizeof range, "%s=%g:%g:2", cases[i].path, cases[i].from, cases[i].to);
-        assert_int_equal(sweep_init(&between, &s, &(sweep_request){vary, 1}, &f), STATUS_OK);
-        assert_int_equal(
-            linear_limit(&between, LINEAR_CONTACT, false, cases[i].from, cases[i].to, &limit, &f),
-            STATUS_OK);
+        DONE(sweep_init(&between, &s, &(sweep_request){vary, 1}, &f));
+        DONE(linear_limit(&between, LINEAR_CONTACT, false, cases[i].from, cases[i].to, &limit, &f));
         check_relative(limit, cases[i].known, 1e-2);
     }
 }
@@ -77,9 +72,8 @@ TEST(margins_are_met_by_the_poles)
         linear_arm l;
         linear_system loop = loop_of(&s, &l);
         linear_response r;
-        fault f = {.text = ""};
         const double period = 1 / s.parameters.control.rate;
-        assert_int_equal(linear_respond(&loop, 0, period, &r, &f), STATUS_OK);
+        DONE(linear_respond(&loop, 0, period, &r, &f));
         const linear_margins m = linear_margins_of(&r);
 
         // the gain at its margin puts a pole on the circle
@@ -89,7 +83,7 @@ TEST(margins_are_met_by_the_poles)
             loop.c[k] *= factor;
         }
         linear_close(&loop);
-        assert_int_equal(linear_poles(&loop, poles, &f), STATUS_OK);
+        DONE(linear_poles(&loop, poles, &f));
         check_close(cabs(poles[loop.states - 1]), 1, 2e-4);
         assert_true(m.disk <= 2 * (factor - 1) / (factor + 1) * (1 + 1e-6));
         assert_true(m.disk <= 4 * tan(m.phase_deg * acos(-1) / 360) + 1e-6);
@@ -102,8 +96,7 @@ TEST(margins_are_met_by_the_poles)
             SCOPED(scenario_finish) scenario late = opened(cases[i][0], delay);
             double growth;
             bool stable;
-            assert_int_equal(linear_stability(&late, LINEAR_CONTACT, false, &growth, &stable, &f),
-                             STATUS_OK);
+            DONE(linear_stability(&late, LINEAR_CONTACT, false, &growth, &stable, &f));
             check_close(growth * period, 0, 2e-2);
         }
         free(r.frequency);
@@ -195,18 +188,17 @@ static double losses_with(double factor)
 {
     SCOPED(scenario_finish) scenario s = opened("compare/observer", IDEAL "run.duration=6");
     scaled scale = {.factor = factor, .rest = (double)NAN};
-    fault f = {.text = ""};
     run_loop *l;
-    assert_int_equal(rig_create(&scale.inner, &s.parameters, NULL, &f), STATUS_OK);
+    DONE(rig_create(&scale.inner, &s.parameters, NULL, &f));
     controller law = *scale.inner->law;
     law.memory_size = sizeof(scaled *);
     law.start = start_scaled;
     law.sample = sample_scaled;
     law.tune = NULL;
-    assert_int_equal(loop_create(&l, &s, &(loop_options){.law = {&law, &scale}}, &f), STATUS_OK);
-    assert_int_equal(loop_until(l, 3, &f), STATUS_OK);
+    DONE(loop_create(&l, &s, &(loop_options){.law = {&law, &scale}}, &f));
+    DONE(loop_until(l, 3, &f));
     const double before = loop_summary(l).separations;
-    assert_int_equal(loop_until(l, 6, &f), STATUS_OK);
+    DONE(loop_until(l, 6, &f));
     const double after = loop_summary(l).separations;
     loop_destroy(l);
     rig_destroy(scale.inner);
@@ -254,10 +246,9 @@ TEST(the_least_push_lifts_the_arm_by_a_micrometre)
     SCOPED(scenario_finish)
     scenario s = opened("corrected/first-impact", "motor.stiction=0 run.duration=4");
     linear_arm l;
-    fault f = {.text = ""};
     double push;
-    assert_int_equal(linear_arm_init(&l, &s.parameters, LINEAR_CONTACT, &f), STATUS_OK);
-    assert_int_equal(linear_contact_margin(&s, &push, &f), STATUS_OK);
+    DONE(linear_arm_init(&l, &s.parameters, LINEAR_CONTACT, &f));
+    DONE(linear_contact_margin(&s, &push, &f));
 
     arm a;
     chain_link work[2];

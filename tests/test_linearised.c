@@ -2,7 +2,6 @@
 #include "src/run/run.h"
 #include "src/predict/linearised.h"
 #include "src/predict/pulse.h"
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

@@ -6,11 +6,10 @@
 static links_study studied(const char *name, char *const *changes, int count)
 {
     SCOPED(scenario_finish) scenario s;
-    fault f;
     links_study study;
     assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
     assert_int_equal(scenario_override_all(&s, changes, count, NULL, NULL), STATUS_OK);
-    fail_if(links_study_compute(&s, NULL, &study, &f) != STATUS_OK, "%s", f.text);
+    DONE(links_study_compute(&s, NULL, &study, &f));
     assert_int_equal(study.count, LINKS_LENGTHS);
     return study;
 }

@@ -10,18 +10,16 @@
 static void open_lasting(session *s, const char *name, const char *duration, double patience)
 {
     scenario base;
-    fault f = {0};
     char assignment[64];
     snprintf(assignment, sizeof assignment, "run.duration=%s", duration);
     assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
-    assert_int_equal(scenario_override(&base, assignment, &f), STATUS_OK);
-    assert_int_equal(session_open(s, &base, patience, &f), STATUS_OK);
+    DONE(scenario_override(&base, assignment, &f));
+    DONE(session_open(s, &base, patience, &f));
 }
 
 static void change(session *s, const char *path, const char *value)
 {
-    fault f = {0};
-    fail_if(session_change(s, parameter_find(path), value, &f) != STATUS_OK, "%s", f.text);
+    DONE(session_change(s, parameter_find(path), value, &f));
 }
 
 // Opens a session on a run of twenty links and looks until it has `rows` rows. Where a busy machine
@@ -207,13 +205,12 @@ TEST(test_runs_end_with_their_session)
 static void check_shared_rows(const char *name)
 {
     session s;
-    fault f = {0};
     open_lasting(&s, name, "60", HUGE_VAL);
     size_t alone = shared_array_memory(), chunk = ARRAY_CHUNK, arrays = 5;
     assert_true(s.run.trace.row_count >= 60000);
     for (int i = 0; i < 8; i++) {
         session_seek(&s, 59 + 0.1 * i);
-        assert_int_equal(session_keep_beside(&s, &s.run, &f), STATUS_OK);
+        DONE(session_keep_beside(&s, &s.run, &f));
         change(&s, "arm.k2", i % 2 ? "7.5" : "6.5");
         // two runs with the same rows but for the last second and chunks that are not full
         assert_true(shared_array_memory() < alone + alone / 60 + 2 * arrays * chunk);

@@ -1,7 +1,6 @@
 // A run that a program steps: what holds at its end, after a failure, and of states and inputs that
 // are not its own.
 #include "src/run/loop.h"
-#include "src/tables/control_laws.h"
 
 #include "tests/arm_fixture.h"
 
@@ -13,8 +12,7 @@ static run_loop *begun(const char *const *settings, const given_law *law)
     s.parameters.code_allowed = true;
     const loop_options options = {.law = law != NULL ? *law : (given_law){0}};
     run_loop *l = NULL;
-    fault f = {.text = ""};
-    fail_if(loop_create(&l, &s, &options, &f) != STATUS_OK, "%s", f.text);
+    DONE(loop_create(&l, &s, &options, &f));
     return l;
 }
 
@@ -27,15 +25,14 @@ TEST(the_end_stays)
                                         SETTINGS("arm.model=printed", "run.duration=0.1")};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         SCOPED(loop_destroy_kept) run_loop *l = begun(cases[i], NULL);
-        fault f;
         assert_int_equal(loop_summary(l).status, STATUS_STOPPED);
-        assert_int_equal(loop_until(l, 1, &f), STATUS_OK);
+        DONE(loop_until(l, 1, &f));
         assert_true(loop_ended(l));
         const double end = loop_time(l);
         const sample last = loop_row(l);
         check_close(end, 0.1, 2e-3);
-        assert_int_equal(loop_step(l, &f), STATUS_OK);
-        assert_int_equal(loop_until(l, 2, &f), STATUS_OK);
+        DONE(loop_step(l, &f));
+        DONE(loop_until(l, 2, &f));
         const sample still = loop_row(l);
         assert_true(loop_time(l) == end);
         assert_memory_equal(&still, &last, sizeof still);
@@ -135,8 +132,7 @@ TEST(a_state_holds_no_addresses)
         size_t size = 0;
         for (int k = 0; k < 2; k++) {
             run_loop *l = begun(SETTINGS(settings[i][0], settings[i][1], "control.force=1"), NULL);
-            fault f;
-            assert_int_equal(loop_until(l, 0.02, &f), STATUS_OK);
+            DONE(loop_until(l, 0.02, &f));
             size = loop_saved_size(l);
             kept[k] = malloc(size);
             assert_non_null(kept[k]);
@@ -158,11 +154,10 @@ TEST(a_state_has_the_face_on_its_way)
     run_loop *l = begun(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=100",
                                  "wall.damping=500", "run.duration=2"),
                         NULL);
-    fault f;
-    assert_int_equal(loop_until(l, 0.8, &f), STATUS_OK);
-    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(motor.voltage), -0.5, &f), STATUS_OK);
-    assert_int_equal(loop_until(l, 1.2, &f), STATUS_OK);
-    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(motor.voltage), 2, &f), STATUS_OK);
+    DONE(loop_until(l, 0.8, &f));
+    DONE(loop_set_number(l, PARAMETER_INDEX(motor.voltage), -0.5, &f));
+    DONE(loop_until(l, 1.2, &f));
+    DONE(loop_set_number(l, PARAMETER_INDEX(motor.voltage), 2, &f));
     const sample kept_at = loop_row(l);
     assert_true(kept_at.contact == 0 && kept_at.face_depth > 1e-4);
     SCOPED(free_kept) void *kept = malloc(loop_saved_size(l));
@@ -172,10 +167,10 @@ TEST(a_state_has_the_face_on_its_way)
     // to the end twice
     sample ends[2];
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(loop_until(l, 2, &f), STATUS_OK);
+        DONE(loop_until(l, 2, &f));
         ends[i] = loop_row(l);
         assert_true(ends[i].contact == 1 && ends[i].face_depth > 1e-4);
-        assert_int_equal(loop_restore(l, kept, loop_saved_size(l), &f), STATUS_OK);
+        DONE(loop_restore(l, kept, loop_saved_size(l), &f));
         const sample now = loop_row(l);
         assert_memory_equal(&now, &kept_at, sizeof now);
     }
@@ -189,15 +184,13 @@ TEST(changes_are_followed_wherever_steps_end)
     const char *const *const settings =
         SETTINGS("initial.angle=0.09", "initial.velocity=0.5", "run.duration=0.1");
     SCOPED(loop_destroy_kept) run_loop *l = begun(settings, NULL), *cut = begun(settings, NULL);
-    fault f;
     for (int i = 0; i < 100; i++) {
         const double volts = 1 + 0.5 * (i % 7 - 3), next = 1e-3 * (i + 1);
-        assert_int_equal(loop_set_number(l, PARAMETER_INDEX(motor.voltage), volts, &f), STATUS_OK);
-        assert_int_equal(loop_set_number(cut, PARAMETER_INDEX(motor.voltage), volts, &f),
-                         STATUS_OK);
-        assert_int_equal(loop_until(l, next, &f), STATUS_OK);
-        assert_int_equal(loop_until(cut, next - 1e-3 * (i % 10) / 10 - 1e-5, &f), STATUS_OK);
-        assert_int_equal(loop_until(cut, next, &f), STATUS_OK);
+        DONE(loop_set_number(l, PARAMETER_INDEX(motor.voltage), volts, &f));
+        DONE(loop_set_number(cut, PARAMETER_INDEX(motor.voltage), volts, &f));
+        DONE(loop_until(l, next, &f));
+        DONE(loop_until(cut, next - 1e-3 * (i % 10) / 10 - 1e-5, &f));
+        DONE(loop_until(cut, next, &f));
         int freedoms;
         const double *q = loop_state(l, &freedoms), *cut_q = loop_state(cut, &freedoms);
         for (int k = 0; k < 2 * freedoms; k++) {
@@ -221,11 +214,9 @@ TEST(a_cut_elsewhere_is_rounding)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         SCOPED(loop_destroy_kept)
         run_loop *whole = begun(cases[i], NULL), *cut = begun(cases[i], NULL);
-        fault f;
-        assert_int_equal(loop_until(whole, 10, &f), STATUS_OK);
+        DONE(loop_until(whole, 10, &f));
         for (int k = 0; !loop_ended(cut); k++) {
-            assert_int_equal(loop_until(cut, loop_time(cut) + 0.0014 + 0.0007 * sin(k), &f),
-                             STATUS_OK);
+            DONE(loop_until(cut, loop_time(cut) + 0.0014 + 0.0007 * sin(k), &f));
         }
         const summary a = loop_summary(whole), b = loop_summary(cut);
         const sample x = loop_row(whole), y = loop_row(cut);
@@ -251,12 +242,10 @@ TEST(a_cut_leaves_the_face_on_its_way)
     for (int i = 0; i < 2; i++) {
         SCOPED(loop_destroy_kept)
         run_loop *whole = begun(walls[i], NULL), *cut = begun(walls[i], NULL);
-        fault f;
         double left = 0;
-        assert_int_equal(loop_until(whole, 1, &f), STATUS_OK);
+        DONE(loop_until(whole, 1, &f));
         for (int k = 0; !loop_ended(cut); k++) {
-            assert_int_equal(loop_until(cut, loop_time(cut) + 0.0014 + 0.0007 * sin(k), &f),
-                             STATUS_OK);
+            DONE(loop_until(cut, loop_time(cut) + 0.0014 + 0.0007 * sin(k), &f));
             const sample now = loop_row(cut);
             left = now.contact == 0 ? fmax(left, now.face_depth) : left;
         }

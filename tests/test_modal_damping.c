@@ -1,6 +1,5 @@
 // Damping of the beam by mode and by air: how each mode decays, and what the ledger says of it.
 #include "src/arm/modes.h"
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

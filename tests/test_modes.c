@@ -1,5 +1,4 @@
 // Modes of the chain against the Euler-Bernoulli beam it approximates.
-#include "src/arm/chain.h"
 #include "src/arm/modes.h"
 #include "tests/arm_fixture.h"
 

@@ -2,9 +2,6 @@
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 
-#include "src/arm/motor.h"
-#include "src/contact/contact_machine.h"
-
 static motor_parameters drive(void)
 {
     return (motor_parameters){.voltage = 2,

@@ -1,8 +1,6 @@
 // The mouse in each part of the explorer's screen.
 #include "tests/explorer_on_screen.h"
 
-#include "src/base/random.h"
-
 static void point(explorer *ex, pointer_kind kind, int x, int y)
 {
     explorer_point(ex, (pointer_event){.kind = kind, .x = x, .y = y});

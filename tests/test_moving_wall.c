@@ -1,8 +1,6 @@
 // A wall that moves: driven arms and impacts in closed form, walls moved at once by a script, and a
 // law that holds its force on one.
-
 #include "src/arm/impact.h"
-#include "src/contact/engine.h"
 #include "src/run/loop.h"
 #include "tests/passage.h"
 #include "tests/rig_fixture.h"

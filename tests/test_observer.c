@@ -325,10 +325,9 @@ TEST(it_settles_on_many_links)
 static controller_setup setup_of(const parameters *p)
 {
     rig *r = NULL;
-    fault f;
     parameters as_hybrid = *p;
     as_hybrid.control.law = LAW_HYBRID;
-    assert_int_equal(rig_create(&r, &as_hybrid, NULL, &f), STATUS_OK);
+    DONE(rig_create(&r, &as_hybrid, NULL, &f));
     controller_setup setup = *(const controller_setup *)r->memory; // it stands first
     rig_destroy(r);
     return setup;
@@ -589,10 +588,9 @@ TEST(the_same_readings_give_the_same_commands)
         // the law alone, with its beliefs
         const controller *c = controller_of(law);
         double values[32];
-        fault f;
         controller_setup setup = setup_of(&s.parameters);
         assert_true(c->parameter_count <= 32);
-        assert_int_equal(controller_values(c, &s.parameters, values, &f), STATUS_OK);
+        DONE(controller_values(c, &s.parameters, values, &f));
         setup.parameters = values;
         SCOPED(free_kept) void *memory = calloc(1, c->memory_size + 1);
         assert_non_null(memory);

@@ -434,14 +434,13 @@ static const controller spying = {.name = "spying", .sample = spy};
 static void see(const char *const *settings)
 {
     rig *r;
-    fault f;
     bool changed;
     parameters p = rig_parameters(settings);
     const sensed_motion m = {.acceleration = 30, .bending = -0.2, .force = 1.5};
-    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
+    DONE(rig_create(&r, &p, NULL, &f));
     r->law = &spying;
     sensors_follow(&r->sensors, 5, &m, &m, 1.5);
-    assert_int_equal(rig_act(r, 0, &m, &changed, &f), STATUS_OK);
+    DONE(rig_act(r, 0, &m, &changed, &f));
     rig_destroy(r);
 }
 

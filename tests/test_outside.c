@@ -8,7 +8,6 @@
 
 #include "src/scenario/outside.h"
 #include "src/session/session.h"
-#include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
@@ -73,15 +72,13 @@ enum { CASES = sizeof cases / sizeof cases[0] };
 static parameters parameters_of(const struct outside_case *c)
 {
     parameters p = base.parameters;
-    fault f = {.text = ""};
     p.control.law = c->law;
     p.set[PARAMETER_INDEX(control.law)] = 1;
     p.code_allowed = true;
     p.run.duration = 0.05;
     p.control.rate = 100;
-    fail_if(parameter_set_text(&p, parameter_at(c->parameter), c->value, &f) != STATUS_OK ||
-                parameters_resolve(&p, &f) != STATUS_OK,
-            "%s", f.text);
+    DONE(parameter_set_text(&p, parameter_at(c->parameter), c->value, &f) != STATUS_OK ||
+         parameters_resolve(&p, &f));
     return p;
 }
 
@@ -120,12 +117,11 @@ static status digest(const char *command, char text[SHA256_TEXT], fault *f)
 static bool depends_on(const char *command, const char *path)
 {
     char before[SHA256_TEXT], after[SHA256_TEXT];
-    fault f = {.text = ""};
     write_text(path, "one");
     assert_int_equal(chmod(path, 0755), 0);
-    assert_int_equal(digest(command, before, &f), STATUS_OK);
+    DONE(digest(command, before, &f));
     write_text(path, "two");
-    assert_int_equal(digest(command, after, &f), STATUS_OK);
+    DONE(digest(command, after, &f));
     return strcmp(before, after) != 0;
 }
 
@@ -248,9 +244,8 @@ static void must_compute(const sweep *s, const char *path, sweep_share share)
 {
     SCOPED(sweep_store_close_kept) sweep_store *store = must_open(path, s);
     sweep_progress progress;
-    fault f = {.text = ""};
     const sweep_options options = {.jobs = 2, .share = share};
-    fail_if(sweep_run(s, store, &options, &progress, &f) != STATUS_OK, "%s", f.text);
+    DONE(sweep_run(s, store, &options, &progress, &f));
     assert_int_equal(progress.failed, 0);
 }
 
@@ -443,9 +438,8 @@ TEST(what_could_not_begin_is_no_row)
 static void open_session(session *s)
 {
     scenario own;
-    fault f = {.text = ""};
     assert_int_equal(scenario_copy(&own, &base), STATUS_OK);
-    fail_if(session_open(s, &own, (double)INFINITY, &f) != STATUS_OK, "%s", f.text);
+    DONE(session_open(s, &own, (double)INFINITY, &f));
 }
 
 // The last command of the run.
@@ -458,7 +452,6 @@ static double last_command(const session *s)
 TEST(a_session_asks_the_program_of_now)
 {
     const parameters first = base.parameters;
-    fault f = {.text = ""};
     for (int i = 0; i < CASES; i++) {
         base.parameters = parameters_of(&cases[i]);
         cases[i].write(0);
@@ -467,7 +460,7 @@ TEST(a_session_asks_the_program_of_now)
         open_session(&s);
         const double before = last_command(&s);
         cases[i].write(1);
-        assert_int_equal(session_compute(&s, &f), STATUS_OK);
+        DONE(session_compute(&s, &f));
         open_session(&fresh);
         check_close(last_command(&s), last_command(&fresh), 0);
         assert_true(last_command(&s) != before);

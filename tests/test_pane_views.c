@@ -3,8 +3,6 @@
 
 #include <unistd.h>
 
-#include "src/run/trace.h"
-
 TEST(test_a_spectrum_names_the_highest_line)
 {
     SCOPED(explorer_finish) explorer ex;

@@ -42,11 +42,10 @@ TEST(impossible_combinations_are_refused)
 static void check_goes_together(const char *const *settings)
 {
     parameters p = fresh(ARM_CORRECTED);
-    fault f = {0};
     for (int i = 0; settings[i] != NULL; i += 2) {
         give(&p, settings[i], settings[i + 1]);
     }
-    fail_if(parameters_resolve(&p, &f) != STATUS_OK, "%s", f.text);
+    DONE(parameters_resolve(&p, &f));
 }
 
 TEST(what_only_looks_like_a_conflict_is_none)
@@ -135,10 +134,9 @@ TEST(an_arm_starts_in_front_of_its_wall)
 
     // without a wall anywhere
     parameters p = fresh(ARM_CORRECTED);
-    fault f = {0};
     give(&p, "wall.kind", "none");
     give(&p, "initial.angle", "2");
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
 }
 
 // The bound of what the ledger may lack follows the method, unless it was given.
@@ -173,11 +171,10 @@ TEST(the_ledgers_bound_follows_the_method)
 TEST(resolving_twice_changes_nothing)
 {
     parameters p = fresh(ARM_CORRECTED);
-    fault f;
     give(&p, "arm.links", "7");
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
     parameters once = p;
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
     assert_memory_equal(&p, &once, sizeof p);
 }
 
@@ -277,27 +274,26 @@ TEST(conditions_hold_up_to_their_limits)
 TEST(walls_motors_and_sensors_follow_what_was_given)
 {
     parameters p = fresh(ARM_CORRECTED);
-    fault f = {0};
     give(&p, "motor.amplifier_gain", "3");
     give(&p, "motor.resistance", "4");
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
     check_close(p.motor.transconductance, 0.75, 0);
     assert_false(p.sensor.film || p.sensor.accelerometer || p.sensor.piezo);
 
     // damping of a Hunt-Crossley wall is 3/2 of its loss times its stiffness
     give(&p, "wall.contact", "hunt-crossley");
     give(&p, "wall.stiffness", "2e5");
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
     check_relative(p.wall.damping, 0.3 * 2e5, 1e-15);
     p = fresh(ARM_CORRECTED);
     give(&p, "wall.contact", "hunt-crossley");
     give(&p, "wall.damping", "7");
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
     check_close(p.wall.stiffness, 1e6, 0);
     check_close(p.wall.damping, 7, 0);
     p = fresh(ARM_CORRECTED);
     give(&p, "wall.contact", "kelvin-voigt");
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
     check_close(p.wall.stiffness, 75e3, 0);
     check_close(p.wall.damping, 20, 0);
 
@@ -308,7 +304,7 @@ TEST(walls_motors_and_sensors_follow_what_was_given)
     for (int i = 0; i < 3; i++) {
         p = fresh(ARM_CORRECTED);
         give(&p, asked[i][0], asked[i][1]);
-        assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+        DONE(parameters_resolve(&p, &f));
         assert_int_equal(p.sensor.film, i == 0);
         assert_int_equal(p.sensor.accelerometer, i == 1);
         assert_int_equal(p.sensor.piezo, i == 2);

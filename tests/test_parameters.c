@@ -99,10 +99,9 @@ static void check_round_trip(int index)
         double share = k / 40.0;
         double value = info->minimum + (info->maximum - info->minimum) * share * share * share;
         parameters p = fresh(ARM_CORRECTED), q = p;
-        fault f = {0};
         char text[64], again[64];
         value = whole ? floor(value) : value;
-        assert_int_equal(parameter_set_number(&p, index, value, &f), STATUS_OK);
+        DONE(parameter_set_number(&p, index, value, &f));
         check_close(parameter_get(&p, index), value, 0);
         parameter_format(&p, index, text, sizeof text);
         give(&q, info->path, text);
@@ -337,17 +336,16 @@ TEST(a_misspelt_path_suggests_the_nearest)
 TEST(defaults_follow_the_model)
 {
     parameters p = fresh(ARM_CORRECTED);
-    fault f;
     give(&p, "arm.k2", "49.2");
     give(&p, "arm.model", "printed");
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
     assert_int_equal(p.arm.hub_joint, HUB_SPRING);
     assert_int_equal(p.method.name, METHOD_NEWMARK);
     check_close(p.arm.link_inertia, 1.67e-5, 0);
     check_close(p.arm.k2, 49.2, 0);
     // and back again
     give(&p, "arm.model", "corrected");
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
     assert_int_equal(p.arm.hub_joint, HUB_RIGID);
     assert_int_equal(p.method.name, METHOD_EVENT);
     check_close(p.arm.k2, 49.2, 0);

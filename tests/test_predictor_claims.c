@@ -3,11 +3,9 @@
 // in most cases.
 //
 // test_predictor_claims [CASES [SEED]]
-
 #include "src/base/random.h"
 #include "src/predict/linearised.h"
 #include "src/predict/pulse.h"
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 
@@ -32,8 +30,7 @@ static double between_decades(random_generator *g, double low, double high)
 
 static void set(parameters *p, const char *path, double value)
 {
-    fault f;
-    fail_if(parameter_set_number(p, parameter_find(path), value, &f) != STATUS_OK, "%s", f.text);
+    DONE(parameter_set_number(p, parameter_find(path), value, &f));
 }
 
 // What random arms are drawn from.
@@ -57,7 +54,6 @@ static parameters random_arm(random_generator *g, const family *of)
 {
     const int links = of->fewest + (int)random_below(g, (uint64_t)(of->most - of->fewest + 1));
     parameters p;
-    fault f;
     parameters_defaults(&p, ARM_CORRECTED);
     set(&p, "arm.links", links);
     set(&p, "arm.k2", between_decades(g, 3, 500));
@@ -76,7 +72,7 @@ static parameters random_arm(random_generator *g, const family *of)
         set(&p, "wall.damping", hertz ? between_decades(g, 1e3, 1e6) : between(g, 0.1, 10));
         set(&p, "arm.tip_mass", between(g, 0, 0.05));
     }
-    fail_if(parameters_resolve(&p, &f) != STATUS_OK, "%s", f.text);
+    DONE(parameters_resolve(&p, &f));
     return p;
 }
 

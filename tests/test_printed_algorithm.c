@@ -47,9 +47,8 @@ static parameters printed_parameters_of(double voltage, double duration)
 static recording *run(const parameters *p, script change)
 {
     recording *r = calloc(1, sizeof *r);
-    fault f = {.text = ""};
     assert_non_null(r);
-    fail_if(run_into(r, *p, change, &f) != STATUS_OK, "%s", f.text);
+    DONE(run_into(r, *p, change, &f));
     return r;
 }
 

@@ -16,10 +16,9 @@ static artwork open_figure(const char *id, const figure_options *o)
 
 static void report_of(const artwork *a, figure_report *r)
 {
-    fault f = {0};
     cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
     cairo_t *cr = cairo_create(surface);
-    assert_int_equal(a->paint(cr, a->what, r, &f), STATUS_OK);
+    DONE(a->paint(cr, a->what, r, &f));
     cairo_destroy(cr);
     cairo_surface_destroy(surface);
 }
@@ -46,7 +45,6 @@ TEST(bare_pages_have_no_title_and_no_caption)
 static void publish(const figure_options *o, const char *path)
 {
     static const double x[] = {0, 1, 2}, y[] = {1, 3, 2};
-    fault f = {0};
     const figure_series series = {.name = "run", .x = x, .y = y, .count = 3};
     const figure_panel panel = {.y = {.name = "force", .label = "Force <i>f</i>", .unit = "N"},
                                 .series = &series,
@@ -56,7 +54,7 @@ static void publish(const figure_options *o, const char *path)
                         .x = {.name = "time", .label = "Time", .unit = "s"},
                         .panels = &panel,
                         .panel_count = 1};
-    fail_if(figure_publish(&fig, o, path, true, &f) != STATUS_OK, "%s", f.text);
+    DONE(figure_publish(&fig, o, path, true, &f));
 }
 
 TEST(a_bare_picture_has_its_caption_beside_it)
@@ -232,23 +230,22 @@ TEST(shipped_recipes_are_drawn)
 // Small multiples are what the same runs give one by one.
 TEST(multiples_are_runs_at_their_values)
 {
-    fault f = {0};
     artwork drawn;
     size_t length;
     static figure_report r;
     write_measured("many.yaml", "runs: [{name: arm, scenario: corrected/first-impact}]\n"
                                 "multiples: {vary: motor.voltage, values: [1 V, 2 V]}\n"
                                 "panels: [{signals: [force]}, {signals: [hub_angle]}]\n");
-    assert_int_equal(open_recipe(path_of("many.yaml"), &drawn, &f), STATUS_OK);
+    DONE(open_recipe(path_of("many.yaml"), &drawn, &f));
     report_of(&drawn, &r);
     assert_int_equal(r.panel_count, 4);
-    assert_int_equal(drawn.write_csv(drawn.what, path_of("many.csv"), &f), STATUS_OK);
+    DONE(drawn.write_csv(drawn.what, path_of("many.csv"), &f));
     artwork_finish(&drawn);
 
     write_measured("one.yaml", "runs: [{name: arm 2 V, scenario: corrected/first-impact, set: "
                                "{motor.voltage: 2}}]\npanels: [{signals: [force]}]\n");
-    assert_int_equal(open_recipe(path_of("one.yaml"), &drawn, &f), STATUS_OK);
-    assert_int_equal(drawn.write_csv(drawn.what, path_of("one.csv"), &f), STATUS_OK);
+    DONE(open_recipe(path_of("one.yaml"), &drawn, &f));
+    DONE(drawn.write_csv(drawn.what, path_of("one.csv"), &f));
     artwork_finish(&drawn);
 
     // the same rows, for any other contents of the file
@@ -265,16 +262,14 @@ TEST(multiples_are_runs_at_their_values)
 // A recipe of figure 3.4 shows the numbers that figure 3.4 does, and their difference.
 TEST(a_recipe_shows_what_its_runs_give)
 {
-    fault f = {0};
     artwork drawn;
     size_t length;
     char *path = g_strdup_printf("%s/recipes/fig-3-4.yaml", getenv("IMPACTLAB_SCENARIOS"));
-    assert_int_equal(open_recipe(path, &drawn, &f), STATUS_OK);
-    assert_int_equal(drawn.write_csv(drawn.what, path_of("recipe.csv"), &f), STATUS_OK);
+    DONE(open_recipe(path, &drawn, &f));
+    DONE(drawn.write_csv(drawn.what, path_of("recipe.csv"), &f));
     artwork_finish(&drawn);
     g_free(path);
-    assert_int_equal(figure_draw("3.4", &(figure_options){0}, path_of("thesis"), "svg", NULL, &f),
-                     STATUS_OK);
+    DONE(figure_draw("3.4", &(figure_options){0}, path_of("thesis"), "svg", NULL, &f));
     SCOPED(free_kept) char *recipe = read_file(path_of("recipe.csv"), &length);
     SCOPED(free_kept) char *thesis = read_file(path_of("thesis/fig-3-4.csv"), &length);
     const char *const rows[][2] = {{"printed force,0.4,", ",force,0.4,"},

@@ -59,10 +59,9 @@ static reference_answer reference_of(const reference_case *c)
 
 static void set_text(parameters *p, const char *path, const char *text)
 {
-    fault f = {0};
     int index = parameter_find(path);
     assert_true(index >= 0);
-    fail_if(parameter_set_text(p, index, text, &f) != STATUS_OK, "%s", f.text);
+    DONE(parameter_set_text(p, index, text, &f));
 }
 
 static void set_number(parameters *p, const char *path, double value)
@@ -76,7 +75,6 @@ static void set_number(parameters *p, const char *path, double value)
 static summary library_of(const reference_case *c, const char *method, double step)
 {
     scenario s;
-    fault f = {0};
     run_result result;
     memset(&s, 0, sizeof s);
     char name[64];
@@ -96,7 +94,7 @@ static summary library_of(const reference_case *c, const char *method, double st
         set_text(&s.parameters, "method.name", method);
         set_number(&s.parameters, "method.step", step);
     }
-    fail_if(parameters_resolve(&s.parameters, &f) != STATUS_OK, "%s", f.text);
+    DONE(parameters_resolve(&s.parameters, &f));
     run_scenario(&s, false, &result);
     summary answer = result.summary;
     run_finish(&result);

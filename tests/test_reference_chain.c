@@ -13,7 +13,6 @@
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
 #include "tests/explicit_stepper.h"
-#include "tests/reference/reference_arm.h"
 
 #define START_ANGLE    0.095 // a little in front of the wall at 0.1 rad
 #define START_VELOCITY 0.7   // [rad/s]

@@ -61,17 +61,16 @@ TEST(a_command_a_period_late_goes_out_with_the_next_sample)
     const char *const jitters[] = {"control.jitter=0", "control.jitter=0.002"};
     for (int k = 0; k < 2; k++) {
         rig *r;
-        fault f;
         bool changed;
         double latest = 0;
         parameters p = rig_parameters(SETTINGS("control.law=force-pd", "control.delay_periods=1",
                                                jitters[k], "sensor.ideal=true"));
-        assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
+        DONE(rig_create(&r, &p, NULL, &f));
         for (int i = 0; i < 300; i++) {
             // forces that never repeat, so that every command is another one
             sensed_motion now = {.force = 0.5 + 0.003 * i};
             long samples = r->samples;
-            assert_int_equal(rig_act(r, rig_next_time(r), &now, &changed, &f), STATUS_OK);
+            DONE(rig_act(r, rig_next_time(r), &now, &changed, &f));
             if (r->samples == samples) {
                 continue; // only a command took effect
             }
@@ -92,17 +91,16 @@ TEST(commands_of_several_periods_go_out_in_order)
     const char *const jitters[] = {"control.jitter=0", "control.jitter=0.005"};
     for (int k = 0; k < 4; k++) {
         rig *r;
-        fault f;
         bool changed;
         double given[64] = {0}, taken[64] = {0}, before = -1;
         int out = 0, samples = 0;
         parameters p = rig_parameters(
             SETTINGS("control.law=force-pd", delays[k / 2], jitters[k % 2], "sensor.ideal=true"));
-        assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
+        DONE(rig_create(&r, &p, NULL, &f));
         while (samples < 60) {
             const double time = rig_next_time(r);
             sensed_motion now = {.force = 0.5 + 0.003 * samples};
-            assert_int_equal(rig_act(r, time, &now, &changed, &f), STATUS_OK);
+            DONE(rig_act(r, time, &now, &changed, &f));
             assert_true(time >= before);
             before = time;
             if (r->samples > samples) {
@@ -132,16 +130,15 @@ TEST(a_delay_is_at_most_five_periods)
 TEST(jitter_stays_within_its_width)
 {
     rig *r;
-    fault f;
     bool changed;
     double widest = 0;
     parameters p = rig_parameters(SETTINGS("control.law=open-loop", "control.jitter=0.001"));
-    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
+    DONE(rig_create(&r, &p, NULL, &f));
     for (int i = 0; i < 500; i++) {
         double time = rig_next_time(r), off = time - i * 0.005;
         check_below(fabs(off), 0.0005 + 1e-12);
         widest = fmax(widest, fabs(off));
-        assert_int_equal(rig_act(r, time, &(sensed_motion){0}, &changed, &f), STATUS_OK);
+        DONE(rig_act(r, time, &(sensed_motion){0}, &changed, &f));
         assert_int_equal(changed, i == 0);
     }
     check_below(0.00045, widest);

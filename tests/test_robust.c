@@ -185,17 +185,16 @@ static char *judged(int law, char *const *lines, int count, size_t runs, int job
     SCOPED(sweep_finish) sweep s;
     SCOPED(sweep_store_close_kept) sweep_store *store;
     sweep_progress progress;
-    fault f;
     scenario base = {.name = "test", .parameters = rig_parameters(SETTINGS("run.duration=1"))};
     base.parameters.control.law = law;
     base.parameters.set[PARAMETER_INDEX(control.law)] = 1; // a default would come back
     sweep_request request = {
         .vary = lines, .vary_count = count, .sampling = SWEEP_LATIN, .runs = runs, .seed = 3};
-    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
-    assert_int_equal(sweep_store_open(&store, NULL, &s, &f), STATUS_OK);
+    DONE(sweep_init(&s, &base, &request, &f));
+    DONE(sweep_store_open(&store, NULL, &s, &f));
     sweep_options options = {.jobs = jobs};
-    assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_OK);
-    assert_int_equal(robust_law_of(found, "law", &s, (sweep_share){0}, store, &f), STATUS_OK);
+    DONE(sweep_run(&s, store, &options, &progress, &f));
+    DONE(robust_law_of(found, "law", &s, (sweep_share){0}, store, &f));
 
     robust_table table = {"test", found, 1, NULL};
     json_t *json = robust_json(&table);

@@ -51,9 +51,8 @@ TEST(what_is_left_out_has_a_default)
 {
     scenario s = good("{}");
     parameters p;
-    fault f;
     parameters_defaults(&p, ARM_CORRECTED);
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
+    DONE(parameters_resolve(&p, &f));
     assert_memory_equal(&s.parameters, &p, sizeof p);
     assert_string_equal(s.title, "f.yaml");
     assert_string_equal(s.description, "");

@@ -209,8 +209,7 @@ TEST_BETWEEN(every_folder_is_looked_into, make_folder, remove_folder)
     // listed once each, and opened
     char **names;
     int count, found = 0;
-    fault f;
-    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
         found += strcmp(names[i], "beta") == 0 || strcmp(names[i], "alpha-9") == 0;
         free(names[i]);
@@ -229,8 +228,7 @@ TEST(every_shipped_scenario_reads_clean)
 {
     char **names;
     int count, thesis = 0;
-    fault f;
-    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
         scenario s;
         sentences all = {0};
@@ -280,10 +278,9 @@ TEST(every_figure_and_table_of_the_thesis_has_its_scenario)
 TEST(an_override_sets_and_resolves)
 {
     SCOPED(scenario_finish) scenario s = good("arm: {k2: 5}\n");
-    fault f;
-    assert_int_equal(scenario_override(&s, "arm.k2=49.2 N m/rad", &f), STATUS_OK);
+    DONE(scenario_override(&s, "arm.k2=49.2 N m/rad", &f));
     check_close(s.parameters.arm.k2, 49.2, 0);
-    assert_int_equal(scenario_override(&s, "arm.model=printed", &f), STATUS_OK);
+    DONE(scenario_override(&s, "arm.model=printed", &f));
     assert_int_equal(s.parameters.arm.hub_joint, HUB_SPRING);
     check_close(s.parameters.arm.link_inertia, 1.67e-5, 0);
 }
@@ -489,8 +486,7 @@ TEST(a_copy_shares_nothing_with_the_original)
 {
     char **names;
     int count;
-    fault f;
-    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
         scenario s, copy;
         sentences all = {0};

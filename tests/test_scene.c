@@ -291,15 +291,14 @@ TEST(test_file)
         .options = {.renderer = RENDER_CAIRO, .width = WIDTH, .height = HEIGHT},
         .times = &time,
         .count = 1};
-    fault f = {0};
     char command[600], first[256];
     snprintf(first, sizeof first, "%s", in_folder("first.png"));
-    assert_int_equal(scene_write(&p, first, &f), STATUS_OK);
+    DONE(scene_write(&p, first, &f));
     check_contains(first, "Renderer");
     check_contains(first, "cairo ");
     check_contains(first, "scenario=corrected/first-impact");
     check_contains(first, "motor.voltage=1");
-    assert_int_equal(scene_write(&p, in_folder("second.png"), &f), STATUS_OK);
+    DONE(scene_write(&p, in_folder("second.png"), &f));
     snprintf(command, sizeof command, "cmp %s %s", first, in_folder("second.png"));
     assert_int_equal(system(command), 0);
 }

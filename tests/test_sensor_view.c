@@ -115,9 +115,8 @@ TEST(the_sensor_converges_where_the_force_does_not)
     scenario s = fast_touch();
     const int links[] = {6, 12, 24};
     sensor_view view[3];
-    fault f;
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(sensor_view_compute(&s, links[i], NULL, &view[i], &f), STATUS_OK);
+        DONE(sensor_view_compute(&s, links[i], NULL, &view[i], &f));
     }
     for (int i = 0; i < 2; i++) {
         assert_true(view[i + 1].peak > 1.5 * view[i].peak);
@@ -135,8 +134,7 @@ TEST(two_links_read_as_one_impulse)
 {
     scenario s = fast_touch();
     sensor_view view;
-    fault f;
-    assert_int_equal(sensor_view_compute(&s, 2, NULL, &view, &f), STATUS_OK);
+    DONE(sensor_view_compute(&s, 2, NULL, &view, &f));
     for (int i = 0; i < SENSOR_CONSTANTS; i++) {
         check_relative(view.sensed[i], view.impulse / sensor_constants[i], 1e-12);
         check_close(view.delay[i], 0, 0);
@@ -232,13 +230,12 @@ TEST(the_study_is_its_views)
     scenario s = fast_touch();
     sensor_study study;
     sensor_view view;
-    fault f;
     run_monitor monitor = {0};
-    assert_int_equal(sensor_study_compute(&s, &monitor, &study, &f), STATUS_OK);
+    DONE(sensor_study_compute(&s, &monitor, &study, &f));
     assert_int_equal(study.count, SENSOR_LENGTHS);
     assert_int_equal(atomic_load(&monitor.pieces), SENSOR_LENGTHS);
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(sensor_view_compute(&s, study.views[i].links, NULL, &view, &f), STATUS_OK);
+        DONE(sensor_view_compute(&s, study.views[i].links, NULL, &view, &f));
         check_close(study.links[i], view.links, 0);
         check_close(study.impulse[i], view.impulse, 0);
         check_close(study.momentum[i], view.momentum, 0);
@@ -279,9 +276,8 @@ TEST(a_view_is_what_a_run_comes_to)
         const run_options options = {.keep_trace = true};
         run_result r;
         sensor_view view;
-        fault f;
         assert_int_equal(run_scenario_with(&s, &options, &r), STATUS_OK);
-        assert_int_equal(sensor_view_compute(&s, links[kind % 3], NULL, &view, &f), STATUS_OK);
+        DONE(sensor_view_compute(&s, links[kind % 3], NULL, &view, &f));
         const double touch = r.summary.first_contact_s, end = touch + SENSOR_WINDOW;
         assert_int_equal(view.links, links[kind % 3]);
 
@@ -343,10 +339,9 @@ TEST(an_arm_against_the_wall_is_felt_from_the_start)
         const run_options options = {.keep_trace = true};
         SCOPED(run_finish) run_result r;
         sensor_view view;
-        fault f;
         assert_int_equal(run_scenario_with(&s, &options, &r), STATUS_OK);
         check_close(r.summary.first_contact_s, 0, 0);
-        assert_int_equal(sensor_view_compute(&s, 3, NULL, &view, &f), STATUS_OK);
+        DONE(sensor_view_compute(&s, 3, NULL, &view, &f));
         check_close(view.speed, 0, 0);
         check_close(view.impulse, 0, 0);
         check_relative(view.peak, r.summary.peak_force_N, 1e-6);

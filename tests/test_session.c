@@ -6,8 +6,7 @@
 
 static void change(session *s, const char *path, const char *value)
 {
-    fault f = {0};
-    fail_if(session_change(s, parameter_find(path), value, &f) != STATUS_OK, "%s", f.text);
+    DONE(session_change(s, parameter_find(path), value, &f));
 }
 
 TEST(test_stepping_back_and_forth_gives_the_same_states)
@@ -67,12 +66,11 @@ TEST(test_the_cursor_stands_behind_an_event)
 
 TEST(test_a_lower_voltage_before_contact_hits_less_hard)
 {
-    fault f = {0};
     OPEN_SESSION(s, "corrected/first-impact");
     double hard = s.run.summary.first_pulse_peak_N;
     session_seek(&s, 0.25);
     sample before = *session_sample(&s);
-    assert_int_equal(session_keep_beside(&s, &s.run, &f), STATUS_OK);
+    DONE(session_keep_beside(&s, &s.run, &f));
     change(&s, "motor.voltage", "0.5");
     assert_int_equal(s.inputs[0].kind, SESSION_INPUT_TIMED);
     check_below(s.run.summary.first_pulse_peak_N, hard);
@@ -115,7 +113,6 @@ TEST(test_what_is_before_a_change_stays_to_the_last_bit)
     random_generator random;
     random_seed(&random, 6);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        fault f = {0};
         OPEN_SESSION(s, names[i]);
         for (int k = 0; k < 24; k++) {
             session_seek(&s, random_uniform(&random) * session_end(&s));
@@ -125,13 +122,13 @@ TEST(test_what_is_before_a_change_stays_to_the_last_bit)
             } else if (k % 8 == 0) {
                 session_step(&s, 1);
             }
-            assert_int_equal(session_keep_beside(&s, &s.run, &f), STATUS_OK);
+            DONE(session_keep_beside(&s, &s.run, &f));
             // the cursor may go on to a touch that rounding puts right behind the change
             double instant = s.now;
             change(&s, "arm.k2", k % 2 ? "7.5" : "6.5");
             check_close(s.now, instant, 1e-12);
             assert_same_before(&s.other.trace, &s.run.trace, instant);
-            assert_int_equal(session_undo(&s, &f), STATUS_OK);
+            DONE(session_undo(&s, &f));
         }
     }
 }
@@ -216,13 +213,12 @@ TEST(test_a_saved_scenario_reproduces_the_run)
     static const char *const names[] = {"corrected/first-impact", "corrected/voltage-step",
                                         "corrected/three-links"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        fault f = {0};
         OPEN_SESSION(s, names[i]);
         session_seek(&s, 0.123);
         change(&s, "motor.voltage", "0.7");
         change(&s, "arm.k2", "6.1");
         session_seek(&s, 0.3333);
-        assert_int_equal(session_push(&s, -0.01, &f), STATUS_OK);
+        DONE(session_push(&s, -0.01, &f));
         change(&s, "wall.restitution", "0.3");
         free(save_and_compare(&s));
     }

@@ -16,9 +16,8 @@ static scenario read_text(const char *text)
 static session opened(const char *text)
 {
     session s;
-    fault f = {0};
     scenario base = read_text(text);
-    assert_int_equal(session_open(&s, &base, HUGE_VAL, &f), STATUS_OK);
+    DONE(session_open(&s, &base, HUGE_VAL, &f));
     return s;
 }
 
@@ -238,14 +237,12 @@ TEST(undoing_leads_to_the_instant_in_another_run)
                  {"method.step", "0.002", 0.1}};
     for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) {
         SCOPED(session_finish) session s = opened(brief);
-        fault f = {0};
-        assert_int_equal(session_change(&s, parameter_find(first[i].path), first[i].value, &f),
-                         STATUS_OK);
+        DONE(session_change(&s, parameter_find(first[i].path), first[i].value, &f));
         session_seek(&s, first[i].at);
-        assert_int_equal(session_push(&s, 1e-4, &f), STATUS_OK);
-        assert_int_equal(session_drop_input(&s, 0, &f), STATUS_OK);
+        DONE(session_push(&s, 1e-4, &f));
+        DONE(session_drop_input(&s, 0, &f));
         session_seek(&s, 0);
-        assert_int_equal(session_undo(&s, &f), STATUS_OK);
+        DONE(session_undo(&s, &f));
         assert_int_equal(s.input_count, 0);
         check_close(s.now, fmin(first[i].at, s.run.trace.rows[s.run.trace.row_count - 1].time),
                     1e-9);
@@ -259,12 +256,11 @@ TEST(a_push_before_a_contact_at_once_is_at_the_start)
     SCOPED(session_finish)
     session s = opened("title: t\nwall: {angle: 0}\nrun: {duration: 0.1 s}\n"
                        "initial: {velocity: 0.5}\n");
-    fault f = {0};
     assert_true(s.run.summary.first_contact_s == 0);
     session_seek(&s, 0);
     while (session_step(&s, -1)) {
     }
-    assert_int_equal(session_push(&s, 1e-4, &f), STATUS_OK);
+    DONE(session_push(&s, 1e-4, &f));
     assert_true(s.inputs[0].time == 0);
 }
 
@@ -272,16 +268,14 @@ TEST(a_push_before_a_contact_at_once_is_at_the_start)
 TEST(taken_inputs_make_the_same_run)
 {
     SCOPED(session_finish) session from = opened(brief), to = opened(brief);
-    fault f = {0};
-    assert_int_equal(session_change(&from, PARAMETER_INDEX(arm.k2), "7", &f), STATUS_OK);
+    DONE(session_change(&from, PARAMETER_INDEX(arm.k2), "7", &f));
     for (int i = 1; i <= 3; i++) {
         char volts[16];
         session_seek(&from, 0.05 * i);
         snprintf(volts, sizeof volts, "%d", i);
-        assert_int_equal(session_change(&from, PARAMETER_INDEX(motor.voltage), volts, &f),
-                         STATUS_OK);
-        assert_int_equal(session_push(&from, 0.001 * i, &f), STATUS_OK);
-        assert_int_equal(session_take_inputs(&to, from.inputs, from.input_count, &f), STATUS_OK);
+        DONE(session_change(&from, PARAMETER_INDEX(motor.voltage), volts, &f));
+        DONE(session_push(&from, 0.001 * i, &f));
+        DONE(session_take_inputs(&to, from.inputs, from.input_count, &f));
         assert_int_equal(to.input_count, 1 + 2 * i);
         assert_memory_equal(to.inputs, from.inputs, (size_t)to.input_count * sizeof *to.inputs);
         assert_int_equal(to.run.trace.row_count, from.run.trace.row_count);
@@ -291,9 +285,9 @@ TEST(taken_inputs_make_the_same_run)
 
     // it goes on with inputs of its own, after none, too
     for (int taken = 7; taken >= 0; taken -= 7) {
-        assert_int_equal(session_take_inputs(&to, from.inputs, taken, &f), STATUS_OK);
+        DONE(session_take_inputs(&to, from.inputs, taken, &f));
         for (int i = 1; i <= 3; i++) {
-            assert_int_equal(session_push(&to, 1e-6, &f), STATUS_OK);
+            DONE(session_push(&to, 1e-6, &f));
             assert_int_equal(to.input_count, taken + i);
         }
     }
@@ -304,7 +298,6 @@ TEST(taken_inputs_make_the_same_run)
 TEST(a_change_at_an_event_belongs_to_its_row)
 {
     SCOPED(session_finish) session s = opened(brief);
-    fault f = {0};
     const double contact = s.run.summary.first_contact_s;
     assert_true(contact > 0);
     session_seek(&s, contact);
@@ -313,16 +306,16 @@ TEST(a_change_at_an_event_belongs_to_its_row)
         assert_true(session_step(&s, 1)); // the first of the rows at contact
     }
     assert_false(session_sample(&s)->contact);
-    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "9", &f), STATUS_OK);
+    DONE(session_change(&s, PARAMETER_INDEX(motor.voltage), "9", &f));
     assert_true(s.inputs[0].time < contact && s.inputs[0].time > contact - 1e-3);
-    assert_int_equal(session_undo(&s, &f), STATUS_OK);
+    DONE(session_undo(&s, &f));
     assert_true(session_sample(&s)->time == contact && !session_sample(&s)->contact);
 
     while (!session_sample(&s)->contact) {
         assert_true(session_step(&s, 1));
     }
     assert_true(session_sample(&s)->time == contact);
-    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "9", &f), STATUS_OK);
+    DONE(session_change(&s, PARAMETER_INDEX(motor.voltage), "9", &f));
     assert_true(s.inputs[0].time == contact);
     assert_true(s.run.summary.first_contact_s == contact);
 }
@@ -334,11 +327,10 @@ TEST(what_is_done_at_any_event_belongs_to_its_row)
     SCOPED(session_finish)
     session s = opened("title: t\nwall: {angle: 0.3, restitution: 0.6}\nmotor: {stiction: 0.02}\n"
                        "run: {duration: 0.6 s}\n");
-    fault f = {0};
     int events = 0, changes = 0;
     const double change = 0.25;
     session_seek(&s, change);
-    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "1.1", &f), STATUS_OK);
+    DONE(session_change(&s, PARAMETER_INDEX(motor.voltage), "1.1", &f));
     for (size_t r = 1; r + 1 < s.run.trace.row_count; r++) {
         const sample *rows = s.run.trace.rows;
         const double last = rows[r - 1].time, now = rows[r].time;
@@ -353,7 +345,7 @@ TEST(what_is_done_at_any_event_belongs_to_its_row)
             assert_true(session_step(&s, -1));
         }
         assert_int_equal(s.row, r);
-        assert_int_equal(session_push(&s, 1e-9, &f), STATUS_OK);
+        DONE(session_push(&s, 1e-9, &f));
         const double given = s.inputs[1].time;
         if (twice && now != change) {
             check_close(given, fmax(now - 1e-7, (last + now) / 2), 0);
@@ -361,7 +353,7 @@ TEST(what_is_done_at_any_event_belongs_to_its_row)
         } else {
             check_close(given, now, 0);
         }
-        assert_int_equal(session_undo(&s, &f), STATUS_OK);
+        DONE(session_undo(&s, &f));
         assert_int_equal(s.row, r);
         events += twice && now != change;
         changes += twice && now == change;

@@ -189,12 +189,11 @@ TEST(an_axis_varies_one_of_them)
     SCOPED(sweep_axis_finish) sweep_axis axis = {0};
     char values[] = "0.1:0.3:3", text[64];
     parameters p = rig_parameters(NULL);
-    fault f = {0};
-    assert_int_equal(sweep_axis_find(&axis, "control.settings.gain", &f), STATUS_OK);
-    assert_int_equal(sweep_axis_parse(&axis, values, false, &f), STATUS_OK);
+    DONE(sweep_axis_find(&axis, "control.settings.gain", &f));
+    DONE(sweep_axis_parse(&axis, values, false, &f));
     assert_int_equal(axis.count, 3);
     assert_true(isnan(sweep_axis_get(&axis, &p)));
-    assert_int_equal(sweep_axis_apply(&axis, axis.values[1], &p, &f), STATUS_OK);
+    DONE(sweep_axis_apply(&axis, axis.values[1], &p, &f));
     check_close(sweep_axis_get(&axis, &p), 0.2, 1e-15);
     sweep_axis_format(&axis, 0.2, text, sizeof text);
     assert_string_equal(text, "0.2");

@@ -35,8 +35,7 @@ TEST(every_scenario_is_its_own_test)
 {
     char **names;
     int count;
-    fault f;
-    assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
+    DONE(scenario_list(&names, &count, &f));
     assert_true(count > 30);
     for (int i = 0; i < count; i++) {
         check_scenario(names[i]);

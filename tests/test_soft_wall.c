@@ -1,8 +1,6 @@
 // Walls that give: closed forms for a single mass, the order of the steps near the touch, and the
 // way to the rigid wall.
-
 #include "src/run/run.h"
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 #include "tests/motion_advance.h"

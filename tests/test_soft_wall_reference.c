@@ -24,8 +24,7 @@ static soft_wall_case cases[] = {
 
 static void set(parameters *p, const char *path, const char *text)
 {
-    fault f = {0};
-    fail_if(parameter_set_text(p, parameter_find(path), text, &f) != STATUS_OK, "%s", f.text);
+    DONE(parameter_set_text(p, parameter_find(path), text, &f));
 }
 
 static void set_number(parameters *p, const char *path, double value)
@@ -43,7 +42,6 @@ static void library_agrees(void **state)
     check_below(fabs(r.energy_residual), 1e-11);
 
     parameters p;
-    fault f = {0};
     parameters_defaults(&p, ARM_CORRECTED);
     set_number(&p, "arm.links", c->links);
     set(&p, "arm.hub_joint", c->beam_root ? "beam" : "rigid");
@@ -57,7 +55,7 @@ static void library_agrees(void **state)
     set_number(&p, "motor.voltage", c->voltage);
     set(&p, "motor.stiction", "0");
     set_number(&p, "run.duration", c->duration);
-    fail_if(parameters_resolve(&p, &f) != STATUS_OK, "%s", f.text);
+    DONE(parameters_resolve(&p, &f));
     scenario s = {.parameters = p};
     SCOPED(run_finish) run_result result;
     char name[] = "test";

@@ -15,27 +15,24 @@ static scenario opened(const char *name, char *const *changes, int count)
 
 static sweep_axis axis_of(const char *path, double low, double high)
 {
-    fault f;
     sweep_axis axis = {.low = low, .high = high, .is_range = true};
-    assert_int_equal(sweep_axis_find(&axis, path, &f), STATUS_OK);
+    DONE(sweep_axis_find(&axis, path, &f));
     return axis;
 }
 
 static solve_condition condition_of(const char *text)
 {
-    fault f;
     solve_condition c;
-    fail_if(solve_condition_read(text, &c, &f) != STATUS_OK, "%s", f.text);
+    DONE(solve_condition_read(text, &c, &f));
     return c;
 }
 
 static solution solved(const scenario *s, const sweep_axis *axis, const char *text, int points,
                        int jobs)
 {
-    fault f;
     solution found;
     const solve_condition c = condition_of(text);
-    assert_int_equal(solve(s, axis, &c, points, jobs, NULL, &found, &f), STATUS_OK);
+    DONE(solve(s, axis, &c, points, jobs, NULL, &found, &f));
     return found;
 }
 

@@ -1,5 +1,4 @@
 // Order, damping and stability of the engines, on motions with known solutions.
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 #include "tests/motion_advance.h"

@@ -1,10 +1,8 @@
 // Arms with decays or vibrations much faster than the motion of interest: they take few strides or
 // report why not, and their slow modes are right. And arms that start on the wall, with first
 // flights that are lower than rounding.
-
 #include "src/run/loop.h"
 #include "src/run/run.h"
-#include "src/contact/contact_machine.h"
 #include "src/contact/pace.h"
 #include "tests/explicit_stepper.h"
 #include "tests/passage.h"
@@ -283,31 +281,30 @@ TEST(a_loop_makes_as_many_strides_as_are_asked_for)
     s.parameters = fixture_parameters(SETTINGS("run.duration=1"));
     const loop_options options = {0};
     run_loop *l;
-    fault f;
-    assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
+    DONE(loop_create(&l, &s, &options, &f));
     const size_t size = loop_saved_size(l);
     SCOPED(free_kept) char *kept = malloc(2 * size);
     assert_non_null(kept);
     loop_save(l, kept);
-    assert_int_equal(loop_until(l, 0.5, &f), STATUS_OK);
+    DONE(loop_until(l, 0.5, &f));
     loop_save(l, kept + size);
     loop_destroy(l);
 
     // a first stride late, then the first tenth of a second again and again
-    assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
-    assert_int_equal(loop_restore(l, kept + size, size, &f), STATUS_OK);
-    assert_int_equal(loop_until(l, 1, &f), STATUS_OK);
+    DONE(loop_create(&l, &s, &options, &f));
+    DONE(loop_restore(l, kept + size, size, &f));
+    DONE(loop_until(l, 1, &f));
     for (int i = 0; i < EPISODES; i++) {
-        assert_int_equal(loop_restore(l, kept, size, &f), STATUS_OK);
+        DONE(loop_restore(l, kept, size, &f));
         for (int k = 1; k <= STEPS; k++) {
-            assert_int_equal(loop_until(l, k * 1e-3, &f), STATUS_OK);
+            DONE(loop_until(l, k * 1e-3, &f));
         }
     }
 
     // and on by less than any run is to take
-    assert_int_equal(loop_restore(l, kept, size, &f), STATUS_OK);
+    DONE(loop_restore(l, kept, size, &f));
     for (int i = 1; i <= INSTANTS; i++) {
-        assert_int_equal(loop_until(l, i * 1e-9, &f), STATUS_OK);
+        DONE(loop_until(l, i * 1e-9, &f));
     }
     check_close(loop_time(l), INSTANTS * 1e-9, 0);
     loop_destroy(l);

@@ -5,9 +5,7 @@
 
 #include "src/run/run.h"
 #include "src/engines/pair/taylor_lanes.h"
-#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_definition.h"
-#include "src/study/sweep_run.h"
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
@@ -20,9 +18,8 @@ TEST(every_run_is_what_the_scenario_gives_alone)
     SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, &s);
     must_run(&s, store, 2);
     double peaks[4], contacts[4];
-    fault f = {0};
-    assert_int_equal(sweep_store_quantity(store, "peak_force_N", peaks, NULL, &f), STATUS_OK);
-    assert_int_equal(sweep_store_quantity(store, "first_contact_s", contacts, NULL, &f), STATUS_OK);
+    DONE(sweep_store_quantity(store, "peak_force_N", peaks, NULL, &f));
+    DONE(sweep_store_quantity(store, "first_contact_s", contacts, NULL, &f));
     for (int run = 0; run < 4; run++) {
         scenario alone = base;
         SCOPED(run_finish) run_result result;
@@ -68,9 +65,8 @@ TEST(the_number_of_lanes_does_not_change_a_byte)
     // every third run first, the rest around them
     SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, &s);
     sweep_progress progress;
-    fault f = {0};
     const sweep_options third = {.jobs = 2, .share = {.part = 2, .parts = 3}};
-    assert_int_equal(sweep_run(&s, store, &third, &progress, &f), STATUS_OK);
+    DONE(sweep_run(&s, store, &third, &progress, &f));
     assert_int_equal(progress.done_now, 67);
     must_run(&s, store, 2);
     SCOPED(free_kept) char *csv = csv_of(store);
@@ -100,8 +96,7 @@ TEST(another_sweep_is_refused_with_the_difference)
     assert_refused("one.sqlite", &other, STATUS_BAD_ARGUMENT, "sample was grid, now it is random");
     sweep_finish(&other);
     scenario changed = base;
-    fault f;
-    assert_int_equal(scenario_override(&changed, "arm.k2=5", &f), STATUS_OK);
+    DONE(scenario_override(&changed, "arm.k2=5", &f));
     other = s;
     other.base = &changed;
     assert_refused("one.sqlite", &other, STATUS_BAD_ARGUMENT, "arm.k2 was 4.92, now it is 5");
@@ -116,7 +111,6 @@ TEST(another_sweep_is_refused_with_the_difference)
 // A script belongs to what is swept, and an empty text is reported as such.
 TEST(a_changed_script_is_another_sweep)
 {
-    fault f;
     scenario with = base, without = base, settled = base;
     action script[] = {{.time = 0.1,
                         .kind = ACTION_SET,
@@ -125,7 +119,7 @@ TEST(a_changed_script_is_another_sweep)
                        {.time = 0.2, .kind = ACTION_PUSH, .parameter = -1, .value = 0.01}};
     with.actions = script;
     with.action_count = 2;
-    assert_int_equal(scenario_override(&settled, "control.settings=kp=2", &f), STATUS_OK);
+    DONE(scenario_override(&settled, "control.settings=kp=2", &f));
     sweep s;
     SCOPED(sweep_finish) sweep other;
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);

@@ -4,7 +4,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
@@ -110,12 +109,11 @@ TEST(a_stopped_sweep_keeps_what_it_has_and_goes_on)
 {
     SCOPED(sweep_finish) sweep s;
     sweep_progress progress;
-    fault f = {0};
     sweep_options options = {.jobs = 2, .stop = &stop, .report = stop_soon};
     must_sweep(&s, SWEEP_GRID, 0, MANY_RUNS, NULL);
     sweep_store *store = must_open("stopped.sqlite", &s);
     stop = 0;
-    assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_OK);
+    DONE(sweep_run(&s, store, &options, &progress, &f));
     sweep_store_close(store);
     assert_in_range(progress.done, 1, MANY - 1);
     assert_int_equal(number_from("stopped.sqlite", "SELECT count(*) FROM run"), progress.done);

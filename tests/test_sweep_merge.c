@@ -34,8 +34,7 @@ static int clean_up(void **state)
 static void must_sweep(sweep *s, char *vary)
 {
     sweep_request request = {.vary = &vary, .vary_count = 1};
-    fault f = {0};
-    fail_if(sweep_init(s, &base, &request, &f) != STATUS_OK, "%s", f.text);
+    DONE(sweep_init(s, &base, &request, &f));
 }
 
 // Computes a share of a sweep into a file; returns all rows of the store as CSV, to be freed.
@@ -43,18 +42,16 @@ static char *compute(const sweep *s, const char *path, sweep_share share)
 {
     SCOPED(sweep_store_close_kept) sweep_store *store;
     sweep_progress progress;
-    fault f = {0};
     const sweep_options options = {.share = share, .jobs = 2};
-    fail_if(sweep_store_open(&store, path, s, &f) != STATUS_OK ||
-                sweep_run(s, store, &options, &progress, &f) != STATUS_OK,
-            "%s", f.text);
+    DONE(sweep_store_open(&store, path, s, &f) != STATUS_OK ||
+         sweep_run(s, store, &options, &progress, &f));
     assert_int_equal(progress.done, progress.total);
 
     char *text;
     size_t size;
     FILE *stream = open_memstream(&text, &size);
     assert_non_null(stream);
-    assert_int_equal(sweep_store_csv(store, stream, &f), STATUS_OK);
+    DONE(sweep_store_csv(store, stream, &f));
     fclose(stream);
     return text;
 }
@@ -74,9 +71,8 @@ TEST(parts_may_vary_the_model)
 {
     assert_string_equal(parameter_table[0].path, "arm.model");
     scenario first = base, either = base;
-    fault f = {0};
     parameters_defaults(&either.parameters, ARM_CORRECTED);
-    assert_int_equal(parameters_resolve(&either.parameters, &f), STATUS_OK);
+    DONE(parameters_resolve(&either.parameters, &f));
     base = either;
     sweep s;
     must_sweep(&s, (char[]){"arm.model=corrected,printed"});
@@ -85,7 +81,7 @@ TEST(parts_may_vary_the_model)
         free(compute(&s, parts[i], (sweep_share){i + 1, 2}));
     }
     sweep_merged merged;
-    fail_if(sweep_merge(parts, 2, "models", &merged, &f) != STATUS_OK, "%s", f.text);
+    DONE(sweep_merge(parts, 2, "models", &merged, &f));
     assert_int_equal(merged.runs, 2);
     char *rows = compute(&s, "models", (sweep_share){0, 0});
     assert_string_equal(rows, whole);
@@ -112,8 +108,7 @@ TEST(parts_in_any_order_give_the_rows_of_one_sweep)
     }
 
     sweep_merged merged;
-    fault f = {0};
-    assert_int_equal(sweep_merge(parts, 3, "merged", &merged, &f), STATUS_OK);
+    DONE(sweep_merge(parts, 3, "merged", &merged, &f));
     assert_int_equal(merged.runs, 11);
     assert_int_equal(merged.total, 11);
 
@@ -123,7 +118,7 @@ TEST(parts_in_any_order_give_the_rows_of_one_sweep)
     free(rows);
 
     // a sweep with a missing part continues where it ends
-    assert_int_equal(sweep_merge(parts, 2, "some", &merged, &f), STATUS_OK);
+    DONE(sweep_merge(parts, 2, "some", &merged, &f));
     assert_int_equal(merged.runs, 7);
     rows = compute(&s, "some", (sweep_share){0, 0});
     assert_string_equal(rows, whole);
@@ -148,15 +143,14 @@ TEST(parts_may_vary_several_parameters)
     char *vary[] = {(char[]){"motor.voltage=0.5,2"}, (char[]){"arm.k2=4,6"},
                     (char[]){"wall.kind=point,plane"}};
     sweep_request request = {.vary = vary, .vary_count = 3};
-    fault f = {0};
-    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
+    DONE(sweep_init(&s, &base, &request, &f));
     char *whole = compute(&s, "whole", (sweep_share){0, 0});
     char *parts[] = {"1", "2"};
     for (int i = 0; i < 2; i++) {
         free(compute(&s, parts[i], (sweep_share){i + 1, 2}));
     }
     sweep_merged merged;
-    fail_if(sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK, "%s", f.text);
+    DONE(sweep_merge(parts, 2, "merged", &merged, &f));
     assert_int_equal(merged.runs, 8);
     SCOPED(free_kept) char *rows = compute(&s, "merged", (sweep_share){0, 0});
     assert_string_equal(rows, whole);
@@ -182,7 +176,6 @@ TEST(the_plan_of_a_merge_is_that_of_the_sweep)
                                  "initial.angle=-0.001,-0.1,-1.0000000000000002e-2",
                                  "control.seed=1:1000:2:log"};
     const scenario first = base;
-    fault f = {0};
     char *const links[] = {"arm.links=3", "arm.joint_stiffness=10,12", "run.duration=0.02"};
     assert_int_equal(scenario_override_all(&base, links, 3, report_fault, NULL), STATUS_OK);
     for (int i = SWEEP_GRID; i <= SWEEP_LATIN; i++) {
@@ -193,13 +186,13 @@ TEST(the_plan_of_a_merge_is_that_of_the_sweep)
                                  .runs = draws ? 40 : 0,
                                  .seed = UINT64_MAX};
         SCOPED(sweep_finish) sweep s;
-        fail_if(sweep_init(&s, &base, &request, &f) != STATUS_OK, "%s", f.text);
+        DONE(sweep_init(&s, &base, &request, &f));
         char *whole = compute(&s, "whole", (sweep_share){0, 0}), *parts[] = {"1", "2"};
         for (int k = 0; k < 2; k++) {
             free(compute(&s, parts[k], (sweep_share){k + 1, 2}));
         }
         sweep_merged merged;
-        fail_if(sweep_merge(parts, 2, "merged", &merged, &f) != STATUS_OK, "%s", f.text);
+        DONE(sweep_merge(parts, 2, "merged", &merged, &f));
         assert_int_equal(merged.runs, s.run_count);
         SCOPED(free_kept) char *rows = compute(&s, "merged", (sweep_share){0, 0});
         assert_string_equal(rows, whole);

@@ -18,7 +18,6 @@ static void must_draw(const char *a, const char *b, sweep_sampling sampling, siz
                       const char *path, double offset)
 {
     SCOPED(sweep_finish) sweep s;
-    fault f = {0};
     must_sweep(&s, sampling, runs, a, b);
     SCOPED(free_kept) double *values = malloc(s.run_count * sizeof *values);
     assert_non_null(values);
@@ -26,9 +25,9 @@ static void must_draw(const char *a, const char *b, sweep_sampling sampling, siz
         values[run] = run % 7 == 3 ? (double)NAN : offset + (double)(run % 11);
     }
     sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
-    assert_int_equal(sweep_plot_check(&s, path, &f), STATUS_OK);
+    DONE(sweep_plot_check(&s, path, &f));
     owned_figure *drawn = sweep_figure_create(&shown);
-    fail_if(figure_write(&drawn->figure, path, &f) != STATUS_OK, "%s", f.text);
+    DONE(figure_write(&drawn->figure, path, &f));
     owned_figure_destroy(drawn);
     struct stat about;
     assert_int_equal(stat(path, &about), 0);

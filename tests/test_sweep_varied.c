@@ -10,8 +10,7 @@ TEST(the_last_parameter_of_a_grid_changes_fastest)
     assert_int_equal(s.run_count, 6);
     for (size_t run = 0; run < 6; run++) {
         scenario derived;
-        fault f = {0};
-        assert_int_equal(sweep_scenario(&s, run, &derived, &f), STATUS_OK);
+        DONE(sweep_scenario(&s, run, &derived, &f));
         check_close(derived.parameters.motor.voltage, voltage[run], 0);
         assert_int_equal(derived.parameters.method.name, run % 2 ? METHOD_NEWMARK : METHOD_EVENT);
         check_close(derived.parameters.run.duration, 0.6, 0);
@@ -172,10 +171,9 @@ TEST(the_seed_decides_what_is_drawn)
 {
     sweep a, c;
     SCOPED(sweep_finish) sweep b;
-    fault f;
-    assert_int_equal(sweep_of(&a, SWEEP_RANDOM, 50, 5, &f, "arm.k2=1:3", NULL), STATUS_OK);
-    assert_int_equal(sweep_of(&b, SWEEP_RANDOM, 50, 5, &f, "arm.k2=1:3:10", NULL), STATUS_OK);
-    assert_int_equal(sweep_of(&c, SWEEP_RANDOM, 50, 6, &f, "arm.k2=1:3", NULL), STATUS_OK);
+    DONE(sweep_of(&a, SWEEP_RANDOM, 50, 5, &f, "arm.k2=1:3", NULL));
+    DONE(sweep_of(&b, SWEEP_RANDOM, 50, 5, &f, "arm.k2=1:3:10", NULL));
+    DONE(sweep_of(&c, SWEEP_RANDOM, 50, 6, &f, "arm.k2=1:3", NULL));
     int same = 0;
     for (size_t run = 0; run < 50; run++) {
         double value = sweep_value(&a, run, 0);

@@ -1,9 +1,7 @@
 // The two-link arm by power series: that they solve the equations of chain.h all over the stride,
 // that the bounds hold, and that whole runs through events come out of it.
-
 #include "src/base/random.h"
 #include "src/run/run.h"
-#include "src/contact/contact_machine.h"
 #include "src/engines/pair/taylor_stride.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"

@@ -1,7 +1,5 @@
 // The numbers of docs/explanation/thesis.md and claims.tsv are those that the program computes:
 // each is computed anew and, in their own words and digits, looked up in them.
-
-#include "src/run/run.h"
 #include "src/study/thesis_tables.h"
 #include "tests/session_fixture.h"
 
@@ -184,8 +182,7 @@ static const table_row *row_of(const thesis_tables *t, const char *table, const 
 TEST(errors_of_the_tables)
 {
     thesis_tables printed, fitted;
-    fault f = {.text = ""};
-    assert_int_equal(tables_compute(&printed, &f), STATUS_OK);
+    DONE(tables_compute(&printed, &f));
     tables_compute_fitted(&fitted);
     double error[2], mean = tables_mean_error(&printed, "printed", "delay_simulation");
     page_says("delays of the simulation do not, %.1f %% off on average", 100 * mean);
@@ -242,8 +239,7 @@ TEST(errors_of_the_tables)
 TEST(what_was_tried_on_the_delays)
 {
     thesis_tables t;
-    fault f = {.text = ""};
-    assert_int_equal(tables_compute(&t, &f), STATUS_OK);
+    DONE(tables_compute(&t, &f));
     double error[7] = {0};
     for (int k = 0; k < 12; k++) {
         char name[] = "4.1";

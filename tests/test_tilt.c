@@ -1,10 +1,7 @@
 // An arm in a tilted plane, whose weight acts along the angle -pi/2: pendulum, sag and frequencies
 // of beams.
-
-#include "src/arm/chain.h"
 #include "src/arm/modes.h"
 #include "src/base/dense.h"
-#include "tests/arm_fixture.h"
 #include "tests/passage.h"
 
 #define GRAVITY 9.80665

@@ -37,8 +37,7 @@ TEST(expressions_are_arithmetic)
     };
     for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
         double value;
-        fault f = {0};
-        assert_int_equal(expression_evaluate(right[i].text, find, NULL, &value, &f), STATUS_OK);
+        DONE(expression_evaluate(right[i].text, find, NULL, &value, &f));
         assert_true(fabs(value - right[i].value) <= 1e-14);
     }
 
@@ -84,12 +83,11 @@ TEST(faults_of_expressions_name_the_column)
 // Searches, and returns what was found; t is to be finished.
 static void search(tuning *t, const tune_request *asked, int jobs)
 {
-    fault f = {0};
     SCOPED(sweep_store_close_kept) sweep_store *store;
-    fail_if(tune_init(t, asked, &f) != STATUS_OK, "%s", f.text);
-    assert_int_equal(sweep_store_open(&store, NULL, &t->plan, &f), STATUS_OK);
+    DONE(tune_init(t, asked, &f));
+    DONE(sweep_store_open(&store, NULL, &t->plan, &f));
     const sweep_options options = {.jobs = jobs};
-    fail_if(tune_run(t, store, &options, &f) != STATUS_OK, "%s", f.text);
+    DONE(tune_run(t, store, &options, &f));
 }
 
 // The force of a stiff arm that strikes is proportional to the voltage's effect on its speed: a

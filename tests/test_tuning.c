@@ -1,7 +1,5 @@
 // Parameters of the rig that change during a run: they hold from the next sample on, and nothing
 // before it is any different.
-#include "tests/check.h"
-
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 #include "tests/session_fixture.h"
@@ -42,10 +40,9 @@ TEST(test_a_gain_holds_from_the_next_sample_on)
         {"motor.voltage_limit", "1", 0.5}, {"sensor.tachometer_noise", "0.2", 0.4},
     };
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
-        fault f = {0};
         OPEN_SESSION(s, "compare/hybrid");
         session_seek(&s, changes[i].at + 0.0021);
-        assert_int_equal(session_keep_beside(&s, &s.run, &f), STATUS_OK);
+        DONE(session_keep_beside(&s, &s.run, &f));
         change(&s, changes[i].path, changes[i].value);
         assert_int_equal(s.inputs[0].kind, SESSION_INPUT_TIMED);
 
@@ -87,8 +84,7 @@ TEST(test_rates_that_change_again_and_again)
     enum { CHANGES = sizeof changes / sizeof changes[0] };
     parameters p = rig_parameters(SETTINGS("control.law=hybrid", "sensor.ideal=true"));
     rig *r;
-    fault f = {0};
-    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
+    DONE(rig_create(&r, &p, NULL, &f));
     const sensed_motion at_rest = {.angle = -0.1};
 
     // the first sample is at the start
@@ -100,7 +96,7 @@ TEST(test_rates_that_change_again_and_again)
             const double now = rig_next_time(r);
             const long before = r->samples;
             bool changed;
-            assert_int_equal(rig_act(r, now, &at_rest, &changed, &f), STATUS_OK);
+            DONE(rig_act(r, now, &at_rest, &changed, &f));
             if (r->samples > before) {
                 check_close(now, expected, 1e-12);
                 last = now;
@@ -110,7 +106,7 @@ TEST(test_rates_that_change_again_and_again)
         }
         if (i < CHANGES) {
             p.control.rate = changes[i].rate;
-            assert_int_equal(rig_retune(r, &p, until, &f), STATUS_OK);
+            DONE(rig_retune(r, &p, until, &f));
             expected = last + 1 / p.control.rate;
             assert_true(expected >= until);
         }
@@ -121,12 +117,12 @@ TEST(test_rates_that_change_again_and_again)
     // follow in the new period
     p.control.rate = 1000;
     assert_true(last + 1e-3 < 0.8);
-    assert_int_equal(rig_retune(r, &p, 0.8, &f), STATUS_OK);
+    DONE(rig_retune(r, &p, 0.8, &f));
     for (int i = 0; i < 10; i++) {
         const double now = rig_next_time(r);
         const long before = r->samples;
         bool changed;
-        assert_int_equal(rig_act(r, now, &at_rest, &changed, &f), STATUS_OK);
+        DONE(rig_act(r, now, &at_rest, &changed, &f));
         assert_int_equal(r->samples, before + 1);
         check_close(now, 0.8 + i * 1e-3, 1e-12);
     }
@@ -163,19 +159,16 @@ TEST(test_a_controller_is_told_what_changed_for_it)
     };
     parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
     rig *r;
-    fault f = {0};
-    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
+    DONE(rig_create(&r, &p, NULL, &f));
     controller counting = *r->law;
     counting.tune = count_telling;
     r->law = &counting;
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
         times_told = 0;
-        assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+        DONE(rig_retune(r, &p, 0, &f));
         assert_int_equal(times_told, 0);
-        assert_int_equal(
-            parameter_set_text(&p, parameter_find(changes[i].path), changes[i].text, &f),
-            STATUS_OK);
-        assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+        DONE(parameter_set_text(&p, parameter_find(changes[i].path), changes[i].text, &f));
+        DONE(rig_retune(r, &p, 0, &f));
         assert_int_equal(times_told, changes[i].told);
     }
     rig_destroy(r);
@@ -227,21 +220,20 @@ TEST(test_the_wanted_force_is_its_ramp_and_its_wave)
         p.control.force_rate = rate;
         p.control.force_amplitude = amplitude;
         rig *r;
-        fault f = {0};
-        assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
+        DONE(rig_create(&r, &p, NULL, &f));
         double ramp = 1;
         check_close(r->wanted_force, 1, 0);
         for (int k = 0; k < 300; k++) {
             const double time = 0.01 * k, before = 0.01 * (k - 1);
             if (k == 50 || k == 150) {
                 p.control.force = k == 50 ? 2.5 : 0.2;
-                assert_int_equal(rig_retune(r, &p, time, &f), STATUS_OK);
+                DONE(rig_retune(r, &p, time, &f));
             }
             const double way = p.control.force - ramp, most = rate * (k > 0 ? time - before : 0);
             ramp = rate == 0 || fabs(way) <= most ? p.control.force
                    : way > 0                      ? ramp + most
                                                   : ramp - most;
-            assert_int_equal(rig_follow_setpoint(r, time, &f), STATUS_OK);
+            DONE(rig_follow_setpoint(r, time, &f));
             check_close(r->ramp, ramp, 1e-12);
             check_close(r->ramp_time, time, 0);
             const double wave = amplitude * sin(2 * M_PI * 3 * time);
@@ -257,21 +249,20 @@ TEST(test_delays_and_limits_follow_a_change)
     parameters p = rig_parameters(SETTINGS("control.law=hybrid", "control.delay=1e-3",
                                            "control.delay_periods=0.25", "control.rate=200"));
     rig *r;
-    fault f = {0};
-    assert_int_equal(rig_create(&r, &p, NULL, &f), STATUS_OK);
+    DONE(rig_create(&r, &p, NULL, &f));
     check_close(r->delay, 1e-3 + 0.25 / 200, 1e-15);
     check_close(r->period, 5e-3, 1e-17);
     p.control.delay = 2e-3;
     p.control.jitter = 1e-4;
     p.motor.voltage_limit = 3;
-    assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+    DONE(rig_retune(r, &p, 0, &f));
     check_close(r->delay, 2e-3 + 0.25 / 200, 1e-15);
     check_close(r->jitter, 1e-4, 0);
     check_close(r->voltage_limit, 3, 0);
     check_close(r->dac.range, 3, 0);
     p.control.rate = 100;
     p.control.delay_periods = 0.5;
-    assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+    DONE(rig_retune(r, &p, 0, &f));
     check_close(r->delay, 2e-3 + 0.5 / 100, 1e-15);
     check_close(r->period, 1e-2, 1e-17);
 
@@ -282,7 +273,7 @@ TEST(test_delays_and_limits_follow_a_change)
 
     // sensors alone do not ask the law
     p.sensor.dac_bits = 8;
-    assert_int_equal(rig_retune(r, &p, 0, &f), STATUS_OK);
+    DONE(rig_retune(r, &p, 0, &f));
     check_relative(r->dac.step, 6.0 / 256, 1e-14);
     check_close(r->told.control.rate, 100, 0);
     rig_destroy(r);

@@ -1,8 +1,6 @@
 // The wall's geometry against differences of the penetration, and its law of restitution.
 #include "tests/arm_fixture.h"
 
-#include "src/arm/wall.h"
-
 static wall_model wall_of(const char *const *settings)
 {
     wall_model w;

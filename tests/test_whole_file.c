@@ -65,13 +65,12 @@ static void assert_holds(const char *path, const char *expected)
 TEST(appears_only_when_committed)
 {
     whole_file w;
-    fault f;
     put("old", "old");
-    assert_int_equal(whole_file_open(&w, "old", &f), STATUS_OK);
+    DONE(whole_file_open(&w, "old", &f));
     fputs("new", w.stream);
     fflush(w.stream);
     assert_holds("old", "old");
-    assert_int_equal(whole_file_commit(&w, &f), STATUS_OK);
+    DONE(whole_file_commit(&w, &f));
     assert_holds("old", "new");
     assert_int_equal(files(), 1);
     unlink("old");
@@ -80,9 +79,8 @@ TEST(appears_only_when_committed)
 TEST(abandoning_leaves_the_target_and_nothing_else)
 {
     whole_file w;
-    fault f;
     put("old", "old");
-    assert_int_equal(whole_file_open(&w, "old", &f), STATUS_OK);
+    DONE(whole_file_open(&w, "old", &f));
     fputs("new", w.stream);
     whole_file_abandon(&w);
     assert_holds("old", "old");
@@ -100,10 +98,9 @@ static mode_t mode_of(const char *path)
 static void write_new(const char *path)
 {
     whole_file w;
-    fault f = {0};
-    assert_int_equal(whole_file_open(&w, path, &f), STATUS_OK);
+    DONE(whole_file_open(&w, path, &f));
     fputs("new", w.stream);
-    assert_int_equal(whole_file_commit(&w, &f), STATUS_OK);
+    DONE(whole_file_commit(&w, &f));
 }
 
 TEST(mode_follows_the_umask_or_the_old_file)
