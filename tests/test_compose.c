@@ -129,3 +129,20 @@ TEST(test_a_narrow_screen_reaches_the_side)
     press(&ex, ":panes 123456789<Enter>ww");
     assert_has(&ex, 60, 20, "\u25b83  rad/s");
 }
+
+TEST(test_poles_follow_the_values_at_the_cursor)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":poles<Enter>");
+    assert_has(&ex, 40, 12, "poles (Esc closes)");
+    assert_has(&ex, 80, 40, "pressing on the wall, hub held by friction");
+    SCOPED(free_kept) char *before = picture(&ex, 80, 40, GLYPHS_ASCII);
+    press(&ex, "<Esc>:seek 0<Enter>:set wall.kind none<Enter>:poles<Enter>");
+    assert_has(&ex, 80, 40, "there is no wall to press on");
+    press(&ex, "<Esc>u:poles<Enter>");
+    SCOPED(free_kept) char *again = picture(&ex, 80, 40, GLYPHS_ASCII);
+    fail_if(strstr(again, "there is no wall") != NULL, "taken back, and still shown:\n%s", again);
+    fail_if(strstr(before, "damping") == NULL, "no numbers:\n%s", before);
+    press(&ex, "<Esc>:model<Enter>:poles<Enter>");
+    assert_has(&ex, 80, 40, "printed");
+}

@@ -270,6 +270,12 @@ bool act_show_why(explorer_state *st, const char *argument)
     return act_need_whole_run(st) && toggle_page(st, PANEL_WHY);
 }
 
+bool act_show_poles(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return toggle_page(st, PANEL_POLES);
+}
+
 bool act_compare(explorer_state *st, const char *argument)
 {
     (void)argument;

@@ -4,9 +4,12 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "src/base/text_stream.h"
 #include "src/session/account.h"
+#include "src/study/linear/linear.h"
 #include "ui/explorer/state/command_list.h"
 #include "ui/terminal/screen.h"
 
@@ -315,6 +318,69 @@ static void draw_why(const explorer_state *st, layout *lay, screen *s, area body
 }
 
 const panel why_panel = {.name = "why", .draw = draw_why, .point = page_point, .key = page_key};
+
+// --- the poles --------------------------------------------------------------------------------
+
+// The poles of the arm near rest in one place, of a pair the upper one, or why there are none.
+static void add_poles(page *p, const parameters *values, linear_place place)
+{
+    static const char *const names[] = {"free", "pressing on the wall",
+                                        "pressing on the wall, hub held by friction"};
+    fault f = {0};
+    linear_arm arm;
+    double complex *poles = NULL;
+    add_heading(p, names[place]);
+    status code = linear_arm_init(&arm, values, place, &f);
+    if (code == STATUS_OK) {
+        poles = calloc((size_t)arm.system.states + 1, sizeof *poles);
+        code = poles != NULL ? linear_poles(&arm.system, poles, &f) : fault_no_memory(&f);
+    }
+    loss_unless(code != STATUS_NO_MEMORY);
+    if (code != STATUS_OK) {
+        add_text(p, 0, f.text, NULL);
+    }
+    for (int i = 0; code == STATUS_OK && i < arm.system.states; i++) {
+        const double complex s = poles[i];
+        const bool rests = cabs(s) < 1e-6; // rounding of a pole at the origin
+        char frequency[32], damping[32], constant[32];
+        if (cimag(s) < 0) {
+            continue;
+        }
+        draw_number(frequency, sizeof frequency, rests ? 0 : cabs(s) / (2 * acos(-1)));
+        draw_number(damping, sizeof damping, rests ? (double)NAN : linear_damping(s));
+        draw_number(constant, sizeof constant, rests ? (double)NAN : -1 / creal(s));
+        snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s", frequency, damping, constant);
+    }
+    free(poles);
+    linear_system_finish(&arm.system);
+}
+
+static void draw_poles(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    enum { MOST = 500, WIDTH = 64 };
+    static help_line lines[MOST];
+    static parameters shown;
+    static page p;
+    const parameters now = state_parameters(st);
+    area a = page_area(body, WIDTH, body.height);
+
+    // computed anew where a parameter has changed: many links take a while
+    if (p.width != a.width - 4 || memcmp(&shown, &now, sizeof now) != 0) {
+        memcpy(&shown, &now, sizeof now);
+        p = (page){.lines = lines, .most = MOST, .width = a.width - 4};
+        add_text(&p, 0, "The arm near rest with the values at the cursor, without its law.", NULL);
+        snprintf(new_line(&p)->text, LINE_TEXT, "%12s%12s%12s", "[Hz]", "damping", "decay [s]");
+        for (linear_place place = LINEAR_FREE; place <= LINEAR_STUCK; place++) {
+            add_poles(&p, &now, place);
+        }
+    }
+    a = page_area(body, WIDTH, p.count + 2);
+    const int scroll = page_scroll(lay, PANEL_POLES, a, p.count, 2);
+    draw_lines(s, a, "poles (Esc closes)", lines + scroll, p.count - scroll);
+}
+
+const panel poles_panel = {
+    .name = "poles", .draw = draw_poles, .point = page_point, .key = page_key};
 
 // --- the comparison ---------------------------------------------------------------------------
 

@@ -52,6 +52,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "compare", "", "both runs in numbers", act_compare)                                      \
     X("", "explain", "", "what is selected, in focus and at the cursor", act_explain)              \
     X("", "why", "", "the run's course, from its events and energies", act_show_why)               \
+    X("", "poles", "", "natural frequencies and damping near rest, free and on the wall",          \
+      act_show_poles)                                                                              \
     X("", "data", "FILE.csv[@SHIFT]|off", "measured columns, aligned at the first contact",        \
       act_lay_data)                                                                                \
     X("", "undo", "", "take the last change back", act_undo)                                       \

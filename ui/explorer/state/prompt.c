@@ -157,6 +157,7 @@ static const char *synonyms_of(const char *name)
                  {"push", "hit kick"},
                  {"branch", "keep compare copy"},
                  {"why", "explain cause reason"},
+                 {"poles", "eigenvalues modes vibration linear"},
                  {"session", "store load keep"},
                  {"quit", "exit leave"}};
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {

@@ -44,6 +44,7 @@ typedef enum panel_place {
     X(PANEL_INFO, PLACE_PAGE, info_panel)                                                          \
     X(PANEL_EXPLAIN, PLACE_PAGE, explain_panel)                                                    \
     X(PANEL_WHY, PLACE_PAGE, why_panel)                                                            \
+    X(PANEL_POLES, PLACE_PAGE, poles_panel)                                                        \
     X(PANEL_PALETTE, PLACE_PROMPT, palette_panel)
 
 typedef enum panel_id {
