@@ -109,6 +109,18 @@ TEST(a_rate_set_at_the_start_is_that_of_the_rig)
     check_relative(r.summary.first_contact_s, from_the_start.summary.first_contact_s, 1e-9);
 }
 
+// A law that refuses a change says when.
+TEST(a_refused_change_says_its_time)
+{
+    run_result r;
+    assert_int_equal(run_with_change(SETTINGS("control.law=observer", "control.force=1"),
+                                     "control.rate", "250", 0.3, &r),
+                     STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(r.summary.message, "at t = 0.3 s the controller 'observer' refuses: "
+                                              "it takes its model and its rate at the start only"));
+    run_finish(&r);
+}
+
 // A limit that changes during the run is passed to the forecast, too.
 TEST(a_limit_may_change)
 {

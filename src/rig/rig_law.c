@@ -183,9 +183,9 @@ status rig_takes(const rig *r, const parameters *p, fault *f)
                            r->law->name);
 }
 
-// Gives the controller what it is told now. STATUS_BAD_SCENARIO, with a sentence in f, if it
-// refuses.
-static status tell_controller(rig *r, const parameters *p, fault *f)
+// Gives the controller what it is told from this instant [s] on. STATUS_BAD_SCENARIO, with a
+// sentence in f, if it refuses.
+static status tell_controller(rig *r, const parameters *p, double time, fault *f)
 {
     // its parameters, and the nominal model
     status s = controller_values(r->law, p, r->values, f);
@@ -202,8 +202,9 @@ static status tell_controller(rig *r, const parameters *p, fault *f)
 
     const char *refusal = r->law->tune(r->memory, &setup);
     if (refusal != NULL) {
-        return fault_set(f, STATUS_BAD_SCENARIO, "the controller '%s' refuses: %.600s",
-                         r->law->name, refusal);
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "at t = %.9g s the controller '%s' refuses: %.600s", time, r->law->name,
+                         refusal);
     }
     return STATUS_OK;
 }
@@ -251,7 +252,7 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
     }
     r->period = period;
     rig_take_delay(r, p);
-    return tell_controller(r, told, f);
+    return tell_controller(r, told, time, f);
 }
 
 status rig_follow_setpoint(rig *r, double time, fault *f)
@@ -274,7 +275,7 @@ status rig_follow_setpoint(rig *r, double time, fault *f)
     parameters now = r->told;
     now.control.force = r->wanted_force = wanted;
     now.set[PARAMETER_INDEX(control.force)] = 1;
-    return tell_controller(r, &now, f);
+    return tell_controller(r, &now, time, f);
 }
 
 bool rig_can_change(const parameters *p, int parameter)
