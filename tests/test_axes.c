@@ -86,6 +86,8 @@ TEST(test_keys_change_the_axis_of_the_pane_in_focus)
     press(&ex, "a");
     assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_FIXED);
     press(&ex, "a");
+    assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_CALM);
+    press(&ex, "a");
     assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_AUTO);
     press(&ex, "v");
     assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_FIXED);

@@ -175,3 +175,37 @@ TEST(test_random_pointing_does_no_harm)
                     to <= ex.state.session.effective.parameters.run.duration * (1 + 1e-12));
     }
 }
+
+TEST(test_a_box_drawn_with_control_is_zoomed_into)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    const hit_area p = part_on_screen(&ex, PANEL_CURVES, PART_PANE);
+    const int x = p.area.x, y = p.area.y, width = p.area.width;
+    const value_range axis = ex.layout.axes[p.index];
+    pointer_event e = {POINTER_PRESS, x + width / 4, y + 1, false, true};
+    explorer_point(&ex, e);
+    e = (pointer_event){POINTER_DRAG, x + width / 2, y + p.area.height + 9, false, true};
+    explorer_point(&ex, e);
+    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+    e.kind = POINTER_RELEASE;
+    explorer_point(&ex, e);
+
+    // instants from side to side, values from the second row down to the last
+    double from, to;
+    state_window(&ex.state, &from, &to);
+    check_close(from, 0.25, 0.02);
+    check_close(to, 0.5, 0.02);
+    const pane *of = &ex.state.panes.pane[p.index];
+    assert_int_equal(of->scaling, AXIS_FIXED);
+    check_close(of->fixed.low, axis.low, 1e-9);
+    check_close(of->fixed.high, axis.high - (axis.high - axis.low) / p.area.height, 1e-9);
+    assert_true(ex.state.session.now == 0);
+
+    // a box whose release was lost is over with the next press
+    e = (pointer_event){POINTER_PRESS, x + 1, y, false, true};
+    explorer_point(&ex, e);
+    click(&ex, x + width / 2, y);
+    state_window(&ex.state, &from, &to);
+    check_close(to - from, 0.25, 0.03);
+    check_close(ex.state.session.now, 0.375, 0.02);
+}

@@ -128,3 +128,71 @@ TEST(test_measured_data_touch_when_the_run_does)
     free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
     unlink(path);
 }
+
+TEST(test_a_pane_of_expressions)
+{
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    press(&ex, "<End>:trace force - force_reading, max(force, 1)*2<Enter>");
+    const pane *p = &ex.state.panes.pane[PANES_OF_TABLE];
+    const sample *row = &ex.state.session.run.trace.rows[900];
+    assert_int_equal(p->count, 2);
+    check_close(signal_value(row, p->signals[0]), row->force - row->force_reading, 0);
+    check_close(signal_value(row, p->signals[1]), 2 * fmax(row->force, 1), 0);
+    assert_string_equal(signal_table[p->signals[0]].unit, "N");
+    assert_shows(&ex, "force-force_reading");
+
+    // units: of a product none, of a share that of the whole
+    press(&ex, ":trace force*gap, gap/2, force+gap<Enter>");
+    p = &ex.state.panes.pane[PANES_OF_TABLE + 1];
+    assert_string_equal(signal_table[p->signals[0]].unit, "");
+    assert_string_equal(signal_table[p->signals[1]].unit, "m");
+    assert_string_equal(signal_table[p->signals[2]].unit, "");
+
+    // a difference of an expression means nothing, the pane says so
+    press(&ex, "b:set arm.k2 5<Enter>D");
+    assert_shows(&ex, "an expression has no difference");
+    press(&ex, "D:signal gap/2 11<Enter>");
+    assert_int_equal(p->hidden, 2);
+    press(&ex, ":phase force*2, gap<Enter>:spectrum command-voltage<Enter>");
+    free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
+
+    // what cannot be read says where; nothing is added
+    static const struct {
+        const char *line, *says;
+    } wrong[] = {{":trace force - forc<Enter>", "did you mean 'force'?"},
+                 {":trace force -<Enter>", "at the end"},
+                 {":trace force gap time contact impulse<Enter>", "at most 4"},
+                 {":trace forc<Enter>", "there is no signal 'forc'"}};
+    const int before = ex.state.panes.focus;
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        press(&ex, wrong[i].line);
+        assert_true(ex.state.message.warning);
+        fail_if(strstr(ex.state.message.text, wrong[i].says) == NULL, "%s", ex.state.message.text);
+        assert_int_equal(ex.state.panes.focus, before);
+    }
+
+    // more than there are places for: a sentence; one whose pane was replaced is free again
+    char line[64];
+    for (int i = 0; i < 40; i++) {
+        snprintf(line, sizeof line, ":trace force+%d, gap+%d<Enter>", i, i);
+        press(&ex, line);
+    }
+    assert_non_null(strstr(ex.state.message.text, "expressions are shown already"));
+    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+}
+
+TEST(test_a_calm_axis_leaves_a_spike_out)
+{
+    value_range wide, calm;
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    press(&ex, "<End>");
+    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+    assert_true(state_pane_axis(&ex.state, 0, &wide));
+    press(&ex, ":axis calm 1<Enter>");
+    assert_true(state_pane_axis(&ex.state, 0, &calm));
+
+    // the reading's spike of 6 N is a few samples long, the force stays below 2 N
+    assert_true(wide.high > 4);
+    assert_true(calm.high < 2.5 && calm.high > 1.2);
+    assert_shows(&ex, "calm");
+}

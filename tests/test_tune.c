@@ -1,7 +1,7 @@
 // Tuning: expressions, and that the search finds what is known otherwise.
 #include "src/study/tune.h"
 
-#include "src/study/expression.h"
+#include "src/base/expression.h"
 #include "src/study/linear/linear.h"
 #include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
@@ -10,12 +10,24 @@ GIVEN_BACK(sweep_store, sweep_store_close)
 
 // --- expressions ----------------------------------------------------------------------------
 
-static bool find(void *context, const char *name, double *value, const char **near)
+static int find(void *context, const char *name, const char **near)
 {
     (void)context;
-    *value = 7;
     *near = "seven";
-    return strcmp(name, "seven") == 0;
+    return strcmp(name, "seven") == 0 ? 7 : -1;
+}
+
+static double value_of(const void *context, int name)
+{
+    (void)context;
+    return name;
+}
+
+static double evaluate(const char *text)
+{
+    expression e;
+    DONE(expression_read(&e, text, find, NULL, &f));
+    return expression_evaluate(&e, value_of, NULL);
 }
 
 TEST(expressions_are_arithmetic)
@@ -36,16 +48,11 @@ TEST(expressions_are_arithmetic)
         {"2*(max(1,2)+seven)", 18},
     };
     for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
-        double value;
-        DONE(expression_evaluate(right[i].text, find, NULL, &value, &f));
-        assert_true(fabs(value - right[i].value) <= 1e-14);
+        assert_true(fabs(evaluate(right[i].text) - right[i].value) <= 1e-14);
     }
 
     // what cannot be judged stays so
-    double value;
-    assert_int_equal(expression_evaluate("max(1,(1-1)/(1-1))", find, NULL, &value, NULL),
-                     STATUS_OK);
-    assert_true(isnan(value));
+    assert_true(isnan(evaluate("max(1,(1-1)/(1-1))")));
 }
 
 TEST(faults_of_expressions_name_the_column)
@@ -55,27 +62,30 @@ TEST(faults_of_expressions_name_the_column)
         int column;
         const char *says;
     } wrong[] = {
-        {"", 1, "expected a key"},       {"1 +", 4, "expected a key"},
+        {"", 1, "expected a name"},      {"1 +", 4, "expected a name"},
         {"(1 + 2", 7, "expected ')'"},   {"1 + sevn", 5, "did you mean 'seven'?"},
         {"1 2", 3, "an operator"},       {"max(1)", 6, "expected ','"},
         {"max(1,2", 8, "expected ')'"},  {"seven seven", 7, "an operator"},
         {"nan", 1, "no quantity 'nan'"}, {"max 1", 1, "no quantity 'max'"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        double value;
+        expression e;
         fault f = {0};
-        assert_int_equal(expression_evaluate(wrong[i].text, find, NULL, &value, &f),
-                         STATUS_BAD_ARGUMENT);
+        assert_int_equal(expression_read(&e, wrong[i].text, find, NULL, &f), STATUS_BAD_ARGUMENT);
         fail_if(f.column != wrong[i].column || strstr(f.text, wrong[i].says) == NULL,
                 "'%s': column %d, %s", wrong[i].text, f.column, f.text);
     }
 
-    // as many brackets as anybody wants, and no stack without end
-    char deep[100001];
-    memset(deep, '(', sizeof deep - 1);
-    deep[sizeof deep - 1] = '\0';
-    double value;
-    assert_int_equal(expression_evaluate(deep, find, NULL, &value, NULL), STATUS_BAD_ARGUMENT);
+    // as many brackets or numbers as anybody wants, and no stack without end
+    static const char *const endless[] = {"(", "1+"};
+    for (size_t i = 0; i < 2; i++) {
+        expression e;
+        char deep[100001];
+        for (size_t k = 0; k < sizeof deep; k++) {
+            deep[k] = k + 1 < sizeof deep ? endless[i][k % strlen(endless[i])] : '\0';
+        }
+        assert_int_equal(expression_read(&e, deep, find, NULL, NULL), STATUS_BAD_ARGUMENT);
+    }
 }
 
 // --- the search -----------------------------------------------------------------------------

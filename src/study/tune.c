@@ -10,8 +10,8 @@
 #include <nlopt.h>
 #endif
 
+#include "src/base/expression.h"
 #include "src/base/words.h"
-#include "src/study/expression.h"
 
 // --- judging --------------------------------------------------------------------------------
 
@@ -24,26 +24,40 @@ typedef struct judged {
 
 // The one key that no run has.
 static const char growth_key[] = "growth_per_s";
+enum { GROWTH = 10000 };
 
-static bool find_key(void *context, const char *name, double *value, const char **near)
+// The number of a key: quantities of the run or the law in their order, -1 if there is none.
+static int find_key(void *context, const char *name, const char **near)
 {
     const judged *of = context;
     nearest_word nearest = nearest_begin(name);
     nearest_try(&nearest, growth_key);
     if (strcmp(name, growth_key) == 0) {
-        *value = of->growth;
-        return true;
+        return GROWTH;
     }
     for (int i = 0; of->law != NULL ? robust_key(i) != NULL : i < summary_count; i++) {
         const char *key = of->law != NULL ? robust_key(i) : summary_table[i].key;
         if (strcmp(key, name) == 0 && (of->law != NULL || !summary_table[i].timing)) {
-            *value = of->law != NULL ? robust_value(of->law, i) : of->run[i];
-            return true;
+            return i;
         }
         nearest_try(&nearest, key);
     }
     *near = nearest.best;
-    return false;
+    return -1;
+}
+
+static double value_of_key(const void *context, int key)
+{
+    const judged *of = context;
+    return key == GROWTH ? of->growth : of->law != NULL ? robust_value(of->law, key) : of->run[key];
+}
+
+static status evaluate(const char *text, judged *of, double *value, fault *f)
+{
+    expression e;
+    const status code = expression_read(&e, text, find_key, of, f);
+    *value = code == STATUS_OK ? expression_evaluate(&e, value_of_key, of) : (double)NAN;
+    return code;
 }
 
 // By how much the condition is missed, as a share of its bound; not above 0: it is met.
@@ -57,8 +71,8 @@ static status read_subject(const char *text, judged *of, double *excess, fault *
                          "'%.100s' is no condition, expected EXPR<=X or EXPR>=X", text);
     }
     snprintf(left, sizeof left, "%.*s", (int)(sign - text), text);
-    status code = expression_evaluate(left, find_key, of, &a, f);
-    code = code == STATUS_OK ? expression_evaluate(sign + 2, find_key, of, &b, f) : code;
+    status code = evaluate(left, of, &a, f);
+    code = code == STATUS_OK ? evaluate(sign + 2, of, &b, f) : code;
     *excess = (*sign == '<' ? a - b : b - a) / fmax(fabs(b), 1e-300);
     return code;
 }
@@ -69,7 +83,7 @@ static status judge(const tune_request *asked, judged *of, tune_result *out, fau
     fault why = {.path = ""};
     double excess = 0;
     const char *option = "minimise";
-    status code = expression_evaluate(asked->minimise, find_key, of, &out->value, &why);
+    status code = evaluate(asked->minimise, of, &out->value, &why);
     if (code == STATUS_OK && asked->subject != NULL) {
         option = "subject";
         code = read_subject(asked->subject, of, &excess, &why);

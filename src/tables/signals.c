@@ -1,12 +1,17 @@
 #include "src/tables/signals.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <string.h>
+
+#include "src/base/expression.h"
+#include "src/base/numbers.h"
+#include "src/base/words.h"
 
 #define AT(field) offsetof(sample, field)
 #define OPTIONAL  true
 
-const signal_info signal_table[] = {
+static signal_info table[SIGNALS_AT_MOST + DERIVED_SIGNALS] = {
     // name, symbol, ASCII twin, unit, description, body, quantity, colour, line, offset, whether it
     // is optional
     {"time", "t", "t", "s", "simulated time", BODY_NONE, "Time", 0, LINE_SOLID, AT(time)},
@@ -110,16 +115,21 @@ const signal_info signal_table[] = {
      "Contact force", 4, LINE_DOTTED, AT(predicted_force), OPTIONAL},
 };
 
-const int signal_count = (int)(sizeof signal_table / sizeof signal_table[0]);
-
-_Static_assert(sizeof signal_table / sizeof signal_table[0] == SIGNALS_AT_MOST,
-               "every field of a sample has its row");
+const signal_info *const signal_table = table;
+const int signal_count = SIGNALS_AT_MOST;
 
 int signal_find(const char *name)
 {
     assert(name != NULL);
-    for (int i = 0; i < signal_count; i++) {
-        if (strcmp(signal_table[i].name, name) == 0) {
+    const int found = signal_find_any(name);
+    return found < signal_count ? found : -1;
+}
+
+int signal_find_any(const char *name)
+{
+    assert(name != NULL);
+    for (int i = 0; i < SIGNALS_AT_MOST + DERIVED_SIGNALS; i++) {
+        if (table[i].name != NULL && strcmp(table[i].name, name) == 0) {
             return i;
         }
     }
@@ -145,15 +155,100 @@ int signal_index(const char *name)
 
 bool signal_is_state(int index)
 {
-    assert(index >= 0 && index < signal_count);
+    assert(index >= 0 && index < SIGNALS_AT_MOST + DERIVED_SIGNALS);
     return index == SIGNAL_INDEX(contact) || index == SIGNAL_INDEX(sticking) ||
            index == SIGNAL_INDEX(controller_mode);
 }
 
+// --- derived signals --------------------------------------------------------------------------
+
+enum { DERIVED_NAME = 256 };
+
+static struct {
+    expression expression;
+    char name[DERIVED_NAME];
+} derived[DERIVED_SIGNALS];
+
+static int find_recorded(void *context, const char *name, const char **near)
+{
+    (void)context;
+    const int found = signal_find(name);
+    nearest_word nearest = nearest_begin(name);
+    for (int i = 0; i < signal_count; i++) {
+        nearest_try(&nearest, table[i].name);
+    }
+    *near = nearest.best;
+    return found;
+}
+
+// The unit of an expression: terms have the same, a factor without a unit keeps it; else "".
+static const char *unit_of(const expression *e)
+{
+    const char *stack[EXPRESSION_STEPS]; // NULL: a number
+    int top = -1;
+    for (int i = 0; i < e->count; i++) {
+        const expression_step *s = &e->step[i];
+        if (s->what == EXPRESSION_NUMBER || s->what == EXPRESSION_NAME) {
+            stack[++top] = s->what == EXPRESSION_NAME ? table[s->name].unit : NULL;
+        } else if (s->what != EXPRESSION_MINUS) {
+            const char *a = stack[--top], *b = stack[top + 1];
+            const bool same = a != NULL && b != NULL && strcmp(a, b) == 0;
+            const bool sum = s->what != EXPRESSION_MULTIPLY && s->what != EXPRESSION_DIVIDE;
+            const bool scaled = b == NULL || (a == NULL && s->what != EXPRESSION_DIVIDE);
+            stack[top] = scaled ? (a != NULL ? a : b) : sum && same ? a : "";
+        }
+    }
+    return stack[0] != NULL ? stack[0] : "";
+}
+
+int signal_derive(int place, const char *text, fault *f)
+{
+    assert(place >= 0 && place < DERIVED_SIGNALS && text != NULL);
+    expression e;
+    char name[DERIVED_NAME];
+    size_t length = 0;
+    for (const char *c = text; *c != '\0' && length + 1 < sizeof name; c++) {
+        if (!is_blank(*c)) {
+            name[length++] = *c;
+        }
+    }
+    name[length] = '\0';
+    if (expression_read(&e, text, find_recorded, NULL, f) != STATUS_OK) {
+        return -1;
+    }
+
+    derived[place].expression = e;
+    snprintf(derived[place].name, DERIVED_NAME, "%s", name);
+    table[SIGNALS_AT_MOST + place] = (signal_info){.name = derived[place].name,
+                                                   .symbol = derived[place].name,
+                                                   .ascii = derived[place].name,
+                                                   .unit = unit_of(&e),
+                                                   .description = "an expression of yours",
+                                                   .quantity = derived[place].name,
+                                                   .colour = place % 8,
+                                                   .optional = true};
+    return SIGNALS_AT_MOST + place;
+}
+
+bool signal_is_derived(int index)
+{
+    return index >= SIGNALS_AT_MOST;
+}
+
+// --- values -----------------------------------------------------------------------------------
+
+static double recorded_value(const void *row, int index)
+{
+    double value;
+    memcpy(&value, (const char *)row + table[index].offset, sizeof value);
+    return value;
+}
+
 double signal_value(const sample *row, int index)
 {
-    assert(row != NULL && index >= 0 && index < signal_count);
-    double value;
-    memcpy(&value, (const char *)row + signal_table[index].offset, sizeof value);
-    return value;
+    assert(row != NULL && index >= 0 && index < SIGNALS_AT_MOST + DERIVED_SIGNALS);
+    return signal_is_derived(index)
+               ? expression_evaluate(&derived[index - SIGNALS_AT_MOST].expression, recorded_value,
+                                     row)
+               : recorded_value(row, index);
 }

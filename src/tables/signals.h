@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "src/base/fault.h"
+
 // One recorded row: the state at an instant and the quantities that belong to exactly that state.
 typedef struct sample {
     double time;               // t [s]
@@ -77,16 +79,25 @@ typedef struct signal_info {
     bool optional; // of a sensor that need not be there: no column where nothing is recorded
 } signal_info;
 
-extern const signal_info signal_table[];
-extern const int signal_count;
-enum { SIGNALS_AT_MOST = sizeof(sample) / sizeof(double) };
+// The recorded ones, and behind them those that are derived from them.
+extern const signal_info *const signal_table;
+extern const int signal_count; // of the recorded ones
+enum { SIGNALS_AT_MOST = sizeof(sample) / sizeof(double), DERIVED_SIGNALS = 16 };
 
 // Index of the signal of a field, SIGNAL_INDEX(force): rows and table have one order. A constant,
 // and a misspelt one does not compile.
 #define SIGNAL_INDEX(field) ((int)(offsetof(sample, field) / sizeof(double)))
 
-// Index of a signal by name, or -1.
+// Makes the derived signal in one of the DERIVED_SIGNALS places an expression of recorded ones,
+// such as "force - force_reading"; its name is the expression without blanks, its unit that of its
+// terms where they have one. Returns its index, -1 with a sentence if the expression cannot be
+// read. Not for use beside a thread that reads signals.
+int signal_derive(int place, const char *text, fault *f);
+bool signal_is_derived(int index);
+
+// Index of a recorded signal by name, or -1; and of derived ones, too.
 int signal_find(const char *name);
+int signal_find_any(const char *name);
 
 // Index of a signal that the program itself names: an unknown one fails an assertion.
 int signal_index(const char *name);

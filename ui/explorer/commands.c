@@ -253,10 +253,10 @@ static void write_axes_and_keys(const explorer_state *st, FILE *stream)
     // every pane but the user's own
     for (int i = 0; i < PANES_OF_TABLE; i++) {
         const pane *p = &st->panes.pane[i];
-        if (p->scaling == AXIS_GROW) {
-            fprintf(stream, "axis grow %d\n", i + 1);
-        } else if (p->scaling == AXIS_FIXED) {
+        if (p->scaling == AXIS_FIXED) {
             fprintf(stream, "axis %.10g %.10g %d\n", p->fixed.low, p->fixed.high, i + 1);
+        } else if (p->scaling != AXIS_AUTO) {
+            fprintf(stream, "axis %s %d\n", axis_scaling_words[p->scaling], i + 1);
         }
     }
 

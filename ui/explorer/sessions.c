@@ -38,7 +38,8 @@ static void add_pane(const explorer_state *st, session_file *file, int index, in
     char signals[LINE_TEXT] = "";
     for (int k = 0; k < p->count; k++) {
         const size_t used = strlen(signals);
-        snprintf(signals + used, sizeof signals - used, " %s", signal_table[p->signals[k]].name);
+        snprintf(signals + used, sizeof signals - used, "%s%s", k > 0 ? ", " : " ",
+                 signal_table[p->signals[k]].name);
     }
     if (index >= PANES_OF_TABLE && p->shown) {
         add_line(file, "%s%s", views[p->view], signals);
@@ -50,8 +51,8 @@ static void add_pane(const explorer_state *st, session_file *file, int index, in
     }
     if (p->scaling == AXIS_FIXED) {
         add_line(file, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high, number);
-    } else if (p->scaling == AXIS_GROW) {
-        add_line(file, "axis grow %d", number);
+    } else if (p->scaling != AXIS_AUTO) {
+        add_line(file, "axis %s %d", axis_scaling_words[p->scaling], number);
     }
     if (p->hidden != 0 || st->lesson.on) {
         add_line(file, "signal all %d", number);

@@ -67,6 +67,8 @@ void act_scrub(explorer_state *st, double time);
 // it [s].
 void act_zoom_at(explorer_state *st, double factor, double time);
 void act_pan_by(explorer_state *st, double seconds);
+// Makes the part between two instants visible [s].
+bool act_zoom_between(explorer_state *st, double from, double to);
 
 // Gives a parameter another value, from the cursor on or from the start.
 bool act_change(explorer_state *st, int parameter, const char *text);

@@ -25,6 +25,13 @@ void act_pan_by(explorer_state *st, double seconds)
     }
 }
 
+bool act_zoom_between(explorer_state *st, double from, double to)
+{
+    st->window.adrift = true;
+    state_show_part(st, from, to);
+    return act_tell(st, "%.4g to %.4g s; 0 shows all of it, a all values", from, to);
+}
+
 bool act_zoom(explorer_state *st, const char *argument)
 {
     double from, to;
@@ -106,7 +113,7 @@ static void set_scaling(explorer_state *st, int index, axis_scaling scaling)
         pane_fix_axis(p, now);
     } else if (scaling == AXIS_GROW) {
         pane_grow_axis(p);
-    } else if (scaling == AXIS_AUTO) {
+    } else if (scaling == AXIS_AUTO || scaling == AXIS_CALM) {
         p->scaling = scaling;
     }
 }
@@ -118,9 +125,11 @@ static bool tell_axis(explorer_state *st, int index)
     if (p->scaling == AXIS_FIXED) {
         return act_tell(st, "pane %d: from %.4g to %.4g", number, p->fixed.low, p->fixed.high);
     }
-    return act_tell(st, "pane %d: %s", number,
-                    p->scaling == AXIS_AUTO ? "the range of what is visible"
-                                            : "the range of all that was seen, it only grows");
+    static const char *const says[AXIS_SCALINGS] = {
+        [AXIS_AUTO] = "the range of what is visible",
+        [AXIS_GROW] = "the range of all that was seen, it only grows",
+        [AXIS_CALM] = "the range of what is visible, but for spikes"};
+    return act_tell(st, "pane %d: %s", number, says[p->scaling]);
 }
 
 // The words of an argument; returns how many there are.
@@ -179,8 +188,9 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
     } else if (strcmp(word, "up") == 0 || strcmp(word, "down") == 0) {
         act_shift_axis(st, index, word[0] == 'u' ? 0.25 : -0.25);
     } else {
-        return act_refuse(st, "axis takes auto, grow, fixed, in, out, up, down or two limits, "
-                              "then a pane (its number, or all)");
+        return act_refuse(st,
+                          "axis takes auto, grow, calm, fixed, in, out, up, down or two limits, "
+                          "then a pane (its number, or all)");
     }
     return true;
 }
@@ -282,7 +292,7 @@ bool act_hide_signal(explorer_state *st, const char *argument)
     if (split(text, words) == 2 && !read_pane(st, words[1], &index)) {
         return false;
     }
-    const int signal = signal_find(words[0]);
+    const int signal = signal_find_any(words[0]);
     if (index < 0) {
         return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
     }
@@ -318,7 +328,7 @@ bool act_set_limit(explorer_state *st, const char *argument)
     solved_limit limit = {.signal = -1};
     snprintf(text, sizeof text, "%s", argument);
     const int count = split(text, words);
-    if (count == 2 && (limit.signal = signal_find(words[0])) >= 0) {
+    if (count == 2 && (limit.signal = signal_find_any(words[0])) >= 0) {
         if (!act_read_number(st, words[1], &limit.bound)) {
             return false;
         }

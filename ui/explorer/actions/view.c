@@ -140,19 +140,77 @@ bool act_other_side(explorer_state *st, const char *argument)
     return true;
 }
 
-// Fills a pane with the signals of an argument, as many as fit.
+// A place for a derived signal that no pane has; -1 if there is none.
+static int free_place(const explorer_state *st, const pane *own)
+{
+    bool used[DERIVED_SIGNALS] = {false};
+    for (int i = 0; i <= PANES; i++) {
+        const pane *p = i < PANES ? &st->panes.pane[i] : own;
+        for (int k = 0; k < p->count; k++) {
+            if (signal_is_derived(p->signals[k])) {
+                used[p->signals[k] - SIGNALS_AT_MOST] = true;
+            }
+        }
+    }
+    for (int i = 0; i < DERIVED_SIGNALS; i++) {
+        if (!used[i]) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+// Adds the signal of a name or an expression.
+static bool add_signal(explorer_state *st, const char *text, pane *own)
+{
+    fault f = {0};
+    int signal = signal_find_any(text);
+    if (signal < 0 && text[strcspn(text, "+-*/(")] == '\0') {
+        return act_refuse(st, "there is no signal '%s' (Tab completes)", text);
+    }
+    if (signal < 0) {
+        const int place = free_place(st, own);
+        if (place < 0) {
+            return act_refuse(st, "%d expressions are shown already", DERIVED_SIGNALS);
+        }
+        signal = signal_derive(place, text, &f);
+        if (signal < 0) {
+            return act_worked(st, f.code, &f);
+        }
+        for (int i = 0; i < SHOWN_RUNS; i++) {
+            extremes_forget(&st->extremes[i]);
+        }
+    }
+    own->signals[own->count++] = signal;
+    return true;
+}
+
+// Fills a pane with the signals of an argument: commas outside brackets separate them, and blanks
+// where nothing is computed.
 static bool read_signals(explorer_state *st, const char *argument, pane *own)
 {
-    char words[LINE_TEXT], *rest = words;
-    snprintf(words, sizeof words, "%s", argument);
-    for (char *word; (word = strtok_r(rest, " ,", &rest)) != NULL && own->count < PANE_SIGNALS;) {
-        const int signal = signal_find(word);
-        if (signal < 0) {
-            return act_refuse(st, "there is no signal '%s' (Tab completes)", word);
+    const bool computes = argument[strcspn(argument, "+-*/(")] != '\0';
+    char word[LINE_TEXT];
+    size_t length = 0;
+    int depth = 0;
+    for (const char *c = argument;; c++) {
+        depth += (*c == '(') - (*c == ')');
+        if (*c != '\0' && *c != ' ' && (*c != ',' || depth > 0)) {
+            word[length++] = *c;
+        } else if (length > 0 && (*c != ' ' || !computes)) {
+            word[length] = '\0';
+            length = 0;
+            if (own->count == PANE_SIGNALS) {
+                return act_refuse(st, "a pane has at most %d signals", PANE_SIGNALS);
+            }
+            if (!add_signal(st, word, own)) {
+                return false;
+            }
         }
-        own->signals[own->count++] = signal;
+        if (*c == '\0') {
+            return true;
+        }
     }
-    return true;
 }
 
 // Shows a pane of the user's, beside those there are.

@@ -2,6 +2,7 @@
 #include "ui/explorer/panels/plot.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/rig/controller.h"
@@ -141,7 +142,7 @@ static int draw_legend(const explorer_state *st, layout *lay, screen *s, int ind
 static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, int index, area a)
 {
     const pane *p = &st->panes.pane[index];
-    static const char *const axes[] = {"", "grows", "fixed"};
+    static const char *const axes[] = {"", "grows", "fixed", "calm"};
     const bool difference = state_run(st, 0).kind == SHOWN_DIFFERENCE && pane_has_amounts(p);
     bool focused = index == panes_focused(&st->panes);
     int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
@@ -205,9 +206,46 @@ static void turn_wheel(explorer_state *st, const panel_gesture *g, bool pans)
     }
 }
 
+// With Control held a drag draws a box; letting go shows its instants, and its values where it has
+// more than a row.
+static bool draw_box(explorer_state *st, const panel_gesture *g)
+{
+    zoom_box *b = &st->box;
+    const area a = g->hit.area;
+    if (g->event.kind == POINTER_PRESS) {
+        *b = (zoom_box){true, g->hit.index, g->event.x, g->event.y, g->event.x, g->event.y};
+    }
+    b->x1 = g->event.x < a.x ? a.x : g->event.x < a.x + a.width ? g->event.x : a.x + a.width - 1;
+    b->y1 = g->event.y < a.y ? a.y : g->event.y < a.y + a.height ? g->event.y : a.y + a.height - 1;
+    if (g->event.kind != POINTER_RELEASE) {
+        return true;
+    }
+    b->held = false;
+    if (b->x1 == b->x0) {
+        return true;
+    }
+    const double t0 = time_at(st, a, b->x0), t1 = time_at(st, a, b->x1);
+    const double top = (double)((b->y0 < b->y1 ? b->y0 : b->y1) - a.y) / a.height;
+    const double bottom = (double)((b->y0 < b->y1 ? b->y1 : b->y0) + 1 - a.y) / a.height;
+    value_range axis;
+    if (b->y0 != b->y1 && state_pane_axis(st, b->pane, &axis)) {
+        const double height = axis.high - axis.low;
+        pane_fix_axis(&st->panes.pane[b->pane],
+                      (value_range){axis.high - bottom * height, axis.high - top * height});
+    }
+    return act_zoom_between(st, fmin(t0, t1), fmax(t0, t1));
+}
+
 // The cursor goes where the mouse is.
 static bool point_at_plot(explorer_state *st, const panel_gesture *g)
 {
+    const bool in_pane = g->hit.part == PART_PANE && st->panes.pane[g->hit.index].view == VIEW_TIME;
+    if (g->event.kind == POINTER_PRESS) {
+        st->box.held = in_pane && g->event.control;
+    }
+    if (st->box.held && g->event.kind <= POINTER_RELEASE) {
+        return draw_box(st, g);
+    }
     switch (g->event.kind) {
     case POINTER_PRESS:
     case POINTER_DRAG:
@@ -395,11 +433,16 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     }
     state_window(st, &f.from, &f.to);
     if (!state_pane_axis(st, index, &f.axis)) {
-        screen_text(s, f.canvas.x, a.y + 1, f.canvas.width, INK_DIM, "this run has no such values");
+        screen_text(s, f.canvas.x, a.y + 1, f.canvas.width, INK_DIM,
+                    showing_difference(st) && pane_is_derived(shown)
+                        ? "an expression has no difference"
+                        : "this run has no such values");
         return;
     }
 
     area labels = {a.x, a.y + 1, LABEL_WIDTH + 1, a.height - 1};
+    const area curves = {f.canvas.x, f.canvas.y, f.canvas.width, f.canvas.height};
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_PANE, index, curves});
     lay->axes[index] = f.axis;
     draw_value_axis(s, labels, f.axis);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LABELS, index, labels});
@@ -459,6 +502,11 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
             left--;
         }
     }
+    if (st->box.held) {
+        const zoom_box *b = &st->box;
+        screen_tint(s, b->x0 < b->x1 ? b->x0 : b->x1, b->y0 < b->y1 ? b->y0 : b->y1,
+                    abs(b->x1 - b->x0) + 1, abs(b->y1 - b->y0) + 1, INK_SELECTED);
+    }
     const area below = {a.x, a.y + a.height - AXIS, a.width, AXIS};
     const area axis = draw_time_axis(st, s, below);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_TIME_AXIS, 0, axis});
@@ -471,6 +519,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
     // each part takes the mouse in its own way
     switch (g->hit.part) {
     case PART_BODY:
+    case PART_PANE:
         return point_at_plot(st, g);
     case PART_TIME_AXIS:
         return point_at_time_axis(st, g);

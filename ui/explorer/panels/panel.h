@@ -42,6 +42,7 @@ typedef enum hit_part {
     PART_HEADING,   // of a group of lines; index: its first parameter
     PART_SLIDER,    // index: the parameter
     PART_LABELS,    // an axis of values; index: the pane
+    PART_PANE,      // the curves of a pane; index: the pane
     PART_LEGEND,    // a signal in a legend; index: the pane * PANE_SIGNALS + which of its signals
     PART_TIME_AXIS, // below curves
     PART_VIEW,      // a pane that is not over time; index: the pane

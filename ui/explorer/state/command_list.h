@@ -68,9 +68,10 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "follow", "", "curves follow the cursor (panning ends it)", act_follow)                  \
     X("", "focus", "", "next pane, for the keys of axes", act_focus)                               \
     X("", "alone", "", "that pane as large as all, or all again", act_alone)                       \
-    X("", "axis", "auto|grow|LOW HIGH [PANE]", "range: what is visible, was seen, or yours",       \
+    X("", "axis", "auto|grow|calm|LOW HIGH [PANE]", "range: visible, seen, without spikes, yours", \
       act_axis)                                                                                    \
-    X("", "trace", "1-9|SIGNAL...", "show or hide a pane of curves", act_trace_pane)               \
+    X("", "trace", "1-9|SIGNAL...|EXPRESSION",                                                     \
+      "show or hide a pane of curves: trace force - force_reading", act_trace_pane)                \
     X("", "signal", "[NAME|all] [PANE]",                                                           \
       "hide a signal of the pane in focus, or show it; alone: the next", act_hide_signal)          \
     X("", "limit", "SIGNAL VALUE|off", "a bound drawn across the panes of a signal",               \

@@ -31,7 +31,7 @@ static const char *const controlled_panes[PANES_OF_TABLE][PANE_SIGNALS] = {
 };
 
 const char *const axis_scaling_words[AXIS_SCALINGS] = {
-    [AXIS_AUTO] = "auto", [AXIS_GROW] = "grow", [AXIS_FIXED] = "fixed"};
+    [AXIS_AUTO] = "auto", [AXIS_GROW] = "grow", [AXIS_FIXED] = "fixed", [AXIS_CALM] = "calm"};
 
 const value_range value_range_empty = {(double)INFINITY, (double)-INFINITY};
 
@@ -157,6 +157,16 @@ bool pane_has_amounts(const pane *p)
     bool found = false;
     for (int k = 0; k < p->count; k++) {
         found = found || !signal_is_state(p->signals[k]);
+    }
+    return found;
+}
+
+bool pane_is_derived(const pane *p)
+{
+    assert(p != NULL);
+    bool found = false;
+    for (int k = 0; k < p->count; k++) {
+        found = found || signal_is_derived(p->signals[k]);
     }
     return found;
 }

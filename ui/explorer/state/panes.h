@@ -15,6 +15,7 @@ typedef enum axis_scaling {
     AXIS_AUTO,  // the values in the visible part of the run
     AXIS_GROW,  // all values shown so far; never shrinks
     AXIS_FIXED, // set by the user
+    AXIS_CALM,  // like auto, but without the few values that stick out
     AXIS_SCALINGS
 } axis_scaling;
 
@@ -78,6 +79,9 @@ int panes_focused(const pane_set *set);
 // Whether a pane has a signal that is an amount: of states alone there is no difference.
 bool pane_has_amounts(const pane *p);
 
+// Whether a pane has a signal that is computed from others: of differences it means nothing.
+bool pane_is_derived(const pane *p);
+
 // Adds a pane of the user's and returns its index: one that is not used, else the first that is
 // hidden, else the last.
 int panes_add(pane_set *set, const pane *own);
@@ -100,6 +104,13 @@ void time_window_range(const time_window *w, double duration, double *from, doub
 
 // Makes a part visible, limited to the run and not too short [s].
 void time_window_show(time_window *w, double duration, double from, double to);
+
+// A box that is being drawn over a pane of curves, to see what is in it.
+typedef struct zoom_box {
+    bool held;
+    int pane;
+    int x0, y0, x1, y1; // cells
+} zoom_box;
 
 // Makes the whole run visible.
 void time_window_show_all(time_window *w);

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/text_stream.h"
@@ -391,6 +392,36 @@ static value_range range_of_rows(const trace *t, int signal, const double *pairs
     return found;
 }
 
+static int compare_values(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// The same without the share of rows that sticks out at either end, so that a spike does not
+// flatten all else; of many rows some, evenly spread.
+static value_range calm_range(const trace *t, int signal, size_t first, size_t last)
+{
+    enum { ROWS = 4096, STICKS_OUT = 50 }; // one in so many
+    static double values[ROWS];
+    const size_t end = last < t->row_count ? last + 1 : t->row_count;
+    const size_t stride = (end - first) / ROWS + 1;
+    size_t count = 0;
+    for (size_t r = first; r < end; r += stride) {
+        const double value = signal_value(&t->rows[r], signal);
+        if (isfinite(value)) {
+            values[count++] = value;
+        }
+    }
+    if (count == 0) {
+        return value_range_empty;
+    }
+    qsort(values, count, sizeof *values, compare_values);
+    const double low = values[count / STICKS_OUT], high = values[count - 1 - count / STICKS_OUT];
+    const double margin = 0.05 * (high - low);
+    return (value_range){low - margin, high + margin};
+}
+
 // What a pane's signals do between two instants, in the first `runs` of the runs shown.
 static value_range range_between(const explorer_state *st, const pane *p, double from, double to,
                                  int runs)
@@ -406,7 +437,9 @@ static value_range range_between(const explorer_state *st, const pane *p, double
                 continue;
             }
             const double *pairs = extremes_pairs(&st->extremes[run], shown.id, t, p->signals[k]);
-            value_range_widen(&found, range_of_rows(t, p->signals[k], pairs, first, last));
+            value_range_widen(&found, p->scaling == AXIS_CALM
+                                          ? calm_range(t, p->signals[k], first, last)
+                                          : range_of_rows(t, p->signals[k], pairs, first, last));
         }
     }
     return found;
@@ -417,7 +450,8 @@ bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
     assert(st != NULL && index >= 0 && index < PANES && axis != NULL);
     const pane *p = &st->panes.pane[index];
     double from, to;
-    if (p->view != VIEW_TIME) {
+    const bool subtracts = state_run(st, 0).kind == SHOWN_DIFFERENCE;
+    if (p->view != VIEW_TIME || (subtracts && pane_is_derived(p))) {
         return false;
     }
     state_window(st, &from, &to);

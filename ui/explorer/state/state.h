@@ -83,6 +83,7 @@ typedef struct explorer_state {
 
     // what is displayed of them
     pane_set panes;
+    zoom_box box;
     int panes_height; // height of the screen for which they were filled [cells]
     side_view side;
     parameter_list parameters;

@@ -1,0 +1,200 @@
+#include "src/base/expression.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "src/base/numbers.h"
+
+enum { MOST_DEPTH = 100, KEY_TEXT = 128 };
+
+// An expression being read, from left to right by recursive descent.
+typedef struct reader {
+    expression *to;
+    const char *text, *at;
+    expression_find *find;
+    void *context;
+    fault *fault;
+    status code; // of the first fault; nothing is read after it
+    int depth;
+} reader;
+
+// What is wrong, at a place of the text.
+__attribute__((format(printf, 3, 4))) static void refuse(reader *r, const char *at,
+                                                         const char *format, ...)
+{
+    char why[400];
+    va_list list;
+    if (r->code == STATUS_OK) {
+        const int column = (int)(at - r->text) + 1;
+        va_start(list, format);
+        decimal_vprint(why, sizeof why, format, list);
+        va_end(list);
+        r->code = fault_set_place(r->fault, STATUS_BAD_ARGUMENT, 1, column,
+                                  "'%.200s', column %d: %s", r->text, column, why);
+    }
+}
+
+static void add_step(reader *r, expression_step step)
+{
+    if (r->to->count == EXPRESSION_STEPS) {
+        refuse(r, r->at, "more than %d names, numbers and operations", EXPRESSION_STEPS);
+        return;
+    }
+    r->to->step[r->to->count++] = step;
+}
+
+// Whether the next character is one of `set`, without blanks before it; it is not taken.
+static bool is_next(reader *r, const char *set)
+{
+    while (is_blank(*r->at)) {
+        r->at++;
+    }
+    return *r->at != '\0' && strchr(set, *r->at) != NULL;
+}
+
+static void expect(reader *r, char c)
+{
+    if (is_next(r, (char[]){c, '\0'})) {
+        r->at++;
+    } else if (*r->at == '\0') {
+        refuse(r, r->at, "expected '%c' at the end", c);
+    } else {
+        refuse(r, r->at, "expected '%c', not '%.20s'", c, r->at);
+    }
+}
+
+static void read_sum(reader *r);
+
+// A name, or max of two or more.
+static void read_word(reader *r)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+    const char *start = r->at, *near = NULL;
+    const size_t length = strspn(start, letters);
+    char name[KEY_TEXT];
+    snprintf(name, sizeof name, "%.*s", (int)length, start);
+    r->at += length;
+
+    if (strcmp(name, "max") == 0 && is_next(r, "(")) {
+        r->at++;
+        read_sum(r);
+        do {
+            expect(r, ',');
+            read_sum(r);
+            add_step(r, (expression_step){.what = EXPRESSION_MAX});
+        } while (r->code == STATUS_OK && is_next(r, ","));
+        expect(r, ')');
+        return;
+    }
+    if (length == 0) {
+        refuse(r, start, "expected a name, a number, max or '('%s%.20s%s",
+               *start != '\0' ? ", not '" : " at the end", start, *start != '\0' ? "'" : "");
+        return;
+    }
+    const int found = r->find(r->context, name, &near);
+    if (found < 0) {
+        refuse(r, start, "there is no quantity '%s'%s%s%s", name,
+               near != NULL ? ", did you mean '" : "", near != NULL ? near : "",
+               near != NULL ? "'?" : "");
+        return;
+    }
+    add_step(r, (expression_step){.what = EXPRESSION_NAME, .name = found});
+}
+
+// A number, a word or an expression in brackets, with its signs.
+static void read_factor(reader *r)
+{
+    double number;
+    if (r->code != STATUS_OK || ++r->depth > MOST_DEPTH) {
+        refuse(r, r->at, "more than %d brackets and signs within each other", MOST_DEPTH);
+        return;
+    }
+    if (is_next(r, "+-")) {
+        const bool minus = *r->at++ == '-';
+        read_factor(r);
+        if (minus) {
+            add_step(r, (expression_step){.what = EXPRESSION_MINUS});
+        }
+    } else if (is_next(r, "(")) {
+        r->at++;
+        read_sum(r);
+        expect(r, ')');
+    } else if (is_next(r, "0123456789.") && decimal_read(r->at, &number, &r->at)) {
+        add_step(r, (expression_step){.what = EXPRESSION_NUMBER, .number = number});
+    } else {
+        read_word(r);
+    }
+    r->depth--;
+}
+
+static void read_product(reader *r)
+{
+    read_factor(r);
+    while (r->code == STATUS_OK && is_next(r, "*/")) {
+        const bool times = *r->at++ == '*';
+        read_factor(r);
+        add_step(r, (expression_step){.what = times ? EXPRESSION_MULTIPLY : EXPRESSION_DIVIDE});
+    }
+}
+
+static void read_sum(reader *r)
+{
+    read_product(r);
+    while (r->code == STATUS_OK && is_next(r, "+-")) {
+        const bool plus = *r->at++ == '+';
+        read_product(r);
+        add_step(r, (expression_step){.what = plus ? EXPRESSION_ADD : EXPRESSION_SUBTRACT});
+    }
+}
+
+status expression_read(expression *e, const char *text, expression_find *find, void *context,
+                       fault *f)
+{
+    assert(e != NULL && text != NULL && find != NULL);
+    reader r = {.to = e, .text = text, .at = text, .find = find, .context = context, .fault = f};
+    e->count = 0;
+    read_sum(&r);
+    is_next(&r, "");
+    if (r.code == STATUS_OK && *r.at != '\0') {
+        refuse(&r, r.at, "expected an operator or the end, not '%.20s'", r.at);
+    }
+    return r.code;
+}
+
+// An operation on two values.
+static double combine(int what, double a, double b)
+{
+    switch (what) {
+    case EXPRESSION_ADD:
+        return a + b;
+    case EXPRESSION_SUBTRACT:
+        return a - b;
+    case EXPRESSION_MULTIPLY:
+        return a * b;
+    case EXPRESSION_DIVIDE:
+        return a / b;
+    default:
+        return isnan(a) || isnan(b) ? (double)NAN : fmax(a, b);
+    }
+}
+
+double expression_evaluate(const expression *e, expression_value *value, const void *context)
+{
+    assert(e != NULL && e->count > 0 && value != NULL);
+    double stack[EXPRESSION_STEPS];
+    int top = -1;
+    for (int i = 0; i < e->count; i++) {
+        const expression_step *s = &e->step[i];
+        if (s->what == EXPRESSION_NUMBER || s->what == EXPRESSION_NAME) {
+            stack[++top] = s->what == EXPRESSION_NUMBER ? s->number : value(context, s->name);
+        } else if (s->what == EXPRESSION_MINUS) {
+            stack[top] = -stack[top];
+        } else {
+            top--;
+            stack[top] = combine((int)s->what, stack[top], stack[top + 1]);
+        }
+    }
+    return stack[0];
+}
