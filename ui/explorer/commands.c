@@ -186,8 +186,9 @@ static bool is_remembered(const char *line)
 
 bool explorer_look(explorer_state *st, const char *line)
 {
-    static const char *const looking[] = {"panes", "axis",     "zoom",   "mark",  "trace",
-                                          "phase", "spectrum", "signal", "lanes", "limit"};
+    static const char *const looking[] = {"panes", "axis",  "zoom",     "mark",
+                                          "trace", "phase", "spectrum", "signal",
+                                          "lanes", "limit", "residual"};
     const size_t length = strcspn(line, " ");
     for (size_t i = 0; i < sizeof looking / sizeof looking[0]; i++) {
         if (strlen(looking[i]) == length && strncmp(line, looking[i], length) == 0) {

@@ -105,7 +105,7 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
     } else if (strcmp(p->command, "metric") == 0) {
         name = i < summary_count ? summary_table[i].key : NULL;
     } else if (strcmp(p->command, "trace") == 0 || strcmp(p->command, "phase") == 0 ||
-               strcmp(p->command, "spectrum") == 0) {
+               strcmp(p->command, "spectrum") == 0 || strcmp(p->command, "residual") == 0) {
         name = i < signal_count ? signal_table[i].name : NULL;
     } else if (strcmp(p->command, "law") == 0) {
         name = law_name(i);

@@ -33,7 +33,7 @@ static void add_line(session_file *file, const char *format, ...)
 // A pane's own lines; `number` is the one it has where only panes that are shown are defined.
 static void add_pane(const explorer_state *st, session_file *file, int index, int number)
 {
-    static const char *const views[] = {"trace", "phase", "spectrum"};
+    static const char *const views[] = {"trace", "phase", "residual", "spectrum"};
     const pane *p = &st->panes.pane[index];
     char signals[LINE_TEXT] = "";
     for (int k = 0; k < p->count; k++) {

@@ -182,7 +182,7 @@ bool act_show_difference(explorer_state *st, const char *argument)
     }
     d->on = true;
     d->tolerance = tolerance;
-    difference_update(d, state_run_id(st), &st->session);
+    difference_update(d, state_run_id(st), &st->session.run.trace, &st->session.other.trace);
 
     // where the first signal of the pane in focus leaves the tolerance
     const char *name = st->pinned.runs[st->pinned.baseline].name;

@@ -250,6 +250,16 @@ bool act_trace_pane(explorer_state *st, const char *argument)
     return show_own(st, own);
 }
 
+bool act_residual_pane(explorer_state *st, const char *argument)
+{
+    pane own = {.view = VIEW_RESIDUAL};
+    if (!read_signals(st, argument, &own)) {
+        return false;
+    }
+    return own.count > 0 ? show_own(st, own)
+                         : act_refuse(st, "residual takes signals that were measured");
+}
+
 bool act_phase_pane(explorer_state *st, const char *argument)
 {
     pane own = {.view = VIEW_PHASE};

@@ -64,10 +64,11 @@ static uint32_t line_glyph(line_style style)
 
 // What a legend says of a signal's value: a mode by its name where the law is one of ours, else a
 // number; short ones have up to three digits.
-static void format_value(const explorer_state *st, int signal, bool briefly, char *text,
-                         size_t size)
+static void format_value(const explorer_state *st, const pane *p, int signal, bool briefly,
+                         char *text, size_t size)
 {
-    const trace *t = state_run(st, 0).trace;
+    const trace *t =
+        state_pane_run_count(st, p) > 0 ? state_pane_run(st, p, 0).trace : state_run(st, 0).trace;
     double value = signal_value(&t->rows[trace_row_at(t, st->session.now)], signal);
     const controller *law = controller_of(st->session.effective.parameters.control.law);
     bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
@@ -110,7 +111,7 @@ static int draw_legend(const explorer_state *st, layout *lay, screen *s, int ind
     for (int k = 0; k < p->count; k++) {
         const signal_info *info = &signal_table[p->signals[k]];
         char value[48], text[128];
-        format_value(st, p->signals[k], how == LEGEND_TIGHT, value, sizeof value);
+        format_value(st, p, p->signals[k], how == LEGEND_TIGHT, value, sizeof value);
         if (unit_of(p)[0] == '\0' && info->unit[0] != '\0' && how < LEGEND_TIGHT) {
             size_t used = strlen(value);
             snprintf(value + used, sizeof value - used, " %s", info->unit);
@@ -143,7 +144,9 @@ static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, in
 {
     const pane *p = &st->panes.pane[index];
     static const char *const axes[] = {"", "grows", "fixed", "calm"};
-    const bool difference = state_run(st, 0).kind == SHOWN_DIFFERENCE && pane_has_amounts(p);
+    const bool residual = p->view == VIEW_RESIDUAL;
+    const bool difference =
+        !residual && state_run(st, 0).kind == SHOWN_DIFFERENCE && pane_has_amounts(p);
     bool focused = index == panes_focused(&st->panes);
     int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
 
@@ -156,9 +159,10 @@ static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, in
         room -= 6;
         screen_text(s, x + room + 1, a.y, 5, INK_DIM, axes[p->scaling]);
     }
-    if (difference && room > 40) {
+    if ((difference || residual) && room > 40) {
         room -= 15;
-        screen_text(s, x + room + 1, a.y, 14, INK_EVENT, "minus baseline");
+        screen_text(s, x + room + 1, a.y, 14, INK_EVENT,
+                    residual ? "data minus run" : "minus baseline");
     }
 
     // what is not over time has no values at the cursor
@@ -239,7 +243,8 @@ static bool draw_box(explorer_state *st, const panel_gesture *g)
 // The cursor goes where the mouse is.
 static bool point_at_plot(explorer_state *st, const panel_gesture *g)
 {
-    const bool in_pane = g->hit.part == PART_PANE && st->panes.pane[g->hit.index].view == VIEW_TIME;
+    const bool in_pane =
+        g->hit.part == PART_PANE && pane_is_over_time(&st->panes.pane[g->hit.index]);
     if (g->event.kind == POINTER_PRESS) {
         st->box.held = in_pane && g->event.control;
     }
@@ -312,7 +317,7 @@ static bool point_at_labels(explorer_state *st, const panel_gesture *g)
 
 // How a run's curves differ from those of others: the present one has the signals' colours and
 // lines, a single pinned one their lines in one colour, several have their own lines.
-static void set_look(const explorer_state *st, plot_frame *f, const shown_run *run,
+static void set_look(const explorer_state *st, plot_frame *f, const pane *p, const shown_run *run,
                      const pane_look *look, int k)
 {
     f->pattern = style_pattern(look->style[k]);
@@ -325,7 +330,7 @@ static void set_look(const explorer_state *st, plot_frame *f, const shown_run *r
         f->colour = run->index == st->sweep.selected ? INK_OTHER : INK_FRAME;
     } else if (run->kind == SHOWN_BEFORE) {
         f->colour = INK_FRAME;
-    } else if (run->kind == SHOWN_MEASURED) {
+    } else if (run->kind == SHOWN_MEASURED && p->view != VIEW_RESIDUAL) {
         f->colour = INK_TEXT;
     }
 }
@@ -333,7 +338,7 @@ static void set_look(const explorer_state *st, plot_frame *f, const shown_run *r
 // The curves of one run in a pane: 0 is the present one, as far as it was seen.
 static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int number)
 {
-    const shown_run run = state_run(st, number);
+    const shown_run run = state_pane_run(st, p, number);
     const pane_look look = pane_look_of(st, p);
 
     // of a sweep of many runs a few curves, evenly spread, and the chosen one
@@ -354,10 +359,10 @@ static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int 
         }
         const double *pairs =
             extremes_pairs(&st->extremes[number], run.id, run.trace, p->signals[k]);
-        set_look(st, &f, &run, &look, k);
+        set_look(st, &f, p, &run, &look, k);
 
         // while a value is adjusted the whole future is shown, and after a change dimly
-        const bool hidden = number == 0 && !st->session.has_ghost;
+        const bool hidden = number == 0 && run.kind != SHOWN_MEASURED && !st->session.has_ghost;
         if (hidden && st->session.input_count > 0) {
             const ink seen = f.colour;
             f.colour = INK_FRAME;
@@ -420,7 +425,7 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
 
     // another axis than time: nothing to click at, nothing to scale
     const pane *shown = &st->panes.pane[index];
-    if (shown->view != VIEW_TIME) {
+    if (!pane_is_over_time(shown)) {
         const area inside = {f.canvas.x, f.canvas.y, f.canvas.width, f.canvas.height};
         const area column = {a.x, a.y + 1, LABEL_WIDTH + 1, a.height - 1};
         layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_VIEW, index, inside});
@@ -436,6 +441,8 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
         screen_text(s, f.canvas.x, a.y + 1, f.canvas.width, INK_DIM,
                     showing_difference(st) && pane_is_derived(shown)
                         ? "an expression has no difference"
+                    : shown->view == VIEW_RESIDUAL
+                        ? "no measured data of this signal (:data FILE.csv lays them under the run)"
                         : "this run has no such values");
         return;
     }
@@ -450,12 +457,13 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     plot_frame_open(st, &f);
 
     // the present run over those for comparison, limits and cursors behind all curves
-    for (int run = state_run_count(st); run-- > 0;) {
+    for (int run = state_pane_run_count(st, shown); run-- > 0;) {
         draw_run(st, f, &st->panes.pane[index], run);
     }
-    if (!showing_difference(st)) {
+    if (shown->view == VIEW_TIME && !showing_difference(st)) {
         draw_levels(st, &f, s, &st->panes.pane[index]);
-    } else if (st->difference.tolerance > 0 && pane_has_amounts(shown)) {
+    } else if (shown->view == VIEW_TIME && st->difference.tolerance > 0 &&
+               pane_has_amounts(shown)) {
         plot_frame_level(&f, s, st->difference.tolerance, "tolerance");
         plot_frame_level(&f, s, -st->difference.tolerance, "tolerance");
     }

@@ -78,6 +78,7 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
       act_set_limit)                                                                               \
     X("", "phase", "SIGNAL OVER", "a pane of one signal over another: phase gap force",            \
       act_phase_pane)                                                                              \
+    X("", "residual", "SIGNAL...", "a pane of :data minus the run", act_residual_pane)             \
     X("", "spectrum", "SIGNAL", "a pane of its amplitudes in the visible part", act_spectrum_pane) \
     X("", "statistics", "", "min, max, mean, rms, integral from mark to cursor", act_statistics)   \
     X("", "lanes", "auto|all|off", "contact, modes, changes... below the curves; alone: next",     \

@@ -161,6 +161,11 @@ bool pane_has_amounts(const pane *p)
     return found;
 }
 
+bool pane_is_over_time(const pane *p)
+{
+    return p->view == VIEW_TIME || p->view == VIEW_RESIDUAL;
+}
+
 bool pane_is_derived(const pane *p)
 {
     assert(p != NULL);

@@ -35,8 +35,9 @@ void value_range_widen(value_range *r, value_range other);
 // The horizontal axis of a pane.
 typedef enum pane_view {
     VIEW_TIME,
-    VIEW_PHASE,   // the first one over the second
-    VIEW_SPECTRUM // the amplitudes of the first one over frequency
+    VIEW_PHASE,    // the first one over the second
+    VIEW_RESIDUAL, // over time: measured data minus the run
+    VIEW_SPECTRUM  // the amplitudes of the first one over frequency
 } pane_view;
 
 // A pane of curves: signals with a common axis.
@@ -78,6 +79,9 @@ int panes_focused(const pane_set *set);
 
 // Whether a pane has a signal that is an amount: of states alone there is no difference.
 bool pane_has_amounts(const pane *p);
+
+// Whether a pane's axis is time.
+bool pane_is_over_time(const pane *p);
 
 // Whether a pane has a signal that is computed from others: of differences it means nothing.
 bool pane_is_derived(const pane *p);

@@ -369,15 +369,14 @@ static status add_row(run_difference *d, const trace *run, const trace *other, s
     return trace_add_row(&d->trace, &difference, none, none);
 }
 
-void difference_update(run_difference *d, unsigned long run, const session *s)
+void difference_update(run_difference *d, unsigned long run, const trace *t, const trace *other)
 {
-    assert(d != NULL && s != NULL);
-    if (!d->on || !s->has_other) {
+    assert(d != NULL && t != NULL && other != NULL);
+    if (!d->on || other->row_count == 0) {
         return;
     }
 
     // of another run everything is computed anew, of one that grew the rest
-    const trace *t = &s->run.trace;
     if (d->run != run || d->rows > t->row_count || d->trace.row_array.size == 0) {
         trace_finish(&d->trace);
         trace_init(&d->trace, 1);
@@ -385,10 +384,11 @@ void difference_update(run_difference *d, unsigned long run, const session *s)
         d->run = run;
         d->rows = 0;
     }
-    const double end = s->other.trace.rows[s->other.trace.row_count - 1].time;
+    const double begin = other->rows[0].time, end = other->rows[other->row_count - 1].time;
     for (; d->rows < t->row_count; d->rows++) {
-        // beyond the other run's end there is nothing to compare
-        if (t->rows[d->rows].time > end || add_row(d, t, &s->other.trace, d->rows) != STATUS_OK) {
+        // outside of the other one there is nothing to compare
+        const double time = t->rows[d->rows].time;
+        if (time > end || (time >= begin && add_row(d, t, other, d->rows) != STATUS_OK)) {
             break;
         }
     }

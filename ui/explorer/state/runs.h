@@ -93,8 +93,8 @@ typedef struct solved_limit {
 } solved_limit;
 
 // --- the difference ---------------------------------------------------------------------------
-// Between the present run and the one kept beside it, row by row of the present one.
-// Contact, sticking and the controller's mode are those of the present run.
+// Of one trace from another, row by row of the first: of the present run from the baseline, of
+// measured data from the present run. Contact, sticking and the controller's mode stay the first's.
 
 typedef struct run_difference {
     bool on;             // panes show it in the place of the runs
@@ -105,9 +105,9 @@ typedef struct run_difference {
     size_t rows;         // of that
 } run_difference;
 
-// Brings the differences up to the rows there are, if they are wanted. `run` identifies the present
-// run and the one beside it.
-void difference_update(run_difference *d, unsigned long run, const session *s);
+// Brings the differences of a trace from another one up to the rows there are, if they are wanted.
+// `run` identifies both.
+void difference_update(run_difference *d, unsigned long run, const trace *of, const trace *from);
 
 // The first instant at which a signal differs by more than a tolerance [s]; negative if it never
 // does.

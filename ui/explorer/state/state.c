@@ -127,6 +127,7 @@ void state_finish(explorer_state *st)
     run_log_forget(&st->log);
     scenario_menu_finish(&st->scenarios);
     difference_finish(&st->difference);
+    difference_finish(&st->residual);
     trace_finish(&st->measured);
     lab_sweep_end(&st->sweep);
     run_list_clear(&st->pinned);
@@ -284,6 +285,19 @@ shown_run state_run(const explorer_state *st, int index)
     return (shown_run){SHOWN_BEFORE, 0, &s->ghost.trace, state_run_id(st)};
 }
 
+int state_pane_run_count(const explorer_state *st, const pane *p)
+{
+    return p->view == VIEW_RESIDUAL ? st->residual.trace.row_count > 0 : state_run_count(st);
+}
+
+shown_run state_pane_run(const explorer_state *st, const pane *p, int index)
+{
+    if (p->view != VIEW_RESIDUAL) {
+        return state_run(st, index);
+    }
+    return (shown_run){SHOWN_MEASURED, 0, &st->residual.trace, 3ul << 61 | st->residual.built};
+}
+
 const char *state_run_name(const explorer_state *st, int index)
 {
     const shown_run r = state_run(st, index);
@@ -428,7 +442,7 @@ static value_range range_between(const explorer_state *st, const pane *p, double
 {
     value_range found = value_range_empty;
     for (int run = 0; run < runs; run++) {
-        const shown_run shown = state_run(st, run);
+        const shown_run shown = state_pane_run(st, p, run);
         const trace *t = shown.trace;
         // one more row at the end, to which the line continues
         const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
@@ -451,11 +465,11 @@ bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
     const pane *p = &st->panes.pane[index];
     double from, to;
     const bool subtracts = state_run(st, 0).kind == SHOWN_DIFFERENCE;
-    if (p->view != VIEW_TIME || (subtracts && pane_is_derived(p))) {
+    if (!pane_is_over_time(p) || ((subtracts || p->view == VIEW_RESIDUAL) && pane_is_derived(p))) {
         return false;
     }
     state_window(st, &from, &to);
-    value_range found = range_between(st, p, from, to, state_run_count(st));
+    value_range found = range_between(st, p, from, to, state_pane_run_count(st, p));
     if (!(found.high >= found.low)) {
         return false;
     }
@@ -494,10 +508,31 @@ static void grow_axes(explorer_state *st)
 {
     for (int i = 0; i < PANES; i++) {
         pane *p = &st->panes.pane[i];
-        if (p->scaling == AXIS_GROW && p->shown && p->view == VIEW_TIME) {
-            value_range_widen(&p->grown, range_between(st, p, 0, st->session.seen, 1));
+        if (p->scaling == AXIS_GROW && p->shown && pane_is_over_time(p)) {
+            const int runs = p->view == VIEW_TIME ? 1 : state_pane_run_count(st, p);
+            value_range_widen(&p->grown, range_between(st, p, 0, st->session.seen, runs));
         }
     }
+}
+
+// The measured data minus the run, where a pane shows them.
+static void update_residual(explorer_state *st)
+{
+    run_difference *d = &st->residual;
+    d->on = false;
+    for (int i = 0; i < PANES; i++) {
+        const pane *p = &st->panes.pane[i];
+        d->on = d->on || (p->shown && p->view == VIEW_RESIDUAL);
+    }
+    if (!d->on || st->measured.row_count == 0) {
+        difference_finish(d);
+        return;
+    }
+
+    // a run that grows has more to compare with: all of it anew
+    const trace *t = &st->session.run.trace;
+    const unsigned long both = state_run_id(st) * 1000003 + st->measured_id * 997 + t->row_count;
+    difference_update(d, both, &st->measured, t);
 }
 
 void state_update(explorer_state *st)
@@ -512,7 +547,11 @@ void state_update(explorer_state *st)
     }
 
     // what follows the run and its instant
-    difference_update(&st->difference, state_run_id(st), &st->session);
+    const session *s = &st->session;
+    if (s->has_other) {
+        difference_update(&st->difference, state_run_id(st), &s->run.trace, &s->other.trace);
+    }
+    update_residual(st);
     update_extremes(st);
     grow_axes(st);
     time_window_follow(&st->window, duration_of(st), st->session.now);

@@ -70,6 +70,7 @@ typedef struct explorer_state {
     lab_sweep sweep;
     run_difference difference;
     solved_limit limit;
+    run_difference residual;   // of the measured data from the run
     trace measured;            // data laid under the run, no rows: none
     unsigned long measured_id; // counts the files read, and how often one was shifted
     unsigned opened;           // number of scenarios opened
@@ -140,6 +141,9 @@ unsigned long state_run_id(const explorer_state *st);
 // the others are for comparison.
 int state_run_count(const explorer_state *st);
 shown_run state_run(const explorer_state *st, int index);
+// The same of the runs whose curves a pane shows: of residuals there is one.
+int state_pane_run_count(const explorer_state *st, const pane *p);
+shown_run state_pane_run(const explorer_state *st, const pane *p, int index);
 // The name of a run, "" for the present one and for runs without a name.
 const char *state_run_name(const explorer_state *st, int index);
 // The number of pinned runs that are not hidden.
