@@ -526,7 +526,7 @@ TEST(a_scenario_is_plotted)
     run_result result;
     assert_int_equal(scenario_open(&s, "corrected/first-impact", ignore, NULL), STATUS_OK);
     assert_int_equal(run_scenario(&s, true, &result), STATUS_OK);
-    DONE(plot_run(&s, &result, NULL, path_of("run.png"), &f));
+    DONE(plot_run(&s, &result, NULL, NULL, 0, path_of("run.png"), &f));
     assert_int_equal(access(path_of("run.png"), F_OK), 0);
     run_finish(&result);
     // a run without rows still says what it is
@@ -534,7 +534,7 @@ TEST(a_scenario_is_plotted)
     result.summary.first_contact_s = (double)NAN;
     result.summary.status = STATUS_NOT_FINITE;
     strcpy(result.summary.message, "at t = 0 s: <nothing>");
-    DONE(plot_run(&s, &result, NULL, path_of("none.pdf"), &f));
+    DONE(plot_run(&s, &result, NULL, NULL, 0, path_of("none.pdf"), &f));
 }
 
 ALL_BETWEEN(make_work_folder, remove_work_folder)

@@ -405,8 +405,22 @@ const trace_panel usual_panels[USUAL_PANELS] = {
     {.label = "Voltage <i>v</i>", .signals = {"voltage"}, .with_zero = true, .weight = 0.5},
 };
 
+// Puts notes behind a figure's marks.
+static void add_notes(trace_figure *t, const figure_mark *notes, int count)
+{
+    figure *fig = &t->figure;
+    figure_mark *all = g_new0(figure_mark, (gsize)(fig->mark_count + count) + 1);
+    memcpy(all, fig->marks, (size_t)fig->mark_count * sizeof *all);
+    for (int i = 0; i < count; i++) {
+        figure_mark *m = &all[fig->mark_count++];
+        *m = (figure_mark){.x = notes[i].x};
+        m->label = trace_keep(t->owned, g_markup_escape_text(notes[i].label, -1));
+    }
+    fig->marks = trace_keep(t->owned, all);
+}
+
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
-                const char *path, fault *f)
+                const figure_mark *notes, int note_count, const char *path, fault *f)
 {
     assert(s != NULL && result != NULL && path != NULL);
     const trace_run runs[] = {{s, result, "this run"}, {s, old, "old run"}};
@@ -414,6 +428,9 @@ status plot_run(const scenario *s, const run_result *result, const run_result *o
     status code =
         trace_figure_init(&t, NULL, usual_panels, USUAL_PANELS, runs, old != NULL ? 2 : 1, f);
     if (code == STATUS_OK) {
+        if (note_count > 0) {
+            add_notes(&t, notes, note_count);
+        }
         code = figure_write(&t.figure, path, f);
         trace_figure_finish(&t);
     }

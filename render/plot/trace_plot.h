@@ -81,10 +81,10 @@ enum { USUAL_PANELS = 4 };
 extern const trace_panel usual_panels[USUAL_PANELS];
 
 // The picture of `run --plot`: contact force with the impulses, angles, angular velocities and the
-// voltage over time, together with an older run of the scenario (`old`, may be NULL), written to
-// path by figure_write.
+// voltage over time, together with an older run of the scenario (`old`, may be NULL) and with
+// notes, marks with plain texts, written to path by figure_write.
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
-                const char *path, fault *f);
+                const figure_mark *notes, int note_count, const char *path, fault *f);
 
 // --- reference data: overlay.c
 

@@ -154,7 +154,7 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
     static const struct {
         const char *name, *label, *short_label;
     } texts[] = {
-#define PREDICTOR_TEXT(id, name, label, short_label) [id] = {name, label, short_label},
+#define PREDICTOR_TEXT(id, name, label, short_label, about) [id] = {name, label, short_label},
         PREDICTOR_LIST(PREDICTOR_TEXT)
 #undef PREDICTOR_TEXT
     };

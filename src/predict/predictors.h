@@ -5,16 +5,21 @@
 #include "src/base/fault.h"
 #include "src/predict/predict.h"
 
-// Every predictor with the key under which results name it, a label, and a label for narrow places.
+// Every predictor with the key under which results name it, a label, a label for narrow places, and
+// what it is.
 #define PREDICTOR_LIST(X)                                                                          \
-    X(PREDICTOR_ENERGY, "energy", "energy principle", "energy")                                    \
-    X(PREDICTOR_IMPACT_DYNAMICS, "impact_dynamics", "impact dynamics", "impact dynamics")          \
+    X(PREDICTOR_ENERGY, "energy", "energy principle", "energy",                                    \
+      "all energy before the contact becomes strain; without the impact's loss, so too high for "  \
+      "stiff beams")                                                                               \
+    X(PREDICTOR_IMPACT_DYNAMICS, "impact_dynamics", "impact dynamics", "impact dynamics",          \
+      "after the impact every velocity falls linearly to zero while the force rises linearly")     \
     X(PREDICTOR_IMPACT_QUADRATIC, "impact_quadratic", "impact dynamics, closed form",              \
-      "closed form")                                                                               \
-    X(PREDICTOR_LINEARISED, "linearised", "linearised constrained arm", "linearised")
+      "closed form", "the same by a quadratic equation")                                           \
+    X(PREDICTOR_LINEARISED, "linearised", "linearised constrained arm", "linearised",              \
+      "small vibrations of this arm, with its motor, held to the wall; any number of links")
 
 typedef enum predictor {
-#define PREDICTOR_ENUM(id, name, label, short_label) id,
+#define PREDICTOR_ENUM(id, name, label, short_label, about) id,
     PREDICTOR_LIST(PREDICTOR_ENUM)
 #undef PREDICTOR_ENUM
         PREDICTOR_COUNT

@@ -189,6 +189,12 @@ static void run_on_terminal(explorer *ex)
             dirty = true;
         }
 
+        if (ex->state.copied != NULL) {
+            terminal_copy(ex->state.copied);
+            free(ex->state.copied);
+            ex->state.copied = NULL;
+        }
+
         // all input that has arrived, so that keys never wait for pictures that are out of date
         last = now;
         for (int taken = 0; in.kind != TERMINAL_NONE && !ex->state.quit && !leave; taken++) {
@@ -249,6 +255,9 @@ static int open_explorer(explorer *ex, const arguments *a)
     if (live) {
         ex->state.looks.theme = terminal_is_light() ? COLOURS_LIGHT : COLOURS_DARK;
         explorer_load_settings(ex);
+        if (a->operand_count == 0) {
+            explorer_welcome(ex);
+        }
         const bool wide = wcwidth(L'\u28ff') == 1; // the locale is there and knows braille
         ex->state.looks.glyphs = wide ? ex->state.looks.glyphs : GLYPHS_ASCII;
     }

@@ -6,6 +6,7 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "src/base/whole_file.h"
 #include "ui/explorer/state/user_files.h"
@@ -169,9 +170,9 @@ bool act_unbind_key(explorer_state *st, const char *argument)
 
 // --- settings ---------------------------------------------------------------------------------
 
-static const char *const remembered[] = {"theme", "glyphs",  "colours", "pixels", "closeup",
-                                         "mouse", "bending", "lanes",   "slow",   "speed",
-                                         "panes", "axis",    "key",     "unkey"};
+static const char *const remembered[] = {"theme", "glyphs",  "colours",  "pixels", "closeup",
+                                         "mouse", "bending", "colourby", "lanes",  "slow",
+                                         "speed", "panes",   "axis",     "key",    "unkey"};
 
 static bool is_remembered(const char *line)
 {
@@ -186,9 +187,9 @@ static bool is_remembered(const char *line)
 
 bool explorer_look(explorer_state *st, const char *line)
 {
-    static const char *const looking[] = {"panes", "axis",  "zoom",     "mark",
-                                          "trace", "phase", "spectrum", "signal",
-                                          "lanes", "limit", "residual"};
+    static const char *const looking[] = {"panes",    "axis",     "zoom",   "mark",    "trace",
+                                          "phase",    "spectrum", "signal", "lanes",   "limit",
+                                          "residual", "band",     "note",   "colourby"};
     const size_t length = strcspn(line, " ");
     for (size_t i = 0; i < sizeof looking / sizeof looking[0]; i++) {
         if (strlen(looking[i]) == length && strncmp(line, looking[i], length) == 0) {
@@ -278,8 +279,9 @@ static void write_settings(const explorer_state *st, FILE *stream)
             glyph_set_words[l->glyphs], colour_depth_words[l->depth]);
     fprintf(stream, "pixels %s\ncloseup %s\nbending %g\n", pixel_words[l->pixels],
             close_up_words[l->close_up], l->bending);
-    fprintf(stream, "mouse %s\nlanes %s\nspeed %g\nslow %g\n", mouse_words[l->mouse],
-            lane_choice_words[l->lanes], st->playback.speed, st->playback.slow);
+    fprintf(stream, "mouse %s\nlanes %s\ncolourby %s\nspeed %g\nslow %g\n", mouse_words[l->mouse],
+            lane_choice_words[l->lanes], colour_by_words[l->by_run], st->playback.speed,
+            st->playback.slow);
 
     // panes that the user did not choose are those that suit the scenario
     fputs(st->panes.chosen ? "panes " : "", stream);
@@ -312,4 +314,19 @@ bool act_remember(explorer_state *st, const char *argument)
         code = whole_file_commit(&file, &f);
     }
     return code == STATUS_OK ? act_tell(st, "settings kept in %s", path) : act_worked(st, code, &f);
+}
+
+// --- the first visit --------------------------------------------------------------------------
+
+void explorer_welcome(explorer *ex)
+{
+    assert(ex != NULL);
+    char path[1024];
+    if (!user_file("visited", path, sizeof path, true) || access(path, F_OK) == 0) {
+        return;
+    }
+    FILE *stream = fopen(path, "w");
+    if (stream != NULL && fclose(stream) == 0) {
+        ex->state.page.panel = PANEL_WELCOME;
+    }
 }

@@ -85,6 +85,10 @@ bool explorer_look(explorer_state *st, const char *line);
 
 // --- settings ---------------------------------------------------------------------------------
 
+// Shows the page of a first visit, unless there was one: then a file in the folder of settings says
+// so. Without such a folder nothing is shown.
+void explorer_welcome(explorer *ex);
+
 // Executes the commands of the settings file, if there is one. Faulty lines are reported on the
 // message line and ignored.
 void explorer_load_settings(explorer *ex);

@@ -22,7 +22,12 @@ static bool ends_with(const char *text, const char *end)
 static status write_figure(const explorer_state *st, const char *path, fault *f)
 {
     const session *s = &st->session;
-    return plot_run(&s->effective, &s->run, s->has_other ? &s->other : NULL, path, f);
+    figure_mark notes[NOTES];
+    for (int i = 0; i < st->note_count; i++) {
+        notes[i] = (figure_mark){.x = st->notes[i].time, .label = st->notes[i].text};
+    }
+    return plot_run(&s->effective, &s->run, s->has_other ? &s->other : NULL, notes, st->note_count,
+                    path, f);
 }
 
 // The rows of the run.
@@ -219,6 +224,64 @@ bool act_save_scene(explorer_state *st, const char *argument)
                                    .times = &s->now,
                                    .count = 1};
     return act_worked(st, scene_write(&picture, argument, &f), &f) && tell_saved(st, argument);
+}
+
+// --- the clipboard ----------------------------------------------------------------------------
+
+// The command that gives this run; where changes have instants or the scenario was changed as it
+// was opened no command does, and the scenario itself is written.
+static void write_command(explorer_state *st, FILE *stream)
+{
+    const session *s = &st->session;
+    char given[SCENARIO_CHANGES];
+    bool plain = scenario_changes(&s->base, given)[0] == '\0';
+    for (int i = 0; i < s->input_count; i++) {
+        plain = plain && s->inputs[i].kind == SESSION_INPUT_START;
+    }
+    if (!plain) {
+        write_scenario(st, stream);
+        return;
+    }
+    fprintf(stream, "impactlab run '%s'", s->base.name);
+    for (int i = 0; i < s->input_count; i++) {
+        fprintf(stream, " --set '%s=%s'", parameter_table[s->inputs[i].parameter].path,
+                s->inputs[i].text);
+    }
+    fputc('\n', stream);
+}
+
+// The selected parameter and its value at the cursor.
+static void write_value(explorer_state *st, FILE *stream)
+{
+    char value[PARAMETER_TEXT_SIZE];
+    const int index = st->parameters.parameter;
+    const parameters now = state_parameters(st);
+    parameter_format(&now, index, value, sizeof value);
+    fprintf(stream, "%s=%s", parameter_table[index].path, value);
+}
+
+bool act_copy(explorer_state *st, const char *argument)
+{
+    static const struct {
+        const char *word;
+        void (*write)(explorer_state *st, FILE *stream);
+    } what[] = {{"value", write_value}, {"run", write_command}, {"screen", write_screen}};
+    for (size_t i = 0; i < sizeof what / sizeof what[0]; i++) {
+        if (strcmp(argument[0] != '\0' ? argument : "value", what[i].word) == 0) {
+            size_t size = 0;
+            free(st->copied);
+            st->copied = NULL;
+            FILE *stream = open_memstream(&st->copied, &size);
+            if (stream != NULL) {
+                what[i].write(st, stream);
+            }
+            return stream != NULL && fclose(stream) == 0
+                       ? act_tell(st, "%s is on the clipboard of a terminal that knows OSC 52",
+                                  what[i].word)
+                       : act_refuse(st, "%s", status_text(STATUS_NO_MEMORY));
+        }
+    }
+    return act_refuse(st, "copy takes value, run or screen");
 }
 
 // --- measured data ----------------------------------------------------------------------------

@@ -215,6 +215,10 @@ void explorer_key(explorer *ex, int key)
     assert(ex != NULL);
     explorer_state *st = &ex->state;
 
+    // the page of a first visit takes no key
+    if (st->page.panel == PANEL_WELCOME) {
+        st->page.panel = PANEL_NONE;
+    }
     bool leaves = key == ('c' & 0x1f) && st->page.panel != PANEL_SCENARIOS;
     if (st->prompt.open) {
         key_in_prompt(ex, key);

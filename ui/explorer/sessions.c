@@ -85,6 +85,15 @@ static void add_looks(const explorer_state *st, session_file *file)
     if (st->window.to > st->window.from) {
         add_line(file, "zoom %.17g %.17g", st->window.from, st->window.to);
     }
+    for (int i = 0; i < st->note_count; i++) {
+        add_line(file, "note @%.17g %.200s", st->notes[i].time, st->notes[i].text);
+    }
+    if (st->looks.by_run) {
+        add_line(file, "colourby run");
+    }
+    if (st->band.signal >= 0) {
+        add_line(file, "band %s %.17g", signal_table[st->band.signal].name, st->band.bound);
+    }
     if (st->limit.signal >= 0) {
         add_line(file, "limit %s %.17g", signal_table[st->limit.signal].name, st->limit.bound);
     }

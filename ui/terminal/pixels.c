@@ -1,6 +1,7 @@
 #include "ui/terminal/pixels.h"
 
 #include <assert.h>
+#include <glib.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -188,21 +189,6 @@ bool sixel_write(FILE *stream, const pixel_block *block, int colours)
 
 enum { CHUNK = 4096, CHUNK_BYTES = CHUNK / 4 * 3 };
 
-// Writes up to CHUNK_BYTES bytes in base 64.
-static void write_base64(FILE *stream, const unsigned char *bytes, size_t count)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < count; i += 3) {
-        const unsigned second = i + 1 < count ? bytes[i + 1] : 0;
-        const unsigned third = i + 2 < count ? bytes[i + 2] : 0;
-        const unsigned three = (unsigned)bytes[i] << 16 | second << 8 | third;
-        putc_unlocked(digits[three >> 18], stream);
-        putc_unlocked(digits[three >> 12 & 63], stream);
-        putc_unlocked(i + 1 < count ? digits[three >> 6 & 63] : '=', stream);
-        putc_unlocked(i + 2 < count ? digits[three & 63] : '=', stream);
-    }
-}
-
 bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns, int rows)
 {
     assert(stream != NULL && block != NULL && block->width > 0 && block->height > 0);
@@ -232,7 +218,9 @@ bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns
                     block->width, block->height, columns, rows);
         }
         fprintf(stream, "m=%d;", left > CHUNK_BYTES);
-        write_base64(stream, packed + sent, count);
+        gchar *coded = g_base64_encode(packed + sent, count);
+        fputs(coded, stream);
+        g_free(coded);
         fputs("\033\\", stream);
     }
 

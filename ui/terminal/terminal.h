@@ -60,5 +60,8 @@ colour_depth terminal_depth(void);
 // Whether the terminal reports a light background (in COLORFGBG, as some do).
 bool terminal_is_light(void);
 
+// Puts a text on the terminal's clipboard (OSC 52); terminals that have none ignore it.
+void terminal_copy(const char *text);
+
 // Mouse reports on or off (off lets the terminal select text).
 void terminal_mouse(bool on);

@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <glib.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
@@ -424,4 +425,16 @@ void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour
     // ncurses takes a picture's cells for blanks, and may have cleared them
     show_pictures(s, whole || !tty.painted);
     terminal_send("\033[?2026l", 8);
+}
+
+// --- the clipboard ----------------------------------------------------------------------------
+
+void terminal_copy(const char *text)
+{
+    assert(text != NULL);
+    gchar *coded = g_base64_encode((const guchar *)text, strlen(text));
+    terminal_send("\033]52;c;", 7);
+    terminal_send(coded, strlen(coded));
+    terminal_send("\a", 1);
+    g_free(coded);
 }

@@ -83,6 +83,11 @@ bool act_hold_tip(explorer_state *st, plane_vector place);
 void act_move_pull(explorer_state *st, plane_vector place);
 bool act_drop_pull(explorer_state *st);
 
+// --- notes ------------------------------------------------------------------------------------
+
+// Takes a note out.
+void act_drop_note(explorer_state *st, int index);
+
 // --- filters ----------------------------------------------------------------------------------
 
 // After a change of a panel's filter: scrolls to the top and selects an entry that passes the

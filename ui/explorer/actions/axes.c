@@ -322,21 +322,55 @@ bool act_hide_signal(explorer_state *st, const char *argument)
                                      : act_tell(st, "all signals of the pane are shown");
 }
 
-bool act_set_limit(explorer_state *st, const char *argument)
+// Reads a signal and a value, or off.
+static bool read_bound(explorer_state *st, const char *argument, const char *command,
+                       solved_limit *bound)
 {
     char text[LINE_TEXT], *words[4];
-    solved_limit limit = {.signal = -1};
+    *bound = (solved_limit){.signal = -1};
     snprintf(text, sizeof text, "%s", argument);
-    const int count = split(text, words);
-    if (count == 2 && (limit.signal = signal_find_any(words[0])) >= 0) {
-        if (!act_read_number(st, words[1], &limit.bound)) {
-            return false;
-        }
-    } else if (strcmp(argument, "off") != 0) {
-        return act_refuse(st, "limit takes a signal and a value, such as force 2, or off");
+    if (split(text, words) == 2 && (bound->signal = signal_find_any(words[0])) >= 0) {
+        return act_read_number(st, words[1], &bound->bound);
+    }
+    return strcmp(argument, "off") == 0 ||
+           act_refuse(st, "%s takes a signal and a value, such as force 2, or off", command);
+}
+
+bool act_set_limit(explorer_state *st, const char *argument)
+{
+    solved_limit limit;
+    if (!read_bound(st, argument, "limit", &limit)) {
+        return false;
     }
     st->limit = limit;
     return true;
+}
+
+bool act_set_band(explorer_state *st, const char *argument)
+{
+    solved_limit band;
+    if (!read_bound(st, argument, "band", &band)) {
+        return false;
+    }
+    if (band.signal >= 0 && !(band.bound > 0)) {
+        return act_refuse(st, "a band has a tolerance above 0");
+    }
+    st->band = band;
+    if (band.signal < 0 || !st->session.has_other) {
+        return act_tell(st, "%s", band.signal < 0 ? "no band" : "b pins the run that it is round");
+    }
+
+    // where the present run leaves it
+    const session *s = &st->session;
+    run_difference d = {.on = true};
+    difference_update(&d, 1, &s->run.trace, &s->other.trace);
+    const bool told = signal_is_derived(band.signal) || signal_is_state(band.signal);
+    const double first = told ? -1 : difference_first_beyond(&d, band.signal, band.bound);
+    difference_finish(&d);
+    const char *name = st->pinned.runs[st->pinned.baseline].name;
+    return told        ? act_tell(st, "the band is round '%s'", name)
+           : first < 0 ? act_tell(st, "this run stays within the band round '%s'", name)
+                       : act_tell(st, "this run leaves the band round '%s' at %.5f s", name, first);
 }
 
 bool act_alone(explorer_state *st, const char *argument)

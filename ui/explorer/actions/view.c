@@ -397,6 +397,12 @@ bool act_set_colours(explorer_state *st, const char *argument)
     return choose(st, argument, colour_depth_words, COLOUR_DEPTHS, &st->looks.depth);
 }
 
+bool act_colour_by(explorer_state *st, const char *argument)
+{
+    return choose_next(st, argument, colour_by_words, 2, &st->looks.by_run) &&
+           act_tell(st, "a colour for each %s", colour_by_words[st->looks.by_run]);
+}
+
 bool act_set_mouse(explorer_state *st, const char *argument)
 {
     return choose(st, argument, mouse_words, 2, &st->looks.mouse) &&

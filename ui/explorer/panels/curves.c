@@ -322,7 +322,9 @@ static void set_look(const explorer_state *st, plot_frame *f, const pane *p, con
 {
     f->pattern = style_pattern(look->style[k]);
     f->colour = look->colour[k];
-    if (run->kind == SHOWN_PINNED && state_visible_pins(st) == 1) {
+    if (st->looks.by_run && (run->kind == SHOWN_PINNED || run->kind == SHOWN_PRESENT)) {
+        f->colour = run_ink(run->kind == SHOWN_PINNED ? run->index : -1);
+    } else if (run->kind == SHOWN_PINNED && state_visible_pins(st) == 1) {
         f->colour = INK_OTHER;
     } else if (run->kind == SHOWN_PINNED) {
         f->pattern = run_pattern(run->index);
@@ -351,7 +353,8 @@ static void draw_run(const explorer_state *st, plot_frame f, const pane *p, int 
 
     // of many runs a pane shows what it is about
     const bool first_only =
-        run.kind == SHOWN_SWEPT || (run.kind == SHOWN_PINNED && state_visible_pins(st) > 1);
+        run.kind == SHOWN_SWEPT ||
+        (run.kind == SHOWN_PINNED && state_visible_pins(st) > 1 && !st->looks.by_run);
     const int count = first_only && p->count > 1 ? 1 : p->count;
     for (int k = 0; k < count; k++) {
         if (p->hidden >> k & 1) {
@@ -411,6 +414,26 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
     }
 }
 
+// The tolerance on both sides of the baseline: its curve, shifted.
+static void draw_band(const explorer_state *st, const plot_frame *f, const pane *p)
+{
+    for (int k = 0; k < p->count; k++) {
+        if (p->signals[k] != st->band.signal || p->hidden >> k & 1) {
+            continue;
+        }
+        for (int side = -1; side <= 1; side += 2) {
+            plot_frame shifted = *f;
+            const double by = side * st->band.bound;
+            shifted.axis = (value_range){f->axis.low - by, f->axis.high - by};
+            shifted.pixels.low -= by;
+            shifted.pixels.high -= by;
+            shifted.pattern = style_pattern(LINE_DOTTED);
+            shifted.colour = INK_FRAME;
+            plot_frame_signal(&shifted, &st->session.other.trace, p->signals[k], f->to, NULL);
+        }
+    }
+}
+
 // Whether panes show differences instead of runs.
 static bool showing_difference(const explorer_state *st)
 {
@@ -461,6 +484,9 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
         draw_run(st, f, &st->panes.pane[index], run);
     }
     if (shown->view == VIEW_TIME && !showing_difference(st)) {
+        if (st->session.has_other) {
+            draw_band(st, &f, shown);
+        }
         draw_levels(st, &f, s, &st->panes.pane[index]);
     } else if (shown->view == VIEW_TIME && st->difference.tolerance > 0 &&
                pane_has_amounts(shown)) {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "src/base/text_stream.h"
+#include "src/predict/predictors.h"
 #include "src/session/account.h"
 #include "src/study/linear/linear.h"
 #include "ui/explorer/state/command_list.h"
@@ -263,9 +264,23 @@ static void explain_parameter(const explorer_state *st, page *p)
     add_text(p, 0, "Enter edits it, < and > nudge it, :sweep and :solve vary it.", NULL);
 }
 
+// What the predictors say, and from what.
+static void explain_predictors(page *p)
+{
+#define PREDICTOR_WORDS(id, name, label, short_label, about) label ": " about ".",
+    static const char *const words[] = {PREDICTOR_LIST(PREDICTOR_WORDS)};
+#undef PREDICTOR_WORDS
+    add_heading(p, "predictors: the largest force of the pulse if the tip touched now");
+    for (int i = 0; i < PREDICTOR_COUNT; i++) {
+        add_text(p, 0, words[i], NULL);
+    }
+    add_text(p, 0, "\"would not hold\": the touch would throw the tip off. What came: the run.",
+             NULL);
+}
+
 static void draw_explain(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    enum { MOST = 48, WIDTH = 84 };
+    enum { MOST = 64, WIDTH = 84 };
     static help_line lines[MOST];
     area a = page_area(body, WIDTH, body.height);
     page p = {.lines = lines, .most = MOST, .width = a.width - 4};
@@ -290,11 +305,33 @@ static void draw_explain(const explorer_state *st, layout *lay, screen *s, area 
                  event_description((int)e->kind));
         add_text(&p, 0, text, NULL);
     }
+    explain_predictors(&p);
     a = page_area(body, WIDTH, p.count + 2);
     const int scroll = page_scroll(lay, PANEL_EXPLAIN, a, p.count, 2);
     draw_lines(s, a, "what is here (? lists keys and commands, Esc closes)", lines + scroll,
                p.count - scroll);
 }
+
+// The page of a first visit: what is behind it goes on, the first key closes it and acts.
+static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    enum { MOST = 12, WIDTH = 76 };
+    static help_line lines[MOST];
+    area a = page_area(body, WIDTH, body.height);
+    page p = {.lines = lines, .most = MOST, .width = a.width - 4};
+    (void)st;
+    add_entry(&p, "1",
+              "The arm hits the wall by itself. Space stops it, I goes back to just before.");
+    add_entry(&p, "2",
+              "b keeps this run; Enter, 0.5, Enter halves the voltage: both are compared.");
+    add_entry(&p, "3", "o / hybrid Enter presses with 1 N by a control law. ? lists all keys.");
+    a = page_area(body, WIDTH, p.count + 2);
+    page_scroll(lay, PANEL_WELCOME, a, p.count, 2);
+    draw_lines(s, a, "a first visit (any key goes on)", lines, p.count);
+}
+
+const panel welcome_panel = {
+    .name = "welcome", .draw = draw_welcome, .point = page_point, .key = page_key};
 
 const panel explain_panel = {
     .name = "explain", .draw = draw_explain, .point = page_point, .key = page_key};

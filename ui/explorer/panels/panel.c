@@ -58,6 +58,11 @@ unsigned run_pattern(int index)
     return patterns[index % PATTERNS];
 }
 
+ink run_ink(int index)
+{
+    return (ink)(INK_SERIES_0 + (index + 1) % 8);
+}
+
 bool line_has_dot(unsigned pattern, long across)
 {
     return (pattern >> (unsigned)((across % PERIOD + PERIOD) % PERIOD) & 1u) != 0;

@@ -17,6 +17,9 @@ unsigned style_pattern(line_style style);
 // The line of a pinned run, different for each.
 unsigned run_pattern(int index);
 
+// The colour of a pinned run by its index, or of the present one (-1), where runs have colours.
+ink run_ink(int index);
+
 // Whether a line has a dot at a column of dots.
 bool line_has_dot(unsigned pattern, long across);
 

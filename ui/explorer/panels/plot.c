@@ -334,6 +334,14 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
         }
     }
 
+    // notes
+    for (int i = 0; i < st->note_count; i++) {
+        const double at = (st->notes[i].time - from) / (to - from) * line.width;
+        if (at >= 0 && at < line.width) {
+            screen_put(s, line.x + (int)at, a.y, '!', INK_TITLE);
+        }
+    }
+
     // the meaning of the marks, next to them
     screen_text(s, a.x, a.y, LABEL_WIDTH, INK_FORCE, "\u2592 contact");
     screen_text(s, a.x, a.y + 1, LABEL_WIDTH, INK_EVENT, "\u25b2 impact");

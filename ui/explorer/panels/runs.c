@@ -29,18 +29,19 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const run_list *list = &st->pinned;
     area line = {a.x + 2, a.y + 1, a.width - 4, 1};
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "runs, peaks (R: list)");
+    const bool by_run = st->looks.by_run != 0;
     draw_run(s, line, "now", st->session.run.summary.peak_force_N, style_pattern(LINE_SOLID),
-             INK_TEXT);
+             by_run ? run_ink(-1) : INK_TEXT);
     line.y++;
 
     // the baseline with a mark, hidden ones without a line
     const bool single = state_visible_pins(st) == 1;
     for (int i = 0; i < list->count && line.y < a.y + a.height - 1; i++, line.y++) {
         const pinned_run *p = &list->runs[i];
-        const unsigned pattern = p->hidden ? 0
-                                 : single  ? style_pattern(LINE_SOLID)
-                                           : run_pattern(i);
-        const ink colour = single ? INK_OTHER : INK_TEXT;
+        const unsigned pattern = p->hidden          ? 0
+                                 : single || by_run ? style_pattern(LINE_SOLID)
+                                                    : run_pattern(i);
+        const ink colour = by_run ? run_ink(i) : single ? INK_OTHER : INK_TEXT;
         draw_run(s, line, p->name, p->run.summary.peak_force_N, pattern, colour);
         if (i == list->baseline) {
             screen_put(s, a.x + 1, line.y, 0x25b8, INK_EVENT);

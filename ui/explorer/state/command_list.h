@@ -59,6 +59,9 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "undo", "", "take the last change back", act_undo)                                       \
     X("", "redo", "", "put it in again", act_redo)                                                 \
     X("Looking", "mark", "[TIME]", "second cursor: differences to it", act_set_mark)               \
+    X("", "note", "[TEXT]", "a note at the cursor, without a text none; @TIME TEXT elsewhere",     \
+      act_note)                                                                                    \
+    X("", "notes", "", "all notes: Enter goes there", act_show_notes)                              \
     X("", "side", "", "parameters or values on the right", act_other_side)                         \
     X("", "filter", "[WORDS]", "of parameters, values or help: those with all words", act_filter)  \
     X("", "info", "", "what the scenario is about", act_show_info)                                 \
@@ -76,6 +79,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
       "hide a signal of the pane in focus, or show it; alone: the next", act_hide_signal)          \
     X("", "limit", "SIGNAL VALUE|off", "a bound drawn across the panes of a signal",               \
       act_set_limit)                                                                               \
+    X("", "band", "SIGNAL TOLERANCE|off", "a band round the baseline's curve, and who leaves it",  \
+      act_set_band)                                                                                \
     X("", "phase", "SIGNAL OVER", "a pane of one signal over another: phase gap force",            \
       act_phase_pane)                                                                              \
     X("", "residual", "SIGNAL...", "a pane of :data minus the run", act_residual_pane)             \
@@ -94,12 +99,16 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "save!", "FILE", "the same over a file that is there", act_save_over)                    \
     X("", "session", "save|open FILE", "runs, changes, pins and panes, to go on with another day", \
       act_session)                                                                                 \
+    X("", "copy", "value|run|screen", "to the terminal's clipboard: value, command line, screen",  \
+      act_copy)                                                                                    \
     X("", "scene", "FILE.png", "picture of the arm at this instant", act_save_scene)               \
     X("The lab", "palette", "[WORDS]", "find anything by words: commands, values, scenarios",      \
       act_open_palette)                                                                            \
     X("", "glyphs", "braille|blocks|ascii", "characters to draw with", act_set_glyphs)             \
     X("", "theme", "dark|light|mono", "colours for that ground", act_set_theme)                    \
     X("", "colours", "auto|true|256|16|mono", "how many the terminal has", act_set_colours)        \
+    X("", "colourby", "signal|run", "what has a colour of its own; alone: the other",              \
+      act_colour_by)                                                                               \
     X("", "pixels", "auto|off", "pictures where the terminal has them", act_set_pixels)            \
     X("", "closeup", "auto|on|off", "the contact from near by; alone: next", act_set_close_up)     \
     X("", "bending", "[FACTOR]", "drawn that many times as large; alone: as it is",                \

@@ -92,6 +92,16 @@ typedef struct solved_limit {
     double bound;
 } solved_limit;
 
+// --- notes ------------------------------------------------------------------------------------
+
+enum { NOTES = 32 };
+
+// What the user has to say at an instant.
+typedef struct note {
+    double time; // [s]
+    char text[LINE_TEXT];
+} note;
+
 // --- the difference ---------------------------------------------------------------------------
 // Of one trace from another, row by row of the first: of the present run from the baseline, of
 // measured data from the present run. Contact, sticking and the controller's mode stay the first's.

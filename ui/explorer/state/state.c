@@ -100,7 +100,7 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
     }
 
     st->visit_count = 1;
-    st->limit.signal = -1;
+    st->limit.signal = st->band.signal = -1;
     st->pinned.baseline = -1;
     st->sweep.metric = SUMMARY_INDEX(peak_force_N);
     st->playback.speed = 0.2;
@@ -129,6 +129,7 @@ void state_finish(explorer_state *st)
     difference_finish(&st->difference);
     difference_finish(&st->residual);
     trace_finish(&st->measured);
+    free(st->copied);
     lab_sweep_end(&st->sweep);
     run_list_clear(&st->pinned);
     for (int i = 0; i < st->visit_count; i++) {

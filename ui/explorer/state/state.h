@@ -70,6 +70,10 @@ typedef struct explorer_state {
     lab_sweep sweep;
     run_difference difference;
     solved_limit limit;
+    solved_limit band; // a tolerance on both sides of the baseline
+    note notes[NOTES]; // in time
+    int note_count;
+    int note;                  // the selected one
     run_difference residual;   // of the measured data from the run
     trace measured;            // data laid under the run, no rows: none
     unsigned long measured_id; // counts the files read, and how often one was shifted
@@ -108,6 +112,7 @@ typedef struct explorer_state {
     char last_law[LINE_TEXT];     // the law that was switched off last, "" for none
     bool settings_broken;         // the settings file contains errors
     unsigned long saved_version;  // the run last saved as a scenario, 0 for none
+    char *copied;                 // for the terminal's clipboard, NULL: nothing
     char session_path[LINE_TEXT]; // the session file of this visit, "" for none
     unsigned long kept_pins;      // runs ever pinned when they were last saved in a session
     bool asked_to_quit;           // the last key asked to quit, and changes would be lost

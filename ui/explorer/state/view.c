@@ -67,4 +67,6 @@ const char *const close_up_words[CLOSE_UP_CHOICES] = {
 
 const char *const pixel_words[2] = {"off", "auto"};
 
+const char *const colour_by_words[2] = {"signal", "run"};
+
 const char *const mouse_words[2] = {"off", "on"};

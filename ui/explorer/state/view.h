@@ -45,6 +45,8 @@ typedef enum panel_place {
     X(PANEL_EXPLAIN, PLACE_PAGE, explain_panel)                                                    \
     X(PANEL_WHY, PLACE_PAGE, why_panel)                                                            \
     X(PANEL_POLES, PLACE_PAGE, poles_panel)                                                        \
+    X(PANEL_NOTES, PLACE_PAGE, notes_panel)                                                        \
+    X(PANEL_WELCOME, PLACE_PAGE, welcome_panel)                                                    \
     X(PANEL_PALETTE, PLACE_PROMPT, palette_panel)
 
 typedef enum panel_id {
@@ -102,6 +104,7 @@ typedef struct looks {
     int pixels;      // not 0: pictures are drawn if the terminal has them
     int close_up;    // close_up_choice
     double bending;  // factor by which bending is enlarged
+    int by_run;      // not 0: a run has one colour, and lines tell the signals
     int mouse;       // not 0: mouse reports are on
     bool redraw;     // the whole screen must be redrawn
 } looks;
@@ -112,6 +115,7 @@ extern const char *const colour_theme_words[COLOUR_THEMES];
 extern const char *const colour_depth_words[COLOUR_DEPTHS];
 extern const char *const lane_choice_words[LANE_CHOICES];
 extern const char *const close_up_words[CLOSE_UP_CHOICES];
+extern const char *const colour_by_words[2];
 extern const char *const mouse_words[2];
 extern const char *const pixel_words[2];
 
