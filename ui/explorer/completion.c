@@ -100,7 +100,8 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
         return p->word == 2 && parameter_value(parameter_of_name(p->argument), i, text);
     } else if (strcmp(p->command, "solve") == 0 && p->word == 2) {
         name = i < summary_count ? summary_table[i].key : NULL;
-    } else if (strcmp(p->command, "sweep") == 0 || strcmp(p->command, "solve") == 0) {
+    } else if (strcmp(p->command, "sweep") == 0 || strcmp(p->command, "solve") == 0 ||
+               strcmp(p->command, "identify") == 0) {
         name = i < parameter_count ? parameter_table[i].path : NULL;
     } else if (strcmp(p->command, "metric") == 0) {
         name = i < summary_count ? summary_table[i].key : NULL;

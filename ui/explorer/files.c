@@ -9,7 +9,6 @@
 #include "render/scene/scene.h"
 #include "src/base/whole_file.h"
 #include "src/run/export.h"
-#include "src/run/measured.h"
 #include "ui/explorer/panels/compose.h"
 #include "ui/explorer/panels/panel.h"
 
@@ -282,85 +281,4 @@ bool act_copy(explorer_state *st, const char *argument)
         }
     }
     return act_refuse(st, "copy takes value, run or screen");
-}
-
-// --- measured data ----------------------------------------------------------------------------
-
-// The force by which two traces are aligned, -1 if none is in both.
-static int common_force(const trace *a, const trace *b)
-{
-    static const int forces[] = {SIGNAL_INDEX(force), SIGNAL_INDEX(force_reading),
-                                 SIGNAL_INDEX(piezo_force)};
-    for (size_t i = 0; i < sizeof forces / sizeof forces[0]; i++) {
-        if (trace_has(a, forces[i]) && trace_has(b, forces[i])) {
-            return forces[i];
-        }
-    }
-    return -1;
-}
-
-// The first instant at which a signal is above a level [s], NaN if it never is.
-static double first_above(const trace *t, int signal, double level)
-{
-    for (size_t r = 0; r < t->row_count; r++) {
-        if (signal_value(&t->rows[r], signal) > level) {
-            return t->rows[r].time;
-        }
-    }
-    return (double)NAN;
-}
-
-// Measured columns under the run, shifted as the file's name says, else to the run's first touch.
-bool act_lay_data(explorer_state *st, const char *argument)
-{
-    fault f = {0};
-    trace fresh = {0};
-    csv_table table = {0};
-    char path[LINE_TEXT];
-    const char *at = strrchr(argument, '@');
-    double shift = (double)NAN;
-    if (argument[0] == '\0') {
-        return act_refuse(st, "data takes a table with a column time, such as bench.csv, or off");
-    }
-    if (strcmp(argument, "off") == 0) {
-        trace_finish(&st->measured);
-        st->measured = (trace){0};
-        return act_tell(st, "no measured data");
-    }
-    if (!act_need_whole_run(st)) {
-        return false;
-    }
-    if (at != NULL && !act_read_number(st, at + 1, &shift)) {
-        return false;
-    }
-    snprintf(path, sizeof path, "%.*s", at != NULL ? (int)(at - argument) : (int)strlen(argument),
-             argument);
-    trace_init(&fresh, 1);
-    status code = csv_table_read(&table, path, 1, &f);
-    code = code == STATUS_OK ? measured_rows(&fresh, &table, NULL, -1, &f) : code;
-    csv_table_finish(&table);
-    if (code != STATUS_OK) {
-        trace_finish(&fresh);
-        return act_worked(st, code, &f);
-    }
-
-    // a tenth of the measured largest force marks the touch in both
-    const trace *t = &st->session.run.trace;
-    const int force = common_force(&fresh, t);
-    if (isnan(shift) && force >= 0) {
-        const double last = fresh.rows[fresh.row_count - 1].time;
-        const double level = trace_statistics(&fresh, force, fresh.rows[0].time, last).maximum / 10;
-        shift = first_above(t, force, level) - first_above(&fresh, force, level);
-    }
-    for (size_t r = 0; r < fresh.row_count && isfinite(shift); r++) {
-        fresh.rows[r].time += shift;
-    }
-    trace_finish(&st->measured);
-    st->measured = fresh;
-    st->measured_id++;
-    return isfinite(shift)
-               ? act_tell(st, "%zu rows, shifted by %.6g s; :data off takes them away",
-                          fresh.row_count, shift)
-               : act_warn(st, "%zu rows, as they are: no force in both that shows a touch",
-                          fresh.row_count);
 }

@@ -55,6 +55,19 @@ void act_tell_replay(explorer_state *st);
 // Refused while the run is being computed, for actions that need the complete run.
 bool act_need_whole_run(explorer_state *st);
 
+// Refused where a run takes too long to be computed again and again while the lab waits.
+bool act_need_short_runs(explorer_state *st, const char *command);
+
+// PATH or PATH=VALUES with the whole path of a parameter that is named by its last part. Returns
+// text.
+const char *act_whole_path(const char *word, char *text, size_t size);
+
+// Pins the present run with other values from the start; act_settle_baseline is to follow.
+status act_pin_values(explorer_state *st, const sweep_axis *const *axes, const double *values,
+                      int count, const char *name, fault *f);
+// Compares the present run with the baseline of the pinned ones from now on.
+bool act_settle_baseline(explorer_state *st);
+
 // --- time -------------------------------------------------------------------------------------
 
 // Advances by wall-clock time [s]: moves the cursor during playback.

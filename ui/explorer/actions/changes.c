@@ -153,6 +153,11 @@ static double nudged(int parameter, double value, int direction)
 bool act_nudge(explorer_state *st, const char *argument)
 {
     int direction = argument[0] == '-' ? -1 : 1, index = st->parameters.parameter;
+    if (st->side.panel == PANEL_SWEEP && lab_sweep_is_map(&st->sweep)) {
+        const int across = (int)st->sweep.axis.count, to = st->sweep.selected % across + direction;
+        act_select_swept(st, to >= 0 && to < across ? direction : 0);
+        return true;
+    }
     const parameter_info *info = &parameter_table[index];
     if (st->parameters.on_heading) {
         return act_refuse(st, "no parameter is selected (arrows up and down select one)");
@@ -179,15 +184,22 @@ static bool take_swept(explorer_state *st)
     const lab_sweep *sweep = &st->sweep;
     session *s = &st->session;
     char value[SWEEP_VALUE_TEXT];
+    double values[2];
     if (sweep->selected >= sweep->count) {
         return act_refuse(st, "the sweep has no run yet");
     }
 
     // a change from the start, whatever is looked at
     const double now = s->now;
-    sweep_axis_format(&sweep->axis, sweep->runs[sweep->selected].value, value, sizeof value);
+    lab_sweep_values(sweep, sweep->selected, values);
     session_seek(s, 0);
-    const bool changed = act_change(st, sweep->axis.parameter, value);
+    sweep_axis_format(&sweep->axis, values[0], value, sizeof value);
+    bool changed = act_change(st, sweep->axis.parameter, value);
+    if (changed && lab_sweep_is_map(sweep)) {
+        session_seek(s, 0);
+        sweep_axis_format(&sweep->second, values[1], value, sizeof value);
+        changed = act_change(st, sweep->second.parameter, value);
+    }
     const double seen = s->seen;
     session_seek(s, now);
     s->seen = fmax(seen, s->now);

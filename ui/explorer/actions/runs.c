@@ -6,14 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/clock.h"
 #include "src/study/solve.h"
 
-#define LONGEST_SWEPT_RUN 0.3 // that is computed between two pictures [s]
+#define LONGEST_MAP_PIECE 0.015 // of a map, between two pictures [s]
+#define LONGEST_SWEPT_RUN 0.3   // that is computed between two pictures [s]
 
 // --- pinned runs ------------------------------------------------------------------------------
 
 // Makes the baseline the run for comparison with the present one.
-static bool settle_baseline(explorer_state *st)
+bool act_settle_baseline(explorer_state *st)
 {
     fault f = {0};
     const run_list *list = &st->pinned;
@@ -34,7 +36,7 @@ static bool pin(explorer_state *st, const char *name)
         return false;
     }
     return act_worked(st, run_list_pin(&st->pinned, &st->session, name, &f), &f) &&
-           settle_baseline(st);
+           act_settle_baseline(st);
 }
 
 bool act_branch(explorer_state *st, const char *argument)
@@ -63,7 +65,7 @@ bool act_forget(explorer_state *st, const char *argument)
     if (st->pinned.baseline >= 0) {
         run_list_drop(&st->pinned, st->pinned.baseline);
     }
-    return settle_baseline(st);
+    return act_settle_baseline(st);
 }
 
 bool act_show_runs(explorer_state *st, const char *argument)
@@ -129,7 +131,7 @@ bool act_set_baseline(explorer_state *st, const char *argument)
         return false;
     }
     st->pinned.baseline = index;
-    return settle_baseline(st) &&
+    return act_settle_baseline(st) &&
            act_tell(st, "compared with '%s' from now on", st->pinned.runs[index].name);
 }
 
@@ -159,7 +161,7 @@ bool act_unpin(explorer_state *st, const char *argument)
         return false;
     }
     run_list_drop(&st->pinned, index);
-    return settle_baseline(st);
+    return act_settle_baseline(st);
 }
 
 bool act_show_difference(explorer_state *st, const char *argument)
@@ -229,32 +231,53 @@ static int signal_of_quantity(int quantity)
     return -1;
 }
 
-// Pins the run at a limit beside the present one, which stays.
-static status pin_limit(explorer_state *st, const sweep_axis *axis, double value, fault *f)
+status act_pin_values(explorer_state *st, const sweep_axis *const *axes, const double *values,
+                      int count, const char *name, fault *f)
 {
-    char text[PARAMETER_TEXT_SIZE], name[RUN_NAME];
     parameters p = st->session.effective.parameters;
     run_origin from;
-    session limit;
-    status code = sweep_axis_apply(axis, value, &p, f);
-    code = code == STATUS_OK ? run_origin_take(&from, &st->session, f) : code;
+    session other;
+    status code = run_origin_take(&from, &st->session, f);
     if (code != STATUS_OK) {
         return code;
     }
 
-    // the present run's changes, and the value from the start
-    code = session_reopen(&limit, &from, HUGE_VAL, f);
+    // the present run's changes, and the values from the start
+    code = session_reopen(&other, &from, HUGE_VAL, f);
     run_origin_finish(&from);
     if (code != STATUS_OK) {
         return code;
     }
-    session_seek(&limit, 0);
-    parameter_format(&p, axis->parameter, text, sizeof text);
-    code = session_change_from_start(&limit, axis->parameter, text, f);
-    snprintf(name, sizeof name, "%s %.5g", strchr(axis->name, '.') + 1, value);
-    code = code == STATUS_OK ? run_list_pin(&st->pinned, &limit, name, f) : code;
-    session_finish(&limit);
+    session_seek(&other, 0);
+    for (int i = 0; i < count && code == STATUS_OK; i++) {
+        char text[PARAMETER_TEXT_SIZE];
+        code = sweep_axis_apply(axes[i], values[i], &p, f);
+        if (code == STATUS_OK) {
+            parameter_format(&p, axes[i]->parameter, text, sizeof text);
+            code = session_change_from_start(&other, axes[i]->parameter, text, f);
+        }
+    }
+    code = code == STATUS_OK ? run_list_pin(&st->pinned, &other, name, f) : code;
+    session_finish(&other);
     return code;
+}
+
+const char *act_whole_path(const char *word, char *text, size_t size)
+{
+    char name[LINE_TEXT];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word, "="), word);
+    const int parameter = parameter_of_name(name);
+    snprintf(text, size, "%s%s", parameter >= 0 ? parameter_table[parameter].path : name,
+             word + strcspn(word, "="));
+    return text;
+}
+
+bool act_need_short_runs(explorer_state *st, const char *command)
+{
+    const double takes = st->session.run.summary.wall_time_s;
+    return !(isfinite(st->session.patience) && takes > LONGEST_SWEPT_RUN) ||
+           act_refuse(st, "a run takes %.1f s here: 'impactlab %s' computes them beside", takes,
+                      command);
 }
 
 // The limit that is nearest to the value the run has.
@@ -312,21 +335,13 @@ bool act_solve(explorer_state *st, const char *argument)
         return act_refuse(st, "solve takes a parameter and a condition, such as motor.voltage "
                               "peak_force_N<2");
     }
-    if (!act_need_whole_run(st)) {
+    if (!act_need_whole_run(st) || !act_need_short_runs(st, "solve")) {
         return false;
-    }
-    if (isfinite(st->session.patience) && st->session.run.summary.wall_time_s > LONGEST_SWEPT_RUN) {
-        return act_refuse(st, "a run takes %.1f s here: 'impactlab solve' computes them beside",
-                          st->session.run.summary.wall_time_s);
     }
 
     // a parameter may be given by the last part of its path
-    const char *range = strchr(path, '=');
-    char name[LINE_TEXT], whole[2 * LINE_TEXT];
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(path, "="), path);
-    const int parameter = parameter_of_name(name);
-    snprintf(whole, sizeof whole, "%s%s", parameter >= 0 ? parameter_table[parameter].path : name,
-             range != NULL ? range : "");
+    char whole[2 * LINE_TEXT], name[RUN_NAME];
+    act_whole_path(path, whole, sizeof whole);
     status code = solve_condition_read(rest, &condition, &f);
     const scenario *s = &st->session.effective;
     code = code == STATUS_OK ? solve_axis_read(&axis, whole, s, &f) : code;
@@ -335,11 +350,13 @@ bool act_solve(explorer_state *st, const char *argument)
                : code;
     if (code == STATUS_OK && found.count > 0) {
         st->limit = (solved_limit){signal_of_quantity(condition.quantity), condition.bound};
-        code = pin_limit(st, &axis, found.limits[nearest_limit(st, &axis, &found)].value, &f);
+        const double value = found.limits[nearest_limit(st, &axis, &found)].value;
+        snprintf(name, sizeof name, "%s %.5g", strchr(axis.name, '.') + 1, value);
+        code = act_pin_values(st, (const sweep_axis *[]){&axis}, &value, 1, name, &f);
     }
     const bool done = act_worked(st, code, &f) && tell_limits(st, &axis, &condition, &found);
     sweep_axis_finish(&axis);
-    return done && settle_baseline(st);
+    return done && act_settle_baseline(st);
 }
 
 // --- sweeps -----------------------------------------------------------------------------------
@@ -355,17 +372,22 @@ bool act_continue_sweep(explorer_state *st)
         return true;
     }
 
-    // one run a call, so that keys are read in between
-    if (!act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective, &f), &f)) {
-        return false;
-    }
+    // one run a call, of a map as many as a picture may wait for, so that keys are read in between
+    const double begin = clock_seconds(CLOCK_MONOTONIC);
+    do {
+        if (!act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective, &f), &f)) {
+            return false;
+        }
+    } while (lab_sweep_is_map(sweep) && !lab_sweep_is_done(sweep) &&
+             clock_seconds(CLOCK_MONOTONIC) - begin < LONGEST_MAP_PIECE);
 
     // only the last one is news
     if (!lab_sweep_is_done(sweep)) {
         return true;
     }
-    return act_tell(st, "%d runs: arrows choose one, Enter opens it, M another metric, Esc ends it",
-                    sweep->count);
+    return act_tell(st,
+                    "%d runs: arrows%s choose one, Enter opens it, M another metric, Esc ends it",
+                    sweep->count, lab_sweep_is_map(sweep) ? " and < >" : "");
 }
 
 bool act_sweep(explorer_state *st, const char *argument)
@@ -399,12 +421,8 @@ bool act_sweep(explorer_state *st, const char *argument)
     }
 
     // each run is computed while the lab waits, so they must be short
-    if (!act_need_whole_run(st)) {
+    if (!act_need_whole_run(st) || !act_need_short_runs(st, "sweep")) {
         return false;
-    }
-    if (isfinite(st->session.patience) && st->session.run.summary.wall_time_s > LONGEST_SWEPT_RUN) {
-        return act_refuse(st, "a run takes %.1f s here: 'impactlab sweep' computes them beside",
-                          st->session.run.summary.wall_time_s);
     }
     if (!act_worked(st, lab_sweep_begin(sweep, argument, &f), &f)) {
         return false;
@@ -435,7 +453,7 @@ bool act_set_metric(explorer_state *st, const char *argument)
         const int next = (sweep->metric + step) % summary_count;
         bool known = sweep->count == 0;
         for (int i = 0; i < sweep->count; i++) {
-            known = known || isfinite(summary_value(&sweep->runs[i].run.summary, next));
+            known = known || isfinite(lab_sweep_metric(sweep, i, next));
         }
         metric = known && !summary_table[next].timing ? next : -1;
     }
@@ -448,8 +466,12 @@ void act_select_swept(explorer_state *st, int direction)
 {
     assert(st != NULL);
     lab_sweep *sweep = &st->sweep;
-    const int last = sweep->count - 1;
-    int at = sweep->selected + direction;
-    at = at > last ? last : at;
-    sweep->selected = at < 0 ? 0 : at;
+    const int last = sweep->count - 1, at = sweep->selected + direction;
+
+    // the first and the last of a sweep are its ends; in a map there is nothing beyond an edge
+    if (at >= 0 && at <= last) {
+        sweep->selected = at;
+    } else if (!lab_sweep_is_map(sweep)) {
+        sweep->selected = at < 0 || last < 0 ? 0 : last;
+    }
 }

@@ -18,7 +18,9 @@ bool act_select_parameter(explorer_state *st, const char *argument)
 
     // the sweep selects among its runs
     if (st->side.panel == PANEL_SWEEP) {
-        act_select_swept(st, direction);
+        const lab_sweep *sweep = &st->sweep;
+        act_select_swept(st,
+                         lab_sweep_is_map(sweep) ? -direction * (int)sweep->axis.count : direction);
         return true;
     }
 

@@ -46,6 +46,7 @@ typedef enum hit_part {
     PART_SLIDER,    // index: the parameter
     PART_LABELS,    // an axis of values; index: the pane
     PART_PANE,      // the curves of a pane; index: the pane
+    PART_CELLS,     // those of a map; index: their height
     PART_LEGEND,    // a signal in a legend; index: the pane * PANE_SIGNALS + which of its signals
     PART_TIME_AXIS, // below curves
     PART_VIEW,      // a pane that is not over time; index: the pane

@@ -12,7 +12,7 @@ static bool range_of_metric(const lab_sweep *sweep, value_range *range)
 {
     *range = value_range_empty;
     for (int i = 0; i < sweep->count; i++) {
-        const double value = summary_value(&sweep->runs[i].run.summary, sweep->metric);
+        const double value = lab_sweep_metric(sweep, i, sweep->metric);
         if (isfinite(value)) {
             value_range_widen(range, (value_range){value, value});
         }
@@ -43,10 +43,10 @@ static double share_of(const lab_sweep *sweep, int index)
 }
 
 // A value of the axis in few cells: a real one as the metric is written.
-static void format_value(const lab_sweep *sweep, double value, char text[SWEEP_VALUE_TEXT])
+static void format_value(const sweep_axis *axis, double value, char text[SWEEP_VALUE_TEXT])
 {
-    sweep_axis_format(&sweep->axis, value, text, SWEEP_VALUE_TEXT);
-    if (sweep_axis_parameter(&sweep->axis)->type == PARAMETER_REAL) {
+    sweep_axis_format(axis, value, text, SWEEP_VALUE_TEXT);
+    if (sweep_axis_parameter(axis)->type == PARAMETER_REAL) {
         draw_number(text, SWEEP_VALUE_TEXT, value);
     }
 }
@@ -55,8 +55,8 @@ static void format_value(const lab_sweep *sweep, double value, char text[SWEEP_V
 static void draw_ends(screen *s, area a, const lab_sweep *sweep)
 {
     char first[SWEEP_VALUE_TEXT], last[SWEEP_VALUE_TEXT];
-    format_value(sweep, sweep->axis.values[0], first);
-    format_value(sweep, sweep->axis.values[sweep->axis.count - 1], last);
+    format_value(&sweep->axis, sweep->axis.values[0], first);
+    format_value(&sweep->axis, sweep->axis.values[sweep->axis.count - 1], last);
     screen_words(s, a.x, a.y, a.width / 2, INK_DIM, first);
     const int length = text_cells(last) < a.width / 2 ? text_cells(last) : a.width / 2;
     screen_words(s, a.x + a.width - length, a.y, length, INK_DIM, last);
@@ -84,7 +84,7 @@ static void draw_chart(const explorer_state *st, screen *s, area a)
     draw_ends(s, (area){c.x, a.y + c.height, c.width, 1}, sweep);
     double x0 = (double)NAN, y0 = (double)NAN;
     for (int i = 0; i < sweep->count; i++) {
-        const double value = summary_value(&sweep->runs[i].run.summary, sweep->metric);
+        const double value = lab_sweep_metric(sweep, i, sweep->metric);
         const double x = share_of(sweep, i) * (2.0 * c.width - 1);
         const double y = (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
         if (joined) {
@@ -96,8 +96,9 @@ static void draw_chart(const explorer_state *st, screen *s, area a)
         y0 = y;
     }
     const int chosen = sweep->selected;
-    const double value = summary_value(&sweep->runs[chosen].run.summary, sweep->metric);
-    if (chosen < sweep->count && isfinite(value)) {
+    const double value =
+        chosen < sweep->count ? lab_sweep_metric(sweep, chosen, sweep->metric) : (double)NAN;
+    if (isfinite(value)) {
         const double y = (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
         screen_put(s, c.x + (int)(share_of(sweep, chosen) * (2.0 * c.width - 1) / 2),
                    c.y + (int)(y / 4), 0x25cf, INK_EVENT);
@@ -117,7 +118,7 @@ static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
         const int y = a.y + i - first;
         char value[SWEEP_VALUE_TEXT], metric[32];
 
-        format_value(sweep, r->value, value);
+        format_value(&sweep->axis, r->value, value);
         draw_number(metric, sizeof metric, summary_value(&r->run.summary, sweep->metric));
 
         // a run that stopped says so in the unit's place
@@ -131,6 +132,81 @@ static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
     }
 }
 
+// --- a map ------------------------------------------------------------------------------------
+
+// A cell of a map: the darker, the larger its metric.
+static void draw_cell(screen *s, area a, double share, bool selected)
+{
+    static const uint32_t shades[] = {' ', 0x2591, 0x2592, 0x2593, 0x2588};
+    enum { SHADES = sizeof shades / sizeof shades[0] };
+    const int shade = (int)(share * SHADES);
+    for (int i = 0; i < a.width * a.height; i++) {
+        screen_put(s, a.x + i % a.width, a.y + i / a.width,
+                   isfinite(share) ? shades[shade < SHADES ? shade : SHADES - 1] : '-',
+                   INK_SERIES_0);
+    }
+    if (selected) {
+        screen_tint(s, a.x, a.y, a.width, a.height, INK_SELECTED);
+    }
+}
+
+// A line of both parameters: the selected values or, of an axis, from where to where it goes.
+static void draw_values(screen *s, area a, const lab_sweep *sweep, bool ends)
+{
+    const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
+    double values[2];
+    lab_sweep_values(sweep, sweep->selected, values);
+    for (int i = 0, x = a.x; i < 2; i++) {
+        char from[SWEEP_VALUE_TEXT], to[SWEEP_VALUE_TEXT] = "";
+        format_value(axes[i], ends ? axes[i]->values[0] : values[i], from);
+        if (ends) {
+            format_value(axes[i], axes[i]->values[axes[i]->count - 1], to);
+        }
+        const char *name = ends ? "" : strrchr(sweep_axis_parameter(axes[i])->path, '.') + 1;
+        const char *between = i == 0 ? "" : ends ? ", up " : ", ";
+        x += screen_print(s, x, a.y, a.x + a.width - x, ends ? INK_DIM : INK_TITLE, "%s%s%s%s%s%s",
+                          between, name, ends ? "" : " ", from, ends ? " to " : "", to);
+    }
+}
+
+// The first parameter across, the second up; below it the axes and the selected cell.
+static void draw_map(const explorer_state *st, layout *lay, screen *s, area a)
+{
+    enum { BELOW = 4, TALL = 3 };
+    const lab_sweep *sweep = &st->sweep;
+    const int across = (int)sweep->axis.count, up = (int)sweep->second.count;
+    const int wide = a.width / across, most = (a.height - BELOW) / up,
+              tall = most < TALL ? most : TALL;
+    char low[32], high[32], text[32];
+    value_range range;
+    if (wide < 1 || tall < 1) {
+        screen_print(s, a.x, a.y, a.width, INK_DIM, "a map of %d x %d has no room here", across,
+                     up);
+    } else if (range_of_metric(sweep, &range)) {
+        layout_add_hit(
+            lay, (hit_area){PANEL_SWEEP, PART_CELLS, tall, {a.x, a.y, across * wide, up * tall}});
+        for (int i = 0; i < sweep->count; i++) {
+            const double value = lab_sweep_metric(sweep, i, sweep->metric);
+            const area place = {a.x + i % across * wide, a.y + (up - 1 - i / across) * tall, wide,
+                                tall};
+            draw_cell(s, place, (value - range.low) / (range.high - range.low),
+                      i == sweep->selected);
+        }
+        draw_number(low, sizeof low, range.low);
+        draw_number(high, sizeof high, range.high);
+        screen_print(s, a.x, a.y + a.height - 3, a.width, INK_DIM, "blank %s, dark %s", low, high);
+    } else {
+        screen_text(s, a.x, a.y, a.width, INK_DIM, "no run has this number");
+    }
+    draw_values(s, (area){a.x, a.y + a.height - 4, a.width, 1}, sweep, true);
+    draw_values(s, (area){a.x, a.y + a.height - 2, a.width, 1}, sweep, false);
+    if (sweep->selected < sweep->count) {
+        draw_number(text, sizeof text, lab_sweep_metric(sweep, sweep->selected, sweep->metric));
+        screen_print(s, a.x, a.y + a.height - 1, a.width, INK_TEXT, "%s %s", text,
+                     summary_table[sweep->metric].unit);
+    }
+}
+
 // What is varied and how many runs there are: the last part of the path where the whole has no
 // room, and of that what `most` cells have room for.
 static void write_title(char *title, size_t size, const lab_sweep *sweep, int most)
@@ -139,7 +215,7 @@ static void write_title(char *title, size_t size, const lab_sweep *sweep, int mo
     const char *path = parameter_table[sweep->axis.parameter].path;
     const char *last = strrchr(path, '.') + 1;
     const int room =
-        most - snprintf(count, sizeof count, ", %d of %zu", sweep->count, sweep->axis.count);
+        most - snprintf(count, sizeof count, ", %d of %d", sweep->count, lab_sweep_total(sweep));
 
     if ((int)(strlen("sweep ") + strlen(path)) <= room) {
         snprintf(title, size, "sweep %s%s", path, count);
@@ -163,6 +239,11 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s (M: next)",
                  summary_table[sweep->metric].label);
 
+    if (lab_sweep_is_map(sweep)) {
+        draw_map(st, lay, s, (area){a.x + 2, a.y + 2, a.width - 4, a.height - 3});
+        return;
+    }
+
     // the chart, if there is room for it and a few runs
     const int inner = a.height - 3, chart = inner / 2 >= LEAST_CHART ? inner / 2 : 0;
     if (chart > 0 && sweep->count > 0) {
@@ -178,6 +259,14 @@ static bool point(explorer_state *st, const panel_gesture *g)
 {
     if (pointer_wheel(g->event) != 0) {
         act_select_swept(st, pointer_wheel(g->event));
+        return true;
+    }
+    if (g->event.kind == POINTER_PRESS && g->hit.part == PART_CELLS) {
+        const area a = g->hit.area;
+        const int across = (int)st->sweep.axis.count;
+        const int to = (a.y + a.height - 1 - g->event.y) / g->hit.index * across +
+                       (g->event.x - a.x) / (a.width / across);
+        act_select_swept(st, to - st->sweep.selected);
         return true;
     }
     if (g->event.kind == POINTER_PRESS) {

@@ -43,8 +43,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "forget", "", "drop the run that is compared with", act_forget)                          \
     X("", "difference", "[TOLERANCE|off]", "this run minus the baseline, in all panes",            \
       act_show_difference)                                                                         \
-    X("", "sweep", "[PATH=A:B:N|off]", "runs with other values: a fan of curves and a metric",     \
-      act_sweep)                                                                                   \
+    X("", "sweep", "[PATH=A:B:N [PATH=...]|off]",                                                  \
+      "runs with other values: curves and a metric, of two parameters a map", act_sweep)           \
     X("", "solve", "PATH[=A:B] KEY<VALUE", "limit of a value for a condition: it is pinned",       \
       act_solve)                                                                                   \
     X("", "metric", "[KEY]", "what the sweep compares by; alone: the next one", act_set_metric)    \
@@ -56,6 +56,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
       act_show_poles)                                                                              \
     X("", "data", "FILE.csv[@SHIFT]|off", "measured columns, aligned at the first contact",        \
       act_lay_data)                                                                                \
+    X("", "identify", "PATH...", "fit parameters to the measured data: that run is pinned",        \
+      act_identify)                                                                                \
     X("", "undo", "", "take the last change back", act_undo)                                       \
     X("", "redo", "", "put it in again", act_redo)                                                 \
     X("Looking", "mark", "[TIME]", "second cursor: differences to it", act_set_mark)               \

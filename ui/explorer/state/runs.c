@@ -219,84 +219,152 @@ bool lab_sweep_is_on(const lab_sweep *sweep)
     return sweep->axis.text != NULL;
 }
 
+bool lab_sweep_is_map(const lab_sweep *sweep)
+{
+    assert(sweep != NULL);
+    return sweep->second.text != NULL;
+}
+
+int lab_sweep_total(const lab_sweep *sweep)
+{
+    return (int)sweep->axis.count * (lab_sweep_is_map(sweep) ? (int)sweep->second.count : 1);
+}
+
 bool lab_sweep_is_done(const lab_sweep *sweep)
 {
-    return !lab_sweep_is_on(sweep) || (size_t)sweep->count == sweep->axis.count;
+    return !lab_sweep_is_on(sweep) || sweep->count == lab_sweep_total(sweep);
+}
+
+int lab_sweep_curves(const lab_sweep *sweep)
+{
+    return lab_sweep_is_map(sweep) ? 0 : sweep->count;
+}
+
+double lab_sweep_metric(const lab_sweep *sweep, int index, int metric)
+{
+    assert(index >= 0 && index < sweep->count);
+    return summary_value(
+        lab_sweep_is_map(sweep) ? &sweep->cells[index] : &sweep->runs[index].run.summary, metric);
+}
+
+void lab_sweep_values(const lab_sweep *sweep, int index, double values[2])
+{
+    const int across = (int)sweep->axis.count;
+    assert(index >= 0 && index < lab_sweep_total(sweep));
+    values[0] = sweep->axis.values[index % across];
+    values[1] = lab_sweep_is_map(sweep) ? sweep->second.values[index / across] : (double)NAN;
 }
 
 void lab_sweep_end(lab_sweep *sweep)
 {
     assert(sweep != NULL);
-    for (int i = 0; i < sweep->count; i++) {
+    for (int i = 0; i < lab_sweep_curves(sweep); i++) {
         run_finish(&sweep->runs[i].run);
     }
     sweep_axis_finish(&sweep->axis);
-    sweep->axis = (sweep_axis){0};
+    sweep_axis_finish(&sweep->second);
+    free(sweep->cells);
+    sweep->axis = sweep->second = (sweep_axis){0};
+    sweep->cells = NULL;
     sweep->count = sweep->selected = 0;
 }
 
-status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
+// Reads PATH=VALUES, the values as --vary has them.
+static status read_axis(sweep_axis *axis, const char *definition, fault *f)
 {
-    assert(sweep != NULL && definition != NULL);
     char text[256];
-    sweep_axis axis = {0};
     snprintf(text, sizeof text, "%s", definition);
     char *values = strchr(text, '=');
     if (values == NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as "
-                         "control.rate=50:400:8");
+                         "control.rate=50:400:8, and for a map two of them");
     }
-
-    // the parameter, then its values as --vary has them
     *values++ = '\0';
-    axis.parameter = parameter_of_name(text);
-    if (axis.parameter == -2) {
+    axis->parameter = parameter_of_name(text);
+    if (axis->parameter == -2) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "several parameters begin with '%s'", text);
     }
-    if (axis.parameter < 0) {
+    if (axis->parameter < 0) {
         parameter_look_up(text, f);
         return STATUS_BAD_ARGUMENT;
     }
-    status code = sweep_axis_parse(&axis, values, false, f);
-    if (code == STATUS_OK && axis.count > SWEPT_RUNS) {
+    return sweep_axis_parse(axis, values, false, f);
+}
+
+status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
+{
+    assert(sweep != NULL && definition != NULL);
+    lab_sweep fresh = {.metric = sweep->metric, .computed = sweep->computed};
+    const size_t length = strcspn(definition, " ");
+    const char *rest = definition + length + strspn(definition + length, " ");
+    char first[256];
+    snprintf(first, sizeof first, "%.*s", (int)length, definition);
+    status code = read_axis(&fresh.axis, first, f);
+    if (code == STATUS_OK && *rest != '\0') {
+        code = read_axis(&fresh.second, rest, f);
+    }
+    const size_t runs = fresh.axis.count * (*rest != '\0' ? fresh.second.count : 1);
+    const size_t most = *rest != '\0' ? MAP_CELLS : SWEPT_RUNS;
+    if (code == STATUS_OK && runs > most) {
         code = fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%zu runs are too many here, at most %d: 'impactlab sweep' takes any "
+                         "%zu runs are too many here, at most %zu: 'impactlab sweep' takes any "
                          "number",
-                         axis.count, SWEPT_RUNS);
+                         runs, most);
+    }
+    if (code == STATUS_OK && *rest != '\0' && fresh.axis.parameter == fresh.second.parameter) {
+        code = fault_set(f, STATUS_BAD_ARGUMENT, "a map takes two different parameters");
+    }
+    if (code == STATUS_OK && *rest != '\0' &&
+        (fresh.cells = calloc(runs, sizeof *fresh.cells)) == NULL) {
+        code = fault_no_memory(f);
     }
     if (code != STATUS_OK) {
-        sweep_axis_finish(&axis);
+        sweep_axis_finish(&fresh.axis);
+        sweep_axis_finish(&fresh.second);
         return code;
     }
 
     // it takes the place of the one before
     lab_sweep_end(sweep);
-    sweep->axis = axis;
+    *sweep = fresh;
     return STATUS_OK;
 }
 
 status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
 {
     assert(sweep != NULL && base != NULL && !lab_sweep_is_done(sweep));
-    swept_run *next = &sweep->runs[sweep->count];
-    *next = (swept_run){.value = sweep->axis.values[sweep->count], .id = ++sweep->computed};
+    double values[2];
+    run_result run = {0};
+    lab_sweep_values(sweep, sweep->count, values);
 
     // everything but the parameters is the present run's
     scenario s = *base;
-    status code = parameter_set_number(&s.parameters, sweep->axis.parameter, next->value, f);
+    status code = parameter_set_number(&s.parameters, sweep->axis.parameter, values[0], f);
+    if (code == STATUS_OK && lab_sweep_is_map(sweep)) {
+        code = parameter_set_number(&s.parameters, sweep->second.parameter, values[1], f);
+    }
     if (code == STATUS_OK) {
         code = parameters_resolve(&s.parameters, f);
     }
     if (code == STATUS_OK) {
-        run_scenario(&s, true, &next->run);
-        loss_unless(next->run.summary.status != STATUS_NO_MEMORY);
-        code = next->run.trace.row_count > 0 ? STATUS_OK : summary_fault(&next->run.summary, f);
+        run_scenario(&s, !lab_sweep_is_map(sweep), &run);
+        loss_unless(run.summary.status != STATUS_NO_MEMORY);
+        code = lab_sweep_is_map(sweep) || run.trace.row_count > 0 ? STATUS_OK
+                                                                  : summary_fault(&run.summary, f);
     }
     if (code != STATUS_OK) {
-        run_finish(&next->run);
+        run_finish(&run);
         lab_sweep_end(sweep);
         return code;
+    }
+
+    // of a map the summary alone is kept
+    if (lab_sweep_is_map(sweep)) {
+        sweep->cells[sweep->count] = run.summary;
+        run_finish(&run);
+    } else {
+        sweep->runs[sweep->count] = (swept_run){values[0], run, ++sweep->computed};
     }
     sweep->count++;
     return STATUS_OK;

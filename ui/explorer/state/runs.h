@@ -50,10 +50,10 @@ int run_list_of_scenario(const run_list *list, const session *s);
 void run_list_differences(const pinned_run *p, const session *s, char *text, size_t size);
 
 // --- a sweep ----------------------------------------------------------------------------------
-// The present run with several values of one parameter from the start, each as
-// a run of its own.
+// The present run with several values of one parameter from the start, each as a run of its own; or
+// a map: all pairs of values of two parameters, of which the summaries are kept.
 
-enum { SWEPT_RUNS = 32 };
+enum { SWEPT_RUNS = 32, MAP_CELLS = 1024 };
 
 typedef struct swept_run {
     double value; // of the parameter
@@ -62,20 +62,34 @@ typedef struct swept_run {
 } swept_run;
 
 typedef struct lab_sweep {
-    sweep_axis axis; // axis.text NULL: no sweep
-    swept_run runs[SWEPT_RUNS];
-    int count;              // computed so far
-    int selected;           // index of the selected one
-    int metric;             // index in summary_table
-    unsigned long computed; // number of runs ever computed
+    sweep_axis axis;            // axis.text NULL: no sweep
+    sweep_axis second;          // of a map; second.text NULL: none
+    swept_run runs[SWEPT_RUNS]; // of a sweep
+    summary *cells;             // of a map, the first parameter's values one after the other
+    int count;                  // computed so far
+    int selected;               // index of the selected one
+    int metric;                 // index in summary_table
+    unsigned long computed;     // number of runs ever computed
 } lab_sweep;
 
-// Whether there is a sweep, and whether it is complete.
+// Whether there is a sweep, of two parameters, and whether it is complete.
 bool lab_sweep_is_on(const lab_sweep *sweep);
+bool lab_sweep_is_map(const lab_sweep *sweep);
 bool lab_sweep_is_done(const lab_sweep *sweep);
 
-// Begins a sweep given as "PATH=a:b:n", "PATH=a:b:n:log" or "PATH=v1,v2,..."; nothing is computed
-// yet. On STATUS_BAD_ARGUMENT, with the reason in f, the previous sweep is kept.
+// How many runs it has when it is complete, and how many of them have curves.
+int lab_sweep_total(const lab_sweep *sweep);
+int lab_sweep_curves(const lab_sweep *sweep);
+
+// The metric of a run that was computed.
+double lab_sweep_metric(const lab_sweep *sweep, int index, int metric);
+
+// A run's values of both parameters; the second is NaN without a map.
+void lab_sweep_values(const lab_sweep *sweep, int index, double values[2]);
+
+// Begins a sweep given as "PATH=a:b:n", "PATH=a:b:n:log" or "PATH=v1,v2,...", of one parameter or
+// of two with a blank between them; nothing is computed yet. On STATUS_BAD_ARGUMENT, with the
+// reason in f, the previous sweep is kept.
 status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f);
 
 // Computes the next run of a sweep from the scenario of the present run. A value that cannot be run

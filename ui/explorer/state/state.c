@@ -242,7 +242,7 @@ int state_run_count(const explorer_state *st)
     if (st->difference.on && st->session.has_other) {
         return 1;
     }
-    return 1 + state_visible_pins(st) + st->sweep.count + st->session.has_ghost +
+    return 1 + state_visible_pins(st) + lab_sweep_curves(&st->sweep) + st->session.has_ghost +
            (st->measured.row_count > 0);
 }
 
@@ -279,7 +279,7 @@ shown_run state_run(const explorer_state *st, int index)
         const pinned_run *p = &st->pinned.runs[pin];
         return (shown_run){SHOWN_PINNED, pin, &p->run.trace, pinned_id | p->id};
     }
-    if (index <= pins + st->sweep.count) {
+    if (index <= pins + lab_sweep_curves(&st->sweep)) {
         const swept_run *r = &st->sweep.runs[index - 1 - pins];
         return (shown_run){SHOWN_SWEPT, index - 1 - pins, &r->run.trace, swept_id | r->id};
     }

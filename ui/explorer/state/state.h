@@ -73,9 +73,10 @@ typedef struct explorer_state {
     solved_limit band; // a tolerance on both sides of the baseline
     note notes[NOTES]; // in time
     int note_count;
-    int note;                  // the selected one
-    run_difference residual;   // of the measured data from the run
-    trace measured;            // data laid under the run, no rows: none
+    int note;                // the selected one
+    run_difference residual; // of the measured data from the run
+    trace measured;          // data laid under the run, no rows: none
+    char measured_file[LINE_TEXT];
     unsigned long measured_id; // counts the files read, and how often one was shifted
     unsigned opened;           // number of scenarios opened
     visit visits[VISITS];      // [present_visit] is empty: it is the session
