@@ -151,11 +151,13 @@ static void show(explorer *ex, screen *s, picture_layer *layer)
     loss_forget(); // the next picture shows what this one lacks
 }
 
-// How long to wait from one picture to the next, after one that took some seconds of the processor:
-// half of it is left to others, but ten pictures a second are shown.
-static double pause_after(double spent)
+// How long to wait from one picture to the next, after one that took some seconds of the processor
+// and so many bytes: half of the processor is left to others, but ten pictures a second are shown,
+// as far as the rate that was asked for [kB/s] lets them.
+static double pause_after(double spent, size_t bytes, double rate)
 {
-    return fmin(fmax(FRAME, 2 * spent), LONGEST_PAUSE);
+    const double pause = fmin(fmax(FRAME, 2 * spent), LONGEST_PAUSE);
+    return rate > 0 ? fmax(pause, (double)bytes / (1e3 * rate)) : pause;
 }
 
 static void run_on_terminal(explorer *ex)
@@ -170,10 +172,12 @@ static void run_on_terminal(explorer *ex)
         double now = clock_seconds(CLOCK_MONOTONIC);
         if (dirty && now - drawn >= pause) {
             const double spent = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+            const size_t sent = terminal_sent();
             show(ex, &s, &layer);
             drawn = now;
             dirty = false;
-            pause = pause_after(clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - spent);
+            pause = pause_after(clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - spent,
+                                terminal_sent() - sent, ex->state.looks.rate);
         }
 
         bool waits = dirty || explorer_is_busy(ex);

@@ -170,9 +170,9 @@ bool act_unbind_key(explorer_state *st, const char *argument)
 
 // --- settings ---------------------------------------------------------------------------------
 
-static const char *const remembered[] = {"theme", "glyphs",  "colours",  "pixels", "closeup",
-                                         "mouse", "bending", "colourby", "lanes",  "slow",
-                                         "speed", "panes",   "axis",     "key",    "unkey"};
+static const char *const remembered[] = {
+    "theme", "glyphs", "colours", "pixels", "closeup", "mouse", "bending", "colourby",
+    "rate",  "lanes",  "slow",    "speed",  "panes",   "axis",  "key",     "unkey"};
 
 static bool is_remembered(const char *line)
 {
@@ -277,8 +277,8 @@ static void write_settings(const explorer_state *st, FILE *stream)
     fprintf(stream, "# settings of the terminal lab, written by :remember\n");
     fprintf(stream, "theme %s\nglyphs %s\ncolours %s\n", colour_theme_words[l->theme],
             glyph_set_words[l->glyphs], colour_depth_words[l->depth]);
-    fprintf(stream, "pixels %s\ncloseup %s\nbending %g\n", pixel_words[l->pixels],
-            close_up_words[l->close_up], l->bending);
+    fprintf(stream, "pixels %s\ncloseup %s\nbending %g\nrate %g\n", pixel_words[l->pixels],
+            close_up_words[l->close_up], l->bending, l->rate);
     fprintf(stream, "mouse %s\nlanes %s\ncolourby %s\nspeed %g\nslow %g\n", mouse_words[l->mouse],
             lane_choice_words[l->lanes], colour_by_words[l->by_run], st->playback.speed,
             st->playback.slow);

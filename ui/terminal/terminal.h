@@ -42,6 +42,9 @@ terminal_input terminal_wait(double seconds);
 void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
                    bool whole);
 
+// Bytes sent so far past ncurses: pictures are nearly all of them.
+size_t terminal_sent(void);
+
 // The terminal's answers about pictures.
 typedef struct terminal_pixels {
     bool there;                  // it draws some

@@ -28,9 +28,17 @@ typedef struct outlet {
     size_t used;
 } outlet;
 
+static size_t sent_in_all;
+
+size_t terminal_sent(void)
+{
+    return sent_in_all;
+}
+
 void terminal_send(const char *bytes, size_t count)
 {
     assert(bytes != NULL);
+    sent_in_all += count;
     for (size_t sent = 0; sent < count;) {
         ssize_t taken = write(STDOUT_FILENO, bytes + sent, count - sent);
         if (taken > 0) {

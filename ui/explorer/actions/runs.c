@@ -193,10 +193,12 @@ bool act_show_difference(explorer_state *st, const char *argument)
         return act_tell(st, "minus '%s'; D shows the runs again", name);
     }
     const int signal = st->panes.pane[focused].signals[0];
-    if (signal_is_state(signal) || signal_is_derived(signal)) {
-        return act_tell(st,
-                        "minus '%s', but not of states and expressions such as %s; D shows the "
-                        "runs",
+    if (signal_is_derived(signal)) {
+        return act_tell(st, "minus '%s', but an expression has no difference; D shows the runs",
+                        name);
+    }
+    if (signal_is_state(signal)) {
+        return act_tell(st, "minus '%s', but states such as %s are this run's; D shows the runs",
                         name, signal_table[signal].name);
     }
     const double first = difference_first_beyond(d, signal, tolerance);

@@ -419,6 +419,20 @@ bool act_set_pixels(explorer_state *st, const char *argument)
                                          : "characters only");
 }
 
+bool act_set_rate(explorer_state *st, const char *argument)
+{
+    double rate = 0;
+    if (strcmp(argument, "off") != 0 && !act_read_number(st, argument, &rate)) {
+        return false;
+    }
+    if (rate < 0 || (rate > 0 && rate < 1)) {
+        return act_refuse(st, "a rate is at least 1 kB/s, or off");
+    }
+    st->looks.rate = rate;
+    return rate > 0 ? act_tell(st, "pictures take at most %g kB/s", rate)
+                    : act_tell(st, "pictures as fast as they are drawn");
+}
+
 bool act_set_close_up(explorer_state *st, const char *argument)
 {
     int *choice = &st->looks.close_up;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/arm/modes.h"
 #include "src/base/text_stream.h"
 #include "src/predict/predictors.h"
 #include "src/session/account.h"
@@ -167,7 +168,7 @@ static void draw_lines(screen *s, area a, const char *title, const help_line *li
 
 static void draw_help(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    enum { MOST = 500, WIDTH = 114 };
+    enum { MOST = 600, WIDTH = 114 };
     static help_line lines[MOST];
     const char *filter = st->filters.text[PANEL_HELP];
 
@@ -364,19 +365,19 @@ static void add_poles(page *p, const parameters *values, linear_place place)
     static const char *const names[] = {"free", "pressing on the wall",
                                         "pressing on the wall, hub held by friction"};
     fault f = {0};
-    linear_arm arm;
+    linear_arm of;
     double complex *poles = NULL;
     add_heading(p, names[place]);
-    status code = linear_arm_init(&arm, values, place, &f);
+    status code = linear_arm_init(&of, values, place, &f);
     if (code == STATUS_OK) {
-        poles = calloc((size_t)arm.system.states + 1, sizeof *poles);
-        code = poles != NULL ? linear_poles(&arm.system, poles, &f) : fault_no_memory(&f);
+        poles = calloc((size_t)of.system.states + 1, sizeof *poles);
+        code = poles != NULL ? linear_poles(&of.system, poles, &f) : fault_no_memory(&f);
     }
     loss_unless(code != STATUS_NO_MEMORY);
     if (code != STATUS_OK) {
         add_text(p, 0, f.text, NULL);
     }
-    for (int i = 0; code == STATUS_OK && i < arm.system.states; i++) {
+    for (int i = 0; code == STATUS_OK && i < of.system.states; i++) {
         const double complex s = poles[i];
         const bool rests = cabs(s) < 1e-6; // rounding of a pole at the origin
         char frequency[32], damping[32], constant[32];
@@ -388,8 +389,51 @@ static void add_poles(page *p, const parameters *values, linear_place place)
         draw_number(constant, sizeof constant, rests ? (double)NAN : -1 / creal(s));
         snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s", frequency, damping, constant);
     }
+    if (code == STATUS_OK && of.system.states == 0) {
+        add_text(p, 0, "none: nothing is left that could move", NULL);
+    }
     free(poles);
-    linear_system_finish(&arm.system);
+    linear_system_finish(&of.system);
+}
+
+enum { SHAPES = 4, SHAPE_ROWS = 5, MOST_SHAPED = 64 };
+
+// The lowest modes of the arm that nothing holds, hub to the left, one beside the other.
+static void draw_shapes(screen *s, area a, const parameters *values)
+{
+    arm m;
+    int count = 0;
+    double lengths[PARAMETER_LINKS_MOST];
+    arm_init(&m, values);
+    double *w = calloc((size_t)m.dof, sizeof *w);
+    double *shapes = calloc((size_t)m.dof * (size_t)m.dof, sizeof *shapes);
+    loss_unless(w != NULL && shapes != NULL);
+    const int links = values->arm.links, wide = a.width / SHAPES - 1;
+    parameters_link_lengths(&values->arm, lengths);
+    if (w == NULL || shapes == NULL ||
+        modes_compute(&m, HUB_FREE, TIP_FREE, &count, w, shapes) != STATUS_OK) {
+        count = 0;
+    }
+    for (int i = 0, n = 0; i < count && n < SHAPES; i++) {
+        const double *angle = shapes + i * m.dof + m.dof - links;
+        double at[PARAMETER_LINKS_MOST + 1] = {0}, most = 0;
+        for (int k = 0; k < links; k++) {
+            at[k + 1] = at[k] + lengths[k] * angle[k];
+            most = fmax(most, fabs(at[k + 1]));
+        }
+        const canvas c = {s, a.x + n * (wide + 1), a.y + 1, wide, a.height - 1};
+        double x = 0, middle = 2.0 * c.height - 0.5;
+        for (int k = 0; k < links && most > 0; k++) {
+            const double end = x + lengths[k] / values->arm.length * (2.0 * wide - 1);
+            canvas_line(&c, x, middle * (1 - at[k] / most), end, middle * (1 - at[k + 1] / most),
+                        INK_ARM);
+            x = end;
+        }
+        screen_print(s, c.x, a.y, wide, INK_DIM, "%.3g Hz", w[i] / (2 * acos(-1)));
+        n++;
+    }
+    free(w);
+    free(shapes);
 }
 
 static void draw_poles(const explorer_state *st, layout *lay, screen *s, area body)
@@ -411,9 +455,14 @@ static void draw_poles(const explorer_state *st, layout *lay, screen *s, area bo
             add_poles(&p, &now, place);
         }
     }
-    a = page_area(body, WIDTH, p.count + 2);
+    const bool shows = p.count + 2 + SHAPE_ROWS <= body.height && now.arm.links <= MOST_SHAPED;
+    a = page_area(body, WIDTH, p.count + 2 + (shows ? SHAPE_ROWS : 0));
     const int scroll = page_scroll(lay, PANEL_POLES, a, p.count, 2);
     draw_lines(s, a, "poles (Esc closes)", lines + scroll, p.count - scroll);
+    if (shows) {
+        const int below = a.y + a.height - 1 - SHAPE_ROWS;
+        draw_shapes(s, (area){a.x + 2, below, a.width - 4, SHAPE_ROWS}, &now);
+    }
 }
 
 const panel poles_panel = {

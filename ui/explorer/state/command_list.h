@@ -112,6 +112,8 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
     X("", "colourby", "signal|run", "what has a colour of its own; alone: the other",              \
       act_colour_by)                                                                               \
     X("", "pixels", "auto|off", "pictures where the terminal has them", act_set_pixels)            \
+    X("", "rate", "KB|off", "most that pictures may take, in kB a second: 200 over ssh",           \
+      act_set_rate)                                                                                \
     X("", "closeup", "auto|on|off", "the contact from near by; alone: next", act_set_close_up)     \
     X("", "bending", "[FACTOR]", "drawn that many times as large; alone: as it is",                \
       act_set_bending)                                                                             \

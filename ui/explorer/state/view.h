@@ -103,6 +103,7 @@ typedef struct looks {
     int lanes;       // lane_choice
     int pixels;      // not 0: pictures are drawn if the terminal has them
     int close_up;    // close_up_choice
+    double rate;     // most that pictures may take [kB/s], 0: no limit
     double bending;  // factor by which bending is enlarged
     int by_run;      // not 0: a run has one colour, and lines tell the signals
     int mouse;       // not 0: mouse reports are on

@@ -1,0 +1,247 @@
+// What the lab has beside curves: notes, bands, colours of runs, maps, parameters fitted to
+// measured data, residuals, the clipboard, the first visit.
+#include "tests/explorer_on_screen.h"
+
+#include <unistd.h>
+
+static const int sizes[][2] = {{80, 24}, {100, 30}, {200, 60}};
+enum { SIZES = sizeof sizes / sizeof sizes[0] };
+
+static void assert_shows_everywhere(explorer *ex, const char *wanted)
+{
+    for (size_t i = 0; i < SIZES; i++) {
+        assert_shows_at(ex, sizes[i][0], sizes[i][1], wanted);
+    }
+}
+
+static void assert_warned(explorer *ex, const char *keys, const char *says)
+{
+    press(ex, keys);
+    assert_true(ex->state.message.warning);
+    fail_if(strstr(ex->state.message.text, says) == NULL, "%s: %s", keys, ex->state.message.text);
+}
+
+// A file that is removed at the end of the block.
+static void remove_file(char *const *path)
+{
+    unlink(*path);
+}
+#define FILE_FOR_A_WHILE(name, text)                                                               \
+    char name##_text[] = text, *name __attribute__((cleanup(remove_file))) = name##_text
+
+TEST(notes_are_kept_in_time_and_in_sessions)
+{
+    FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_notes.session");
+    char keys[LINE_TEXT];
+    {
+        OPEN_EXPLORER(ex, "corrected/first-impact");
+        press(&ex, ":seek 0.4<Enter>:note late<Enter>:note @0.1 early, by hand<Enter>");
+        press(&ex, ":note @0.4 later<Enter>:notes<Enter>");
+        assert_int_equal(ex.state.note_count, 2);
+        assert_shows_everywhere(&ex, "early, by hand");
+        assert_shows_everywhere(&ex, "0.40000 s  later");
+
+        // Enter goes to the selected one
+        press(&ex, "<Enter>");
+        check_close(ex.state.session.now, 0.1, 1e-3);
+        assert_warned(&ex, ":note<Enter>:note<Enter>", "takes a text");
+        assert_warned(&ex, ":note @nan x<Enter>", "no instant");
+        press(&ex, ":note @0.1 early, by hand<Enter>");
+        snprintf(keys, sizeof keys,
+                 ":band force 0.1<Enter>:colourby run<Enter>"
+                 ":trace force - voltage<Enter>:axis calm 10<Enter>"
+                 ":session save %s<Enter>",
+                 path);
+        press(&ex, keys);
+    }
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    snprintf(keys, sizeof keys, ":session open %s<Enter>", path);
+    press(&ex, keys);
+    assert_false(ex.state.message.warning);
+    assert_int_equal(ex.state.note_count, 2);
+    assert_string_equal(ex.state.notes[0].text, "early, by hand");
+    check_close(ex.state.notes[1].time, 0.4, 1e-12);
+    assert_int_equal(ex.state.band.signal, SIGNAL_INDEX(force));
+    assert_int_equal(ex.state.looks.by_run, 1);
+    assert_true(signal_is_derived(ex.state.panes.pane[PANES_OF_TABLE].signals[0]));
+    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].scaling, AXIS_CALM);
+
+    // no more than there is room for, and they can be dropped
+    for (int i = 0; i < 40; i++) {
+        snprintf(keys, sizeof keys, ":note @%d x<Enter>", i + 1);
+        press(&ex, keys);
+    }
+    assert_non_null(strstr(ex.state.message.text, "are the most"));
+    press(&ex, ":notes<Enter>");
+    for (int i = 0; i < 40; i++) {
+        press(&ex, "jd");
+    }
+    assert_int_equal(ex.state.note_count, 0);
+    free(picture(&ex, 40, 12, GLYPHS_ASCII));
+}
+
+TEST(a_band_tells_where_it_is_left)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, "b:set motor.voltage 1.1<Enter><End>:band force 0.1<Enter>");
+    const session *s = &ex.state.session;
+    double instant = (double)NAN;
+    sscanf(strstr(ex.state.message.text, "' at ") + 5, "%lf", &instant);
+
+    // before that instant the runs are closer, at it they are not
+    const sample *row = &s->run.trace.rows[trace_row_at(&s->run.trace, instant + 1e-5)];
+    const sample *other = &s->other.trace.rows[trace_row_at(&s->other.trace, instant)];
+    assert_true(fabs(row->force - other->force) > 0.1);
+    press(&ex, ":band force 9<Enter>");
+    assert_non_null(strstr(ex.state.message.text, "stays within"));
+    press(&ex, ":band force 0.5<Enter>");
+    for (size_t i = 0; i < SIZES; i++) {
+        free(picture(&ex, sizes[i][0], sizes[i][1], GLYPHS_BRAILLE));
+    }
+    assert_warned(&ex, ":band force<Enter>", "a signal and a value");
+    assert_warned(&ex, ":band force -1<Enter>", "above 0");
+    press(&ex, ":colourby<Enter>");
+    free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
+    assert_true(run_ink(-1) != run_ink(0) && run_ink(0) != run_ink(1));
+}
+
+TEST(a_map_gives_what_single_runs_give)
+{
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    press(&ex, ":sweep control.transition_time=0.1:0.3:3 arm.k2=4:6:2<Enter>");
+    const lab_sweep *m = &ex.state.sweep;
+    assert_true(lab_sweep_is_map(m) && lab_sweep_is_done(m));
+    assert_int_equal(m->count, 6);
+    assert_int_equal(state_run_count(&ex.state), 1);
+    for (size_t i = 0; i < SIZES; i++) {
+        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "6 of 6");
+    }
+
+    // one up, one to the right; beyond the edge there is nothing
+    press(&ex, "<Up><Up>><lt><lt>>");
+    assert_int_equal(m->selected, 4);
+    assert_shows_everywhere(&ex, "transition_time 0.2, k2 6");
+    const double peak = lab_sweep_metric(m, 4, SUMMARY_INDEX(peak_force_N));
+    const hit_area cells = part_on_screen(&ex, PANEL_SWEEP, PART_CELLS);
+    click_at(&ex, cells.area.x, cells.area.y + cells.area.height - 1);
+    assert_int_equal(m->selected, 0);
+    click_at(&ex, cells.area.x + cells.area.width / 2, cells.area.y);
+    assert_int_equal(m->selected, 4);
+
+    // Enter opens the run of the cell
+    press(&ex, "<Enter>");
+    check_close(ex.state.session.run.summary.peak_force_N, peak, 0);
+    check_close(ex.state.session.effective.parameters.control.transition_time, 0.2, 0);
+    check_close(ex.state.session.effective.parameters.arm.k2, 6, 0);
+
+    assert_warned(&ex, ":sweep arm.k2=1:2:40 motor.voltage=1:2:40<Enter>", "too many");
+    assert_warned(&ex, ":sweep arm.k2=1:2:4 arm.k2=1:2:4<Enter>", "different");
+    assert_warned(&ex, ":sweep arm.k2=1:2:4 motor.voltage<Enter>", "for a map two");
+    press(&ex, "M<Esc>");
+    assert_false(lab_sweep_is_on(m));
+}
+
+// A table of what the sensors of a run read, as a bench records them.
+static void write_recording(explorer *ex, const char *path)
+{
+    const trace *t = &ex->state.session.run.trace;
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("time[s],command[V],encoder[rad],tachometer[rad/s],force_reading[N]\n", file);
+    for (int k = 0; k < 280; k++) {
+        const sample *row = &t->rows[trace_row_at(t, (k + 0.6) / 200)];
+        fprintf(file, "%.17g,%.17g,%.17g,%.17g,%.17g\n", k / 200.0, row->command, row->encoder,
+                row->tachometer, row->force_reading);
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+TEST(the_arm_that_was_measured_is_found)
+{
+    FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_data.csv");
+    char keys[LINE_TEXT];
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    press(&ex, ":set arm.k2 5.5<Enter>");
+    write_recording(&ex, path);
+    press(&ex, "u");
+    assert_warned(&ex, ":identify k2<Enter>", ":data");
+    snprintf(keys, sizeof keys, ":data %s<Enter>:residual force_reading, encoder<Enter>", path);
+    press(&ex, keys);
+
+    // what was measured less what this run reads, at the rows of the table
+    for (size_t i = 0; i < SIZES; i++) {
+        free(picture(&ex, sizes[i][0], sizes[i][1], GLYPHS_BRAILLE));
+    }
+    assert_shows(&ex, "data minus run");
+    const trace *rest = &ex.state.residual.trace;
+    assert_true(rest->row_count > 200);
+    check_close(trace_statistics(rest, SIGNAL_INDEX(encoder), 0.2, 1).mean, 0, 0.02);
+    assert_true(trace_statistics(rest, SIGNAL_INDEX(encoder), 0.2, 1).maximum > 1e-3);
+
+    // the fit finds 5.5, and its run is pinned
+    press(&ex, ":identify k2<Enter>");
+    assert_false(ex.state.message.warning);
+    assert_int_equal(ex.state.pinned.count, 1);
+    assert_string_equal(ex.state.pinned.runs[0].name, "identified");
+    double found = 0;
+    assert_int_equal(sscanf(ex.state.message.text, "k2 %lf", &found), 1);
+    check_close(found, 5.5, 0.05);
+    assert_warned(&ex, ":identify nosuch<Enter>", "nosuch");
+    assert_warned(&ex, ":identify<Enter>", "takes parameters");
+    press(&ex, ":data off<Enter>");
+    assert_shows(&ex, "no measured data of this signal");
+}
+
+TEST(what_is_copied_gives_the_run_again)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":set arm.k2 5<Enter>:copy run<Enter>");
+    assert_string_equal(ex.state.copied,
+                        "impactlab run 'corrected/first-impact' --set 'arm.k2=5'\n");
+    press(&ex, ":edit motor.voltage<Enter><Esc>:copy<Enter>");
+    assert_non_null(strstr(ex.state.copied, "motor.voltage="));
+
+    // a change at an instant is no option: the scenario itself is copied
+    press(&ex, ":seek 0.4<Enter>:push 0.01<Enter>:copy run<Enter>");
+    assert_non_null(strstr(ex.state.copied, "script"));
+    free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
+    press(&ex, ":copy screen<Enter>");
+    assert_non_null(strstr(ex.state.copied, "impactlab"));
+    assert_warned(&ex, ":copy all<Enter>", "value, run or screen");
+}
+
+TEST(the_first_visit_is_the_only_one)
+{
+    char folder[] = "/tmp/test_lab_tools.XXXXXX", path[64];
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(setenv("XDG_CONFIG_HOME", folder, 1), 0);
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    explorer_welcome(&ex);
+    assert_shows_everywhere(&ex, "a first visit");
+    assert_shows_at(&ex, 80, 24, "hits the wall");
+
+    // the first key closes the page and acts
+    press(&ex, "b");
+    assert_hides(&ex, "a first visit");
+    assert_int_equal(ex.state.pinned.count, 1);
+    explorer_welcome(&ex);
+    assert_hides(&ex, "a first visit");
+    snprintf(path, sizeof path, "%s/impactlab/visited", folder);
+    unlink(path);
+    snprintf(path, sizeof path, "%s/impactlab", folder);
+    rmdir(path);
+    rmdir(folder);
+}
+
+TEST(predictors_and_modes_are_explained)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, "<F1>");
+    assert_shows(&ex, "linearised constrained arm:");
+    press(&ex, "<Esc>:poles<Enter>");
+    assert_shows_at(&ex, 80, 24, "nothing is left that could move");
+    assert_shows(&ex, "0 Hz");
+    press(&ex, "<Esc>:rate 200<Enter>");
+    check_close(ex.state.looks.rate, 200, 0);
+    assert_warned(&ex, ":rate 0.1<Enter>", "at least 1 kB/s");
+}
