@@ -1,5 +1,7 @@
 // A wall that moves: driven arms and impacts in closed form, walls moved at once by a script, and a
 // law that holds its force on one.
+#include <unistd.h>
+
 #include "src/arm/impact.h"
 #include "src/run/loop.h"
 #include "tests/passage.h"
@@ -249,4 +251,111 @@ TEST(the_observer_holds_its_force_on_a_moving_wall)
             }
         }
     }
+}
+
+// --- a wall that a table moves ----------------------------------------------------------------
+
+static const char *const path_csv = "wall-path.csv";
+
+// Rows of u = A sin(2 pi f (t - t0)) from one rest to the next but some; `every` apart.
+static void write_sine(double amplitude, double f, double from, double to, double every)
+{
+    FILE *file = fopen(path_csv, "w");
+    assert_non_null(file);
+    fputs("time[ms],place[mm]\n", file);
+    for (int i = 0; from + i * every < to + every / 2; i++) {
+        const double t = from + i * every;
+        fprintf(file, "%.17g,%.17g\n", 1e3 * t, 1e3 * amplitude * sin(2 * M_PI * f * t));
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+// The spline goes through the rows, its rate and acceleration are the derivatives of its place, and
+// neither jumps at a row; a step of the engine ends at each.
+TEST(a_spline_is_smooth_up_to_the_acceleration)
+{
+    fault f;
+    wall_path *path;
+    write_sine(2e-3, 3, -0.25, 0.25, 0.02);
+    assert_int_equal(wall_path_create(&path, path_csv, &f), STATUS_OK);
+    const wall_motion m = {.kind = MOTION_FILE, .time = 0.4, .path = path};
+    for (size_t i = 0; i < path->rows; i++) {
+        const double t = 0.4 + path->times[i], next = 1e-9;
+        const wall_shift before = wall_motion_at(&m, t - next), at = wall_motion_at(&m, t);
+        check_close(at.place, path->places[i], 1e-15);
+        check_close(before.velocity, at.velocity, 1e-8);
+        if (i > 0 && i + 1 < path->rows) {
+            check_close(before.acceleration, at.acceleration, 1e-5);
+            check_close(wall_motion_lasts(&m, t), 0.02, 1e-9);
+            const double h = 1e-5, x = t + 0.013;
+            const wall_shift low = wall_motion_at(&m, x - h), high = wall_motion_at(&m, x + h);
+            const wall_shift mid = wall_motion_at(&m, x);
+            check_close((high.place - low.place) / (2 * h), mid.velocity, 1e-8);
+            check_close((high.velocity - low.velocity) / (2 * h), mid.acceleration, 1e-8);
+        }
+    }
+    check_close(wall_motion_at(&m, -5).place, path->places[0], 0);
+    check_close(wall_motion_at(&m, 9).place, path->places[path->rows - 1], 0);
+    assert_true(wall_motion_lasts(&m, 9) == HUGE_VAL && wall_motion_rate(&m, 9) == 0);
+    check_close(wall_motion_lasts(&m, 0), 0.15, 1e-12);
+    wall_path_destroy(path);
+    unlink(path_csv);
+}
+
+// Rows of a sine close together, at rest at the ends, are that sine: the same contacts and forces,
+// to the fourth power of their distance.
+TEST(a_table_of_a_sine_is_the_sine)
+{
+    static const char *const kinds[][2] = {
+        {"wall.kind=point", "wall.contact=rigid"},
+        {"wall.kind=plane", "wall.contact=rigid"},
+        {"wall.kind=plane", "wall.contact=kelvin-voigt"},
+        {"wall.kind=point", "wall.contact=hunt-crossley"},
+    };
+    write_sine(1e-3, 2, -0.125, 0.875, 0.0025);
+    for (size_t i = 0; i < 4; i++) {
+        summary sums[2];
+        for (int file = 0; file < 2; file++) {
+            const scenario s = {
+                .parameters = fixture_parameters(SETTINGS(
+                    "arm.links=3", kinds[i][0], kinds[i][1], "run.duration=0.8",
+                    "wall.motion_frequency=2", file ? "wall.motion=file" : "wall.motion=sine",
+                    "wall.motion_file=wall-path.csv", "arm.damping_ratio=0.01"))};
+            run_result r;
+            assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+            sums[file] = r.summary;
+            run_finish(&r);
+        }
+        check_close(sums[1].first_contact_s, sums[0].first_contact_s, 1e-7);
+        check_relative(sums[1].contact_impulse_Ns, sums[0].contact_impulse_Ns, 1e-5);
+        check_relative(sums[1].first_pulse_peak_N, sums[0].first_pulse_peak_N, 1e-4);
+        assert_true(sums[1].energy_residual_J < 1e-9 * sums[1].motor_work_J);
+    }
+    unlink(path_csv);
+}
+
+// What cannot be a motion is told with its place in the file.
+TEST(a_table_with_faults_is_told_with_its_place)
+{
+    static const struct {
+        const char *text, *says;
+    } wrong[] = {
+        {"time[s],place[m]\n0,0\n", "at least 2"},
+        {"time[s],place[m]\n0,0\n0.1,1\n0.1,2\n", "wall-path.csv:4:1"},
+        {"time[s],place[kg]\n0,0\n1,1\n", "kg"},
+        {"time[s],force[N]\n0,0\n1,1\n", "place"},
+        {"time[s],place[m]\n0,0\n1,nan\n", "wall-path.csv:3"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        FILE *file = fopen(path_csv, "w");
+        fputs(wrong[i].text, file);
+        fclose(file);
+        fault f = {0};
+        wall_path *path;
+        assert_int_equal(wall_path_create(&path, path_csv, &f), STATUS_BAD_SCENARIO);
+        assert_null(path);
+        assert_string_equal(f.path, "wall.motion_file");
+        fail_if(strstr(f.text, wrong[i].says) == NULL, "%s", f.text);
+    }
+    unlink(path_csv);
 }

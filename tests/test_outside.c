@@ -54,17 +54,30 @@ static void write_recording(int which)
     write_text("u.csv", which == 0 ? "t[s],command[V]\n0,2\n" : "t[s],command[V]\n0,4\n");
 }
 
+// A wall that comes to meet the arm.
+static void write_path(int which)
+{
+    write_text("w.csv", which == 0 ? "time[s],place[m]\n0,0\n0.04,0.7\n"
+                                   : "time[s],place[m]\n0,0\n0.04,0.8\n");
+}
+
 // Everything on the list, with two contents of it.
 static const struct outside_case {
     size_t parameter; // offset
     const char *value;
     control_law law;
+    wall_motion_kind motion;
     void (*write)(int which);
     const char *file;
 } cases[] = {
-    {offsetof(parameters, control.plugin), "./law.so", LAW_PLUGIN, write_plugin, "law.so"},
-    {offsetof(parameters, control.command), "sh law.sh", LAW_PROCESS, write_program, "law.sh"},
-    {offsetof(parameters, control.playback_file), "u.csv", LAW_PLAYBACK, write_recording, "u.csv"},
+    {offsetof(parameters, control.plugin), "./law.so", LAW_PLUGIN, MOTION_NONE, write_plugin,
+     "law.so"},
+    {offsetof(parameters, control.command), "sh law.sh", LAW_PROCESS, MOTION_NONE, write_program,
+     "law.sh"},
+    {offsetof(parameters, control.playback_file), "u.csv", LAW_PLAYBACK, MOTION_NONE,
+     write_recording, "u.csv"},
+    {offsetof(parameters, wall.motion_file), "w.csv", LAW_OPEN_LOOP, MOTION_FILE, write_path,
+     "w.csv"},
 };
 enum { CASES = sizeof cases / sizeof cases[0] };
 
@@ -74,7 +87,9 @@ static parameters parameters_of(const struct outside_case *c)
     parameters p = base.parameters;
     p.control.law = c->law;
     p.set[PARAMETER_INDEX(control.law)] = 1;
-    p.code_allowed = true;
+    p.wall.motion = c->motion;
+    p.set[PARAMETER_INDEX(wall.motion)] = 1;
+    p.code_allowed = c->motion == MOTION_NONE;
     p.run.duration = 0.05;
     p.control.rate = 100;
     DONE(parameter_set_text(&p, parameter_at(c->parameter), c->value, &f) != STATUS_OK ||
@@ -398,8 +413,8 @@ TEST(what_could_not_begin_is_no_row)
     sweep_progress progress;
     const sweep_options options = {.jobs = 1};
     for (int i = 0; i < CASES; i++) {
-        // a recording is no code
-        if (cases[i].law == LAW_PLAYBACK) {
+        // what is only read is no code
+        if (cases[i].law == LAW_PLAYBACK || cases[i].motion == MOTION_FILE) {
             continue;
         }
         base.parameters = parameters_of(&cases[i]);
@@ -442,10 +457,10 @@ static void open_session(session *s)
     DONE(session_open(s, &own, (double)INFINITY, &f));
 }
 
-// The last command of the run.
-static double last_command(const session *s)
+// Where the arm and its wall are at the end of the run.
+static double last_gap(const session *s)
 {
-    return s->run.trace.rows[s->run.trace.row_count - 1].voltage;
+    return s->run.trace.rows[s->run.trace.row_count - 1].gap;
 }
 
 // A run that is computed again has the program of now, not answers of the one before.
@@ -458,12 +473,12 @@ TEST(a_session_asks_the_program_of_now)
         session s;
         SCOPED(session_finish) session fresh;
         open_session(&s);
-        const double before = last_command(&s);
+        const double before = last_gap(&s);
         cases[i].write(1);
         DONE(session_compute(&s, &f));
         open_session(&fresh);
-        check_close(last_command(&s), last_command(&fresh), 0);
-        assert_true(last_command(&s) != before);
+        check_close(last_gap(&s), last_gap(&fresh), 0);
+        assert_true(last_gap(&s) != before);
         session_finish(&s);
         unlink(cases[i].file);
     }

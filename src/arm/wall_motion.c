@@ -2,7 +2,9 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 
+#include "src/base/csv_table.h"
 #include "src/base/sincos.h"
 
 #define SAME_INSTANT 1e-13 // [s]
@@ -14,6 +16,126 @@ wall_motion wall_motion_of(const wall_parameters *p)
                          .frequency = p->motion_frequency,
                          .time = p->motion_time};
 }
+
+// --- a table ----------------------------------------------------------------------------------
+
+// The rates m of the cubic spline through the rows with slope 0 at both ends. Its acceleration is
+// continuous at each row between if, with h the intervals and d the slopes of the chords,
+//
+//     h_i m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_(i-1) m_(i+1) = 3 (h_i d_(i-1) + h_(i-1) d_i)
+//
+// a diagonally dominant tridiagonal system, solved by elimination; scratch[rows].
+static void find_rates(wall_path *p, double *scratch)
+{
+    const size_t last = p->rows - 1;
+    p->rates[0] = scratch[0] = 0;
+    for (size_t i = 1; i < last; i++) {
+        const double before = p->times[i] - p->times[i - 1], after = p->times[i + 1] - p->times[i];
+        const double chord_before = (p->places[i] - p->places[i - 1]) / before;
+        const double chord_after = (p->places[i + 1] - p->places[i]) / after;
+        const double pivot = 2 * (before + after) - after * scratch[i - 1];
+        const double right = 3 * (after * chord_before + before * chord_after);
+        scratch[i] = before / pivot;
+        p->rates[i] = (right - after * p->rates[i - 1]) / pivot;
+    }
+    p->rates[last] = 0;
+    for (size_t i = last; i-- > 1;) {
+        p->rates[i] -= scratch[i] * p->rates[i + 1];
+    }
+}
+
+status wall_path_create(wall_path **created, const char *file, fault *f)
+{
+    assert(created != NULL && file != NULL);
+    csv_table table = {0};
+    wall_path *p = calloc(1, sizeof *p);
+    *created = NULL;
+    if (p == NULL) {
+        return fault_no_memory(f);
+    }
+    status code = csv_table_read(&table, file, 2, f);
+    code = code == STATUS_OK ? csv_table_times(&table, "time", &p->times, f) : code;
+    code = code == STATUS_OK ? csv_table_numbers(&table, "place", "m", &p->places, f) : code;
+    p->rows = table.rows;
+    for (size_t i = 1; i < p->rows && code == STATUS_OK; i++) {
+        if (!(p->times[i] > p->times[i - 1])) {
+            const int column = csv_table_find(&table, "time") + 1;
+            code =
+                fault_set_place(f, STATUS_BAD_ARGUMENT, table.lines[i], column,
+                                "%.300s:%d:%d: time = %g s again: a wall is at one place at a time",
+                                file, table.lines[i], column, p->times[i]);
+        }
+    }
+    csv_table_finish(&table);
+    double *scratch = NULL;
+    if (code == STATUS_OK) {
+        p->rates = calloc(p->rows, sizeof *p->rates);
+        scratch = calloc(p->rows, sizeof *scratch);
+        code = p->rates != NULL && scratch != NULL ? STATUS_OK : fault_no_memory(f);
+    }
+    if (code == STATUS_OK) {
+        find_rates(p, scratch);
+    }
+    free(scratch);
+    if (code == STATUS_OK) {
+        *created = p;
+        return STATUS_OK;
+    }
+
+    // a file with faults is a scenario with faults
+    wall_path_destroy(p);
+    if (f != NULL && code != STATUS_NO_MEMORY) {
+        f->code = code = STATUS_BAD_SCENARIO;
+        f->path = "wall.motion_file";
+    }
+    return code;
+}
+
+void wall_path_destroy(wall_path *p)
+{
+    if (p != NULL) {
+        free(p->times);
+        free(p->places);
+        free(p->rates);
+        free(p);
+    }
+}
+
+// The row that begins the interval of an instant of the table's own time; an instant next to a row
+// belongs to the interval that it begins. -1 before the first, rows - 1 from the last on.
+static long interval_of(const wall_path *p, double time)
+{
+    long low = -1, high = (long)p->rows;
+    while (high - low > 1) {
+        const long middle = (low + high) / 2;
+        if (p->times[middle] <= time + SAME_INSTANT) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+// Hermite's cubic between two rows.
+static wall_shift path_at(const wall_path *p, double time)
+{
+    const long i = interval_of(p, time), last = (long)p->rows - 1;
+    if (i < 0 || i == last) {
+        return (wall_shift){p->places[i < 0 ? 0 : last], 0, 0};
+    }
+    const double h = p->times[i + 1] - p->times[i], x = (time - p->times[i]) / h;
+    const double rise = p->places[i + 1] - p->places[i];
+    const double a = h * p->rates[i], b = h * p->rates[i + 1];
+
+    // places[i] + a x + (3 rise - 2 a - b) x^2 + (a + b - 2 rise) x^3
+    const double square = 3 * rise - 2 * a - b, cube = a + b - 2 * rise;
+    return (wall_shift){p->places[i] + x * (a + x * (square + x * cube)),
+                        (a + x * (2 * square + x * 3 * cube)) / h,
+                        (2 * square + x * 6 * cube) / (h * h)};
+}
+
+// --- where it is ------------------------------------------------------------------------------
 
 wall_shift wall_motion_at(const wall_motion *m, double time)
 {
@@ -33,6 +155,8 @@ wall_shift wall_motion_at(const wall_motion *m, double time)
                             m->amplitude * rate * 30 * x * x * y * y,
                             m->amplitude * rate * rate * 60 * x * y * (y - x)};
     }
+    case MOTION_FILE:
+        return m->path != NULL ? path_at(m->path, since) : (wall_shift){0};
     case MOTION_NONE:
         break;
     }
@@ -42,6 +166,13 @@ wall_shift wall_motion_at(const wall_motion *m, double time)
 double wall_motion_rate(const wall_motion *m, double time)
 {
     assert(m != NULL);
+    if (m->kind == MOTION_FILE) {
+        // a share of an interval
+        const long i = m->path != NULL ? interval_of(m->path, time - m->time) : -1;
+        return i >= 0 && i + 1 < (long)m->path->rows
+                   ? 1 / (m->path->times[i + 1] - m->path->times[i])
+                   : 0;
+    }
     const double rate = 2 * M_PI * m->frequency, passed = 2 * m->frequency * (time - m->time);
     const bool rises = m->kind == MOTION_STEP && passed > -SAME_INSTANT && passed < 1;
     return m->kind == MOTION_SINE || rises ? rate : 0;
@@ -51,6 +182,10 @@ double wall_motion_lasts(const wall_motion *m, double time)
 {
     assert(m != NULL);
     const double since = time - m->time;
+    if (m->kind == MOTION_FILE && m->path != NULL) {
+        const long next = interval_of(m->path, since) + 1;
+        return next < (long)m->path->rows ? m->path->times[next] - since : HUGE_VAL;
+    }
     if (m->kind != MOTION_STEP) {
         return HUGE_VAL;
     }

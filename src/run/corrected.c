@@ -398,6 +398,15 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
         return fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", p->arm.links);
     }
 
+    // where a file says how the wall moves
+    if (p->wall.motion == MOTION_FILE && p->wall.kind != WALL_NONE) {
+        const status read = wall_path_create(&c->path, p->wall.motion_file, f);
+        if (read != STATUS_OK) {
+            return read;
+        }
+        c->arm.wall.motion.path = c->path;
+    }
+
     status failed = checkpoint_open_history(r, c->motion, f);
     if (failed == STATUS_OK && r->options->resume) {
         checkpoint_restore(r, &c->arm, c->motion);
@@ -413,6 +422,8 @@ motion *corrected_finish(corrected_run *c, status failed)
     if (m != NULL) {
         sum_up(c, failed);
     }
+    wall_path_destroy(c->path);
+    c->path = NULL;
     return m;
 }
 

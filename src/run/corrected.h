@@ -39,7 +39,8 @@ typedef struct corrected_run {
     pace pace;         // of the whole run
     open_step under_way;
 
-    arm arm; // with the command in force
+    wall_path *path; // of a wall that a file moves, else NULL
+    arm arm;         // with the command in force
 } corrected_run;
 
 // The instant that the run has come to [s].

@@ -20,6 +20,7 @@ void corrected_bind_arm(corrected_run *c)
 {
     const recording *r = c->recording;
     arm_init(&c->arm, &r->now);
+    c->arm.wall.motion.path = c->path;
     if (r->rig != NULL) {
         arm_set_voltage(&c->arm, r->rig->voltage); // the controller's, not motor.voltage
     }

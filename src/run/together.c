@@ -56,6 +56,7 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
                         run_result *result)
 {
     one->run.motion = NULL;
+    one->run.path = NULL;
     status failed = recording_begin(&one->recording, s, options, result, &one->fault);
     force_history_take(&result->history.forces, &one->forces);
     if (failed == STATUS_OK) {

@@ -14,6 +14,7 @@ const outside_source outside_table[] = {
     {PATH(control.plugin), PATH(control.law), LAW_PLUGIN, OUTSIDE_LIBRARY},
     {PATH(control.command), PATH(control.law), LAW_PROCESS, OUTSIDE_COMMAND},
     {PATH(control.playback_file), PATH(control.law), LAW_PLAYBACK, OUTSIDE_FILE},
+    {PATH(wall.motion_file), PATH(wall.motion), MOTION_FILE, OUTSIDE_FILE},
 };
 const int outside_count = sizeof outside_table / sizeof outside_table[0];
 
@@ -33,6 +34,15 @@ unsigned outside_read(const parameters *p)
     unsigned sources = 0;
     for (int i = 0; i < outside_count; i++) {
         sources |= (unsigned)outside_is_read(&outside_table[i], p) << i;
+    }
+    return sources;
+}
+
+unsigned outside_files(void)
+{
+    unsigned sources = 0;
+    for (int i = 0; i < outside_count; i++) {
+        sources |= (unsigned)(outside_table[i].kind == OUTSIDE_FILE) << i;
     }
     return sources;
 }

@@ -27,6 +27,9 @@ extern const int outside_count;
 bool outside_is_read(const outside_source *source, const parameters *p);
 unsigned outside_read(const parameters *p);
 
+// Those that are only read, and never run, as bits.
+unsigned outside_files(void);
+
 // Whether its content can be told: not that of a command with characters that are special to a
 // shell, nor of a shared object without a slash, which the system would look for.
 bool outside_is_told(const outside_source *source, const parameters *p);

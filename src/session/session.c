@@ -177,7 +177,8 @@ static bool end_computing(session *s)
 static bool outside_is_same(session *s, const parameters *p)
 {
     char stamp[SHA256_TEXT];
-    outside_stamp(p->code_allowed ? ~0u : 0, p, stamp); // before a consent nothing is opened
+    // before a consent no program is opened, but what is only read is looked at
+    outside_stamp(p->code_allowed ? ~0u : outside_files(), p, stamp);
     if (strcmp(stamp, s->outside) == 0) {
         return true;
     }

@@ -128,15 +128,18 @@ const parameter_info parameter_table[] = {
     {PATH(wall.mass), REAL("kg", 0, 1e6), DEFAULT(0),
      MEANING("mass of the face in front of the spring and damper of kelvin-voigt, which the arm "
              "strikes as a rigid body; 0: none")},
-    {PATH(wall.motion), CHOICE(2, "none|sine|step"), DEFAULT(MOTION_NONE),
-     MEANING("how the wall moves along its normal: not, A sin(2 pi f (t - t0)), or by A within "
-             "1/(2 f) from t0 on, smoothly up to the acceleration")},
+    {PATH(wall.motion), CHOICE(MOTION_FILE, "none|sine|step|file"), DEFAULT(MOTION_NONE),
+     MEANING("how the wall moves along its normal: not, A sin(2 pi f (t - t0)), by A within "
+             "1/(2 f) from t0 on, smoothly up to the acceleration, or as wall.motion_file says")},
     {PATH(wall.motion_amplitude), REAL("m", -10, 10), DEFAULT(0.001),
      MEANING("amplitude A of that motion, positive towards the arm")},
     {PATH(wall.motion_frequency), REAL("Hz", 1e-3, 1e4), DEFAULT(1),
      MEANING("frequency f of that motion, half a period of which a step takes")},
     {PATH(wall.motion_time), REAL("s", -1e6, 1e6), DEFAULT(0),
-     MEANING("t0 of that motion: where a sine passes zero, where a step begins")},
+     MEANING("t0 of that motion: where a sine passes zero, where a step or a file begins")},
+    {PATH(wall.motion_file), TEXT(NULL),
+     MEANING("CSV with columns time [s] and place [m], towards the arm; between its rows a spline, "
+             "before and after them the wall rests (wall.motion = file)")},
 
     {PATH(method.name), CHOICE(2, "event|newmark|generalized-alpha"),
      DEFAULTS(METHOD_EVENT, METHOD_NEWMARK), MEANING("time integration")},

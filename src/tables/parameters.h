@@ -15,7 +15,12 @@ typedef enum arm_model_kind { ARM_CORRECTED, ARM_PRINTED } arm_model_kind;
 typedef enum hub_joint_kind { HUB_RIGID, HUB_SPRING, HUB_BEAM } hub_joint_kind;
 typedef enum wall_kind { WALL_POINT, WALL_PLANE, WALL_NONE } wall_kind;
 typedef enum wall_law { WALL_RIGID, WALL_KELVIN_VOIGT, WALL_HUNT_CROSSLEY } wall_law;
-typedef enum wall_motion_kind { MOTION_NONE, MOTION_SINE, MOTION_STEP } wall_motion_kind;
+typedef enum wall_motion_kind {
+    MOTION_NONE,
+    MOTION_SINE,
+    MOTION_STEP,
+    MOTION_FILE
+} wall_motion_kind;
 typedef enum motor_drive { DRIVE_VOLTAGE, DRIVE_CURRENT } motor_drive;
 typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
 typedef enum engine_kind { ENGINE_AUTO, ENGINE_PAIR, ENGINE_STIFF } engine_kind;
@@ -84,6 +89,7 @@ typedef struct wall_parameters {
     double motion_amplitude; // towards the arm [m]
     double motion_frequency; // [Hz]
     double motion_time;      // [s]
+    char motion_file[PARAMETER_TEXT_SIZE]; // CSV with time [s] and place [m]
 } wall_parameters;
 
 typedef struct method_parameters {

@@ -82,7 +82,11 @@ static status resolve_wall(parameters *p, fault *f)
                             LEAST_FACE);
     }
 
-    // what a wall that moves cannot be combined with
+    // what a wall that moves needs, and cannot be combined with
+    if (w->motion == MOTION_FILE && w->kind != WALL_NONE && w->motion_file[0] == '\0') {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.motion, wall.motion_file),
+                            "wall.motion = file needs a CSV file in wall.motion_file");
+    }
     if (w->motion != MOTION_NONE && w->kind != WALL_NONE) {
         if (p->method.name != METHOD_EVENT) {
             return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.motion, method.name),
