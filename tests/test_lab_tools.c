@@ -189,7 +189,7 @@ TEST(the_arm_that_was_measured_is_found)
     assert_warned(&ex, ":identify nosuch<Enter>", "nosuch");
     assert_warned(&ex, ":identify<Enter>", "takes parameters");
     press(&ex, ":data off<Enter>");
-    assert_shows(&ex, "no measured data of this signal");
+    assert_shows(&ex, "no measured data (:data");
 }
 
 TEST(what_is_copied_gives_the_run_again)

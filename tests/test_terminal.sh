@@ -369,6 +369,61 @@ for name in dumb nonsense ""; do
     await "status 2"
 done
 
+# the tools of the bench at three sizes: what is typed, and what the screen answers
+mux set -s set-clipboard on
+"$program" run corrected/first-impact --set arm.k2=4.5 --quiet --csv "$folder/rows.csv"
+ask() {
+    mux send-keys "$1" Enter
+    await "$2"
+}
+copied() {
+    mux show-buffer 2>/dev/null | grep -qF -- "$1"
+}
+for size in 80x24 100x30 200x60; do
+    mux resize-window -x "${size%x*}" -y "${size#*x}"
+    start lab corrected/first-impact
+    mux send-keys Space End
+    ask ":solve voltage peak_force_N<2" "up to motor.voltage = 1.4441"
+    ask ":note a hard one" "noted at"
+    ask ":notes" "a hard one"
+    mux send-keys Escape
+    ask ":trace force - voltage" "force-voltage"
+    ask ":axis calm 10" "but for spikes"
+    ask ":band force 0.1" "leaves the band"
+    ask ":colourby run" "a colour for each run"
+    ask ":data $folder/rows.csv" "shifted by"
+    ask ":residual force" "trace 11 hides it"
+    ask ":identify k2" "command"
+    ask ":sweep arm.k2=4:8:3 motor.voltage=1:2:3" "9 runs"
+    mux send-keys Up '>'
+    await "k2 6, voltage 1.5"
+    mux send-keys Enter
+    await "motor.voltage = 1.5"
+    mux send-keys Escape
+    ask ":why" "why (Esc closes)"
+    mux send-keys Escape
+    ask ":poles" "poles (Esc closes)"
+    mux send-keys Escape F1
+    await "linearised constrained arm"
+    mux send-keys Escape
+    ask ":copy run" "clipboard"
+    until_true copied "impactlab run 'corrected/first-impact' --set 'arm.k2=6'" ||
+        fail "nothing is on the clipboard"
+    ask ":session save $folder/$size.session" "goes on with it"
+    mux send-keys q
+    await "status 0"
+    check_given_back "tools at $size"
+
+    # another day: one command
+    until_true is_ready || fail "the shell has no prompt"
+    mux send-keys "clear; lab lab $folder/$size.session" Enter
+    await "2 changes"
+    ask ":notes" "a hard one"
+    mux send-keys Escape q
+    await "status 0"
+done
+mux resize-window -x 120 -y 40
+
 # no terminal at all
 "$program" lab </dev/null >"$folder/out" 2>&1 && fail "a lab without a terminal"
 grep -q "needs a terminal" "$folder/out" || fail "no word about the terminal"

@@ -193,12 +193,6 @@ static void run_on_terminal(explorer *ex)
             dirty = true;
         }
 
-        if (ex->state.copied != NULL) {
-            terminal_copy(ex->state.copied);
-            free(ex->state.copied);
-            ex->state.copied = NULL;
-        }
-
         // all input that has arrived, so that keys never wait for pictures that are out of date
         last = now;
         for (int taken = 0; in.kind != TERMINAL_NONE && !ex->state.quit && !leave; taken++) {
@@ -209,6 +203,11 @@ static void run_on_terminal(explorer *ex)
             if (taken < INPUTS_AT_ONCE && !leave) {
                 in = terminal_wait(0);
             }
+        }
+        if (ex->state.copied != NULL) {
+            terminal_copy(ex->state.copied);
+            free(ex->state.copied);
+            ex->state.copied = NULL;
         }
     }
 

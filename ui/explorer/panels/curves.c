@@ -464,9 +464,8 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
         screen_text(s, f.canvas.x, a.y + 1, f.canvas.width, INK_DIM,
                     showing_difference(st) && pane_is_derived(shown)
                         ? "an expression has no difference"
-                    : shown->view == VIEW_RESIDUAL
-                        ? "no measured data of this signal (:data FILE.csv lays them under the run)"
-                        : "this run has no such values");
+                    : shown->view == VIEW_RESIDUAL ? "no measured data (:data FILE.csv)"
+                                                   : "this run has no such values");
         return;
     }
 
