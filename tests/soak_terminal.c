@@ -232,16 +232,19 @@ static void press_something(soak *s)
 {
     // all keys but those that end or suspend the lab, or hold the terminal's output
     static const char *const keys[] = {
-        " ",       " ",      "h",      "l",       "n",       "N",       "g",         "G",
-        "+",       "-",      "\177",   "r",       "j",       "k",       "\r",        ">",
-        "<",       "p",      "P",      "t",       "x",       "b",       "B",         "c",
-        "u",       "U",      "\022",   "m",       "\t",      "z",       "Z",         "0",
-        "1",       "5",      "9",      "o",       "]",       "[",       "s",         "\014",
-        "?",       "/",      ":",      "\033[A",  "\033[B",  "\033[C",  "\033[D",    "\033[H",
-        "\033[F",  "\033OA", "\033OP", "\033[5~", "\033[6~", "\033[3~", "\025",      "\b",
-        "\033[1~", "\033[Z", "=",      "2",       "3",       "8",       "\033[M !!", "R",
-        "D",       "M",      "T",      "X",       "A",       "y",       "\020",      "L",
-        "F",       "C",      "H",      "e",       "w"};
+        " ",      " ",      "h",         "l",       "n",       "N",
+        "g",      "G",      "+",         "-",       "\177",    "r",
+        "j",      "k",      "\r",        ">",       "<",       "p",
+        "P",      "t",      "x",         "b",       "B",       "c",
+        "u",      "U",      "\022",      "m",       "\t",      "z",
+        "Z",      "0",      "1",         "5",       "9",       "o",
+        "]",      "[",      "s",         "\014",    "?",       "/",
+        ":",      "\033[A", "\033[B",    "\033[C",  "\033[D",  "\033[H",
+        "\033[F", "\033OA", "\033OP",    "\033[5~", "\033[6~", "\033[3~",
+        "\025",   "\b",     "\033[1~",   "\033[Z",  "=",       "2",
+        "3",      "8",      "\033[M !!", "R",       "D",       "M",
+        "T",      "X",      "A",         "y",       "\020",    "L",
+        "F",      "C",      "H",         "e",       "w",       "\033[200~qy\rqq\033[201~"};
     send_text(s, keys[chance(s, sizeof keys / sizeof keys[0])]);
 }
 
@@ -261,12 +264,20 @@ static void give_command(soak *s)
         "sweep arm.k2=4,5,6", "sweep off", "metric", "lanes all", "lanes off", "lanes auto",
         "phase force gap", "spectrum force", "statistics", "lesson hybrid-law", "lesson step-size",
         "answer %d", "continue", "lesson off", "palette volt", "pixels off", "pixels auto",
-        "closeup", "bending %d", "slow %d", "slow off",
+        "closeup", "bending %d", "slow %d", "slow off", "trace force - force_reading, gap*2",
+        "axis calm %d", "band force 0.%d", "colourby", "note %d says", "note @0.%d here", "notes",
+        "save! a.csv", "data a.csv", "data a.csv@0.%d", "data off", "residual force gap",
+        "identify k2", "sweep arm.k2=4:8:%d motor.voltage=1:3:4", "solve voltage peak_force_N<2",
+        "copy run", "copy screen", "why", "poles", "rate %d", "rate off", "explain",
+        "session save a.session", "session open a.session", "session save b%d.session",
+        "session open b%d.session", "limit force %d", "signal all",
         // none of these can be done
         "frobnicate %d", "set arm.k2 NaN", "set arm.links -%d", "open nothing/such", "set",
         "set motor.voltage", "seek", "save", "save a.doc", "save /proc/none/a.csv", "speed 0",
         "zoom sideways", "take 99", "sweep motor.voltage=1:2", "phase force", "answer x",
-        "set run.duration 1e9", "set method.step 1e-9", "trace nonsense", "glyphs %d", "push 1e999",
+        "session open broken.session", "session open a.yaml", "trace force - ", "data a.yaml",
+        "identify none", "copy none", "note", "band gap 0", "rate 0.1", "set run.duration 1e9",
+        "set method.step 1e-9", "trace nonsense", "glyphs %d", "push 1e999",
         "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80", "\xff\xfe broken"};
     char line[200];
     const char *form = commands[chance(s, sizeof commands / sizeof commands[0])];
@@ -281,7 +292,7 @@ static void give_command(soak *s)
 
 static void use_mouse(soak *s)
 {
-    static const int buttons[] = {0, 0, 0, 32, 32, 64, 65, 1, 2, 35, 67, 128};
+    static const int buttons[] = {0, 0, 16, 32, 32, 64, 65, 1, 2, 48, 67, 128};
     char report[64];
     int x = chance(s, 8) ? 1 + chance(s, 120) : chance(s, 100000);
     int y = chance(s, 8) ? 1 + chance(s, 40) : chance(s, 100000);
@@ -354,6 +365,14 @@ static void start(soak *s)
     if (s->slave < 0 || mkdtemp(s->folder) == NULL) {
         perror("no terminal or no folder");
         exit(77);
+    }
+    char path[128];
+    snprintf(path, sizeof path, "%s/broken.session", s->folder);
+    FILE *broken = fopen(path, "w");
+    if (broken != NULL) {
+        fputs("impactlab session 1\nscenario: x\n| motor: {voltage: 1 V}\nstart: 0 nothing\n",
+              broken);
+        fclose(broken);
     }
     s->child = fork();
     if (s->child == 0) {

@@ -151,9 +151,10 @@ TEST(test_a_pane_of_expressions)
     // a difference of an expression means nothing, the pane says so
     press(&ex, "b:set arm.k2 5<Enter>D");
     assert_shows(&ex, "an expression has no difference");
+    press(&ex, "XX");
     press(&ex, "D:signal gap/2 11<Enter>");
     assert_int_equal(p->hidden, 2);
-    press(&ex, ":phase force*2, gap<Enter>:spectrum command-voltage<Enter>");
+    press(&ex, ":phase force*2, gap<Enter>:spectrum command-voltage<Enter>X");
     free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
 
     // what cannot be read says where; nothing is added

@@ -12,7 +12,6 @@
 #include "src/base/clock.h"
 
 #define SEQUENCE_TIME 0.25 // after such a pause what is missing of a sequence does not come [s]
-#define PASTE_TIME    1.0  // nor the end of pasted text [s]
 
 static int key_of_curses(int key)
 {
@@ -100,18 +99,16 @@ static bool take_sequence(wint_t key, int kind, terminal_input *in)
     }
     if (result == SEQUENCE_PASTE || result == SEQUENCE_PASTED) {
         tty.pasting = result == SEQUENCE_PASTE;
-        tty.paste_time = tty.sequence_time;
     }
     in->kind = result == SEQUENCE_MOUSE ? TERMINAL_POINTER : TERMINAL_NONE;
     return true;
 }
 
-// A key, which is one of pasted text until that ends.
+// A key, which is one of pasted text until that ends: however long it takes, or with a key that no
+// terminal pastes where the end was lost.
 static terminal_input key_input(int code)
 {
-    const double now = clock_seconds(CLOCK_MONOTONIC);
-    tty.pasting = tty.pasting && now - tty.paste_time < PASTE_TIME;
-    tty.paste_time = now;
+    tty.pasting = tty.pasting && code != KEY_CODE_ESCAPE && code != ('c' & 0x1f);
     return (terminal_input){.kind = TERMINAL_KEY, .code = code, .pasted = tty.pasting};
 }
 

@@ -24,7 +24,6 @@ typedef struct terminal_state {
     escape_sequence sequence; // sequence begun on the input
     double sequence_time;     // of its last character [s]
     bool pasting;             // what comes is pasted text
-    double paste_time;        // of its last character [s]
     pixel_answers pixels;     // answers about pictures
     char restore[256];        // sequence sent by a crash
     size_t restore_length;

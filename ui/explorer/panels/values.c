@@ -100,17 +100,19 @@ const panel values_panel = {.name = "values", .draw = draw, .point = point};
 
 enum { LINES = 3 }; // of a signal
 
-// The signals of the panes that are shown, those of the pane in focus first, each once.
+// The signals of the panes that are shown, those of the pane in focus first, each once; an
+// expression has no difference.
 static int find_signals(const explorer_state *st, int signals[PANES * PANE_SIGNALS])
 {
     int count = 0;
     const int focused = panes_focused(&st->panes);
+    const bool subtracts = state_run(st, 0).kind == SHOWN_DIFFERENCE;
 
     // from the pane in focus on and around, a signal of several panes once
     for (int i = 0; i < PANES && focused >= 0; i++) {
         const pane *p = &st->panes.pane[(focused + i) % PANES];
         for (int k = 0; p->shown && k < p->count; k++) {
-            bool there = false;
+            bool there = subtracts && signal_is_derived(p->signals[k]);
             for (int j = 0; j < count; j++) {
                 there = there || signals[j] == p->signals[k];
             }
