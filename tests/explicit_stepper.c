@@ -239,7 +239,8 @@ static double graded(const arm *a, const motion *m, double rate, double longest)
 // step tell of it.
 static double graded_face(const arm *a, const motion *m, double longest)
 {
-    const double rate = wall_face_rate(&a->wall, state_face(m->state));
+    const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
+    const double rate = wall_face_rate(&wall, state_face(m->state));
     longest = fmin(longest, wall_face_lasts(&a->wall, state_face(m->state)));
     return rate > 0 ? fmin(longest, EXPLICIT_RESOLUTION / rate) : longest;
 }
@@ -277,7 +278,7 @@ static double longest_step(const arm *a, motion *m, double rate, double remainin
     double longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step_length
                                 : step_length / ceil(step_length * rate / EXPLICIT_RESOLUTION);
     longest = pressed ? graded(a, m, rate, longest) : longest;
-    longest = state_face_swings(m->state) ? graded_face(a, m, longest) : longest;
+    longest = state_face_swings(m, m->state) ? graded_face(a, m, longest) : longest;
     longest = m->electric ? graded_current(a, m, rate, longest) : longest;
     longest = fmin(longest, wall_motion_lasts(&a->wall.motion, m->state[SLOT_TIME]));
 

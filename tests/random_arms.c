@@ -202,6 +202,11 @@ static void place_anywhere(random_arm *r, random_generator *g)
 // A wall that moves, from which the arm starts as far as from its place, a tilted plane, or both.
 static void set_moving(random_arm *r, random_generator *g)
 {
+    for (int i = 0; i < r->count; i++) {
+        if (strncmp(r->settings[i], "wall.mass=", strlen("wall.mass=")) == 0) {
+            set(r, "wall.kind=plane"); // as a face must be
+        }
+    }
     const bool moves = chance(g, 0.8);
     if (moves) {
         const double amplitude = between(g, 1e-6, 3e-3) * (chance(g, 0.5) ? 1 : -1);

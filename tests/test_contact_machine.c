@@ -160,7 +160,7 @@ TEST(a_push_parts_arm_and_face)
         // away: without a damper the spring goes along, with one the face is left behind
         motion_push(&r.arm, r.motion, -100, &report);
         assert_int_equal(touches(&r), i == 0);
-        assert_int_equal(state_face_swings(r.motion->state), i == 1);
+        assert_int_equal(state_face_swings(r.motion, r.motion->state), i == 1);
         assert_true(i == 0 || r.motion->state[SLOT_FORCE] == 0);
 
         // back, and there it is again
@@ -168,7 +168,7 @@ TEST(a_push_parts_arm_and_face)
         report = i == 1 ? next_event(&r, 1) : report;
         assert_int_equal(report.event, i == 1 ? MOTION_TOUCH : MOTION_REACHED);
         check_close(r.motion->state[SLOT_TIME], 1e-3, 1e-12);
-        assert_true(touches(&r) && !state_face_swings(r.motion->state));
+        assert_true(touches(&r) && !state_face_swings(r.motion, r.motion->state));
         check_close(-r.motion->state[SLOT_GAP], depth, 1e-12);
         check_below(0, r.motion->state[SLOT_FORCE]);
 

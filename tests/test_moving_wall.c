@@ -150,6 +150,137 @@ TEST(only_the_relative_velocity_counts_at_an_impact)
     }
 }
 
+// --- a face with a mass --------------------------------------------------------------------------
+
+// x'' = u'' - (c x' + k x)/M and the work of (k x + c x') u', by the classic formula of order 4 in
+// so many steps, extrapolated.
+static void shaken_by_steps(const wall_model *w, wall_face from, double h, int steps, double y[3])
+{
+    static const double node[] = {0, 0.5, 0.5, 1}, weight[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+    const double step = h / steps;
+    y[0] = from.position, y[1] = from.velocity, y[2] = 0;
+    for (int i = 0; i < steps; i++) {
+        double k[3] = {0}, sum[3] = {0};
+        for (int j = 0; j < 4; j++) {
+            const double part = node[j] * step, x = y[0] + part * k[0], v = y[1] + part * k[1];
+            const wall_shift at =
+                wall_motion_at(&w->motion, w->shift.time + i * step + node[j] * step);
+            const double pulls = w->stiffness * x + w->damping * v;
+            k[0] = v, k[1] = at.acceleration - pulls / w->face_mass, k[2] = pulls * at.velocity;
+            for (int n = 0; n < 3; n++) {
+                sum[n] += weight[j] * k[n];
+            }
+        }
+        for (int n = 0; n < 3; n++) {
+            y[n] += step * sum[n];
+        }
+    }
+}
+
+// Swinging, at its own frequency without a damper, creeping, and in a soft bed: place, speed and
+// work are those of an independent integrator; energy put in is stored or lost.
+TEST(a_shaken_face_swings_as_its_equation_says)
+{
+    static const double beds[][3] = {{0.05, 2000, 3},
+                                     {0.05, 0.05 * 4 * M_PI * M_PI * 900, 0},
+                                     {0.01, 500, 20},
+                                     {0.2, 5, 0.01},
+                                     {0.02, 1e4, 50}};
+    static const wall_motion_kind kinds[] = {MOTION_SINE, MOTION_STEP};
+    for (int i = 0; i < 10; i++) {
+        const double *bed = beds[i / 2];
+        const wall_model still = {
+            .law = WALL_KELVIN_VOIGT,
+            .stiffness = bed[1],
+            .damping = bed[2],
+            .exponent = 1,
+            .face_mass = bed[0],
+            .motion = {.kind = kinds[i % 2], .amplitude = 2e-3, .frequency = 30, .time = -1e-3}};
+        const wall_model w = wall_at(&still, 2e-3);
+        const wall_face from = {1e-4, -0.02};
+        const double h = 8e-3;
+        double coarse[3], fine[3];
+        shaken_by_steps(&w, from, h, 4000, coarse);
+        shaken_by_steps(&w, from, h, 8000, fine);
+        for (int n = 0; n < 3; n++) {
+            fine[n] += (fine[n] - coarse[n]) / 15;
+        }
+        const wall_face end = wall_face_after(&w, from, h);
+        check_close(end.position, fine[0], 1e-13);
+        check_close(end.velocity, fine[1], 1e-11);
+        check_close(wall_face_work(&w, from, h), fine[2], 1e-13);
+
+        // in two parts as in one, and without a loss where no damper is
+        const wall_face half = wall_face_after(&w, from, h / 3);
+        const wall_model later = wall_at(&still, 2e-3 + h / 3), last = wall_at(&still, 2e-3 + h);
+        const wall_face again = wall_face_after(&later, half, h - h / 3);
+        check_close(again.position, end.position, 1e-15);
+        const double put_in = wall_face_work(&w, from, h);
+        const double lost = wall_face_energy(&w, from) + put_in - wall_face_energy(&last, end);
+        fail_if(bed[2] > 0 ? lost <= 0 : fabs(lost) > 1e-15, "%d: %g J", i, lost);
+
+        // the rate is that of the motion
+        const wall_face next = wall_face_after(&w, from, 1e-7);
+        check_relative(wall_face_acceleration(&w, from), (next.velocity - from.velocity) / 1e-7,
+                       1e-3);
+    }
+}
+
+// A light face with a heavy damper soon creeps: it is followed in long steps as in short ones.
+TEST(a_face_that_creeps_is_followed_in_long_steps)
+{
+    const wall_model still = {.law = WALL_KELVIN_VOIGT,
+                              .stiffness = 2e3,
+                              .damping = 30,
+                              .exponent = 1,
+                              .face_mass = 1e-6,
+                              .motion = {MOTION_SINE, 2e-3, 5, 0, NULL}};
+    wall_face face = {0, 0};
+    double time = 0, work = 0;
+    for (int i = 0; i < 4000; i++, time += 1e-6) {
+        const wall_model w = wall_at(&still, time);
+        work += wall_face_work(&w, face, 1e-6);
+        face = wall_face_after(&w, face, 1e-6);
+    }
+    const wall_model w = wall_at(&still, time);
+    check_relative(wall_face_rate(&w, face), 2e3 / 30, 1e-4);
+    wall_face fine = face;
+    double pieces = 0;
+    for (int i = 0; i < 4000; i++) {
+        const wall_model at = wall_at(&still, time + i * 1e-6);
+        pieces += wall_face_work(&at, fine, 1e-6);
+        fine = wall_face_after(&at, fine, 1e-6);
+    }
+    const wall_face end = wall_face_after(&w, face, 4e-3);
+    check_close(end.position, fine.position, 1e-15);
+    check_close(end.velocity, fine.velocity, 1e-13);
+    check_close(wall_face_work(&w, face, 4e-3), pieces, 1e-15);
+}
+
+// A run on one: what is put in is stored or lost, to the last digits.
+TEST(the_ledger_closes_on_a_shaken_face)
+{
+    static const char *const sets[][3] = {
+        {"wall.motion=sine", "wall.stiffness=2000", "wall.damping=5"},
+        {"wall.motion=sine", "wall.stiffness=75000", "wall.damping=0"},
+        {"wall.motion=step", "wall.stiffness=400", "wall.damping=40"},
+        {"wall.motion=step", "wall.stiffness=1e6", "wall.damping=300"}};
+    for (size_t i = 0; i < 8; i++) {
+        const char *const *set = sets[i / 2];
+        const scenario s = {.parameters = fixture_parameters(SETTINGS(
+                                "wall.kind=plane", "wall.contact=kelvin-voigt", "wall.mass=0.05",
+                                "wall.motion_frequency=9", "wall.motion_time=0.2", set[0], set[1],
+                                set[2], i % 2 ? "arm.links=4" : "arm.links=2", "arm.tilt=-0.2",
+                                "wall.motion_amplitude=2e-3", "wall.restitution=0.3"))};
+        run_result r;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        const summary *m = &r.summary;
+        assert_true(m->status == STATUS_OK && m->impacts > 0);
+        check_below(m->energy_residual_J, 1e-10 * fabs(m->motor_work_J));
+        run_finish(&r);
+    }
+}
+
 // --- walls that a script moves -------------------------------------------------------------------
 
 static run_result run_of(const char *wall, double from, double time, double to, status expected)

@@ -284,7 +284,7 @@ KERNEL double chain_close(const arm *a, const chain_case *c, const wall_contact 
     }
     rate2 += c->face ? comes_faster : 0;
     reaction->force = force;
-    reaction->wall_work = force * comes;
+    reaction->wall_work = (c->face ? c->held_back : force) * comes; // a face's foundation works
     if (gap) {
         reaction->gap_acceleration = -rate2;
         reaction->gap = wall_stands(&a->wall) ? -wall->penetration : HUGE_VAL;

@@ -13,7 +13,7 @@ impact_result impact_velocity_increments(const arm *a, chain_link *work, const d
     result.speed -= face;
     result.impulse = (1 + restitution) * result.speed / compliance;
     result.loss = 0.5 * result.impulse * (1 - restitution) * result.speed;
-    result.work = result.impulse * comes;
+    result.work = wall_has_face(&a->wall) ? 0 : result.impulse * comes; // its foundation is far
     for (int i = 0; i < a->dof; i++) {
         increment[i] *= result.impulse;
     }

@@ -105,16 +105,135 @@ double wall_face_acceleration(const wall_model *w, wall_face face)
 {
     assert(w != NULL);
     return wall_has_face(w)
-               ? -(w->stiffness * face.position + w->damping * face.velocity) / w->face_mass
+               ? w->shift.acceleration -
+                     (w->stiffness * face.position + w->damping * face.velocity) / w->face_mass
                : -wall_face_rate(w, face) * face.velocity;
 }
 
 double wall_face_energy(const wall_model *w, wall_face face)
 {
     assert(w != NULL);
-    return 0.5 * w->face_mass * face.velocity * face.velocity +
-           wall_stored_energy(w, fabs(face.position));
+    const double moves = face.velocity - w->shift.velocity;
+    return 0.5 * w->face_mass * moves * moves + wall_stored_energy(w, fabs(face.position));
 }
+
+// --- one that its foundation shakes
+// ---------------------------------------------------------------
+
+// The series of wall_motion.h and of what follows from it are this long; at a phase of one their
+// rest is less than a last bit.
+enum { TERMS = 20 };
+
+// The series of what shakes it from the instant of the wall on. False where nothing does.
+static bool is_shaken(const wall_model *w, double *series)
+{
+    return wall_is_shaken(w) && wall_motion_series(&w->motion, w->shift.time, TERMS, series);
+}
+
+// The two decays of a face that creeps back without swinging, d -+ sqrt(d^2 - w0^2) [1/s].
+static void find_decays(const wall_model *w, double *slow, double *fast)
+{
+    const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
+    *fast = d + sqrt(fmax(d * d - square, 0));
+    *slow = square / *fast;
+}
+
+// Of y' + fast y = u'', the solution without a transient, as a series: y = (u'' - y')/fast.
+static void quiet_series(const double *shakes, double fast, double *y)
+{
+    y[TERMS - 1] = shakes[TERMS - 1] / fast;
+    for (int n = TERMS - 2; n >= 0; n--) {
+        y[n] = (shakes[n] - (n + 1) * y[n + 1]) / fast;
+    }
+}
+
+// The series of the face's place. By the equation of motion; or where its fast decay is over and
+// far faster than all that happens, by x' + slow x = y with y as above.
+static void face_series(const wall_model *w, const double *shakes, bool creeps, wall_face face,
+                        double *x)
+{
+    const double square = w->stiffness / w->face_mass, damping = w->damping / w->face_mass;
+    x[0] = face.position;
+    if (creeps) {
+        double slow, fast, y[TERMS];
+        find_decays(w, &slow, &fast);
+        quiet_series(shakes, fast, y);
+        for (int n = 0; n < TERMS - 1; n++) {
+            x[n + 1] = (y[n] - slow * x[n]) / (n + 1);
+        }
+        return;
+    }
+    x[1] = face.velocity;
+    for (int n = 0; n < TERMS - 2; n++) {
+        const double pulls = damping * (n + 1) * x[n + 1] + square * x[n];
+        x[n + 2] = (shakes[n] - pulls) / ((n + 1) * (n + 2));
+    }
+}
+
+// The sum of a series at h, and its slope.
+static wall_face sum_up(const double *x, double h)
+{
+    wall_face at = {x[TERMS - 1], 0};
+    for (int n = TERMS - 2; n >= 0; n--) {
+        at.velocity = at.velocity * h + at.position;
+        at.position = at.position * h + x[n];
+    }
+    return at;
+}
+
+// The integral of (k x + c x') u' from 0 to h, whose factors are series.
+static double work_by(const wall_model *w, double velocity, const double *shakes, const double *x,
+                      double h)
+{
+    double force[TERMS], moves[TERMS], power = 1, sum = 0;
+    for (int n = 0; n < TERMS; n++, power *= h) {
+        const double rate = n + 1 < TERMS ? (n + 1) * x[n + 1] : 0;
+        force[n] = power * (w->stiffness * x[n] + w->damping * rate);
+        moves[n] = n == 0 ? velocity : power * shakes[n - 1] / n;
+    }
+    for (int n = 0; n < TERMS; n++) {
+        double product = 0;
+        for (int i = 0; i <= n; i++) {
+            product += force[i] * moves[n - i];
+        }
+        sum += product / (n + 1);
+    }
+    return sum * h;
+}
+
+// A shaken face h later, and what is done on it, in pieces over which the series hold.
+static wall_face shake(const wall_model *w, wall_face face, double h, double *work)
+{
+    enum { MOST_PIECES = 64 };
+    const double swings = sqrt(w->stiffness / w->face_mass) + w->damping / w->face_mass;
+    const double shakes = wall_motion_rate(&w->motion, w->shift.time);
+    const bool creeps = h * (swings + shakes) > MOST_PIECES;
+    double slow, fast, series[TERMS], x[TERMS];
+    find_decays(w, &slow, &fast);
+    const int pieces = 1 + (int)(h * ((creeps ? slow : swings) + shakes));
+    *work = 0;
+    for (int i = 0; i < pieces; i++) {
+        const double piece = h / pieces, from = w->shift.time + i * piece;
+        wall_motion_series(&w->motion, from, TERMS, series);
+        face_series(w, series, creeps, face, x);
+        *work += work_by(w, wall_motion_at(&w->motion, from).velocity, series, x, piece);
+        face = sum_up(x, piece);
+    }
+    return face;
+}
+
+double wall_face_work(const wall_model *w, wall_face face, double h)
+{
+    assert(w != NULL && h >= 0);
+    double series[TERMS], work = 0;
+    if (is_shaken(w, series)) {
+        shake(w, face, h, &work);
+    }
+    return work;
+}
+
+// --- its motion
+// -----------------------------------------------------------------------------------
 
 // Without a mass as wall.h has it. x'' + 2 d x' + w0^2 x = 0 has x(h) = x0 C + (x0' + d x0) S and
 // x'(h) = x0' C - (d x0' + w0^2 x0) S with C = e^-dh cos(sh), S = e^-dh sin(sh)/s, s^2 = w0^2 -
@@ -126,6 +245,10 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
         const double passed = face.position > 0 ? h / return_time(w, face.position) : 0;
         const double left = w->law == WALL_KELVIN_VOIGT ? plain_exp(-passed) : 1 - passed;
         return returning(w, face.position * left, FACE_AT_REST);
+    }
+    double series[TERMS], work;
+    if (is_shaken(w, series)) {
+        return shake(w, face, h, &work);
     }
     const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
     const double turn = square - d * d, s = sqrt(fabs(turn)), phase = turn * h * h;
@@ -157,7 +280,9 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
 double wall_face_rate(const wall_model *w, wall_face face)
 {
     assert(w != NULL);
-    if (face.position == 0 && face.velocity == 0) {
+    double series[TERMS], quiet[TERMS] = {0};
+    const bool shaken = is_shaken(w, series);
+    if (face.position == 0 && face.velocity == 0 && !shaken) {
         return 0;
     }
     if (!wall_has_face(w)) {
@@ -169,9 +294,13 @@ double wall_face_rate(const wall_model *w, wall_face face)
     }
 
     // creeping back at the slow decay, once what belongs to the fast one has died away
-    const double root = sqrt(d * d - square), fast = d + root, slow = square / fast;
-    const double share = fabs(face.velocity + slow * face.position);
-    return share > FACE_AT_REST * 2 * root ? fast : slow;
+    double slow, fast;
+    find_decays(w, &slow, &fast);
+    if (shaken) {
+        quiet_series(series, fast, quiet);
+    }
+    const double share = fabs(face.velocity + slow * face.position - quiet[0]);
+    return share <= FACE_AT_REST * (fast - slow) ? slow : fast;
 }
 
 double wall_face_lasts(const wall_model *w, wall_face face)

@@ -46,7 +46,13 @@
 //
 // which is the law above for M = 0 and the rigid wall's a_f / C for M without bound. Contact ends
 // where f falls to zero; the face then swings on its own, f = 0, until the arm meets it again, and
-// for M = 0 that is the return above.
+// for M = 0 that is the return above. On a foundation that moves by u (wall_motion.h) a_f is the
+// acceleration in space, and the face swings, even alone, by
+//
+//   M x'' + c x' + k x = f + M u''
+//
+// where the foundation does the work (k x + c x') u' on it. Spring and motion in space have the
+// energy k x^2/2 + M (x' - u')^2/2.
 #pragma once
 
 #include <math.h>
@@ -167,8 +173,24 @@ double wall_rate(const wall_model *w, double compliance, double depth, double ra
 // return; at rest in place where it returns in less than can be told.
 wall_face wall_face_left_behind(const wall_model *w, double depth);
 
-// A face on its spring and damper alone, h [s] later.
+// The wall where it is at an instant [s].
+static inline wall_model wall_at(const wall_model *w, double time)
+{
+    wall_model at = *w;
+    at.shift = wall_motion_at(&w->motion, time);
+    return at;
+}
+
+// Whether its face never rests for long: it has a mass, on a foundation that moves.
+static inline bool wall_is_shaken(const wall_model *w)
+{
+    return wall_has_face(w) && wall_moves(w);
+}
+
+// A face on its spring and damper alone, h [s] after the instant of a wall that moves, and what
+// that has done on it by then [J].
 wall_face wall_face_after(const wall_model *w, wall_face face, double h);
+double wall_face_work(const wall_model *w, wall_face face, double h);
 
 // Its acceleration there [m/s2]; the energy of face and spring [J].
 double wall_face_acceleration(const wall_model *w, wall_face face);

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "src/base/csv_table.h"
 #include "src/base/sincos.h"
@@ -122,7 +123,7 @@ static wall_shift path_at(const wall_path *p, double time)
 {
     const long i = interval_of(p, time), last = (long)p->rows - 1;
     if (i < 0 || i == last) {
-        return (wall_shift){p->places[i < 0 ? 0 : last], 0, 0};
+        return (wall_shift){.place = p->places[i < 0 ? 0 : last]};
     }
     const double h = p->times[i + 1] - p->times[i], x = (time - p->times[i]) / h;
     const double rise = p->places[i + 1] - p->places[i];
@@ -130,9 +131,9 @@ static wall_shift path_at(const wall_path *p, double time)
 
     // places[i] + a x + (3 rise - 2 a - b) x^2 + (a + b - 2 rise) x^3
     const double square = 3 * rise - 2 * a - b, cube = a + b - 2 * rise;
-    return (wall_shift){p->places[i] + x * (a + x * (square + x * cube)),
-                        (a + x * (2 * square + x * 3 * cube)) / h,
-                        (2 * square + x * 6 * cube) / (h * h)};
+    return (wall_shift){.place = p->places[i] + x * (a + x * (square + x * cube)),
+                        .velocity = (a + x * (2 * square + x * 3 * cube)) / h,
+                        .acceleration = (2 * square + x * 6 * cube) / (h * h)};
 }
 
 // --- where it is ------------------------------------------------------------------------------
@@ -146,21 +147,60 @@ wall_shift wall_motion_at(const wall_motion *m, double time)
         double s, c;
         const double rate = 2 * M_PI * m->frequency;
         inline_sincos(rate * since, &s, &c);
-        return (wall_shift){m->amplitude * s, m->amplitude * rate * c,
+        return (wall_shift){time, m->amplitude * s, m->amplitude * rate * c,
                             -m->amplitude * rate * rate * s};
     }
     case MOTION_STEP: {
         const double rate = 2 * m->frequency, x = fmax(0, fmin(rate * since, 1)), y = 1 - x;
-        return (wall_shift){m->amplitude * x * x * x * (10 - 15 * x + 6 * x * x),
+        return (wall_shift){time, m->amplitude * x * x * x * (10 - 15 * x + 6 * x * x),
                             m->amplitude * rate * 30 * x * x * y * y,
                             m->amplitude * rate * rate * 60 * x * y * (y - x)};
     }
-    case MOTION_FILE:
-        return m->path != NULL ? path_at(m->path, since) : (wall_shift){0};
+    case MOTION_FILE: {
+        wall_shift at = m->path != NULL ? path_at(m->path, since) : (wall_shift){0};
+        at.time = time;
+        return at;
+    }
     case MOTION_NONE:
         break;
     }
-    return (wall_shift){0};
+    return (wall_shift){.time = time};
+}
+
+bool wall_motion_series(const wall_motion *m, double time, int count, double *terms)
+{
+    assert(m != NULL && count >= 4 && terms != NULL);
+    const double acceleration = wall_motion_at(m, time).acceleration;
+    const double since = time - m->time, rate = 2 * m->frequency;
+    memset(terms, 0, (size_t)count * sizeof *terms);
+    if (m->kind == MOTION_SINE) {
+        const double turn = 2 * M_PI * m->frequency;
+        terms[0] = acceleration;
+        terms[1] = -turn * turn * wall_motion_at(m, time).velocity;
+        for (int n = 2; n < count; n++) {
+            terms[n] = -turn * turn * terms[n - 2] / (n * (n - 1));
+        }
+        return true;
+    }
+    if (m->kind == MOTION_STEP && wall_motion_rate(m, time) > 0) {
+        // 60 (x - 3 x^2 + 2 x^3) at the phase x
+        const double x = fmax(rate * since, 0), scale = 60 * m->amplitude * rate * rate;
+        terms[0] = acceleration;
+        terms[1] = scale * rate * (1 - 6 * x * (1 - x));
+        terms[2] = scale * rate * rate * (6 * x - 3);
+        terms[3] = scale * rate * rate * rate * 2;
+        return true;
+    }
+    if (m->kind == MOTION_FILE && wall_motion_rate(m, time) > 0) {
+        // a straight line from row to row
+        const long i = interval_of(m->path, since);
+        const double h = m->path->times[i + 1] - m->path->times[i];
+        const double rise = m->path->places[i + 1] - m->path->places[i];
+        terms[0] = acceleration;
+        terms[1] = (6 * (m->path->rates[i] + m->path->rates[i + 1]) - 12 * rise / h) / (h * h);
+        return true;
+    }
+    return false;
 }
 
 double wall_motion_rate(const wall_motion *m, double time)
@@ -173,9 +213,9 @@ double wall_motion_rate(const wall_motion *m, double time)
                    ? 1 / (m->path->times[i + 1] - m->path->times[i])
                    : 0;
     }
-    const double rate = 2 * M_PI * m->frequency, passed = 2 * m->frequency * (time - m->time);
-    const bool rises = m->kind == MOTION_STEP && passed > -SAME_INSTANT && passed < 1;
-    return m->kind == MOTION_SINE || rises ? rate : 0;
+    const bool rises = m->kind == MOTION_STEP && time - m->time > -SAME_INSTANT &&
+                       wall_motion_lasts(m, time) < HUGE_VAL;
+    return m->kind == MOTION_SINE || rises ? 2 * M_PI * m->frequency : 0;
 }
 
 double wall_motion_lasts(const wall_motion *m, double time)

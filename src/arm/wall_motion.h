@@ -21,6 +21,7 @@
 
 // Where a wall is at an instant.
 typedef struct wall_shift {
+    double time;         // that instant [s]
     double place;        // [m]
     double velocity;     // [m/s]
     double acceleration; // [m/s2]
@@ -52,6 +53,10 @@ typedef struct wall_motion {
 wall_motion wall_motion_of(const wall_parameters *p);
 
 wall_shift wall_motion_at(const wall_motion *m, double time);
+
+// The first `count` coefficients of the acceleration's Taylor series at an instant [m/s2], [m/s3],
+// ..., good up to where the motion stays analytic. Whether any is not zero.
+bool wall_motion_series(const wall_motion *m, double time, int count, double *terms);
 
 // How fast it changes from an instant on [1/s], 0 at rest.
 double wall_motion_rate(const wall_motion *m, double time);

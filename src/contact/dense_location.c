@@ -192,8 +192,9 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
 static value_and_slope rest_gap_at(const arm *a, motion *m, double h)
 {
     value_and_slope gap = motion_output(a, m, OUTPUT_GAP, h);
-    if (state_face_swings(m->state)) {
-        const wall_face face = wall_face_after(&a->wall, state_face(m->state), h);
+    if (state_face_swings(m, m->state)) {
+        const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
+        const wall_face face = wall_face_after(&wall, state_face(m->state), h);
         gap.value -= face.position;
         gap.slope -= face.velocity;
     }

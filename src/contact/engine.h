@@ -20,7 +20,7 @@
 // Of a wall that gives an engine follows the arm alone. In contact the wall's law is a force on it
 // (wall_force) or, where the face has a mass, one more mass (wall.h); the face goes along. In free
 // flight the arm knows nothing of the face, which motion.c moves by its closed form; but gaps are
-// those to it, so that with state_face_swings(m->state)
+// those to it, so that with state_face_swings(m, m->state)
 //
 //     gap(h) = wall_face_after(wall, state_face(m->state), h).position - penetration(h),
 //

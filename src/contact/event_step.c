@@ -198,7 +198,7 @@ static void examine(const arm *a, motion *m, double until, double far, double st
             dense_peak(a, m, h);
         }
         // an arm that has left a swinging face may still be deeper than it stands at rest
-        if (!motion_wall_is_rigid(m) && (touches || state_face_swings(m->state))) {
+        if (!motion_wall_is_rigid(m) && (touches || state_face_swings(m, m->state))) {
             dense_deepest(a, m, h);
         }
     }

@@ -52,7 +52,7 @@ void motion_evaluate(const arm *a, motion *m, double *state)
     if (mode.contact && !motion_wall_is_rigid(m)) {
         state[SLOT_FACE] = -r.gap;
         state[SLOT_FACE_VELOCITY] = -r.gap_velocity;
-    } else if (state_face_swings(state)) {
+    } else if (state_face_swings(m, state)) {
         const wall_face face = state_face(state);
         state[SLOT_GAP] += face.position;
         state[SLOT_GAP_VELOCITY] += face.velocity;
@@ -102,7 +102,7 @@ void motion_gap_edges(const arm *a, const motion *m, double limits[3])
     // a rounding error of the force accelerates a face by that error over its mass, and so does
     // that of its spring, by the face's place; one without a mass returns at a rate that has the
     // error of the place where it was left
-    const bool returns = m->wall_gives && state_face_swings(m->state);
+    const bool returns = m->wall_gives && state_face_swings(m, m->state);
     const double rate = returns ? wall_face_rate(&a->wall, state_face(m->state)) : 0;
     const double yields = m->wall_has_face ? 1 / a->wall.face_mass : 0;
     limits[0] = EDGE_GAP;
@@ -139,7 +139,8 @@ double motion_wall_compliance(const arm *a, motion *m, double *state)
 double motion_wall_rate(const arm *a, motion *m, double *state)
 {
     if (motion_wall_is_rigid(m) || !contact_state_of(state).contact) {
-        return state_face_swings(state) ? wall_face_rate(&a->wall, state_face(state)) : 0;
+        const wall_model wall = wall_at(&a->wall, state[SLOT_TIME]);
+        return state_face_swings(m, state) ? wall_face_rate(&wall, state_face(state)) : 0;
     }
     return wall_rate(&a->wall, motion_wall_compliance(a, m, state), fmax(-state[SLOT_GAP], 0),
                      -state[SLOT_GAP_VELOCITY]);
@@ -223,8 +224,9 @@ static void set_slots(const arm *a, const motion *m, double *from, double h, dou
     for (size_t i = 0; i < sizeof kept / sizeof *kept; i++) {
         state_quadratures(m, state)[kept[i]] = state_quadratures(m, from)[kept[i]];
     }
-    if (state_face_swings(from)) {
-        const wall_face face = wall_face_after(&a->wall, state_face(from), h);
+    if (state_face_swings(m, from)) {
+        const wall_model wall = wall_at(&a->wall, from[SLOT_TIME]);
+        const wall_face face = wall_face_after(&wall, state_face(from), h);
         state[SLOT_FACE] = face.position;
         state[SLOT_FACE_VELOCITY] = face.velocity;
     }
@@ -233,9 +235,13 @@ static void set_slots(const arm *a, const motion *m, double *from, double h, dou
 // Updates the energy ledger of an evaluated state from that of an earlier one.
 static void book(const arm *a, const motion *m, double *from, double *state)
 {
-    if (state_face_swings(from)) {
+    if (state_face_swings(m, from)) {
+        const wall_model wall = wall_at(&a->wall, from[SLOT_TIME]);
+        const double work =
+            wall_face_work(&wall, state_face(from), state[SLOT_TIME] - from[SLOT_TIME]);
+        state_quadratures(m, state)[QUADRATURE_PUSHED] += work;
         state_quadratures(m, state)[QUADRATURE_WALL] +=
-            motion_wall_energy(a, m, from) - motion_wall_energy(a, m, state);
+            motion_wall_energy(a, m, from) + work - motion_wall_energy(a, m, state);
     }
     const double turned = state_angles(m, state)[0] - state_angles(m, from)[0];
     state[SLOT_MOTOR_WORK] += a->motor.torque * turned;

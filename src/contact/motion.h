@@ -101,6 +101,7 @@ struct motion {
     bool wall_has_face;  // contact ties the arm to a mass on a spring
     bool electric;       // the motor's current is followed
     bool wall_moves;     // nothing rests for long
+    bool wall_is_shaken; // and shakes a face with a mass
     bool out_of_memory;  // no memory for the engine that a changed arm asks for
     double cut;          // where a step ends early, its course before unchanged [s]; HUGE_VAL: none
     double aim; // the instant where a state is wanted, if it is to be met to the last bit [s]
@@ -181,9 +182,10 @@ static inline wall_face state_face(const double *state)
 }
 
 // Whether that face moves on its own.
-static inline bool state_face_swings(const double *state)
+static inline bool state_face_swings(const motion *m, const double *state)
 {
-    return state[SLOT_CONTACT] == 0 && (state[SLOT_FACE] != 0 || state[SLOT_FACE_VELOCITY] != 0);
+    const bool moved = state[SLOT_FACE] != 0 || state[SLOT_FACE_VELOCITY] != 0;
+    return state[SLOT_CONTACT] == 0 && (moved || m->wall_is_shaken);
 }
 
 // Gap to where the wall's face stands at rest [m], and its rate [m/s].
@@ -290,7 +292,7 @@ static inline bool state_is_held_still(const motion *m, const double *state)
     }
     const contact_state now = contact_state_of(state);
     const bool stuck = now.friction == HUB_STICK, held = now.contact && motion_wall_is_rigid(m);
-    return !state_face_swings(state) && (m->dof == 1 ? stuck || held : stuck && held);
+    return !state_face_swings(m, state) && (m->dof == 1 ? stuck || held : stuck && held);
 }
 static inline bool motion_held_still(const motion *m)
 {
@@ -384,7 +386,8 @@ double motion_decay_length(const arm *a, double reach, double since);
 // Energy that a wall that gives holds, with that of its face's motion; 0 in a rigid one [J].
 static inline double motion_wall_energy(const arm *a, const motion *m, const double *state)
 {
-    return motion_wall_is_rigid(m) ? 0 : wall_face_energy(&a->wall, state_face(state));
+    const wall_model wall = wall_at(&a->wall, state[SLOT_TIME]);
+    return motion_wall_is_rigid(m) ? 0 : wall_face_energy(&wall, state_face(state));
 }
 
 // The same with what the weight has gained since the start in a tilted plane [J].

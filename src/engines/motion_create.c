@@ -38,6 +38,7 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
     m->electric = a->motor.electric;
     m->wall_moves = wall_moves(&a->wall);
     m->wall_has_face = wall_stands(&a->wall) && wall_has_face(&a->wall);
+    m->wall_is_shaken = m->wall_has_face && m->wall_moves;
     m->wall_gives = wall_stands(&a->wall) && wall_gives(&a->wall) && !m->wall_has_face;
 
     // the engine, and its coefficients

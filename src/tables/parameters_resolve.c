@@ -93,10 +93,10 @@ static status resolve_wall(parameters *p, fault *f)
                                 "a wall that moves (wall.motion) runs with method.name = event "
                                 "only");
         }
-        if (w->mass > 0) {
-            return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.motion, wall.mass),
-                                "a wall that moves (wall.motion) shakes a face with a mass, which "
-                                "no equation here follows: expected wall.mass = 0");
+        if (w->mass > 0 && w->kind != WALL_PLANE) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, wall.motion, wall.kind),
+                                "a face with a mass (wall.mass) that wall.motion shakes moves "
+                                "along the wall's normal: expected wall.kind = plane");
         }
         if (p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID && w->contact == WALL_RIGID &&
             p->motor.stiction > 0) {

@@ -149,9 +149,10 @@ static double first_try(const arm *a, motion *m, bool fresh)
     if (kept[KEPT_INTERVAL] > 0 && due > SAME_INSTANT) {
         h = h * 1.0001 > due ? due : 2 * h > due ? 0.5 * due : h;
     }
-    if (state_face_swings(m->state)) {
+    if (state_face_swings(m, m->state)) {
         const wall_face face = state_face(m->state);
-        const double rate = wall_face_rate(&a->wall, face);
+        const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
+        const double rate = wall_face_rate(&wall, face);
         h = rate > 0 ? smaller(h, FACE_PHASE / rate) : h;
         h = smaller(h, wall_face_lasts(&a->wall, face));
     }

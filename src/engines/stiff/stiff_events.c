@@ -77,14 +77,15 @@ static void set_gap(stiff_stride *s, const arm *a, const motion *m)
 {
     const double h = s->step.length;
     double start = m->state[SLOT_GAP], rates[RADAU_LANES];
+    const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
     if (m->state[SLOT_JUMPED] != 0 ? fabs(start) <= EDGE_GAP : s->kept[STIFF_GAP] != 0) {
         start = m->state[SLOT_JUMPED] != 0 ? 0 : s->kept[STIFF_GAP];
     }
     for (int i = 0; i < RADAU_LANES; i++) {
         rates[i] = s->kept[STIFF_RATES + i];
-        if (state_face_swings(m->state)) {
+        if (state_face_swings(m, m->state)) {
             const wall_face face = state_face(m->state);
-            rates[i] += wall_face_after(&a->wall, face, radau_node[i] * h).velocity;
+            rates[i] += wall_face_after(&wall, face, radau_node[i] * h).velocity;
         }
     }
     function_through_rising(&s->gap, rates, h * m->state[SLOT_GAP_ACCELERATION]);

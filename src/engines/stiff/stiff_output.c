@@ -57,9 +57,11 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
     // what follows from them
     state[SLOT_TIME] = s->kept[STIFF_TIME] + (time > DBL_MIN ? time : 0);
     const wall_face start = {s->kept[STIFF_FACE], s->kept[STIFF_FACE + 1]};
-    const bool swings = state[SLOT_CONTACT] == 0 && (start.position != 0 || start.velocity != 0);
+    const wall_model wall = wall_at(&a->wall, s->kept[STIFF_TIME]);
+    const bool moved = start.position != 0 || start.velocity != 0;
+    const bool swings = state[SLOT_CONTACT] == 0 && (moved || m->wall_is_shaken);
     if (swings) {
-        const wall_face face = wall_face_after(&a->wall, start, time);
+        const wall_face face = wall_face_after(&wall, start, time);
         state[SLOT_FACE] = face.position;
         state[SLOT_FACE_VELOCITY] = face.velocity;
     }
@@ -68,8 +70,10 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
         motion_project(a, m, state);
     }
     if (swings) { // what a face left alone loses
+        const double work = wall_face_work(&wall, start, time);
+        state_quadratures(m, state)[QUADRATURE_PUSHED] += work;
         state_quadratures(m, state)[QUADRATURE_WALL] +=
-            wall_face_energy(&a->wall, start) - wall_face_energy(&a->wall, state_face(state));
+            wall_face_energy(&wall, start) + work - motion_wall_energy(a, m, state);
     }
     state[SLOT_MOTOR_WORK] = s->kept[STIFF_WORK] + a->motor.torque * (q[0] - q0[0]);
     state[SLOT_FRICTION_LOSS] =

@@ -276,7 +276,10 @@ KERNEL stiff_contact press(stiff_step *s, int half, bool account, const stiff_ti
     }
     at.force = s->force.half[half];
     if (account) {
-        s->pushed.half[half] = at.force * comes * along;
+        // on a face its foundation's work, by spring and damper
+        const bool face = s->contact == STIFF_GIVES && wall->face_mass > 0;
+        const lanes by = face ? wall->stiffness * depth + wall->damping * rate : at.force;
+        s->pushed.half[half] = by * comes * along;
         s->wall_lost.half[half] = all(0);
     }
     if (account && s->contact == STIFF_GIVES) {
