@@ -303,6 +303,36 @@ TEST(test_file)
     assert_int_equal(system(command), 0);
 }
 
+// A wall that moves is drawn where the tip lies on it, at rows and between them.
+TEST(a_wall_that_moves_is_drawn_at_the_tip)
+{
+    SCOPED(forget) recorded r = {0};
+    assert_int_equal(scenario_open(&r.scenario, "corrected/first-impact", complain, NULL),
+                     STATUS_OK);
+    parameters *p = &r.scenario.parameters;
+    static const char *const set[][2] = {
+        {"wall.kind", "plane"}, {"wall.motion", "sine"}, {"wall.motion_amplitude", "0.02"}};
+    for (size_t i = 0; i < 3; i++) {
+        DONE(parameter_set_text(p, parameter_find(set[i][0]), set[i][1], &f));
+    }
+    DONE(parameters_resolve(p, &f));
+    DONE(run_scenario(&r.scenario, true, &r.result));
+    const trace *t = &r.result.trace;
+    double farthest = 0;
+    for (size_t i = 0; i + 1 < t->row_count; i++) {
+        vector joints[3];
+        const double between = (t->rows[i].time + t->rows[i + 1].time) / 2;
+        const sample row = scene_joints(t, p, between, joints);
+        if (t->rows[i].contact != 0 && t->rows[i + 1].contact != 0) {
+            const vector normal = {-sin(p->wall.angle), cos(p->wall.angle), 0};
+            const vector shift = scene_wall_shift(p, &row);
+            check_close(vector_dot(vector_sum(joints[2], -1, shift), normal), 0, 1e-6);
+            farthest = fmax(farthest, vector_dot(shift, shift));
+        }
+    }
+    assert_true(farthest > 1e-5);
+}
+
 TEST(test_refused)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");

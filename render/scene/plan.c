@@ -91,6 +91,8 @@ static void hatch(const painter *g, double x, double y, double dx, double dy)
 static void paint_wall(const painter *g)
 {
     const parameters *p = g->plan->parameters;
+    const sample row = scene_joints(g->plan->rows, p, g->plan->time, g->joints);
+    const vector shift = scene_wall_shift(p, &row);
     const colour wall = g->plan->colours.wall;
     const double off = 0.5 * size_of(g, BEAM_WIDTH, 3);
     const double x = p->arm.length * cos(p->wall.angle), y = p->arm.length * sin(p->wall.angle);
@@ -99,8 +101,8 @@ static void paint_wall(const painter *g)
     }
 
     // across the arm, half the beam away: up on the page
-    const double tip_x = plan_x(g->view, x), tip_y = plan_y(g->view, y);
-    const double hub_x = plan_x(g->view, 0), hub_y = plan_y(g->view, 0);
+    const double tip_x = plan_x(g->view, x + shift.x), tip_y = plan_y(g->view, y + shift.y);
+    const double hub_x = plan_x(g->view, shift.x), hub_y = plan_y(g->view, shift.y);
     const double length = hypot(tip_x - hub_x, tip_y - hub_y);
     const double nx = (tip_y - hub_y) / length, ny = -(tip_x - hub_x) / length;
     if (p->wall.kind == WALL_PLANE) {

@@ -57,6 +57,9 @@ void scene_instants(const run_result *result, double *times, int count);
 // between rows. Returns the row interpolated likewise.
 sample scene_joints(const trace *t, const parameters *p, double time, vector *joints);
 
+// How far a wall that moves is from its place at rest in a row, along its normal [m]; else 0.
+vector scene_wall_shift(const parameters *p, const sample *row);
+
 // Enlarges the bending: the distances of the joints from the line from hub to tip are multiplied by
 // the factor (0 or 1: unchanged), so that hub and tip do not move.
 void scene_exaggerate(vector *joints, int links, double factor);

@@ -47,7 +47,15 @@ sample scene_joints(const trace *t, const parameters *p, double time, vector *jo
     row.first_angle = between(row.first_angle, next->first_angle, share);
     row.last_angle = between(row.last_angle, next->last_angle, share);
     row.force = between(row.force, next->force, share);
+    row.wall_place = between(row.wall_place, next->wall_place, share);
     return row;
+}
+
+vector scene_wall_shift(const parameters *p, const sample *row)
+{
+    assert(p != NULL && row != NULL);
+    const double place = isnan(row->wall_place) ? 0 : row->wall_place;
+    return (vector){place * sin(p->wall.angle), -place * cos(p->wall.angle), 0};
 }
 
 void scene_exaggerate(vector *joints, int links, double factor)
@@ -205,14 +213,15 @@ void scene_build_hub(scene *sc, double angle)
     }
 }
 
-void scene_build_wall(scene *sc)
+void scene_build_wall(scene *sc, const sample *row)
 {
     const wall_parameters *w = &sc->scenario->parameters.wall;
     const double l = sc->length, floor_z = FLOOR_LEVEL * l;
+    const vector shift = scene_wall_shift(&sc->scenario->parameters, row);
 
     if (w->kind == WALL_POINT) {
         double off = (PIN_RADIUS + BEAM_THICKNESS / 2) * l, r = PIN_RADIUS * l, top = PIN_TOP * l;
-        vector foot = at_angle(w->angle, l, off, 0);
+        const vector foot = vector_add(at_angle(w->angle, l, off, 0), shift);
         const lathe_ring rings[] = {{floor_z, 3.4 * r},
                                     {floor_z + 0.7 * r, 3.4 * r},
                                     {floor_z + r, 3.1 * r},
@@ -226,7 +235,8 @@ void scene_build_wall(scene *sc)
         double off = (SLAB_THICKNESS / 2 + BEAM_THICKNESS / 2) * l;
         double half = (SLAB_TO - SLAB_FROM) / 2 * l, rise = (SLAB_TOP * l - floor_z) / 2;
         const box slab = {
-            .centre = at_angle(w->angle, (SLAB_FROM + SLAB_TO) / 2 * l, off, floor_z + rise),
+            .centre = vector_add(
+                at_angle(w->angle, (SLAB_FROM + SLAB_TO) / 2 * l, off, floor_z + rise), shift),
             .u = at_angle(w->angle, half, 0, 0),
             .v = at_angle(w->angle, 0, SLAB_THICKNESS / 2 * l, 0),
             .w = {0, 0, rise}};
@@ -234,10 +244,12 @@ void scene_build_wall(scene *sc)
     }
 }
 
-vector scene_contact(const scene *sc, const vector *joints)
+vector scene_contact(const scene *sc, const sample *row)
 {
-    const wall_parameters *w = &sc->scenario->parameters.wall;
-    return w->kind == WALL_POINT ? at_angle(w->angle, sc->length, 0, 0) : joints[sc->links];
+    const parameters *p = &sc->scenario->parameters;
+    return p->wall.kind == WALL_POINT
+               ? vector_add(at_angle(p->wall.angle, sc->length, 0, 0), scene_wall_shift(p, row))
+               : sc->joints[sc->links];
 }
 
 bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector *end)
@@ -246,7 +258,7 @@ bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector
     const wall_parameters *w = &sc->scenario->parameters.wall;
     double across = w->kind == WALL_PLANE ? w->angle : row->last_angle;
     vector away = at_angle(across, 0, -1, 0);
-    *start = vector_sum(scene_contact(sc, sc->joints), BEAM_THICKNESS / 2 * l, away);
+    *start = vector_sum(scene_contact(sc, row), BEAM_THICKNESS / 2 * l, away);
     *end = vector_sum(*start, length, away);
     return row->contact > 0 && row->force > 0 && length > 0.01 * l;
 }
@@ -320,8 +332,8 @@ static int extent(scene *sc, vector *points)
 
     // the contact alone, or where the tip ends
     if (sc->options.camera.kind == CAMERA_TIP) {
-        scene_joints(t, p, t->rows[t->row_count - 1].time, sc->joints);
-        vector tip = scene_contact(sc, sc->joints);
+        const sample last = scene_joints(t, p, t->rows[t->row_count - 1].time, sc->joints);
+        vector tip = scene_contact(sc, &last);
         for (int i = 0; i < 8; i++) {
             double a = i & 1 ? TIP_AROUND * l : -TIP_AROUND * l;
             double b = i & 2 ? TIP_AROUND * l : -TIP_AROUND * l;

@@ -165,8 +165,8 @@ static void draw_flashes(scene *sc, const labels *l, double time)
         double strength = exp(-(time - e->time) / FLASH_FADE);
         if (e->kind == EVENT_IMPACT && e->impulse > 0 && strength > 0.03) {
             double size = FLASH_RADIUS * sqrt(e->impulse / sc->options.impulse);
-            scene_joints(t, &sc->scenario->parameters, e->time, sc->joints);
-            labels_flash(l, scene_contact(sc, sc->joints), size * sc->length, strength);
+            const sample row = scene_joints(t, &sc->scenario->parameters, e->time, sc->joints);
+            labels_flash(l, scene_contact(sc, &row), size * sc->length, strength);
         }
     }
 }
@@ -243,7 +243,8 @@ static status paint_inset(scene *sc, const double *times, int count, cairo_surfa
     // its frame and how much larger it is than the picture, at the contact
     if (code == STATUS_OK) {
         double margin = INSET_MARGIN * sc->options.width, left = sc->options.width - width - margin;
-        vector at = scene_contact(sc, sc->joints);
+        const sample row = scene_shape(sc, times[count - 1]);
+        const vector at = scene_contact(sc, &row);
         const double larger =
             labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
         labels l = {.cr = cairo_create(onto),
@@ -280,7 +281,7 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
     scene_build_arm(sc, &sc->mesh, now);
     sample last = scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
     scene_build_hub(sc, last.hub_angle);
-    scene_build_wall(sc);
+    scene_build_wall(sc, &last);
     code = paint_ground(sc, onto, f);
 
     // ghosts of earlier instants behind it

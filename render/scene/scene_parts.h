@@ -113,17 +113,18 @@ extern const material beam_steel;
 // that instant.
 sample scene_shape(scene *sc, double time);
 
-// The point of action of the force: the contact point, on the near side of the beam.
-vector scene_contact(const scene *sc, const vector *joints);
+// The point of action of the force in the row of sc->joints: the contact point, on the near side of
+// the beam.
+vector scene_contact(const scene *sc, const sample *row);
 
 // The wall's force on the beam, as an arrow from the contact point away from the wall, for
 // sc->joints of that row. False if it is not visible.
 bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector *end);
 
-// Adds to sc->mesh the motor with the hub at an angle [rad], the wall, and the tip's path from one
-// instant [s] to another, paler for earlier times.
+// Adds to sc->mesh the motor with the hub at an angle [rad], the wall where a row has it, and the
+// tip's path from one instant [s] to another, paler for earlier times.
 void scene_build_hub(scene *sc, double angle);
-void scene_build_wall(scene *sc);
+void scene_build_wall(scene *sc, const sample *row);
 void scene_build_trail(scene *sc, double from, double time);
 
 // Adds the arm at an instant [s] and the wall's force on it to a mesh of the scene.

@@ -180,19 +180,23 @@ static void draw_hub(const stage *v, double angle)
     canvas_line(&v->canvas, x, y, x + radius * cos(angle), y - radius * sin(angle), INK_HUB);
 }
 
-static void draw_wall(const stage *v, const parameters *p)
+static void draw_wall(const stage *v, const parameters *p, const sample *at)
 {
+    const vector shift = scene_wall_shift(p, at);
     double x = p->arm.length * cos(p->wall.angle), y = p->arm.length * sin(p->wall.angle);
-    int column = v->canvas.x + (int)(dot_x(v, x) / 2), row = v->canvas.y + (int)(dot_y(v, y) / 4);
-    bool inside = row > v->canvas.y && row < v->canvas.y + v->canvas.height;
 
     // a plane: a stretch of the line that the arm lies along
     if (p->wall.kind == WALL_PLANE) {
-        canvas_line(&v->canvas, dot_x(v, 0.8 * x), dot_y(v, 0.8 * y), dot_x(v, 1.1 * x),
-                    dot_y(v, 1.1 * y), INK_WALL);
+        canvas_line(&v->canvas, dot_x(v, 0.8 * x + shift.x), dot_y(v, 0.8 * y + shift.y),
+                    dot_x(v, 1.1 * x + shift.x), dot_y(v, 1.1 * y + shift.y), INK_WALL);
     }
 
     // where the tip meets a wall of any kind
+    x += shift.x;
+    y += shift.y;
+    int column = v->canvas.x + (int)(dot_x(v, x) / 2), row = v->canvas.y + (int)(dot_y(v, y) / 4);
+    bool inside = row > v->canvas.y && row < v->canvas.y + v->canvas.height;
+
     if (p->wall.kind != WALL_NONE && inside) {
         // the cell beyond the wall, on the side that the arm cannot reach
         for (int i = 0; i < 3; i++) {
@@ -224,7 +228,7 @@ static void draw_dots(const explorer_state *st, const stage *g)
 {
     const session *e = &st->session;
     const sample *row = session_sample(e);
-    draw_wall(g, &e->effective.parameters);
+    draw_wall(g, &e->effective.parameters, row);
     if (e->has_other && e->other.trace.angle_count == e->run.trace.angle_count) {
         draw_links(st, g, &e->other.trace, e->now, INK_OTHER, true);
     }
