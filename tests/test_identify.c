@@ -237,6 +237,7 @@ static int compare_doubles(const void *a, const void *b)
 static void study(recording_made *made, int count, int fitted, bool bounded)
 {
     double(*errors)[FITTED] = calloc((size_t)seeds, sizeof *errors), least[FITTED];
+    double squares[FITTED] = {0}; // of what estimates are off, in their own standard errors
     SCOPED(free_kept) double *sorted = calloc((size_t)seeds, sizeof *sorted);
     int covered[FITTED] = {0}, white = 0;
     double values[FITTED];
@@ -256,6 +257,8 @@ static void study(recording_made *made, int count, int fitted, bool bounded)
             assert_true(id.fit[i].determined);
             covered[i] += id.fit[i].low <= values[i] && values[i] <= id.fit[i].high;
             errors[seed][i] = id.fit[i].standard_error;
+            const double off = (id.fit[i].value - values[i]) / id.fit[i].standard_error;
+            squares[i] += off * off;
         }
         white += id.white;
         identify_finish(&id);
@@ -271,8 +274,10 @@ static void study(recording_made *made, int count, int fitted, bool bounded)
         }
         qsort(sorted, (size_t)seeds, sizeof *sorted, compare_doubles);
         const double median = sorted[seeds / 2];
-        print_message("%-24s covered %d of %d, error %.3g of %.4g, bound %.3g, ratio %.3g\n",
-                      paths[i], covered[i], seeds, median, values[i], least[i], median / least[i]);
+        print_message(
+            "%-24s covered %d of %d, off %.2f, error %.3g of %.4g, bound %.3g, ratio %.3g\n",
+            paths[i], covered[i], seeds, sqrt(squares[i] / seeds), median, values[i], least[i],
+            median / least[i]);
         // four standard deviations of a binomial number below 95 %, or 90 % of many
         const double spread = 4 * sqrt(0.95 * 0.05 * seeds);
         assert_true(covered[i] >= (seeds >= 200 ? 0.9 * seeds : 0.95 * seeds - spread));

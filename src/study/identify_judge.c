@@ -12,6 +12,7 @@
 #include "src/study/identify.h"
 
 #define QUANTILE    1.959963984540054 // of 95 %
+#define BLOCK       0.05              // in which residuals may be correlated [s]
 #define LEAST_KNOWN 1.0   // singular value below which a combination is off by all its value
 #define HAS_A_PART  1e-6  // of a direction: smaller ones do not make a parameter undetermined
 #define NO_SAY      1e-12 // share of the largest eigenvalue below which there is none
@@ -76,77 +77,202 @@ static status judge_whiteness(identification *id, fault *f)
     return STATUS_OK;
 }
 
+// --- sums ---------------------------------------------------------------------------------------
+
+static double dot(const double *a, const double *b, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+static void add(double *to, double factor, const double *a, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        to[i] += factor * a[i];
+    }
+}
+
 // --- errors -----------------------------------------------------------------------------------
 
-// What the parameters' columns say that the traces' own cannot: the Schur complement of the normal
-// equations, those of the traces inverted where they say anything. information[p * p].
-static bool project(const identification *id, const double *jacobian, double *information)
+// What the parameters' columns of the Jacobian say that the traces' own cannot: what is left of
+// them when their projections on the latter, as far as these say anything, are taken off. alone[p *
+// residuals].
+static bool project(const identification *id, const double *jacobian, double *alone)
 {
-    const int n = id->unknowns, p = id->count, q = n - p;
-    double normal[MOST][MOST], size[MOST], own[MOST * MOST], values[MOST], scratch[2 * MOST];
-    for (int i = 0; i < n; i++) {
+    const size_t m = id->residuals;
+    const int p = id->count, q = id->unknowns - p;
+    double size[MOST], own[MOST * MOST], values[MOST], scratch[2 * MOST];
+    memcpy(alone, jacobian, (size_t)p * m * sizeof *alone);
+    for (int i = 0; i < q; i++) {
+        const double square =
+            dot(jacobian + (size_t)(p + i) * m, jacobian + (size_t)(p + i) * m, m);
+        size[i] = square > 0 ? sqrt(square) : 1;
         for (int j = 0; j <= i; j++) {
-            double sum = 0;
-            const double *a = jacobian + (size_t)i * id->residuals,
-                         *b = jacobian + (size_t)j * id->residuals;
-            for (size_t r = 0; r < id->residuals; r++) {
-                sum += a[r] * b[r];
-            }
-            normal[i][j] = normal[j][i] = sum;
-        }
-    }
-    for (int i = 0; i < q; i++) {
-        size[i] = normal[p + i][p + i] > 0 ? sqrt(normal[p + i][p + i]) : 1;
-    }
-    for (int i = 0; i < q; i++) {
-        for (int j = 0; j < q; j++) {
-            own[i * q + j] = normal[p + i][p + j] / (size[i] * size[j]);
-        }
-    }
-    for (int i = 0; i < p; i++) {
-        for (int j = 0; j < p; j++) {
-            information[i * p + j] = normal[i][j];
+            own[i * q + j] = own[j * q + i] =
+                dot(jacobian + (size_t)(p + i) * m, jacobian + (size_t)(p + j) * m, m) /
+                (size[i] * size[j]);
         }
     }
     if (q > 0 && !symmetric_eigen(q, own, values, scratch)) {
         return false;
     }
-    for (int k = 0; k < q; k++) {
-        double along[IDENTIFY_PATHS];
+    double *along = calloc(m, sizeof *along);
+    for (int k = 0; along != NULL && k < q; k++) {
         if (values[k] < NO_SAY * values[q - 1]) {
             continue;
         }
-        for (int i = 0; i < p; i++) {
-            along[i] = 0;
-            for (int j = 0; j < q; j++) {
-                along[i] += normal[i][p + j] / size[j] * own[k * q + j];
-            }
+        memset(along, 0, m * sizeof *along);
+        for (int j = 0; j < q; j++) {
+            add(along, own[k * q + j] / size[j], jacobian + (size_t)(p + j) * m, m);
         }
         for (int i = 0; i < p; i++) {
-            for (int j = 0; j < p; j++) {
-                information[i * p + j] -= along[i] * along[j] / values[k];
+            add(alone + (size_t)i * m, -dot(alone + (size_t)i * m, along, m) / values[k], along, m);
+        }
+    }
+    const bool done = along != NULL;
+    free(along);
+    return done;
+}
+
+// How far the residuals of a channel of all traces scatter where the parameters look: over blocks
+// that are longer than what correlates them,
+//
+//     rho = sum over parameters and blocks of (sum in the block of a r)^2 / sum of a^2
+//
+// with a the parameter's column, of size 1. It is 1 for white residuals of deviation 1, below for
+// the rounding of an encoder that moves, which has no slow part, above for what the model lacks.
+// Its weight goes to information[], that of the channel to scatter[].
+static void add_channel(const identification *id, int channel, const double *alone,
+                        double *information, double *scatter)
+{
+    const size_t m = id->residuals;
+    const int p = id->count;
+    double part[IDENTIFY_PATHS * IDENTIFY_PATHS] = {0}, squares[IDENTIFY_PATHS] = {0};
+    size_t at = 0;
+    for (int k = 0; k < id->trace_count; k++) {
+        const recorded_trace *t = &id->traces[k];
+        for (int c = 0; c < CHANNELS; c++) {
+            const double *read = t->reading[c], *deviation = t->deviation[c];
+            double sums[IDENTIFY_PATHS] = {0}, begun = -HUGE_VAL;
+            for (size_t i = 0; read != NULL && i < t->rows; i++) {
+                // a reading that stays is one reading: no block ends in it
+                const bool stays = i > 0 && read[i] == read[i - 1];
+                if (t->time[i] - begun >= BLOCK && !stays) {
+                    begun = t->time[i];
+                    for (int a = 0; a < p; a++) {
+                        squares[a] += sums[a] * sums[a];
+                        sums[a] = 0;
+                    }
+                }
+                if (!(deviation[i] > 0)) {
+                    continue;
+                }
+                for (int a = 0; a < p && c == channel; a++) {
+                    sums[a] += alone[(size_t)a * m + at] * id->residual[at];
+                    for (int b = 0; b < p; b++) {
+                        part[a * p + b] += alone[(size_t)a * m + at] * alone[(size_t)b * m + at];
+                    }
+                }
+                at++;
+            }
+            for (int a = 0; a < p; a++) {
+                squares[a] += sums[a] * sums[a];
+            }
+        }
+        at += (size_t)t->contact_count;
+    }
+
+    double rho = 0;
+    int looking = 0;
+    for (int a = 0; a < p; a++) {
+        if (part[a * p + a] > 0) {
+            rho += squares[a] / part[a * p + a];
+            looking++;
+        }
+    }
+    rho = looking > 0 ? rho / looking : 1;
+    for (int i = 0; i < p * p; i++) {
+        information[i] += part[i];
+        scatter[i] += rho * part[i];
+    }
+}
+
+// The instants of touches, each with the deviation that it has.
+static void add_contacts(const identification *id, const double *alone, double *information,
+                         double *scatter)
+{
+    const size_t m = id->residuals;
+    const int p = id->count;
+    size_t at = 0;
+    for (int k = 0; k < id->trace_count; k++) {
+        const recorded_trace *t = &id->traces[k];
+        const size_t end = at + t->residuals;
+        for (size_t r = end - (size_t)t->contact_count; r < end; r++) {
+            for (int a = 0; a < p * p; a++) {
+                const double both = alone[(size_t)(a / p) * m + r] * alone[(size_t)(a % p) * m + r];
+                information[a] += both;
+                scatter[a] += both * fmax(1, id->residual[r] * id->residual[r]);
+            }
+        }
+        at = end;
+    }
+}
+
+// The covariance of what is determined: with the information's eigenvectors v and values l,
+//
+//     sum over k and j of v_k (v_k' S v_j) / (l_k l_j) v_j',   S the scatter (White's estimator).
+static void find_covariance(identification *id, const double *values, const double *scatter)
+{
+    const int p = id->count;
+    memset(id->covariance, 0, sizeof id->covariance);
+    for (int k = 0; k < p; k++) {
+        for (int j = 0; j < p; j++) {
+            if (id->singular[k] < LEAST_KNOWN || id->singular[j] < LEAST_KNOWN) {
+                continue;
+            }
+            const double *v = id->direction + k * p, *w = id->direction + j * p;
+            double between = 0;
+            for (int a = 0; a < p * p; a++) {
+                between += v[a / p] * scatter[a] * w[a % p];
+            }
+            for (int a = 0; a < p * p; a++) {
+                id->covariance[a] += v[a / p] * between / (values[k] * values[j]) * w[a % p];
             }
         }
     }
-    return true;
 }
 
 status identify_judge(identification *id, const double *jacobian, fault *f)
 {
     assert(id != NULL && jacobian != NULL);
     const int p = id->count;
-    double scratch[2 * IDENTIFY_PATHS];
-    id->chi_square = 0;
-    for (size_t i = 0; i < id->residuals; i++) {
-        id->chi_square += id->residual[i] * id->residual[i];
-    }
+    double scratch[2 * IDENTIFY_PATHS], values[IDENTIFY_PATHS];
+    double scatter[IDENTIFY_PATHS * IDENTIFY_PATHS] = {0};
+    id->chi_square = dot(id->residual, id->residual, id->residuals);
     id->aic = id->chi_square + 2 * id->unknowns;
     status code = judge_whiteness(id, f);
     if (code != STATUS_OK || p == 0) {
         return code;
     }
-    if (!project(id, jacobian, id->direction) ||
-        !symmetric_eigen(p, id->direction, id->singular, scratch)) {
+
+    // what each channel says of the parameters, and how far it scatters
+    double *alone = calloc((size_t)p * id->residuals, sizeof *alone);
+    if (alone == NULL) {
+        return fault_no_memory(f);
+    }
+    bool done = project(id, jacobian, alone);
+    memset(id->direction, 0, sizeof id->direction);
+    for (int c = 0; c < CHANNELS && done; c++) {
+        add_channel(id, c, alone, id->direction, scatter);
+    }
+    if (done) {
+        add_contacts(id, alone, id->direction, scatter);
+    }
+    free(alone);
+    if (!done || !symmetric_eigen(p, id->direction, values, scratch)) {
         return fault_set(f, STATUS_SINGULAR, "the parameters' errors cannot be computed");
     }
 
@@ -154,17 +280,11 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     const double misfit =
         fmax(1, id->chi_square / (double)(id->residuals - (size_t)(id->unknowns + p)));
     id->undetermined = 0;
-    memset(id->covariance, 0, sizeof id->covariance);
     for (int k = 0; k < p; k++) {
-        id->singular[k] = sqrt(fmax(id->singular[k] / misfit, 0));
+        id->singular[k] = sqrt(fmax(values[k] / misfit, 0));
         id->undetermined += id->singular[k] < LEAST_KNOWN;
-        for (int i = 0; i < p && id->singular[k] >= LEAST_KNOWN; i++) {
-            for (int j = 0; j < p; j++) {
-                id->covariance[i * p + j] += id->direction[k * p + i] * id->direction[k * p + j] /
-                                             (id->singular[k] * id->singular[k]);
-            }
-        }
     }
+    find_covariance(id, values, scatter);
     for (int i = 0; i < p; i++) {
         fitted_parameter *fit = &id->fit[i];
         double part = 0;
@@ -290,8 +410,9 @@ json_t *identify_json(const identification *id)
     return object;
 }
 
-// An arm of the covariance: along each direction that is determined a normal number.
-static void draw_arm(const identification *id, random_generator *random, double *drawn)
+// An arm of the covariance, whose eigenvectors and -values these are: along each a normal number.
+static void draw_arm(const identification *id, const double *directions, const double *values,
+                     random_generator *random, double *drawn)
 {
     const int p = id->count;
     for (int i = 0; i < p; i++) {
@@ -302,8 +423,8 @@ static void draw_arm(const identification *id, random_generator *random, double 
         for (int i = 0; i < 12; i++) {
             sum += random_uniform(random);
         }
-        for (int i = 0; i < p && k >= id->undetermined; i++) {
-            drawn[i] += sum / id->singular[k] * id->direction[k * p + i] * id->scale[i];
+        for (int i = 0; i < p; i++) {
+            drawn[i] += sum * sqrt(fmax(values[k], 0)) * directions[k * p + i] * id->scale[i];
         }
     }
     for (int i = 0; i < p; i++) {
@@ -335,9 +456,15 @@ void identify_write_set(FILE *stream, const identification *id)
                 {PARAMETER_INDEX(motor.stiction), PARAMETER_INDEX(belief.friction_factor)}};
     double drawn[IDENTIFY_CASES][IDENTIFY_PATHS], numbers[IDENTIFY_CASES];
     random_generator random;
+    double directions[IDENTIFY_PATHS * IDENTIFY_PATHS], values[IDENTIFY_PATHS] = {0};
+    double scratch[2 * IDENTIFY_PATHS];
+    memcpy(directions, id->covariance, sizeof directions);
+    if (!symmetric_eigen(id->count, directions, values, scratch)) {
+        memset(values, 0, sizeof values); // every arm is the fitted one
+    }
     random_seed(&random, id->seed);
     for (int n = 0; n < IDENTIFY_CASES; n++) {
-        draw_arm(id, &random, drawn[n]);
+        draw_arm(id, directions, values, &random, drawn[n]);
     }
 
     fprintf(stream,
