@@ -115,7 +115,7 @@ bool run(void *instance, peer_answer *answer)
 {
     arm_world *a = static_cast<arm_world *>(instance);
     contact_watch watch;
-    contact_watch_begin(&watch, answer);
+    contact_watch_begin(&watch, EXPERIMENT_STEP, answer);
     a->world->reset();
     a->arm->resetPositions();
     a->arm->resetVelocities();

@@ -246,7 +246,7 @@ static bool run(void *instance, peer_answer *answer)
 {
     simulation *s = instance;
     contact_watch watch;
-    contact_watch_begin(&watch, answer);
+    contact_watch_begin(&watch, EXPERIMENT_STEP, answer);
     start(s);
     long steps = lround(s->duration / s->model->opt.timestep);
     for (long i = 0; i < steps; i++) {

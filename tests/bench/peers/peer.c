@@ -40,9 +40,9 @@ void peer_note_contact(double time, double impulse, peer_answer *answer)
     }
 }
 
-void contact_watch_begin(contact_watch *watch, peer_answer *answer)
+void contact_watch_begin(contact_watch *watch, double step, peer_answer *answer)
 {
-    *watch = (contact_watch){.answer = answer};
+    *watch = (contact_watch){.answer = answer, .step = step};
 }
 
 void contact_watch_sample(contact_watch *watch, double time, double angles, double rate,
@@ -53,7 +53,7 @@ void contact_watch_sample(contact_watch *watch, double time, double angles, doub
     double into = angles - 2 * EXPERIMENT_WALL, before = watch->into;
     if (into >= 0 && before < 0) {
         double closed =
-            time - EXPERIMENT_STEP * fmax(0, 1 + before / (EXPERIMENT_STEP * watch->rate));
+            time - watch->step * fmax(0, 1 + before / (watch->step * watch->rate));
         if (isnan(a->first_contact)) {
             a->first_contact = closed;
         } else if (watch->released && isnan(a->second_contact)) {

@@ -68,6 +68,7 @@ int peers_taylor(const peer **list);
 int peers_mujoco(const peer **list);
 int peers_sundials(const peer **list);
 int peers_dart(const peer **list);
+int peers_siconos(const peer **list);
 
 // Fills everything with NaN.
 void peer_answer_clear(peer_answer *answer);
@@ -86,12 +87,13 @@ void peer_note_contact(double time, double impulse, peer_answer *answer);
 // Watches the samples of a fixed-step simulator and finds contact times and peaks in them.
 typedef struct contact_watch {
     peer_answer *answer;
+    double step; // between two samples [s]
     double into,
         rate; // how far the angles' sum was beyond the wall at the sample before [rad], [rad/s]
     bool released;
 } contact_watch;
 
-void contact_watch_begin(contact_watch *watch, peer_answer *answer);
+void contact_watch_begin(contact_watch *watch, double step, peer_answer *answer);
 
 // A sample: time [s], sum of the two links' angles [rad] (the tip lies in the wall when it is twice
 // the wall's angle), its rate [rad/s] and the force from `time` to the next sample [N]. Contact

@@ -372,6 +372,9 @@ int main(int argc, char **argv)
 #ifdef PEERS_DART
     count = enlist(all, count, peers_dart, o.rounds);
 #endif
+#ifdef PEERS_SICONOS
+    count = enlist(all, count, peers_siconos, o.rounds);
+#endif
     find_references(all, count);
     good = good && run_rounds(all, count, o.rounds) && evaluate(all, count, o.rounds);
     if (good) {

@@ -58,16 +58,27 @@ compile_c() {
     $cc -std=c17 "${flags[@]}" "${@:2}" -c "$here/$1.c" -o "$objects/$1.o" </dev/null >&2
 }
 
-# DART's headers are slow to read: compiled only when something changed
-compile_dart() {
-    local object=$objects/dart_peer.o source=$here/dart_peer.cpp
+# C++ headers are slow to read: compiled only when something changed
+# compile_cxx NAME OPTION...
+compile_cxx() {
+    local object=$objects/${1}_peer.o source=$here/${1}_peer.cpp
     if [ "$object" -nt "$source" ] && [ "$object" -nt "$here/peer.h" ]; then
         return 0
     fi
-    say "compiling the DART peer, this takes a moment"
+    say "compiling the $1 peer, this takes a moment"
     # shellcheck disable=SC2086
-    $cxx -std=c++17 "${flags[@]}" -isystem /usr/include/eigen3 -c "$source" -o "$object" \
-        </dev/null >&2
+    $cxx -std=c++17 "${flags[@]}" "${@:2}" -c "$source" -o "$object" </dev/null >&2
+}
+
+# Siconos's headers include each other from folders of their own, beside its configuration
+compile_siconos() {
+    local folder version
+    # shellcheck disable=SC2086
+    folder=$(printf '#include <siconos/SiconosConfig.h>\n' | $cxx -x c++ -M - |
+        tr ' ' '\n' | sed -n 's,/SiconosConfig.h$,,p')
+    version=$(dpkg-query -W -f '${Version}' libsiconos-kernel-dev 2>/dev/null || true)
+    compile_cxx siconos -isystem "$folder" -isystem "$folder/kernel" -isystem "$folder/numerics" \
+        "-DSICONOS_VERSION=\"${version%%[+-]*}\""
 }
 
 # take_peer NAME COMMAND...: takes the peer in if the command succeeds
@@ -101,8 +112,14 @@ elif take_peer sundials compile_c sundials_peer; then
 fi
 if ! has_header "$cxx -isystem /usr/include/eigen3" dart/config.hpp c++; then
     say "no DART here (package libdart-dev), left out"
-elif take_peer dart compile_dart; then
+elif take_peer dart compile_cxx dart -isystem /usr/include/eigen3; then
     libraries+=(-ldart)
+    linker=$cxx
+fi
+if ! has_header "$cxx" siconos/SiconosConfig.h c++; then
+    say "no Siconos here (package libsiconos-kernel-dev), left out"
+elif take_peer siconos compile_siconos; then
+    libraries+=(-lsiconos_kernel -lsiconos_numerics)
     linker=$cxx
 fi
 
