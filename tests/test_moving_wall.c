@@ -4,6 +4,7 @@
 
 #include "src/arm/impact.h"
 #include "src/run/loop.h"
+#include "src/session/session.h"
 #include "tests/passage.h"
 #include "tests/rig_fixture.h"
 #include "tests/scenario_fixture.h"
@@ -488,5 +489,28 @@ TEST(a_table_with_faults_is_told_with_its_place)
         assert_string_equal(f.path, "wall.motion_file");
         fail_if(strstr(f.text, wrong[i].says) == NULL, "%s", f.text);
     }
+    unlink(path_csv);
+}
+
+// A run taken up after a change goes on with the wall where the table has it.
+TEST(a_resumed_run_has_its_wall)
+{
+    write_sine(5e-3, 1, -0.25, 2.25, 0.05);
+    scenario s = {.parameters = fixture_parameters(
+                      SETTINGS("arm.links=3", "wall.motion=file", "wall.motion_time=0.3",
+                               "wall.motion_file=wall-path.csv", "run.duration=2.5"))};
+    s.name = strdup("walls");
+    SCOPED(session_finish) session changed;
+    DONE(session_open(&changed, &s, (double)INFINITY, &f));
+    session_seek(&changed, 1.6);
+    DONE(session_change(&changed, PARAMETER_INDEX(motor.voltage), "2", &f));
+    run_result whole;
+    assert_int_equal(run_scenario(&changed.effective, true, &whole), STATUS_OK);
+    assert_int_equal(whole.trace.row_count, changed.run.trace.row_count);
+    for (size_t i = 0; i < whole.trace.row_count; i++) {
+        assert_true(whole.trace.rows[i].gap == changed.run.trace.rows[i].gap);
+        assert_true(whole.trace.rows[i].force == changed.run.trace.rows[i].force);
+    }
+    run_finish(&whole);
     unlink(path_csv);
 }

@@ -410,6 +410,7 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
     status failed = checkpoint_open_history(r, c->motion, f);
     if (failed == STATUS_OK && r->options->resume) {
         checkpoint_restore(r, &c->arm, c->motion);
+        c->arm.wall.motion.path = c->path;
     } else if (failed == STATUS_OK) {
         failed = begin(c, f);
     }
