@@ -87,3 +87,118 @@ int act_read_index(explorer_state *st, const char **text, int count, const char 
     *text = end + strspn(end, " ");
     return (int)number - 1;
 }
+
+int act_split(char *text, char *words[4])
+{
+    int count = 0;
+    for (char *word, *rest = text; (word = strtok_r(rest, " \t", &rest)) != NULL; count++) {
+        if (count < 4) {
+            words[count] = word;
+        }
+    }
+    return count;
+}
+
+bool act_read_pane(explorer_state *st, const char *word, int *index)
+{
+    char *end;
+    long number = strtol(word, &end, 10);
+    *index = -1;
+
+    // all panes need no number
+    if (strcmp(word, "all") == 0) {
+        return true;
+    }
+
+    // numbered as the keys are, and on
+    if (*end != '\0' || end == word || number < 1 || number > PANES) {
+        return act_refuse(st, "'%s' is no pane: 1 to %d, or all", word, PANES);
+    }
+    *index = (int)number - 1;
+
+    // an empty pane has no axis
+    if (st->panes.pane[*index].count == 0) {
+        return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", word);
+    }
+    return true;
+}
+
+// --- the run ----------------------------------------------------------------------------------
+
+#define LONGEST_RUN 0.3 // that is computed again and again while the lab waits [s]
+
+bool act_tell_failed_run(explorer_state *st)
+{
+    assert(st != NULL);
+    const summary *m = &st->session.run.summary;
+    const control_parameters *c = &st->session.effective.parameters.control;
+    if (m->status == STATUS_NOT_ALLOWED) {
+        const bool program = c->law == LAW_PROCESS;
+        return act_warn(st,
+                        "y lets it %s '%.200s', which can do whatever you can; all else "
+                        "works without (:allow later)",
+                        program ? "start" : "load", program ? c->command : c->plugin);
+    }
+    return (m->status != STATUS_OK && act_warn(st, "the run stops: %s", m->message)) ||
+           (m->inaccurate && act_warn(st, "the run is inaccurate: %s", m->message));
+}
+
+bool act_need_whole_run(explorer_state *st)
+{
+    assert(st != NULL);
+    const session *s = &st->session;
+    if (s->computing == NULL) {
+        return true;
+    }
+    return act_refuse(st, "the run is at %.3g of %g s: wait for its end, or stop it with Esc",
+                      session_end(s), s->effective.parameters.run.duration);
+}
+
+bool act_need_short_runs(explorer_state *st, const char *command)
+{
+    const double takes = st->session.run.summary.wall_time_s;
+    return !(isfinite(st->session.patience) && takes > LONGEST_RUN) ||
+           act_refuse(st, "a run takes %.1f s here: 'impactlab %s' computes them beside", takes,
+                      command);
+}
+
+bool act_tell_change(explorer_state *st)
+{
+    const session *s = &st->session;
+    const session_input *in = &s->inputs[s->input_count - 1];
+    const parameter_info *info = &parameter_table[in->parameter];
+    char when[48] = "from the start", value[SESSION_INPUT_TEXT];
+    input_value_text(in, value);
+    if (act_tell_failed_run(st)) {
+        return true;
+    }
+    if (in->kind == SESSION_INPUT_TIMED) {
+        snprintf(when, sizeof when, "from %.4f s on", in->time);
+    }
+
+    // a change without effect must not look like one with it
+    const parameters p = session_parameters_at(s, in->time);
+    const char *inert = state_inert_reason(st, in->parameter);
+    const char *blank = info->unit[0] ? " " : "";
+    if (inert != NULL) {
+        return act_warn(st, "%s = %s%s%s %s, without effect: %s", info->path, value, blank,
+                        info->unit, when, inert);
+    }
+    if (in->parameter == PARAMETER_INDEX(motor.voltage) &&
+        fabs(p.motor.voltage) > p.motor.voltage_limit) {
+        return act_warn(st,
+                        "%s = %s V %s, more than motor.voltage_limit: the command saturates "
+                        "at %g V",
+                        info->path, value, when, p.motor.voltage_limit);
+    }
+    return act_tell(st, "%s = %s%s%s %s", info->path, value, blank, info->unit, when);
+}
+
+bool act_change(explorer_state *st, int parameter, const char *text)
+{
+    assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
+    session_forget_ghost(&st->session);
+    fault f = {0};
+    return act_worked(st, session_change(&st->session, parameter, text, &f), &f) &&
+           act_tell_change(st);
+}

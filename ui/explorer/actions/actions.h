@@ -39,6 +39,13 @@ bool act_read_optional(explorer_state *st, const char *text, double *value);
 int act_read_index(explorer_state *st, const char **text, int count, const char *what,
                    const char *lister);
 
+// Cuts a text into words at its blanks; returns how many there are, of which the first four are in
+// words[].
+int act_split(char *text, char *words[4]);
+
+// Reads the pane of a word, a number from 1 or "all": *index -1.
+bool act_read_pane(explorer_state *st, const char *word, int *index);
+
 // --- the run ----------------------------------------------------------------------------------
 
 // Replaces the session by one of another scenario and plays it; if that fails the old one stays.
@@ -82,6 +89,9 @@ void act_zoom_at(explorer_state *st, double factor, double time);
 void act_pan_by(explorer_state *st, double seconds);
 // Makes the part between two instants visible [s].
 bool act_zoom_between(explorer_state *st, double from, double to);
+
+// What the last input came to: that the run stops with it, that it has no effect, or its news.
+bool act_tell_change(explorer_state *st);
 
 // Gives a parameter another value, from the cursor on or from the start.
 bool act_change(explorer_state *st, int parameter, const char *text);

@@ -132,18 +132,6 @@ static bool tell_axis(explorer_state *st, int index)
     return act_tell(st, "pane %d: %s", number, says[p->scaling]);
 }
 
-// The words of an argument; returns how many there are.
-static int split(char *text, char *words[4])
-{
-    int count = 0;
-    for (char *word, *rest = text; (word = strtok_r(rest, " \t", &rest)) != NULL; count++) {
-        if (count < 4) {
-            words[count] = word;
-        }
-    }
-    return count;
-}
-
 // Fixes a pane's axis to two limits given as text.
 static bool set_limits(explorer_state *st, int index, const char *from, const char *to)
 {
@@ -195,36 +183,11 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
     return true;
 }
 
-// Reads the pane of a word, -1 for all of them.
-static bool read_pane(explorer_state *st, const char *word, int *index)
-{
-    char *end;
-    long number = strtol(word, &end, 10);
-    *index = -1;
-
-    // all panes need no number
-    if (strcmp(word, "all") == 0) {
-        return true;
-    }
-
-    // numbered as the keys are, and on
-    if (*end != '\0' || end == word || number < 1 || number > PANES) {
-        return act_refuse(st, "'%s' is no pane: 1 to %d, or all", word, PANES);
-    }
-    *index = (int)number - 1;
-
-    // an empty pane has no axis
-    if (st->panes.pane[*index].count == 0) {
-        return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", word);
-    }
-    return true;
-}
-
 bool act_axis(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT], *words[4], *end;
     snprintf(text, sizeof text, "%s", argument);
-    int count = split(text, words), index = panes_focused(&st->panes);
+    int count = act_split(text, words), index = panes_focused(&st->panes);
     if (count == 0 || count > 3) {
         char none[] = "";
         return apply(st, 0, (char *[4]){none}, 1);
@@ -243,7 +206,7 @@ bool act_axis(explorer_state *st, const char *argument)
         return act_refuse(st, "no pane of curves is shown");
     }
     if (count > used) {
-        if (!read_pane(st, words[used], &index)) {
+        if (!act_read_pane(st, words[used], &index)) {
             return false;
         }
     }
@@ -257,125 +220,4 @@ bool act_axis(explorer_state *st, const char *argument)
         }
     }
     return tell_axis(st, index < 0 ? 0 : index);
-}
-
-// --- panes ------------------------------------------------------------------------------------
-
-bool act_focus(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    int focused = panes_focused(&st->panes);
-    if (focused < 0) {
-        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
-    }
-    st->panes.focus = (focused + 1) % PANES;
-    st->panes.focus = panes_focused(&st->panes);
-    return true;
-}
-
-bool act_toggle_signal(explorer_state *st, int index, int k)
-{
-    assert(st != NULL && index >= 0 && index < PANES && k >= 0 && k < PANE_SIGNALS);
-    pane *p = &st->panes.pane[index];
-    p->hidden ^= 1u << k;
-    p->grown = value_range_empty;
-    return act_tell(st, "%s is %s", signal_table[p->signals[k]].name,
-                    p->hidden >> k & 1 ? "hidden (K or a click on its legend shows it)" : "shown");
-}
-
-// One signal after the other is hidden, from the last to the first, then all are shown.
-bool act_hide_signal(explorer_state *st, const char *argument)
-{
-    char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
-    int index = panes_focused(&st->panes);
-    snprintf(text, sizeof text, "%s", argument);
-    if (split(text, words) == 2 && !read_pane(st, words[1], &index)) {
-        return false;
-    }
-    const int signal = signal_find_any(words[0]);
-    if (index < 0) {
-        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
-    }
-    pane *p = &st->panes.pane[index];
-    if (strcmp(words[0], "all") == 0) {
-        p->hidden = 0;
-        return true;
-    }
-
-    // by name
-    for (int k = 0; k < p->count && argument[0] != '\0'; k++) {
-        if (p->signals[k] == signal) {
-            return act_toggle_signal(st, index, k);
-        }
-    }
-    if (argument[0] != '\0') {
-        return act_refuse(st, "the pane in focus has no signal '%.60s' (w: next pane)", argument);
-    }
-
-    // the one before that which is hidden; one that is alone stays
-    int next = p->count - 1;
-    for (int k = 0; k < p->count; k++) {
-        next = p->hidden >> k & 1 ? k - 1 : next;
-    }
-    p->hidden = 0;
-    return next >= 0 && p->count > 1 ? act_toggle_signal(st, index, next)
-                                     : act_tell(st, "all signals of the pane are shown");
-}
-
-// Reads a signal and a value, or off.
-static bool read_bound(explorer_state *st, const char *argument, const char *command,
-                       solved_limit *bound)
-{
-    char text[LINE_TEXT], *words[4];
-    *bound = (solved_limit){.signal = -1};
-    snprintf(text, sizeof text, "%s", argument);
-    if (split(text, words) == 2 && (bound->signal = signal_find_any(words[0])) >= 0) {
-        return act_read_number(st, words[1], &bound->bound);
-    }
-    return strcmp(argument, "off") == 0 ||
-           act_refuse(st, "%s takes a signal and a value, such as force 2, or off", command);
-}
-
-bool act_set_limit(explorer_state *st, const char *argument)
-{
-    solved_limit limit;
-    if (!read_bound(st, argument, "limit", &limit)) {
-        return false;
-    }
-    st->limit = limit;
-    return true;
-}
-
-bool act_set_band(explorer_state *st, const char *argument)
-{
-    solved_limit band;
-    if (!read_bound(st, argument, "band", &band)) {
-        return false;
-    }
-    if (band.signal >= 0 && !(band.bound > 0)) {
-        return act_refuse(st, "a band has a tolerance above 0");
-    }
-    st->band = band;
-    if (band.signal < 0 || !st->session.has_other) {
-        return act_tell(st, "%s", band.signal < 0 ? "no band" : "b pins the run that it is round");
-    }
-
-    // where the present run leaves it
-    const session *s = &st->session;
-    run_difference d = {.on = true};
-    difference_update(&d, 1, &s->run.trace, &s->other.trace);
-    const bool told = signal_is_derived(band.signal) || signal_is_state(band.signal);
-    const double first = told ? -1 : difference_first_beyond(&d, band.signal, band.bound);
-    difference_finish(&d);
-    const char *name = st->pinned.runs[st->pinned.baseline].name;
-    return told        ? act_tell(st, "the band is round '%s'", name)
-           : first < 0 ? act_tell(st, "this run stays within the band round '%s'", name)
-                       : act_tell(st, "this run leaves the band round '%s' at %.5f s", name, first);
-}
-
-bool act_alone(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    st->panes.alone = !st->panes.alone;
-    return true;
 }

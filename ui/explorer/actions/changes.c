@@ -9,47 +9,6 @@
 #include "src/base/text_stream.h"
 #include "src/base/numbers.h"
 
-// What the last input came to: that the run stops with it, that it has no effect, or its news.
-static bool tell_change(explorer_state *st)
-{
-    const session *s = &st->session;
-    const session_input *in = &s->inputs[s->input_count - 1];
-    const parameter_info *info = &parameter_table[in->parameter];
-    char when[48] = "from the start", value[SESSION_INPUT_TEXT];
-    input_value_text(in, value);
-    if (act_tell_failed_run(st)) {
-        return true;
-    }
-    if (in->kind == SESSION_INPUT_TIMED) {
-        snprintf(when, sizeof when, "from %.4f s on", in->time);
-    }
-
-    // a change without effect must not look like one with it
-    const parameters p = session_parameters_at(s, in->time);
-    const char *inert = state_inert_reason(st, in->parameter);
-    const char *blank = info->unit[0] ? " " : "";
-    if (inert != NULL) {
-        return act_warn(st, "%s = %s%s%s %s, without effect: %s", info->path, value, blank,
-                        info->unit, when, inert);
-    }
-    if (in->parameter == PARAMETER_INDEX(motor.voltage) &&
-        fabs(p.motor.voltage) > p.motor.voltage_limit) {
-        return act_warn(st,
-                        "%s = %s V %s, more than motor.voltage_limit: the command saturates "
-                        "at %g V",
-                        info->path, value, when, p.motor.voltage_limit);
-    }
-    return act_tell(st, "%s = %s%s%s %s", info->path, value, blank, info->unit, when);
-}
-
-bool act_change(explorer_state *st, int parameter, const char *text)
-{
-    assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
-    session_forget_ghost(&st->session);
-    fault f = {0};
-    return act_worked(st, session_change(&st->session, parameter, text, &f), &f) && tell_change(st);
-}
-
 // act_change with a number, in small steps: several at one instant are one change, and none at all
 // once the value is what it was.
 static bool act_adjust(explorer_state *st, int parameter, double value)
@@ -75,7 +34,7 @@ static bool act_adjust(explorer_state *st, int parameter, double value)
         return act_tell(st, "%s is %s %s again", parameter_table[parameter].path, text,
                         parameter_table[parameter].unit);
     }
-    return tell_change(st);
+    return act_tell_change(st);
 }
 
 // The parameter of a path, of its last part or of a beginning of either.

@@ -10,7 +10,6 @@
 #include "src/study/solve.h"
 
 #define LONGEST_MAP_PIECE 0.015 // of a map, between two pictures [s]
-#define LONGEST_SWEPT_RUN 0.3   // that is computed between two pictures [s]
 
 // --- pinned runs ------------------------------------------------------------------------------
 
@@ -272,14 +271,6 @@ const char *act_whole_path(const char *word, char *text, size_t size)
     snprintf(text, size, "%s%s", parameter >= 0 ? parameter_table[parameter].path : name,
              word + strcspn(word, "="));
     return text;
-}
-
-bool act_need_short_runs(explorer_state *st, const char *command)
-{
-    const double takes = st->session.run.summary.wall_time_s;
-    return !(isfinite(st->session.patience) && takes > LONGEST_SWEPT_RUN) ||
-           act_refuse(st, "a run takes %.1f s here: 'impactlab %s' computes them beside", takes,
-                      command);
 }
 
 // The limit that is nearest to the value the run has.

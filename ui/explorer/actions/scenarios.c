@@ -87,33 +87,6 @@ bool act_find_scenario(explorer_state *st, const char *argument)
     return true;
 }
 
-bool act_tell_failed_run(explorer_state *st)
-{
-    assert(st != NULL);
-    const summary *m = &st->session.run.summary;
-    const control_parameters *c = &st->session.effective.parameters.control;
-    if (m->status == STATUS_NOT_ALLOWED) {
-        const bool program = c->law == LAW_PROCESS;
-        return act_warn(st,
-                        "y lets it %s '%.200s', which can do whatever you can; all else "
-                        "works without (:allow later)",
-                        program ? "start" : "load", program ? c->command : c->plugin);
-    }
-    return (m->status != STATUS_OK && act_warn(st, "the run stops: %s", m->message)) ||
-           (m->inaccurate && act_warn(st, "the run is inaccurate: %s", m->message));
-}
-
-bool act_need_whole_run(explorer_state *st)
-{
-    assert(st != NULL);
-    const session *s = &st->session;
-    if (s->computing == NULL) {
-        return true;
-    }
-    return act_refuse(st, "the run is at %.3g of %g s: wait for its end, or stop it with Esc",
-                      session_end(s), s->effective.parameters.run.duration);
-}
-
 bool act_stop(explorer_state *st, const char *argument)
 {
     (void)argument;

@@ -1,0 +1,285 @@
+// Actions on panes of curves: which there are, and what each shows.
+#include "ui/explorer/actions/actions.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+// --- panes of one's own -----------------------------------------------------------------------
+
+// A place for a derived signal that no pane has; -1 if there is none.
+static int free_place(const explorer_state *st, const pane *own)
+{
+    bool used[DERIVED_SIGNALS] = {false};
+    for (int i = 0; i <= PANES; i++) {
+        const pane *p = i < PANES ? &st->panes.pane[i] : own;
+        for (int k = 0; k < p->count; k++) {
+            if (signal_is_derived(p->signals[k])) {
+                used[p->signals[k] - SIGNALS_AT_MOST] = true;
+            }
+        }
+    }
+    for (int i = 0; i < DERIVED_SIGNALS; i++) {
+        if (!used[i]) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+// Adds the signal of a name or an expression.
+static bool add_signal(explorer_state *st, const char *text, pane *own)
+{
+    fault f = {0};
+    int signal = signal_find_any(text);
+    if (signal < 0 && text[strcspn(text, "+-*/(")] == '\0') {
+        return act_refuse(st, "there is no signal '%s' (Tab completes)", text);
+    }
+    if (signal < 0) {
+        const int place = free_place(st, own);
+        if (place < 0) {
+            return act_refuse(st, "%d expressions are shown already", DERIVED_SIGNALS);
+        }
+        signal = signal_derive(place, text, &f);
+        if (signal < 0) {
+            return act_worked(st, f.code, &f);
+        }
+        for (int i = 0; i < SHOWN_RUNS; i++) {
+            extremes_forget(&st->extremes[i]);
+        }
+    }
+    own->signals[own->count++] = signal;
+    return true;
+}
+
+// Fills a pane with the signals of an argument: commas outside brackets separate them, and blanks
+// where nothing is computed.
+static bool read_signals(explorer_state *st, const char *argument, pane *own)
+{
+    const bool computes = argument[strcspn(argument, "+-*/(")] != '\0';
+    char word[LINE_TEXT];
+    size_t length = 0;
+    int depth = 0;
+    for (const char *c = argument;; c++) {
+        depth += (*c == '(') - (*c == ')');
+        if (*c != '\0' && *c != ' ' && (*c != ',' || depth > 0)) {
+            word[length++] = *c;
+        } else if (length > 0 && (*c != ' ' || !computes)) {
+            word[length] = '\0';
+            length = 0;
+            if (own->count == PANE_SIGNALS) {
+                return act_refuse(st, "a pane has at most %d signals", PANE_SIGNALS);
+            }
+            if (!add_signal(st, word, own)) {
+                return false;
+            }
+        }
+        if (*c == '\0') {
+            return true;
+        }
+    }
+}
+
+// Shows a pane of the user's, beside those there are.
+static bool show_own(explorer_state *st, pane own)
+{
+    const int index = panes_add(&st->panes, &own);
+    return act_tell(st, "pane %d: :trace %d hides it", index + 1, index + 1);
+}
+
+// Shows or hides a pane by number, or makes one of signals by name.
+bool act_trace_pane(explorer_state *st, const char *argument)
+{
+    // a pane of the table
+    if (argument[0] != '\0' && argument[strspn(argument, "0123456789")] == '\0') {
+        const int index = atoi(argument) - 1;
+        if (index < 0 || index >= PANES) {
+            return act_refuse(st, "panes are numbered from 1 to %d", PANES);
+        }
+        pane *p = &st->panes.pane[index];
+        if (p->count == 0) {
+            return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", argument);
+        }
+        p->shown = !p->shown;
+        st->panes.chosen = true;
+        st->panes.focus = p->shown ? index : st->panes.focus;
+        return true;
+    }
+
+    // a pane of the user's, of as many signals as fit
+    pane own = {.view = VIEW_TIME};
+    if (!read_signals(st, argument, &own)) {
+        return false;
+    }
+    if (own.count == 0) {
+        return act_refuse(st, "trace takes a number from 1 to 9 or names of signals");
+    }
+    return show_own(st, own);
+}
+
+bool act_residual_pane(explorer_state *st, const char *argument)
+{
+    pane own = {.view = VIEW_RESIDUAL};
+    if (!read_signals(st, argument, &own)) {
+        return false;
+    }
+    return own.count > 0 ? show_own(st, own)
+                         : act_refuse(st, "residual takes signals that were measured");
+}
+
+bool act_phase_pane(explorer_state *st, const char *argument)
+{
+    pane own = {.view = VIEW_PHASE};
+    if (!read_signals(st, argument, &own)) {
+        return false;
+    }
+    return own.count == 2
+               ? show_own(st, own)
+               : act_refuse(st, "phase takes two signals: what goes up, and what across");
+}
+
+bool act_spectrum_pane(explorer_state *st, const char *argument)
+{
+    pane own = {.view = VIEW_SPECTRUM};
+    if (!read_signals(st, argument, &own)) {
+        return false;
+    }
+    return own.count == 1 ? show_own(st, own) : act_refuse(st, "spectrum takes one signal");
+}
+
+// Shows the panes of these numbers and no others.
+bool act_show_panes(explorer_state *st, const char *argument)
+{
+    if (argument[strspn(argument, "123456789")] != '\0') {
+        return act_refuse(st, "panes takes numbers from 1 to 9, such as 134");
+    }
+    for (int i = PANES_OF_TABLE; i < PANES; i++) {
+        st->panes.pane[i].shown = false;
+    }
+    for (int i = 0; i < PANES_OF_TABLE; i++) {
+        st->panes.pane[i].shown = st->panes.pane[i].count > 0 && strchr(argument, '1' + i) != NULL;
+    }
+    st->panes.chosen = true;
+    return true;
+}
+
+// --- what a pane shows ------------------------------------------------------------------------
+
+bool act_focus(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    int focused = panes_focused(&st->panes);
+    if (focused < 0) {
+        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
+    }
+    st->panes.focus = (focused + 1) % PANES;
+    st->panes.focus = panes_focused(&st->panes);
+    return true;
+}
+
+bool act_toggle_signal(explorer_state *st, int index, int k)
+{
+    assert(st != NULL && index >= 0 && index < PANES && k >= 0 && k < PANE_SIGNALS);
+    pane *p = &st->panes.pane[index];
+    p->hidden ^= 1u << k;
+    p->grown = value_range_empty;
+    return act_tell(st, "%s is %s", signal_table[p->signals[k]].name,
+                    p->hidden >> k & 1 ? "hidden (K or a click on its legend shows it)" : "shown");
+}
+
+// One signal after the other is hidden, from the last to the first, then all are shown.
+bool act_hide_signal(explorer_state *st, const char *argument)
+{
+    char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
+    int index = panes_focused(&st->panes);
+    snprintf(text, sizeof text, "%s", argument);
+    if (act_split(text, words) == 2 && !act_read_pane(st, words[1], &index)) {
+        return false;
+    }
+    const int signal = signal_find_any(words[0]);
+    if (index < 0) {
+        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
+    }
+    pane *p = &st->panes.pane[index];
+    if (strcmp(words[0], "all") == 0) {
+        p->hidden = 0;
+        return true;
+    }
+
+    // by name
+    for (int k = 0; k < p->count && argument[0] != '\0'; k++) {
+        if (p->signals[k] == signal) {
+            return act_toggle_signal(st, index, k);
+        }
+    }
+    if (argument[0] != '\0') {
+        return act_refuse(st, "the pane in focus has no signal '%.60s' (w: next pane)", argument);
+    }
+
+    // the one before that which is hidden; one that is alone stays
+    int next = p->count - 1;
+    for (int k = 0; k < p->count; k++) {
+        next = p->hidden >> k & 1 ? k - 1 : next;
+    }
+    p->hidden = 0;
+    return next >= 0 && p->count > 1 ? act_toggle_signal(st, index, next)
+                                     : act_tell(st, "all signals of the pane are shown");
+}
+
+// Reads a signal and a value, or off.
+static bool read_bound(explorer_state *st, const char *argument, const char *command,
+                       solved_limit *bound)
+{
+    char text[LINE_TEXT], *words[4];
+    *bound = (solved_limit){.signal = -1};
+    snprintf(text, sizeof text, "%s", argument);
+    if (act_split(text, words) == 2 && (bound->signal = signal_find_any(words[0])) >= 0) {
+        return act_read_number(st, words[1], &bound->bound);
+    }
+    return strcmp(argument, "off") == 0 ||
+           act_refuse(st, "%s takes a signal and a value, such as force 2, or off", command);
+}
+
+bool act_set_limit(explorer_state *st, const char *argument)
+{
+    solved_limit limit;
+    if (!read_bound(st, argument, "limit", &limit)) {
+        return false;
+    }
+    st->limit = limit;
+    return true;
+}
+
+bool act_set_band(explorer_state *st, const char *argument)
+{
+    solved_limit band;
+    if (!read_bound(st, argument, "band", &band)) {
+        return false;
+    }
+    if (band.signal >= 0 && !(band.bound > 0)) {
+        return act_refuse(st, "a band has a tolerance above 0");
+    }
+    st->band = band;
+    if (band.signal < 0 || !st->session.has_other) {
+        return act_tell(st, "%s", band.signal < 0 ? "no band" : "b pins the run that it is round");
+    }
+
+    // where the present run leaves it
+    const session *s = &st->session;
+    run_difference d = {.on = true};
+    difference_update(&d, 1, &s->run.trace, &s->other.trace);
+    const bool told = signal_is_derived(band.signal) || signal_is_state(band.signal);
+    const double first = told ? -1 : difference_first_beyond(&d, band.signal, band.bound);
+    difference_finish(&d);
+    const char *name = st->pinned.runs[st->pinned.baseline].name;
+    return told        ? act_tell(st, "the band is round '%s'", name)
+           : first < 0 ? act_tell(st, "this run stays within the band round '%s'", name)
+                       : act_tell(st, "this run leaves the band round '%s' at %.5f s", name, first);
+}
+
+bool act_alone(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    st->panes.alone = !st->panes.alone;
+    return true;
+}
