@@ -209,6 +209,80 @@ TEST(test_setpoints_are_steps_ramps_and_waves)
     }
 }
 
+// The force between two instants of a run: its extremes.
+static void extremes_of(const trace *t, double from, double to, double *low, double *high)
+{
+    *low = HUGE_VAL;
+    *high = -HUGE_VAL;
+    for (size_t i = 0; i < t->row_count; i++) {
+        if (t->rows[i].time > from && t->rows[i].time <= to) {
+            *low = fmin(*low, t->rows[i].force);
+            *high = fmax(*high, t->rows[i].force);
+        }
+    }
+}
+
+// In contact every law that feeds anything back follows a step of half a newton within 0.15 s and a
+// tenth of overshoot, a ramp without lagging behind by 12 %, a wave in amplitude and phase, and
+// holds its force on a wall that comes and goes by a millimetre.
+TEST(test_every_law_follows_its_set_point)
+{
+    static const char *const laws[] = {
+        "hybrid",    "recovering", "speed-limit",   "reverse-torque", "bang-bang",  "force-pd",
+        "impedance", "admittance", "discontinuous", "optimal",        "predictive", "observer"};
+    for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "compare/%s", laws[i]);
+        session step, ramp, wave, wall;
+        session *all[] = {&step, &ramp, &wave, &wall};
+        for (int k = 0; k < 4; k++) {
+            open_session(all[k], name);
+            change(all[k], "run.duration", k == 0 ? "4" : "6");
+        }
+        double low, high;
+        change(&wall, "wall.motion", "sine");
+        session_seek(&wall, 6);
+        extremes_of(&wall.run.trace, 3, 6, &low, &high);
+        fail_if(low < 0.9 || high > 1.1, "%s: %g to %g N on a moving wall", laws[i], low, high);
+
+        session_seek(&step, 2);
+        change(&step, "control.force", "1.5");
+        session_seek(&step, 4);
+        extremes_of(&step.run.trace, 2.15, 4, &low, &high);
+        fail_if(low < 1.425 || high > 1.575, "%s: %g to %g N after a step", laws[i], low, high);
+        extremes_of(&step.run.trace, 2, 4, &low, &high);
+        fail_if(high > 1.565, "%s: over by %g N", laws[i], high - 1.5);
+
+        session_seek(&ramp, 2);
+        change(&ramp, "control.force_rate", "5");
+        change(&ramp, "control.force", "3");
+        session_seek(&ramp, 3);
+        const trace *t = &ramp.run.trace;
+        for (double time = 2.1; time < 2.4; time += 5e-3) {
+            const double is = t->rows[trace_row_at(t, time)].force, wanted = 1 + 5 * (time - 2);
+            fail_if(fabs(is - wanted) > 0.12 * wanted, "%s: %g N at %g s for %g N", laws[i], is,
+                    time, wanted);
+        }
+
+        change(&wave, "control.force_amplitude", "0.2");
+        session_seek(&wave, 6);
+        double in_phase = 0, across = 0, before = 3;
+        t = &wave.run.trace;
+        for (size_t k = trace_row_at(t, 3); k < t->row_count; k++) {
+            const sample *row = &t->rows[k];
+            const double part = 2.0 / 3 * row->force * (row->time - before) / 0.2;
+            in_phase += part * sin(2 * M_PI * row->time);
+            across += part * cos(2 * M_PI * row->time);
+            before = row->time;
+        }
+        fail_if(fabs(hypot(in_phase, across) - 1) > 0.1 || fabs(atan2(across, in_phase)) > 0.1,
+                "%s: a wave of %g, %g", laws[i], in_phase, across);
+        for (int k = 0; k < 4; k++) {
+            session_finish(all[k]);
+        }
+    }
+}
+
 // The force that is wanted at an instant: as far along the ramp as its rate allows, up or down, the
 // wave upon it, and never below zero.
 TEST(test_the_wanted_force_is_its_ramp_and_its_wave)

@@ -13,6 +13,8 @@
 #include "src/rig/laws/laws.h"
 #include "src/base/plain_math.h"
 
+#define READ_LATER 3 // periods that a force takes into its reading
+
 enum { APPROACH, CONTACT };
 static const char *const mode_names[] = {"approach", "contact", NULL};
 
@@ -39,6 +41,7 @@ static const controller_parameter table[PARAMETERS] = {
 typedef struct admittance_memory {
     controller_setup rig;
     double p[PARAMETERS];
+    set_point wanted;
     double angle; // theta_a [rad]
     double speed; // v [rad/s]
     bool started;
@@ -48,6 +51,7 @@ typedef struct admittance_memory {
 static const char *tune(void *memory, const controller_setup *setup)
 {
     admittance_memory *m = memory;
+    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;
@@ -63,16 +67,22 @@ static void sample(void *memory, const controller_input *in, controller_output *
     }
     m->mode = in->force > m->p[THRESHOLD] ? CONTACT : APPROACH;
 
-    // the mass, exactly over a period
-    double wanted = (m->p[FORCE_WANTED] - in->force) / m->p[DAMPING];
+    // the mass, exactly over a period; a set-point that moves takes the hub with it, and is read a
+    // little later
+    set_point_follow(&m->wanted, r->period);
+    const double turn = m->mode == CONTACT ? set_point_turn(&m->wanted, r) : 0;
+    const double later = (READ_LATER * r->period + r->delay) * m->wanted.rate;
+    double wanted = (m->wanted.force - later - in->force) / m->p[DAMPING];
     double kept = m->p[MASS_TIME] > 0 ? plain_exp(-r->period / m->p[MASS_TIME]) : 0;
     m->speed = wanted + kept * (m->speed - wanted);
-    m->angle += m->speed * r->period;
+    const double speed = m->speed + turn;
+    m->angle += speed * r->period;
 
     out->mode = m->mode;
     out->desired_angle = m->angle;
-    out->desired_velocity = m->speed;
-    double torque = m->p[KP] * (m->angle - in->encoder) + m->p[KV] * (m->speed - in->tachometer);
+    out->desired_velocity = speed;
+    double torque = m->p[KP] * (m->angle - in->encoder) + m->p[KV] * (speed - in->tachometer);
+    torque += m->mode == CONTACT ? set_point_torque(&m->wanted, r) : 0;
     out->command = (torque + r->hub_damping * m->speed + coulomb_friction(r, m->speed) +
                     2 * r->link_length * in->force) /
                    r->torque_per_volt;

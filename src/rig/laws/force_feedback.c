@@ -13,6 +13,7 @@ enum { FORCE_WANTED, APPROACH_VOLTAGE, KV, THRESHOLD, FORCE_GAIN, INTEGRAL_GAIN,
 typedef struct force_memory {
     controller_setup rig;
     double p[PARAMETERS]; // values of the parameters
+    set_point wanted;
     int mode;
     double integral; // force-integral's command [V]
 } force_memory;
@@ -39,6 +40,7 @@ static const char *force_feedback_tune(void *memory, const controller_setup *set
 {
     assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     force_memory *m = memory;
+    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
     for (int i = 0; i < PARAMETERS; i++) {
         m->p[i] = setup->parameters[i];
@@ -66,8 +68,11 @@ static void force_feedback_choose_mode(force_memory *m, const controller_input *
 // force's error: ((2 f l - kv w)/K + force_gain (f - reading)) with K the torque per volt [V].
 static double force_feedback_command(const force_memory *m, const controller_input *in)
 {
-    double torque = 2 * m->p[FORCE_WANTED] * m->rig.link_length - m->p[KV] * in->tachometer;
-    return torque / m->rig.torque_per_volt + m->p[FORCE_GAIN] * (m->p[FORCE_WANTED] - in->force);
+    // a set-point that moves turns the hub
+    const double f = m->wanted.force, turn = set_point_turn(&m->wanted, &m->rig);
+    double torque = 2 * f * m->rig.link_length - m->p[KV] * (in->tachometer - turn);
+    torque += set_point_torque(&m->wanted, &m->rig);
+    return torque / m->rig.torque_per_volt + m->p[FORCE_GAIN] * (f - in->force);
 }
 
 // --- open-loop ---
@@ -89,6 +94,7 @@ const controller open_loop_law = FORCE_FEEDBACK_LAW("open-loop", false, open_loo
 static void force_pd_sample(void *memory, const controller_input *in, controller_output *out)
 {
     force_memory *m = memory;
+    set_point_follow(&m->wanted, m->rig.period);
     force_feedback_choose_mode(m, in);
     out->mode = m->mode;
     out->command = m->mode == CONTACT ? force_feedback_command(m, in) : m->p[APPROACH_VOLTAGE];
@@ -104,6 +110,7 @@ static void discontinuous_sample(void *memory, const controller_input *in, contr
 {
     force_memory *m = memory;
     bool contact = in->wanted_mode >= 0 ? in->wanted_mode == CONTACT : in->force > m->p[THRESHOLD];
+    set_point_follow(&m->wanted, m->rig.period);
     out->mode = contact ? CONTACT : APPROACH;
     out->command = contact ? force_feedback_command(m, in) : m->p[APPROACH_VOLTAGE];
 }

@@ -57,6 +57,7 @@ enum {
 
 typedef struct hybrid_memory {
     controller_setup rig;
+    set_point wanted; // of which the force is the aim
     double force, approach_voltage, kp, kv, transition, threshold, own;
     double force_limit; // of the law speed-limit [N]
     int gains;
@@ -69,7 +70,8 @@ typedef struct hybrid_memory {
     double a[6];        // quintic of the impact mode, (5.15)
     double begun;       // when the quintic begins [s]
     double length;      // and how long it is [s]
-    bool replans;       // force or t_f have changed since
+    bool replans;       // t_f has changed since
+    double planned;     // force at its end [N]
     double start_angle; // at the first sample [rad]
     bool started, reversed;
     int readings_without_contact;
@@ -83,7 +85,8 @@ typedef struct hybrid_memory {
 static const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
 
 // Takes setup and parameters into a hybrid_memory, at the start or later; never refuses. In the
-// impact mode the trajectory is then planned anew from where the arm is, for what is left of t_f.
+// impact mode the trajectory is planned anew from where the arm is where t_f changes, for what is
+// left of it; a set-point that moves is added to it.
 // The second is for laws with a parameter of their own behind the shared ones, memory->own.
 static const char *hybrid_start(void *memory, const controller_setup *setup)
 {
@@ -91,10 +94,8 @@ static const char *hybrid_start(void *memory, const controller_setup *setup)
     hybrid_memory *m = memory;
     const double *p = setup->parameters;
 
-    // a trajectory under way is planned anew if it leads elsewhere now
-    m->replans =
-        m->mode == IMPACT && (m->force != p[FORCE_WANTED] || m->transition != p[TRANSITION]);
-
+    m->replans = m->mode == IMPACT && m->transition != p[TRANSITION];
+    set_point_tell(&m->wanted, p[FORCE_WANTED], setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
     m->force = p[FORCE_WANTED];
     m->approach_voltage = p[APPROACH_VOLTAGE];
@@ -145,10 +146,10 @@ static double contact_inertia(const hybrid_memory *m)
     return 2 * r->link_mass * r->link_length * r->link_length / 4 + own;
 }
 
-// Hub angle at which the beam presses with the wanted force, (5.23) [rad].
-static double hybrid_final_angle(const hybrid_memory *m)
+// Hub angle at which the beam presses with a force, (5.23) [rad].
+static double pressing_angle(const hybrid_memory *m, double force)
 {
-    return m->impact_angle + m->force * m->rig.link_length / (2 * m->rig.k2);
+    return m->impact_angle + force * m->rig.link_length / (2 * m->rig.k2);
 }
 
 // Hub acceleration in contact under the command u, (5.13), (5.21) [rad/s2].
@@ -184,7 +185,7 @@ static double feedback(const hybrid_memory *m, double angle_error, double veloci
 // first three say of its start: the solution of (5.18)-(5.20).
 static void lead_to_end(hybrid_memory *m)
 {
-    const double T = m->length, way = hybrid_final_angle(m) - m->a[0];
+    const double T = m->length, way = pressing_angle(m, m->planned) - m->a[0];
     const double velocity = m->a[1], acceleration = 2 * m->a[2];
     m->a[3] = (20 * way - 12 * velocity * T - 3 * acceleration * T * T) / (2 * T * T * T);
     m->a[4] = (-30 * way + 16 * velocity * T + 3 * acceleration * T * T) / (2 * T * T * T * T);
@@ -194,6 +195,7 @@ static void lead_to_end(hybrid_memory *m)
 // Plans from the state at contact.
 static void plan(hybrid_memory *m, double angle, double velocity, double acceleration)
 {
+    m->planned = m->wanted.force;
     m->a[0] = angle;
     m->a[1] = velocity;
     m->a[2] = acceleration / 2;
@@ -276,6 +278,11 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
     double velocity = a[1] + t * (2 * a[2] + t * (3 * a[3] + t * (4 * a[4] + t * 5 * a[5])));
     double acceleration = 2 * a[2] + t * (6 * a[3] + t * (12 * a[4] + t * 20 * a[5]));
 
+    // with the set-point's way since it was planned
+    angle += pressing_angle(m, m->wanted.force) - pressing_angle(m, m->planned);
+    velocity += set_point_turn(&m->wanted, &m->rig);
+    acceleration += m->rig.link_length / (2 * m->rig.k2) * m->wanted.acceleration;
+
     // the model's torque along the plan, (5.24)
     double torque = m->rig.hub_damping * velocity + m->rig.stiction * sign(velocity) -
                     spring_torque(m, angle) + contact_inertia(m) * acceleration;
@@ -285,15 +292,19 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
            feedback(m, angle - in->encoder, velocity - in->tachometer);
 }
 
-// Force mode: PD round the final angle with the static torque in advance, (5.25) [V].
+// Force mode: PD round the final angle with the static torque in advance, (5.25); while the
+// set-point moves, along the angles that go with it, with the model's torque for that [V].
 static double hybrid_force_command(const hybrid_memory *m, const controller_input *in,
                                    controller_output *out)
 {
-    double torque = (m->printed ? 3 : 2) * m->force * m->rig.link_length;
-    out->desired_angle = hybrid_final_angle(m);
-    out->desired_velocity = 0;
+    const double angle = pressing_angle(m, m->wanted.force);
+    const double velocity = set_point_turn(&m->wanted, &m->rig);
+    double torque = (m->printed ? 3 : 2) * m->wanted.force * m->rig.link_length;
+    torque += set_point_torque(&m->wanted, &m->rig);
+    out->desired_angle = angle;
+    out->desired_velocity = velocity;
     return torque / m->rig.torque_per_volt +
-           feedback(m, hybrid_final_angle(m) - in->encoder, -in->tachometer);
+           feedback(m, angle - in->encoder, velocity - in->tachometer);
 }
 
 // The three modes with their switching, contact and then t_f, behind an approach with the given
@@ -301,6 +312,8 @@ static double hybrid_force_command(const hybrid_memory *m, const controller_inpu
 static double hybrid_command(hybrid_memory *m, const controller_input *in, controller_output *out,
                              double approach)
 {
+    set_point_follow(&m->wanted, m->rig.period);
+
     // approach ends with contact, the impact mode with t_f
     bool chooses = !hybrid_held(m, in);
     if (chooses && (m->mode == APPROACH || m->mode == RECOVER) && in->force > m->threshold) {
@@ -364,7 +377,7 @@ static void recovering_sample(void *memory, const controller_input *in, controll
         hybrid_begin(m, RECOVER, in);
     }
     // a slow move towards the angle at which the beam would press
-    double speed = fmin(0.3, 5 * (hybrid_final_angle(m) - in->encoder));
+    double speed = fmin(0.3, 5 * (pressing_angle(m, m->force) - in->encoder));
     double approach = m->mode == RECOVER ? hybrid_speed_command(m, in, speed) : m->approach_voltage;
     out->command = hybrid_command(m, in, out, approach);
 }
@@ -382,6 +395,8 @@ static const controller_parameter reverse_torque_parameters[] = {HYBRID_PARAMETE
 static void reverse_torque_sample(void *memory, const controller_input *in, controller_output *out)
 {
     hybrid_memory *m = memory;
+
+    set_point_follow(&m->wanted, m->rig.period);
 
     // contact begins the pull back, its time ends it
     bool chooses = !hybrid_held(m, in);

@@ -39,13 +39,15 @@ typedef struct impedance_memory {
     double speed;   // of the point [rad/s]
     double damping; // d [N m s/rad]
     double point;   // theta_v [rad]
-    bool started;
+    set_point wanted;
+    bool started, arrived; // the point, where it belongs
     int mode;
 } impedance_memory;
 
 static const char *tune(void *memory, const controller_setup *setup)
 {
     impedance_memory *m = memory;
+    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
 
@@ -62,7 +64,8 @@ static void sample(void *memory, const controller_input *in, controller_output *
 {
     impedance_memory *m = memory;
     const controller_setup *r = &m->rig;
-    const double k = m->p[STIFFNESS], torque = 2 * m->p[FORCE_WANTED] * r->link_length;
+    set_point_follow(&m->wanted, r->period);
+    const double k = m->p[STIFFNESS], torque = 2 * m->wanted.force * r->link_length;
     const double end = r->wall_angle + torque / (4 * r->k2) + torque / k;
     if (!m->started) {
         m->started = true;
@@ -70,17 +73,19 @@ static void sample(void *memory, const controller_input *in, controller_output *
     }
     m->mode = m->mode == CONTACT || in->force > m->p[THRESHOLD] ? CONTACT : APPROACH;
 
-    // the point moves on until it is where it belongs
+    // the point moves on until it is where it belongs, and then goes with that
     double step = m->speed * r->period, left = end - m->point;
-    bool moves = step * left > 0 && fabs(step) < fabs(left);
-    double rate = moves ? m->speed : 0;
+    bool moves = !m->arrived && step * left > 0 && fabs(step) < fabs(left);
+    double rate = moves ? m->speed : set_point_turn(&m->wanted, r);
+    m->arrived = !moves;
     m->point = moves ? m->point + step : end;
 
     out->mode = m->mode;
     out->desired_angle = m->point;
     out->desired_velocity = rate;
-    out->command = (k * (m->point - in->encoder) + m->damping * (rate - in->tachometer) +
-                    r->hub_damping * rate + coulomb_friction(r, rate)) /
+    const double turning = moves ? r->hub_damping * rate : set_point_torque(&m->wanted, r);
+    out->command = (k * (m->point - in->encoder) + m->damping * (rate - in->tachometer) + turning +
+                    (moves ? coulomb_friction(r, rate) : 0)) /
                    r->torque_per_volt;
 }
 

@@ -6,10 +6,12 @@
 // says where each comes from.
 #pragma once
 
+#include <math.h>
 #include <stddef.h>
 
-#include "src/tables/control_laws.h"
+#include "src/base/plain_math.h"
 #include "src/rig/controller.h"
+#include "src/tables/control_laws.h"
 
 // A controller: its word, names of modes, table of parameters, type of memory, and its functions
 // and whatever else it has as .start = ..., .sample = ....
@@ -33,6 +35,69 @@ static inline controller_setup setup_kept(const controller_setup *setup)
 static inline double coulomb_friction(const controller_setup *setup, double rate)
 {
     return rate > 0 ? setup->stiction : rate < 0 ? -setup->stiction : 0;
+}
+
+// A wanted force that changes, as it is told, and a smooth one that follows it: in a step without
+// overshoot, on a ramp without a lag, once two samples have told its rate.
+typedef struct set_point {
+    double aim, aim_rate;             // [N], [N/s]
+    double rise;                      // of the aim since the sample before [N]
+    bool told;                        // since the last sample
+    double force, rate, acceleration; // of what follows [N], [N/s], [N/s2]
+} set_point;
+
+#define SET_POINT_RATE 40.0 // of following, w [1/s]
+
+// The wanted force at the start, or anew; of a step the two samples round it tell no rate.
+static inline void set_point_tell(set_point *s, double force, double period, bool at_start)
+{
+    const double before = s->rise;
+    s->rise = at_start ? 0 : force - s->aim;
+    s->told = !at_start;
+    s->aim = force;
+    s->aim_rate =
+        before * s->rise > 0 ? copysign(fmin(fabs(before), fabs(s->rise)), s->rise) / period : 0;
+    s->force = at_start ? force : s->force;
+}
+
+// At a sample: since the one before e = force - aim has died away further, e'' + 2 w e' + w^2 e =
+// 0.
+static inline void set_point_follow(set_point *s, double period)
+{
+    if (!s->told) {
+        s->rise = s->aim_rate = 0;
+    }
+    s->told = false;
+    const double w = SET_POINT_RATE, falls = s->rate - s->aim_rate;
+    const double e = s->force - (s->aim - s->aim_rate * period);
+    if (e == 0 && falls == 0) {
+        return;
+    }
+    const double decay = plain_exp(-w * period), both = falls + w * e;
+    const double left = (e + both * period) * decay, rate = (falls - w * both * period) * decay;
+    s->force = s->aim + left;
+    s->rate = s->aim_rate + rate;
+    s->acceleration = -w * (2 * rate + w * left);
+}
+
+// Inertia of the arm in contact, M = I1 + 2 I + m l^2/2 [kg m2].
+static inline double pressed_inertia(const controller_setup *r)
+{
+    return r->hub_inertia + 2 * r->link_inertia +
+           r->link_mass * r->link_length * r->link_length / 2;
+}
+
+// How the hub turns with a set-point that moves [rad/s], and the torque that takes: damping,
+// friction, which ends where the hub as good as rests, and inertia [N m].
+static inline double set_point_turn(const set_point *s, const controller_setup *r)
+{
+    return r->link_length / (2 * r->k2) * s->rate;
+}
+static inline double set_point_torque(const set_point *s, const controller_setup *r)
+{
+    const double rest = 0.02, turn = set_point_turn(s, r); // [rad/s]
+    return r->hub_damping * turn + r->stiction * fmax(-1, fmin(turn / rest, 1)) +
+           pressed_inertia(r) * r->link_length / (2 * r->k2) * s->acceleration;
 }
 
 // hybrid_law and so on, one for each in the list

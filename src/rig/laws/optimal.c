@@ -52,13 +52,14 @@ typedef struct optimal_memory {
     double ceiling;      // largest force to brake with [N]
     double hold_command; // [V]
     double held_force;   // reading of the force sensor, smoothed [N]
+    set_point wanted;    // of which the force is the aim
     int readings_without_force;
 } optimal_memory;
 
 // A controller of this family: word, table of parameters, start function.
 #define STATE_FEEDBACK_LAW(law, table, starts)                                                     \
     CONTROLLER_LAW(law, state_feedback_modes, table, optimal_memory, .lockable = true,             \
-                   .start = starts, .sample = state_feedback_sample)
+                   .start = starts, .sample = state_feedback_sample, .tune = starts)
 
 static const char *const state_feedback_modes[] = {"approach", "press", "hold", NULL};
 
@@ -111,7 +112,8 @@ static void model_contact(optimal_memory *m, double h, sampled_model *model)
     sampled_model_init(model, 4, rate, input, h);
 }
 
-// Takes setup and parameters, models the arm and finds the gains. Refuses an arm without a motor or
+// Takes setup and parameters, at the start or later, models the arm and finds the gains. What it
+// estimates and the mode stay. Refuses an arm without a motor or
 // without inertia, and one whose Riccati equation has no stabilising solution. The second is for a
 // law with a limit on the force behind the shared parameters.
 static const char *state_feedback_start(void *memory, const controller_setup *setup)
@@ -122,6 +124,8 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
 
     m->rig = setup_kept(setup);
     m->force = setup->parameters[FORCE_WANTED];
+    m->ceiling = fmax(m->ceiling, m->force);
+    set_point_tell(&m->wanted, m->force, setup->period, m->inertia == 0);
     m->approach_voltage = setup->parameters[APPROACH_VOLTAGE];
     m->threshold = setup->parameters[THRESHOLD];
     m->force_limit = HUGE_VAL;
@@ -382,7 +386,8 @@ static double hold(optimal_memory *m, const controller_input *in)
     // the held force differs from the command: press again, with the wall's angle that this force
     // implies
     bool wanted = in->wanted_mode == HOLD;
-    if (!wanted && fabs(m->held_force - m->force) > 0.05 + 0.05 * m->force) {
+    const double differs = fabs(m->held_force - m->force);
+    if (!wanted && (m->wanted.told || differs > 0.05 + 0.05 * m->force)) {
         m->mode = PRESS;
         if (!m->flies) {
             m->e.z[PRESSED_WALL] = in->encoder - m->held_force / m->spring_force;
@@ -419,15 +424,19 @@ static double press(optimal_memory *m, const controller_input *in)
     double velocity = z[PRESSED_RATE];
     bool rests = fabs(velocity) < 0.02;
     bool wanted = in->wanted_mode == PRESS;
-    if (!wanted && rests && fabs(error) * m->spring_force < tolerance) {
+    if (!wanted && !m->wanted.told && rests && fabs(error) * m->spring_force < tolerance) {
         begin_hold(m, x);
         return m->hold_command;
     }
 
     // what keeps the aim, friction included, and the feedback round it
-    double against = rests ? copysign(m->rig.stiction, error) : friction(m, velocity, 0);
-    double steady = (m->stiffness * aim - z[PRESSED_TORQUE] + against) / m->rig.torque_per_volt;
-    return limit_command(m, z, steady + m->gain[0] * error - m->gain[1] * velocity);
+    const double aim_rate = m->wanted.aim_rate / m->spring_force;
+    double against = rests ? copysign(m->rig.stiction, aim_rate != 0 ? aim_rate : error)
+                           : friction(m, velocity, 0);
+    double steady =
+        (m->stiffness * aim + m->rig.hub_damping * aim_rate - z[PRESSED_TORQUE] + against) /
+        m->rig.torque_per_volt;
+    return limit_command(m, z, steady + m->gain[0] * error + m->gain[1] * (aim_rate - velocity));
 }
 
 // Contact is lost when the sensor has felt nothing for two samples.
@@ -479,6 +488,7 @@ static void state_feedback_sample(void *memory, const controller_input *in, cont
                    : m->flies          ? seek_wall(m)
                                        : press(m, in);
 
+    set_point_follow(&m->wanted, m->rig.period);
     out->mode = m->mode;
     if (m->mode == APPROACH) {
         out->calculated_force = m->force_limit == HUGE_VAL ? 0 : force_of_touch(m);
