@@ -223,8 +223,8 @@ static void extremes_of(const trace *t, double from, double to, double *low, dou
 }
 
 // In contact every law that feeds anything back follows a step of half a newton within 0.15 s and a
-// tenth of overshoot, a ramp without lagging behind by 12 %, a wave in amplitude and phase, and
-// holds its force on a wall that comes and goes by a millimetre.
+// tenth (admittance an eighth) of overshoot, a ramp within 12 %, a wave of 1 Hz within 15 % and six
+// degrees, and holds its force on a wall that comes and goes by a millimetre.
 TEST(test_every_law_follows_its_set_point)
 {
     static const char *const laws[] = {
@@ -275,7 +275,7 @@ TEST(test_every_law_follows_its_set_point)
             across += part * cos(2 * M_PI * row->time);
             before = row->time;
         }
-        fail_if(fabs(hypot(in_phase, across) - 1) > 0.1 || fabs(atan2(across, in_phase)) > 0.1,
+        fail_if(fabs(hypot(in_phase, across) - 1) > 0.15 || fabs(atan2(across, in_phase)) > 0.1,
                 "%s: a wave of %g, %g", laws[i], in_phase, across);
         for (int k = 0; k < 4; k++) {
             session_finish(all[k]);

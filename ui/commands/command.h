@@ -201,6 +201,9 @@ struct command {
 };
 
 // All commands, by group.
+// The study of laws over frequency, which stands in a file of its own.
+int study_of_follow(const arguments *a, scenario *s);
+
 extern const command *const command_table[];
 extern const int command_count;
 extern const command lab_command; // the command of impactlab if none is named

@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "render/page/text.h"
+#include "src/base/shipped.h"
 
 #define SERIF "DejaVu Serif"
 
@@ -76,6 +77,19 @@ int publish_figure(const arguments *a, const figure *fig)
         code = complain_fault(&f);
     }
     return code;
+}
+
+int publish_study(const arguments *a, figure *fig)
+{
+    assert(a != NULL && fig != NULL);
+    char software[64];
+    snprintf(software, sizeof software, "impactlab %s", lab_version());
+    fig->x.scale = SCALE_LOGARITHMIC;
+    fig->x.room = 0.04;
+    fig->columns = fig->panel_count;
+    fig->common_legend = true;
+    fig->software = software;
+    return publish_figure(a, fig);
 }
 
 int publish_runs(const arguments *a, const char *title, const trace_run *runs, int run_count)

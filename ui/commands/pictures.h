@@ -14,6 +14,10 @@ int read_picture_options(const arguments *a, figure_options *o);
 // the exit status.
 int publish_figure(const arguments *a, const figure *fig);
 
+// Draws a study's figure to --plot, panels side by side over one logarithmic axis, and its data
+// beside it. Returns the exit status.
+int publish_study(const arguments *a, figure *fig);
+
 // The same for a figure of runs: with the requested signals, measured data and range of time.
 // `title` NULL: the first scenario's.
 int publish_runs(const arguments *a, const char *title, const trace_run *runs, int run_count);

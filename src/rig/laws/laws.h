@@ -38,10 +38,13 @@ static inline double coulomb_friction(const controller_setup *setup, double rate
 }
 
 // A wanted force that changes, as it is told, and a smooth one that follows it: in a step without
-// overshoot, on a ramp without a lag, once two samples have told its rate.
+// overshoot, on a ramp without a lag, once its rate is known. The force answers to the hub with
+// 1 - (p/s)^2, s of the arm, for the tip's inertia; so what follows falls off as p^-2, or fast
+// waves would grow.
 typedef struct set_point {
-    double aim, aim_rate;             // [N], [N/s]
-    double rise;                      // of the aim since the sample before [N]
+    double aim;                       // [N]
+    double rise;                      // since the sample before [N]
+    double seen_rate, aim_rate;       // by two samples, of a step none; smoothed [N/s]
     bool told;                        // since the last sample
     double force, rate, acceleration; // of what follows [N], [N/s], [N/s2]
 } set_point;
@@ -55,7 +58,7 @@ static inline void set_point_tell(set_point *s, double force, double period, boo
     s->rise = at_start ? 0 : force - s->aim;
     s->told = !at_start;
     s->aim = force;
-    s->aim_rate =
+    s->seen_rate =
         before * s->rise > 0 ? copysign(fmin(fabs(before), fabs(s->rise)), s->rise) / period : 0;
     s->force = at_start ? force : s->force;
 }
@@ -65,15 +68,17 @@ static inline void set_point_tell(set_point *s, double force, double period, boo
 static inline void set_point_follow(set_point *s, double period)
 {
     if (!s->told) {
-        s->rise = s->aim_rate = 0;
+        s->rise = s->seen_rate = 0;
     }
     s->told = false;
-    const double w = SET_POINT_RATE, falls = s->rate - s->aim_rate;
+    const double w = SET_POINT_RATE, decay = plain_exp(-w * period);
+    s->aim_rate = s->seen_rate + decay * (s->aim_rate - s->seen_rate);
+    const double falls = s->rate - s->aim_rate;
     const double e = s->force - (s->aim - s->aim_rate * period);
     if (e == 0 && falls == 0) {
         return;
     }
-    const double decay = plain_exp(-w * period), both = falls + w * e;
+    const double both = falls + w * e;
     const double left = (e + both * period) * decay, rate = (falls - w * both * period) * decay;
     s->force = s->aim + left;
     s->rate = s->aim_rate + rate;
@@ -95,7 +100,7 @@ static inline double set_point_turn(const set_point *s, const controller_setup *
 }
 static inline double set_point_torque(const set_point *s, const controller_setup *r)
 {
-    const double rest = 0.02, turn = set_point_turn(s, r); // [rad/s]
+    const double rest = 0.005, turn = set_point_turn(s, r); // [rad/s]
     return r->hub_damping * turn + r->stiction * fmax(-1, fmin(turn / rest, 1)) +
            pressed_inertia(r) * r->link_length / (2 * r->k2) * s->acceleration;
 }

@@ -430,7 +430,7 @@ static double press(optimal_memory *m, const controller_input *in)
     }
 
     // what keeps the aim, friction included, and the feedback round it
-    const double aim_rate = m->wanted.aim_rate / m->spring_force;
+    const double aim_rate = m->wanted.seen_rate / m->spring_force;
     double against = rests ? copysign(m->rig.stiction, aim_rate != 0 ? aim_rate : error)
                            : friction(m, velocity, 0);
     double steady =

@@ -1,5 +1,5 @@
 // impactlab study: error against cost of the methods of time integration, what a force sensor would
-// read of the contact, and how far a number of links is from a beam.
+// read of the contact, how far a number of links is from a beam; study_follow.c has the fourth.
 #include "ui/commands/command.h"
 
 #include <assert.h>
@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "src/base/json.h"
-#include "src/base/shipped.h"
 #include "src/study/convergence.h"
 #include "src/study/links.h"
 #include "src/study/sensor_view.h"
@@ -17,21 +16,6 @@
 #include "ui/commands/progress.h"
 
 // --- methods ----------------------------------------------------------------------------------
-
-// Draws a study's figure to --plot, panels side by side over one logarithmic axis, and its data
-// beside it. Returns the exit status.
-static int publish_study(const arguments *a, figure *fig)
-{
-    assert(a != NULL && fig != NULL);
-    char software[64];
-    snprintf(software, sizeof software, "impactlab %s", lab_version());
-    fig->x.scale = SCALE_LOGARITHMIC;
-    fig->x.room = 0.04;
-    fig->columns = fig->panel_count;
-    fig->common_legend = true;
-    fig->software = software;
-    return publish_figure(a, fig);
-}
 
 static json_t *methods_object(const scenario *s, const method_study *study)
 {
@@ -547,6 +531,7 @@ static const topic topics[] = {
     {"methods", "corrected/first-impact", study_of_methods},
     {"sensor", "corrected/plane-wall-fast", study_of_sensor},
     {"links", "corrected/damped-beam", study_of_links},
+    {"follow", "compare/observer", study_of_follow},
 };
 enum { TOPICS = sizeof topics / sizeof topics[0] };
 
@@ -569,7 +554,7 @@ static int study(const arguments *a)
 {
     const topic *t = find_topic(a->operands[0]);
     if (t == NULL) {
-        return complain("there is no study '%s', expected methods, sensor or links",
+        return complain("there is no study '%s', expected methods, sensor, links or follow",
                         a->operands[0]);
     }
     return with_scenario(a->operand_count > 1 ? a->operands[1] : t->scenario, a, t->study);
@@ -578,19 +563,21 @@ static int study(const arguments *a)
 const command study_command = {
     .name = "study",
     .group = GROUP_MANY_RUNS,
-    .operands = "methods|sensor|links [SCENARIO]",
-    .summary = "Error against cost; what a force sensor would see; links against a beam",
-    .help = "methods: the scenario (corrected/first-impact) by every method of time integration at "
-            "steps from 1e-2\ndown to 1e-6 s, with the error of first contact, first pulse's peak "
-            "and steady force.\nsensor: the scenario (corrected/plane-wall-fast) with 2 to 32 "
-            "links; the force itself has no limit,\nwhat a first-order sensor of 0.5, 1 or 2 ms "
-            "reads has one.\nlinks: the scenario (corrected/damped-beam) with 2 to 64 links, "
-            "Richardson's limit "
-            "and the Euler-Bernoulli\nbeam, and how many links are enough for which question. See "
-            "docs/explanation/methods.md and\ndocs/explanation/trust.md. ^C "
-            "ends any of them "
-            "with what it "
-            "has until then (exit status 130).\n",
+    .operands = "methods|sensor|links|follow [SCENARIO]",
+    .summary = "Error against cost; what a force sensor would see; links against a beam; laws over "
+               "frequency",
+    .help =
+        "methods: the scenario (corrected/first-impact) by every method of time integration at "
+        "steps from 1e-2\ndown to 1e-6 s, with the error of first contact, first pulse's peak "
+        "and steady force.\nsensor: the scenario (corrected/plane-wall-fast) with 2 to 32 "
+        "links; the force itself has no limit,\nwhat a first-order sensor of 0.5, 1 or 2 ms "
+        "reads has one.\nlinks: the scenario (corrected/damped-beam) with 2 to 64 links, "
+        "Richardson's limit "
+        "and the Euler-Bernoulli\nbeam, and how many links are enough for which question.\nfollow: "
+        "the scenario (compare/observer) under six laws with a set-point and a wall that swing, "
+        "from\n0.2 to 25 Hz: error and phase of the force, beside what delay and arm allow. "
+        "See\ndocs/explanation/methods.md and docs/explanation/trust.md. ^C ends any of them "
+        "with what it has\nuntil then (exit status 130).\n",
     .least = 1,
     .most = 2,
     .takes_scenarios = true,

@@ -1,0 +1,153 @@
+#include "src/study/follow.h"
+
+#include <assert.h>
+#include <complex.h>
+#include <math.h>
+
+#include "src/base/plain_math.h"
+#include "src/base/sincos.h"
+#include "src/run/run.h"
+
+const double follow_frequencies[FOLLOW_FREQUENCIES] = {0.2, 0.5, 1, 2, 4, 8, 15, 25};
+const char *const follow_laws[FOLLOW_LAWS] = {"hybrid",     "force-pd", "impedance",
+                                              "admittance", "optimal",  "observer"};
+
+#define SETTLED 3.0 // when impact and transients are over [s]
+#define WATCHED 2.0 // from then on at least, in whole periods [s]
+
+static const double pi = 3.14159265358979323846;
+
+// exp(i angle).
+static double complex turned(double angle)
+{
+    const double complex i = I;
+    return inline_cos(angle) + i * inline_sin(angle);
+}
+
+// The force's part at a frequency [Hz], as that of a sine that begins at 0 s: the mean of the rows
+// times exp(-i w t) over whole periods, by the trapezoidal rule.
+static double complex part_of(const trace *t, double frequency, double until)
+{
+    const double w = 2 * pi * frequency;
+    double complex sum = 0;
+    for (size_t i = 1; i < t->row_count; i++) {
+        const sample *a = &t->rows[i - 1], *b = &t->rows[i];
+        if (a->time >= SETTLED && b->time <= until) {
+            const double complex both =
+                a->force * turned(-w * a->time) + b->force * turned(-w * b->time);
+            sum += (b->time - a->time) / 2 * both;
+        }
+    }
+    const double complex sine = 2 * turned(pi / 2);
+    return sine * sum / (until - SETTLED);
+}
+
+// One run: the force's part at a frequency, of a wave of the set-point or of the wall. NaN if it
+// fails.
+static status part_in_run(const scenario *s, const char *law, double frequency, bool wall,
+                          run_monitor *monitor, double complex *part, fault *f)
+{
+    const double until = SETTLED + ceil(WATCHED * frequency) / frequency;
+    const double force = s->parameters.control.force;
+    parameters p = s->parameters;
+    scenario changed = *s;
+    *part = (double)NAN;
+    status code = parameter_set_text(&p, PARAMETER_INDEX(control.law), law, f);
+    const struct {
+        int index;
+        double value;
+    } numbers[] = {
+        {PARAMETER_INDEX(run.duration), until},
+        {PARAMETER_INDEX(control.force_amplitude), wall ? 0 : FOLLOW_WAVE * force},
+        {PARAMETER_INDEX(control.force_frequency), frequency},
+        {PARAMETER_INDEX(wall.motion), wall ? MOTION_SINE : MOTION_NONE},
+        {PARAMETER_INDEX(wall.motion_amplitude), FOLLOW_WALL},
+        {PARAMETER_INDEX(wall.motion_frequency), frequency},
+    };
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers && code == STATUS_OK; i++) {
+        code = parameter_set_number(&p, numbers[i].index, numbers[i].value, f);
+    }
+    code = code == STATUS_OK ? scenario_take_parameters(&changed, &p, f) : code;
+    if (code != STATUS_OK) {
+        return code;
+    }
+
+    // a law that fails here says nothing of the others
+    run_result result;
+    const run_options options = {.keep_trace = true, .monitor = monitor};
+    code = run_scenario_with(&changed, &options, &result);
+    if (code == STATUS_OK) {
+        *part = part_of(&result.trace, frequency, until);
+    }
+    run_finish(&result);
+    return code == STATUS_STOPPED || code == STATUS_NO_MEMORY
+               ? fault_set(f, code, "%s", status_text(code))
+               : STATUS_OK;
+}
+
+// The answer to a wave of the set-point as gain, phase and error.
+static follow_point point_of(double frequency, double complex answer)
+{
+    return (follow_point){
+        .frequency = frequency,
+        .gain = cabs(answer),
+        .phase = (isnan(creal(answer)) ? (double)NAN : plain_atan2(cimag(answer), creal(answer))) *
+                 180 / pi,
+        .error = cabs(1 - answer),
+        .shaken = (double)NAN};
+}
+
+// Of the arm as two links: s^2 = 2 k2/(m l^2/4 - I), a tip that gives by l^2/k2.
+static void find_bound(const parameters *p, follow_study *study)
+{
+    const double l = p->arm.length / 2, ml2 = p->arm.mass / 2 * l * l;
+    study->zero = sqrt(2 * p->arm.k2 / (ml2 / 4 - ml2 / 12));
+    study->later = p->control.delay + (0.5 + p->control.delay_periods) / p->control.rate;
+    for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
+        const double w = 2 * pi * follow_frequencies[i];
+        const double complex late = turned(-w * study->later);
+        const double complex falls = turned(-2 * plain_atan2(w, study->zero)); // (s - p)/(s + p)
+        study->bound[i] = point_of(follow_frequencies[i], falls * late);
+        study->bound[i].shaken = cabs(1 - late) * p->arm.k2 / (l * l);
+    }
+}
+
+status follow_study_compute(const scenario *s, run_monitor *monitor, follow_study *study, fault *f)
+{
+    assert(s != NULL && study != NULL);
+    *study = (follow_study){0};
+    if (s->parameters.control.law == LAW_NONE) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "%s has no control law: expected one that presses with control.force",
+                         s->name);
+    }
+    find_bound(&s->parameters, study);
+    for (int i = 0; i < FOLLOW_RUNS; i++) {
+        study->points[i / 2 / FOLLOW_FREQUENCIES][i / 2 % FOLLOW_FREQUENCIES] =
+            point_of(follow_frequencies[i / 2 % FOLLOW_FREQUENCIES], (double)NAN);
+    }
+    double phase_before = 0;
+    for (int i = 0; i < FOLLOW_RUNS; i++) {
+        const int law = i / 2 / FOLLOW_FREQUENCIES, k = i / 2 % FOLLOW_FREQUENCIES;
+        const bool wall = i % 2 != 0;
+        double complex part;
+        const status code =
+            part_in_run(s, follow_laws[law], follow_frequencies[k], wall, monitor, &part, f);
+        if (code != STATUS_OK) {
+            return code;
+        }
+        if (wall) {
+            study->points[law][k].shaken = cabs(part) / FOLLOW_WALL;
+        } else {
+            study->points[law][k] =
+                point_of(follow_frequencies[k], part / (FOLLOW_WAVE * s->parameters.control.force));
+        }
+        // a phase goes on from the one at the frequency before
+        double *phase = &study->points[law][k].phase;
+        *phase -= k > 0 && *phase > phase_before + 180 ? 360 : 0;
+        phase_before = *phase;
+        study->done++;
+        run_monitor_count(monitor);
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,150 @@
+// impactlab study follow: force error and phase of control laws over frequency, beside what delay
+// and arm allow.
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "src/base/json.h"
+#include "src/study/follow.h"
+#include "ui/commands/pictures.h"
+#include "ui/commands/progress.h"
+
+static json_t *points_array(const follow_point *points)
+{
+    json_t *array = json_array();
+    for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
+        const follow_point *p = &points[i];
+        json_t *line = json_object();
+        json_put(line, "frequency_Hz", json_number(follow_frequencies[i]));
+        json_put(line, "gain", json_number(p->gain));
+        json_put(line, "phase_deg", json_number(p->phase));
+        json_put(line, "error", json_number(p->error));
+        json_put(line, "wall_N_per_m", json_number(p->shaken));
+        json_add(array, line);
+    }
+    return array;
+}
+
+static json_t *follow_object(const scenario *s, const follow_study *study)
+{
+    json_t *object = json_object(), *laws = json_object();
+    json_put(object, "scenario", json_text(s->name));
+    for (int k = 0; k < FOLLOW_LAWS; k++) {
+        json_put(laws, follow_laws[k], points_array(study->points[k]));
+    }
+    json_put(object, "follow", laws);
+    json_put(object, "bound", points_array(study->bound));
+    json_put(object, "later_s", json_number(study->later));
+    json_put(object, "zero_per_s", json_number(study->zero));
+    return object;
+}
+
+// A number of every point, over the frequencies.
+static void print_table(const char *what, const follow_study *study, size_t offset, double scale)
+{
+    printf("\n%-28s", what);
+    for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
+        printf(" %6g Hz", follow_frequencies[i]);
+    }
+    for (int k = 0; k <= FOLLOW_LAWS; k++) {
+        printf("\n%-28s", k < FOLLOW_LAWS ? follow_laws[k] : "bound");
+        for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
+            const follow_point *p = k < FOLLOW_LAWS ? &study->points[k][i] : &study->bound[i];
+            print_cell(9, "%.3g", scale * *(const double *)((const char *)p + offset));
+        }
+    }
+    printf("\n");
+}
+
+static void print_follow(const scenario *s, const follow_study *study)
+{
+    char changes[SCENARIO_CHANGES];
+    say("%s%s: a set-point and a wall that move\ncommands act %g ms late, the force's zero is at "
+        "%.3g 1/s\n",
+        s->name, scenario_changes(s, changes), 1e3 * study->later, study->zero);
+    print_table("error of the set-point [%]", study, offsetof(follow_point, error), 100);
+    print_table("phase [deg]", study, offsetof(follow_point, phase), 1);
+    print_table("wall that moves [N/mm]", study, offsetof(follow_point, shaken), 1e-3);
+}
+
+static int plot_follow(const arguments *a, const scenario *s, const follow_study *study)
+{
+    static const int colours[FOLLOW_LAWS] = {0, 3, 2, 1, 6, 5};
+    static const marker_kind markers[FOLLOW_LAWS] = {MARKER_CIRCLE,   MARKER_SQUARE, MARKER_DIAMOND,
+                                                     MARKER_TRIANGLE, MARKER_CROSS,  MARKER_CIRCLE};
+    static const struct {
+        const char *name, *label, *unit;
+        size_t offset;
+        scale_kind scale;
+    } drawn[] = {
+        {"error", "Error over the wave", "", offsetof(follow_point, error), SCALE_LOGARITHMIC},
+        {"phase", "Phase of the force", "°", offsetof(follow_point, phase), SCALE_LINEAR},
+        {"wall", "Force over a wall’s motion", "N/m", offsetof(follow_point, shaken),
+         SCALE_LOGARITHMIC},
+    };
+    enum { PANELS = sizeof drawn / sizeof *drawn };
+    figure_series series[PANELS][FOLLOW_LAWS + 1];
+    figure_panel panels[PANELS];
+    for (int n = 0; n < PANELS; n++) {
+        for (int k = 0; k <= FOLLOW_LAWS; k++) {
+            const bool law = k < FOLLOW_LAWS;
+            const follow_point *p = law ? study->points[k] : study->bound;
+            series[n][k] =
+                (figure_series){.name = law ? follow_laws[k] : "bound",
+                                .label = law ? follow_laws[k] : "what delay and arm allow",
+                                .x = &p->frequency,
+                                .y = (const double *)((const char *)p + drawn[n].offset),
+                                .count = FOLLOW_FREQUENCIES,
+                                .stride = sizeof(follow_point),
+                                .colour = law ? colours[k] : 7,
+                                .marker = law ? markers[k] : MARKER_NONE,
+                                .secondary = !law};
+        }
+        panels[n] = (figure_panel){.y = {.name = drawn[n].name,
+                                         .label = drawn[n].label,
+                                         .unit = drawn[n].unit,
+                                         .scale = drawn[n].scale},
+                                   .series = series[n],
+                                   .series_count = FOLLOW_LAWS + 1,
+                                   .weight = 1.8};
+    }
+
+    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES], caption[400];
+    snprintf(title, sizeof title, "%s: a set-point and a wall that move%s", s->name,
+             scenario_changes(s, changes));
+    snprintf(
+        caption, sizeof caption,
+        "Set-point: %g %% of the commanded force; wall: %g mm, against which friction holds the "
+        "hub up to %.2g N. The dashed line is a law that knows nothing ahead: commands act "
+        "%.3g ms late, and a force turned up falls first, by the zero at %.3g 1/s.",
+        100 * FOLLOW_WAVE, 1e3 * FOLLOW_WALL,
+        s->parameters.motor.stiction / s->parameters.arm.length, 1e3 * study->later, study->zero);
+    figure fig = {.title = title,
+                  .caption = caption,
+                  .x = {.name = "frequency", .label = "Frequency", .unit = "Hz"},
+                  .panels = panels,
+                  .panel_count = PANELS};
+    return publish_study(a, &fig);
+}
+
+int study_of_follow(const arguments *a, scenario *s)
+{
+    assert(a != NULL && s != NULL);
+    follow_study study;
+    fault f = {0};
+    run_monitor *monitor = work_begin(a, "runs", FOLLOW_RUNS);
+    const status code = follow_study_compute(s, monitor, &study, &f);
+    work_end();
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
+        return complain_fault(&f);
+    }
+
+    if (summary_wanted(a)) {
+        print_follow(s, &study);
+    }
+    int result = a->json != NULL ? write_json(a->json, follow_object(s, &study)) : EXIT_DONE;
+    if (code == STATUS_STOPPED) {
+        work_leave(study.done, FOLLOW_RUNS, "runs", "the tables hold these");
+    }
+    return result == EXIT_DONE && a->plot != NULL ? plot_follow(a, s, &study) : result;
+}
