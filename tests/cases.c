@@ -1,7 +1,7 @@
 // The cases of a test program, which TEST adds before main, in the order in which they are written.
 #include "tests/check.h"
 
-#include <errno.h>
+#include <ftw.h>
 
 enum { MOST_CASES = 128 };
 static struct CMUnitTest cases[MOST_CASES];
@@ -33,6 +33,43 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down)
 {
     return _cmocka_run_group_tests(program_invocation_short_name, cases, (size_t)count, set_up,
                                    tear_down) != 0;
+}
+
+char test_folder[32];
+
+int enter_folder(void **state)
+{
+    (void)state;
+    strcpy(test_folder, "/tmp/impactlab-test-XXXXXX");
+    return mkdtemp(test_folder) == NULL || chdir(test_folder) != 0;
+}
+
+// Removes a file or an empty folder; a temporary of the program's has no business there.
+static int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *place)
+{
+    (void)about;
+    (void)kind;
+    const char *journal = strstr(path, "-journal");
+    const bool left = strncmp(path + place->base, ".impactlab-", 11) == 0 ||
+                      (journal != NULL && journal[8] == '\0');
+    if (left) {
+        print_error("%s was left behind\n", path);
+    }
+    return remove(path) != 0 || left;
+}
+
+int leave_folder(void **state)
+{
+    (void)state;
+    return chdir("/") != 0 || nftw(test_folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS) != 0;
+}
+
+void put_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
 }
 
 __attribute__((weak)) int main(void)

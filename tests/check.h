@@ -1,7 +1,9 @@
-// What every test program takes: cmocka, and the standard library with it; cases that list
-// themselves, and comparisons of doubles that print both values.
+// What every test program takes: cmocka, and the standard library and files of POSIX with it; cases
+// that list themselves, and comparisons of doubles that print both values.
 #pragma once
 
+#include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,6 +13,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -88,7 +93,35 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
         destroy(*pointer);                                                                         \
     }
 
+// A table's entries in turn: for (EACH(c, cases)) { ... c->name ... }
+#define EACH(entry, table)                                                                         \
+    const __typeof__((table)[0]) *entry = (table);                                                 \
+    entry < (table) + sizeof(table) / sizeof((table)[0]);                                          \
+    entry++
+
+// A new text, to be freed: what a call writes to `stream`. WRITTEN(text, json_write(stream, j));
+#define WRITTEN(text, ...)                                                                         \
+    char *text = NULL;                                                                             \
+    do {                                                                                           \
+        size_t written_size;                                                                       \
+        FILE *stream = open_memstream(&text, &written_size);                                       \
+        assert_non_null(stream);                                                                   \
+        __VA_ARGS__;                                                                               \
+        assert_int_equal(fclose(stream), 0);                                                       \
+    } while (0)
+
 static inline void free_kept(void *pointer)
 {
     free(*(void **)pointer);
 }
+
+// A case that works in an empty folder of its own, `test_folder`, which goes afterwards with all
+// that is in it. Where all cases share one: ALL_BETWEEN(enter_folder, leave_folder).
+#define TEST_IN_FOLDER(name) TEST_BETWEEN(name, enter_folder, leave_folder)
+
+extern char test_folder[];
+int enter_folder(void **state);
+int leave_folder(void **state);
+
+// Writes a file whose content is this text.
+void put_file(const char *path, const char *text);

@@ -24,37 +24,62 @@ static inline void press(explorer *ex, const char *keys)
     fail_if(!explorer_keys(ex, keys, &f), "%s", f.text);
 }
 
+// Keys with values in them, as printf writes them.
+__attribute__((format(printf, 2, 3))) static inline void press_text(explorer *ex,
+                                                                    const char *format, ...)
+{
+    char keys[1024];
+    va_list values;
+    va_start(values, format);
+    assert_in_range(vsnprintf(keys, sizeof keys, format, values), 0, sizeof keys - 1);
+    va_end(values);
+    press(ex, keys);
+}
+
+// Keys that leave a warning.
+static inline void press_warns(explorer *ex, const char *keys)
+{
+    press(ex, keys);
+    fail_if(!ex->state.message.warning, "no warning after %s: '%s'", keys, ex->state.message.text);
+}
+
+// Keys that leave this in the prompt.
+static inline void press_prompts(explorer *ex, const char *keys, const char *wanted)
+{
+    press(ex, keys);
+    assert_string_equal(ex->state.prompt.text, wanted);
+}
+
 // The screen as text, to be freed.
 static inline char *picture(explorer *ex, int width, int height, glyph_set set)
 {
     SCOPED(screen_finish) screen s = {0};
-    char *text = NULL;
-    size_t size = 0;
     assert_true(screen_resize(&s, width, height));
     explorer_draw(ex, &s);
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    screen_dump(&s, set, stream);
-    fclose(stream);
+    WRITTEN(text, screen_dump(&s, set, stream));
     return text;
 }
 
 static inline void assert_shows_at(explorer *ex, int width, int height, const char *wanted)
 {
     SCOPED(free_kept) char *text = picture(ex, width, height, GLYPHS_BRAILLE);
-    fail_if(strstr(text, wanted) == NULL, "'%s' is not on the screen:\n%s", wanted, text);
+    const bool hidden = wanted[0] == '!' && wanted[1] != '\0';
+    fail_if((strstr(text, wanted + hidden) == NULL) != hidden, "'%s' is %son the screen:\n%s",
+            wanted + hidden, hidden ? "" : "not ", text);
 }
 
-static inline void assert_shows(explorer *ex, const char *wanted)
+static inline void all_shown(explorer *ex, const char *const *wanted)
 {
-    assert_shows_at(ex, 120, 40, wanted);
+    for (; *wanted != NULL; wanted++) {
+        assert_shows_at(ex, 120, 40, *wanted);
+    }
 }
 
-static inline void assert_hides(explorer *ex, const char *unwanted)
-{
-    SCOPED(free_kept) char *text = picture(ex, 120, 40, GLYPHS_BRAILLE);
-    fail_if(strstr(text, unwanted) != NULL, "'%s' is on the screen:\n%s", unwanted, text);
-}
+// Each text is on a screen of 120 x 40; one that begins with ! is not.
+#define assert_shows(ex, ...) all_shown(ex, (const char *const[]){__VA_ARGS__, NULL})
+
+// The same after keys.
+#define press_shows(ex, keys, ...) (press(ex, keys), assert_shows(ex, __VA_ARGS__))
 
 // The uppermost part of this kind on a screen of 120 x 40.
 static inline hit_area part_on_screen(explorer *ex, panel_id id, hit_part part)

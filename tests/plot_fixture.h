@@ -4,9 +4,6 @@
 #include "tests/check.h"
 
 #include <png.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include "render/plot/plot.h"
@@ -14,17 +11,6 @@
 #include "render/plot/trace_plot.h"
 
 enum { ROWS = 1001 };
-
-static char folder[64];
-
-static inline char *path_of(const char *name)
-{
-    static char paths[4][256];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
 
 // ---- a run that looks like one
 
@@ -272,18 +258,8 @@ static inline void write_figure(const figure *fig, const char *path)
 
 // ---- a folder for files
 
-static inline int make_work_folder(void **state)
+static inline int leave_plot_folder(void **state)
 {
-    (void)state;
-    snprintf(folder, sizeof folder, "/tmp/impactlab-plot-XXXXXX");
-    return mkdtemp(folder) == NULL;
-}
-
-static inline int remove_work_folder(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
     text_release();
-    return system(command) != 0;
+    return leave_folder(state);
 }

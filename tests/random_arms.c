@@ -228,9 +228,8 @@ static bool goes_with(const bool *has, feature f, int links, int joints)
                                          {STIFFENING, UNEVEN_LINKS},
                                          {STIFFENING, UNEVEN_JOINTS},
                                          {RESTITUTION, SOFT_WALL}};
-    for (size_t i = 0; i < sizeof clashes / sizeof *clashes; i++) {
-        if ((f == clashes[i][0] && has[clashes[i][1]]) ||
-            (f == clashes[i][1] && has[clashes[i][0]])) {
+    for (EACH(c, clashes)) {
+        if ((f == (*c)[0] && has[(*c)[1]]) || (f == (*c)[1] && has[(*c)[0]])) {
             return false;
         }
     }
@@ -480,9 +479,9 @@ static bool take_option(options *o, const char *text)
         int *number;
     } numbers[] = {
         {"count", &o->count}, {"first", &o->first}, {"least", &o->least}, {"most", &o->most}};
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        if (strcmp(name, numbers[i].name) == 0) {
-            *numbers[i].number = atoi(value);
+    for (EACH(c, numbers)) {
+        if (strcmp(name, c->name) == 0) {
+            *c->number = atoi(value);
             return true;
         }
     }

@@ -3,14 +3,10 @@
 #pragma once
 
 #include <dirent.h>
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/file.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/syscall.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "tests/refused_requests.h"
 

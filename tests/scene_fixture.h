@@ -4,8 +4,6 @@
 #include "tests/check.h"
 
 #include <dirent.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "render/scene/scene.h"
 #include "render/page/text.h"
@@ -16,8 +14,6 @@ typedef struct recorded {
     scenario scenario;
     run_result result;
 } recorded;
-
-static char folder[] = "/tmp/test-scene-XXXXXX";
 
 static inline void complain(void *context, const char *sentence)
 {
@@ -37,13 +33,6 @@ static inline void forget(recorded *r)
 {
     run_finish(&r->result);
     scenario_finish(&r->scenario);
-}
-
-static inline const char *in_folder(const char *name)
-{
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
 }
 
 // True if a renderer can be had here.
@@ -137,17 +126,8 @@ static inline void check_contains(const char *path, const char *text)
     fail_if(memmem(bytes, length, text, strlen(text)) == NULL, "'%s' is not in %s", text, path);
 }
 
-static inline int set_up(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) == NULL;
-}
-
 static inline int tear_down(void **state)
 {
-    char command[128];
-    (void)state;
     text_release();
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return system(command) != 0;
+    return leave_folder(state);
 }

@@ -1,12 +1,9 @@
 #include "tests/sweep_fixture.h"
 
-#include <unistd.h>
-
 #include "tests/check.h"
 
 GIVEN_BACK(sweep_store, sweep_store_close)
 
-static char folder[] = "/tmp/sweep-XXXXXX";
 scenario base;
 
 void print_sentence(void *context, const char *sentence)
@@ -17,18 +14,15 @@ void print_sentence(void *context, const char *sentence)
 
 int sweep_fixture_open(void **state)
 {
-    (void)state;
     static const char text[] = "title: Hit\nmotor: {voltage: 1 V}\nrun: {duration: 0.6 s}\n";
-    return mkdtemp(folder) == NULL || chdir(folder) != 0 ||
-           scenario_parse(&base, text, strlen(text), "hit.yaml", "hit", print_sentence, NULL) !=
-               STATUS_OK;
+    return enter_folder(state) || scenario_parse(&base, text, strlen(text), "hit.yaml", "hit",
+                                                 print_sentence, NULL) != STATUS_OK;
 }
 
 int sweep_fixture_close(void **state)
 {
-    (void)state;
     scenario_finish(&base);
-    return chdir("/") != 0 || rmdir(folder) != 0;
+    return leave_folder(state);
 }
 
 status sweep_of(sweep *s, sweep_sampling sampling, size_t runs, uint64_t seed, fault *f,
@@ -57,12 +51,7 @@ sweep_store *must_open(const char *path, const sweep *s)
 
 char *csv_of(sweep_store *store)
 {
-    char *text;
-    size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    DONE(sweep_store_csv(store, stream, &f));
-    fclose(stream);
+    WRITTEN(text, DONE(sweep_store_csv(store, stream, &f)));
     return text;
 }
 
@@ -80,6 +69,5 @@ char *uninterrupted(const sweep *s, int jobs)
     sweep_progress progress = must_run(s, store, jobs);
     assert_int_equal(progress.done, s->run_count);
     assert_int_equal(progress.done_now, s->run_count);
-    char *csv = csv_of(store);
-    return csv;
+    return csv_of(store);
 }

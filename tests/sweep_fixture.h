@@ -10,10 +10,12 @@ extern scenario base;
 // A fault_handler that shows what should not be.
 void print_sentence(void *context, const char *sentence);
 
-// Set-up and tear-down of a group of tests: reads `base` and works in a folder that is empty again
-// at the end.
+// Set-up and tear-down of a test or of all: reads `base` and works in a folder of its own.
 int sweep_fixture_open(void **state);
 int sweep_fixture_close(void **state);
+
+// A case between these two.
+#define SWEEP_TEST(name) TEST_BETWEEN(name, sweep_fixture_open, sweep_fixture_close)
 
 // The sweep of up to two --vary; those not given are NULL.
 status sweep_of(sweep *s, sweep_sampling sampling, size_t runs, uint64_t seed, fault *f,

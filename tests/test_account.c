@@ -56,15 +56,15 @@ TEST(test_every_scenario_has_an_account)
         "thesis/fig-3-4",           "thesis/fig-2-4",       "compare/hybrid",
         "compare/force-pd",         "compare/observer",     "corrected/push-in-contact",
         "corrected/spring-hub",     "corrected/newmark",    "corrected/clamped-vibration"};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        OPEN_SESSION(s, names[i]);
+    for (EACH(c, names)) {
+        OPEN_SESSION(s, *c);
         const int count = run_account(&s.effective, &s.run, sentences);
         assert_true(count >= 1 && count <= ACCOUNT_SENTENCES);
         for (int k = 0; k < count; k++) {
             const size_t length = strlen(sentences[k]);
             fail_if(sentences[k][length - 1] != '.' || strstr(sentences[k], "nan") != NULL ||
                         strstr(sentences[k], "inf") != NULL,
-                    "%s: %s", names[i], sentences[k]);
+                    "%s: %s", *c, sentences[k]);
         }
     }
 }

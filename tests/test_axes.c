@@ -95,14 +95,10 @@ TEST(test_keys_change_the_axis_of_the_pane_in_focus)
     press(&ex, "V<S-Up><S-Down>ww");
     assert_int_equal(panes_focused(&ex.state.panes), 0);
     // alone it has all rows
-    press(&ex, "e");
-    assert_hides(&ex, "gap ");
-    press(&ex, "e");
-    assert_shows(&ex, "gap ");
-    press(&ex, ":panes<Enter>w");
-    assert_true(ex.state.message.warning);
-    press(&ex, "a");
-    assert_true(ex.state.message.warning);
+    press_shows(&ex, "e", "!gap ");
+    press_shows(&ex, "e", "gap ");
+    press_warns(&ex, ":panes<Enter>w");
+    press_warns(&ex, "a");
     assert_shows(&ex, "no pane of curves");
 }
 
@@ -114,8 +110,8 @@ TEST(test_wrong_axes_are_told)
         "axis 0 x 1",    "axis purple",  "axis auto 25", "axis auto 0", "axis 0 2 all more",
         "axis auto 1 2", "axis auto -1", "zoom",         "zoom 1",      "zoom 2 1",
         "zoom 1 2 3",    "pan",          "pan nowhere",  "pan left"};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        refuse(&ex, wrong[i]);
+    for (EACH(c, wrong)) {
+        refuse(&ex, *c);
     }
     assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_AUTO);
     carry_out(&ex, "trace impulse");
@@ -130,12 +126,8 @@ TEST(test_wrong_axes_are_told)
 TEST(test_ticks_are_round)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":seek 0.35<Enter>");
-    assert_shows(&ex, "1.2\u2524");
-    assert_shows(&ex, "0.0\u2524");
-    assert_shows(&ex, "0.05\u2524");
-    assert_shows(&ex, "0.5      ");
-    assert_shows(&ex, "1.0 s");
+    press_shows(&ex, ":seek 0.35<Enter>", "1.2\u2524", "0.0\u2524", "0.05\u2524", "0.5      ",
+                "1.0 s");
     // the unit is next to the pane's number
     assert_shows(&ex, "\u25b81      N");
     assert_shows(&ex, " 3  rad/s");
@@ -188,8 +180,8 @@ TEST(test_a_controlled_run_shows_readings_and_commands)
     static const char *const wanted[] = {
         "force_reading", "calculated_force",     "encoder", "desired_angle", "tachometer",
         "command 2.284", "controller_mode force"};
-    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
-        fail_if(strstr(text, wanted[i]) == NULL, "'%s' is not on the screen:\n%s", wanted[i], text);
+    for (EACH(c, wanted)) {
+        fail_if(strstr(text, *c) == NULL, "'%s' is not on the screen:\n%s", *c, text);
     }
     free(text);
     // the same panes as before where the user chose them
@@ -240,10 +232,10 @@ TEST(test_ranges_of_long_runs_are_exact)
     int velocity = SIGNAL_INDEX(last_velocity), angle = SIGNAL_INDEX(last_angle);
     carry_out(&ex, "trace last_velocity last_angle");
     static const double parts[][2] = {{0.2, 0.7}, {0.3, 0.9}, {10, 90}, {0.29, 0.2935}};
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+    for (EACH(c, parts)) {
         char line[64];
         double low = (double)INFINITY, high = (double)-INFINITY;
-        snprintf(line, sizeof line, "zoom %g %g", parts[i][0], parts[i][1]);
+        snprintf(line, sizeof line, "zoom %g %g", (*c)[0], (*c)[1]);
         carry_out(&ex, line);
         state_update(&ex.state);
         for (size_t r = trace_row_at(t, ex.state.window.from);

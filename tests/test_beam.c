@@ -135,8 +135,8 @@ TEST(any_arm_has_the_damping_asked_for)
                  "arm.tip_mass=0.05", "arm.link_lengths=0.2,0.5,0.3"),
         SETTINGS("arm.links=1", "arm.hub_joint=beam"),
     };
-    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
-        parameters p = fixture_parameters(arms[i]);
+    for (EACH(c, arms)) {
+        parameters p = fixture_parameters(*c);
         p.arm.damping_ratio = 0.02;
         arm a = arm_of(&p);
         int count;
@@ -167,8 +167,8 @@ TEST(the_highest_frequency_bounds_the_modes)
                                    {"arm.links=2", "arm.hub_joint=beam"},
                                    {"arm.links=3", "arm.hub_joint=rigid"},
                                    {"arm.links=8", "arm.hub_joint=rigid"}};
-    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
-        parameters p = fixture_parameters(SETTINGS(arms[i][0], arms[i][1]));
+    for (EACH(c, arms)) {
+        parameters p = fixture_parameters(SETTINGS((*c)[0], (*c)[1]));
         arm a = arm_of(&p);
         int count;
         double frequencies[9], shapes[81];

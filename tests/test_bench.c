@@ -1,7 +1,5 @@
 #include "src/study/bench.h"
 
-#include <unistd.h>
-
 #include "tests/check.h"
 
 static int calls;

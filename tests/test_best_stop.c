@@ -207,26 +207,26 @@ TEST(no_controller_tried_is_better)
                  {1.37, 1.5, 1.6, 4}, {0.8, 2, 2.1, 5},     {4, 1, 3.5, 5},      {3, 1.9, 2.2, 8}};
     random_generator g;
     random_seed(&g, 7);
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         char limit[48];
-        snprintf(limit, sizeof limit, "motor.voltage_limit=%g", cases[i].limit);
+        snprintf(limit, sizeof limit, "motor.voltage_limit=%g", c->limit);
         pressed_arm_model m = model_of(SETTINGS(limit));
-        pressed_state start = {0.002, cases[i].velocity};
-        double best = best_settling(&m, start, cases[i].force, 0.05, cases[i].peak);
+        pressed_state start = {0.002, c->velocity};
+        double best = best_settling(&m, start, c->force, 0.05, c->peak);
         double least = best_peak(&m, start);
         assert_true(isfinite(best) && isfinite(least));
-        stop_game game = {cases[i].force, cases[i].peak, 0.999 * least, HUGE_VAL};
+        stop_game game = {c->force, c->peak, 0.999 * least, HUGE_VAL};
         for (int n = 0; n < 4000; n++) {
             // forces at either end for the most part, with a few in between
             double pieces[PIECES], largest;
             int count = 1 + (int)(random_uniform(&g) * PIECES),
                 turn = (int)fmin(random_uniform(&g) * 2 * (count + 1), count);
-            double first = random_uniform(&g) < 0.5 ? 0 : cases[i].peak;
+            double first = random_uniform(&g) < 0.5 ? 0 : c->peak;
             for (int k = 0; k < count; k++) {
                 double odd = random_uniform(&g);
-                pieces[k] = odd < 0.05 ? random_uniform(&g) * cases[i].peak
+                pieces[k] = odd < 0.05 ? random_uniform(&g) * c->peak
                             : k < turn ? first
-                                       : cases[i].peak - first;
+                                       : c->peak - first;
             }
             double settled = try_out(&m, start, pieces, count, &game, &largest);
             game.soonest = fmin(game.soonest, settled);

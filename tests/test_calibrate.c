@@ -55,16 +55,16 @@ TEST(wrong_tables_are_refused)
                  {"1:2,3:4", "',3:4' is wrong"},
                  {"1:1e999", "'1:1e999' is wrong"},
                  {"2:4 1:4", "'1:4' is not above the one before"}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         fault f;
         k2_table t;
         scenario s = {.parameters = rig_parameters(NULL)};
         char setting[64];
-        assert_int_equal(k2_table_read(&t, cases[i].text, &f), STATUS_BAD_SCENARIO);
-        assert_non_null(strstr(f.text, cases[i].sentence));
-        snprintf(setting, sizeof setting, "control.k2_table=%s", cases[i].text);
+        assert_int_equal(k2_table_read(&t, c->text, &f), STATUS_BAD_SCENARIO);
+        assert_non_null(strstr(f.text, c->sentence));
+        snprintf(setting, sizeof setting, "control.k2_table=%s", c->text);
         assert_int_equal(scenario_override(&s, setting, &f), STATUS_BAD_SCENARIO);
-        assert_non_null(strstr(f.text, cases[i].sentence));
+        assert_non_null(strstr(f.text, c->sentence));
     }
 }
 

@@ -48,7 +48,7 @@ TEST(rows_reach_every_form)
                            row_of(&b, "bare", "control.law=none")};
     assert_string_equal(rows[0].law, "hybrid");
     assert_string_equal(rows[1].law, "none");
-    char *csv;
+    SCOPED(free_kept) char *csv;
     SCOPED(free_kept) char *text;
     compare_table table = {
         .rows = rows, .count = 2, .against = rows, .group = 2, .tolerance = 0.05};
@@ -79,7 +79,6 @@ TEST(rows_reach_every_form)
     assert_null(json_object_get(whole, "tolerance"));
     assert_null(json_object_get(json_array_get(runs, 0), "differs"));
     json_decref(whole);
-    free(csv);
 }
 
 // Two scenarios at two forces, each pair compared with the reference of its own force.

@@ -57,8 +57,8 @@ TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
             char *rest = text;
             for (char *word; (word = strtok_r(rest, " \n", &rest)) != NULL;) {
                 bool known = strspn(word, "0123456789x.:") == strlen(word);
-                for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
-                    known = known || strcmp(word, words[i]) == 0;
+                for (EACH(c, words)) {
+                    known = known || strcmp(word, *c) == 0;
                 }
                 fail_if(!known, "'%s' at %d x %d", word, width, height);
             }
@@ -98,8 +98,8 @@ TEST(test_eighty_columns_show_what_a_first_visit_needs)
     press(&ex, ":seek 0.35<Enter>");
     static const char *const wanted[] = {"force 1.2", "w1 0.2", "gap 0",     "voltage",
                                          "0.0\u2524", "1 s",    "0.1\u2524", "N, 93 ms"};
-    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
-        assert_has(&ex, 80, 24, wanted[i]);
+    for (EACH(c, wanted)) {
+        assert_has(&ex, 80, 24, *c);
     }
     press(&ex, "b");
     assert_has(&ex, 80, 24, "drops it)");

@@ -430,7 +430,7 @@ TEST(what_is_held_does_not_move)
     for (int i = 0; i < 4; i++) {
         moving_rod r = start_rod(
             SETTINGS(stictions[i % 2], methods[i / 2], "arm.damping_ratio=0.1", "motor.voltage=2"));
-        motion *m = r.motion;
+        SCOPED(motion_destroy_kept) motion *m = r.motion;
         const double *q = state_angles(m, m->state);
         int held = 0;
         double before[2] = {0};
@@ -450,7 +450,6 @@ TEST(what_is_held_does_not_move)
         }
         assert_int_equal(m->dof, 2);
         assert_int_equal(held, 20);
-        motion_destroy(m);
     }
 }
 

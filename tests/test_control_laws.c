@@ -137,13 +137,13 @@ TEST(wrong_settings_are_told)
         {"calm=2", "'calm=2' is wrong, expected calm=NUMBER from 0 to 1"},
         {"bare=2", "'bare=2' is wrong, expected bare=NUMBER from 0 to 1"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         double values[3];
         fault f = {.text = ""};
         parameters p = rig_parameters(NULL);
-        strcpy(p.control.settings, cases[i].settings);
+        strcpy(p.control.settings, c->settings);
         assert_int_equal(controller_values(&own, &p, values, &f), STATUS_BAD_SCENARIO);
-        fail_if(strstr(f.text, cases[i].sentence) == NULL, "'%s': '%s'", cases[i].settings, f.text);
+        fail_if(strstr(f.text, c->sentence) == NULL, "'%s': '%s'", c->settings, f.text);
     }
 
     // without a controller with parameters there is no name to suggest

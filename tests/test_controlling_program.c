@@ -1,6 +1,5 @@
 // A program in the place of a control law: odd ways to answer, and states of a run that it is led
 // back to and on from.
-#include <unistd.h>
 
 #include "src/run/loop.h"
 #include "tests/rig_fixture.h"
@@ -47,12 +46,12 @@ TEST(programs_without_an_answer_are_said)
         {"read -r l; echo no", "no"},
         {"read -r l; echo 'out of order' >&2; exit 1", "out of order"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        scenario s = under(cases[i].program);
+    for (EACH(c, cases)) {
+        scenario s = under(c->program);
         SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_CONTROLLER_FAILED);
-        fail_if(strstr(r.summary.message, cases[i].sentence) == NULL, "'%s' does not say '%s'",
-                r.summary.message, cases[i].sentence);
+        fail_if(strstr(r.summary.message, c->sentence) == NULL, "'%s' does not say '%s'",
+                r.summary.message, c->sentence);
     }
 }
 

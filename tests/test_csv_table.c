@@ -1,8 +1,6 @@
 // Tables that people recorded: what is read, and where what cannot be read stands.
 #include "src/base/csv_table.h"
 
-#include <unistd.h>
-
 #include "tests/check.h"
 
 static const char *written(const char *text)
@@ -43,10 +41,10 @@ TEST(columns_are_found_by_name_and_converted)
                  {"a, \"b\"", "V", 1, -1000},
                  {"plain[mV]", "V", 2e-3, 3e-3},
                  {"plain", "N", 2, 3}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        DONE(csv_table_numbers(&t, cases[i].heading, cases[i].unit, &values, &f));
-        check_close(values[0], cases[i].first, 1e-15);
-        check_close(values[1], cases[i].second, 1e-15);
+    for (EACH(c, cases)) {
+        DONE(csv_table_numbers(&t, c->heading, c->unit, &values, &f));
+        check_close(values[0], c->first, 1e-15);
+        check_close(values[1], c->second, 1e-15);
         free(values);
     }
 }
@@ -73,11 +71,11 @@ TEST(what_cannot_be_read_is_named_with_line_and_column)
         {"time[s],v[V]\n0,1\n1,1e999\n", 3, 2, "'1e999'"},
         {"time[s],v[V]\n1,1\n0.5,2\n", 3, 1, "growing"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         csv_table t;
         fault f;
         double *times = NULL, *values = NULL;
-        status code = read_table(&t, cases[i].text, 2, &f);
+        status code = read_table(&t, c->text, 2, &f);
         if (code == STATUS_OK) {
             code = csv_table_times(&t, "time", &times, &f);
             code = code == STATUS_OK ? csv_table_numbers(&t, "v", "V", &values, &f) : code;
@@ -86,9 +84,9 @@ TEST(what_cannot_be_read_is_named_with_line_and_column)
         assert_int_equal(code, STATUS_BAD_ARGUMENT);
         free(times);
         assert_null(values);
-        assert_non_null(strstr(f.text, cases[i].said));
-        assert_int_equal(f.line, cases[i].line);
-        assert_int_equal(f.column, cases[i].column);
+        assert_non_null(strstr(f.text, c->said));
+        assert_int_equal(f.line, c->line);
+        assert_int_equal(f.column, c->column);
     }
 
     // what is no table at all
@@ -105,8 +103,8 @@ TEST(between_rows_a_value_holds_or_lies_on_a_line)
         double time, held, linear;
     } cases[] = {{-1, 5, 5}, {0, 5, 5},   {0.5, 5, 5.5}, {1, 8, 8},
                  {2, 8, 9},  {3, 10, 10}, {9, 10, 10}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        check_close(csv_table_at(times, values, 4, cases[i].time, false), cases[i].held, 0);
-        check_close(csv_table_at(times, values, 4, cases[i].time, true), cases[i].linear, 0);
+    for (EACH(c, cases)) {
+        check_close(csv_table_at(times, values, 4, c->time, false), c->held, 0);
+        check_close(csv_table_at(times, values, 4, c->time, true), c->linear, 0);
     }
 }

@@ -55,10 +55,10 @@ TEST(test_what_means_nothing_is_passed_over)
     static const char *const others[] = {"[<64;45;30m", "[<2;45;30M", "[<35;45;30M", "[<0;45M",
                                          "[<;;M",       "[1;5C",      "OQ",          "[202~",
                                          "[?1;2c",      "[<0;1;2;3M"};
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        meant m = feed_fresh(others[i]);
+    for (EACH(c, others)) {
+        meant m = feed_fresh(*c);
         assert_int_equal(m.result, SEQUENCE_OVER);
-        assert_int_equal(m.taken, strlen(others[i]));
+        assert_int_equal(m.taken, strlen(*c));
     }
     // longer than any sequence there is
     char digits[200];

@@ -128,8 +128,6 @@ TEST(missed_expectations_say_what_is_and_what_was_expected)
 // A run's CSV, with or without a value of a sensor that need not be there.
 static char *csv_of(int links, double film)
 {
-    char *text = NULL;
-    size_t length = 0;
     SCOPED(trace_finish) trace t;
     trace_init(&t, 3);
     for (int i = 0; i < 2; i++) {
@@ -148,9 +146,7 @@ static char *csv_of(int links, double film)
         double angles[] = {0.1, 0.2, 0.3};
         assert_int_equal(trace_add_row(&t, &row, angles, angles), STATUS_OK);
     }
-    FILE *stream = open_memstream(&text, &length);
-    export_csv(stream, &t, links);
-    fclose(stream);
+    WRITTEN(text, export_csv(stream, &t, links));
     return text;
 }
 

@@ -42,10 +42,10 @@ static status ends_of_push(int links, double impulse)
 TEST(a_push_of_any_size_ends_a_run_or_lets_it_go_on)
 {
     static const int links[] = {1, 2, 3, 8};
-    for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
-        assert_int_equal(ends_of_push(links[i], 1e300), STATUS_NOT_FINITE);
-        assert_int_equal(ends_of_push(links[i], -1e300), STATUS_NOT_FINITE);
-        assert_int_equal(ends_of_push(links[i], 1e-300), STATUS_OK);
+    for (EACH(c, links)) {
+        assert_int_equal(ends_of_push(*c, 1e300), STATUS_NOT_FINITE);
+        assert_int_equal(ends_of_push(*c, -1e300), STATUS_NOT_FINITE);
+        assert_int_equal(ends_of_push(*c, 1e-300), STATUS_OK);
     }
     assert_int_equal(ends_of_push(2, 0.1), STATUS_OK);
 }
@@ -57,7 +57,7 @@ TEST(a_run_that_is_asked_to_end_does)
     for (int i = 0; i < 2; i++) {
         char text[128];
         SCOPED(scenario_finish) scenario s;
-        run_result whole;
+        SCOPED(run_finish) run_result whole;
         SCOPED(run_finish) run_result ended;
         run_monitor monitor = {.stop = true};
         const run_options options = {.keep_trace = true, .monitor = &monitor};
@@ -71,7 +71,6 @@ TEST(a_run_that_is_asked_to_end_does)
         assert_memory_equal(ended.trace.rows, whole.trace.rows,
                             ended.trace.row_count * sizeof *whole.trace.rows);
         assert_int_equal(strncmp(ended.summary.message, "at t = ", 7), 0);
-        run_finish(&whole);
     }
 }
 
@@ -89,18 +88,18 @@ TEST(the_peak_of_a_damped_chain_is_at_its_impact)
 {
     static const int links[] = {16, 24, 28, 32, 40};
     double before = 0;
-    for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
+    for (EACH(c, links)) {
         char text[200];
         SCOPED(run_finish) run_result result;
         SCOPED(scenario_finish) scenario s;
         snprintf(text, sizeof text,
                  "title: Damped\nmotor: {voltage: 5 V}\nwall: {kind: plane}\n"
                  "arm: {links: %d, damping_ratio: 1}\nrun: {duration: 0.2 s}\n",
-                 links[i]);
+                 *c);
         read_scenario(&s, text);
         assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
 
-        const double coefficient = result.summary.peak_force_N / pow(links[i], 3);
+        const double coefficient = result.summary.peak_force_N / pow(*c, 3);
         check_close(result.summary.time_to_peak_s, 0, 1e-9);
         check_relative(coefficient, before > 0 ? before : coefficient, 0.03);
         before = coefficient;

@@ -336,16 +336,15 @@ TEST(numbers_have_names_and_units)
         {.y = {.name = "force", .unit = "N"}, .series = &series, .series_count = 1},
         {.y = {.name = "angle", .unit = "rad"}, .series = &series, .series_count = 1}};
     figure fig = {.x = {.name = "time", .unit = "s"}, .panels = panels, .panel_count = 1};
-    DONE(figure_write_csv(&fig, path_of("one.csv"), &f));
-    char *csv = read_file(path_of("one.csv"), &length);
+    DONE(figure_write_csv(&fig, "one.csv", &f));
+    SCOPED(free_kept) char *csv = read_file("one.csv", &length);
     assert_ptr_equal(strstr(csv, "panel,series,time[s],force[N]\n"), csv);
     free(csv);
     fig.panel_count = 2;
-    DONE(figure_write_csv(&fig, path_of("two.csv"), &f));
-    csv = read_file(path_of("two.csv"), &length);
+    DONE(figure_write_csv(&fig, "two.csv", &f));
+    csv = read_file("two.csv", &length);
     assert_ptr_equal(strstr(csv, "panel,series,time[s],value\n"), csv);
     assert_non_null(strstr(csv, "\nangle[rad],run,1,1\n"));
-    free(csv);
 }
 
 // A legend that found no room inside stands above the panel's heading, not over it.
@@ -461,4 +460,4 @@ TEST(words_are_lines_not_colours)
     cairo_surface_destroy(surface);
 }
 
-ALL_BETWEEN(make_work_folder, remove_work_folder)
+ALL_BETWEEN(enter_folder, leave_plot_folder)

@@ -3,7 +3,6 @@
 #include "tests/check.h"
 
 #include <cairo.h>
-#include <unistd.h>
 
 #include "render/figures/figures.h"
 #include "render/page/text.h"

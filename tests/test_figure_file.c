@@ -12,11 +12,11 @@ TEST(same_bytes_also_for_later_figures)
         for (int i = 0; i < 3; i++) {
             char name[64];
             snprintf(name, sizeof name, "same-%d.%s", n, formats[i]);
-            write_figure(&s.figure.figure, path_of(name));
+            write_figure(&s.figure.figure, name);
             if (n == 2 || n == 20) {
                 char first[64];
                 snprintf(first, sizeof first, "same-1.%s", formats[i]);
-                expect_same_bytes(path_of(first), path_of(name));
+                expect_same_bytes(first, name);
             }
         }
     }
@@ -55,8 +55,8 @@ TEST(pdf_embeds_fonts_and_has_no_type_3)
 {
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    write_figure(&s.figure.figure, path_of("fonts.pdf"));
-    GString *pdf = unpack_pdf(path_of("fonts.pdf"));
+    write_figure(&s.figure.figure, "fonts.pdf");
+    GString *pdf = unpack_pdf("fonts.pdf");
     assert_true(contains(pdf, "/FontFile2"));
     assert_true(contains(pdf, "DejaVuSans"));
     assert_false(contains(pdf, "/Type3"));
@@ -76,8 +76,8 @@ TEST(png_knows_its_resolution_and_origin)
     s.figure.figure.width = 127;
     s.figure.figure.height = 101.6;
     s.figure.figure.dpi = 300;
-    write_figure(&s.figure.figure, path_of("notes.png"));
-    FILE *file = fopen(path_of("notes.png"), "rb");
+    write_figure(&s.figure.figure, "notes.png");
+    FILE *file = fopen("notes.png", "rb");
     assert_non_null(file);
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
     png_infop info = png_create_info_struct(png);
@@ -107,8 +107,8 @@ TEST(svg_ids_are_unique_and_all_references_resolve)
     SCOPED(synthetic_finish) synthetic s;
     size_t length;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    write_figure(&s.figure.figure, path_of("ids.svg"));
-    SCOPED(free_kept) char *svg = read_file(path_of("ids.svg"), &length);
+    write_figure(&s.figure.figure, "ids.svg");
+    SCOPED(free_kept) char *svg = read_file("ids.svg", &length);
     assert_non_null(strstr(svg, "<metadata>"));
     assert_non_null(strstr(svg, "<title>Synthetic run &amp; &lt;more&gt;</title>"));
     GHashTable *ids = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
@@ -145,8 +145,8 @@ TEST(csv_holds_what_is_drawn)
     figure_mark mark = {0.1, "<i>contact</i>"};
     figure fig = {.panels = &panel, .panel_count = 1, .marks = &mark, .mark_count = 1};
     size_t length;
-    DONE(figure_write_csv(&fig, path_of("data.csv"), &f));
-    SCOPED(free_kept) char *csv = read_file(path_of("data.csv"), &length);
+    DONE(figure_write_csv(&fig, "data.csv", &f));
+    SCOPED(free_kept) char *csv = read_file("data.csv", &length);
     assert_string_equal(csv, "panel,series,x,value\n"
                              "force[N],\"force, \"\"raw\"\"\",0,1\n"
                              "force[N],\"force, \"\"raw\"\"\",0.1,\n"
@@ -161,22 +161,22 @@ TEST(faults_are_sentences)
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     figure *fig = &s.figure.figure;
-    assert_int_equal(figure_write(fig, path_of("x.gif"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(figure_write(fig, "x.gif", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, ".svg"));
-    assert_int_equal(figure_write(fig, path_of("png"), &f), STATUS_BAD_ARGUMENT);
-    assert_int_equal(figure_write(fig, path_of("nowhere/x.png"), &f), STATUS_CANNOT_WRITE);
+    assert_int_equal(figure_write(fig, "png", &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(figure_write(fig, "nowhere/x.png", &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "nowhere/x.png"));
     fig->dpi = 1e6;
-    assert_int_equal(figure_write(fig, path_of("x.png"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(figure_write(fig, "x.png", &f), STATUS_BAD_ARGUMENT);
     fig->dpi = 0;
     fig->width = 20;
-    assert_int_equal(figure_write(fig, path_of("x.png"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(figure_write(fig, "x.png", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "larger page"));
     fig->panel_count = 0;
-    assert_int_equal(figure_write(fig, path_of("x.pdf"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(figure_write(fig, "x.pdf", &f), STATUS_BAD_ARGUMENT);
     // nothing was left behind
-    assert_int_not_equal(access(path_of("x.png"), F_OK), 0);
-    assert_int_not_equal(access(path_of("x.pdf"), F_OK), 0);
+    assert_int_not_equal(access("x.png", F_OK), 0);
+    assert_int_not_equal(access("x.pdf", F_OK), 0);
 }
 
 TEST(a_full_disk_is_noticed)
@@ -186,11 +186,10 @@ TEST(a_full_disk_is_noticed)
     synthetic_init(&s, run_panels, RUN_PANELS);
     for (int i = 0; i < 3; i++) {
         fault f = {0};
-        assert_int_equal(symlink("/dev/full", path_of(names[i])), 0);
-        assert_int_equal(figure_write(&s.figure.figure, path_of(names[i]), &f),
-                         STATUS_CANNOT_WRITE);
+        assert_int_equal(symlink("/dev/full", names[i]), 0);
+        assert_int_equal(figure_write(&s.figure.figure, names[i], &f), STATUS_CANNOT_WRITE);
         assert_true(strlen(f.text) > 10);
     }
 }
 
-ALL_BETWEEN(make_work_folder, remove_work_folder)
+ALL_BETWEEN(enter_folder, leave_plot_folder)

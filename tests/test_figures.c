@@ -3,23 +3,11 @@
 #include "tests/check.h"
 
 #include <cairo.h>
-#include <unistd.h>
 
 #include "render/figures/figures.h"
 #include "render/figures/report.h"
 #include "render/page/text.h"
 #include "tests/rect_check.h"
-
-static char folder[64];
-
-static char *path_of(const char *name)
-{
-    static char paths[4][256];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
 
 static char *read_file(const char *path, size_t *length)
 {
@@ -97,11 +85,11 @@ TEST(figures_fit_a_column_of_85_mm)
 {
     static const char *const ids[] = {"2.1", "2.2", "3.4", "3.11", "4.3", "4.6",
                                       "5.2", "5.6", "5.7", "T3.1", "T4.2"};
-    for (size_t i = 0; i < sizeof ids / sizeof ids[0]; i++) {
-        artwork drawn = open_figure(ids[i], (figure_options){.look.width = 85});
+    for (EACH(c, ids)) {
+        artwork drawn = open_figure(*c, (figure_options){.look.width = 85});
         check_close(drawn.width, 85 / 25.4 * 72, 1e-6);
         artwork_finish(&drawn);
-        expect_tidy(ids[i], (figure_options){.look.width = 85});
+        expect_tidy(*c, (figure_options){.look.width = 85});
     }
 }
 
@@ -188,14 +176,14 @@ static char *csv_of(const char *id)
     size_t length;
     const thesis_figure *which = thesis_figure_find(id);
     char name[64];
-    fail_if(draw_plain(id, path_of("csv"), "svg", &f) != STATUS_OK, "%s: %s", id, f.text);
+    fail_if(draw_plain(id, "csv", "svg", &f) != STATUS_OK, "%s: %s", id, f.text);
     snprintf(name, sizeof name, "csv/%s.csv", which->file);
-    return read_file(path_of(name), &length);
+    return read_file(name, &length);
 }
 
 TEST(recorded_signals_stand_beside_their_picture)
 {
-    char *csv = csv_of("3.4");
+    SCOPED(free_kept) char *csv = csv_of("3.4");
     assert_non_null(strstr(csv, ",force,"));
     assert_non_null(strstr(csv, ",force corrected,"));
     assert_non_null(strstr(csv, "mark,contact,"));
@@ -204,18 +192,17 @@ TEST(recorded_signals_stand_beside_their_picture)
     assert_non_null(strstr(csv, ",calculated_force,"));
     assert_null(strstr(csv, "corrected"));
     assert_non_null(strstr(csv, "mark,force mode,"));
-    free(csv);
 }
 
 static status overlaid(const char *csv, const char *id, fault *f)
 {
-    FILE *stream = fopen(path_of("measured.csv"), "w");
+    FILE *stream = fopen("measured.csv", "w");
     assert_non_null(stream);
     fputs(csv, stream);
     fclose(stream);
-    SCOPED(free_kept) char *path = strdup(path_of("measured.csv"));
+    SCOPED(free_kept) char *path = strdup("measured.csv");
     const figure_options o = {.overlay = path};
-    status code = figure_draw(id, &o, path_of("overlaid"), "svg", NULL, f);
+    status code = figure_draw(id, &o, "overlaid", "svg", NULL, f);
     return code;
 }
 
@@ -225,13 +212,13 @@ TEST(reference_data_lie_over_signals)
     size_t length;
     const char *good = "time[s],force [N],remark\n0.35,1.5,first\r\n0.4,,missing\n\n0.45,0.25,\n";
     assert_int_equal(overlaid(good, "3.4", &f), STATUS_OK);
-    char *csv = read_file(path_of("overlaid/fig-3-4.csv"), &length);
+    char *csv = read_file("overlaid/fig-3-4.csv", &length);
     assert_non_null(strstr(csv, ",force measured.csv,0.35,1.5\n"));
     assert_non_null(strstr(csv, ",force measured.csv,0.45,0.25\n"));
     free(csv);
     // panels that the data do not speak of stay as they are
     assert_int_equal(overlaid(good, "3.2", &f), STATUS_OK);
-    csv = read_file(path_of("overlaid/fig-3-2.csv"), &length);
+    csv = read_file("overlaid/fig-3-2.csv", &length);
     assert_null(strstr(csv, "measured.csv"));
     free(csv);
     assert_int_equal(overlaid("time[s],force[N]\n0.3,x1\n", "3.4", &f), STATUS_BAD_ARGUMENT);
@@ -241,7 +228,8 @@ TEST(reference_data_lie_over_signals)
     assert_int_equal(overlaid("", "3.4", &f), STATUS_BAD_ARGUMENT);
     assert_int_equal(overlaid(good, "4.1", &f), STATUS_BAD_ARGUMENT);
     const figure_options missing = {.overlay = "/nowhere/data.csv"};
-    assert_int_equal(figure_draw("3.4", &missing, folder, "svg", NULL, &f), STATUS_CANNOT_READ);
+    assert_int_equal(figure_draw("3.4", &missing, test_folder, "svg", NULL, &f),
+                     STATUS_CANNOT_READ);
     assert_non_null(strstr(f.text, "/nowhere/data.csv"));
 }
 
@@ -280,7 +268,7 @@ TEST(the_map_tells_good_pairs_from_bad)
 
 TEST(table_cells_are_right)
 {
-    char *csv = csv_of("T4.1");
+    SCOPED(free_kept) char *csv = csv_of("T4.1");
     const char *group = "Peak force by the energy principle (N),thesis";
     check_close(number_in_csv(csv, group, 2), 23.93, 0);
     check_close(number_in_csv(csv, group, 5), 82.92, 0);
@@ -292,7 +280,6 @@ TEST(table_cells_are_right)
     const char *row = strstr(csv, "linear acceleration");
     assert_non_null(row);
     assert_non_null(strstr(row, "0.559\u2009ms"));
-    free(csv);
 }
 
 // ---- files
@@ -305,7 +292,7 @@ static void expect_same_file(const char *name)
     snprintf(first, sizeof first, "once/%s", name);
     snprintf(second, sizeof second, "twice/%s", name);
     SCOPED(free_kept)
-    char *a = read_file(path_of(first), &lengths[0]), *b = read_file(path_of(second), &lengths[1]);
+    char *a = read_file(first, &lengths[0]), *b = read_file(second, &lengths[1]);
     assert_int_equal(lengths[0], lengths[1]);
     assert_memory_equal(a, b, lengths[0]);
 }
@@ -318,7 +305,7 @@ TEST(a_second_run_writes_the_same_bytes)
         // in another order, so that nothing drawn before shows
         for (int i = 0; i < 5; i++) {
             const char *id = ids[pass == 0 ? i : 4 - i];
-            DONE(draw_plain(id, path_of(folders[pass]), "png,pdf,svg", &f));
+            DONE(draw_plain(id, folders[pass], "png,pdf,svg", &f));
         }
     }
     for (int i = 0; i < 5; i++) {
@@ -337,9 +324,9 @@ TEST(fonts_are_embedded_as_outlines)
     for (size_t i = 0; i < 3; i++) {
         size_t length;
         char name[64];
-        DONE(draw_plain(ids[i], path_of("fonts"), "pdf", &f));
+        DONE(draw_plain(ids[i], "fonts", "pdf", &f));
         snprintf(name, sizeof name, "fonts/%s.pdf", thesis_figure_find(ids[i])->file);
-        SCOPED(free_kept) char *pdf = read_file(path_of(name), &length);
+        SCOPED(free_kept) char *pdf = read_file(name, &length);
         assert_null(memmem(pdf, length, "/Type3", 6));
         assert_non_null(memmem(pdf, length, "/FontFile2", 10));
     }
@@ -371,11 +358,11 @@ TEST(figures_are_asked_for_by_id)
     assert_null(thesis_figure_find("3.99"));
     assert_ptr_equal(thesis_figure_find("t4.1"), thesis_figure_find("T4.1"));
     assert_ptr_equal(thesis_figure_find("fig-3-4"), thesis_figure_find("3.4"));
-    assert_int_equal(draw_plain("3.99", folder, "png", &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(draw_plain("3.99", test_folder, "png", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "3.99"));
-    assert_int_equal(draw_plain("3.4", folder, "png,gif", &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(draw_plain("3.4", test_folder, "png,gif", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "gif"));
-    assert_int_equal(draw_plain("3.4", path_of("a/b/c"), "png", &f), STATUS_CANNOT_WRITE);
+    assert_int_equal(draw_plain("3.4", "a/b/c", "png", &f), STATUS_CANNOT_WRITE);
 }
 
 // ---- the report
@@ -384,8 +371,8 @@ TEST(figures_are_asked_for_by_id)
 TEST(the_report_stands_alone)
 {
     size_t length;
-    DONE(report_write(path_of("report"), NULL, 0, NULL, &f));
-    char *html = read_file(path_of("report/report.html"), &length);
+    DONE(report_write("report", NULL, 0, NULL, &f));
+    char *html = read_file("report/report.html", &length);
     for (const char *at = strstr(html, "src="); at != NULL; at = strstr(at + 1, "src=")) {
         assert_int_equal(strncmp(at, "src=\"data:image/png;base64,", 27), 0);
     }
@@ -405,7 +392,7 @@ TEST(the_report_stands_alone)
     assert_non_null(first);
     assert_non_null(strstr(html, " id=\"i1-"));
     free(html);
-    SCOPED(free_kept) char *pdf = read_file(path_of("report/report.pdf"), &length);
+    SCOPED(free_kept) char *pdf = read_file("report/report.pdf", &length);
     assert_non_null(memmem(pdf, length, "%PDF-", 5));
     assert_null(memmem(pdf, length, "/Type3", 6));
     assert_non_null(memmem(pdf, length, "/Outlines", 9));
@@ -421,20 +408,10 @@ TEST(a_report_without_a_folder_is_complained_about)
 
 // ---------------------------------------------------------------------------------------------------
 
-static int make_work_folder(void **state)
+static int leave_figures(void **state)
 {
-    (void)state;
-    snprintf(folder, sizeof folder, "/tmp/impactlab-figures-XXXXXX");
-    return mkdtemp(folder) == NULL;
-}
-
-static int remove_work_folder(void **state)
-{
-    (void)state;
-    char command[128];
     text_release();
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    return system(command);
+    return leave_folder(state);
 }
 
-ALL_BETWEEN(make_work_folder, remove_work_folder)
+ALL_BETWEEN(enter_folder, leave_figures)

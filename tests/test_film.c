@@ -95,11 +95,10 @@ TEST(test_frames)
     film_options options = small_film();
     fault f = {0};
     char path[256];
-    snprintf(path, sizeof path, "%s", in_folder("frames"));
+    snprintf(path, sizeof path, "%s", "frames");
     fail_if(film_of(&r, &options, path, &f) != STATUS_OK, "%s", f.text);
     assert_int_equal(count_files(path), 5);
-    cairo_surface_t *frame =
-        cairo_image_surface_create_from_png(in_folder("frames/frame-00003.png"));
+    cairo_surface_t *frame = cairo_image_surface_create_from_png("frames/frame-00003.png");
     assert_int_equal(cairo_image_surface_get_width(frame), 320);
     assert_int_equal(cairo_image_surface_get_height(frame), 240);
     check_below(100, count_pixels(frame, count_beam));
@@ -113,8 +112,9 @@ static void expect_same_frames(const char *one, const char *two, int count)
 {
     for (int i = 1; i <= count; i++) {
         char command[600], first[256];
-        snprintf(first, sizeof first, "%s/%s/frame-%05d.png", folder, one, i);
-        snprintf(command, sizeof command, "cmp %s %s/%s/frame-%05d.png", first, folder, two, i);
+        snprintf(first, sizeof first, "%s/%s/frame-%05d.png", test_folder, one, i);
+        snprintf(command, sizeof command, "cmp %s %s/%s/frame-%05d.png", first, test_folder, two,
+                 i);
         assert_int_equal(system(command), 0);
     }
 }
@@ -132,7 +132,7 @@ TEST(test_threads)
         for (int threads = 1; threads <= 2; threads++) {
             film_options options = small_film();
             options.threads = threads;
-            DONE(film_write(runs, k == 0 ? 1 : 3, &options, in_folder(names[k][threads - 1]), &f));
+            DONE(film_write(runs, k == 0 ? 1 : 3, &options, names[k][threads - 1], &f));
         }
         expect_same_frames(names[k][0], names[k][1], 5);
     }
@@ -148,9 +148,8 @@ TEST(test_split_screen)
     const film_run runs[2] = {{&r[0].scenario, &r[0].result, "one"},
                               {&r[1].scenario, &r[1].result, "two"}};
     film_options options = small_film();
-    DONE(film_write(runs, 2, &options, in_folder("split"), &f));
-    cairo_surface_t *frame =
-        cairo_image_surface_create_from_png(in_folder("split/frame-00003.png"));
+    DONE(film_write(runs, 2, &options, "split", &f));
+    cairo_surface_t *frame = cairo_image_surface_create_from_png("split/frame-00003.png");
     assert_int_equal(cairo_image_surface_get_width(frame), 320);
     int beam[2] = {0, 0};
     for (int y = 0; y < 160; y++) {
@@ -192,9 +191,8 @@ TEST(test_one_scale_of_force)
     options.width = 640;
     options.height = 480;
     options.view.plain = true;
-    DONE(film_write(runs, 2, &options, in_folder("scale"), &f));
-    cairo_surface_t *frame =
-        cairo_image_surface_create_from_png(in_folder("scale/frame-00005.png"));
+    DONE(film_write(runs, 2, &options, "scale", &f));
+    cairo_surface_t *frame = cairo_image_surface_create_from_png("scale/frame-00005.png");
     const int one = arrow_of_view(frame, false), four = arrow_of_view(frame, true);
     check_below(0, one);
     check_below(2.5 * one, four);
@@ -208,7 +206,7 @@ TEST(test_film)
     recorded r = record("corrected/plane-wall");
     film_options options = small_film();
     fault f = {0};
-    if (film_file_check(in_folder("film.mp4"), &f) != STATUS_OK) {
+    if (film_file_check("film.mp4", &f) != STATUS_OK) {
         assert_non_null(strstr(f.text, "install the package ffmpeg"));
         forget(&r);
         skip();
@@ -216,8 +214,8 @@ TEST(test_film)
     const char *const names[] = {"film.mp4", "film.webm", "film.gif", "film.webp"};
     const char *const marks[] = {"ftypisom", "webm", "GIF89a", "WEBPVP8X"};
     for (int i = 0; i < 4; i++) {
-        fail_if(film_of(&r, &options, in_folder(names[i]), &f) != STATUS_OK, "%s", f.text);
-        check_contains(in_folder(names[i]), marks[i]);
+        fail_if(film_of(&r, &options, names[i], &f) != STATUS_OK, "%s", f.text);
+        check_contains(names[i], marks[i]);
     }
     forget(&r);
 }
@@ -226,12 +224,12 @@ TEST(test_film)
 static char *with_encoder(const char *text)
 {
     char path[256], *old = strdup(getenv("PATH"));
-    FILE *stream = fopen(in_folder("ffmpeg"), "w");
+    FILE *stream = fopen("ffmpeg", "w");
     assert_non_null(stream);
     fputs(text, stream);
     fclose(stream);
-    assert_int_equal(chmod(in_folder("ffmpeg"), 0755), 0);
-    snprintf(path, sizeof path, "%s:/bin:/usr/bin", folder);
+    assert_int_equal(chmod("ffmpeg", 0755), 0);
+    snprintf(path, sizeof path, "%s:/bin:/usr/bin", test_folder);
     setenv("PATH", path, 1);
     return old;
 }
@@ -240,7 +238,7 @@ static void restore_encoder(char *old)
 {
     setenv("PATH", old, 1);
     free(old);
-    unlink(in_folder("ffmpeg"));
+    unlink("ffmpeg");
 }
 
 // An encoder that gives up is quoted, and nothing of the film is left.
@@ -250,14 +248,14 @@ TEST(test_encoder_fails)
     film_options options = small_film();
     fault f = {0};
     char *old = with_encoder("#!/bin/sh\necho 'no such codec' >&2\nexit 1\n");
-    int before = count_files(folder);
-    assert_int_equal(film_of(&r, &options, in_folder("bad.mp4"), &f), STATUS_CANNOT_WRITE);
+    int before = count_files(test_folder);
+    assert_int_equal(film_of(&r, &options, "bad.mp4", &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "no such codec"));
-    assert_int_equal(count_files(folder), before);
+    assert_int_equal(count_files(test_folder), before);
     restore_encoder(old);
     old = with_encoder("#!/bin/sh\n");
     setenv("PATH", "/nowhere", 1);
-    assert_int_equal(film_of(&r, &options, in_folder("bad.mp4"), &f), STATUS_CANNOT_WRITE);
+    assert_int_equal(film_of(&r, &options, "bad.mp4", &f), STATUS_CANNOT_WRITE);
     assert_non_null(strstr(f.text, "install the package ffmpeg"));
     restore_encoder(old);
 }
@@ -269,10 +267,10 @@ TEST(test_gif_as_asked)
     film_options options = small_film();
     char *old = with_encoder("#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
                              "printf 'GIF89a %s;' \"$*\" >\"${last#file:}\"\n");
-    DONE(film_of(&r, &options, in_folder("asked.gif"), &f));
+    DONE(film_of(&r, &options, "asked.gif", &f));
     restore_encoder(old);
     char words[4096] = "";
-    FILE *stream = fopen(in_folder("asked.gif"), "r");
+    FILE *stream = fopen("asked.gif", "r");
     assert_non_null(stream);
     assert_non_null(fgets(words, sizeof words, stream));
     fclose(stream);
@@ -299,10 +297,10 @@ TEST(test_interrupted)
     options.progress = stop_soon;
     options.stop = &stopped;
     char *old = with_encoder("#!/bin/sh\ncat >/dev/null\n");
-    int before = count_files(folder);
-    assert_int_equal(film_of(&r, &options, in_folder("half.mp4"), &f), STATUS_STOPPED);
+    int before = count_files(test_folder);
+    assert_int_equal(film_of(&r, &options, "half.mp4", &f), STATUS_STOPPED);
     assert_non_null(strstr(f.text, "interrupted after 2 of 5"));
-    assert_int_equal(count_files(folder), before);
+    assert_int_equal(count_files(test_folder), before);
     restore_encoder(old);
 }
 
@@ -325,22 +323,22 @@ TEST(test_encoder_complains)
     fault f = {0};
 
     // a film that was there before stays
-    FILE *kept = fopen(in_folder("kept.mp4"), "w");
+    FILE *kept = fopen("kept.mp4", "w");
     assert_non_null(kept);
     fputs("old", kept);
     fclose(kept);
     for (int i = 0; i < 3; i++) {
         char *old = with_encoder(cases[i].script), text[8] = "";
-        assert_int_equal(film_of(&r, &options, in_folder("kept.mp4"), &f), STATUS_CANNOT_WRITE);
+        assert_int_equal(film_of(&r, &options, "kept.mp4", &f), STATUS_CANNOT_WRITE);
         restore_encoder(old);
         assert_non_null(strstr(f.text, cases[i].said));
-        kept = fopen(in_folder("kept.mp4"), "r");
+        kept = fopen("kept.mp4", "r");
         assert_non_null(kept);
         assert_non_null(fgets(text, sizeof text, kept));
         fclose(kept);
         assert_string_equal(text, "old");
     }
-    unlink(in_folder("kept.mp4"));
+    unlink("kept.mp4");
 }
 
 static void stop_now(int number)
@@ -362,11 +360,11 @@ TEST(test_encoder_hangs)
     sigaction(SIGALRM, &act, NULL);
     for (int i = 0; i < 2; i++) {
         char *old = with_encoder(scripts[i]);
-        int before = count_files(folder);
+        int before = count_files(test_folder);
         stopped = 0;
         alarm(1);
-        assert_int_equal(film_of(&r, &options, in_folder("half.mp4"), &f), STATUS_STOPPED);
-        assert_int_equal(count_files(folder), before);
+        assert_int_equal(film_of(&r, &options, "half.mp4", &f), STATUS_STOPPED);
+        assert_int_equal(count_files(test_folder), before);
         restore_encoder(old);
     }
 }
@@ -376,13 +374,13 @@ TEST(test_film_refused)
     SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
     fault f = {0};
-    assert_int_equal(film_file_check(in_folder("film.avi"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(film_file_check("film.avi", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, ".webm"));
     options.width = 321;
-    assert_int_equal(film_of(&r, &options, in_folder("odd.mp4"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(film_of(&r, &options, "odd.mp4", &f), STATUS_BAD_ARGUMENT);
     options = small_film();
     options.seconds = -1;
-    assert_int_equal(film_of(&r, &options, in_folder("odd.mp4"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(film_of(&r, &options, "odd.mp4", &f), STATUS_BAD_ARGUMENT);
 }
 
-ALL_BETWEEN(set_up, tear_down)
+ALL_BETWEEN(enter_folder, tear_down)

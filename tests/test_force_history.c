@@ -63,7 +63,7 @@ TEST(a_rising_force_settles_where_it_enters_the_band)
 TEST(the_band_is_entered_within_a_step)
 {
     // up and down again to nothing: 4 t (1 - t) = 0.05 f where the band round f ends from below
-    force_history h = history_of(parabola);
+    SCOPED(force_history_finish) force_history h = history_of(parabola);
     assert_true(isnan(force_settled_since(&h, 0.5)));
     force_history_finish(&h);
     force_step bump = {0, 1, 1, 1, 1 + 2.0 / 3 * 0.2}; // rises by 0.2 to its middle
@@ -71,7 +71,6 @@ TEST(the_band_is_entered_within_a_step)
     assert_int_equal(force_history_add(&h, bump), STATUS_OK);
     // 1 + 0.8 s (1 - s) = 1.05 at the later root
     check_close(force_settled_since(&h, 1), 0.5 + sqrt(0.25 - 0.05 / 0.8), 1e-12);
-    force_history_finish(&h);
 }
 
 // A step with the parabola first + slope s + curve s^2 of its share s.
@@ -161,7 +160,7 @@ TEST(from_the_instant_found_the_force_stays)
     random_seed(&g, 6);
     int within = 0, between = 0;
     for (int round = 0; round < 300; round++) {
-        force_history h;
+        SCOPED(force_history_finish) force_history h;
         SCOPED(force_history_finish) force_history scaled;
         force_history_init(&h);
         force_history_init(&scaled);
@@ -211,7 +210,6 @@ TEST(from_the_instant_found_the_force_stays)
                 between++;
             }
         }
-        force_history_finish(&h);
     }
     assert_true(within > 50 && between > 5);
 }

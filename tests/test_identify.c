@@ -5,8 +5,6 @@
 //   test_identify SEEDS
 #include "src/study/identify.h"
 
-#include <unistd.h>
-
 #include "src/base/dense.h"
 #include "src/rig/sensors.h"
 #include "src/run/loop.h"

@@ -7,11 +7,7 @@
 // What json_write writes of a value, on the heap; takes over the value.
 static char *written(json_t *value)
 {
-    char *text = NULL;
-    size_t length = 0;
-    FILE *stream = open_memstream(&text, &length);
-    json_write(stream, value);
-    fclose(stream);
+    WRITTEN(text, json_write(stream, value));
     json_decref(value);
     return text;
 }
@@ -33,6 +29,7 @@ TEST(json_is_what_jansson_reads)
 
 TEST(text_without_utf8_is_made_readable)
 {
+    SCOPED(free_kept)
     char *text = written(json_text("a\xff\x80\x7f"
                                    "b"));
     assert_string_equal(text, "\"a??\x7f"
@@ -40,18 +37,16 @@ TEST(text_without_utf8_is_made_readable)
     free(text);
     text = written(json_text("\u00e9"));
     assert_string_equal(text, "\"\u00e9\"\n");
-    free(text);
 }
 
 TEST(numbers_that_are_missing_are_null)
 {
     const double values[] = {1.5, (double)NAN, (double)INFINITY, 0.1};
-    char *text = written(json_numbers(values, 4));
+    SCOPED(free_kept) char *text = written(json_numbers(values, 4));
     assert_string_equal(text, "[1.5, null, null, 0.1]\n");
     free(text);
     text = written(json_numbers(NULL, 0));
     assert_string_equal(text, "[]\n");
-    free(text);
 }
 
 TEST(objects_have_a_line_a_member)

@@ -3,7 +3,7 @@
 
 #include "tests/check.h"
 
-static k2_table read(const char *text)
+static k2_table table_of(const char *text)
 {
     k2_table t;
     fault f = {.text = ""};
@@ -13,7 +13,7 @@ static k2_table read(const char *text)
 
 TEST(between_entries_lie_straight_lines)
 {
-    const k2_table t = read("0.5:4.8 1:5 4:0.5");
+    const k2_table t = table_of("0.5:4.8 1:5 4:0.5");
     assert_int_equal(t.count, 3);
     check_close(k2_table_at(&t, 0.5), 4.8, 0);
     check_close(k2_table_at(&t, 0.75), 4.9, 1e-15);
@@ -22,14 +22,14 @@ TEST(between_entries_lie_straight_lines)
     check_close(k2_table_at(&t, 4), 0.5, 0);
 
     // an entry's own force gives its own stiffness, to the last bit
-    const k2_table exact = read("0:4.9 1:0.1 2:3");
+    const k2_table exact = table_of("0:4.9 1:0.1 2:3");
     check_close(k2_table_at(&exact, 0), 4.9, 0);
     check_close(k2_table_at(&exact, 1), 0.1, 0);
 }
 
 TEST(beyond_the_ends_stay_the_last_values)
 {
-    const k2_table t = read("0.5:4.8 4:0.5"), one = read("2:3");
+    const k2_table t = table_of("0.5:4.8 4:0.5"), one = table_of("2:3");
     check_close(k2_table_at(&t, 0), 4.8, 0);
     check_close(k2_table_at(&t, 1e9), 0.5, 0);
     check_close(k2_table_at(&one, 0), 3, 0);
@@ -39,7 +39,7 @@ TEST(beyond_the_ends_stay_the_last_values)
 TEST(it_is_written_as_it_was_read)
 {
     char text[64], small[8];
-    const k2_table t = read("  0.5:4.8   1:5 "), none = read("");
+    const k2_table t = table_of("  0.5:4.8   1:5 "), none = table_of("");
     assert_true(k2_table_write(&t, text, sizeof text));
     assert_string_equal(text, "0.5:4.8 1:5");
     assert_false(k2_table_write(&t, small, sizeof small));
@@ -59,11 +59,10 @@ TEST(what_is_no_table_is_refused)
     static const char *const wrong[] = {"1",     "1:",      ":5",      "1:0",     "1:-2",
                                         "-1:5",  "2:5 1:5", "1:5 1:6", "1:5,2:6", "a:b",
                                         "1:nan", "1:5 0:6", "1:5 x",   "inf:5"};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (EACH(c, wrong)) {
         k2_table t;
         fault f = {.text = ""};
-        fail_if(k2_table_read(&t, wrong[i], &f) == STATUS_OK, "'%s' is taken for a table",
-                wrong[i]);
+        fail_if(k2_table_read(&t, *c, &f) == STATUS_OK, "'%s' is taken for a table", *c);
         assert_string_equal(f.path, "control.k2_table");
     }
 

@@ -16,11 +16,11 @@ TEST(test_opening_loses_nothing)
 {
     static const char *const ways[] = {"]", "[", "o/three<Enter>", ":open thesis/fig-3-4<Enter>",
                                        ":lesson hybrid-law<Enter>"};
-    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+    for (EACH(c, ways)) {
         OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, ":seek 0.1<Enter>:set motor.voltage 0.5<Enter>b:seek 0.3<Enter>");
         const double changed = peak(&ex);
-        press(&ex, ways[i]);
+        press(&ex, *c);
         assert_string_not_equal(ex.state.session.base.name, "corrected/first-impact");
         assert_int_equal(ex.state.session.input_count, 0);
         assert_int_equal(ex.state.pinned.count, 1);
@@ -52,10 +52,8 @@ TEST(test_openings_are_undone_one_by_one)
         press(&ex, "u");
         assert_int_equal(strcmp(ex.state.session.base.name, "thesis/fig-3-4") == 0, !was_printed);
     }
-    press(&ex, "u");
-    assert_shows(&ex, "nothing to undo");
-    press(&ex, "UU:open corrected/three-links<Enter>U");
-    assert_shows(&ex, "nothing to redo");
+    press_shows(&ex, "u", "nothing to undo");
+    press_shows(&ex, "UU:open corrected/three-links<Enter>U", "nothing to redo");
 }
 
 // Two scenarios side by side: two keys, of at most six.
@@ -69,8 +67,7 @@ TEST(test_a_pinned_run_of_another_scenario_is_drawn_and_taken)
         assert_shows_at(&ex, sizes[i][0], sizes[i][1], " first-impact");
     }
     const double second = peak(&ex);
-    press(&ex, "R");
-    assert_shows(&ex, "of corrected/first-impact");
+    press_shows(&ex, "R", "of corrected/first-impact");
     press(&ex, "<Enter>");
     assert_string_equal(ex.state.session.base.name, "corrected/first-impact");
     check_close(peak(&ex), first, 0);
@@ -100,12 +97,12 @@ TEST(test_leaving_asks_for_everything_that_would_be_lost)
     } cases[] = {{"b", "1 pinned run would"},
                  {"b:set arm.k2 5<Enter>b", "1 change and 2 pinned runs would"},
                  {":set arm.k2 5<Enter>]", "1 change would"}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         OPEN_EXPLORER(ex, "corrected/first-impact");
-        press(&ex, cases[i].keys);
+        press(&ex, c->keys);
         press(&ex, "q");
         assert_false(ex.state.quit);
-        assert_shows(&ex, cases[i].lost);
+        assert_shows(&ex, c->lost);
         press(&ex, "q");
         assert_true(ex.state.quit);
     }
@@ -247,14 +244,11 @@ TEST(test_a_limit_is_asked_for_in_few_keys)
     check_close(ex.state.session.now, 0.3, 1e-12);
 
     // none, nonsense, and a range of one's own
-    press(&ex, ":solve voltage=0.1:0.2 peak_force_N<lt>2<Enter>");
-    assert_shows(&ex, "no limit of motor.voltage from 0.1 to 0.2 V");
-    press(&ex, ":solve voltage peak_froce_N<lt>2<Enter>");
-    assert_shows(&ex, "did you mean 'peak_force_N'?");
-    press(&ex, ":solve control.law peak_force_N<lt>2<Enter>");
-    assert_true(ex.state.message.warning);
-    press(&ex, ":solve voltage<Enter>");
-    assert_shows(&ex, "solve takes");
+    press_shows(&ex, ":solve voltage=0.1:0.2 peak_force_N<lt>2<Enter>",
+                "no limit of motor.voltage from 0.1 to 0.2 V");
+    press_shows(&ex, ":solve voltage peak_froce_N<lt>2<Enter>", "did you mean 'peak_force_N'?");
+    press_warns(&ex, ":solve control.law peak_force_N<lt>2<Enter>");
+    press_shows(&ex, ":solve voltage<Enter>", "solve takes");
     assert_int_equal(ex.state.pinned.count, 1);
 }
 
@@ -268,8 +262,7 @@ TEST(test_why_is_answered_on_the_screen)
         assert_shows_at(&ex, sizes[i][0], sizes[i][1], "controller");
         assert_shows_at(&ex, sizes[i][0], sizes[i][1], "0.3662");
     }
-    press(&ex, "<Esc>");
-    assert_hides(&ex, "Driven by");
+    press_shows(&ex, "<Esc>", "!Driven by");
 }
 
 // F1 explains what one stands on; the palette knows other words for it.
@@ -287,11 +280,11 @@ TEST(test_help_is_where_one_stands)
         {"export", ":save"}, {"picture", ":scene"}, {"bounce", "wall.restitution"},
         {"goal", ":solve"},  {"below", ":solve"},
     };
-    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+    for (EACH(c, words)) {
         char keys[64];
-        snprintf(keys, sizeof keys, "<C-p>%s", words[i][0]);
+        snprintf(keys, sizeof keys, "<C-p>%s", (*c)[0]);
         press(&ex, keys);
-        assert_shows(&ex, words[i][1]);
+        assert_shows(&ex, (*c)[1]);
         press(&ex, "<Esc>");
     }
 }
@@ -318,8 +311,7 @@ TEST(test_own_panes_stand_side_by_side)
     for (int i = 0; i < PANES + 5; i++) {
         press(&ex, ":trace force<Enter>");
     }
-    press(&ex, ":trace 25<Enter>");
-    assert_shows(&ex, "panes are numbered from 1 to 24");
+    press_shows(&ex, ":trace 25<Enter>", "panes are numbered from 1 to 24");
 }
 
 // t_f three steps shorter: at most five keys.

@@ -1,14 +1,10 @@
 // Keys bound by the user, the help page that shows them, and the settings that store them.
 #include "tests/explorer_on_screen.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 TEST(test_a_key_gets_another_command)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":key x step 5<Enter>");
-    assert_shows(&ex, "x does 'step 5' now, no longer 'extend'");
+    press_shows(&ex, ":key x step 5<Enter>", "x does 'step 5' now, no longer 'extend'");
     size_t before = ex.state.session.row;
     press(&ex, "x");
     assert_int_equal(ex.state.session.row, before + 5);
@@ -19,13 +15,10 @@ TEST(test_a_key_gets_another_command)
     assert_true(ex.state.panes.pane[4].shown);
     press(&ex, "<F1>");
     check_close(ex.state.session.now, 1, 1e-9);
-    press(&ex, ":key x<Enter>");
-    assert_shows(&ex, "x does 'step 5'");
+    press_shows(&ex, ":key x<Enter>", "x does 'step 5'");
     // taken back, then off, then back again
-    press(&ex, ":unkey x<Enter>");
-    assert_shows(&ex, "x does 'extend' again");
-    press(&ex, ":unkey x<Enter>x");
-    assert_shows(&ex, "'x' does nothing here");
+    press_shows(&ex, ":unkey x<Enter>", "x does 'extend' again");
+    press_shows(&ex, ":unkey x<Enter>x", "'x' does nothing here");
     check_close(ex.state.session.effective.parameters.run.duration, 1, 0);
     press(&ex, ":unkey x<Enter>x");
     check_close(ex.state.session.effective.parameters.run.duration, 2, 0);
@@ -49,11 +42,11 @@ TEST(test_wrong_keys_are_told)
         {"unkey \u00e4", "does nothing as it is", 6},
         {"kex x play", "did you mean key?", 0},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        assert_false(explorer_execute(&ex.state, wrong[i].line));
+    for (EACH(c, wrong)) {
+        assert_false(explorer_execute(&ex.state, c->line));
         const message_line result = ex.state.message;
-        fail_if(strstr(result.text, wrong[i].why) == NULL || result.at != wrong[i].at,
-                "'%s' at %d: %s", wrong[i].line, result.at, result.text);
+        fail_if(strstr(result.text, c->why) == NULL || result.at != c->at, "'%s' at %d: %s",
+                c->line, result.at, result.text);
     }
     assert_int_equal(ex.state.keys.count, 0);
     // a full table
@@ -71,12 +64,9 @@ TEST(test_the_help_shows_the_keys_that_are)
 {
     static help_line lines[600];
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":key w step 5<Enter>:unkey x<Enter>?<End>");
-    assert_shows(&ex, "Keys of your own");
-    assert_shows(&ex, "step 5 (the lab's: focus)");
-    assert_shows(&ex, "nothing (the lab's: extend)");
-    press(&ex, "<Home>");
-    assert_shows(&ex, "w Right l Left h PgDn PgUp");
+    press_shows(&ex, ":key w step 5<Enter>:unkey x<Enter>?<End>", "Keys of your own",
+                "step 5 (the lab's: focus)", "nothing (the lab's: extend)");
+    press_shows(&ex, "<Home>", "w Right l Left h PgDn PgUp");
     // no line is wider than the page, and every command is there, at any width
     for (int width = 26; width < 200; width += 7) {
         int count = help_write(&ex.state.keys, width, lines, 600);
@@ -98,42 +88,24 @@ TEST(test_the_help_shows_the_keys_that_are)
 }
 
 // A folder of settings of its own, with a file of them if there is text.
-static void make_settings(char *folder, const char *text)
+static void make_settings(const char *text)
 {
-    char path[128];
-    assert_non_null(mkdtemp(folder));
-    assert_int_equal(setenv("XDG_CONFIG_HOME", folder, 1), 0);
-    snprintf(path, sizeof path, "%s/impactlab", folder);
-    assert_int_equal(mkdir(path, 0700), 0);
-    snprintf(path, sizeof path, "%s/impactlab/lab", folder);
-    FILE *stream = text != NULL ? fopen(path, "w") : NULL;
-    if (stream != NULL) {
-        fputs(text, stream);
-        fclose(stream);
+    assert_int_equal(setenv("XDG_CONFIG_HOME", test_folder, 1), 0);
+    assert_int_equal(mkdir("impactlab", 0700), 0);
+    if (text != NULL) {
+        put_file("impactlab/lab", text);
     }
 }
 
-static void remove_settings(const char *folder)
+TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
 {
-    char path[128];
-    snprintf(path, sizeof path, "%s/impactlab/lab", folder);
-    unlink(path);
-    snprintf(path, sizeof path, "%s/impactlab", folder);
-    assert_int_equal(rmdir(path), 0);
-    assert_int_equal(rmdir(folder), 0);
-}
-
-TEST(test_settings_keep_looks_axes_and_keys)
-{
-    char folder[] = "/tmp/impactlab-settings-XXXXXX";
     explorer ex;
-    make_settings(folder, NULL);
+    make_settings(NULL);
     open_explorer(&ex, "corrected/first-impact");
     press(&ex,
           ":theme light<Enter>:glyphs blocks<Enter>:colours 16<Enter>:axis -0.5 2.25 1<Enter>");
     press(&ex, ":axis grow 3<Enter>:key <lt> step -5<Enter>:key C-t trace 5<Enter>:unkey x<Enter>");
-    press(&ex, ":key Space step 3<Enter>:key # mark<Enter>:remember<Enter>");
-    assert_shows(&ex, "settings kept");
+    press_shows(&ex, ":key Space step 3<Enter>:key # mark<Enter>:remember<Enter>", "settings kept");
     explorer_finish(&ex);
     open_explorer(&ex, "corrected/first-impact");
     explorer_load_settings(&ex);
@@ -155,20 +127,19 @@ TEST(test_settings_keep_looks_axes_and_keys)
     // without a choice of panes a controlled run shows its own
     assert_false(ex.state.panes.chosen);
     explorer_finish(&ex);
-    remove_settings(folder);
 }
 
-TEST(test_faults_in_settings_are_told_with_their_place)
+TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
 {
-    char folder[] = "/tmp/impactlab-settings-XXXXXX", wanted[128];
+    char wanted[128];
     explorer ex;
-    make_settings(folder, "# mine\n"
-                          "key x step 5\n"
-                          "key y stepp 5\n"
-                          "quit\n"
-                          "\n"
-                          "axis 2 1 1\n"
-                          "theme light\n");
+    make_settings("# mine\n"
+                  "key x step 5\n"
+                  "key y stepp 5\n"
+                  "quit\n"
+                  "\n"
+                  "axis 2 1 1\n"
+                  "theme light\n");
     open_explorer(&ex, "corrected/first-impact");
     explorer_load_settings(&ex);
     assert_false(ex.state.quit);
@@ -176,11 +147,10 @@ TEST(test_faults_in_settings_are_told_with_their_place)
     assert_string_equal(key_line(&ex.state.keys, 'x'), "step 5");
     assert_true(ex.state.message.warning);
     snprintf(wanted, sizeof wanted, "%s/impactlab/lab:3:7 is ignored: there is no command 'stepp'",
-             folder);
+             test_folder);
     assert_non_null(strstr(ex.state.message.text, wanted));
     assert_non_null(strstr(ex.state.message.text, "(and 2 more)"));
     assert_false(explorer_carry_out(&ex, "remember"));
     assert_non_null(strstr(ex.state.message.text, "left alone"));
     explorer_finish(&ex);
-    remove_settings(folder);
 }

@@ -88,12 +88,11 @@ TEST(a_transition_leads_where_it_is_told)
     } changes[] = {{"control.force", "1.4", 0.05, 1.4},
                    {"control.transition_time", "0.35", 0.05, 1},
                    {"control.transition_time", "0.06", 0.1, 1}};
-    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+    for (EACH(c, changes)) {
         SCOPED(run_finish) run_result r;
-        assert_int_equal(run_with_change(settings, changes[i].path, changes[i].text,
-                                         touch + changes[i].after, &r),
+        assert_int_equal(run_with_change(settings, c->path, c->text, touch + c->after, &r),
                          STATUS_OK);
-        check_relative(r.summary.steady_force_N, changes[i].force, 0.1);
+        check_relative(r.summary.steady_force_N, c->force, 0.1);
     }
 }
 
@@ -112,13 +111,12 @@ TEST(a_rate_set_at_the_start_is_that_of_the_rig)
 // A law that refuses a change says when.
 TEST(a_refused_change_says_its_time)
 {
-    run_result r;
+    SCOPED(run_finish) run_result r;
     assert_int_equal(run_with_change(SETTINGS("control.law=observer", "control.force=1"),
                                      "control.rate", "250", 0.3, &r),
                      STATUS_BAD_SCENARIO);
     assert_non_null(strstr(r.summary.message, "at t = 0.3 s the controller 'observer' refuses: "
                                               "it takes its model and its rate at the start only"));
-    run_finish(&r);
 }
 
 // A limit that changes during the run is passed to the forecast, too.

@@ -257,8 +257,8 @@ TEST(every_law_ends_near_its_force)
                                 "control.law=reverse-torque", "control.law=speed-limit",
                                 "control.law=discontinuous",  "control.law=recovering",
                                 "control.law=optimal",        "control.law=bang-bang"};
-    for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
-        summary s = rig_summary(SETTINGS(laws[i]));
+    for (EACH(c, laws)) {
+        summary s = rig_summary(SETTINGS(*c));
         check_close(s.steady_force_N, 1, 0.05);
     }
     summary integral = rig_summary(SETTINGS("control.law=force-integral", "run.duration=4"));
@@ -284,13 +284,13 @@ TEST(recovering_law_returns_to_position_control)
 TEST(impedance_gives_way_by_its_stiffness)
 {
     static const double stiffness[] = {5, 20, 40};
-    for (size_t i = 0; i < sizeof stiffness / sizeof stiffness[0]; i++) {
+    for (EACH(c, stiffness)) {
         char setting[64];
-        snprintf(setting, sizeof setting, "control.settings=stiffness=%g", stiffness[i]);
+        snprintf(setting, sizeof setting, "control.settings=stiffness=%g", *c);
         summary right = rig_summary(SETTINGS("control.law=impedance", "motor.stiction=0", setting));
         summary off = rig_summary(SETTINGS("control.law=impedance", "motor.stiction=0", setting,
                                            "belief.wall_error=0.02"));
-        double k = stiffness[i], beam = 4 * 4.92;
+        double k = *c, beam = 4 * 4.92;
         check_close(off.steady_force_N - right.steady_force_N, 0.02 * k * beam / (k + beam), 0.02);
         check_close(right.steady_error_N, 0, 0.02);
     }
@@ -360,19 +360,19 @@ TEST(settings_are_numbers_within_limits)
     };
     parameters p = rig_parameters(NULL);
     fault f = {0};
-    for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
+    for (EACH(one, right)) {
         double values[2] = {-99, -99};
-        strcpy(p.control.settings, right[i].text);
-        fail_if(controller_values(&law, &p, values, &f) != STATUS_OK, "'%s': %s", right[i].text,
+        strcpy(p.control.settings, one->text);
+        fail_if(controller_values(&law, &p, values, &f) != STATUS_OK, "'%s': %s", one->text,
                 f.text);
-        check_close(values[0], right[i].gain, 0);
-        check_close(values[1], right[i].gains, 0);
+        check_close(values[0], one->gain, 0);
+        check_close(values[1], one->gains, 0);
     }
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (EACH(c, wrong)) {
         double values[2];
-        strcpy(p.control.settings, wrong[i]);
+        strcpy(p.control.settings, *c);
         fail_if(controller_values(&law, &p, values, &f) != STATUS_BAD_SCENARIO,
-                "'%s' was taken: %g, %g", wrong[i], values[0], values[1]);
+                "'%s' was taken: %g, %g", *c, values[0], values[1]);
         assert_int_equal(f.code, STATUS_BAD_SCENARIO);
     }
 }
@@ -382,8 +382,8 @@ TEST(admittance_ends_with_the_force)
 {
     static const char *const wrong[] = {"belief.wall_error=0.02", "belief.k2_factor=0.75",
                                         "belief.torque_factor=0.85", "control.force=2"};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        summary s = rig_summary(SETTINGS("control.law=admittance", "run.duration=2", wrong[i]));
+    for (EACH(c, wrong)) {
+        summary s = rig_summary(SETTINGS("control.law=admittance", "run.duration=2", *c));
         check_close(s.steady_error_N, 0, 0.05);
         check_below(s.force_over_command_N, 0.2 * s.force_command_N);
     }

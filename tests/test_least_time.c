@@ -177,8 +177,8 @@ TEST(it_is_the_best_of_all_touches)
                  {"motor.voltage_limit=5", 0.5, 0.6}, {"motor.voltage_limit=3", 2, 8},
                  {"motor.voltage_limit=10", 0.05, 1}, {"motor.voltage_limit=2.5", 1, 1.05},
                  {"motor.voltage_limit=10", 9, 1}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        parameters p = fixture_parameters(SETTINGS(START, cases[i].limit, "arm.length=1.2"));
+    for (EACH(c, cases)) {
+        parameters p = fixture_parameters(SETTINGS(START, c->limit, "arm.length=1.2"));
         const double band = 0.05, most = motor_torque_per_volt(&p.motor) * p.motor.voltage_limit +
                                          p.motor.stiction;
         response steps[LONGEST + 1];
@@ -187,8 +187,8 @@ TEST(it_is_the_best_of_all_touches)
         assert_true(pressed_arm_model_of(&p, &m));
         const double s = sqrt(m.spring_force / m.mass_force);
         least_time_follow(&p, rest, 1, &at_rest[0], &at_rest[1]);
-        const double a = cases[i].force * (1 - band), b = cases[i].force * (1 + band);
-        const double peak = fmax(cases[i].peak, b);
+        const double a = c->force * (1 - band), b = c->force * (1 + band);
+        const double peak = fmax(c->peak, b);
 
         // later and later
         least_time best = {.total = HUGE_VAL};
@@ -225,7 +225,7 @@ TEST(it_is_the_best_of_all_touches)
             }
         }
 
-        const least_time t = least_time_of(&p, cases[i].force, band, cases[i].peak);
+        const least_time t = least_time_of(&p, c->force, band, c->peak);
         check_relative(t.total, best.total, 1e-7);
         check_close(t.touch, best.touch, 1e-12);
         check_close(t.press, best.press, 1e-5 * (1 + fabs(best.press)));

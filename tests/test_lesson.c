@@ -46,10 +46,10 @@ TEST(test_a_copy_keeps_its_lesson)
     static const char *const names[] = {"lessons/impulse-and-force", "lessons/two-predictors",
                                         "lessons/step-size",         "lessons/beta-and-gamma",
                                         "lessons/hybrid-law",        "lessons/what-a-sensor-sees"};
-    for (size_t n = 0; n < sizeof names / sizeof names[0]; n++) {
+    for (EACH(c, names)) {
         scenario s, copy;
         SCOPED(explorer_finish) explorer ex;
-        assert_int_equal(scenario_open(&s, names[n], fail_on_fault, NULL), STATUS_OK);
+        assert_int_equal(scenario_open(&s, *c, fail_on_fault, NULL), STATUS_OK);
         read_copy(&s, &copy);
         assert_int_equal(copy.lesson.step_count, s.lesson.step_count);
         assert_int_equal(copy.lesson.parameter_count, s.lesson.parameter_count);
@@ -63,7 +63,7 @@ TEST(test_a_copy_keeps_its_lesson)
 
         // and can be gone through like the lesson itself
         DONE(explorer_init(&ex, &copy, HUGE_VAL, &f));
-        go_through(&ex, names[n]);
+        go_through(&ex, *c);
         scenario_finish(&s);
     }
 }
@@ -97,7 +97,7 @@ TEST(test_every_step_fits_a_small_screen)
     const lesson *l = &ex.state.session.base.lesson;
     for (int i = 0; i < l->step_count; i++) {
         ex.state.lesson = (lesson_progress){.on = true, .step = i};
-        char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+        SCOPED(free_kept) char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
         assert_non_null(strstr(text, "lesson, step"));
         assert_non_null(strstr(text, "energy"));
         free(text);
@@ -106,7 +106,6 @@ TEST(test_every_step_fits_a_small_screen)
         const char *say = l->steps[i].say, *last = strrchr(say, ' ');
         text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
         assert_non_null(strstr(text, l->steps[i].choice_count == 0 ? last + 1 : say));
-        free(text);
     }
 }
 
@@ -147,20 +146,20 @@ TEST(test_what_a_step_names_is_on_the_screen)
         {"what-a-sensor-sees", 3, false, "fsr_rise_time"},
         {"what-a-sensor-sees", 5, false, "fsr_rise_time"},
     };
-    for (size_t n = 0; n < sizeof named / sizeof named[0]; n++) {
+    for (EACH(c, named)) {
         char name[64];
-        snprintf(name, sizeof name, "lessons/%s", named[n].lesson);
+        snprintf(name, sizeof name, "lessons/%s", c->lesson);
         OPEN_EXPLORER(ex, name);
         const lesson *l = &ex.state.session.base.lesson;
-        for (int i = 0; i < named[n].step - !named[n].done; i++) {
+        for (int i = 0; i < c->step - !c->done; i++) {
             for (int k = 0; k < l->steps[i].command_count; k++) {
                 assert_true(explorer_carry_out(&ex, l->steps[i].commands[k]));
             }
-            if (i < named[n].step - 1) {
+            if (i < c->step - 1) {
                 press(&ex, "y");
             }
         }
-        assert_shows_at(&ex, 80, 24, named[n].shown);
+        assert_shows_at(&ex, 80, 24, c->shown);
     }
 }
 
@@ -202,6 +201,5 @@ TEST(test_wrong_answers_are_not_taken)
     assert_true(ex.state.lesson.on);
     press(&ex, ":lesson off<Enter>");
     assert_false(ex.state.lesson.on);
-    press(&ex, ":lesson no-such<Enter>");
-    assert_true(ex.state.message.warning);
+    press_warns(&ex, ":lesson no-such<Enter>");
 }

@@ -146,13 +146,12 @@ TEST(what_has_no_linear_form_is_refused)
         {"arm.links=65", "64 links", LINEAR_FREE},
         {"wall.contact=hunt-crossley wall.stiffness=1e6 motor.voltage=0", "Hunt", LINEAR_STUCK},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        SCOPED(scenario_finish) scenario s = opened(ROUND, cases[i].changes);
+    for (EACH(c, cases)) {
+        SCOPED(scenario_finish) scenario s = opened(ROUND, c->changes);
         linear_arm l;
         fault f = {.text = ""};
-        assert_int_equal(linear_arm_init(&l, &s.parameters, cases[i].place, &f),
-                         STATUS_BAD_ARGUMENT);
-        assert_non_null(strstr(f.text, cases[i].says));
+        assert_int_equal(linear_arm_init(&l, &s.parameters, c->place, &f), STATUS_BAD_ARGUMENT);
+        assert_non_null(strstr(f.text, c->says));
     }
     linear_arm stuck = linearised(ROUND, "", LINEAR_STUCK);
     assert_int_equal(stuck.system.states, 0);

@@ -46,15 +46,15 @@ TEST(limits_are_those_found_otherwise)
         {"compare/sampling-rate", IDEAL "control.delay_periods=0", "control.rate", 60, 120, 88.5},
         {"compare/force-pd", "control.rate=200", "control.force_gain", 1, 8, 4.12},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        SCOPED(scenario_finish) scenario s = opened(cases[i].name, cases[i].changes);
+    for (EACH(c, cases)) {
+        SCOPED(scenario_finish) scenario s = opened(c->name, c->changes);
         char range[64], *vary[] = {range};
         SCOPED(sweep_finish) sweep between;
         double limit;
-        snprintf(range, sizeof range, "%s=%g:%g:2", cases[i].path, cases[i].from, cases[i].to);
+        snprintf(range, sizeof range, "%s=%g:%g:2", c->path, c->from, c->to);
         DONE(sweep_init(&between, &s, &(sweep_request){vary, 1}, &f));
-        DONE(linear_limit(&between, LINEAR_CONTACT, false, cases[i].from, cases[i].to, &limit, &f));
-        check_relative(limit, cases[i].known, 1e-2);
+        DONE(linear_limit(&between, LINEAR_CONTACT, false, c->from, c->to, &limit, &f));
+        check_relative(limit, c->known, 1e-2);
     }
 }
 
@@ -67,8 +67,8 @@ TEST(margins_are_met_by_the_poles)
         {"compare/sampling-rate", IDEAL},
         {"compare/hybrid", IDEAL "control.rate=300 control.delay=0.002"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        SCOPED(scenario_finish) scenario s = opened(cases[i][0], cases[i][1]);
+    for (EACH(c, cases)) {
+        SCOPED(scenario_finish) scenario s = opened((*c)[0], (*c)[1]);
         linear_arm l;
         linear_system loop = loop_of(&s, &l);
         linear_response r;
@@ -91,9 +91,9 @@ TEST(margins_are_met_by_the_poles)
         // and so does the delay
         if (m.delay_s + s.parameters.control.delay < 4 * period) {
             char delay[256];
-            snprintf(delay, sizeof delay, "%s control.delay=%.12g", cases[i][1],
+            snprintf(delay, sizeof delay, "%s control.delay=%.12g", (*c)[1],
                      s.parameters.control.delay + m.delay_s);
-            SCOPED(scenario_finish) scenario late = opened(cases[i][0], delay);
+            SCOPED(scenario_finish) scenario late = opened((*c)[0], delay);
             double growth;
             bool stable;
             DONE(linear_stability(&late, LINEAR_CONTACT, false, &growth, &stable, &f));

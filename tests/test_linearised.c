@@ -327,7 +327,7 @@ TEST(a_pulse_ends_where_the_arm_leaves)
     for (int i = 0; i < 9; i++) {
         const parameters p = fixture_parameters(SETTINGS(stiffness_of[i / 3], volts_of[i % 3]));
         arm a = arm_of(&p);
-        motion *m = motion_create(&a, &p.method);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         motion_report report;
         motion_start(&a, m, 0, 0);
         do {
@@ -336,7 +336,6 @@ TEST(a_pulse_ends_where_the_arm_leaves)
         } while (report.event != MOTION_IMPACT);
         const double touched = m->state[SLOT_TIME];
         if (m->state[SLOT_CONTACT] == 0) {
-            motion_destroy(m);
             continue; // thrown back at once
         }
 
@@ -360,7 +359,6 @@ TEST(a_pulse_ends_where_the_arm_leaves)
             check_relative(predicted.length, m->state[SLOT_TIME] - touched, 1e-3);
             ended++;
         }
-        motion_destroy(m);
     }
     assert_true(ended > 3);
 }
@@ -440,7 +438,7 @@ TEST(a_gentle_touch_is_one_oscillation)
         p.arm.damping_ratio = ratio;
         p.motor.voltage = size * touches[i % 6].volts;
         arm a = arm_of(&p);
-        motion *m = motion_create(&a, &p.method);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         const double x0 = size * touches[i % 6].bend;
         const double q[2] = {x0, -x0};
         const double w[2] = {size * touches[i % 6].speed, size * touches[i % 6].second};
@@ -487,6 +485,5 @@ TEST(a_gentle_touch_is_one_oscillation)
             check_relative(other.force, peak, plain || ratio > 0 ? 1e-5 : 3e-4);
             check_relative(other.delay, delay, plain || ratio > 0 ? 6e-4 : 0.015);
         }
-        motion_destroy(m);
     }
 }

@@ -69,14 +69,14 @@ static const struct {
 TEST(steps_find_what_series_find)
 {
     int of[MOTION_SLIP + 1] = {0}, far[MOTION_SLIP + 1] = {0}, total[MOTION_SLIP + 1] = {0};
-    for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
+    for (EACH(c, runs)) {
         static found exact[MOST], stepped[MOST];
-        const int count = events_of(runs[i].settings, NULL, 1e-3, runs[i].until, exact);
+        const int count = events_of(c->settings, NULL, 1e-3, c->until, exact);
         assert_true(count > 0 && count < MOST);
         for (int k = 0; k < 3; k++) {
             const double step = (double[]){2e-4, 5e-4, 7e-4}[k];
-            assert_int_equal(
-                events_of(runs[i].settings, &explicit_engine, step, runs[i].until, stepped), count);
+            assert_int_equal(events_of(c->settings, &explicit_engine, step, c->until, stepped),
+                             count);
             for (int e = 0; e < count; e++) {
                 assert_int_equal(stepped[e].event, exact[e].event);
                 check_close(stepped[e].time, exact[e].time, 1e-11);

@@ -1,10 +1,7 @@
 // A long line from which cairo omits a piece for lack of memory: the drawing reports it. The
 // functions below take the allocator's place in cairo, too, so that each request of a stroke can be
 // refused.
-#include <errno.h>
 #include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "render/page/picture_file.h"
 #include "tests/check.h"

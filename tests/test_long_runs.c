@@ -98,10 +98,10 @@ TEST(a_resumed_run_is_the_run_from_the_start)
         "corrected/pull-away",    "compare/hybrid",      "thesis/fig-3-4"};
     random_generator random;
     random_seed(&random, 7);
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    for (EACH(c, names)) {
         SCOPED(session_finish) session s;
         fault f = {0};
-        open_lasting(&s, names[i], "3", HUGE_VAL);
+        open_lasting(&s, *c, "3", HUGE_VAL);
         for (int k = 0; k < 8; k++) {
             session_seek(&s, session_end(&s) * random_uniform(&random));
             if (k % 3 == 0 && seek_next_event(&s)) {
@@ -151,7 +151,7 @@ TEST(test_a_change_supersedes_a_run_being_computed)
 
 TEST(test_a_run_is_stopped_and_gone_on_with)
 {
-    session s;
+    SCOPED(session_finish) session s;
     fault f = {0};
     int duration = open_while_computing(&s, 1000);
     assert_int_equal(session_go_on(&s, &f), STATUS_BAD_ARGUMENT);
@@ -169,7 +169,6 @@ TEST(test_a_run_is_stopped_and_gone_on_with)
     wait_for_run(&s);
     assert_true(s.run.trace.row_count > rows);
     assert_as_from_the_start(&s);
-    session_finish(&s);
 }
 
 TEST(test_the_cursor_waits_for_rows_to_come)

@@ -23,8 +23,8 @@ TEST(the_end_stays)
 {
     const char *const *const cases[] = {SETTINGS(BRIEF), SETTINGS(BRIEF, "control.law=hybrid"),
                                         SETTINGS("arm.model=printed", "run.duration=0.1")};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        SCOPED(loop_destroy_kept) run_loop *l = begun(cases[i], NULL);
+    for (EACH(c, cases)) {
+        SCOPED(loop_destroy_kept) run_loop *l = begun(*c, NULL);
         assert_int_equal(loop_summary(l).status, STATUS_STOPPED);
         DONE(loop_until(l, 1, &f));
         assert_true(loop_ended(l));
@@ -127,11 +127,11 @@ TEST(a_state_holds_no_addresses)
         CONTROL_LAWS(LAW){"arm.model=corrected", "control.law=none"},
         {"arm.model=printed", "control.law=force-pd"}};
 #undef LAW
-    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
+    for (EACH(c, settings)) {
         char *kept[2];
         size_t size = 0;
         for (int k = 0; k < 2; k++) {
-            run_loop *l = begun(SETTINGS(settings[i][0], settings[i][1], "control.force=1"), NULL);
+            run_loop *l = begun(SETTINGS((*c)[0], (*c)[1], "control.force=1"), NULL);
             DONE(loop_until(l, 0.02, &f));
             size = loop_saved_size(l);
             kept[k] = malloc(size);
@@ -211,9 +211,9 @@ TEST(a_cut_elsewhere_is_rounding)
         SETTINGS("run.duration=1"), SETTINGS("motor.voltage=5", "run.duration=1"),
         SETTINGS("wall.kind=plane", "run.duration=1"),
         SETTINGS("wall.angle=0", "initial.angle=-0.1", "control.law=hybrid", "sensor.ideal=true")};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         SCOPED(loop_destroy_kept)
-        run_loop *whole = begun(cases[i], NULL), *cut = begun(cases[i], NULL);
+        run_loop *whole = begun(*c, NULL), *cut = begun(*c, NULL);
         DONE(loop_until(whole, 10, &f));
         for (int k = 0; !loop_ended(cut); k++) {
             DONE(loop_until(cut, loop_time(cut) + 0.0014 + 0.0007 * sin(k), &f));

@@ -55,8 +55,8 @@ TEST(the_event_method_stays_exact)
         {"arm.links=64", "arm.hub_joint=rigid", "wall.kind=plane", "arm.damping_ratio=0.01",
          "wall.restitution=0"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const char *const *c = cases[i];
+    for (EACH(one, cases)) {
+        const char *const *c = *one;
         scenario s = {.parameters = fixture_parameters(
                           SETTINGS(c[0], c[1], c[2], c[3], c[4], "run.duration=0.32"))};
         SCOPED(run_finish) run_result r;

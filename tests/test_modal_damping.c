@@ -57,8 +57,8 @@ TEST(structural_damping_is_of_the_first_mode)
         SETTINGS("arm.damping_ratio=0.03", "arm.links=1", "arm.hub_joint=spring", "arm.k1=30"),
         SETTINGS("arm.damping_ratio=0.03", "arm.links=1", "arm.hub_joint=spring",
                  "arm.tip_mass=0.2")};
-    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
-        parameters p = fixture_parameters(arms[i]);
+    for (EACH(c, arms)) {
+        parameters p = fixture_parameters(*c);
         held_modes m = modes_of(&p);
         const double per_stiffness = 2 * 0.03 / m.frequencies[0];
         const bool root = p.arm.hub_joint == HUB_BEAM || p.arm.links == 1;

@@ -89,8 +89,8 @@ static const char *const *const any_arms[] = {
 // A product x'A y is what the energy of both together has more than that of each.
 TEST(matrices_are_those_of_the_energies)
 {
-    for (size_t i = 0; i < sizeof any_arms / sizeof any_arms[0]; i++) {
-        parameters p = fixture_parameters(any_arms[i]);
+    for (EACH(c, any_arms)) {
+        parameters p = fixture_parameters(*c);
         arm a = arm_of(&p);
         const int n = a.dof;
         const double straight[9] = {0};

@@ -268,7 +268,7 @@ TEST(the_located_peak_does_not_depend_on_the_step)
 TEST(without_a_trace_the_summary_is_the_same)
 {
     scenario s = {.parameters = fixture_parameters(NULL)};
-    run_result with;
+    SCOPED(run_finish) run_result with;
     SCOPED(run_finish) run_result without;
     run_scenario(&s, true, &with);
     run_scenario(&s, false, &without);
@@ -279,7 +279,6 @@ TEST(without_a_trace_the_summary_is_the_same)
         y = summary_value(&without.summary, i);
         assert_true(summary_table[i].timing || x == y || (isnan(x) && isnan(y)));
     }
-    run_finish(&with);
 }
 
 TEST(script_acts_at_its_time_and_is_booked)
@@ -383,10 +382,9 @@ TEST(a_contact_ended_from_outside_is_released)
         {"wall.restitution=0.5", {.time = 1, .kind = ACTION_PUSH, .value = 0.02}},
         {"wall.restitution=0", {.time = 1, .kind = ACTION_SET, .parameter = voltage, .value = -1}},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        action todo = cases[i].todo;
-        scenario s = {.parameters =
-                          fixture_parameters(SETTINGS("arm.links=1", cases[i].restitution)),
+    for (EACH(c, cases)) {
+        action todo = c->todo;
+        scenario s = {.parameters = fixture_parameters(SETTINGS("arm.links=1", c->restitution)),
                       .actions = &todo,
                       .action_count = 1};
         s.parameters.run.duration = 1.2;
@@ -407,9 +405,9 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
     } cases[] = {{"arm.links=1", "wall.contact=rigid", 0},
                  {"arm.links=3", "wall.contact=rigid", 7.2441e-3},
                  {"arm.links=3", "wall.contact=kelvin-voigt", 7.5573e-3}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         SCOPED(run_finish)
-        run_result r = run(SETTINGS(cases[i].links, cases[i].wall, "wall.angle=0"));
+        run_result r = run(SETTINGS(c->links, c->wall, "wall.angle=0"));
         double largest = 0;
         for (size_t k = 0; k < r.trace.row_count; k++) {
             largest = fmax(largest, r.trace.rows[k].force);
@@ -420,15 +418,15 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
         check_below(largest, r.summary.peak_force_N * (1 + 1e-12));
         assert_true(r.summary.steady_force_N > 0.35);
         assert_true(r.summary.first_pulse_peak_N > 0.05);
-        if (cases[i].released == 0) {
+        if (c->released == 0) {
             assert_true(isnan(r.summary.first_pulse_s));
         } else {
-            check_close(r.summary.first_pulse_s, cases[i].released, 1e-6);
+            check_close(r.summary.first_pulse_s, c->released, 1e-6);
         }
     }
     static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
     for (int i = 0; i < 2; i++) {
-        run_result r = run(SETTINGS("arm.links=2", walls[i], "wall.angle=0"));
+        SCOPED(run_finish) run_result r = run(SETTINGS("arm.links=2", walls[i], "wall.angle=0"));
         assert_true(r.summary.first_contact_s > 0.05);
         run_finish(&r);
 
@@ -437,7 +435,6 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
                          walls[i], "wall.angle=0"));
         check_close(r.summary.first_contact_s, 0.0262512050, 1e-9);
         assert_true(r.summary.first_pulse_peak_N > 1);
-        run_finish(&r);
     }
 }
 
@@ -480,14 +477,14 @@ TEST(an_arm_on_the_wall_does_not_strike_it)
 TEST(a_push_of_nothing_changes_nothing)
 {
     static const char *const arms[] = {"arm.links=2", "arm.links=12", "arm.tip_mass=0.01"};
-    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+    for (EACH(c, arms)) {
         enum { PUSHES = 20 };
         action todo[PUSHES];
         for (int k = 0; k < PUSHES; k++) {
             todo[k] = (action){.time = 0.1 + 0.093 * k, .kind = ACTION_PUSH};
         }
         scenario s = {.parameters = fixture_parameters(
-                          SETTINGS(arms[i], "arm.damping_ratio=0.05", "run.duration=2")),
+                          SETTINGS(*c, "arm.damping_ratio=0.05", "run.duration=2")),
                       .actions = todo};
         run_result r[2];
         for (int k = 0; k < 2; k++) {
@@ -532,14 +529,14 @@ TEST(a_ledger_that_does_not_close_makes_a_run_inaccurate)
     } cases[] = {{"method.step=1e-3", "method.gamma=0.5", false},
                  {"method.step=1e-3", "method.residual_bound=1e-9", true},
                  {"method.step=2e-2", "method.gamma=0.6", true}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        scenario s = {.parameters = fixture_parameters(
-                          SETTINGS("method.name=newmark", cases[i].step, cases[i].bound))};
+    for (EACH(c, cases)) {
+        scenario s = {.parameters =
+                          fixture_parameters(SETTINGS("method.name=newmark", c->step, c->bound))};
         SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
-        assert_int_equal(r.summary.inaccurate, cases[i].inaccurate);
-        assert_int_equal(r.summary.message[0] != '\0', cases[i].inaccurate);
-        assert_string_equal(summary_status(&r.summary), cases[i].inaccurate ? "inaccurate" : "ok");
+        assert_int_equal(r.summary.inaccurate, c->inaccurate);
+        assert_int_equal(r.summary.message[0] != '\0', c->inaccurate);
+        assert_string_equal(summary_status(&r.summary), c->inaccurate ? "inaccurate" : "ok");
     }
 
     // the event method's own bound is narrow, and kept
@@ -566,15 +563,15 @@ TEST(a_motion_too_small_to_follow_is_inaccurate)
                  {"1e-10", "0", "0.1", "arm.tip_mass=0.01", true},
                  {"1e-8", "0.045", "0.1", "arm.links=2", false},
                  {"0.1", "0", "0", "arm.links=1", false}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         char voltage[32], stiction[32], angle[32];
-        snprintf(voltage, sizeof voltage, "motor.voltage=%s", cases[i].voltage);
-        snprintf(stiction, sizeof stiction, "motor.stiction=%s", cases[i].stiction);
-        snprintf(angle, sizeof angle, "wall.angle=%s", cases[i].angle);
+        snprintf(voltage, sizeof voltage, "motor.voltage=%s", c->voltage);
+        snprintf(stiction, sizeof stiction, "motor.stiction=%s", c->stiction);
+        snprintf(angle, sizeof angle, "wall.angle=%s", c->angle);
         SCOPED(run_finish)
-        run_result r = run(SETTINGS(voltage, stiction, angle, cases[i].links, "wall.kind=plane"));
-        fail_if(r.summary.inaccurate != cases[i].inaccurate, "%s, %s, %s: %s %s", voltage, angle,
-                cases[i].links, summary_status(&r.summary), r.summary.message);
+        run_result r = run(SETTINGS(voltage, stiction, angle, c->links, "wall.kind=plane"));
+        fail_if(r.summary.inaccurate != c->inaccurate, "%s, %s, %s: %s %s", voltage, angle,
+                c->links, summary_status(&r.summary), r.summary.message);
     }
 }
 

@@ -1,6 +1,5 @@
 // A wall that moves: driven arms and impacts in closed form, walls moved at once by a script, and a
 // law that holds its force on one.
-#include <unistd.h>
 
 #include "src/arm/impact.h"
 #include "src/run/loop.h"
@@ -40,14 +39,14 @@ TEST(a_driven_spring_has_its_amplitude_and_phase)
     const double length = a.link_length, k = 2000, c = 20, u = 1e-5;
     const double inertia = a.hub_inertia + a.link_mass * length * length / 3;
     static const char *const frequencies[] = {"2", "15", "20", "60"};
-    for (size_t i = 0; i < sizeof frequencies / sizeof *frequencies; i++) {
-        const double w = 2 * M_PI * atof(frequencies[i]), period = 2 * M_PI / w;
+    for (EACH(one, frequencies)) {
+        const double w = 2 * M_PI * atof(*one), period = 2 * M_PI / w;
         const double lre = length * length * k - inertia * w * w, lim = length * length * w * c;
         const double d = lre * lre + lim * lim;
         const double re = -length * u * (k * lre + w * c * lim) / d;
         const double im = -length * u * (w * c * lre - k * lim) / d;
         char f[64];
-        snprintf(f, sizeof f, "wall.motion_frequency=%s", frequencies[i]);
+        snprintf(f, sizeof f, "wall.motion_frequency=%s", *one);
         for (int phase = 0; phase < 4; phase++) {
             const double t = 2 + phase * period / 4;
             double q[2], force;
@@ -306,9 +305,9 @@ static const char *const walls[] = {
 // Moved while the arm flies, it is as if it had always been there.
 TEST(a_wall_moved_in_flight_is_where_it_was_put)
 {
-    for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
-        SCOPED(run_finish) run_result moved = run_of(walls[i], 0.1, 0.05, 0.07, STATUS_OK);
-        SCOPED(run_finish) run_result there = run_of(walls[i], 0.07, 0, 0.07, STATUS_OK);
+    for (EACH(c, walls)) {
+        SCOPED(run_finish) run_result moved = run_of(*c, 0.1, 0.05, 0.07, STATUS_OK);
+        SCOPED(run_finish) run_result there = run_of(*c, 0.07, 0, 0.07, STATUS_OK);
         check_close(moved.summary.first_contact_s, there.summary.first_contact_s, 1e-11);
         check_relative(moved.summary.motor_work_J, there.summary.motor_work_J, 1e-8);
         check_relative(moved.summary.peak_force_N, there.summary.peak_force_N, 1e-6);
@@ -319,8 +318,8 @@ TEST(a_wall_moved_in_flight_is_where_it_was_put)
 // arm it is refused.
 TEST(a_wall_moved_in_contact_lets_go_or_is_refused)
 {
-    for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
-        run_result r = run_of(walls[i], 0.1, 0, 0.1, STATUS_OK);
+    for (EACH(c, walls)) {
+        SCOPED(run_finish) run_result r = run_of(*c, 0.1, 0, 0.1, STATUS_OK);
         const trace *t = &r.trace;
         double pressed = 0;
         for (size_t k = 0; k < t->row_count && pressed == 0; k++) {
@@ -330,7 +329,7 @@ TEST(a_wall_moved_in_contact_lets_go_or_is_refused)
         assert_true(pressed > 0);
         run_finish(&r);
 
-        r = run_of(walls[i], 0.1, pressed, 0.15, STATUS_OK);
+        r = run_of(*c, 0.1, pressed, 0.15, STATUS_OK);
         size_t change = 0;
         while (r.trace.events[change].kind != EVENT_CHANGE) {
             assert_true(++change < r.trace.event_count);
@@ -340,9 +339,8 @@ TEST(a_wall_moved_in_contact_lets_go_or_is_refused)
         assert_true(r.summary.energy_residual_J < 1e-10 * r.summary.motor_work_J);
         run_finish(&r);
 
-        r = run_of(walls[i], 0.1, pressed, 0.099, STATUS_BAD_SCENARIO);
+        r = run_of(*c, 0.1, pressed, 0.099, STATUS_BAD_SCENARIO);
         assert_non_null(strstr(r.summary.message, "behind the wall"));
-        run_finish(&r);
     }
 }
 
@@ -453,10 +451,9 @@ TEST(a_table_of_a_sine_is_the_sine)
                     "arm.links=3", kinds[i][0], kinds[i][1], "run.duration=0.8",
                     "wall.motion_frequency=2", file ? "wall.motion=file" : "wall.motion=sine",
                     "wall.motion_file=wall-path.csv", "arm.damping_ratio=0.01"))};
-            run_result r;
+            SCOPED(run_finish) run_result r;
             assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
             sums[file] = r.summary;
-            run_finish(&r);
         }
         check_close(sums[1].first_contact_s, sums[0].first_contact_s, 1e-7);
         check_relative(sums[1].contact_impulse_Ns, sums[0].contact_impulse_Ns, 1e-5);
@@ -478,16 +475,16 @@ TEST(a_table_with_faults_is_told_with_its_place)
         {"time[s],force[N]\n0,0\n1,1\n", "place"},
         {"time[s],place[m]\n0,0\n1,nan\n", "wall-path.csv:3"},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (EACH(c, wrong)) {
         FILE *file = fopen(path_csv, "w");
-        fputs(wrong[i].text, file);
+        fputs(c->text, file);
         fclose(file);
         fault f = {0};
         wall_path *path;
         assert_int_equal(wall_path_create(&path, path_csv, &f), STATUS_BAD_SCENARIO);
         assert_null(path);
         assert_string_equal(f.path, "wall.motion_file");
-        fail_if(strstr(f.text, wrong[i].says) == NULL, "%s", f.text);
+        fail_if(strstr(f.text, c->says) == NULL, "%s", f.text);
     }
     unlink(path_csv);
 }

@@ -1,6 +1,5 @@
 // As test_no_memory, for what stands around a run: scenarios by name, sets of cases, studies, parts
 // of a sweep, and the printed model.
-#include <unistd.h>
 
 #include "src/run/export.h"
 #include "src/study/calibrate.h"
@@ -18,7 +17,7 @@ GIVEN_BACK(sweep_store, sweep_store_close)
 
 static char folder[] = "/tmp/no-memory-XXXXXX";
 
-static void put_file(const char *name, const char *text)
+static void put_in_folder(const char *name, const char *text)
 {
     char path[64];
     snprintf(path, sizeof path, "%s/%s", folder, name);
@@ -214,7 +213,7 @@ static status run(scenario *s, FILE *out)
 
 TEST(a_name_means_the_same_scenario)
 {
-    put_file("own.yaml", "title: Own\n");
+    put_in_folder("own.yaml", "title: Own\n");
     SCOPED(free_kept)
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     char path[64];
@@ -231,7 +230,7 @@ TEST(a_name_means_the_same_scenario)
 
 TEST(sets_and_studies)
 {
-    put_file("set", "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
+    put_in_folder("set", "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
     snprintf(set_path, sizeof set_path, "%s/set", folder);
     try_with_scenario(draw_cases, "");
     try_all(thesis, "");

@@ -13,9 +13,9 @@ TEST(numbers_are_short_and_read_back)
         {0.1, "0.1"},  {12, "12"}, {-0.0, "0"}, {1e-5, "1e-05"}, {0.1 + 0.2, "0.30000000000000004"},
         {-2.5, "-2.5"}};
     char text[NUMBER_TEXT];
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        number_format(text, cases[i].value);
-        assert_string_equal(text, cases[i].text);
+    for (EACH(c, cases)) {
+        number_format(text, c->value);
+        assert_string_equal(text, c->text);
     }
     // numbers of every size survive being written and read
     unsigned long long bits = 0x9E3779B97F4A7C15ULL;
@@ -38,10 +38,10 @@ TEST(short_numbers_have_exponents_from_a_million)
     } cases[] = {{1e6, "1e+06"}, {999999, "999999"}, {2147483647, "2147483647"},
                  {-0.0, "-0"},   {0.1, "0.1"},       {169468.0882, "169468.0882"}};
     char text[NUMBER_TEXT];
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        number_format_short(text, cases[i].value);
-        assert_string_equal(text, cases[i].text);
-        assert_true(strtod(text, NULL) == cases[i].value);
+    for (EACH(c, cases)) {
+        number_format_short(text, c->value);
+        assert_string_equal(text, c->text);
+        assert_true(strtod(text, NULL) == c->value);
     }
 }
 
@@ -61,22 +61,22 @@ TEST(decimals_are_read_with_what_follows)
         double value;
         const char *rest;
     } cases[] = {{"0.4 s", 0.4, "s"}, {"-1e-3", -1e-3, ""}, {"+.5N", 0.5, "N"}, {"12 ", 12, ""}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         double value;
         const char *rest;
-        assert_true(decimal_read(cases[i].text, &value, &rest));
-        check_close(value, cases[i].value, 0);
-        assert_string_equal(rest, cases[i].rest);
+        assert_true(decimal_read(c->text, &value, &rest));
+        check_close(value, c->value, 0);
+        assert_string_equal(rest, c->rest);
     }
 }
 
 TEST(what_is_no_decimal_is_refused)
 {
     const char *const texts[] = {"", "x", "0x10", "inf", "nan", "-.", " 1", "+-1", "e5"};
-    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+    for (EACH(c, texts)) {
         double value;
         const char *rest;
-        assert_false(decimal_read(texts[i], &value, &rest));
+        assert_false(decimal_read(*c, &value, &rest));
     }
 }
 
@@ -141,10 +141,10 @@ TEST(digits_of_known_numbers)
         {100.5, "100.5"},
         {0.1 + 0.2, "0.30000000000000004"},
     };
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+    for (EACH(c, known)) {
         char text[NUMBER_TEXT];
-        number_format(text, known[i].value);
-        assert_string_equal(text, known[i].text);
+        number_format(text, c->value);
+        assert_string_equal(text, c->text);
     }
 }
 
@@ -157,8 +157,8 @@ TEST(decimals)
     assert_string_equal(rest, "N");
     static const char *const none[] = {"",     "x",   "-",    ".",   "+-1",
                                        "0x10", "inf", ".inf", "nan", " 1"};
-    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
-        assert_false(decimal_read(none[i], &value, &rest));
+    for (EACH(c, none)) {
+        assert_false(decimal_read(*c, &value, &rest));
     }
 }
 

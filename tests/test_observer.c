@@ -267,8 +267,8 @@ TEST(wrong_beliefs_do_no_harm)
                                    "sensor.fsr_noise=0.06",
                                    "sensor.tachometer_offset=0.02",
                                    "sensor.tachometer_offset=-0.02"};
-    for (size_t i = 0; i < sizeof beliefs / sizeof beliefs[0]; i++) {
-        summary s = rig_summary(SETTINGS("control.law=observer", "run.duration=2", beliefs[i]));
+    for (EACH(c, beliefs)) {
+        summary s = rig_summary(SETTINGS("control.law=observer", "run.duration=2", *c));
         check_below(s.force_over_command_N, 0.3);
         assert_false(isnan(s.settling_time_s));
         check_close(s.steady_error_N, 0, 0.05);
@@ -282,12 +282,12 @@ TEST(walls_that_throw_back_are_met_softly)
                                            {"wall.restitution=0.2"},
                                            {"wall.contact=kelvin-voigt", "wall.stiffness=1000"},
                                            {"wall.contact=kelvin-voigt", "wall.stiffness=5000"}};
-    for (size_t i = 0; i < sizeof walls / sizeof walls[0]; i++) {
+    for (EACH(c, walls)) {
         for (int newtons = 1; newtons <= 3; newtons += 2) {
             char force[32];
             snprintf(force, sizeof force, "control.force=%d", newtons);
-            summary s = rig_summary(SETTINGS("control.law=observer", "run.duration=2", force,
-                                             walls[i][0], walls[i][1]));
+            summary s = rig_summary(
+                SETTINGS("control.law=observer", "run.duration=2", force, (*c)[0], (*c)[1]));
             check_below(s.smoothed_over_command_N, 0.3 * newtons);
             check_below(s.settling_time_s, 0.3);
             check_below(s.first_contact_s, 1.5 * 0.293); // open-loop's
@@ -310,10 +310,10 @@ TEST(it_settles_on_many_links)
     static const char *const links[][2] = {{"arm.links=3", "belief.links=3"},
                                            {"arm.links=5", "belief.links=5"},
                                            {"arm.links=8", "belief.links=8"}};
-    for (size_t i = 0; i < sizeof links / sizeof links[0]; i++) {
+    for (EACH(c, links)) {
         for (int told = 0; told < 2; told++) {
             summary s = rig_summary(SETTINGS("control.law=observer", "arm.damping_ratio=0.01",
-                                             links[i][0], told ? links[i][1] : "belief.links=2"));
+                                             (*c)[0], told ? (*c)[1] : "belief.links=2"));
             check_below(s.smoothed_over_command_N, 0.3);
             check_below(s.settling_time_s, 0.3);
             check_close(s.steady_error_N, 0, 0.05);
@@ -401,9 +401,8 @@ TEST(readings_tell_which_arm_it_is)
         {"control.law=observer", "arm.links=3", "belief.links=3"},
         {"control.law=observer", "arm.links=8", "belief.links=8", "arm.damping_ratio=0.01"},
     };
-    for (size_t i = 0; i < sizeof told / sizeof told[0]; i++) {
-        assert_int_equal(arms_after(SETTINGS(told[i][0], told[i][1], told[i][2], told[i][3])).on,
-                         0);
+    for (EACH(c, told)) {
+        assert_int_equal(arms_after(SETTINGS((*c)[0], (*c)[1], (*c)[2], (*c)[3])).on, 0);
     }
 
     observer_arms three = arms_after(SETTINGS("control.law=observer", "arm.links=3"));
@@ -421,16 +420,16 @@ TEST(readings_tell_which_arm_it_is)
 TEST(it_learns_how_stiff_the_arm_is)
 {
     static const double wrong[] = {0.75, 1.25};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (EACH(c, wrong)) {
         const char *const settings[] = {"control.law=observer", NULL};
         parameters p = rig_parameters(settings);
-        p.belief.k2_factor = wrong[i];
+        p.belief.k2_factor = *c;
         controller_setup setup = setup_of(&p);
         arm_observer o;
         assert_null(arm_observer_init(&o, &setup, 1));
 
         // the hub bends the arm against the wall, the readings are those of the true stiffness
-        const double stiffness = 4 * setup.k2 / wrong[i];
+        const double stiffness = 4 * setup.k2 / *c;
         controller_input in = {.piezo_force = (double)NAN,
                                .film = (double)NAN,
                                .accelerometer = (double)NAN,
@@ -447,7 +446,7 @@ TEST(it_learns_how_stiff_the_arm_is)
         }
 
         // from the believed one towards the true one, and not beyond
-        double share = (o.stiffness - 1) / (1 / wrong[i] - 1);
+        double share = (o.stiffness - 1) / (1 / *c - 1);
         check_below(0.3, share);
         check_below(share, 1.05);
     }
@@ -508,9 +507,9 @@ TEST(it_settles_on_walls_that_give)
         {"wall.contact=hunt-crossley", "wall.stiffness=5000", NULL},
         {"wall.contact=hunt-crossley", "wall.stiffness=7.5e4", NULL},
         {"wall.contact=hunt-crossley", "wall.stiffness=1e6", NULL}};
-    for (size_t i = 0; i < sizeof walls / sizeof walls[0]; i++) {
-        summary s = rig_summary(SETTINGS("control.law=observer", "run.duration=2.5", walls[i][0],
-                                         walls[i][1], walls[i][2]));
+    for (EACH(c, walls)) {
+        summary s = rig_summary(
+            SETTINGS("control.law=observer", "run.duration=2.5", (*c)[0], (*c)[1], (*c)[2]));
         check_below(s.settling_time_s, 1.5);
         check_below(s.separations, 40);
         check_close(s.steady_error_N, 0, 0.05);
@@ -540,9 +539,9 @@ static run_result force_after_change(double from, double to, double rate)
 TEST(it_follows_a_setpoint_in_contact)
 {
     static const double steps[][2] = {{1, 1.5}, {1.5, 1}, {0.5, 1}, {1, 0.5}, {2.5, 3}};
-    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
-        const double to = steps[i][1], step = to - steps[i][0];
-        SCOPED(run_finish) run_result r = force_after_change(steps[i][0], to, 0);
+    for (EACH(c, steps)) {
+        const double to = (*c)[1], step = to - (*c)[0];
+        SCOPED(run_finish) run_result r = force_after_change((*c)[0], to, 0);
         for (size_t k = 0; k < r.trace.row_count; k++) {
             const sample *row = &r.trace.rows[k];
             if (row->time > 1) {

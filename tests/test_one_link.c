@@ -57,13 +57,13 @@ TEST(a_link_stuck_within_a_wall_slips_when_its_current_lets_it)
                  {"kind: point, contact: hunt-crossley, damping: 1e8", 2, ""},
                  {"kind: plane, contact: hunt-crossley, damping: 1e7", 5, ", current_limit: 0.5"}};
     const double stiction = 0.045, resistance = 33.6;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        const double inductance = cases[i].inductance;
+    for (EACH(c, cases)) {
+        const double inductance = c->inductance;
         char text[400];
         snprintf(text, sizeof text,
                  "arm: {links: 1}\nmotor: {voltage: 3, inductance: %g%s}\nwall: {angle: 0.1, %s}\n"
                  "script:\n  - at: 2.4 s\n    set: {motor.voltage: 0}\nrun: {duration: 2.42}\n",
-                 inductance, cases[i].limit, cases[i].wall);
+                 inductance, c->limit, c->wall);
         SCOPED(run_finish) run_result r = run_of(text);
         const trace *t = &r.trace;
         const size_t change = event_after(&r, EVENT_CHANGE, 0);
@@ -99,10 +99,10 @@ TEST(what_stands_still_names_the_event_that_repeats)
                  {MOTION_SLIP, "motor.stiction"},
                  {MOTION_RELEASE, "wall.stiffness"},
                  {MOTION_REACHED, "wall.stiffness"}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (EACH(c, cases)) {
         char text[PACE_CAUSE_SIZE];
-        pace_tell_cause(&a, m, cases[i].last, text, sizeof text);
-        assert_non_null(strstr(text, cases[i].cause));
+        pace_tell_cause(&a, m, c->last, text, sizeof text);
+        assert_non_null(strstr(text, c->cause));
     }
 }
 
@@ -203,6 +203,7 @@ TEST(a_link_that_rests_may_be_pressed_or_not)
 // The mean of bounds that change in the window: at once, with a current, where one reaches zero.
 TEST(steady_bounds_are_means)
 {
+    SCOPED(run_finish)
     run_result r = run_of("arm: {links: 1}\nscript:\n  - at: 0.95 s\n"
                           "    set: {motor.voltage: 0.05}\n");
     const double before = torque_of(1), after = torque_of(0.05);
@@ -225,7 +226,6 @@ TEST(steady_bounds_are_means)
     scenario_finish(&s);
     check_bounds(r.summary.steady_force_low_N, r.summary.steady_force_high_N, before - kst,
                  before + kst);
-    run_finish(&r);
 }
 
 // Once it has left, the first pulse's bounds stay, and no force is open any more.

@@ -3,8 +3,6 @@
 //
 //   test_outside PLUGIN OTHER_PLUGIN
 #include <assert.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "src/scenario/outside.h"
 #include "src/session/session.h"
@@ -15,20 +13,12 @@ GIVEN_BACK(sweep_store, sweep_store_close)
 
 static char *plugin_files[2];
 
-static void write_text(const char *path, const char *text)
-{
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    assert_int_equal(fclose(file), 0);
-}
-
 // A law that answers every sample with so many volts.
 static void write_law(const char *path, const char *volts)
 {
     char text[128];
     snprintf(text, sizeof text, "while read -r line; do echo '{\"command\": %s}'; done\n", volts);
-    write_text(path, text);
+    put_file(path, text);
 }
 
 static void copy_file(const char *from, const char *to)
@@ -51,14 +41,14 @@ static void write_plugin(int which)
 
 static void write_recording(int which)
 {
-    write_text("u.csv", which == 0 ? "t[s],command[V]\n0,2\n" : "t[s],command[V]\n0,4\n");
+    put_file("u.csv", which == 0 ? "t[s],command[V]\n0,2\n" : "t[s],command[V]\n0,4\n");
 }
 
 // A wall that comes to meet the arm.
 static void write_path(int which)
 {
-    write_text("w.csv", which == 0 ? "time[s],place[m]\n0,0\n0.04,0.7\n"
-                                   : "time[s],place[m]\n0,0\n0.04,0.8\n");
+    put_file("w.csv", which == 0 ? "time[s],place[m]\n0,0\n0.04,0.7\n"
+                                 : "time[s],place[m]\n0,0\n0.04,0.8\n");
 }
 
 // Everything on the list, with two contents of it.
@@ -97,15 +87,15 @@ static parameters parameters_of(const struct outside_case *c)
     return p;
 }
 
-TEST(one_list_has_all_that_names_a_file)
+SWEEP_TEST(one_list_has_all_that_names_a_file)
 {
     assert_int_equal(CASES, outside_count);
     static const char *const own[] = {"control.settings", "control.lock", "control.k2_table",
                                       "control.playback_column"};
     for (int i = 0; i < parameter_count; i++) {
         bool known = parameter_table[i].type != PARAMETER_TEXT;
-        for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) {
-            known = known || strcmp(parameter_table[i].path, own[k]) == 0;
+        for (EACH(c, own)) {
+            known = known || strcmp(parameter_table[i].path, *c) == 0;
         }
         for (int k = 0; k < outside_count; k++) {
             known = known || parameter_at(outside_table[k].parameter) == i;
@@ -132,20 +122,19 @@ static status digest(const char *command, char text[SHA256_TEXT], fault *f)
 static bool depends_on(const char *command, const char *path)
 {
     char before[SHA256_TEXT], after[SHA256_TEXT];
-    write_text(path, "one");
+    put_file(path, "one");
     assert_int_equal(chmod(path, 0755), 0);
     DONE(digest(command, before, &f));
-    write_text(path, "two");
+    put_file(path, "two");
     DONE(digest(command, after, &f));
     return strcmp(before, after) != 0;
 }
 
-TEST(files_that_a_command_names_are_its_content)
+SWEEP_TEST(files_that_a_command_names_are_its_content)
 {
-    char folder[256], path[512];
-    assert_non_null(getcwd(folder, sizeof folder));
+    char path[64];
     assert_int_equal(mkdir("bin", 0755), 0);
-    snprintf(path, sizeof path, "%s/bin:/bin:/usr/bin", folder);
+    snprintf(path, sizeof path, "%s/bin:/bin:/usr/bin", test_folder);
     char *kept = strdup(getenv("PATH"));
     setenv("PATH", path, 1);
     assert_true(depends_on("sh law.sh", "law.sh"));
@@ -161,22 +150,16 @@ TEST(files_that_a_command_names_are_its_content)
     // bytes do not pass from one file to the next
     char one[SHA256_TEXT], other[SHA256_TEXT];
     fault f = {.text = ""};
-    write_text("a", "xy");
-    write_text("b", "z");
+    put_file("a", "xy");
+    put_file("b", "z");
     assert_int_equal(digest("./a ./b", one, &f), STATUS_OK);
-    write_text("a", "x");
-    write_text("b", "yz");
+    put_file("a", "x");
+    put_file("b", "yz");
     assert_int_equal(digest("./a ./b", other, &f), STATUS_OK);
     assert_string_not_equal(one, other);
 
     // what a shell would take for more than words
     assert_int_equal(digest("cat law.sh | sh", one, &f), STATUS_BAD_ARGUMENT);
-    unlink("a");
-    unlink("b");
-    unlink("law.sh");
-    unlink("table.csv");
-    unlink("bin/control");
-    rmdir("bin");
 }
 
 // Writes a file of so many bytes, all the same.
@@ -191,7 +174,7 @@ static void write_bytes(const char *path, size_t count, int byte)
 }
 
 // A stamp is another one after a change; of a small file only then.
-TEST(a_stamp_sees_changes)
+SWEEP_TEST(a_stamp_sees_changes)
 {
     parameters p = {.control.law = LAW_PROCESS, .control.command = "./law.sh"};
     char first[SHA256_TEXT], second[SHA256_TEXT];
@@ -217,10 +200,9 @@ TEST(a_stamp_sees_changes)
     write_bytes("law.sh", 1000, 'd');
     outside_stamp(~0u, &p, second);
     assert_string_not_equal(first, second);
-    unlink("law.sh");
 }
 
-TEST(a_plugin_is_its_file)
+SWEEP_TEST(a_plugin_is_its_file)
 {
     char text[SHA256_TEXT];
     fault f = {.text = ""};
@@ -234,13 +216,12 @@ TEST(a_plugin_is_its_file)
     assert_int_equal(mkdir("law.so", 0755), 0);
     assert_int_equal(outside_digest(&outside_table[0], &p, text, &f), STATUS_CANNOT_READ);
     rmdir("law.so");
-    write_text("law.so", "x");
+    put_file("law.so", "x");
     assert_int_equal(outside_digest(&outside_table[0], &p, text, &f), STATUS_OK);
     chmod("law.so", 0);
     if (geteuid() != 0) {
         assert_int_equal(outside_digest(&outside_table[0], &p, text, &f), STATUS_CANNOT_READ);
     }
-    unlink("law.so");
 }
 
 // --- sweeps -----------------------------------------------------------------------------------
@@ -264,10 +245,16 @@ static void must_compute(const sweep *s, const char *path, sweep_share share)
     assert_int_equal(progress.failed, 0);
 }
 
-// A program, plug-in or file that is another one when a sweep goes on, in a part or in a merge.
-TEST(rows_of_what_is_gone_are_refused)
+static void check_rows(const char *path, const sweep *s, const char *expected)
 {
-    const parameters first = base.parameters;
+    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(path, s);
+    SCOPED(free_kept) char *rows = csv_of(store);
+    assert_string_equal(rows, expected);
+}
+
+// A program, plug-in or file that is another one when a sweep goes on, in a part or in a merge.
+SWEEP_TEST(rows_of_what_is_gone_are_refused)
+{
     for (int i = 0; i < CASES; i++) {
         base.parameters = parameters_of(&cases[i]);
         const char *name = parameter_table[parameter_at(cases[i].parameter)].path;
@@ -281,11 +268,7 @@ TEST(rows_of_what_is_gone_are_refused)
         // written again with the same content: it goes on, with the rows of one go
         cases[i].write(0);
         must_compute(&s, "whole", (sweep_share){0, 0});
-        sweep_store *store = must_open("whole", &s);
-        char *again = csv_of(store);
-        assert_string_equal(again, rows);
-        free(again);
-        sweep_store_close(store);
+        check_rows("whole", &s, rows);
 
         // another one
         cases[i].write(1);
@@ -304,28 +287,22 @@ TEST(rows_of_what_is_gone_are_refused)
         // and the first one again
         cases[i].write(0);
         must_compute(&s, "first", (sweep_share){0, 0});
-        store = must_open("first", &s);
-        again = csv_of(store);
-        assert_string_equal(again, rows);
-        free(again);
-        sweep_store_close(store);
+        check_rows("first", &s, rows);
 
         unlink(cases[i].file);
         unlink("first");
         unlink("second");
         unlink("whole");
     }
-    base.parameters = first;
 }
 
 // What is varied may decide whether a file is read.
-TEST(a_varied_law_decides_what_is_read)
+SWEEP_TEST(a_varied_law_decides_what_is_read)
 {
-    const parameters first = base.parameters;
     base.parameters = parameters_of(&cases[1]);
     base.parameters.control.law = LAW_OPEN_LOOP;
     write_program(0);
-    sweep some, none;
+    SCOPED(sweep_finish) sweep some, none;
     must_sweep(&some, SWEEP_GRID, 0, "control.law=open-loop,process", NULL);
     must_sweep(&none, SWEEP_GRID, 0, "control.law=open-loop,hybrid", NULL);
     must_compute(&some, "some", (sweep_share){0, 0});
@@ -333,19 +310,12 @@ TEST(a_varied_law_decides_what_is_read)
     write_program(1);
     check_refused("some", &some, "control.command");
     sweep_store_close(must_open("none", &none));
-    sweep_finish(&some);
-    sweep_finish(&none);
-    unlink("some");
-    unlink("none");
-    unlink("law.sh");
-    base.parameters = first;
 }
 
 // A command that only a shell can read may be of any program: its rows are kept, and not mixed with
 // others.
-TEST(rows_of_what_cannot_be_told_stay_alone)
+SWEEP_TEST(rows_of_what_cannot_be_told_stay_alone)
 {
-    const parameters first = base.parameters;
     const struct outside_case shell = {
         .parameter = cases[1].parameter, .value = "exec sh law.sh; exit", .law = LAW_PROCESS};
     base.parameters = parameters_of(&shell);
@@ -362,17 +332,11 @@ TEST(rows_of_what_cannot_be_told_stay_alone)
     assert_non_null(strstr(f.text, "cannot be told"));
     assert_int_equal(sweep_merge(parts, 1, "merged", &merged, &f), STATUS_OK);
     sweep_finish(&s);
-    unlink("first");
-    unlink("second");
-    unlink("merged");
-    unlink("law.sh");
-    base.parameters = first;
 }
 
 // Rows that were computed while it changed are not kept.
-TEST(what_changes_during_a_sweep_ends_it)
+SWEEP_TEST(what_changes_during_a_sweep_ends_it)
 {
-    const parameters first = base.parameters;
     base.parameters = parameters_of(&cases[1]);
     write_program(0);
     sweep s;
@@ -402,14 +366,11 @@ TEST(what_changes_during_a_sweep_ends_it)
     assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_BAD_ARGUMENT);
     sweep_store_close(store);
     sweep_finish(&s);
-    unlink("rows");
-    base.parameters = first;
 }
 
 // A run that was not let, or whose plug-in cannot be loaded, is no row: the next time it may be.
-TEST(what_could_not_begin_is_no_row)
+SWEEP_TEST(what_could_not_begin_is_no_row)
 {
-    const parameters first = base.parameters;
     sweep_progress progress;
     const sweep_options options = {.jobs = 1};
     for (int i = 0; i < CASES; i++) {
@@ -434,7 +395,7 @@ TEST(what_could_not_begin_is_no_row)
     }
 
     base.parameters = parameters_of(&cases[0]);
-    write_text("law.so", "no library");
+    put_file("law.so", "no library");
     sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
     fault f = {.text = ""};
@@ -443,9 +404,6 @@ TEST(what_could_not_begin_is_no_row)
     assert_non_null(strstr(f.text, "run 1: control.plugin = ./law.so cannot be loaded"));
     sweep_store_close(store);
     sweep_finish(&s);
-    unlink("rows");
-    unlink("law.so");
-    base.parameters = first;
 }
 
 // --- sessions ---------------------------------------------------------------------------------
@@ -464,9 +422,8 @@ static double last_gap(const session *s)
 }
 
 // A run that is computed again has the program of now, not answers of the one before.
-TEST(a_session_asks_the_program_of_now)
+SWEEP_TEST(a_session_asks_the_program_of_now)
 {
-    const parameters first = base.parameters;
     for (int i = 0; i < CASES; i++) {
         base.parameters = parameters_of(&cases[i]);
         cases[i].write(0);
@@ -482,7 +439,6 @@ TEST(a_session_asks_the_program_of_now)
         session_finish(&s);
         unlink(cases[i].file);
     }
-    base.parameters = first;
 }
 
 int main(int argc, char **argv)
@@ -492,7 +448,7 @@ int main(int argc, char **argv)
         plugin_files[i] = realpath(argv[i + 1], NULL); // the tests work in another folder
         assert(plugin_files[i] != NULL);
     }
-    const int failed = run_cases(sweep_fixture_open, sweep_fixture_close);
+    const int failed = run_cases(NULL, NULL);
     free(plugin_files[0]);
     free(plugin_files[1]);
     return failed != 0;

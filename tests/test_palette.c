@@ -16,11 +16,11 @@ TEST(test_words_find_things_of_every_kind)
                  {"stic", "motor.stiction", PALETTE_PARAMETER},
                  {"energy_residual", "energy_residual", PALETTE_SIGNAL},
                  {"fig-3-4", "thesis/fig-3-4", PALETTE_SCENARIO}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        assert_true(palette_find(menu, keys, cases[i].words, entries) > 0);
+    for (EACH(c, cases)) {
+        assert_true(palette_find(menu, keys, c->words, entries) > 0);
         const palette_text text = palette_describe(menu, keys, entries[0]);
-        assert_string_equal(text.name, cases[i].first);
-        assert_int_equal(entries[0].kind, cases[i].kind);
+        assert_string_equal(text.name, c->first);
+        assert_int_equal(entries[0].kind, c->kind);
     }
 
     // words that stand only in what is said of a thing, in any order; and none
@@ -37,15 +37,13 @@ TEST(test_enter_does_what_the_entry_is_for)
     OPEN_EXPLORER(ex, "corrected/first-impact");
 
     // a parameter opens the prompt for its value, which typing replaces
-    press(&ex, ":seek 0.2<Enter><C-p>stiction<Enter>");
-    assert_string_equal(ex.state.prompt.text, "set motor.stiction 0.045");
+    press_prompts(&ex, ":seek 0.2<Enter><C-p>stiction<Enter>", "set motor.stiction 0.045");
     press(&ex, "0.01<Enter>");
     const parameters p = state_parameters(&ex.state);
     check_close(p.motor.stiction, 0.01, 0);
 
     // a command that takes something waits for it, another is carried out
-    press(&ex, "<C-p>seek<Enter>");
-    assert_string_equal(ex.state.prompt.text, "seek ");
+    press_prompts(&ex, "<C-p>seek<Enter>", "seek ");
     press(&ex, "0.1<Enter>");
     check_close(ex.state.session.now, 0.1, 1e-12);
     press(&ex, "<C-p>branch<Enter>");
@@ -61,9 +59,7 @@ TEST(test_enter_does_what_the_entry_is_for)
 TEST(test_the_prompt_has_it_too)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":bra");
-    assert_shows(&ex, ":branch");
-    assert_shows(&ex, "pin this run");
+    press_shows(&ex, ":bra", ":branch", "pin this run");
 
     // nothing is selected until Down is pressed, Up leaves the list again
     press(&ex, "<Down>");
@@ -74,8 +70,7 @@ TEST(test_the_prompt_has_it_too)
     assert_true(ex.state.session.has_other);
 
     // the input continues as words
-    press(&ex, ":voltage_limit<C-p><Enter>");
-    assert_string_equal(ex.state.prompt.text, "set motor.voltage_limit 10");
+    press_prompts(&ex, ":voltage_limit<C-p><Enter>", "set motor.voltage_limit 10");
     press(&ex, "<Esc>");
     assert_false(ex.state.prompt.open);
 }

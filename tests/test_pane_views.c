@@ -1,8 +1,6 @@
 // Panes that are not over time, and the panel of statistics.
 #include "tests/explorer_on_screen.h"
 
-#include <unistd.h>
-
 TEST(test_a_spectrum_names_the_highest_line)
 {
     SCOPED(explorer_finish) explorer ex;
@@ -29,10 +27,8 @@ TEST(test_a_spectrum_names_the_highest_line)
     assert_non_null(strstr(text, "constant, to [Hz]"));
     assert_null(strstr(text, "highest at "));
     free(text);
-    press(&ex, ":spectrum<Enter>");
-    assert_true(ex.state.message.warning);
-    press(&ex, ":spectrum force gap<Enter>");
-    assert_true(ex.state.message.warning);
+    press_warns(&ex, ":spectrum<Enter>");
+    press_warns(&ex, ":spectrum force gap<Enter>");
 }
 
 TEST(test_a_phase_pane_ends_where_the_signals_end)
@@ -78,8 +74,7 @@ TEST(test_statistics_are_from_the_mark_to_the_cursor)
     draw_number(number, sizeof number, s.integral);
     snprintf(wanted, sizeof wanted, "integral %s N s", number);
     assert_shows(&ex, wanted);
-    press(&ex, "X");
-    assert_hides(&ex, "mark and cursor,");
+    press_shows(&ex, "X", "!mark and cursor,");
 }
 
 // Rows of a run, written and laid under another one, are shifted so that both touch at once, or as
@@ -111,8 +106,7 @@ TEST(test_measured_data_touch_when_the_run_does)
     for (size_t i = 0; i < 3; i++) {
         assert_shows_at(&ex, sizes[i].width, sizes[i].height, "shifted by -0.125 s");
     }
-    press(&ex, ":data /nowhere.csv<Enter>");
-    assert_true(ex.state.message.warning);
+    press_warns(&ex, ":data /nowhere.csv<Enter>");
     assert_int_equal(ex.state.measured.row_count, t->row_count);
 
     // beside pins, a difference, a sweep and another scenario, and by hand
@@ -149,8 +143,7 @@ TEST(test_a_pane_of_expressions)
     assert_string_equal(signal_table[p->signals[2]].unit, "");
 
     // a difference of an expression means nothing, the pane says so
-    press(&ex, "b:set arm.k2 5<Enter>D");
-    assert_shows(&ex, "an expression has no difference");
+    press_shows(&ex, "b:set arm.k2 5<Enter>D", "an expression has no difference");
     press(&ex, "XX");
     press(&ex, "D:signal gap/2 11<Enter>");
     assert_int_equal(p->hidden, 2);
@@ -165,10 +158,10 @@ TEST(test_a_pane_of_expressions)
                  {":trace force gap time contact impulse<Enter>", "at most 4"},
                  {":trace forc<Enter>", "there is no signal 'forc'"}};
     const int before = ex.state.panes.focus;
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        press(&ex, wrong[i].line);
+    for (EACH(c, wrong)) {
+        press(&ex, c->line);
         assert_true(ex.state.message.warning);
-        fail_if(strstr(ex.state.message.text, wrong[i].says) == NULL, "%s", ex.state.message.text);
+        fail_if(strstr(ex.state.message.text, c->says) == NULL, "%s", ex.state.message.text);
         assert_int_equal(ex.state.panes.focus, before);
     }
 

@@ -22,8 +22,8 @@ TEST(lists_are_written_in_one_way)
                                        " [ 10 ,12.5 , 9 ] ", "1e1,12.50,9.", "10 N m/rad, 12.5, 9"};
     parameters p;
     fault f;
-    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
-        assert_string_equal(set_list(&p, "arm.joint_stiffness", same[i], &f), "10, 12.5, 9");
+    for (EACH(c, same)) {
+        assert_string_equal(set_list(&p, "arm.joint_stiffness", *c, &f), "10, 12.5, 9");
     }
 
     // every bit comes back, and the empty list is none

@@ -143,10 +143,10 @@ TEST(notations_of_numbers)
         const char *text;
         double value;
     } cases[] = {{"49.2", 49.2}, {"4.92e1", 49.2}, {"+3", 3}, {".5", 0.5}, {"1e-6", 1e-6}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         parameters p = fresh(ARM_CORRECTED);
-        give(&p, "arm.k2", cases[i].text);
-        check_close(p.arm.k2, cases[i].value, 0);
+        give(&p, "arm.k2", c->text);
+        check_close(p.arm.k2, c->value, 0);
     }
     parameters p = fresh(ARM_CORRECTED);
     give(&p, "motor.voltage", "-2.5 V");
@@ -355,13 +355,12 @@ TEST(defaults_follow_the_model)
 TEST(a_link_is_a_uniform_rod_unless_told)
 {
     static const int links[] = {1, 2, 3, 10, 1024};
-    for (size_t i = 0; i < sizeof links / sizeof links[0]; i++) {
+    for (EACH(c, links)) {
         parameters p = fresh(ARM_CORRECTED);
         fault f;
-        assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.links), links[i], &f),
-                         STATUS_OK);
+        assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.links), *c, &f), STATUS_OK);
         assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
-        double n = links[i];
+        double n = *c;
         check_relative(p.arm.link_inertia * n * n * n, 0.40108 / 12, 1e-14);
     }
     parameters p = fresh(ARM_CORRECTED);

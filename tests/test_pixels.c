@@ -2,7 +2,6 @@
 // believed only what they answer.
 #include "tests/explorer_on_screen.h"
 
-#include <unistd.h>
 #include <zlib.h>
 
 #include "ui/terminal/pictures.h"
@@ -234,11 +233,7 @@ TEST(test_few_registers_are_enough)
         pixels[i] = i % 64 < 30 ? 0x000010 : i % 64 < 50 ? 0xf08020 : (uint32_t)(i % 64 * 0x030201);
     }
     const pixel_block block = {pixels, 64, 20, 64};
-    SCOPED(free_kept) char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    assert_true(sixel_write(stream, &block, 4));
-    fclose(stream);
+    SCOPED(free_kept) WRITTEN(text, assert_true(sixel_write(stream, &block, 4)));
     assert_null(strstr(text, "#4"));
     decoded d = decode_sixel(text);
     // the commonest are as they were
@@ -265,7 +260,7 @@ static long pixels_like(cairo_surface_t *surface, rgb c)
 TEST(test_arm_and_force_are_in_the_picture)
 {
     SCOPED(screen_finish) screen s = {0};
-    picture_layer layer;
+    SCOPED(pictures_finish) picture_layer layer;
     rgb arm, force;
     ink_rgb(COLOURS_DARK, INK_ARM, &arm);
     ink_rgb(COLOURS_DARK, INK_FORCE, &force);
@@ -280,7 +275,6 @@ TEST(test_arm_and_force_are_in_the_picture)
     draw_pictures(&ex, &s, &layer);
     assert_true(pixels_like(layer.items[1].surface, force) > 100);
     assert_true(pixels_like(layer.items[0].surface, force) > 100);
-    pictures_finish(&layer);
 }
 
 TEST(test_what_lies_over_a_picture_is_seen)
@@ -346,13 +340,9 @@ TEST(test_a_picture_that_failed_is_words)
 TEST(test_a_screen_without_pictures_has_dots)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":seek 0.35<Enter>");
-    assert_shows(&ex, "1.294 N");
-    assert_hides(&ex, "tip, 100 mm");
-    press(&ex, ":closeup on<Enter>");
-    assert_shows(&ex, "tip, 100 mm");
-    press(&ex, ":bending 5<Enter>");
-    assert_shows(&ex, "bent 5 times");
+    press_shows(&ex, ":seek 0.35<Enter>", "1.294 N", "!tip, 100 mm");
+    press_shows(&ex, ":closeup on<Enter>", "tip, 100 mm");
+    press_shows(&ex, ":bending 5<Enter>", "bent 5 times");
 }
 
 // --- answers ----------------------------------------------------------------------------------

@@ -1,18 +1,9 @@
 // control.law = playback: a recorded command is the input of another run.
-#include <unistd.h>
 
 #include "src/run/export.h"
 #include "tests/rig_fixture.h"
 
 static const char *const recorded_csv = "recorded.csv";
-
-static void write_file(const char *path, const char *text)
-{
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    assert_int_equal(fclose(file), 0);
-}
 
 // Runs settings and keeps the trace as the lab's own CSV.
 static summary record(const char *const *settings)
@@ -22,8 +13,7 @@ static summary record(const char *const *settings)
     assert_non_null(file);
     export_csv(file, &r.trace, 2);
     assert_int_equal(fclose(file), 0);
-    const summary s = r.summary;
-    return s;
+    return r.summary;
 }
 
 // What a run plays back is the run, to the last bit, where its samples are those that were
@@ -39,21 +29,20 @@ TEST(a_run_plays_back_its_own_csv)
         {"control.law=observer", "control.rate=1000", "control.delay=0", "voltage[V]", "0"},
         {"control.law=hybrid", "control.rate=333", "control.delay=0.0007", "voltage", "-0.0007"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         char column[64], shift[64];
-        snprintf(column, sizeof column, "control.playback_column=%s", cases[i].column);
-        snprintf(shift, sizeof shift, "control.playback_shift=%s", cases[i].shift);
-        const summary was = record(SETTINGS(cases[i].law, cases[i].rate, cases[i].delay));
+        snprintf(column, sizeof column, "control.playback_column=%s", c->column);
+        snprintf(shift, sizeof shift, "control.playback_shift=%s", c->shift);
+        const summary was = record(SETTINGS(c->law, c->rate, c->delay));
         const summary is =
             rig_summary(SETTINGS("control.law=playback", "control.playback_file=recorded.csv",
-                                 column, shift, cases[i].rate, cases[i].delay));
+                                 column, shift, c->rate, c->delay));
         assert_true(was.peak_force_N > 0);
         check_close(is.first_contact_s, was.first_contact_s, 0);
         check_close(is.peak_force_N, was.peak_force_N, 0);
         check_close(is.steady_force_N, was.steady_force_N, 0);
         check_close(is.motor_work_J, was.motor_work_J, 0);
     }
-    unlink(recorded_csv);
 }
 
 // What goes out at an instant: between rows, beyond them, and shifted.
@@ -68,21 +57,20 @@ TEST(a_command_is_held_or_goes_straight)
         {"linear", "0", 0.4, 3},    {"hold", "0.1", 0.25, 1},   {"linear", "0.1", 0.25, 1.5},
         {"linear", "-0.1", 0.1, 2},
     };
-    write_file("u.csv", "\"t[ms]\",u[mV]\n100,1000\n200,2000\n300,3000\n");
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    put_file("u.csv", "\"t[ms]\",u[mV]\n100,1000\n200,2000\n300,3000\n");
+    for (EACH(c, cases)) {
         char hold[64], shift[64];
-        snprintf(hold, sizeof hold, "control.playback_hold=%s", cases[i].hold);
-        snprintf(shift, sizeof shift, "control.playback_shift=%s", cases[i].shift);
+        snprintf(hold, sizeof hold, "control.playback_hold=%s", c->hold);
+        snprintf(shift, sizeof shift, "control.playback_shift=%s", c->shift);
         run_result r =
             rig_run(SETTINGS("control.law=playback", "control.playback_file=u.csv",
                              "control.playback_column=u", hold, shift, "control.rate=1000",
                              "sensor.ideal=true", "run.duration=0.45", "wall.kind=none"),
                     true);
-        const size_t row = trace_rows_until(&r.trace, cases[i].time) - 1;
-        check_close(r.trace.rows[row].voltage, cases[i].volts, 1e-9);
+        const size_t row = trace_rows_until(&r.trace, c->time) - 1;
+        check_close(r.trace.rows[row].voltage, c->volts, 1e-9);
         run_finish(&r);
     }
-    unlink("u.csv");
 }
 
 TEST(a_file_with_faults_is_told_with_its_place)
@@ -99,10 +87,10 @@ TEST(a_file_with_faults_is_told_with_its_place)
         {"t[s],command[V]\n0\n", "bad.csv:2"},
         {"", "bad.csv"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        write_file("bad.csv", cases[i].text);
+    for (EACH(c, cases)) {
+        put_file("bad.csv", c->text);
         check_refused(SETTINGS("control.law=playback", "control.playback_file=bad.csv"),
-                      cases[i].sentence);
+                      c->sentence);
     }
     unlink("bad.csv");
     check_refused(SETTINGS("control.law=playback", "control.playback_file=bad.csv"),
@@ -117,13 +105,4 @@ TEST(a_file_with_faults_is_told_with_its_place)
     assert_string_equal(f.text, "control.law = playback needs a CSV file in control.playback_file");
 }
 
-int main(void)
-{
-    char folder[] = "/tmp/playback-XXXXXX";
-    if (mkdtemp(folder) == NULL || chdir(folder) != 0) {
-        return 1;
-    }
-    const int failures = run_cases(NULL, NULL);
-    rmdir(folder);
-    return failures;
-}
+ALL_BETWEEN(enter_folder, leave_folder)

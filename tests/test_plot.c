@@ -8,18 +8,18 @@ TEST(missing_font_is_reported)
 {
     pid_t child = fork();
     if (child == 0) {
-        FILE *file = fopen(path_of("fonts.conf"), "w");
-        fputs("<fontconfig><dir>/nowhere</dir></fontconfig>", file);
-        fclose(file);
-        setenv("FONTCONFIG_FILE", path_of("fonts.conf"), 1);
+        char whole[64];
+        snprintf(whole, sizeof whole, "%s/fonts.conf", test_folder);
+        put_file(whole, "<fontconfig><dir>/nowhere</dir></fontconfig>");
+        setenv("FONTCONFIG_FILE", whole, 1);
         fault f = {0};
         double x[] = {0, 1};
         figure_series series = {.x = x, .y = x, .count = 2, .label = "a<sub>1</sub>"};
         figure_panel panel = {.series = &series, .series_count = 1};
         figure fig = {.panels = &panel, .panel_count = 1};
-        status code = figure_write(&fig, path_of("no-font.png"), &f);
+        status code = figure_write(&fig, "no-font.png", &f);
         bool named = strstr(f.text, "fonts-dejavu-core") != NULL;
-        bool nothing_written = access(path_of("no-font.png"), F_OK) != 0;
+        bool nothing_written = access("no-font.png", F_OK) != 0;
         _exit(code == STATUS_CANNOT_READ && named && nothing_written ? 0 : 1);
     }
     int result;
@@ -243,8 +243,8 @@ TEST(a_spike_of_one_sample_is_visible)
         figure fig = {.panels = &panel, .panel_count = 1, .width = 100, .dpi = 100};
         static figure_report r;
         record(&fig, &r);
-        write_figure(&fig, path_of("spike.png"));
-        cairo_surface_t *image = cairo_image_surface_create_from_png(path_of("spike.png"));
+        write_figure(&fig, "spike.png");
+        cairo_surface_t *image = cairo_image_surface_create_from_png("spike.png");
         assert_int_equal(cairo_surface_status(image), CAIRO_STATUS_SUCCESS);
         double scale = 100.0 / 72, middle = r.panels[0].y + r.panels[0].height / 2;
         double spike = r.panels[0].x + r.panels[0].width * x[SPIKE] / x[COUNT - 1];
@@ -526,15 +526,15 @@ TEST(a_scenario_is_plotted)
     run_result result;
     assert_int_equal(scenario_open(&s, "corrected/first-impact", ignore, NULL), STATUS_OK);
     assert_int_equal(run_scenario(&s, true, &result), STATUS_OK);
-    DONE(plot_run(&s, &result, NULL, NULL, 0, path_of("run.png"), &f));
-    assert_int_equal(access(path_of("run.png"), F_OK), 0);
+    DONE(plot_run(&s, &result, NULL, NULL, 0, "run.png", &f));
+    assert_int_equal(access("run.png", F_OK), 0);
     run_finish(&result);
     // a run without rows still says what it is
     memset(&result, 0, sizeof result);
     result.summary.first_contact_s = (double)NAN;
     result.summary.status = STATUS_NOT_FINITE;
     strcpy(result.summary.message, "at t = 0 s: <nothing>");
-    DONE(plot_run(&s, &result, NULL, NULL, 0, path_of("none.pdf"), &f));
+    DONE(plot_run(&s, &result, NULL, NULL, 0, "none.pdf", &f));
 }
 
-ALL_BETWEEN(make_work_folder, remove_work_folder)
+ALL_BETWEEN(enter_folder, leave_plot_folder)

@@ -1,10 +1,8 @@
 // Pieces of work on several threads: each once, in any order of finishing.
 #include "tests/check.h"
 
-#include <errno.h>
 #include <pthread.h>
 #include <stdatomic.h>
-#include <unistd.h>
 
 #include "src/study/pool.h"
 

@@ -148,11 +148,11 @@ TEST(who_cannot_answer_says_why)
         {SETTINGS("motor.current_limit=1", "motor.inductance=1e-3"), PREDICTOR_IMPACT_DYNAMICS,
          PREDICTION_UNLIMITED_ONLY},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        parameters p = fixture_parameters(cases[i].settings);
+    for (EACH(c, cases)) {
+        parameters p = fixture_parameters(c->settings);
         prediction_question question = {.parameters = &p, .bodies = closing};
-        prediction_answer answer = predict_with(cases[i].which, &question);
-        assert_int_equal(answer.outcome, cases[i].outcome);
+        prediction_answer answer = predict_with(c->which, &question);
+        assert_int_equal(answer.outcome, c->outcome);
         assert_true(strlen(prediction_reason(&answer)) > 10);
         assert_true(isnan(answer.prediction.force));
     }
@@ -225,7 +225,7 @@ TEST(a_current_that_lags_is_followed)
                                                                 arms[i / 8 % 4], walls[i / 32],
                                                                 "run.duration=3"))};
         prediction_answer answers[PREDICTOR_COUNT];
-        run_result r = predicted_run(&s, answers);
+        SCOPED(run_finish) run_result r = predicted_run(&s, answers);
         const prediction_answer *own = &answers[PREDICTOR_LINEARISED];
         if (own->outcome == PREDICTION_HOLDS) {
             check_relative(own->prediction.force, r.landing.peak, 0.01);
@@ -255,7 +255,6 @@ TEST(a_current_that_lags_is_followed)
             assert_non_null(strstr(prediction_reason(answer), "without the motor's inductance"));
             check_close(answer->prediction.force, at_once[which].prediction.force, 0);
         }
-        run_finish(&r);
     }
     assert_true(held >= 70);
 }

@@ -60,19 +60,19 @@ static void publish(const figure_options *o, const char *path)
 TEST(a_bare_picture_has_its_caption_beside_it)
 {
     size_t length;
-    publish(&(figure_options){.look.bare = true}, path_of("bare.svg"));
-    char *text = read_file(path_of("bare.txt"), &length);
+    publish(&(figure_options){.look.bare = true}, "bare.svg");
+    char *text = read_file("bare.txt", &length);
     assert_string_equal(text, "A title & more\n\nWith β = 0.4, 5 % off, θ1\n");
     free(text);
-    publish(&(figure_options){0}, path_of("dressed.svg"));
-    assert_int_not_equal(access(path_of("dressed.txt"), F_OK), 0);
+    publish(&(figure_options){0}, "dressed.svg");
+    assert_int_not_equal(access("dressed.txt", F_OK), 0);
 }
 
 TEST(latex_sets_the_figure)
 {
     size_t length;
-    char *tex = g_strdup(path_of("paper.tex"));
-    publish(&(figure_options){.look.width = 85, .latex = tex}, path_of("force.pdf"));
+    char *tex = g_strdup("paper.tex");
+    publish(&(figure_options){.look.width = 85, .latex = tex}, "force.pdf");
     char *text = read_file(tex, &length);
     assert_non_null(strstr(text, "\\begin{figure}\n"));
     assert_non_null(strstr(text, "width=85mm,alt={A title \\& more. 1 panel over Time in s: Force "
@@ -96,20 +96,20 @@ TEST(files_know_the_command_and_tell_what_they_show)
 {
     size_t length;
     const figure_options o = {.command = "impactlab run x --set arm.k2=3"};
-    publish(&o, path_of("m.svg"));
-    char *svg = read_file(path_of("m.svg"), &length);
+    publish(&o, "m.svg");
+    char *svg = read_file("m.svg", &length);
     assert_non_null(strstr(svg, "<dc:source>impactlab run x --set arm.k2=3</dc:source>"));
     assert_non_null(strstr(svg, "<desc>A title &amp; more. 1 panel over Time in s"));
     free(svg);
-    publish(&o, path_of("m.png"));
-    SCOPED(free_kept) char *png = read_file(path_of("m.png"), &length);
+    publish(&o, "m.png");
+    SCOPED(free_kept) char *png = read_file("m.png", &length);
     assert_non_null(memmem(png, length, "impactlab run x --set arm.k2=3", 30));
 }
 
 TEST(a_transparent_picture_has_no_ground)
 {
-    publish(&(figure_options){.look.transparent = true}, path_of("clear.png"));
-    cairo_surface_t *surface = cairo_image_surface_create_from_png(path_of("clear.png"));
+    publish(&(figure_options){.look.transparent = true}, "clear.png");
+    cairo_surface_t *surface = cairo_image_surface_create_from_png("clear.png");
     assert_int_equal(cairo_image_surface_get_format(surface), CAIRO_FORMAT_ARGB32);
     assert_int_equal(cairo_image_surface_get_data(surface)[3], 0);
     cairo_surface_destroy(surface);
@@ -119,8 +119,8 @@ TEST(serif_pictures_have_serif_letters)
 {
     size_t length;
     fault f = {0};
-    publish(&(figure_options){.look.font = "DejaVu Serif"}, path_of("serif.pdf"));
-    char *pdf = read_file(path_of("serif.pdf"), &length);
+    publish(&(figure_options){.look.font = "DejaVu Serif"}, "serif.pdf");
+    char *pdf = read_file("serif.pdf", &length);
     assert_non_null(memmem(pdf, length, "DejaVuSerif", 11));
     assert_null(memmem(pdf, length, "DejaVuSans", 10));
     free(pdf);
@@ -132,7 +132,7 @@ TEST(serif_pictures_have_serif_letters)
 
 static void write_measured(const char *name, const char *text)
 {
-    FILE *stream = fopen(path_of(name), "w");
+    FILE *stream = fopen(name, "w");
     assert_non_null(stream);
     fputs(text, stream);
     fclose(stream);
@@ -146,7 +146,7 @@ TEST(measured_data_have_a_panel_of_residuals)
     run_figure drawn;
     synthetic_init(&s, run_panels, RUN_PANELS);
     write_measured("bench.csv", "time[s],cell[N]\n0.30,0\n0.325,2\n0.345,1.6\n");
-    char *spec = g_strconcat(path_of("bench.csv"), ":cell@0.02", NULL);
+    char *spec = g_strconcat("bench.csv", ":cell@0.02", NULL);
     const trace_run run = {&s.scenario, &s.result, "run"};
     const figure_options o = {.overlay = spec, .signals = "force,hub_angle+last_angle"};
     fail_if(run_figure_init(&drawn, "t", NULL, 0, &run, 1, &o, &f) != STATUS_OK, "%s", f.text);
@@ -236,21 +236,21 @@ TEST(multiples_are_runs_at_their_values)
     write_measured("many.yaml", "runs: [{name: arm, scenario: corrected/first-impact}]\n"
                                 "multiples: {vary: motor.voltage, values: [1 V, 2 V]}\n"
                                 "panels: [{signals: [force]}, {signals: [hub_angle]}]\n");
-    DONE(open_recipe(path_of("many.yaml"), &drawn, &f));
+    DONE(open_recipe("many.yaml", &drawn, &f));
     report_of(&drawn, &r);
     assert_int_equal(r.panel_count, 4);
-    DONE(drawn.write_csv(drawn.what, path_of("many.csv"), &f));
+    DONE(drawn.write_csv(drawn.what, "many.csv", &f));
     artwork_finish(&drawn);
 
     write_measured("one.yaml", "runs: [{name: arm 2 V, scenario: corrected/first-impact, set: "
                                "{motor.voltage: 2}}]\npanels: [{signals: [force]}]\n");
-    DONE(open_recipe(path_of("one.yaml"), &drawn, &f));
-    DONE(drawn.write_csv(drawn.what, path_of("one.csv"), &f));
+    DONE(open_recipe("one.yaml", &drawn, &f));
+    DONE(drawn.write_csv(drawn.what, "one.csv", &f));
     artwork_finish(&drawn);
 
     // the same rows, for any other contents of the file
-    SCOPED(free_kept) char *many = read_file(path_of("many.csv"), &length);
-    SCOPED(free_kept) char *one = read_file(path_of("one.csv"), &length);
+    SCOPED(free_kept) char *many = read_file("many.csv", &length);
+    SCOPED(free_kept) char *one = read_file("one.csv", &length);
     const char *row = ",arm 2 V force,0.3,";
     const char *a = strstr(many, row), *b = strstr(one, row);
     assert_non_null(a);
@@ -266,12 +266,12 @@ TEST(a_recipe_shows_what_its_runs_give)
     size_t length;
     char *path = g_strdup_printf("%s/recipes/fig-3-4.yaml", getenv("IMPACTLAB_SCENARIOS"));
     DONE(open_recipe(path, &drawn, &f));
-    DONE(drawn.write_csv(drawn.what, path_of("recipe.csv"), &f));
+    DONE(drawn.write_csv(drawn.what, "recipe.csv", &f));
     artwork_finish(&drawn);
     g_free(path);
-    DONE(figure_draw("3.4", &(figure_options){0}, path_of("thesis"), "svg", NULL, &f));
-    SCOPED(free_kept) char *recipe = read_file(path_of("recipe.csv"), &length);
-    SCOPED(free_kept) char *thesis = read_file(path_of("thesis/fig-3-4.csv"), &length);
+    DONE(figure_draw("3.4", &(figure_options){0}, "thesis", "svg", NULL, &f));
+    SCOPED(free_kept) char *recipe = read_file("recipe.csv", &length);
+    SCOPED(free_kept) char *thesis = read_file("thesis/fig-3-4.csv", &length);
     const char *const rows[][2] = {{"printed force,0.4,", ",force,0.4,"},
                                    {"corrected force,0.4,", ",force corrected,0.4,"}};
     double values[2];
@@ -322,8 +322,8 @@ TEST(faults_of_recipes_have_their_places)
         fault f = {0};
         artwork drawn;
         write_measured("bad.yaml", cases[i].text);
-        assert_int_equal(open_recipe(path_of("bad.yaml"), &drawn, &f), STATUS_BAD_SCENARIO);
-        char *expected = g_strconcat(path_of("bad.yaml"), cases[i].said, NULL);
+        assert_int_equal(open_recipe("bad.yaml", &drawn, &f), STATUS_BAD_SCENARIO);
+        char *expected = g_strconcat("bad.yaml", cases[i].said, NULL);
         fail_if(strstr(heard->str, expected) == NULL, "expected '%s', heard '%s'", expected,
                 heard->str);
         g_free(expected);
@@ -333,8 +333,8 @@ TEST(faults_of_recipes_have_their_places)
     fault f = {0};
     artwork drawn;
     write_measured("bad.yaml", "runs:\n  - scenario: no/such\npanels: [{signals: [force]}]\n");
-    assert_true(open_recipe(path_of("bad.yaml"), &drawn, &f) != STATUS_OK);
+    assert_true(open_recipe("bad.yaml", &drawn, &f) != STATUS_OK);
     assert_non_null(strstr(f.text, "bad.yaml:2:5: "));
 }
 
-ALL_BETWEEN(make_work_folder, remove_work_folder)
+ALL_BETWEEN(enter_folder, leave_plot_folder)

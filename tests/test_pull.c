@@ -1,8 +1,6 @@
 // The tip pulled by the mouse, and slow motion near impacts.
 #include "tests/explorer_on_screen.h"
 
-#include <unistd.h>
-
 enum { WIDTH = 120, HEIGHT = 40 };
 
 // The cell of the tip as it is drawn.

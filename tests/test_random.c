@@ -45,20 +45,19 @@ TEST(numbers_that_would_be_uneven_are_drawn_again)
     const struct {
         uint64_t bound, again; // 2^64 mod bound
     } cases[] = {{3, 1}, {10, 6}, {UINT64_C(1) << 32, 0}, {(UINT64_C(1) << 63) + 1, INT64_MAX}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        for (uint64_t bits = cases[i].again - (cases[i].again > 0); bits <= cases[i].again;
-             bits++) {
+    for (EACH(c, cases)) {
+        for (uint64_t bits = c->again - (c->again > 0); bits <= c->again; bits++) {
             // a state whose next number is `bits`: nine, the turn by 7 and five undone
             const uint64_t ninth = bits * UINT64_C(0x8e38e38e38e38e39);
             const uint64_t turned = ninth >> 7 | ninth << 57;
             random_generator g = {{1, turned * UINT64_C(0xcccccccccccccccd), 2, 3}}, next = g;
             assert_true(random_bits(&next) == bits);
-            const uint64_t drawn = random_below(&g, cases[i].bound);
+            const uint64_t drawn = random_below(&g, c->bound);
 
             // taken, it is the only one
             const bool taken = memcmp(&g, &next, sizeof g) == 0;
-            assert_int_equal(taken, bits >= cases[i].again);
-            assert_true(!taken || drawn == bits % cases[i].bound);
+            assert_int_equal(taken, bits >= c->again);
+            assert_true(!taken || drawn == bits % c->bound);
         }
     }
 }

@@ -110,9 +110,9 @@ TEST(test_runs_that_failed_come_to_their_end)
 {
     const char *const *const runs[] = {bounced,   broke_away, let_go,       let_go_fast,
                                        came_back, swept_over, came_to_rest, swung};
-    for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
+    for (EACH(c, runs)) {
         SCOPED(run_finish) run_result r;
-        run_with(runs[i], false, &r);
+        run_with(*c, false, &r);
         assert_int_equal(r.summary.status, STATUS_OK);
         assert_false(r.summary.inaccurate);
         assert_true(r.summary.energy_residual_J < 1e-9);
@@ -137,9 +137,9 @@ TEST(test_an_arm_folded_over_the_hub_ends_the_run)
                  "motor.voltage=8.2", "arm.mass=1.5", "arm.length=0.3", "arm.hub_inertia=0.00036",
                  "arm.k2=0.27"),
     };
-    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+    for (EACH(c, arms)) {
         SCOPED(run_finish) run_result r;
-        run_with(arms[i], true, &r);
+        run_with(*c, true, &r);
         const trace *t = &r.trace;
         assert_int_equal(r.summary.status, STATUS_FOLDED);
         assert_true(r.summary.message[0] != '\0');
@@ -182,11 +182,11 @@ TEST(test_the_force_near_a_fold_is_that_of_another_engine)
 TEST(test_no_step_leads_through_a_fold)
 {
     const char *const voltages[] = {"motor.voltage=8.6", "motor.voltage=8.8", "motor.voltage=9.8"};
-    for (size_t i = 0; i < sizeof voltages / sizeof voltages[0]; i++) {
+    for (EACH(c, voltages)) {
         SCOPED(run_finish) run_result r;
         run_with(SETTINGS("wall.kind=plane", "wall.angle=0.0018", "wall.restitution=0.08",
                           "arm.mass=1.5", "arm.length=0.3", "arm.hub_inertia=0.00036",
-                          "arm.k2=0.27", "arm.tip_mass=1e-15", "run.duration=0.3", voltages[i]),
+                          "arm.k2=0.27", "arm.tip_mass=1e-15", "run.duration=0.3", *c),
                  false, &r);
         assert_int_equal(r.summary.status, STATUS_FOLDED);
     }
@@ -195,12 +195,11 @@ TEST(test_no_step_leads_through_a_fold)
 // A decay that strides are only as brief as is no reason to leave the series of two links.
 TEST(test_a_braked_pair_stays_with_its_series)
 {
-    run_result r;
+    SCOPED(run_finish) run_result r;
     SCOPED(run_finish) run_result usual;
     run_with(spun, false, &r);
     run_with(SETTINGS("motor.voltage=1"), false, &usual);
     assert_int_equal(r.summary.status, STATUS_OK);
     assert_true(r.summary.energy_residual_J < 1e-9);
     assert_string_equal(r.summary.method, usual.summary.method);
-    run_finish(&r);
 }

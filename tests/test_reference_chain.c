@@ -8,7 +8,6 @@
 // KIND is the sum of 1 (beam root, else rigid), 2 (plane wall, else point), 4 (e = 0.5, else 0) and
 // 8 (1 % damping, else none). --into keeps the simulation's answers in FOLDER, --from compares with
 // those kept there: 64 links take it many minutes a case.
-#include <errno.h>
 
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"

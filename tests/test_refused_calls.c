@@ -306,8 +306,8 @@ TEST(measurements)
     static const char *const names[] = {"arm_n2_us_per_ms", "struck_n8_us_per_ms",
                                         "batch_n2_steps_per_s", "batch_width_4_us_per_run"};
     bench_window = 1e-9;
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        try_all(measure, names[i]);
+    for (EACH(c, names)) {
+        try_all(measure, *c);
     }
 }
 

@@ -1,7 +1,6 @@
 // What was refused may be finished: after each initialisation that fails, for want of memory or by
 // its arguments, the caller's next call, its finish, frees nothing twice and leaves nothing. The
 // sanitizers see what it does.
-#include <unistd.h>
 
 #include "src/base/csv_table.h"
 #include "src/run/loop.h"

@@ -189,7 +189,7 @@ TEST(scripts_that_part_are_resumed_where_they_part)
     }
     for (int i = 0; i < SCRIPTS; i++) {
         for (int j = 0; j < SCRIPTS; j++) {
-            run_result result;
+            SCOPED(run_finish) run_result result;
             assert_true(resumed(&whole[i], &s[i], &s[j], &result));
             check_same_run(&result, &whole[j]);
             run_finish(&result);
@@ -212,7 +212,6 @@ TEST(scripts_that_part_are_resumed_where_they_part)
             const double shared = result.trace.rows[result.trace.row_count - 1].time;
             check_below(shared, part);
             check_below(part - 0.7, shared);
-            run_finish(&result);
         }
     }
     for (int i = 0; i < SCRIPTS; i++) {

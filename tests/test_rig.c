@@ -41,10 +41,10 @@ TEST(a_command_still_on_its_way_does_not_count)
 {
     static const char *const ends[] = {"run.duration=0.32", "run.duration=0.3102",
                                        "run.duration=0.305"};
-    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+    for (EACH(c, ends)) {
         SCOPED(run_finish)
         run_result r = rig_run(SETTINGS("control.law=force-pd", "control.force_gain=5",
-                                        "control.delay=0.003068", "control.seed=423", ends[i]),
+                                        "control.delay=0.003068", "control.seed=423", *c),
                                true);
         double largest = 0;
         for (size_t k = 0; k < r.trace.row_count; k++) {
@@ -355,11 +355,11 @@ TEST(the_approach_speed_is_the_largest_of_the_flight)
          "initial.angle=0", "arm.k2=53.36", "arm.damping_ratio=0.01", "control.force=0.855"},
         {"control.law=bang-bang", "control.approach_voltage=0.5618", "wall.angle=0.2352",
          "initial.angle=0", "arm.k2=2.873", "arm.damping_ratio=0.01", "control.force=3.196"}};
-    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
+    for (EACH(c, arms)) {
         const char *settings[16] = {"control.rate=50", "wall.kind=plane", "motor.stiction=0",
                                     "sensor.ideal=true", "method.step=1e-4"};
         for (int k = 0; k < 7; k++) {
-            settings[5 + k] = arms[i][k];
+            settings[5 + k] = (*c)[k];
         }
         SCOPED(run_finish) run_result r = rig_run(settings, true);
         double fastest = 0;

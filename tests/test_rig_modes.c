@@ -55,9 +55,9 @@ TEST(approach_means_the_approach_command)
     static const char *const laws[] = {"hybrid",   "recovering",     "reverse-torque",
                                        "force-pd", "force-integral", "discontinuous",
                                        "optimal"};
-    for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
+    for (EACH(c, laws)) {
         char setting[64];
-        snprintf(setting, sizeof setting, "control.law=%s", laws[i]);
+        snprintf(setting, sizeof setting, "control.law=%s", *c);
         SCOPED(run_finish)
         run_result r = locked_run(SETTINGS(setting, "control.approach_voltage=0.8"), "approach");
         check_close(answer_at(&r, 0.6)->command, 0.8, 0);
@@ -110,15 +110,15 @@ TEST(release_goes_on_from_the_command_in_effect)
         {"force-integral", "contact"}, {"optimal", "hold"},     {"force-integral", "approach"},
         {"predictive", "hold"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         char setting[64];
-        snprintf(setting, sizeof setting, "control.law=%s", cases[i][0]);
+        snprintf(setting, sizeof setting, "control.law=%s", (*c)[0]);
         SCOPED(run_finish)
-        run_result r = locked_run(SETTINGS(setting, "sensor.ideal=true"), cases[i][1]);
+        run_result r = locked_run(SETTINGS(setting, "sensor.ideal=true"), (*c)[1]);
         double last = answer_at(&r, RELEASE_TIME - 0.005)->command;
         double next = answer_at(&r, RELEASE_TIME)->command;
-        fail_if(fabs(next - last) > 0.1, "%s released from %s jumps from %g V to %g V", cases[i][0],
-                cases[i][1], last, next);
+        fail_if(fabs(next - last) > 0.1, "%s released from %s jumps from %g V to %g V", (*c)[0],
+                (*c)[1], last, next);
     }
 }
 
@@ -145,13 +145,13 @@ TEST(unknown_modes_are_refused)
         {"control.law=open-loop", "approach", "cannot be held in a mode"},
         {"control.law=inverse-dynamics", "press", "cannot be held in a mode"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         fault f;
         char setting[128];
-        scenario s = {.parameters = rig_parameters(SETTINGS(cases[i].law))};
-        snprintf(setting, sizeof setting, "control.lock=%s", cases[i].mode);
+        scenario s = {.parameters = rig_parameters(SETTINGS(c->law))};
+        snprintf(setting, sizeof setting, "control.lock=%s", c->mode);
         assert_int_equal(scenario_override(&s, setting, &f), STATUS_BAD_SCENARIO);
-        assert_non_null(strstr(f.text, cases[i].why));
+        assert_non_null(strstr(f.text, c->why));
         check_close(parameter_get(&s.parameters, PARAMETER_INDEX(control.lock)), 0, 0);
         assert_int_equal(scenario_override(&s, "control.lock=none", &f), STATUS_OK);
     }

@@ -1,39 +1,33 @@
 // Control laws over many beliefs: the set, the judgement, and that it depends on the seed alone.
 #include "src/study/robust.h"
 
-#include <unistd.h>
-
 #include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 
 GIVEN_BACK(sweep_store, sweep_store_close)
 
-// A file with the text; the name is in `path`.
-static void write_set(char *path, const char *text)
+static const char path[] = "the.set";
+
+static status read_set(robust_set *set, const char *text, fault *f)
 {
-    strcpy(path, "/tmp/robust_test_XXXXXX");
-    int descriptor = mkstemp(path);
-    assert_true(descriptor >= 0);
-    assert_int_equal(write(descriptor, text, strlen(text)), (ssize_t)strlen(text));
-    close(descriptor);
+    put_file(path, text);
+    return robust_set_read(set, path, f);
 }
 
 TEST(a_set_is_its_lines)
 {
-    char path[32];
     robust_set set;
     fault f;
-    write_set(path, "# beliefs\n\n  belief.k2_factor=0.75:1.25 \r\nwall.kind=point,plane");
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(
+        read_set(&set, "# beliefs\n\n  belief.k2_factor=0.75:1.25 \r\nwall.kind=point,plane", &f),
+        STATUS_OK);
     assert_int_equal(set.count, 2);
     assert_string_equal(set.lines[0], "belief.k2_factor=0.75:1.25");
     assert_string_equal(set.lines[1], "wall.kind=point,plane");
     robust_set_finish(&set);
-    unlink(path);
 
     // a file without a line, and none
-    write_set(path, "\n# nothing\n");
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(read_set(&set, "\n# nothing\n", &f), STATUS_BAD_ARGUMENT);
     unlink(path);
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_CANNOT_READ);
 
@@ -49,16 +43,17 @@ TEST(a_set_is_its_lines)
 
 TEST(cases_are_what_differs)
 {
-    char path[32];
     robust_set set;
     fault f;
-    write_set(path, "control.seed=1,2\ncase plain:\n"
-                    "case two at once : belief.k2_factor=0.5; arm.links=3 ;push=-0.05@0.8\n");
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(
+        read_set(&set,
+                 "control.seed=1,2\ncase plain:\n"
+                 "case two at once : belief.k2_factor=0.5; arm.links=3 ;push=-0.05@0.8\n",
+                 &f),
+        STATUS_OK);
     assert_int_equal(set.count, 1);
     assert_int_equal(set.case_count, 2);
     assert_string_equal(set.cases[1].title, "two at once");
-    unlink(path);
 
     // the first is the scenario itself, the second differs in what it says
     scenario derived,
@@ -106,16 +101,16 @@ TEST(cases_are_what_differs)
                                         "control.seed=1,2\ncase a: push=0.1@soon\n",
                                         ("control.seed=1,2\ncase a: push=1@1; push=1@2; push=1@3;"
                                          "push=1@4; push=1@5\n")};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        write_set(path, wrong[i]);
-        assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
+    for (EACH(c, wrong)) {
+        assert_int_equal(read_set(&set, *c, &f), STATUS_BAD_ARGUMENT);
         robust_set_finish(&set); // as callers do
-        unlink(path);
     }
 
     // of several settings that cannot be the first is named
-    write_set(path, "control.seed=1,2\ncase a: arm.k2=4; arm.links=-3; wall.restitution=7\n");
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(
+        read_set(&set, "control.seed=1,2\ncase a: arm.k2=4; arm.links=-3; wall.restitution=7\n",
+                 &f),
+        STATUS_OK);
     f = (fault){0};
     assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "case 'a'"));
@@ -125,7 +120,6 @@ TEST(cases_are_what_differs)
     assert_int_equal(f.line, 2);
     robust_case_finish(&derived); // as callers do
     robust_set_finish(&set);
-    unlink(path);
 }
 
 // A push that would never act, or not on this arm, and what the scenario has besides.
@@ -137,44 +131,36 @@ TEST(pushes_of_a_case_must_act)
                  {"a=1\ncase later: push=1@0.1; push=1@9\n", "a push at 9 s is outside"},
                  {"a=1\ncase short: run.duration=0.4; push=1@0.5\n", "expected 0 to 0.4 s"},
                  {"a=1\ncase old: arm.model=printed; push=1@0.1\n", "takes no pushes"}};
-    char path[32];
     scenario base = {.name = "test", .parameters = rig_parameters(SETTINGS("run.duration=1"))},
              derived;
     base.parameters.control.law = LAW_NONE;
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (EACH(c, wrong)) {
         SCOPED(robust_set_finish) robust_set set;
         fault f = {0};
-        write_set(path, wrong[i].text);
-        assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+        assert_int_equal(read_set(&set, c->text, &f), STATUS_OK);
         assert_int_not_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
-        fail_if(strstr(f.text, wrong[i].says) == NULL, "'%s' does not say '%s'", f.text,
-                wrong[i].says);
+        fail_if(strstr(f.text, c->says) == NULL, "'%s' does not say '%s'", f.text, c->says);
         robust_case_finish(&derived);
-        unlink(path);
     }
 
     // at the very end there is still a run
     SCOPED(robust_set_finish) robust_set set;
     fault f = {0};
-    write_set(path, "a=1\ncase last: push=1@1\n");
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(read_set(&set, "a=1\ncase last: push=1@1\n", &f), STATUS_OK);
     assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
     robust_case_finish(&derived);
-    unlink(path);
 }
 
 // Whatever stands in the place of a set is refused once, and the caller goes on.
 TEST(what_is_no_set_is_refused)
 {
     static const char *const places[] = {".", "/dev/full", "/dev/zero", "/dev/null", "/nowhere"};
-    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
-        robust_set set;
+    for (EACH(c, places)) {
+        SCOPED(robust_set_finish) robust_set set;
         fault f = {0};
-        const status code = robust_set_read(&set, places[i], &f);
+        const status code = robust_set_read(&set, *c, &f);
         assert_true(code == STATUS_BAD_ARGUMENT || code == STATUS_CANNOT_READ);
-        assert_non_null(strstr(f.text, places[i]));
-        robust_set_finish(&set);
-        robust_set_finish(&set);
+        assert_non_null(strstr(f.text, *c));
     }
 }
 
@@ -207,15 +193,12 @@ static char *judged(int law, char *const *lines, int count, size_t runs, int job
 TEST(sets_have_limits)
 {
     enum { LONGEST = 65536 };
-    char path[32];
     robust_set set;
     fault f = {0};
-    write_set(path, "x");
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(read_set(&set, "x", &f), STATUS_OK);
     assert_int_equal(set.count, 1);
     assert_string_equal(set.lines[0], "x");
     robust_set_finish(&set);
-    unlink(path);
 
     // lines of one character, and one with as many as the file may have, or one more
     static char text[LONGEST + 2];
@@ -224,25 +207,21 @@ TEST(sets_have_limits)
         text[2 * i + 1] = '\n';
     }
     text[400] = '\0';
-    write_set(path, text);
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(read_set(&set, text, &f), STATUS_OK);
     assert_int_equal(set.count, 200);
     for (int i = 0; i < 200; i++) {
         assert_int_equal(set.lines[i][0], 'a' + i % 26);
         assert_int_equal(set.lines[i][1], '\0');
     }
     robust_set_finish(&set);
-    unlink(path);
     for (int over = 0; over < 2; over++) {
         memset(text, '1', LONGEST + 1);
         text[LONGEST + over] = '\0';
-        write_set(path, text);
-        assert_int_equal(robust_set_read(&set, path, &f), over ? STATUS_BAD_ARGUMENT : STATUS_OK);
+        assert_int_equal(read_set(&set, text, &f), over ? STATUS_BAD_ARGUMENT : STATUS_OK);
         if (!over) {
             assert_int_equal(strlen(set.lines[0]), LONGEST);
         }
         robust_set_finish(&set);
-        unlink(path);
     }
 
     // a byte that ends texts
@@ -251,12 +230,14 @@ TEST(sets_have_limits)
     fclose(file);
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
     robust_set_finish(&set);
-    unlink(path);
 
     // four pushes, from the start on, and settings of several cases behind one another
-    write_set(path, "a=1\ncase one: a=1; push=1@0; push=-2@0.5;push=3@1 ; push=4@2; b=2;\n"
-                    "\t# nothing\n  case  two : c=3 \ncase three:;\nb=2");
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_OK);
+    assert_int_equal(
+        read_set(&set,
+                 "a=1\ncase one: a=1; push=1@0; push=-2@0.5;push=3@1 ; push=4@2; b=2;\n"
+                 "\t# nothing\n  case  two : c=3 \ncase three:;\nb=2",
+                 &f),
+        STATUS_OK);
     assert_int_equal(set.count, 2);
     assert_string_equal(set.lines[1], "b=2");
     assert_int_equal(set.line_numbers[0], 1);
@@ -283,29 +264,27 @@ TEST(sets_have_limits)
     robust_set_finish(&set);
     assert_int_equal(set.count + set.case_count, 0);
     assert_null(set.text);
-    unlink(path);
 
     // one push too many, with the line that has it
-    write_set(path, "a=1\n\ncase one: push=1@1; push=1@1; push=1@1; push=1@1; push=1@1\n");
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(
+        read_set(&set, "a=1\n\ncase one: push=1@1; push=1@1; push=1@1; push=1@1; push=1@1\n", &f),
+        STATUS_BAD_ARGUMENT);
     char place[64];
     snprintf(place, sizeof place, "%s:3: no case", path);
     assert_non_null(strstr(f.text, place));
     assert_int_equal(f.line, 3);
     robust_set_finish(&set);
-    unlink(path);
 }
 
 TEST(threads_change_nothing)
 {
     char *const lines[] = {"belief.k2_factor=0.75:1.25", "control.seed=1:1000"};
-    robust_law one;
+    SCOPED(robust_law_finish) robust_law one;
     SCOPED(robust_law_finish) robust_law two;
     SCOPED(free_kept) char *alone = judged(LAW_HYBRID, lines, 2, 12, 1, &one);
     SCOPED(free_kept) char *shared = judged(LAW_HYBRID, lines, 2, 12, 3, &two);
     assert_string_equal(alone, shared);
     assert_memory_equal(one.overshoots, two.overshoots, 12 * sizeof(double));
-    robust_law_finish(&one);
 }
 
 // One run: every quantile is its value.
@@ -329,7 +308,7 @@ TEST(quantiles_rise_and_the_observer_law_stands_the_set)
     char *const lines[] = {"belief.mass_factor=0.85:1.15", "belief.torque_factor=0.85:1.15",
                            "belief.friction_factor=0.7:1.3", "belief.wall_error=-0.03:0.03",
                            "control.seed=1:1000"};
-    robust_law hybrid;
+    SCOPED(robust_law_finish) robust_law hybrid;
     SCOPED(robust_law_finish) robust_law observer;
     free(judged(LAW_HYBRID, lines, 5, 24, 2, &hybrid));
     free(judged(LAW_OBSERVER, lines, 5, 24, 2, &observer));
@@ -339,7 +318,6 @@ TEST(quantiles_rise_and_the_observer_law_stands_the_set)
     check_below(observer.error[ROBUST_WORST], 5);
     check_below(observer.overshoot[ROBUST_WORST], hybrid.overshoot[ROBUST_MEDIAN]);
     check_close(observer.settled, 1, 0);
-    robust_law_finish(&hybrid);
 }
 
 // A run that never settles counts as the worst.
@@ -366,11 +344,7 @@ static int count_in_line(const char *line, char sought)
 static void check_table(void (*writes)(FILE *, const robust_table *), const robust_table *t,
                         char separator, int lines)
 {
-    SCOPED(free_kept) char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    writes(stream, t);
-    fclose(stream);
+    SCOPED(free_kept) WRITTEN(text, writes(stream, t));
     const char *line = text;
     const int columns = count_in_line(text, separator);
     assert_true(columns > 5);
@@ -411,11 +385,7 @@ TEST(texts_and_json_say_what_is_there)
 {
     robust_law laws[] = {{.law = "hybrid", .runs = 10, .failed = 3, .overshoot = {12345.6, 2, 3}}};
     robust_table table = {"test", laws, 1, NULL};
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    robust_text(stream, &table);
-    fclose(stream);
+    WRITTEN(text, robust_text(stream, &table));
     assert_non_null(strstr(text, "3 failed"));
     assert_non_null(strstr(text, "12346"));
     free(text);

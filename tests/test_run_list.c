@@ -46,10 +46,9 @@ TEST(test_names_are_cut_between_words)
     free(text);
 
     // where there is room it is whole, also one that is long
-    press(&ex, "B:pin of the second series, with 12345678901234567890 samples<Enter>R");
-    assert_shows(&ex, "of the second series, with… ");
-    press(&ex, "r");
-    assert_shows(&ex, "with 12345678901234567890 samples");
+    press_shows(&ex, "B:pin of the second series, with 12345678901234567890 samples<Enter>R",
+                "of the second series, with… ");
+    press_shows(&ex, "r", "with 12345678901234567890 samples");
 }
 
 TEST(test_no_more_than_seven_and_none_is_lost)
@@ -163,9 +162,8 @@ TEST(test_states_are_not_subtracted)
     assert_true(forces > 100);
     assert_shows(&ex, "mode force    \u254c contact 1");
     assert_shows(&ex, "are this run's; D shows");
-    assert_hides(&ex, "stick 1                    minus baseline");
-    press(&ex, "X");
-    assert_shows(&ex, "minus baseline, visible part");
+    assert_shows(&ex, "!stick 1                    minus baseline");
+    press_shows(&ex, "X", "minus baseline, visible part");
 }
 
 // An integral over time has a unit of its own, where the panel is narrow, too.
@@ -215,8 +213,7 @@ TEST(test_a_sweep_gives_what_single_runs_give)
     assert_int_equal(state_run_count(&ex.state), 1);
 
     // what cannot be run says so
-    press(&ex, ":sweep motor.voltage=1:2:40<Enter>");
-    assert_true(ex.state.message.warning);
+    press_warns(&ex, ":sweep motor.voltage=1:2:40<Enter>");
     press(&ex, ":sweep stiction=0.01:0.05:3<Enter>");
     assert_int_equal(sweep->axis.parameter, PARAMETER_INDEX(motor.stiction));
     char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
@@ -230,6 +227,5 @@ TEST(test_a_sweep_gives_what_single_runs_give)
     text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
     assert_non_null(strstr(text, "─ accelerometer_rise.., 3 of 3 ─"));
     free(text);
-    press(&ex, ":sweep motor.volts=1:2:4<Enter>");
-    assert_shows(&ex, "did you mean");
+    press_shows(&ex, ":sweep motor.volts=1:2:4<Enter>", "did you mean");
 }

@@ -49,7 +49,7 @@ TEST(a_whole_scenario_is_read)
 
 TEST(what_is_left_out_has_a_default)
 {
-    scenario s = good("{}");
+    SCOPED(scenario_finish) scenario s = good("{}");
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     DONE(parameters_resolve(&p, &f));
@@ -64,7 +64,6 @@ TEST(what_is_left_out_has_a_default)
     // a list without numbers is none
     s = good("arm: {link_lengths: []}");
     assert_string_equal(s.parameters.arm.link_lengths, "");
-    scenario_finish(&s);
 }
 
 TEST(the_order_of_groups_does_not_matter)
@@ -211,14 +210,13 @@ TEST(what_does_not_go_together_is_refused)
         {"control: {law: hybrid, impact_angle: accelerometer}\nsensor: {accelerometer: false}",
          "sensor.accelerometer = false"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         scenario s;
         sentences all;
-        const status code = parse(&s, cases[i].text, &all);
-        fail_if(code != STATUS_BAD_SCENARIO || all.count != 1 ||
-                    strstr(all.text, cases[i].what) == NULL,
-                "%s: %d faults, expected one about '%s':\n%s", cases[i].text, all.count,
-                cases[i].what, all.text);
+        const status code = parse(&s, c->text, &all);
+        fail_if(code != STATUS_BAD_SCENARIO || all.count != 1 || strstr(all.text, c->what) == NULL,
+                "%s: %d faults, expected one about '%s':\n%s", c->text, all.count, c->what,
+                all.text);
     }
 }
 
@@ -231,8 +229,8 @@ TEST(faults_of_one_line_are_told_from_left_to_right)
     assert_int_equal(parse(&s, text, &all), STATUS_BAD_SCENARIO);
     static const char *const wrong[] = {"'knd'", "at", "'w'", "'lnks'"};
     const char *before = all.text;
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        const char *at = strstr(before, wrong[i]);
+    for (EACH(c, wrong)) {
+        const char *at = strstr(before, *c);
         assert_non_null(at);
         before = at;
     }

@@ -2,60 +2,24 @@
 // back.
 #include "tests/scenario_fixture.h"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "src/run/run.h"
 
 // ---- files --------------------------------------------------------------------------------------
 
-// A folder for one test, with a file in it.
-static char folder[64];
-
-static void write_file(const char *name, const char *text)
-{
-    char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    assert_int_equal(fclose(file), 0);
-}
-
+// A folder of scenarios.
 static int make_folder(void **state)
 {
-    (void)state;
-    char path[128];
-    strcpy(folder, "/tmp/impactlab-scenario-XXXXXX");
-    if (mkdtemp(folder) == NULL) {
+    static const char *const files[][2] = {{"beta.yaml", "title: Beta\n"},
+                                           {"deep/alpha-10.yaml", "title: Ten\n"},
+                                           {"deep/alpha-9.yaml", "title: Nine\n"},
+                                           {"deep/notes.txt", "not a scenario\n"},
+                                           {"deep/n", "nor is this\n"},
+                                           {".hidden.yaml", "title: Hidden\n"}};
+    if (enter_folder(state) != 0 || mkdir("deep", 0700) != 0) {
         return -1;
     }
-    snprintf(path, sizeof path, "%s/deep", folder);
-    mkdir(path, 0700);
-    write_file("beta.yaml", "title: Beta\n");
-    write_file("deep/alpha-10.yaml", "title: Ten\n");
-    write_file("deep/alpha-9.yaml", "title: Nine\n");
-    write_file("deep/notes.txt", "not a scenario\n");
-    write_file("deep/n", "nor is this\n");
-    write_file(".hidden.yaml", "title: Hidden\n");
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    static const char *const files[] = {"beta.yaml",
-                                        "deep/alpha-10.yaml",
-                                        "deep/alpha-9.yaml",
-                                        "deep/notes.txt",
-                                        "deep/n",
-                                        ".hidden.yaml",
-                                        "deep",
-                                        ""};
-    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-        char path[128];
-        snprintf(path, sizeof path, "%s/%s", folder, files[i]);
-        remove(path);
+    for (EACH(file, files)) {
+        put_file((*file)[0], (*file)[1]);
     }
     return 0;
 }
@@ -66,33 +30,32 @@ static status open_here(scenario *s, const char *name, sentences *all)
     SCOPED(free_kept)
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     *all = (sentences){0};
-    setenv("IMPACTLAB_SCENARIOS", folder, 1);
+    setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
     status result = scenario_open(s, name, keep_sentence, all);
     setenv("IMPACTLAB_SCENARIOS", before, 1);
     return result;
 }
 
-TEST_BETWEEN(scenarios_open_by_name_and_by_file, make_folder, remove_folder)
+TEST_BETWEEN(scenarios_open_by_name_and_by_file, make_folder, leave_folder)
 {
-    scenario s;
+    SCOPED(scenario_finish) scenario s;
     sentences all;
     char path[128];
     assert_int_equal(open_here(&s, "deep/alpha-9", &all), STATUS_OK);
     assert_string_equal(s.name, "deep/alpha-9");
     assert_string_equal(s.title, "Nine");
-    snprintf(path, sizeof path, "%s/deep/alpha-9.yaml", folder);
+    snprintf(path, sizeof path, "%s/deep/alpha-9.yaml", test_folder);
     assert_string_equal(s.file, path);
     scenario_finish(&s);
     assert_int_equal(open_here(&s, path, &all), STATUS_OK);
     assert_string_equal(s.name, path);
     scenario_finish(&s);
-    snprintf(path, sizeof path, "%s/deep/alpha-10", folder);
+    snprintf(path, sizeof path, "%s/deep/alpha-10", test_folder);
     assert_int_equal(open_here(&s, path, &all), STATUS_OK);
     assert_string_equal(s.title, "Ten");
-    scenario_finish(&s);
 }
 
-TEST_BETWEEN(an_unknown_name_suggests_the_nearest, make_folder, remove_folder)
+TEST_BETWEEN(an_unknown_name_suggests_the_nearest, make_folder, leave_folder)
 {
     scenario s;
     sentences all;
@@ -109,7 +72,7 @@ TEST_BETWEEN(an_unknown_name_suggests_the_nearest, make_folder, remove_folder)
     assert_int_equal(open_here(&s, "", &all), STATUS_BAD_ARGUMENT);
 }
 
-TEST_BETWEEN(files_that_cannot_be_read, make_folder, remove_folder)
+TEST_BETWEEN(files_that_cannot_be_read, make_folder, leave_folder)
 {
     scenario s;
     sentences all = {0};
@@ -117,9 +80,9 @@ TEST_BETWEEN(files_that_cannot_be_read, make_folder, remove_folder)
                      STATUS_CANNOT_READ);
     assert_non_null(strstr(all.text, "/nonexistent/x.yaml:1:1: cannot be opened (No such file"));
     all = (sentences){0};
-    assert_int_equal(scenario_read(&s, folder, NULL, keep_sentence, &all), STATUS_CANNOT_READ);
+    assert_int_equal(scenario_read(&s, test_folder, NULL, keep_sentence, &all), STATUS_CANNOT_READ);
     assert_non_null(strstr(all.text, ":1:1: it is a folder"));
-    assert_int_equal(open_here(&s, folder, &all), STATUS_CANNOT_READ);
+    assert_int_equal(open_here(&s, test_folder, &all), STATUS_CANNOT_READ);
     assert_int_equal(all.count, 1);
     all = (sentences){0};
     assert_int_equal(scenario_read(&s, "/dev/zero", NULL, keep_sentence, &all),
@@ -134,14 +97,14 @@ TEST_BETWEEN(files_that_cannot_be_read, make_folder, remove_folder)
 }
 
 // A link to a folder above would be listed for ever.
-TEST_BETWEEN(links_in_a_circle_end, make_folder, remove_folder)
+TEST_BETWEEN(links_in_a_circle_end, make_folder, leave_folder)
 {
     char circle[128], **names;
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     int count, found = 0;
-    snprintf(circle, sizeof circle, "%s/deep/again", folder);
+    snprintf(circle, sizeof circle, "%s/deep/again", test_folder);
     assert_int_equal(symlink("..", circle), 0);
-    setenv("IMPACTLAB_SCENARIOS", folder, 1);
+    setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
     assert_int_equal(scenario_list(&names, &count, NULL), STATUS_OK);
     for (int i = 0; i < count; i++) {
         found += strstr(names[i], "alpha-9") != NULL;
@@ -151,17 +114,16 @@ TEST_BETWEEN(links_in_a_circle_end, make_folder, remove_folder)
     assert_in_range(found, 2, 10);
     setenv("IMPACTLAB_SCENARIOS", before, 1);
     free(before);
-    assert_int_equal(unlink(circle), 0);
 }
 
-TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, remove_folder)
+TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, leave_folder)
 {
     char **names;
     int count;
     fault f;
     SCOPED(free_kept)
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
-    setenv("IMPACTLAB_SCENARIOS", folder, 1);
+    setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
     assert_int_equal(scenario_list(&names, &count, &f), STATUS_OK);
     const char *const own[] = {"beta", "deep/alpha-9", "deep/alpha-10"};
     int found = 0, shipped = 0;
@@ -191,7 +153,7 @@ TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, remove_folder)
 }
 
 // However many folders are named, the last one counts too.
-TEST_BETWEEN(every_folder_is_looked_into, make_folder, remove_folder)
+TEST_BETWEEN(every_folder_is_looked_into, make_folder, leave_folder)
 {
     enum { FOLDERS = 100 };
     SCOPED(free_kept)
@@ -200,9 +162,9 @@ TEST_BETWEEN(every_folder_is_looked_into, make_folder, remove_folder)
     size_t length;
     FILE *list = open_memstream(&all, &length);
     for (int i = 1; i < FOLDERS; i++) {
-        fprintf(list, "%s/deep:", folder);
+        fprintf(list, "%s/deep:", test_folder);
     }
-    fprintf(list, ":%s::", folder); // one without a name is none
+    fprintf(list, ":%s::", test_folder); // one without a name is none
     fclose(list);
     setenv("IMPACTLAB_SCENARIOS", all, 1);
 
@@ -346,11 +308,7 @@ TEST(an_endless_override_is_refused)
 // Everything but the expectations comes back from what scenario_write writes.
 static void check_written(const scenario *s)
 {
-    SCOPED(free_kept) char *text = NULL;
-    size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    scenario_write(stream, s);
-    fclose(stream);
+    SCOPED(free_kept) WRITTEN(text, scenario_write(stream, s));
     SCOPED(scenario_finish) scenario back = good(text);
     assert_string_equal(back.title, s->title);
     assert_string_equal(back.description, s->description);
@@ -393,11 +351,7 @@ TEST(written_scenarios_read_back)
 // The file that a scenario would be written as, to be freed.
 static char *file_of(const scenario *s)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    scenario_write(stream, s);
-    fclose(stream);
+    WRITTEN(text, scenario_write(stream, s));
     return text;
 }
 
@@ -421,7 +375,7 @@ TEST(changed_scenarios_read_back)
             "tttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttt"
             "tttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttt"
             "tttttttttttttttttttttttttttttttt");
-        scenario s = good(head);
+        SCOPED(scenario_finish) scenario s = good(head);
         for (int i = 0; i < parameter_count; i++) {
             // what goes together is no matter here: each is tried by itself
             parameters p = s.parameters;
@@ -444,7 +398,6 @@ TEST(changed_scenarios_read_back)
             const bool any = scenario_changes(&s, changes)[0] != '\0';
             assert_true(told == any || (any && length > SCENARIO_TITLE - 20));
         }
-        scenario_finish(&s);
     }
 }
 

@@ -54,10 +54,10 @@ TEST(sentences_are_printable)
         "arm: {k2: \"\\e[31m\"}\n", "\"\\a\\e]0;x\": 1\n", "arm: {\"a\\nb\": 1}\n",
         "arm: {model: \"\\x9b31m\"}\n",
         "arm: {k2: aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\xc3\xa4}\n"};
-    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+    for (EACH(one, texts)) {
         scenario s;
         sentences all;
-        assert_int_equal(parse(&s, texts[i], &all), STATUS_BAD_SCENARIO);
+        assert_int_equal(parse(&s, *one, &all), STATUS_BAD_SCENARIO);
         assert_int_equal(all.count, 1);
         for (size_t k = 0; k + 1 < all.used; k++) {
             unsigned char c = (unsigned char)all.text[k];
@@ -78,7 +78,7 @@ static char *nested(int depth)
 
 TEST(depth_and_size_have_limits)
 {
-    char *text = nested(1000000);
+    SCOPED(free_kept) char *text = nested(1000000);
     check_fault(text, 1, 8 + TREE_MAX_DEPTH - 1, "nested too deeply");
     free(text);
     // one byte too long
@@ -101,7 +101,6 @@ TEST(depth_and_size_have_limits)
     strcpy(text + 8 + 2 * (size_t)TREE_MAX_NODES, "]\n");
     // the map, the key and the list are nodes as well
     check_fault(text, 1, 9 + 2 * (TREE_MAX_NODES - 3), "too many keys and values");
-    free(text);
 }
 
 TEST(faults_come_in_the_order_of_their_places)

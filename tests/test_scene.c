@@ -156,8 +156,8 @@ TEST(test_camera_words)
     check_close(view.azimuth, -60, 0);
     check_close(view.elevation, 40.5, 0);
     static const char *const wrong[] = {"", "front", "10", "10,", "10,0", "400,40", "1,2,3"};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        assert_false(camera_read(wrong[i], &view));
+    for (EACH(c, wrong)) {
+        assert_false(camera_read(*c, &view));
     }
 }
 
@@ -250,10 +250,9 @@ static void compare_golden(size_t index, scene_renderer renderer, const char *na
     assert_int_equal(cairo_surface_status(golden), CAIRO_STATUS_SUCCESS);
     int different = count_different(drawn, golden, 12);
     if (different > WIDTH * HEIGHT / 500) {
-        cairo_surface_write_to_png(drawn, in_folder(goldens[index].file));
+        cairo_surface_write_to_png(drawn, goldens[index].file);
         fail_msg("%s by %s: %d of %d pixels differ by more than 12 levels, the picture is %s",
-                 goldens[index].file, name, different, WIDTH * HEIGHT,
-                 in_folder(goldens[index].file));
+                 goldens[index].file, name, different, WIDTH * HEIGHT, goldens[index].file);
     }
     cairo_surface_destroy(golden);
     cairo_surface_destroy(drawn);
@@ -292,14 +291,14 @@ TEST(test_file)
         .times = &time,
         .count = 1};
     char command[600], first[256];
-    snprintf(first, sizeof first, "%s", in_folder("first.png"));
+    snprintf(first, sizeof first, "%s", "first.png");
     DONE(scene_write(&p, first, &f));
     check_contains(first, "Renderer");
     check_contains(first, "cairo ");
     check_contains(first, "scenario=corrected/first-impact");
     check_contains(first, "motor.voltage=1");
-    DONE(scene_write(&p, in_folder("second.png"), &f));
-    snprintf(command, sizeof command, "cmp %s %s", first, in_folder("second.png"));
+    DONE(scene_write(&p, "second.png", &f));
+    snprintf(command, sizeof command, "cmp %s %s", first, "second.png");
     assert_int_equal(system(command), 0);
 }
 
@@ -343,14 +342,14 @@ TEST(test_refused)
                        .times = &late,
                        .count = 1};
     fault f = {0};
-    assert_int_equal(scene_write(&p, in_folder("x.png"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(scene_write(&p, "x.png", &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "7 s"));
     p.times = &good;
-    assert_int_equal(scene_write(&p, in_folder("x.jpg"), &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(scene_write(&p, "x.jpg", &f), STATUS_BAD_ARGUMENT);
     assert_int_equal(scene_write(&p, "/nowhere/x.png", &f), STATUS_CANNOT_WRITE);
     p.options.width = 3;
-    assert_int_equal(scene_write(&p, in_folder("x.png"), &f), STATUS_BAD_ARGUMENT);
-    assert_int_not_equal(access(in_folder("x.png"), F_OK), 0);
+    assert_int_equal(scene_write(&p, "x.png", &f), STATUS_BAD_ARGUMENT);
+    assert_int_not_equal(access("x.png", F_OK), 0);
 }
 
 int main(void)
@@ -358,5 +357,5 @@ int main(void)
     // one software renderer, the same on every machine
     setenv("GALLIUM_DRIVER", "llvmpipe", 1);
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    return run_cases(set_up, tear_down);
+    return run_cases(enter_folder, tear_down);
 }

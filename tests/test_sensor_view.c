@@ -274,7 +274,7 @@ TEST(a_view_is_what_a_run_comes_to)
             SETTINGS("wall.kind=plane", "motor.voltage=5", "run.duration=0.5", n,
                      kind < 3 ? "wall.restitution=0" : "wall.restitution=0.3", "method.step=1e-5"));
         const run_options options = {.keep_trace = true};
-        run_result r;
+        SCOPED(run_finish) run_result r;
         sensor_view view;
         assert_int_equal(run_scenario_with(&s, &options, &r), STATUS_OK);
         DONE(sensor_view_compute(&s, links[kind % 3], NULL, &view, &f));
@@ -322,7 +322,6 @@ TEST(a_view_is_what_a_run_comes_to)
         check_close(view.peak, peak, 1e-3 * peak);
         check_relative(view.sensed[1], largest, 1e-4);
         check_close(view.delay[1], largest_time - touch, 1e-5);
-        run_finish(&r);
     }
 }
 

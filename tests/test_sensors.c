@@ -296,10 +296,10 @@ TEST(hysteresis_is_a_play)
         double force, shown;
     } way[] = {{1, 0.9},   {2, 1.8}, {1.9, 1.8}, {1.7, 1.8}, {1, 1.1},
                {1.1, 1.1}, {2, 1.8}, {0, 0},     {0.5, 0.45}};
-    for (size_t i = 0; i < sizeof way / sizeof way[0]; i++) {
-        follow_force(&s, 0.01, way[i].force, way[i].force, way[i].force);
-        assert_true(sensors_at_rest(&s) == (way[i].force == 0));
-        check_close(read_hub(&s, 0, 0, way[i].force).force_reading, way[i].shown, 1e-12);
+    for (EACH(c, way)) {
+        follow_force(&s, 0.01, c->force, c->force, c->force);
+        assert_true(sensors_at_rest(&s) == (c->force == 0));
+        check_close(read_hub(&s, 0, 0, c->force).force_reading, c->shown, 1e-12);
     }
 }
 

@@ -112,8 +112,8 @@ TEST(test_what_is_before_a_change_stays_to_the_last_bit)
                                         "corrected/spring-hub"};
     random_generator random;
     random_seed(&random, 6);
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        OPEN_SESSION(s, names[i]);
+    for (EACH(c, names)) {
+        OPEN_SESSION(s, *c);
         for (int k = 0; k < 24; k++) {
             session_seek(&s, random_uniform(&random) * session_end(&s));
             // most changes are right behind an event, where a stride is likely to span both
@@ -212,8 +212,8 @@ TEST(test_a_saved_scenario_reproduces_the_run)
 {
     static const char *const names[] = {"corrected/first-impact", "corrected/voltage-step",
                                         "corrected/three-links"};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        OPEN_SESSION(s, names[i]);
+    for (EACH(c, names)) {
+        OPEN_SESSION(s, *c);
         session_seek(&s, 0.123);
         change(&s, "motor.voltage", "0.7");
         change(&s, "arm.k2", "6.1");

@@ -1,26 +1,9 @@
 // A visit to the lab is kept in a file and gone on with; files from elsewhere are checked.
 #include "tests/explorer_on_screen.h"
 
-#include <unistd.h>
-
 #include "src/session/session_file.h"
 
-static char folder[] = "/tmp/impactlab-session-XXXXXX", path[64];
-
-static int make_folder(void **state)
-{
-    (void)state;
-    assert_non_null(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/lab.session", folder);
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    unlink(path);
-    return rmdir(folder);
-}
+static const char path[] = "lab.session";
 
 static char *contents(const char *name)
 {
@@ -30,14 +13,6 @@ static char *contents(const char *name)
     text[fread(text, 1, sizeof text - 1, stream)] = '\0';
     fclose(stream);
     return text;
-}
-
-static void put(const char *text)
-{
-    FILE *stream = fopen(path, "w");
-    assert_non_null(stream);
-    fputs(text, stream);
-    fclose(stream);
 }
 
 static void save(explorer *ex)
@@ -60,7 +35,7 @@ TEST(test_what_was_done_comes_back)
         "2<Enter>:limit force 2.5<Enter>"
         ":zoom 0.1 0.9<Enter>:mark 0.3<Enter>"
         ":seek 0.5<Enter>";
-    explorer ex;
+    SCOPED(explorer_finish) explorer ex;
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, keys);
     save(&ex);
@@ -103,21 +78,20 @@ TEST(test_what_was_done_comes_back)
     assert_int_equal(again.state.session.input_count, ex.state.session.input_count - 2);
     press(&again, "uuu");
     assert_string_equal(again.state.session.base.name, "corrected/three-links");
-    explorer_finish(&ex);
 }
 
 // No file of others is replaced; the visit's own is.
 TEST(test_only_the_visits_own_file_is_replaced)
 {
     char line[128];
-    put("precious");
+    put_file(path, "precious");
     OPEN_EXPLORER(ex, "corrected/first-impact");
     snprintf(line, sizeof line, "session save %s", path);
     assert_false(explorer_carry_out(&ex, line));
     assert_string_equal(contents(path), "precious");
     save(&ex);
     assert_true(explorer_carry_out(&ex, line));
-    snprintf(line, sizeof line, "session open %s/none.session", folder);
+    snprintf(line, sizeof line, "session open %s/none.session", test_folder);
     assert_false(explorer_carry_out(&ex, line));
     assert_shows(&ex, "cannot be opened");
 }
@@ -126,13 +100,13 @@ TEST(test_only_the_visits_own_file_is_replaced)
 TEST(test_a_file_from_elsewhere_starts_nothing)
 {
     char text[512], mark[80];
-    snprintf(mark, sizeof mark, "%s/started", folder);
+    snprintf(mark, sizeof mark, "%s/started", test_folder);
     snprintf(text, sizeof text,
              "impactlab-session: 1\nscenario: mine\n| title: \"mine\"\npresent:\n"
              "start: 0 control.command touch %s\nstart: 0 control.law process\n"
              "cursor: 0 0\nbaseline: 0\nview: save %s\nview: allow\n",
              mark, mark);
-    put(text);
+    put_file(path, text);
     OPEN_EXPLORER(ex, "corrected/first-impact");
     explorer_open_session(&ex.state, path);
     assert_int_equal(ex.state.session.run.summary.status, STATUS_NOT_ALLOWED);
@@ -170,11 +144,11 @@ TEST(test_broken_files_are_refused_with_their_line)
     };
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "b:set arm.k2 5<Enter>");
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        put(cases[i].text);
+    for (EACH(c, cases)) {
+        put_file(path, c->text);
         fail_if(explorer_open_session(&ex.state, path) ||
-                    strstr(ex.state.message.text, cases[i].says) == NULL,
-                "'%s' says '%s'", cases[i].text, ex.state.message.text);
+                    strstr(ex.state.message.text, c->says) == NULL,
+                "'%s' says '%s'", c->text, ex.state.message.text);
         assert_int_equal(ex.state.pinned.count, 1);
         assert_int_equal(ex.state.session.input_count, 1);
     }
@@ -185,7 +159,7 @@ TEST(test_broken_files_are_refused_with_their_line)
     const size_t length = strlen(good);
     for (size_t cut = 0; cut < length; cut += 37) {
         SCOPED(free_kept) char *part = strndup(good, cut);
-        put(part);
+        put_file(path, part);
         session_file file;
         fault f = {0};
         if (session_file_read(&file, path, &f) == STATUS_OK) {
@@ -214,4 +188,4 @@ TEST(test_pins_without_room_are_refused)
     assert_int_equal(ex.state.pinned.count, 4);
 }
 
-ALL_BETWEEN(make_folder, remove_folder)
+ALL_BETWEEN(enter_folder, leave_folder)

@@ -235,17 +235,16 @@ TEST(undoing_leads_to_the_instant_in_another_run)
     } first[] = {{"run.duration", "0.6", 0.5},
                  {"method.step", "0.0005", 0.1},
                  {"method.step", "0.002", 0.1}};
-    for (size_t i = 0; i < sizeof first / sizeof first[0]; i++) {
+    for (EACH(c, first)) {
         SCOPED(session_finish) session s = opened(brief);
-        DONE(session_change(&s, parameter_find(first[i].path), first[i].value, &f));
-        session_seek(&s, first[i].at);
+        DONE(session_change(&s, parameter_find(c->path), c->value, &f));
+        session_seek(&s, c->at);
         DONE(session_push(&s, 1e-4, &f));
         DONE(session_drop_input(&s, 0, &f));
         session_seek(&s, 0);
         DONE(session_undo(&s, &f));
         assert_int_equal(s.input_count, 0);
-        check_close(s.now, fmin(first[i].at, s.run.trace.rows[s.run.trace.row_count - 1].time),
-                    1e-9);
+        check_close(s.now, fmin(c->at, s.run.trace.rows[s.run.trace.row_count - 1].time), 1e-9);
         check_close(session_sample(&s)->time, s.now, 1e-3);
     }
 }

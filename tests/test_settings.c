@@ -36,16 +36,16 @@ TEST(one_number_is_exchanged_and_the_others_stay)
         {"ab=1", "a", "2", "ab=1 a=2"},
         {"mode=fast", "gain", "0.30000000000000004", "mode=fast gain=0.30000000000000004"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         parameters p;
         double value = 0;
         parameters_defaults(&p, ARM_CORRECTED);
         const int index = PARAMETER_INDEX(control.settings);
-        assert_int_equal(parameter_set_text(&p, index, cases[i].before, NULL), STATUS_OK);
-        assert_int_equal(settings_set_text(&p, cases[i].name, cases[i].text, NULL), STATUS_OK);
-        assert_string_equal(p.control.settings, cases[i].after);
-        assert_true(settings_get(&p, cases[i].name, &value));
-        check_close(value, atof(cases[i].text), 0);
+        assert_int_equal(parameter_set_text(&p, index, c->before, NULL), STATUS_OK);
+        assert_int_equal(settings_set_text(&p, c->name, c->text, NULL), STATUS_OK);
+        assert_string_equal(p.control.settings, c->after);
+        assert_true(settings_get(&p, c->name, &value));
+        check_close(value, atof(c->text), 0);
         assert_false(settings_get(&p, "none", &value));
     }
 }
@@ -66,11 +66,10 @@ TEST(what_is_no_number_or_no_name_is_refused)
     char said[1024];
     SCOPED(scenario_finish) scenario s;
     assert_int_equal(parse(&s, "observer", "", said), STATUS_OK);
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         fault f = {0};
-        assert_int_not_equal(scenario_override(&s, cases[i].assignment, &f), STATUS_OK);
-        fail_if(strstr(f.text, cases[i].sentence) == NULL, "'%s' does not say '%s'", f.text,
-                cases[i].sentence);
+        assert_int_not_equal(scenario_override(&s, c->assignment, &f), STATUS_OK);
+        fail_if(strstr(f.text, c->sentence) == NULL, "'%s' does not say '%s'", f.text, c->sentence);
     }
 
     // beside the others there must be room
@@ -103,18 +102,17 @@ TEST(a_file_has_a_map_or_the_text)
         {"  settings: {a: 1, a: 2}\n", NULL, "arm.yaml:10:20"},
         {"  settings: [1]\n", NULL, "arm.yaml:10:13"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         char said[1024];
         scenario s;
-        const status code = parse(&s, "observer", cases[i].lines, said);
-        if (cases[i].settings != NULL) {
+        const status code = parse(&s, "observer", c->lines, said);
+        if (c->settings != NULL) {
             assert_int_equal(code, STATUS_OK);
-            assert_string_equal(s.parameters.control.settings, cases[i].settings);
+            assert_string_equal(s.parameters.control.settings, c->settings);
             scenario_finish(&s);
         } else {
             assert_int_equal(code, STATUS_BAD_SCENARIO);
-            fail_if(strstr(said, cases[i].sentence) == NULL, "'%s' does not say '%s'", said,
-                    cases[i].sentence);
+            fail_if(strstr(said, c->sentence) == NULL, "'%s' does not say '%s'", said, c->sentence);
         }
     }
 }
@@ -126,7 +124,7 @@ TEST(a_script_sets_one_of_them)
     char said[1024];
     scenario plain, again;
     SCOPED(scenario_finish) scenario scripted;
-    run_result before;
+    SCOPED(run_finish) run_result before;
     SCOPED(run_finish) run_result after;
     const char *law = "impedance";
     assert_int_equal(parse(&plain, law, "  settings: {force: 0.5}\n", said), STATUS_OK);
@@ -158,7 +156,6 @@ TEST(a_script_sets_one_of_them)
     assert_int_equal(again.action_count, 1);
     assert_string_equal(again.actions[0].text, scripted.actions[0].text);
 
-    run_finish(&before);
     scenario_finish(&plain);
     scenario_finish(&again);
 }

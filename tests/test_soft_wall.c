@@ -137,7 +137,7 @@ TEST(an_arm_is_deepest_or_apart_beside_its_face)
                  "wall.contact=kelvin-voigt", "wall.stiffness=16.826", "wall.damping=0",
                  "wall.mass=0.9856", "initial.angle=0.0988025", "initial.velocity=0.489266",
                  "run.duration=0.08", "method.step=1e-5"));
-    run_result r = run_of(&p, true);
+    SCOPED(run_finish) run_result r = run_of(&p, true);
     double deepest = 0, farthest = 0;
     for (size_t i = 0; i < r.trace.row_count; i++) {
         deepest = fmax(deepest, -r.trace.rows[i].gap);
@@ -160,7 +160,6 @@ TEST(an_arm_is_deepest_or_apart_beside_its_face)
     }
     assert_true(farthest > 2e-6);
     check_close(r.summary.separations, 1, 0);
-    run_finish(&r);
 }
 
 // An arm that leaves a light face does so once: what rounding has the face accelerate by is no

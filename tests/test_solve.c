@@ -162,11 +162,11 @@ TEST(conditions_say_what_they_lack)
         {"<2", "no quantity ''"},
         {"cpu_time_s<1", "depends on the machine"},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (EACH(one, wrong)) {
         solve_condition c;
         fault f;
-        assert_int_equal(solve_condition_read(wrong[i].text, &c, &f), STATUS_BAD_ARGUMENT);
-        fail_if(strstr(f.text, wrong[i].expected) == NULL, "%s: %s", wrong[i].text, f.text);
+        assert_int_equal(solve_condition_read(one->text, &c, &f), STATUS_BAD_ARGUMENT);
+        fail_if(strstr(f.text, one->expected) == NULL, "%s: %s", one->text, f.text);
     }
 
     const solve_condition c = condition_of("  impacts >= 3 ");

@@ -111,7 +111,7 @@ static size_t motion_to_end(const parameters *p, double interval, bool forgetful
 {
     enum { MOST_COPY = 4096 };
     arm a = arm_of(p);
-    motion *m = motion_create_by(&a, &p->method, &stiff_engine);
+    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, &stiff_engine);
     assert_non_null(m);
     motion_start(&a, m, START_ANGLE, 0.7);
     int stops = 0;
@@ -133,7 +133,6 @@ static size_t motion_to_end(const parameters *p, double interval, bool forgetful
     }
     const size_t size = (size_t)(SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT);
     memcpy(end, m->state, size * sizeof *end);
-    motion_destroy(m);
     return size;
 }
 
@@ -275,8 +274,8 @@ TEST(rounding_makes_no_events_and_stops_none)
     assert_int_equal(opens.status, STATUS_OK);
     check_below(opens.residual, 1e-9 * opens.put_in);
 
-    for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
-        chain_start start = starts[i];
+    for (EACH(c, starts)) {
+        chain_start start = *c;
         start.by = &stiff_engine;
         const chain_outcome o = chain_outcome_of(&start);
         const chain_outcome truth = outcome_by_formula(start);
@@ -357,8 +356,8 @@ TEST(decays_of_any_rate_are_passed_over)
         {"arm.links=3", "arm.hub_joint=rigid", "motor.inductance=1e-12", "arm.tip_mass=0.01"},
         {"arm.links=6", "wall.contact=hunt-crossley", "wall.stiffness=1e8", "wall.damping=1e15"},
     };
-    for (size_t i = 0; i < sizeof fast / sizeof *fast; i++) {
-        const parameters p = fixture_parameters(fast[i]);
+    for (EACH(c, fast)) {
+        const parameters p = fixture_parameters(*c);
         arm a = arm_of(&p);
         SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
         assert_non_null(m);

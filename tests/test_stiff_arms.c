@@ -136,9 +136,9 @@ TEST(a_stride_that_begins_does_not_unsettle_the_force)
 TEST(a_run_that_could_not_end_says_so)
 {
     static const char *const dampers[] = {"wall.damping=1e12", "wall.damping=1e15"};
-    for (size_t i = 0; i < sizeof dampers / sizeof dampers[0]; i++) {
-        scenario s = {.parameters = fixture_parameters(SETTINGS("wall.contact=kelvin-voigt",
-                                                                dampers[i], "initial.angle=0.099",
+    for (EACH(c, dampers)) {
+        scenario s = {.parameters = fixture_parameters(SETTINGS("wall.contact=kelvin-voigt", *c,
+                                                                "initial.angle=0.099",
                                                                 "initial.velocity=0.7"))};
         SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
@@ -160,8 +160,8 @@ TEST(decays_do_not_shorten_strides)
         {"arm.links=128", "arm.damping_ratio=0.01", "motor.inductance=1e-3"},
         {"motor.inductance=1e-12"},
     };
-    for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
-        scenario s = {.parameters = fixture_parameters(arms[i])};
+    for (EACH(c, arms)) {
+        scenario s = {.parameters = fixture_parameters(*c)};
         SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         assert_true(r.summary.steps < 2000);
@@ -251,8 +251,8 @@ TEST(expensive_strides_are_given_up_sooner)
         {{"wall.contact=kelvin-voigt", "wall.damping=1e12"}, 3 * PACE_STRIDES},
         {{"wall.contact=kelvin-voigt", "wall.damping=1e9", "arm.links=128"}, PACE_STRIDES / 4},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const parameters p = fixture_parameters(cases[i].settings);
+    for (EACH(c, cases)) {
+        const parameters p = fixture_parameters(c->settings);
         arm a = arm_of(&p);
         SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         assert_non_null(m);
@@ -262,7 +262,7 @@ TEST(expensive_strides_are_given_up_sooner)
         status s = STATUS_OK;
         for (int strides = 0; s == STATUS_OK; strides++) {
             motion_report r;
-            assert_true(strides < cases[i].most);
+            assert_true(strides < c->most);
             assert_int_equal(motion_step(&a, m, 1, 1e-3, &r), STATUS_OK);
             motion_apply(&a, m, &r);
             s = pace_keep(&kept, &a, m, 1, 1e-3, &f);

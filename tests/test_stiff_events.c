@@ -85,9 +85,9 @@ TEST(events_within_a_stride_are_the_formulas)
          1,
          1e-8},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        parameters p = fixture_parameters(cases[i].settings);
-        p.arm.links = cases[i].links; // with the springs of the default arm
+    for (EACH(c, cases)) {
+        parameters p = fixture_parameters(c->settings);
+        p.arm.links = c->links; // with the springs of the default arm
         p.arm.hub_joint = HUB_SPRING;
         p.wall.kind = WALL_POINT;
         arm a = arm_of(&p);
@@ -96,17 +96,17 @@ TEST(events_within_a_stride_are_the_formulas)
         motion_destroy(m);
 
         // by the stiff engine, and by the formula
-        const double angle = cases[i].angle, velocity = cases[i].velocity, until = cases[i].until;
+        const double angle = c->angle, velocity = c->velocity, until = c->until;
         meetings stiff = meetings_by(&p, NULL, angle, velocity, until);
         meetings formula = meetings_by(&p, &explicit_engine, angle, velocity, until);
 
         // the same events at the same times
-        fail_if(stiff.count != cases[i].events || formula.count != cases[i].events,
-                "%s: %d events by the stiff engine, %d by the formula", cases[i].what, stiff.count,
+        fail_if(stiff.count != c->events || formula.count != c->events,
+                "%s: %d events by the stiff engine, %d by the formula", c->what, stiff.count,
                 formula.count);
         for (int k = 0; k < stiff.count; k++) {
             assert_int_equal(stiff.event[k], formula.event[k]);
-            check_close(stiff.time[k], formula.time[k], cases[i].tolerance);
+            check_close(stiff.time[k], formula.time[k], c->tolerance);
         }
         check_close(stiff.peak, formula.peak, 1e-6 * fabs(formula.peak));
         check_close(stiff.peak_time, formula.peak_time, 1e-6);
@@ -186,7 +186,7 @@ TEST(bounces_lower_than_rounding_do_not_gain)
                  "wall.angle=1.043", "wall.restitution=0.0189"));
     for (int i = 0; i < 12; i++) {
         arm a = arm_of(&p);
-        motion *m = motion_create(&a, &p.method);
+        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         assert_non_null(m);
         motion_start(&a, m, p.wall.angle - 2e-3, 0.4 + 2e-3 * i);
 
@@ -207,7 +207,6 @@ TEST(bounces_lower_than_rounding_do_not_gain)
             }
         }
         assert_true(impacts >= 2 && m->state[SLOT_CONTACT] != 0);
-        motion_destroy(m);
     }
 }
 

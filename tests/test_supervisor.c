@@ -2,11 +2,9 @@
 #include "src/rig/external/supervisor.h"
 
 #include <dirent.h>
-#include <errno.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include "tests/check.h"
 
@@ -74,13 +72,13 @@ TEST(a_program_takes_every_signal)
     sigset_t held, before;
     sigfillset(&held);
     sigprocmask(SIG_SETMASK, &held, &before);
-    for (size_t i = 0; i < sizeof some / sizeof some[0]; i++) {
+    for (EACH(c, some)) {
         char command[64];
-        void (*was)(int) = signal(some[i], SIG_IGN);
-        snprintf(command, sizeof command, "kill -%d $$; exit 1", some[i]);
+        void (*was)(int) = signal(*c, SIG_IGN);
+        snprintf(command, sizeof command, "kill -%d $$; exit 1", *c);
         const int status = ended(command);
-        signal(some[i], was);
-        assert_int_equal(status, 128 + some[i]);
+        signal(*c, was);
+        assert_int_equal(status, 128 + *c);
     }
     sigprocmask(SIG_SETMASK, &before, NULL);
 }

@@ -1,7 +1,5 @@
 // The runs of a sweep and their store.
 #include <sqlite3.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "src/run/run.h"
 #include "src/engines/pair/taylor_lanes.h"
@@ -177,7 +175,7 @@ TEST(values_drawn_together_stay_pairs)
 {
     fault f = {.text = ""};
     for (sweep_sampling how = SWEEP_RANDOM; how <= SWEEP_LATIN; how++) {
-        sweep s;
+        SCOPED(sweep_finish) sweep s;
         SCOPED(sweep_finish) sweep again;
         must_sweep(&s, how, 60, "arm.k2=1,2,3", "with arm.mass=0.1,0.2,0.2");
         SCOPED(definition_finish) definition d = {0};
@@ -192,7 +190,6 @@ TEST(values_drawn_together_stay_pairs)
             check_close(sweep_value(&again, run, 1), mass, 0);
         }
         assert_true(seen[1] && seen[2] && seen[3]);
-        sweep_finish(&s);
     }
 
     static const struct {
@@ -204,12 +201,12 @@ TEST(values_drawn_together_stay_pairs)
         {SWEEP_LATIN, "arm.k2=1,2", "with arm.mass=0.1,0.2,0.3", "as many values: 2, not 3"},
         {SWEEP_LATIN, "arm.k2=1:2", "with arm.mass=0.1,0.2", "as many values"},
     };
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+    for (EACH(c, refused)) {
         sweep s;
-        assert_int_equal(sweep_of(&s, refused[i].how, refused[i].how == SWEEP_GRID ? 0 : 4, 1, &f,
-                                  refused[i].first, refused[i].second),
-                         STATUS_BAD_ARGUMENT);
-        assert_non_null(strstr(f.text, refused[i].says));
+        assert_int_equal(
+            sweep_of(&s, c->how, c->how == SWEEP_GRID ? 0 : 4, 1, &f, c->first, c->second),
+            STATUS_BAD_ARGUMENT);
+        assert_non_null(strstr(f.text, c->says));
     }
 }
 
@@ -250,14 +247,14 @@ TEST(rows_that_are_no_runs_are_refused)
 {
     static const char *const changes[] = {"UPDATE run SET run = 0 WHERE run = 1",
                                           "UPDATE run SET run = 9 WHERE run = 1"};
-    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+    for (EACH(c, changes)) {
         SCOPED(sweep_finish) sweep s;
         must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
         sweep_store *store = must_open("rows.sqlite", &s);
         must_run(&s, store, 1);
         sqlite3 *database;
         assert_int_equal(sqlite3_open("rows.sqlite", &database), SQLITE_OK);
-        assert_int_equal(sqlite3_exec(database, changes[i], NULL, NULL, NULL), SQLITE_OK);
+        assert_int_equal(sqlite3_exec(database, *c, NULL, NULL, NULL), SQLITE_OK);
         sqlite3_close(database);
 
         // whoever goes on with it, and whoever reads from it

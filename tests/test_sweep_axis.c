@@ -16,7 +16,7 @@ static sweep_axis parsed(const char *path, const char *values, bool drawn)
 
 TEST(shares_of_a_range_are_even)
 {
-    sweep_axis axis = parsed("arm.k2", "4:8", true);
+    SCOPED(sweep_axis_finish) sweep_axis axis = parsed("arm.k2", "4:8", true);
     check_close(sweep_axis_value_at(&axis, 0), 4, 0);
     check_close(sweep_axis_value_at(&axis, 0.25), 5, 1e-14);
     sweep_axis_finish(&axis);
@@ -33,7 +33,6 @@ TEST(shares_of_a_range_are_even)
     check_relative(sweep_axis_value_at(&axis, 0), 3.0, 1e-14);
     check_relative(sweep_axis_value_at(&axis, 0.25), 6.0, 1e-14);
     check_relative(sweep_axis_value_at(&axis, 0.75), 24.0, 1e-14);
-    sweep_axis_finish(&axis);
 }
 
 // Whole numbers come alike often, the first and the last of the range, too.
@@ -73,13 +72,12 @@ TEST(what_is_no_axis_is_refused)
     static const char *const wrong[] = {"",          "1:2",   "1:2:0", "1:2:3:lag", "1:2:3:log:4",
                                         "0:1:3:log", "x:1:3", "1,,2",  "1:2:1e9",   "-1:2:3",
                                         "1:2:2.5"};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (EACH(c, wrong)) {
         SCOPED(sweep_axis_finish) sweep_axis axis = {.parameter = parameter_find("arm.k2")};
         fault f = {0};
         char text[64];
-        snprintf(text, sizeof text, "%s", wrong[i]);
-        fail_if(sweep_axis_parse(&axis, text, false, &f) == STATUS_OK, "'%s' was accepted",
-                wrong[i]);
+        snprintf(text, sizeof text, "%s", *c);
+        fail_if(sweep_axis_parse(&axis, text, false, &f) == STATUS_OK, "'%s' was accepted", *c);
         assert_true(strlen(f.text) > 0);
     }
 }
@@ -106,8 +104,8 @@ TEST(a_refusal_says_what_is_expected)
     static const char *const no_numbers[] = {"arm.joint_stiffness[0]",  "arm.joint_stiffness[1.5]",
                                              "arm.joint_stiffness[]",   "arm.joint_stiffness[1",
                                              "arm.joint_stiffness[1]x", "arm.joint_stiffness[999]"};
-    for (size_t i = 0; i < sizeof no_numbers / sizeof no_numbers[0]; i++) {
-        check_refused(no_numbers[i], "1:2:3", false, "is no number of a list");
+    for (EACH(c, no_numbers)) {
+        check_refused(*c, "1:2:3", false, "is no number of a list");
     }
     check_refused("arm.joint_stiffness[1]", "[]:4:2", false, "is no number");
     check_refused("wall.kind", "point:plane:2", false, "expected a list such as");
@@ -200,20 +198,20 @@ TEST(values_and_texts_are_those_that_were_asked_for)
         {"arm.joint_stiffness[2]", "4:6:3", false, 3, {4, 5, 6}, "4:6:3"},
         {"arm.joint_stiffness[2]", "4.5,6", false, 2, {4.5, 6}, "4.5,6"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (EACH(c, cases)) {
         SCOPED(sweep_axis_finish) sweep_axis axis = {0};
         fault f = {0};
         char text[64];
-        snprintf(text, sizeof text, "%s", cases[i].asked);
-        assert_int_equal(sweep_axis_find(&axis, cases[i].path, &f), STATUS_OK);
-        fail_if(sweep_axis_parse(&axis, text, cases[i].drawn, &f) != STATUS_OK, "%s=%s: %s",
-                cases[i].path, cases[i].asked, f.text);
-        assert_int_equal(axis.count, cases[i].count);
-        assert_int_equal(axis.is_range, strchr(cases[i].asked, ':') != NULL);
+        snprintf(text, sizeof text, "%s", c->asked);
+        assert_int_equal(sweep_axis_find(&axis, c->path, &f), STATUS_OK);
+        fail_if(sweep_axis_parse(&axis, text, c->drawn, &f) != STATUS_OK, "%s=%s: %s", c->path,
+                c->asked, f.text);
+        assert_int_equal(axis.count, c->count);
+        assert_int_equal(axis.is_range, strchr(c->asked, ':') != NULL);
         for (size_t k = 0; k < axis.count; k++) {
-            check_relative(axis.values[k], cases[i].values[k], 1e-14);
+            check_relative(axis.values[k], c->values[k], 1e-14);
         }
-        assert_string_equal(axis.text, cases[i].text);
+        assert_string_equal(axis.text, c->text);
     }
 
     // the same value twice is refused wherever it stands

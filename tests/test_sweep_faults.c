@@ -2,7 +2,6 @@
 // refused in turn. What was not done is said, what was committed stands, and going on gives the
 // same rows; what cannot be read whole is not taken for less.
 #include <sqlite3.h>
-#include <unistd.h>
 
 #include "src/base/text_stream.h"
 #include "src/study/store/sweep_store.h"
@@ -169,13 +168,8 @@ static int clean_up(void **state)
 // All rows of a store in both formats, to be freed, NULL with a fault if they cannot be read.
 static char *rows_of(sweep_store *store, status *code, fault *f)
 {
-    char *text = NULL;
-    size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    *code = sweep_store_csv(store, stream, f);
-    *code = *code == STATUS_OK ? sweep_store_json(store, stream, f) : *code;
-    fclose(stream);
+    WRITTEN(text, *code = sweep_store_csv(store, stream, f);
+            *code = *code == STATUS_OK ? sweep_store_json(store, stream, f) : *code);
     return text;
 }
 

@@ -1,8 +1,6 @@
 // Sweeps that are killed or stopped, and continue.
 #include <signal.h>
 #include <sqlite3.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"

@@ -1,40 +1,14 @@
 // Parts of a sweep computed apart and merged: the rows of one sweep, and nothing else gets in.
 #include <sqlite3.h>
-#include <unistd.h>
 
-#include "src/study/store/sweep_store.h"
-#include "src/study/sweep_run.h"
 #include "tests/check.h"
+#include "tests/sweep_fixture.h"
 
 GIVEN_BACK(sweep_store, sweep_store_close)
 
-static char folder[] = "/tmp/sweep-merge-XXXXXX";
-static scenario base;
-
-static void report_fault(void *context, const char *sentence)
+static void sweep_voltages(sweep *s, const char *values)
 {
-    (void)context;
-    fprintf(stderr, "%s\n", sentence);
-}
-
-static int prepare(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) == NULL || chdir(folder) != 0 ||
-           scenario_open(&base, "corrected/first-impact", report_fault, NULL) != STATUS_OK;
-}
-
-static int clean_up(void **state)
-{
-    (void)state;
-    scenario_finish(&base);
-    return chdir("/") != 0 || rmdir(folder) != 0;
-}
-
-static void must_sweep(sweep *s, char *vary)
-{
-    sweep_request request = {.vary = &vary, .vary_count = 1};
-    DONE(sweep_init(s, &base, &request, &f));
+    must_sweep(s, SWEEP_GRID, 0, values, NULL);
 }
 
 // Computes a share of a sweep into a file; returns all rows of the store as CSV, to be freed.
@@ -46,14 +20,29 @@ static char *compute(const sweep *s, const char *path, sweep_share share)
     DONE(sweep_store_open(&store, path, s, &f) != STATUS_OK ||
          sweep_run(s, store, &options, &progress, &f));
     assert_int_equal(progress.done, progress.total);
+    return csv_of(store);
+}
 
-    char *text;
-    size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    DONE(sweep_store_csv(store, stream, &f));
-    fclose(stream);
-    return text;
+// Computes a sweep in this many parts and merges them: nothing is left to compute, and the rows are
+// those of the whole sweep to the last byte.
+static void check_merge(const sweep *s, char **parts, int count)
+{
+    sweep_merged merged;
+    SCOPED(free_kept) char *whole = compute(s, "whole", (sweep_share){0, 0});
+    for (int i = 0; i < count; i++) {
+        free(compute(s, parts[i], (sweep_share){atoi(parts[i]), count}));
+    }
+    DONE(sweep_merge(parts, count, "merged", &merged, &f));
+    assert_int_equal(merged.runs, s->run_count);
+    assert_int_equal(merged.total, s->run_count);
+    SCOPED(free_kept) char *rows = compute(s, "merged", (sweep_share){0, 0});
+    assert_string_equal(rows, whole);
+
+    // a sweep with a missing part continues where it ends
+    DONE(sweep_merge(parts, count - 1, "some", &merged, &f));
+    assert_in_range(merged.runs, 1, s->run_count - 1);
+    SCOPED(free_kept) char *rest = compute(s, "some", (sweep_share){0, 0});
+    assert_string_equal(rest, whole);
 }
 
 // Merges and expects to be refused with a sentence that says `says`; no file is made.
@@ -67,103 +56,37 @@ static void check_refused(char **files, int count, const char *says)
 }
 
 // The first parameter of the table is one like any other.
-TEST(parts_may_vary_the_model)
+SWEEP_TEST(parts_may_vary_the_model)
 {
     assert_string_equal(parameter_table[0].path, "arm.model");
-    scenario first = base, either = base;
-    parameters_defaults(&either.parameters, ARM_CORRECTED);
-    DONE(parameters_resolve(&either.parameters, &f));
-    base = either;
-    sweep s;
-    must_sweep(&s, (char[]){"arm.model=corrected,printed"});
-    char *whole = compute(&s, "both", (sweep_share){0, 0}), *parts[] = {"model-1", "model-2"};
-    for (int i = 0; i < 2; i++) {
-        free(compute(&s, parts[i], (sweep_share){i + 1, 2}));
-    }
-    sweep_merged merged;
-    DONE(sweep_merge(parts, 2, "models", &merged, &f));
-    assert_int_equal(merged.runs, 2);
-    char *rows = compute(&s, "models", (sweep_share){0, 0});
-    assert_string_equal(rows, whole);
-
-    // as it was
-    free(rows);
-    free(whole);
-    sweep_finish(&s);
-    base = first;
-    unlink("both");
-    unlink("models");
-    unlink(parts[0]);
-    unlink(parts[1]);
+    parameters_defaults(&base.parameters, ARM_CORRECTED);
+    DONE(parameters_resolve(&base.parameters, &f));
+    SCOPED(sweep_finish) sweep s;
+    must_sweep(&s, SWEEP_GRID, 0, "arm.model=corrected,printed", NULL);
+    check_merge(&s, (char *[]){"1", "2"}, 2);
 }
 
-TEST(parts_in_any_order_give_the_rows_of_one_sweep)
+SWEEP_TEST(parts_in_any_order_give_the_rows_of_one_sweep)
 {
-    sweep s;
-    must_sweep(&s, "motor.voltage=0.5:2:11");
-    char *whole = compute(&s, "whole", (sweep_share){0, 0});
-    char *parts[] = {"3", "1", "2"};
-    for (int i = 0; i < 3; i++) {
-        free(compute(&s, parts[i], (sweep_share){atoi(parts[i]), 3}));
-    }
-
-    sweep_merged merged;
-    DONE(sweep_merge(parts, 3, "merged", &merged, &f));
-    assert_int_equal(merged.runs, 11);
-    assert_int_equal(merged.total, 11);
-
-    // nothing is left to compute, and the rows are the same to the last byte
-    char *rows = compute(&s, "merged", (sweep_share){0, 0});
-    assert_string_equal(rows, whole);
-    free(rows);
-
-    // a sweep with a missing part continues where it ends
-    DONE(sweep_merge(parts, 2, "some", &merged, &f));
-    assert_int_equal(merged.runs, 7);
-    rows = compute(&s, "some", (sweep_share){0, 0});
-    assert_string_equal(rows, whole);
-    free(rows);
-    free(whole);
-
-    char *twice[] = {"1", "2", "1"};
-    check_refused(twice, 3, "run 1 of '1' is in another part too");
-    sweep_finish(&s);
-    for (int i = 0; i < 3; i++) {
-        unlink(parts[i]);
-    }
-    unlink("whole");
-    unlink("merged");
-    unlink("some");
+    SCOPED(sweep_finish) sweep s;
+    sweep_voltages(&s, "motor.voltage=0.5:2:11");
+    check_merge(&s, (char *[]){"3", "1", "2"}, 3);
+    check_refused((char *[]){"1", "2", "1"}, 3, "run 1 of '1' is in another part too");
 }
 
 // Every parameter that is varied has its column.
-TEST(parts_may_vary_several_parameters)
+SWEEP_TEST(parts_may_vary_several_parameters)
 {
     SCOPED(sweep_finish) sweep s;
-    char *vary[] = {(char[]){"motor.voltage=0.5,2"}, (char[]){"arm.k2=4,6"},
-                    (char[]){"wall.kind=point,plane"}};
+    char *vary[] = {"motor.voltage=0.5,2", "arm.k2=4,6", "wall.kind=point,plane"};
     sweep_request request = {.vary = vary, .vary_count = 3};
     DONE(sweep_init(&s, &base, &request, &f));
-    char *whole = compute(&s, "whole", (sweep_share){0, 0});
-    char *parts[] = {"1", "2"};
-    for (int i = 0; i < 2; i++) {
-        free(compute(&s, parts[i], (sweep_share){i + 1, 2}));
-    }
-    sweep_merged merged;
-    DONE(sweep_merge(parts, 2, "merged", &merged, &f));
-    assert_int_equal(merged.runs, 8);
-    SCOPED(free_kept) char *rows = compute(&s, "merged", (sweep_share){0, 0});
-    assert_string_equal(rows, whole);
-    free(whole);
-    unlink("1");
-    unlink("2");
-    unlink("whole");
-    unlink("merged");
+    check_merge(&s, (char *[]){"1", "2"}, 2);
 }
 
 // What a database says of its values gives the plan again to the last bit: every kind of axis,
 // drawn and in a grid.
-TEST(the_plan_of_a_merge_is_that_of_the_sweep)
+SWEEP_TEST(the_plan_of_a_merge_is_that_of_the_sweep)
 {
     static char *const drawn[] = {"motor.voltage=1:2.7:log",
                                   "wall.angle=-0.0001:0.3333333333333333",
@@ -175,9 +98,8 @@ TEST(the_plan_of_a_merge_is_that_of_the_sweep)
     static char *const grid[] = {"motor.voltage=1:2.7:3:log", "wall.kind=point,plane",
                                  "initial.angle=-0.001,-0.1,-1.0000000000000002e-2",
                                  "control.seed=1:1000:2:log"};
-    const scenario first = base;
     char *const links[] = {"arm.links=3", "arm.joint_stiffness=10,12", "run.duration=0.02"};
-    assert_int_equal(scenario_override_all(&base, links, 3, report_fault, NULL), STATUS_OK);
+    assert_int_equal(scenario_override_all(&base, links, 3, print_sentence, NULL), STATUS_OK);
     for (int i = SWEEP_GRID; i <= SWEEP_LATIN; i++) {
         const bool draws = i != SWEEP_GRID;
         sweep_request request = {.vary = draws ? drawn : grid,
@@ -187,22 +109,10 @@ TEST(the_plan_of_a_merge_is_that_of_the_sweep)
                                  .seed = UINT64_MAX};
         SCOPED(sweep_finish) sweep s;
         DONE(sweep_init(&s, &base, &request, &f));
-        char *whole = compute(&s, "whole", (sweep_share){0, 0}), *parts[] = {"1", "2"};
-        for (int k = 0; k < 2; k++) {
-            free(compute(&s, parts[k], (sweep_share){k + 1, 2}));
-        }
-        sweep_merged merged;
-        DONE(sweep_merge(parts, 2, "merged", &merged, &f));
-        assert_int_equal(merged.runs, s.run_count);
-        SCOPED(free_kept) char *rows = compute(&s, "merged", (sweep_share){0, 0});
-        assert_string_equal(rows, whole);
-        free(whole);
-        unlink("1");
-        unlink("2");
-        unlink("whole");
-        unlink("merged");
+        check_merge(&s, (char *[]){"1", "2"}, 2);
+        assert_true(unlink("whole") == 0 && unlink("merged") == 0 && unlink("some") == 0);
+        assert_true(unlink("1") == 0 && unlink("2") == 0);
     }
-    base = first;
 }
 
 // Carries out SQL on a file, as somebody else's program might.
@@ -215,11 +125,11 @@ static void tamper(const char *path, const char *sql)
     sqlite3_close(database);
 }
 
-TEST(foreign_parts_are_refused)
+SWEEP_TEST(foreign_parts_are_refused)
 {
-    sweep s, other;
-    must_sweep(&s, "motor.voltage=1:2:3");
-    must_sweep(&other, "motor.voltage=1:2:4");
+    SCOPED(sweep_finish) sweep s, other;
+    sweep_voltages(&s, "motor.voltage=1:2:3");
+    sweep_voltages(&other, "motor.voltage=1:2:4");
     free(compute(&s, "own", (sweep_share){1, 3}));
     free(compute(&other, "other", (sweep_share){2, 4}));
     char *pair[] = {"own", "other"};
@@ -242,12 +152,6 @@ TEST(foreign_parts_are_refused)
     sweep_store *store;
     fault f = {0};
     assert_int_equal(sweep_store_open(&store, "own", &s, &f), STATUS_BAD_ARGUMENT);
-
-    sweep_finish(&s);
-    sweep_finish(&other);
-    unlink("own");
-    unlink("other");
-    unlink("changed");
 }
 
 // The table without what it lets into its columns.
@@ -255,7 +159,7 @@ TEST(foreign_parts_are_refused)
     "CREATE TABLE bare AS SELECT * FROM run; DROP TABLE run; ALTER TABLE bare RENAME TO run; "
 
 // What a file has after others changed it, and why it is refused: as a part, and to go on from.
-TEST(what_others_changed_is_refused)
+SWEEP_TEST(what_others_changed_is_refused)
 {
     static const struct {
         const char *sql;
@@ -312,17 +216,17 @@ TEST(what_others_changed_is_refused)
         {"DELETE FROM run; DELETE FROM sweep; DROP TABLE run; DROP TABLE sweep", "is empty"},
     };
     SCOPED(sweep_finish) sweep s;
-    must_sweep(&s, "motor.voltage=1:2:3");
-    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+    sweep_voltages(&s, "motor.voltage=1:2:3");
+    for (EACH(c, changes)) {
         char *part[] = {"part"};
         free(compute(&s, "part", (sweep_share){0, 0}));
-        tamper("part", changes[i].sql);
-        check_refused(part, 1, changes[i].says);
+        tamper("part", c->sql);
+        check_refused(part, 1, c->says);
 
         // an empty one is one to begin with
         sweep_store *store;
         fault f = {0};
-        if (strcmp(changes[i].says, "is empty") == 0) {
+        if (strcmp(c->says, "is empty") == 0) {
             assert_int_equal(sweep_store_open(&store, "part", &s, &f), STATUS_OK);
             sweep_store_close(store);
         } else {
@@ -334,7 +238,7 @@ TEST(what_others_changed_is_refused)
 }
 
 // A missing part, and one with overwritten pages.
-TEST(what_cannot_be_read_is_said)
+SWEEP_TEST(what_cannot_be_read_is_said)
 {
     SCOPED(sweep_finish) sweep s;
     sweep_merged merged;
@@ -344,7 +248,7 @@ TEST(what_cannot_be_read_is_said)
     assert_non_null(strstr(f.text, "No such file"));
 
     // all pages but the first, which says what kind of file it is
-    must_sweep(&s, "motor.voltage=1:2:3");
+    sweep_voltages(&s, "motor.voltage=1:2:3");
     free(compute(&s, "part", (sweep_share){0, 0}));
     FILE *file = fopen("part", "r+");
     assert_non_null(file);
@@ -360,7 +264,6 @@ TEST(what_cannot_be_read_is_said)
     sweep_store *store;
     assert_int_equal(sweep_store_open(&store, "part", &s, &f), STATUS_CANNOT_READ);
     assert_int_not_equal(access("out", F_OK), 0);
-    unlink("part");
 }
 
 // The end of a journal that names a file: SQLite's form of a transaction over several databases.
@@ -404,18 +307,15 @@ static void write_journal(const char *database, const char *named)
 }
 
 // A journal beside a database that came from elsewhere deletes nothing.
-TEST(a_journal_names_no_file_to_delete)
+SWEEP_TEST(a_journal_names_no_file_to_delete)
 {
     char notes[300];
     SCOPED(sweep_finish) sweep s;
-    must_sweep(&s, "motor.voltage=1:2:3");
+    sweep_voltages(&s, "motor.voltage=1:2:3");
     free(compute(&s, "part", (sweep_share){0, 0}));
     assert_non_null(getcwd(notes, 200));
     strcat(notes, "/notes");
-    FILE *file = fopen(notes, "w");
-    assert_non_null(file);
-    fputs("my notes", file);
-    fclose(file);
+    put_file(notes, "my notes");
 
     // also where the database is reached by a link
     assert_int_equal(symlink("part", "link"), 0);
@@ -433,9 +333,4 @@ TEST(a_journal_names_no_file_to_delete)
     // without it all is well
     unlink("part-journal");
     free(compute(&s, "part", (sweep_share){0, 0}));
-    unlink("part");
-    unlink("link");
-    unlink(notes);
 }
-
-ALL_BETWEEN(prepare, clean_up)

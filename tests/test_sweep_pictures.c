@@ -1,6 +1,4 @@
 // Pictures of each kind of sweep.
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "render/page/text.h"
 #include "render/plot/plot.h"
@@ -83,7 +81,7 @@ TEST(a_picture_shows_two_parameters_at_most)
 {
     char *vary[] = {"arm.k1=1,2", "arm.k2=1,2", "arm.mass=1,2"};
     sweep_request request = {.vary = vary, .vary_count = 3};
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     fault f = {0};
     assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_OK);
     assert_int_equal(s.run_count, 8);
@@ -92,7 +90,6 @@ TEST(a_picture_shows_two_parameters_at_most)
     sweep_finish(&s);
     must_sweep(&s, SWEEP_GRID, 0, "arm.k1=1,2", NULL);
     assert_int_equal(sweep_plot_check(&s, "a.jpg", &f), STATUS_BAD_ARGUMENT);
-    sweep_finish(&s);
 }
 
 ALL_BETWEEN(sweep_fixture_open, close_all)

@@ -19,7 +19,7 @@ TEST(the_last_parameter_of_a_grid_changes_fastest)
 
 TEST(ranges_meet_their_ends_and_are_spaced_as_asked)
 {
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "arm.k2=0.1:0.7:7", NULL);
     check_close(sweep_value(&s, 0, 0), 0.1, 0);
     check_close(sweep_value(&s, 6, 0), 0.7, 0);
@@ -38,7 +38,6 @@ TEST(ranges_meet_their_ends_and_are_spaced_as_asked)
     sweep_finish(&s);
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=0.5 V:1 V:2", NULL);
     check_close(sweep_value(&s, 0, 0), 0.5, 0);
-    sweep_finish(&s);
 }
 
 // One number of a list, named with its place from 1 on; the others stay as the scenario has them.
@@ -119,12 +118,12 @@ TEST(bad_requests_are_refused_with_a_sentence)
         {"arm.k2=1:2:4", NULL, SWEEP_GRID, 7, "--runs"},
         {"arm.k2=1:2", NULL, SWEEP_RANDOM, 0, "--runs"},
     };
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    for (EACH(c, bad)) {
         sweep s;
         fault f = {0};
-        assert_int_equal(sweep_of(&s, bad[i].sampling, bad[i].runs, 0, &f, bad[i].a, bad[i].b),
+        assert_int_equal(sweep_of(&s, c->sampling, c->runs, 0, &f, c->a, c->b),
                          STATUS_BAD_ARGUMENT);
-        fail_if(strstr(f.text, bad[i].says) == NULL, "'%s' does not say '%s'", f.text, bad[i].says);
+        fail_if(strstr(f.text, c->says) == NULL, "'%s' does not say '%s'", f.text, c->says);
     }
 }
 

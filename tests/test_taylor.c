@@ -107,7 +107,7 @@ TEST(instants_together_are_those_one_by_one)
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
         const arm *a = &moving.arm;
-        motion *m = moving.motion;
+        SCOPED(motion_destroy_kept) motion *m = moving.motion;
         taylor_limit_width(1 << i % 4);
         double h = motion_begin_stride(a, m, 0.1, 1e-3), times[PLACES], *now = m->state;
         state_energy energies[PLACES];
@@ -117,7 +117,6 @@ TEST(instants_together_are_those_one_by_one)
 
         // the step is made: m->trial is where it began
         if (motion_held_still(m)) {
-            motion_destroy(m);
             continue;
         }
         m->state = m->trial;
@@ -134,7 +133,6 @@ TEST(instants_together_are_those_one_by_one)
             const state_energy has = motion_energy(a, m, at);
             assert_memory_equal(&energies[k], &has, sizeof has);
         }
-        motion_destroy(m);
     }
     taylor_limit_width(0);
 }
@@ -243,11 +241,10 @@ TEST(the_bounds_hold)
     random_seed(&g, 3);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
-        motion *m = moving.motion;
+        SCOPED(motion_destroy_kept) motion *m = moving.motion;
         const engine *e = m->engine;
         // an arm that is held still has no series
         if (motion_held_still(m)) {
-            motion_destroy(m);
             continue;
         }
         double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3);
@@ -283,7 +280,6 @@ TEST(the_bounds_hold)
                             block[AT_FORCE_MOST] + 1e-12);
             }
         }
-        motion_destroy(m);
     }
     assert_true(looked_at > ARM_COUNT * STATES / 2);
 }
@@ -297,9 +293,8 @@ TEST(known_roots_are_the_first)
     random_seed(&g, 8);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
-        motion *m = moving.motion;
+        SCOPED(motion_destroy_kept) motion *m = moving.motion;
         if (motion_held_still(m)) {
-            motion_destroy(m);
             continue;
         }
         const double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3);
@@ -321,7 +316,6 @@ TEST(known_roots_are_the_first)
                     m->engine->event_function(&moving.arm, m, watched[n], root + near).value < 0);
             }
         }
-        motion_destroy(m);
     }
     assert_true(known > STATES / 4);
 }

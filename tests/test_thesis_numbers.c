@@ -90,12 +90,12 @@ TEST(the_table_of_the_single_run)
         {"0.2", "0.5"}, {"0.3", "0.5"}, {"0.4", "0.5"}, {"0.4", "0.6"}, {"0.5", "0.5"},
         {"0.5", "0.7"}, {"0.6", "0.5"}, {"0.6", "0.9"}, {"0.7", "0.5"}, {"0.7", "0.9"}};
     static const char *const steps[] = {"1e-3", "1e-4", "1e-5"};
-    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+    for (EACH(one, pairs)) {
         char row[256], beta[32], gamma[32], step[32];
-        int used = snprintf(row, sizeof row, "| %s, %s |", pairs[i][0], pairs[i][1]);
+        int used = snprintf(row, sizeof row, "| %s, %s |", (*one)[0], (*one)[1]);
         for (int k = 0; k < 3; k++) {
-            snprintf(beta, sizeof beta, "method.beta=%s", pairs[i][0]);
-            snprintf(gamma, sizeof gamma, "method.gamma=%s", pairs[i][1]);
+            snprintf(beta, sizeof beta, "method.beta=%s", (*one)[0]);
+            snprintf(gamma, sizeof gamma, "method.gamma=%s", (*one)[1]);
             snprintf(step, sizeof step, "method.step=%s", steps[k]);
             SCOPED(forget)
             computed c = run_with("thesis/fig-3-4", SETS("printed.reevaluation=none",

@@ -114,14 +114,14 @@ TEST(a_single_link_is_a_pendulum)
 TEST(what_knows_no_weight_says_so)
 {
     static const char *const engines[] = {"pair", NULL}; // NULL: the printed model
-    for (size_t i = 0; i < sizeof engines / sizeof *engines; i++) {
+    for (EACH(c, engines)) {
         fault f = {0};
         parameters p;
-        parameters_defaults(&p, engines[i] == NULL ? ARM_PRINTED : ARM_CORRECTED);
+        parameters_defaults(&p, *c == NULL ? ARM_PRINTED : ARM_CORRECTED);
         assert_int_equal(parameter_set_text(&p, parameter_find("arm.tilt"), "0.1", &f), STATUS_OK);
-        if (engines[i] != NULL) {
+        if (*c != NULL) {
             const int path = parameter_find("method.engine");
-            assert_int_equal(parameter_set_text(&p, path, engines[i], &f), STATUS_OK);
+            assert_int_equal(parameter_set_text(&p, path, *c, &f), STATUS_OK);
         }
         assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
         assert_non_null(strstr(f.text, "level"));

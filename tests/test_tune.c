@@ -47,8 +47,8 @@ TEST(expressions_are_arithmetic)
         {"max(3,max(1,2),-5)-1e-1", 2.9},
         {"2*(max(1,2)+seven)", 18},
     };
-    for (size_t i = 0; i < sizeof right / sizeof right[0]; i++) {
-        assert_true(fabs(evaluate(right[i].text) - right[i].value) <= 1e-14);
+    for (EACH(c, right)) {
+        assert_true(fabs(evaluate(c->text) - c->value) <= 1e-14);
     }
 
     // what cannot be judged stays so
@@ -68,12 +68,12 @@ TEST(faults_of_expressions_name_the_column)
         {"max(1,2", 8, "expected ')'"},  {"seven seven", 7, "an operator"},
         {"nan", 1, "no quantity 'nan'"}, {"max 1", 1, "no quantity 'max'"},
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (EACH(c, wrong)) {
         expression e;
         fault f = {0};
-        assert_int_equal(expression_read(&e, wrong[i].text, find, NULL, &f), STATUS_BAD_ARGUMENT);
-        fail_if(f.column != wrong[i].column || strstr(f.text, wrong[i].says) == NULL,
-                "'%s': column %d, %s", wrong[i].text, f.column, f.text);
+        assert_int_equal(expression_read(&e, c->text, find, NULL, &f), STATUS_BAD_ARGUMENT);
+        fail_if(f.column != c->column || strstr(f.text, c->says) == NULL, "'%s': column %d, %s",
+                c->text, f.column, f.text);
     }
 
     // as many brackets or numbers as anybody wants, and no stack without end
@@ -141,7 +141,7 @@ TEST(a_condition_binds)
                           .minimise = "first_contact_s",
                           .subject = "peak_force_N <= 2",
                           .runs = 80};
-    tuning t;
+    SCOPED(tune_finish) tuning t;
     search(&t, &asked, 1);
     scenario s = base;
     run_result r;
@@ -156,7 +156,6 @@ TEST(a_condition_binds)
     search(&t, &asked, 1);
     assert_true(t.best.rank >= TUNE_REFUSED);
     assert_true(t.found[0] < 1);
-    tune_finish(&t);
 }
 
 // The hub's velocity gain whose sampled pole in contact decays fastest, kp = 20 at 200 Hz: 2.162 by
@@ -194,17 +193,17 @@ TEST(what_cannot_be_asked_is_refused)
         {"motor.voltage=1:2", "settled_percent", NULL, "there is no quantity 'settled_percent'"},
     };
     scenario base = {.name = "touch", .parameters = rig_parameters(NULL)};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        char *vary = (char *)wrong[i].vary;
+    for (EACH(c, wrong)) {
+        char *vary = (char *)c->vary;
         const tune_request asked = {.base = &base,
                                     .vary = &vary,
                                     .vary_count = 1,
-                                    .minimise = wrong[i].minimise,
-                                    .subject = wrong[i].subject,
+                                    .minimise = c->minimise,
+                                    .subject = c->subject,
                                     .runs = 10};
         tuning t;
         fault f = {0};
         assert_int_equal(tune_init(&t, &asked, &f), STATUS_BAD_ARGUMENT);
-        fail_if(strstr(f.text, wrong[i].says) == NULL, "%s: %s", wrong[i].says, f.text);
+        fail_if(strstr(f.text, c->says) == NULL, "%s: %s", c->says, f.text);
     }
 }

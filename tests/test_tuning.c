@@ -39,11 +39,11 @@ TEST(test_a_gain_holds_from_the_next_sample_on)
         {"control.delay", "0.002", 0.4},   {"belief.k2_factor", "0.8", 0.8},
         {"motor.voltage_limit", "1", 0.5}, {"sensor.tachometer_noise", "0.2", 0.4},
     };
-    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+    for (EACH(c, changes)) {
         OPEN_SESSION(s, "compare/hybrid");
-        session_seek(&s, changes[i].at + 0.0021);
+        session_seek(&s, c->at + 0.0021);
         DONE(session_keep_beside(&s, &s.run, &f));
-        change(&s, changes[i].path, changes[i].value);
+        change(&s, c->path, c->value);
         assert_int_equal(s.inputs[0].kind, SESSION_INPUT_TIMED);
 
         // the change itself has a row; then nothing is felt before a sample, at most two periods on
@@ -163,13 +163,13 @@ TEST(test_a_controller_is_told_what_changed_for_it)
     controller counting = *r->law;
     counting.tune = count_telling;
     r->law = &counting;
-    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; i++) {
+    for (EACH(c, changes)) {
         times_told = 0;
         DONE(rig_retune(r, &p, 0, &f));
         assert_int_equal(times_told, 0);
-        DONE(parameter_set_text(&p, parameter_find(changes[i].path), changes[i].text, &f));
+        DONE(parameter_set_text(&p, parameter_find(c->path), c->text, &f));
         DONE(rig_retune(r, &p, 0, &f));
-        assert_int_equal(times_told, changes[i].told);
+        assert_int_equal(times_told, c->told);
     }
     rig_destroy(r);
 }
@@ -391,8 +391,8 @@ TEST(what_nobody_took_at_the_start_can_change)
     parameters_defaults(&p, ARM_CORRECTED);
     const int force = PARAMETER_INDEX(control.force);
     static const int laws[] = {LAW_NONE, LAW_PROCESS, LAW_HYBRID};
-    for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
-        p.control.law = laws[i];
+    for (EACH(c, laws)) {
+        p.control.law = *c;
         assert_true(rig_can_change(&p, force));
         assert_false(rig_can_change(&p, PARAMETER_INDEX(control.law)));
     }

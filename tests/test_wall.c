@@ -145,10 +145,10 @@ TEST(a_face_at_rest_has_no_rate)
 TEST(the_rate_is_that_at_the_deepest_point)
 {
     const double mass = 0.04, speeds[] = {0.1, 0.7, 3};
-    for (size_t i = 0; i < sizeof speeds / sizeof speeds[0]; i++) {
+    for (EACH(c, speeds)) {
         wall_model w =
             wall_of(SETTINGS("wall.contact=hunt-crossley", "wall.stiffness=1e5", "wall.damping=0"));
-        double depth = 0, speed = speeds[i], step = 1e-7;
+        double depth = 0, speed = *c, step = 1e-7;
         while (speed > 0) {
             // the midpoint's force, from energy conserved over half a step
             const double middle = depth + 0.5 * step * speed;
@@ -156,11 +156,11 @@ TEST(the_rate_is_that_at_the_deepest_point)
             depth = middle + 0.5 * step * speed;
         }
         const double stiffness = 1.5 * wall_spring_force(&w, depth) / depth;
-        check_relative(wall_rate(&w, 1 / mass, 0, speeds[i]), sqrt(stiffness / mass), 1e-4);
+        check_relative(wall_rate(&w, 1 / mass, 0, *c), sqrt(stiffness / mass), 1e-4);
 
         // leaving it, it comes no deeper than it is
         const double left = 1.5 * wall_spring_force(&w, 1e-3) / 1e-3;
-        check_relative(wall_rate(&w, 1 / mass, 1e-3, -speeds[i]), sqrt(left / mass), 1e-12);
+        check_relative(wall_rate(&w, 1 / mass, 1e-3, -*c), sqrt(left / mass), 1e-12);
     }
     wall_model damped =
         wall_of(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=10", "wall.damping=500"));

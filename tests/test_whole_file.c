@@ -1,23 +1,10 @@
 #include "src/base/whole_file.h"
 
 #include <dirent.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "tests/check.h"
-
-static char folder[] = "/tmp/whole-file-XXXXXX";
-
-static int enter_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) == NULL || chdir(folder) != 0;
-}
 
 // Number of files in the test's folder.
 static int files(void)
@@ -32,25 +19,6 @@ static int files(void)
     return count;
 }
 
-static int leave_folder(void **state)
-{
-    (void)state;
-    DIR *d = opendir(".");
-    for (struct dirent *e = readdir(d); e != NULL; e = readdir(d)) {
-        unlink(e->d_name);
-    }
-    closedir(d);
-    return chdir("/") != 0 || rmdir(folder) != 0;
-}
-
-static void put(const char *path, const char *text)
-{
-    FILE *stream = fopen(path, "w");
-    assert_non_null(stream);
-    fputs(text, stream);
-    fclose(stream);
-}
-
 static void assert_holds(const char *path, const char *expected)
 {
     char text[64] = "";
@@ -62,10 +30,10 @@ static void assert_holds(const char *path, const char *expected)
     assert_string_equal(text, expected);
 }
 
-TEST(appears_only_when_committed)
+TEST_IN_FOLDER(appears_only_when_committed)
 {
     whole_file w;
-    put("old", "old");
+    put_file("old", "old");
     DONE(whole_file_open(&w, "old", &f));
     fputs("new", w.stream);
     fflush(w.stream);
@@ -73,19 +41,17 @@ TEST(appears_only_when_committed)
     DONE(whole_file_commit(&w, &f));
     assert_holds("old", "new");
     assert_int_equal(files(), 1);
-    unlink("old");
 }
 
-TEST(abandoning_leaves_the_target_and_nothing_else)
+TEST_IN_FOLDER(abandoning_leaves_the_target_and_nothing_else)
 {
     whole_file w;
-    put("old", "old");
+    put_file("old", "old");
     DONE(whole_file_open(&w, "old", &f));
     fputs("new", w.stream);
     whole_file_abandon(&w);
     assert_holds("old", "old");
     assert_int_equal(files(), 1);
-    unlink("old");
 }
 
 static mode_t mode_of(const char *path)
@@ -103,7 +69,7 @@ static void write_new(const char *path)
     DONE(whole_file_commit(&w, &f));
 }
 
-TEST(mode_follows_the_umask_or_the_old_file)
+TEST_IN_FOLDER(mode_follows_the_umask_or_the_old_file)
 {
     mode_t before = umask(027);
     write_new("fresh");
@@ -112,23 +78,20 @@ TEST(mode_follows_the_umask_or_the_old_file)
     write_new("fresh");
     assert_int_equal(mode_of("fresh"), 0604);
     umask(before);
-    unlink("fresh");
 }
 
-TEST(a_link_stays_a_link)
+TEST_IN_FOLDER(a_link_stays_a_link)
 {
     struct stat about;
-    put("target", "old");
+    put_file("target", "old");
     assert_int_equal(symlink("target", "link"), 0);
     write_new("link");
     assert_int_equal(lstat("link", &about), 0);
     assert_true(S_ISLNK(about.st_mode));
     assert_holds("target", "new");
-    unlink("link");
-    unlink("target");
 }
 
-TEST(a_link_to_nothing_leads_to_the_new_file)
+TEST_IN_FOLDER(a_link_to_nothing_leads_to_the_new_file)
 {
     struct stat about;
     assert_int_equal(symlink("later", "link"), 0);
@@ -136,11 +99,9 @@ TEST(a_link_to_nothing_leads_to_the_new_file)
     assert_int_equal(lstat("link", &about), 0);
     assert_true(S_ISLNK(about.st_mode));
     assert_holds("later", "new");
-    unlink("link");
-    unlink("later");
 }
 
-TEST(a_full_device_is_reported_and_stays_a_device)
+TEST_IN_FOLDER(a_full_device_is_reported_and_stays_a_device)
 {
     struct stat about;
     whole_file w;
@@ -176,7 +137,7 @@ static status write_to_output(const char *path, fault *f)
     return code;
 }
 
-TEST(the_standard_output_is_written_or_said_to_be_full)
+TEST_IN_FOLDER(the_standard_output_is_written_or_said_to_be_full)
 {
     fault f = {0};
     assert_int_equal(write_to_output("output", &f), STATUS_OK);
@@ -187,25 +148,24 @@ TEST(the_standard_output_is_written_or_said_to_be_full)
     assert_non_null(strstr(f.text, strerror(ENOSPC)));
 }
 
-TEST(what_cannot_be_written_is_said_beforehand)
+TEST_IN_FOLDER(what_cannot_be_written_is_said_beforehand)
 {
     const char *const bad[] = {"nowhere/file", ".", "", "nothing/"};
-    put("file", "");
-    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    put_file("file", "");
+    for (EACH(c, bad)) {
         whole_file w;
         fault f = {0};
-        assert_int_equal(whole_file_check(bad[i], &f), STATUS_CANNOT_WRITE);
-        assert_non_null(strstr(f.text, bad[i]));
-        assert_int_equal(whole_file_open(&w, bad[i], &f), STATUS_CANNOT_WRITE);
+        assert_int_equal(whole_file_check(*c, &f), STATUS_CANNOT_WRITE);
+        assert_non_null(strstr(f.text, *c));
+        assert_int_equal(whole_file_open(&w, *c, &f), STATUS_CANNOT_WRITE);
     }
     assert_int_equal(whole_file_check("file/below", NULL), STATUS_CANNOT_WRITE);
     assert_int_equal(whole_file_check("new", NULL), STATUS_OK);
     assert_int_equal(whole_file_check("-", NULL), STATUS_OK);
     assert_int_equal(files(), 1);
-    unlink("file");
 }
 
-TEST(a_reader_that_left_is_told_from_a_full_disk)
+TEST_IN_FOLDER(a_reader_that_left_is_told_from_a_full_disk)
 {
     int ends[2];
     assert_int_equal(pipe(ends), 0);
@@ -222,7 +182,7 @@ TEST(a_reader_that_left_is_told_from_a_full_disk)
 }
 
 // Who reads the standard output may leave when he has enough; of any other pipe it is a failure.
-TEST(only_the_reader_of_the_standard_output_may_leave)
+TEST_IN_FOLDER(only_the_reader_of_the_standard_output_may_leave)
 {
     int ends[2];
     whole_file w;
@@ -249,12 +209,11 @@ TEST(only_the_reader_of_the_standard_output_may_leave)
     close(reader);
     fputs("text", w.stream);
     assert_int_equal(whole_file_commit(&w, &f), STATUS_CANNOT_WRITE);
-    unlink("pipe");
 }
 
 // Where the standard input is closed a file gets its descriptor, and is written all the same, whole
 // or in its place.
-TEST(a_file_may_have_the_first_descriptor)
+TEST_IN_FOLDER(a_file_may_have_the_first_descriptor)
 {
     const char *const names[] = {"first", "/dev/null"};
     const int input = dup(0);
@@ -274,11 +233,10 @@ TEST(a_file_may_have_the_first_descriptor)
     close(input);
     assert_holds("first", "text");
     assert_int_equal(files(), 1);
-    unlink("first");
 }
 
 // A write that failed at once leaves nothing to be flushed, and is still a failure.
-TEST(a_failure_before_the_last_flush_is_one)
+TEST_IN_FOLDER(a_failure_before_the_last_flush_is_one)
 {
     FILE *stream = fopen("/dev/full", "w");
     assert_non_null(stream);
@@ -291,12 +249,12 @@ TEST(a_failure_before_the_last_flush_is_one)
 
 // The stream loses the reason of an earlier failed write; it is still reported when the file is
 // closed.
-TEST(why_a_write_failed_is_known_at_the_end)
+TEST_IN_FOLDER(why_a_write_failed_is_known_at_the_end)
 {
     struct rlimit before, small;
     whole_file file;
     fault f = {0};
-    put("kept", "old");
+    put_file("kept", "old");
     signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &before);
     small = (struct rlimit){.rlim_cur = 100000, .rlim_max = before.rlim_max};
@@ -318,15 +276,15 @@ TEST(why_a_write_failed_is_known_at_the_end)
 
 // A run that was killed leaves its temporary; the next one removes it, but none of a run that
 // lives.
-TEST(what_killed_runs_left_goes)
+TEST_IN_FOLDER(what_killed_runs_left_goes)
 {
     int told[2];
     char byte;
     assert_int_equal(mkdir("folder", 0777), 0);
     assert_int_equal(pipe(told), 0);
-    put("folder/.impactlab-notes.part", "no temporary of ours");
-    put("folder/.impactlab-1-2.part.txt", "neither");
-    put("folder/.impactlab-999999-0.part", "left by nobody");
+    put_file("folder/.impactlab-notes.part", "no temporary of ours");
+    put_file("folder/.impactlab-1-2.part.txt", "neither");
+    put_file("folder/.impactlab-999999-0.part", "left by nobody");
     assert_int_equal(mkfifo("folder/.impactlab-1-7.part", 0600), 0);
 
     // another process writes into it
@@ -362,11 +320,10 @@ TEST(what_killed_runs_left_goes)
     }
     close(told[0]);
     close(told[1]);
-    assert_int_equal(rmdir("folder"), 0);
 }
 
 // In a folder like /tmp a link of somebody else's leads nowhere, as the kernel has it.
-TEST(a_strangers_link_is_not_followed)
+TEST_IN_FOLDER(a_strangers_link_is_not_followed)
 {
     whole_file file;
     fault f = {0};
@@ -391,12 +348,10 @@ TEST(a_strangers_link_is_not_followed)
         assert_int_equal(chmod("shared", 01777), 0);
         assert_int_equal(whole_file_check("shared/link", &f), STATUS_OK);
     }
-    unlink("shared/link");
-    assert_int_equal(rmdir("shared"), 0);
 }
 
 // More at once than are recorded for a signal: each is still complete.
-TEST(several_files_are_written_at_once)
+TEST_IN_FOLDER(several_files_are_written_at_once)
 {
     enum { FILES = 12 };
     const int before = files();
@@ -416,11 +371,11 @@ TEST(several_files_are_written_at_once)
 }
 
 // Called by a signal handler: no unfinished file stays, and former files do.
-TEST(a_signal_leaves_no_temporaries)
+TEST_IN_FOLDER(a_signal_leaves_no_temporaries)
 {
     whole_file one, two;
     const int before = files();
-    put("one", "old");
+    put_file("one", "old");
     assert_int_equal(whole_file_open(&one, "one", NULL), STATUS_OK);
     assert_int_equal(whole_file_open(&two, "two", NULL), STATUS_OK);
     assert_int_equal(files(), before + 3);
@@ -451,11 +406,10 @@ TEST(a_signal_leaves_no_temporaries)
     assert_holds("one", "old");
     whole_file_abandon(&one);
     whole_file_abandon(&two);
-    unlink("one");
 }
 
 // Something else took the place of the target meanwhile.
-TEST(what_cannot_be_renamed_goes)
+TEST_IN_FOLDER(what_cannot_be_renamed_goes)
 {
     whole_file w;
     fault f = {0};
@@ -469,7 +423,7 @@ TEST(what_cannot_be_renamed_goes)
     assert_int_equal(files(), before);
 }
 
-TEST(devices_and_the_standard_output_can_be_abandoned)
+TEST_IN_FOLDER(devices_and_the_standard_output_can_be_abandoned)
 {
     whole_file w;
     struct stat about;
@@ -485,36 +439,32 @@ TEST(devices_and_the_standard_output_can_be_abandoned)
     fputs("whole", w.stream);
     assert_int_equal(whole_file_close(&w, STATUS_OK, NULL), STATUS_OK);
     assert_holds("closed", "whole");
-    unlink("closed");
 }
 
-TEST(a_link_may_be_absolute)
+TEST_IN_FOLDER(a_link_may_be_absolute)
 {
     char there[64];
-    snprintf(there, sizeof there, "%s/target", folder);
+    snprintf(there, sizeof there, "%s/target", test_folder);
     assert_int_equal(mkdir("below", 0700), 0);
     assert_int_equal(symlink(there, "below/link"), 0);
     write_new("below/link");
     assert_holds("target", "new");
-    unlink("target");
-    unlink("below/link");
-    assert_int_equal(rmdir("below"), 0);
 }
 
 // Only what is a temporary by name and kind is cleaned away.
-TEST(what_only_looks_left_behind_stays)
+TEST_IN_FOLDER(what_only_looks_left_behind_stays)
 {
     static const char *const others[] = {".impactlab-1-2.party", ".impactlab-1.part",
                                          ".impactlab-x-2.part", ".impactlab-1-2.par"};
     const int before = files();
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        put(others[i], "mine");
+    for (EACH(one, others)) {
+        put_file(*one, "mine");
     }
-    put("mine", "mine");
+    put_file("mine", "mine");
     assert_int_equal(symlink("mine", ".impactlab-1-3.part"), 0);
     assert_int_equal(mkfifo(".impactlab-1-4.part", 0600), 0);
     assert_int_equal(mkdir(".impactlab-1-5.part", 0700), 0);
-    put(".impactlab-1-6.part", "left");
+    put_file(".impactlab-1-6.part", "left");
     whole_file_clean_folder("nowhere");
     whole_file_clean_folder(".");
     assert_int_equal(access(".impactlab-1-6.part", F_OK), -1);
@@ -522,14 +472,13 @@ TEST(what_only_looks_left_behind_stays)
     assert_int_equal(rmdir(".impactlab-1-5.part"), 0);
     unlink(".impactlab-1-4.part");
     unlink(".impactlab-1-3.part");
-    unlink("mine");
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        unlink(others[i]);
+    for (EACH(one, others)) {
+        unlink(*one);
     }
 }
 
 // Names that are all taken by others' temporaries are no reason to touch these.
-TEST(a_folder_without_a_free_name_is_said)
+TEST_IN_FOLDER(a_folder_without_a_free_name_is_said)
 {
     whole_file first, w;
     fault f = {0};
@@ -538,7 +487,7 @@ TEST(a_folder_without_a_free_name_is_said)
     for (int i = 0; i < 1000; i++) {
         snprintf(name, sizeof name, ".impactlab-%ld-%d.part", (long)getpid(), i);
         if (access(name, F_OK) != 0) {
-            put(name, "somebody's");
+            put_file(name, "somebody's");
         }
     }
     assert_int_equal(whole_file_open(&w, "other", &f), STATUS_CANNOT_WRITE);
@@ -551,34 +500,32 @@ TEST(a_folder_without_a_free_name_is_said)
     assert_holds("kept", "whole");
     whole_file_clean_folder(".");
     assert_int_not_equal(access(name, F_OK), 0);
-    unlink("kept");
 }
 
 // A stranger's file with a temporary's name is none of ours.
-TEST(what_another_user_left_stays)
+TEST_IN_FOLDER(what_another_user_left_stays)
 {
     if (geteuid() != 0) {
         skip(); // only root can make a file somebody else's
     }
-    put(".impactlab-1-8.part", "a stranger's");
+    put_file(".impactlab-1-8.part", "a stranger's");
     assert_int_equal(chown(".impactlab-1-8.part", 12345, 12345), 0);
     whole_file_clean_folder(".");
     assert_holds(".impactlab-1-8.part", "a stranger's");
     unlink(".impactlab-1-8.part");
 }
 
-TEST(a_link_to_itself_leads_nowhere)
+TEST_IN_FOLDER(a_link_to_itself_leads_nowhere)
 {
     fault f = {0};
     whole_file w;
     assert_int_equal(symlink("itself", "itself"), 0);
     assert_int_equal(whole_file_check("itself", &f), STATUS_CANNOT_WRITE);
     assert_int_equal(whole_file_open(&w, "itself", &f), STATUS_CANNOT_WRITE);
-    unlink("itself");
 }
 
 // A program that was started without a standard input has its number for the next file.
-TEST(a_file_may_have_the_number_of_the_standard_input)
+TEST_IN_FOLDER(a_file_may_have_the_number_of_the_standard_input)
 {
     fault f = {0};
     whole_file w;
@@ -602,5 +549,5 @@ TEST(a_file_may_have_the_number_of_the_standard_input)
 int main(void)
 {
     alarm(120); // where somebody waits for what never comes, this fails
-    return run_cases(enter_folder, leave_folder);
+    return run_cases(NULL, NULL);
 }
