@@ -12,18 +12,8 @@
 //
 // Run i is made of its own number, so one that failed is made again by `property_runs 1 i`. The
 // last line says how many runs were made, compared, resumed and found wrong.
-#include <inttypes.h>
-#include <math.h>
-#include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/time.h>
-#include <unistd.h>
-
-#include "src/base/random.h"
 #include "src/run/resume.h"
-#include "src/run/run.h"
+#include "tests/random_settings.h"
 #include "tests/told_events.h"
 
 #define MOST_SECONDS 20.0 // of the processor for one simulated second
@@ -33,9 +23,6 @@ enum { ROWS = 30000 };
 
 typedef enum run_kind { CHAIN, RIG, SOFT, KINDS } run_kind;
 static const char *const kind_names[KINDS] = {"chain", "rig", "soft"};
-
-// How a number is spread over its range.
-typedef enum spread { EVEN, LOGARITHMIC, OR_ZERO } spread;
 
 // The ranges: bit k of `kinds` is set where kind k takes them.
 static const struct {
@@ -70,14 +57,6 @@ static const struct {
 };
 enum { RANGES = sizeof ranges / sizeof ranges[0] };
 
-typedef struct random_run {
-    run_kind kind;
-    uint64_t number;
-    random_generator chance;
-    scenario scenario;
-    char options[2048]; // of the command line
-} random_run;
-
 typedef struct tally {
     long made, wrong, refused, compared, resumed;
     double slowest;          // seconds of the processor for a simulated second
@@ -86,45 +65,14 @@ typedef struct tally {
 
 // --- what is run ------------------------------------------------------------------------------
 
-static void set(random_run *r, const char *path, const char *value)
-{
-    const size_t length = strlen(r->options);
-    fault f = {0};
-    if (parameter_set_text(&r->scenario.parameters, parameter_index(path), value, &f) !=
-        STATUS_OK) {
-        fprintf(stderr, "%s=%s: %s\n", path, value, f.text);
-        exit(2);
-    }
-    snprintf(r->options + length, sizeof r->options - length, " --set %s=%s", path, value);
-}
-
-static void set_number(random_run *r, const char *path, double value)
-{
-    char text[32];
-    const bool whole = parameter_table[parameter_index(path)].type == PARAMETER_INTEGER;
-    snprintf(text, sizeof text, "%.17g", whole ? floor(value) : value);
-    set(r, path, text);
-}
-
-static double number_within(random_generator *g, double from, double to, spread how)
-{
-    const double first = random_uniform(g), second = random_uniform(g);
-    return how == EVEN                     ? from + (to - from) * second
-           : how == OR_ZERO && first < 0.5 ? 0
-                                           : from * exp(second * log(to / from));
-}
-
 // Kinds of wall, joint and law, then the numbers; the arm starts on this side of the wall.
 static bool make_run(random_run *r, uint64_t number, run_kind kind, fault *f)
 {
     static const char *const walls[] = {"point", "plane"};
     static const char *const soft[] = {"kelvin-voigt", "hunt-crossley"};
-    static char name[] = "random", none[] = "";
-    *r = (random_run){.kind = kind, .number = number};
-    r->scenario = (scenario){.name = name, .file = none, .title = none, .description = none};
-    parameters_defaults(&r->scenario.parameters, ARM_CORRECTED);
+    begin_run(r, (int)kind, number, number);
+    r->must_fit = true;
     random_generator *g = &r->chance;
-    random_seed(g, number);
 
     set(r, "run.duration", kind == RIG ? "0.8" : "0.5");
     set_number(r, "arm.links",
@@ -222,10 +170,7 @@ static void check_resumed(tally *t, random_run *r, const run_result *from)
 static void time_is_up(int signal_number)
 {
     (void)signal_number;
-    static const char sentence[] = "a run does not end\n";
-    ssize_t ignored = write(STDOUT_FILENO, sentence, sizeof sentence - 1);
-    (void)ignored;
-    _exit(2);
+    end_with("a run does not end\n");
 }
 
 static void run_one(tally *t, uint64_t number, run_kind kind)

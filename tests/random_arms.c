@@ -27,9 +27,8 @@
 // be refused, and no other for where it starts.
 #include <time.h>
 
-#include "src/base/random.h"
-#include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
+#include "tests/random_arm.h"
 #include "tests/reference/implicit_arm.h"
 
 #define AFTER_CONTACT 0.0501
@@ -46,7 +45,7 @@
 #define LEAST_GAP     2e-12 // what the engines take for a touch, twice [m]
 #define LEAST_WORK    1e-9  // the same of what was put in [J]
 
-enum { MOST_SETTINGS = 24, LONGEST = 2400, LONGEST_LIST = 20 };
+enum { LONGEST_LIST = 20 };
 
 typedef struct options {
     int count, first, least, most;
@@ -55,47 +54,14 @@ typedef struct options {
     double damping;
 } options;
 
-typedef struct random_arm {
-    parameters parameters;
-    double angle, velocity;
-    char settings[MOST_SETTINGS][LONGEST];
-    int count;
-} random_arm;
-
 // What may be.
 typedef struct limits {
     double time, momentum, peak;
 } limits;
 
-static double between(random_generator *g, double from, double to)
-{
-    return from * exp(random_uniform(g) * log(to / from));
-}
 static bool chance(random_generator *g, double share)
 {
     return random_uniform(g) < share;
-}
-
-static __attribute__((format(printf, 2, 3))) void set(random_arm *r, const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    vsnprintf(r->settings[r->count], sizeof r->settings[0], format, values);
-    va_end(values);
-    r->count++;
-}
-
-// A list of numbers: `mean` times or over so much.
-static void set_list(random_arm *r, random_generator *g, const char *path, int count, double mean,
-                     double share)
-{
-    char list[LONGEST - 32];
-    int at = 0;
-    for (int k = 0; k < count; k++) {
-        at += snprintf(list + at, sizeof list - (size_t)at, "%s%.2g", k > 0 ? "," : "",
-                       mean * between(g, 1 / share, share));
-    }
-    set(r, "%s=%s", path, list);
 }
 
 typedef enum feature {
@@ -298,16 +264,6 @@ static bool resolve_arm(random_arm *r)
         }
     }
     return parameters_resolve(&r->parameters, &f) == STATUS_OK;
-}
-
-static void describe(const random_arm *r, int number, const char *what)
-{
-    printf("%d: %s: %g rad, %g rad/s:", number, what, r->angle, r->velocity);
-    for (int i = 0; i < r->count; i++) {
-        printf(" %s", r->settings[i]);
-    }
-    printf("\n");
-    fflush(stdout);
 }
 
 // A run by the method's own engine, with what `setting` says of it.

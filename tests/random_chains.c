@@ -13,18 +13,15 @@
 // of what was put in). Where the explicit formula does not agree with itself at finer strides,
 // the motion is chaotic and nothing is said.
 
-#include "src/base/random.h"
-#include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
 #include "tests/explicit_stepper.h"
+#include "tests/random_arm.h"
 
 #define AFTER_CONTACT 0.0501
 #define DURATION      0.1
 #define SUBSTEPS      20  // of the explicit formula: its fastest rate times its time step
 #define FASTEST       3e6 // beyond which the explicit formula takes too long [1/s]
 #define FINER         0.2 // its strides, where a bounce that two long ones miss would be seen
-
-enum { MOST_SETTINGS = 16 };
 
 // What is compared.
 typedef enum chain_kind {
@@ -40,21 +37,13 @@ typedef enum chain_kind {
 static const char *const kind_names[KINDS] = {"plain", "uneven", "loaded", "electric",
                                               "soft",  "hertz",  "face"};
 
-// A random arm in front of its wall.
-typedef struct random_chain {
-    parameters parameters;
-    double angle, velocity;
-    char settings[MOST_SETTINGS][160];
-    int count;
-} random_chain;
-
-static chain_outcome simulate(const random_chain *c, const parameters *p, const engine *by)
+static chain_outcome simulate(const random_arm *c, const parameters *p, const engine *by)
 {
     return chain_outcome_of(&(chain_start){p, c->angle, c->velocity, DURATION, AFTER_CONTACT, by});
 }
 
 // By the explicit formula.
-static chain_outcome by_formula(const random_chain *c, double step)
+static chain_outcome by_formula(const random_arm *c, double step)
 {
     parameters p = c->parameters;
     p.method.step = step;
@@ -88,35 +77,8 @@ static double distance(const chain_outcome *truth, const chain_outcome *o, bool 
     return fmax(worst, chain_outcome_sensor_difference(truth, o) / 5e-3);
 }
 
-static double between(random_generator *g, double from, double to)
-{
-    return from * exp(random_uniform(g) * log(to / from));
-}
-
-static __attribute__((format(printf, 2, 3))) void set(random_chain *c, const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    vsnprintf(c->settings[c->count], sizeof c->settings[0], format, values);
-    va_end(values);
-    c->count++;
-}
-
-// A list of numbers of one beam in pieces: `mean` times or over so much.
-static void set_list(random_chain *c, random_generator *g, const char *path, int count, double mean,
-                     double share)
-{
-    char list[128];
-    int at = 0;
-    for (int k = 0; k < count; k++) {
-        at += snprintf(list + at, sizeof list - (size_t)at, "%s%.2g", k > 0 ? "," : "",
-                       mean * between(g, 1 / share, share));
-    }
-    set(c, "%s=%s", path, list);
-}
-
 // Links and joints given one by one, a mass at the tip, or both.
-static void make_uneven(random_chain *c, random_generator *g, int links, bool rigid, double k2)
+static void make_uneven(random_arm *c, random_generator *g, int links, bool rigid, double k2)
 {
     const int joints = links - (rigid ? 1 : 0);
     const double which = random_uniform(g);
@@ -134,7 +96,7 @@ static void make_uneven(random_chain *c, random_generator *g, int links, bool ri
 }
 
 // Joints that stiffen, damping by mode, air, a mass at the tip: one or two of them.
-static void make_loaded(random_chain *c, random_generator *g, int links, bool rigid, double k2)
+static void make_loaded(random_arm *c, random_generator *g, int links, bool rigid, double k2)
 {
     const int modes = links - (rigid ? 1 : 0);
     const int kind = (int)random_below(g, 4);
@@ -155,7 +117,7 @@ static void make_loaded(random_chain *c, random_generator *g, int links, bool ri
 }
 
 // A motor whose current follows through an inductance, or that has a limit, or both.
-static void make_electric(random_chain *c, random_generator *g, double k2)
+static void make_electric(random_arm *c, random_generator *g, double k2)
 {
     const int kind = (int)random_below(g, 3);
     set(c, "arm.k2=%.17g", k2);
@@ -168,7 +130,7 @@ static void make_electric(random_chain *c, random_generator *g, double k2)
 }
 
 // A wall that gives: spring and damper, the same with a face in front, Hunt and Crossley's law.
-static void make_soft(random_chain *c, random_generator *g, chain_kind kind, double k2)
+static void make_soft(random_arm *c, random_generator *g, chain_kind kind, double k2)
 {
     const bool hertz = kind == KIND_HERTZ;
     set(c, "arm.k2=%.17g", k2);
@@ -188,7 +150,7 @@ static void make_soft(random_chain *c, random_generator *g, chain_kind kind, dou
     }
 }
 
-static void make_chain(random_chain *c, int number, int least, int most, chain_kind kind)
+static void make_chain(random_arm *c, int number, int least, int most, chain_kind kind)
 {
     random_generator g;
     random_seed(&g, (uint64_t)number * 7919 + 13);
@@ -232,17 +194,6 @@ static void make_chain(random_chain *c, int number, int least, int most, chain_k
     c->parameters = fixture_parameters(list);
 }
 
-static void describe(const random_chain *c, int number, const char *what, double worst)
-{
-    printf("%d: %s (%.2g times what may be), %g rad, %g rad/s:", number, what, worst, c->angle,
-           c->velocity);
-    for (int i = 0; i < c->count; i++) {
-        printf(" %s", c->settings[i]);
-    }
-    printf("\n");
-    fflush(stdout);
-}
-
 // A step at which the explicit formula is exact.
 static double formula_step(const arm *a, chain_kind kind)
 {
@@ -251,7 +202,7 @@ static double formula_step(const arm *a, chain_kind kind)
 
 // What is taken for right, and the same at other strides or a mass that differs by next to nothing;
 // false if it would take too long, or there is no contact.
-static bool find_truth(const random_chain *c, chain_kind kind, chain_outcome *truth)
+static bool find_truth(const random_arm *c, chain_kind kind, chain_outcome *truth)
 {
     arm a;
     arm_init(&a, &c->parameters);
@@ -263,12 +214,19 @@ static bool find_truth(const random_chain *c, chain_kind kind, chain_outcome *tr
 }
 
 // Whether that is worth anything.
-static bool is_sure(const random_chain *c, chain_kind kind, const chain_outcome *truth)
+static bool is_sure(const random_arm *c, chain_kind kind, const chain_outcome *truth)
 {
     arm a;
     arm_init(&a, &c->parameters);
     const chain_outcome again = by_formula(c, FINER * formula_step(&a, kind));
     return distance(truth, &again, is_close(kind)) < 0.1;
+}
+
+static const char *how(const char *what, double worst)
+{
+    static char text[128];
+    snprintf(text, sizeof text, "%s (%.2g times what may be)", what, worst);
+    return text;
 }
 
 int main(int argc, char **argv)
@@ -286,7 +244,7 @@ int main(int argc, char **argv)
     int compared = 0, wrong = 0, said = 0, chaotic = 0;
     double largest = 0;
     for (int i = first; i < first + count; i++) {
-        random_chain c;
+        random_arm c;
         chain_outcome truth;
         make_chain(&c, i, least, most, kind);
         if (!find_truth(&c, kind, &truth)) {
@@ -301,14 +259,14 @@ int main(int argc, char **argv)
         const double worst = o.samples > 0 ? distance(&truth, &o, is_close(kind)) : HUGE_VAL;
         said += !ok;
         if (!ok) {
-            describe(&c, i, status_text(o.status), worst);
+            describe(&c, i, how(status_text(o.status), worst));
         } else if (worst <= 1) {
             largest = fmax(largest, worst);
         } else {
             const bool sure = is_sure(&c, kind, &truth);
             wrong += sure;
             chaotic += !sure;
-            describe(&c, i, sure ? "WRONG" : "chaotic", worst);
+            describe(&c, i, how(sure ? "WRONG" : "chaotic", worst));
         }
     }
     printf("%d compared, %d wrong with a closed ledger, %d with an open one or failed, %d chaotic; "

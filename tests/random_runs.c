@@ -11,19 +11,8 @@
 // Of a whole run is looked at besides: that it is refused where it starts behind the wall, and only
 // there; that the limit it fails by stands in docs/explanation/trust.md; that no arm is inside a
 // rigid wall.
-#include <inttypes.h>
-#include <math.h>
-#include <signal.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/time.h>
-#include <unistd.h>
-
-#include "src/base/random.h"
-#include "src/run/run.h"
 #include "tests/listed_limits.h"
+#include "tests/random_settings.h"
 
 #define MOST_SECONDS       1.0   // of processor time for one run
 #define MOST_SECONDS_WHOLE 20.0  // of a whole one
@@ -37,14 +26,6 @@ static const char *const kind_names[KINDS] = {"near", "wide", "whole"};
 // that is overdamped is followed in strides as brief as it is, for seconds of computing time.
 #define STIFFEST_DAMPED 500.0 // [N m/rad]
 #define SPRING_DAMPING  0.1   // share of the range of arm.damping_ratio
-
-// How a number is spread over its range.
-typedef enum spread {
-    EVEN,        // evenly
-    LOGARITHMIC, // its logarithm evenly
-    OR_ZERO,     // half of the time zero, else its logarithm evenly
-    ENDS,        // a quarter of the time each end, else evenly
-} spread;
 
 // The declared ranges; with a wall the arm starts on this side of it.
 static const struct {
@@ -98,46 +79,7 @@ static const struct {
 
 enum { WHOLE_RANGES = sizeof whole_ranges / sizeof whole_ranges[0] };
 
-// What a run is made of: wide and whole ones differ from the defaults in nearly everything, near
-// ones in a few numbers. The settings are kept as options of the command line, too.
-typedef struct random_run {
-    run_kind kind;
-    random_generator chance;
-    parameters parameters;
-    char options[4096];
-} random_run;
-
-static double number_within(random_generator *g, double from, double to, spread how)
-{
-    const double first = random_uniform(g), second = random_uniform(g);
-    switch (how) {
-    case EVEN:
-        return from + (to - from) * second;
-    case LOGARITHMIC:
-        return from * exp(second * log(to / from));
-    case OR_ZERO:
-        return first < 0.5 ? 0 : from * exp(second * log(to / from));
-    case ENDS:
-        return first < 0.25 ? from : first < 0.5 ? to : from + (to - from) * second;
-    }
-    return from;
-}
-
-// Sets a parameter, unless the value is out of its range.
-static void set(random_run *r, const char *path, const char *value)
-{
-    const size_t length = strlen(r->options);
-    if (parameter_set_text(&r->parameters, parameter_index(path), value, NULL) == STATUS_OK) {
-        snprintf(r->options + length, sizeof r->options - length, " --set %s=%s", path, value);
-    }
-}
-
-static void set_number(random_run *r, const char *path, double value)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%.17g", value);
-    set(r, path, text);
-}
+// Wide and whole runs differ from the defaults in nearly everything, near ones in a few numbers.
 
 // Two links on a rigid wall, in front of it.
 static void make_two_links(random_run *r)
@@ -159,15 +101,15 @@ static void make_two_links(random_run *r)
         bool taken = random_uniform(g) < (wide ? 0.9 : 0.25);
         double value = number_within(g, ranges[k].from, ranges[k].to, ranges[k].spread);
         if (strcmp(path, "initial.angle") == 0 && strcmp(wall, "none") != 0) {
-            value = r->parameters.wall.angle - fabs(value);
-            taken = taken || r->parameters.wall.angle < 0;
+            value = r->scenario.parameters.wall.angle - fabs(value);
+            taken = taken || r->scenario.parameters.wall.angle < 0;
         }
         if (strcmp(path, "arm.k1") == 0) {
             taken = taken && strcmp(hub, "spring") == 0;
         }
         if (strcmp(path, "arm.damping_ratio") == 0 && strcmp(hub, "spring") == 0) {
             value *= SPRING_DAMPING;
-            taken = taken && r->parameters.arm.k1 < STIFFEST_DAMPED;
+            taken = taken && r->scenario.parameters.arm.k1 < STIFFEST_DAMPED;
         }
         if (taken) {
             set_number(r, path, value);
@@ -179,7 +121,7 @@ static void make_two_links(random_run *r)
 // a damped hub spring that is stiff.
 static bool goes_with(const random_run *r, const char *path)
 {
-    const parameters *p = &r->parameters;
+    const parameters *p = &r->scenario.parameters;
     const bool gives = p->wall.contact != WALL_RIGID, spring = p->arm.hub_joint == HUB_SPRING;
     return strcmp(path, "arm.k1") == 0              ? spring
            : strcmp(path, "arm.damping_ratio") == 0 ? !spring || p->arm.k1 < STIFFEST_DAMPED
@@ -194,7 +136,7 @@ static void make_whole(random_run *r)
     static const char *const hubs[] = {"rigid", "rigid", "spring", "beam"};
     static const char *const contacts[] = {"rigid", "kelvin-voigt", "hunt-crossley"};
     random_generator *g = &r->chance;
-    const parameters *p = &r->parameters;
+    const parameters *p = &r->scenario.parameters;
 
     // kinds
     const double much = random_uniform(g);
@@ -236,10 +178,7 @@ static void make_whole(random_run *r)
 
 static void make_run(random_run *r, uint64_t i, run_kind kind)
 {
-    r->kind = kind;
-    random_seed(&r->chance, kind == WHOLE ? ~i : i);
-    parameters_defaults(&r->parameters, ARM_CORRECTED);
-    r->options[0] = '\0';
+    begin_run(r, (int)kind, i, kind == WHOLE ? ~i : i);
     (kind == WHOLE ? make_whole : make_two_links)(r);
 }
 
@@ -252,10 +191,7 @@ static void time_is_up(int signal_number)
 {
     (void)signal_number;
     if (atomic_exchange(&monitor.stop, true)) {
-        static const char sentence[] = "a run does not end, not even when it is asked to\n";
-        ssize_t ignored = write(STDOUT_FILENO, sentence, sizeof sentence - 1);
-        (void)ignored;
-        _exit(2);
+        end_with("a run does not end, not even when it is asked to\n");
     }
 }
 
@@ -281,7 +217,7 @@ static listed_limits limits;
 static const char *complaint_of_whole(const random_run *made, const run_result *r)
 {
     const summary *of = &r->summary;
-    const wall_parameters *wall = &made->parameters.wall;
+    const wall_parameters *wall = &made->scenario.parameters.wall;
     if (of->status != STATUS_OK) {
         return listed_limits_find(&limits, of->message) >= 0 ? NULL : "failed by no listed limit";
     }
@@ -358,7 +294,7 @@ static bool starts_behind(const parameters *p)
 static bool is_taken(uint64_t i, random_run *made, parameters *resolved, tally *t)
 {
     fault f = {.text = "", .path = ""};
-    const bool behind = made->kind == WHOLE && starts_behind(&made->parameters);
+    const bool behind = made->kind == WHOLE && starts_behind(&made->scenario.parameters);
     const bool taken = parameters_resolve(resolved, &f) == STATUS_OK;
     const bool blamed = strstr(f.path, "angle") != NULL;
     const bool fits = taken ? !behind : behind && blamed;
@@ -375,14 +311,12 @@ static bool is_taken(uint64_t i, random_run *made, parameters *resolved, tally *
 static void run_one(uint64_t i, run_kind kind, bool always_said, tally *t)
 {
     const run_options options = {.monitor = &monitor, .keep_trace = kind == WHOLE};
-    char name[] = "random", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
     random_run made;
     run_result r;
 
     // its settings, which are to be good ones
     make_run(&made, i, kind);
-    s.parameters = made.parameters;
+    scenario s = made.scenario;
     if (!is_taken(i, &made, &s.parameters, t)) {
         return;
     }
