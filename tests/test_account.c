@@ -1,7 +1,7 @@
 // The account of a run says what its rows, events and energies say.
 #include "tests/session_fixture.h"
 
-#include "src/session/account.h"
+#include "src/session/session.h"
 
 static char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE];
 

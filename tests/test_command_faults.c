@@ -27,7 +27,6 @@
 #include <unistd.h>
 
 #include "ui/commands/command.h"
-#include "ui/program.h"
 
 // --- who refuses --------------------------------------------------------------------------------
 

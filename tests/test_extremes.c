@@ -3,7 +3,6 @@
 #include <signal.h>
 
 #include "src/run/run.h"
-#include "src/run/together.h"
 #include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 

@@ -1,6 +1,6 @@
 // When a force has settled, and the largest mean over a window, on forces known in closed form.
 #include "src/base/random.h"
-#include "src/run/largest_mean.h"
+#include "src/run/recording.h"
 #include "src/contact/contact_machine.h"
 #include "tests/rig_fixture.h"
 

@@ -1,5 +1,5 @@
 // The largest mean of the force over a sliding window, against analytic results and plain sums.
-#include "src/run/largest_mean.h"
+#include "src/run/recording.h"
 
 #include "src/base/random.h"
 #include "tests/rig_fixture.h"
@@ -193,9 +193,9 @@ TEST(a_full_history_is_looked_at_to_its_end)
 
 TEST(a_run_on_the_rig_has_it_and_the_bare_arm_has_not)
 {
-    summary rig = rig_summary(SETTINGS("control.law=hybrid"));
-    check_below(rig.smoothed_over_command_N, rig.force_over_command_N + 1e-9);
-    check_below(0.5, rig.smoothed_over_command_N);
+    summary on_rig = rig_summary(SETTINGS("control.law=hybrid"));
+    check_below(on_rig.smoothed_over_command_N, on_rig.force_over_command_N + 1e-9);
+    check_below(0.5, on_rig.smoothed_over_command_N);
     summary bare = rig_summary(NULL);
     assert_true(isnan(bare.smoothed_over_command_N));
 }

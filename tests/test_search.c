@@ -8,7 +8,6 @@
 
 #include <cmocka.h>
 
-#include "ui/manual/passages.h"
 #include "ui/manual/search.h"
 
 static const char *const about_walls[] = {"a wall may give", "how stiff the settled wall is"};

@@ -1,5 +1,5 @@
 // impactlab.
-#include "ui/program.h"
+#include "ui/commands/command.h"
 
 int main(int argc, char **argv)
 {

@@ -1,5 +1,4 @@
 // impactlab on the command line: finds the command and executes it.
-#include "ui/program.h"
 
 #include <assert.h>
 #include <errno.h>

@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/shortest_digits.h"
-
 // Gives the calling thread the "C" locale; returns the one to go back to. The C library keeps the
 // "C" locale for good: it is neither allocated here nor freed.
 static locale_t enter_plain(void)

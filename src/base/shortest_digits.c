@@ -1,4 +1,4 @@
-#include "src/base/shortest_digits.h"
+#include "src/base/numbers.h"
 
 #include <assert.h>
 #include <math.h>

@@ -7,8 +7,6 @@
 #pragma once
 
 #include "src/rig/controller.h"
-#include "src/rig/external/plugin.h"
-#include "src/rig/external/playback.h"
 #include "src/rig/external/process.h"
 #include "src/rig/sensors.h"
 #include "src/rig/estimation/touch_forecast.h"

@@ -1,4 +1,4 @@
-#include "src/run/largest_mean.h"
+#include "src/run/recording.h"
 
 #include <assert.h>
 #include <math.h>

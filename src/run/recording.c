@@ -7,7 +7,6 @@
 #include "src/arm/motor.h"
 #include "src/base/clock.h"
 #include "src/base/extremes.h"
-#include "src/run/largest_mean.h"
 
 // What a run counts and adds up begins with nothing.
 static void summary_start(summary *s)

@@ -1,4 +1,3 @@
-#include "src/run/together.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "src/session/account.h"
+#include "src/session/session.h"
 
 #include <assert.h>
 #include <math.h>

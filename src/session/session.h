@@ -18,6 +18,8 @@
 
 #include "src/run/run.h"
 #include "src/scenario/outside.h"
+#include "src/run/run_result.h"
+#include "src/scenario/scenario.h"
 
 struct background_run;
 struct process_transcript;
@@ -153,3 +155,13 @@ status session_take_inputs(session *s, const session_input *inputs, int count, f
 // input takes effect. STATUS_BAD_ARGUMENT if there is none.
 status session_undo(session *s, fault *f) __attribute__((warn_unused_result));
 status session_redo(session *s, fault *f) __attribute__((warn_unused_result));
+
+// Why a run comes out as it does: a causal account in at most five sentences, made from its events
+// and energies.
+
+enum { ACCOUNT_SENTENCES = 5, ACCOUNT_SENTENCE = 320 };
+
+// Writes the account of a run with its rows; `s` is the scenario that was run. Returns how many
+// sentences there are, at least one.
+int run_account(const scenario *s, const run_result *run,
+                char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE]);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "src/run/run.h"
-#include "src/run/together.h"
 
 // Makes scenario number i; called from several threads, each with its own `made` (filled with the
 // scenario of the call before by the same thread, at first with zeros), so that it may change no

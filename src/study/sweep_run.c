@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "src/base/clock.h"
-#include "src/run/together.h"
+#include "src/run/run.h"
 #include "src/study/pool.h"
 
 #define COMMIT_INTERVAL 0.5 // [s]

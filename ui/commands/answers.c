@@ -10,7 +10,6 @@
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"
 #include "ui/commands/command.h"
-#include "ui/manual/passages.h"
 #include "ui/manual/search.h"
 
 enum { HITS = 6, PASSAGE = 330, LINE = 100, INDENT = 4, MEANINGS = 8, TEXTS = COMMAND_OPTIONS + 2 };

@@ -350,3 +350,9 @@ void print_indented(FILE *stream, const char *text, int bytes, int width, int in
 
 // True if the terminal's character set is UTF-8, by the locale or, where it is not there, its name.
 bool terminal_has_utf8(void);
+
+// The program as its tests call it, too.
+
+// Executes the command in argv. Returns the exit status. Sets up signals and the locale of the
+// whole process.
+int program_run(int argc, char **argv);

@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <string.h>
 
-#include "ui/explorer/panels/compose.h"
+#include "ui/explorer/panels/panel.h"
 #include "ui/explorer/state/user_files.h"
 
 status explorer_init(explorer *ex, scenario *s, double patience, fault *f)

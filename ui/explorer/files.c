@@ -9,7 +9,6 @@
 #include "render/scene/scene.h"
 #include "src/base/whole_file.h"
 #include "src/run/export.h"
-#include "ui/explorer/panels/compose.h"
 #include "ui/explorer/panels/panel.h"
 
 static bool ends_with(const char *text, const char *end)

@@ -1,4 +1,4 @@
-#include "ui/manual/passages.h"
+#include "ui/manual/search.h"
 
 #include <assert.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "src/rig/external/playback.h"
+#include "src/rig/external/process.h"
 
 #include <assert.h>
 #include <stdlib.h>

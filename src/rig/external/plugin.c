@@ -1,4 +1,4 @@
-#include "src/rig/external/plugin.h"
+#include "src/rig/external/process.h"
 
 #include <assert.h>
 #include <dlfcn.h>

@@ -15,6 +15,7 @@
 #include "src/tables/parameters.h"
 #include "src/rig/controller.h"
 #include "src/rig/external/process_lines.h"
+#include "src/base/fault.h"
 
 typedef struct process process;
 
@@ -41,3 +42,35 @@ void process_tell(void *memory, const control_parameters *control);
 // before the program answered. Else STATUS_CONTROLLER_FAILED, or STATUS_NO_MEMORY where that is not
 // the program's doing, and *why is a sentence that begins with "the process".
 status process_failure(const process *p, const char **why);
+
+// A controller of one's own, from a shared object.
+
+typedef struct plugin {
+    void *library; // from dlopen; NULL if nothing is open
+    const controller *law;
+} plugin;
+
+// Opens control.plugin = `file` and asks it for its controller. On failure f says why, nothing
+// stays open and *p is empty: STATUS_CANNOT_READ where the file cannot be loaded,
+// STATUS_BAD_SCENARIO where it exports no controller, or one of another interface.
+status plugin_open(plugin *p, const char *file, fault *f);
+
+// Closes it; its controller is gone. Nothing happens to an empty one.
+void plugin_close(plugin *p);
+
+// A recorded command as a controller: control.law = playback.
+//
+// The command at t is what the column of the file has at t - control.playback_shift: that of the
+// last row not later (hold), or straight between rows (linear). Before the first row it is that of
+// the first, after the last row that of the last. Like any command it is sampled at control.rate,
+// goes through the D/A converter and takes effect after the delay.
+
+typedef struct recorded_command recorded_command;
+
+// The controller that plays it; it is given with a playback as its context.
+extern const controller playback_law;
+
+// Reads the file, whose times [s] are the column `t` or `time`. STATUS_BAD_SCENARIO, with a
+// sentence that says where in the file, or STATUS_NO_MEMORY; *created is then NULL.
+status playback_create(recorded_command **created, const control_parameters *control, fault *f);
+void playback_destroy(recorded_command *p); // p may be NULL

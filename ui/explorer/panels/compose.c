@@ -1,4 +1,4 @@
-#include "ui/explorer/panels/compose.h"
+#include "ui/explorer/panels/panel.h"
 
 #include <assert.h>
 #include <string.h>

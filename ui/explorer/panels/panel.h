@@ -224,3 +224,11 @@ void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a);
 
 // The mouse on a lane moves the cursor, on the map it moves the visible part.
 bool lanes_point(explorer_state *st, const panel_gesture *g);
+
+// The whole screen of the explorer: title, panels, page, status and prompt.
+
+// Whether a screen has room for the explorer; on a smaller one only a message is drawn.
+bool compose_fits(screen_size size);
+
+// Draws everything from an up-to-date state; the layout depends on the screen's size.
+void compose_screen(const explorer_state *st, layout *lay, screen *s);
