@@ -24,9 +24,11 @@ TEST(the_model_has_the_numbers_of_the_arm)
     check_close(m.spring_force, 19.68, 1e-9);
     check_close(m.mass_force, 0.0167, 1e-4);
     check_close(m.torque_limit, 4.377, 1e-3);
-    const char *const beyond[] = {"arm.links=1", "arm.hub_joint=spring", "arm.damping_ratio=0.1",
-                                  "wall.kind=none", "arm.model=printed"};
-    for (int i = 0; i < 5; i++) {
+    const char *const beyond[] = {
+        "arm.links=1",       "arm.hub_joint=spring", "arm.damping_ratio=0.1",    "wall.kind=none",
+        "arm.model=printed", "arm.tilt=0.3",         "arm.tip_mass=0.1",         "arm.air_drag=0.1",
+        "arm.stiffening=1",  "wall.motion=sine",     "wall.contact=kelvin-voigt"};
+    for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
         parameters p = fixture_parameters(SETTINGS(beyond[i]));
         assert_false(pressed_arm_model_of(&p, &m));
     }

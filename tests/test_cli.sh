@@ -580,6 +580,6 @@ expect 0 study links --json links.json --plot links.svg
 says out "take "
 grep -q '"limits"' links.json && [ -s links.svg ] || fail "study links writes no limits or draws nothing"
 expect 2 study sense
-says err "expected methods, sensor or links"
+says err "expected methods, sensor, links or follow"
 
 nothing_failed

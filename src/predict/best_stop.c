@@ -57,9 +57,15 @@ bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
         .mass_force = (quarter - p->arm.link_inertia) / l,
     };
 
-    // the model has two links on a rigid hub and knows no damping of the beam
-    return p->arm.model == ARM_CORRECTED && p->arm.links == 2 && p->arm.hub_joint == HUB_RIGID &&
-           p->arm.damping_ratio == 0 && p->wall.kind != WALL_NONE && m->mass_force > 0;
+    // the model has two bare links on a rigid hub and a wall that rests, and knows no damping of
+    // the beam
+    const arm_parameters *a = &p->arm;
+    const bool bare = a->tip_mass == 0 && a->stiffening == 0 && a->air_drag == 0 &&
+                      a->modal_ratios[0] == '\0' && parameters_even_links(a);
+    const bool rests = p->wall.contact == WALL_RIGID && p->wall.motion == MOTION_NONE;
+    return bare && rests && a->tilt == 0 && p->arm.model == ARM_CORRECTED && p->arm.links == 2 &&
+           p->arm.hub_joint == HUB_RIGID && p->arm.damping_ratio == 0 &&
+           p->wall.kind != WALL_NONE && m->mass_force > 0;
 }
 
 bool pressed_after_impact(const parameters *p, const three_body_state *before, pressed_state *after)

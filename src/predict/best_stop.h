@@ -28,8 +28,8 @@ typedef struct pressed_state {
     double x, velocity;
 } pressed_state;
 
-// The model of an arm. False where it does not hold: other than two links, a spring at the hub, a
-// beam with damping, no wall, the printed model.
+// The model of an arm. False where it does not hold: other than two bare links, a spring at the
+// hub, a beam with damping, a tilted plane, no wall or one that gives or moves, the printed model.
 bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m);
 
 // The state just after a plastic impact at the angles and velocities of a state before it,
