@@ -180,7 +180,7 @@ static void set_moving(random_arm *r, random_generator *g)
         set(r, "wall.motion_amplitude=%.17g", amplitude);
         set(r, "wall.motion_frequency=%.17g", between(g, 1, 300));
         set(r, "wall.motion_time=%.17g", 0.1 * random_uniform(g));
-        r->angle -= 1.01 * fabs(amplitude);
+        r->angle -= copysign(1.01 * amplitude, r->velocity); // away from the side it comes to
     }
     if (!moves || chance(g, 0.5)) {
         set(r, "arm.tilt=%.17g", (chance(g, 0.5) ? 1 : -1) * between(g, 1e-3, 1.5));
