@@ -11,6 +11,9 @@
 //         peak;
 //                                                b 1e-11 s, 1e-9, 1e-8
 //         damping=1                              largest damping ratio
+//         tolerance=0                            or one of the engine's steps, with which the
+//         ledgers
+//                                                close to 1e-10 of what was put in
 //         place=near                             near: links soon meet a wall at 0.1 rad; whole:
 //                                                half of them one link, walls by decades and at any
 //                                                angle, starts to both of their sides
@@ -51,7 +54,7 @@ typedef struct options {
     int count, first, least, most;
     char engine[32], by[32];
     bool strict, cost, whole, moves;
-    double damping;
+    double damping, tolerance;
 } options;
 
 // What may be.
@@ -247,6 +250,9 @@ static void make_arm(random_arm *r, int number, const options *o)
     }
     if (o->moves) {
         set_moving(r, &g);
+    }
+    if (o->tolerance > 0) {
+        set(r, "method.tolerance=%.17g", o->tolerance);
     }
 }
 
@@ -453,6 +459,8 @@ static bool take_option(options *o, const char *text)
         o->moves = value[0] == '1';
     } else if (strcmp(name, "damping") == 0) {
         o->damping = atof(value);
+    } else if (strcmp(name, "tolerance") == 0) {
+        o->tolerance = atof(value);
     } else {
         return false;
     }
@@ -511,7 +519,8 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
 
     // failed or open: said
     t->compared++;
-    const bool closes = mine.residual <= (o->strict ? 1e-9 : 1e-7) * fmax(mine.put_in, LEAST_WORK);
+    const double least = o->tolerance > 0 ? 1e-10 : o->strict ? 1e-9 : 1e-7;
+    const bool closes = mine.residual <= least * fmax(mine.put_in, LEAST_WORK);
     if (mine.status != STATUS_OK ||
         mine.residual > r->parameters.method.residual_bound * fmax(mine.put_in, LEAST_WORK)) {
         t->said++;

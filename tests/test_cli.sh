@@ -579,6 +579,9 @@ says out "beam"
 expect 0 study links --json links.json --plot links.svg
 says out "take "
 grep -q '"limits"' links.json && [ -s links.svg ] || fail "study links writes no limits or draws nothing"
+expect 0 study follow --json follow.json --plot follow.svg
+says out "bound"
+grep -q '"follow"' follow.json && [ -s follow.svg ] || fail "study follow writes no answers or draws nothing"
 expect 2 study sense
 says err "expected methods, sensor, links or follow"
 
