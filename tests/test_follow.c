@@ -43,13 +43,22 @@ TEST(the_bound_is_that_of_zero_and_delay)
     }
 }
 
-// There is nothing to follow without a law.
-TEST(a_scenario_without_a_law_is_refused)
+// There is nothing to follow without a law, a wall or a force.
+TEST(a_scenario_with_nothing_to_follow_is_refused)
 {
-    fault f;
-    follow_study study;
-    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact");
-    assert_int_equal(follow_study_compute(&s, NULL, &study, &f), STATUS_BAD_SCENARIO);
-    assert_non_null(strstr(f.text, "no control law"));
-    assert_int_equal(study.done, 0);
+    static const char *const without[][3] = {
+        {"corrected/first-impact", "motor.voltage=2", "no control law"},
+        {"compare/observer", "wall.kind=none", "no wall"},
+        {"compare/hybrid", "control.force=0", "no commanded force"}};
+    for (size_t i = 0; i < 3; i++) {
+        fault f;
+        follow_study study;
+        SCOPED(scenario_finish) scenario s = opened(without[i][0]);
+        char change[64];
+        snprintf(change, sizeof change, "%s", without[i][1]);
+        assert_int_equal(scenario_override_all(&s, (char *[]){change}, 1, NULL, NULL), STATUS_OK);
+        assert_int_equal(follow_study_compute(&s, NULL, &study, &f), STATUS_BAD_SCENARIO);
+        assert_non_null(strstr(f.text, without[i][2]));
+        assert_int_equal(study.done, 0);
+    }
 }

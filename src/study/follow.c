@@ -116,10 +116,15 @@ status follow_study_compute(const scenario *s, run_monitor *monitor, follow_stud
 {
     assert(s != NULL && study != NULL);
     *study = (follow_study){0};
-    if (s->parameters.control.law == LAW_NONE) {
+    const parameters *p = &s->parameters;
+    if (p->control.law == LAW_NONE || p->wall.kind == WALL_NONE || !(p->control.force > 0)) {
         return fault_set(f, STATUS_BAD_SCENARIO,
-                         "%s has no control law: expected one that presses with control.force",
-                         s->name);
+                         "%s has no %s: expected a control law that presses on a wall with "
+                         "control.force",
+                         s->name,
+                         p->control.law == LAW_NONE  ? "control law"
+                         : p->wall.kind == WALL_NONE ? "wall"
+                                                     : "commanded force");
     }
     find_bound(&s->parameters, study);
     for (int i = 0; i < FOLLOW_RUNS; i++) {

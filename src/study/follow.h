@@ -36,7 +36,7 @@ typedef struct follow_study {
 // Runs the scenario under each law with a set-point of 1 + FOLLOW_WAVE sin(2 pi f t) times
 // control.force, and with a wall that moves by FOLLOW_WALL sin(2 pi f t). A run that fails leaves
 // NaN; STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for it, STATUS_BAD_SCENARIO for a
-// scenario without a law.
+// scenario without a law, a force or a wall.
 //
 // The bound. A command takes effect `later` on average and holds, and the contact force has a zero
 // at s = +zero, which no law that knows nothing ahead can cancel: the best mean answer to steps is
