@@ -53,10 +53,9 @@ static const char *tune(void *memory, const controller_setup *setup)
 
     // the approach's speed, and the damper
     double held = setup->torque_per_volt * fabs(m->p[APPROACH_VOLTAGE]) - setup->stiction;
-    double inertia = setup->hub_inertia + 2 * setup->link_inertia +
-                     setup->link_mass * setup->link_length * setup->link_length / 2;
     m->speed = copysign(fmax(0, held) / fmax(setup->hub_damping, 1e-9), m->p[APPROACH_VOLTAGE]);
-    m->damping = 2 * sqrt(inertia * (m->p[STIFFNESS] + 4 * setup->k2)) - setup->hub_damping;
+    m->damping =
+        2 * sqrt(pressed_inertia(setup) * (m->p[STIFFNESS] + 4 * setup->k2)) - setup->hub_damping;
     return NULL;
 }
 
