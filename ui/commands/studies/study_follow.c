@@ -89,16 +89,15 @@ static int plot_follow(const arguments *a, const scenario *s, const follow_study
         for (int k = 0; k <= FOLLOW_LAWS; k++) {
             const bool law = k < FOLLOW_LAWS;
             const follow_point *p = law ? study->points[k] : study->bound;
-            series[n][k] =
-                (figure_series){.name = law ? follow_laws[k] : "bound",
-                                .label = law ? follow_laws[k] : "what delay and arm allow",
-                                .x = &p->frequency,
-                                .y = (const double *)((const char *)p + drawn[n].offset),
-                                .count = FOLLOW_FREQUENCIES,
-                                .stride = sizeof(follow_point),
-                                .colour = law ? colours[k] : 7,
-                                .marker = law ? markers[k] : MARKER_NONE,
-                                .secondary = !law};
+            series[n][k] = (figure_series){.name = law ? follow_laws[k] : "bound",
+                                           .label = law ? follow_laws[k] : "knowing nothing ahead",
+                                           .x = &p->frequency,
+                                           .y = (const double *)((const char *)p + drawn[n].offset),
+                                           .count = FOLLOW_FREQUENCIES,
+                                           .stride = sizeof(follow_point),
+                                           .colour = law ? colours[k] : 7,
+                                           .marker = law ? markers[k] : MARKER_NONE,
+                                           .secondary = !law};
         }
         panels[n] = (figure_panel){.y = {.name = drawn[n].name,
                                          .label = drawn[n].label,
