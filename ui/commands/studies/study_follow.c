@@ -114,8 +114,9 @@ static int plot_follow(const arguments *a, const scenario *s, const follow_study
     snprintf(
         caption, sizeof caption,
         "Set-point: %g %% of the commanded force; wall: %g mm, against which friction holds the "
-        "hub up to %.2g N. The dashed line is a law that knows nothing ahead: commands act "
-        "%.3g ms late, and a force turned up falls first, by the zero at %.3g 1/s.",
+        "hub up to %.2g N. Dashed: the best of a law that takes both to stay; commands act "
+        "%.3g ms late, and a force turned up falls first, by the zero at %.3g 1/s. Laws that "
+        "go on with a rate are better while it lasts.",
         100 * FOLLOW_WAVE, 1e3 * FOLLOW_WALL,
         s->parameters.motor.stiction / s->parameters.arm.length, 1e3 * study->later, study->zero);
     figure fig = {.title = title,
