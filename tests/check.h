@@ -81,6 +81,14 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
         fail_if((__VA_ARGS__) != STATUS_OK, "%s: %s", #__VA_ARGS__, f.text);                       \
     } while (0)
 
+// The call is refused with this status and a sentence to `f` that says so.
+#define REFUSED(code, says, ...)                                                                   \
+    do {                                                                                           \
+        fault f = {0};                                                                             \
+        assert_int_equal((__VA_ARGS__), (code));                                                   \
+        fail_if(strstr(f.text, (says)) == NULL, "'%s' does not say '%s'", f.text, (says));         \
+    } while (0)
+
 // A variable that is given back when its block is left, and must be whole by then:
 // SCOPED(run_finish) run_result r;
 #define SCOPED(finish) __attribute__((cleanup(finish)))

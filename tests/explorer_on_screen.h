@@ -8,8 +8,7 @@
 
 static inline void open_explorer(explorer *ex, const char *name)
 {
-    scenario s;
-    assert_int_equal(scenario_open(&s, name, fail_on_fault, NULL), STATUS_OK);
+    scenario s = shipped(name);
     DONE(explorer_init(ex, &s, HUGE_VAL, &f));
 }
 

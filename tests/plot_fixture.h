@@ -1,7 +1,7 @@
 // A synthetic run, and checks of what a figure draws of it.
 #pragma once
 
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 #include <png.h>
 #include <zlib.h>

@@ -1,7 +1,7 @@
 // Recorded runs, a folder for files, and ways to look at pictures of the arm.
 #pragma once
 
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 #include <dirent.h>
 
@@ -15,16 +15,9 @@ typedef struct recorded {
     run_result result;
 } recorded;
 
-static inline void complain(void *context, const char *sentence)
-{
-    (void)context;
-    fail_msg("%s", sentence);
-}
-
 static inline recorded record(const char *name)
 {
-    recorded r;
-    assert_int_equal(scenario_open(&r.scenario, name, complain, NULL), STATUS_OK);
+    recorded r = {.scenario = shipped(name)};
     assert_int_equal(run_scenario(&r.scenario, true, &r.result), STATUS_OK);
     return r;
 }

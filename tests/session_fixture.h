@@ -3,18 +3,11 @@
 
 #include "src/run/run.h"
 #include "src/session/session.h"
-#include "tests/check.h"
-
-static inline void fail_on_fault(void *context, const char *sentence)
-{
-    (void)context;
-    fail_msg("%s", sentence);
-}
+#include "tests/shipped_scenario.h"
 
 static inline void open_session(session *s, const char *name)
 {
-    scenario base;
-    assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
+    scenario base = shipped(name);
     DONE(session_open(s, &base, HUGE_VAL, &f));
 }
 
@@ -35,16 +28,9 @@ static inline void assert_same_trace(const trace *a, const trace *b)
 // What was done is saved as a scenario, which gives the same run. Returns its text, to be freed.
 static inline char *save_and_compare(const session *s)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    scenario_write(stream, &s->effective);
-    fclose(stream);
-    SCOPED(scenario_finish) scenario saved;
+    WRITTEN(text, scenario_write(stream, &s->effective));
+    SCOPED(scenario_finish) scenario saved = read_again(&s->effective);
     SCOPED(run_finish) run_result again;
-    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
-                     STATUS_OK);
     run_scenario(&saved, true, &again);
     assert_same_trace(&s->run.trace, &again.trace);
     return text;

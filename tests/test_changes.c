@@ -339,8 +339,7 @@ TEST(test_leaving_asks_if_changes_would_be_lost)
 TEST(test_an_interrupt_stops_a_computation_first)
 {
     SCOPED(explorer_finish) explorer ex;
-    scenario s;
-    assert_int_equal(scenario_open(&s, "corrected/twenty-links", fail_on_fault, NULL), STATUS_OK);
+    scenario s = shipped("corrected/twenty-links");
     DONE(scenario_override(&s, "run.duration=20", &f));
     DONE(explorer_init(&ex, &s, 0, &f));
     assert_non_null(ex.state.session.computing);

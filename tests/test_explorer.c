@@ -297,8 +297,7 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
 {
     SCOPED(explorer_finish) explorer ex;
     SCOPED(explorer_finish) explorer patient;
-    scenario s;
-    assert_int_equal(scenario_open(&s, "corrected/twenty-links", fail_on_fault, NULL), STATUS_OK);
+    scenario s = shipped("corrected/twenty-links");
     DONE(scenario_override(&s, "run.duration=20", &f));
     DONE(explorer_init(&ex, &s, 0, &f));
     assert_shows(&ex, "computing");

@@ -43,12 +43,6 @@ TEST(the_peak_is_on_the_curve)
 
 // ---- labels of marks
 
-static void ignore_sentence(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
 // The text of a mark as it was drawn, with an arrow or not; fails if it is not there.
 static const figure_text *text_of_mark(const figure_report *r, const figure_mark *m)
 {
@@ -68,9 +62,8 @@ static void check_labels(const char *name, double from, double to,
                          void (*check)(const figure_mark *m, const figure_text *t, double x,
                                        double y))
 {
-    SCOPED(scenario_finish) scenario s;
+    SCOPED(scenario_finish) scenario s = shipped(name);
     SCOPED(run_finish) run_result result;
-    assert_int_equal(scenario_open(&s, name, ignore_sentence, NULL), STATUS_OK);
     assert_int_equal(run_scenario(&s, true, &result), STATUS_OK);
     const trace_run run = {&s, &result, NULL};
     for (int narrow = 0; narrow < 2; narrow++) {

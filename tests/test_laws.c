@@ -1,6 +1,7 @@
 // Required results of the control laws, on the impact of the thesis's 5.4: 1 V from rest, 0.1 rad
 // before the wall.
 #include "tests/rig_fixture.h"
+#include "tests/shipped_scenario.h"
 
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
@@ -217,12 +218,10 @@ TEST(bang_bang_hits_harder_than_the_plain_approach)
 // Speed of the tip at the first touch and the peak that follows, wall at `angle` [rad].
 static double peak_of_touch(const char *angle, double *tip_speed)
 {
-    SCOPED(scenario_finish) scenario s;
     SCOPED(run_finish) run_result r;
     char setting[64];
-    assert_int_equal(scenario_open(&s, "compare/vibration-phase", NULL, NULL), STATUS_OK);
     snprintf(setting, sizeof setting, "wall.angle=%s", angle);
-    DONE(scenario_override(&s, setting, &f));
+    SCOPED(scenario_finish) scenario s = shipped_with("compare/vibration-phase", setting);
     assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
     assert_non_null(r.before_impact);
     *tip_speed = 0.5 * (r.before_impact[2] + r.before_impact[3]);

@@ -28,29 +28,15 @@ static void go_through(explorer *ex, const char *name)
     assert_false(ex->state.lesson.on);
 }
 
-// A scenario read from its own copy.
-static void read_copy(const scenario *s, scenario *copy)
-{
-    SCOPED(free_kept) char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    scenario_write(stream, s);
-    fclose(stream);
-    const status code = scenario_parse(copy, text, size, "copy.yaml", NULL, fail_on_fault, NULL);
-    assert_int_equal(code, STATUS_OK);
-}
-
 TEST(test_a_copy_keeps_its_lesson)
 {
     static const char *const names[] = {"lessons/impulse-and-force", "lessons/two-predictors",
                                         "lessons/step-size",         "lessons/beta-and-gamma",
                                         "lessons/hybrid-law",        "lessons/what-a-sensor-sees"};
     for (EACH(c, names)) {
-        scenario s, copy;
+        SCOPED(scenario_finish) scenario s = shipped(*c);
+        scenario copy = read_again(&s);
         SCOPED(explorer_finish) explorer ex;
-        assert_int_equal(scenario_open(&s, *c, fail_on_fault, NULL), STATUS_OK);
-        read_copy(&s, &copy);
         assert_int_equal(copy.lesson.step_count, s.lesson.step_count);
         assert_int_equal(copy.lesson.parameter_count, s.lesson.parameter_count);
         for (int i = 0; i < s.lesson.step_count; i++) {
@@ -64,7 +50,6 @@ TEST(test_a_copy_keeps_its_lesson)
         // and can be gone through like the lesson itself
         DONE(explorer_init(&ex, &copy, HUGE_VAL, &f));
         go_through(&ex, *c);
-        scenario_finish(&s);
     }
 }
 
@@ -74,8 +59,7 @@ TEST(test_every_lesson_can_be_gone_through)
     int count, lessons = 0;
     DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
-        scenario s;
-        assert_int_equal(scenario_open(&s, names[i], fail_on_fault, NULL), STATUS_OK);
+        scenario s = shipped(names[i]);
         const bool is_lesson = s.lesson.step_count > 0;
         scenario_finish(&s);
         if (is_lesson) {

@@ -3,28 +3,13 @@
 
 #include "src/arm/modes.h"
 #include "src/exchange/mat_file.h"
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 enum { MOST = 200 };
 
-// A shipped scenario's parameters with changes, "PATH=VALUE ..." between blanks.
-static scenario opened(const char *name, const char *changes)
-{
-    scenario s;
-    char copy[512], *items[32], *rest = NULL;
-    int count = 0;
-    snprintf(copy, sizeof copy, "%s", changes);
-    for (char *item = strtok_r(copy, " ", &rest); item != NULL; item = strtok_r(NULL, " ", &rest)) {
-        items[count++] = item;
-    }
-    assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
-    fail_if(scenario_override_all(&s, items, count, NULL, NULL) != STATUS_OK, "%s", changes);
-    return s;
-}
-
 static linear_arm linearised(const char *name, const char *changes, linear_place place)
 {
-    SCOPED(scenario_finish) scenario s = opened(name, changes);
+    SCOPED(scenario_finish) scenario s = shipped_with(name, changes);
     linear_arm l;
     DONE(linear_arm_init(&l, &s.parameters, place, &f));
     return l;
@@ -86,7 +71,7 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
         char changes[128];
         snprintf(changes, sizeof changes, "arm.links=6 motor.voltage=0 arm.hub_joint=%s",
                  joints[i / 2]);
-        SCOPED(scenario_finish) scenario s = opened(ROUND, changes);
+        SCOPED(scenario_finish) scenario s = shipped_with(ROUND, changes);
         linear_arm with = linearised(ROUND, changes, place);
         double complex zeros[MOST];
         double frequencies[MOST], shapes[MOST];
@@ -147,11 +132,9 @@ TEST(what_has_no_linear_form_is_refused)
         {"wall.contact=hunt-crossley wall.stiffness=1e6 motor.voltage=0", "Hunt", LINEAR_STUCK},
     };
     for (EACH(c, cases)) {
-        SCOPED(scenario_finish) scenario s = opened(ROUND, c->changes);
+        SCOPED(scenario_finish) scenario s = shipped_with(ROUND, c->changes);
         linear_arm l;
-        fault f = {.text = ""};
-        assert_int_equal(linear_arm_init(&l, &s.parameters, c->place, &f), STATUS_BAD_ARGUMENT);
-        assert_non_null(strstr(f.text, c->says));
+        REFUSED(STATUS_BAD_ARGUMENT, c->says, linear_arm_init(&l, &s.parameters, c->place, &f));
     }
     linear_arm stuck = linearised(ROUND, "", LINEAR_STUCK);
     assert_int_equal(stuck.system.states, 0);

@@ -6,24 +6,9 @@
 #include "src/run/loop.h"
 #include "src/run/run.h"
 #include "src/study/linear/linear.h"
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 #define IDEAL "motor.stiction=0 sensor.ideal=true "
-
-// A shipped scenario with changes, "PATH=VALUE ..." between blanks.
-static scenario opened(const char *name, const char *changes)
-{
-    scenario s;
-    char copy[512], *items[32], *rest = NULL;
-    int count = 0;
-    snprintf(copy, sizeof copy, "%s", changes);
-    for (char *item = strtok_r(copy, " ", &rest); item != NULL; item = strtok_r(NULL, " ", &rest)) {
-        items[count++] = item;
-    }
-    assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
-    fail_if(scenario_override_all(&s, items, count, NULL, NULL) != STATUS_OK, "%s", changes);
-    return s;
-}
 
 // Its loop; the caller finishes both.
 static linear_system loop_of(const scenario *s, linear_arm *l)
@@ -47,7 +32,7 @@ TEST(limits_are_those_found_otherwise)
         {"compare/force-pd", "control.rate=200", "control.force_gain", 1, 8, 4.12},
     };
     for (EACH(c, cases)) {
-        SCOPED(scenario_finish) scenario s = opened(c->name, c->changes);
+        SCOPED(scenario_finish) scenario s = shipped_with(c->name, c->changes);
         char range[64], *vary[] = {range};
         SCOPED(sweep_finish) sweep between;
         double limit;
@@ -68,7 +53,7 @@ TEST(margins_are_met_by_the_poles)
         {"compare/hybrid", IDEAL "control.rate=300 control.delay=0.002"},
     };
     for (EACH(c, cases)) {
-        SCOPED(scenario_finish) scenario s = opened((*c)[0], (*c)[1]);
+        SCOPED(scenario_finish) scenario s = shipped_with((*c)[0], (*c)[1]);
         linear_arm l;
         linear_system loop = loop_of(&s, &l);
         linear_response r;
@@ -93,7 +78,7 @@ TEST(margins_are_met_by_the_poles)
             char delay[256];
             snprintf(delay, sizeof delay, "%s control.delay=%.12g", (*c)[1],
                      s.parameters.control.delay + m.delay_s);
-            SCOPED(scenario_finish) scenario late = opened((*c)[0], delay);
+            SCOPED(scenario_finish) scenario late = shipped_with((*c)[0], delay);
             double growth;
             bool stable;
             DONE(linear_stability(&late, LINEAR_CONTACT, false, &growth, &stable, &f));
@@ -119,7 +104,7 @@ TEST(measured_loops_are_the_exact_ones)
         {"compare/force-pd", loaded}, {"compare/force-pd", IDEAL},
     };
     for (int i = 0; i < 5; i++) {
-        SCOPED(scenario_finish) scenario s = opened(cases[i][0], cases[i][1]);
+        SCOPED(scenario_finish) scenario s = shipped_with(cases[i][0], cases[i][1]);
         parameters *p = &s.parameters;
         p->code_allowed = i >= 3;
         if (i == 4) {
@@ -186,7 +171,7 @@ static const char *start_scaled(void *memory, const controller_setup *setup)
 // How often the arm loses contact with the loop gain so many times larger.
 static double losses_with(double factor)
 {
-    SCOPED(scenario_finish) scenario s = opened("compare/observer", IDEAL "run.duration=6");
+    SCOPED(scenario_finish) scenario s = shipped_with("compare/observer", IDEAL "run.duration=6");
     scaled scale = {.factor = factor, .rest = (double)NAN};
     run_loop *l;
     DONE(rig_create(&scale.inner, &s.parameters, NULL, &f));
@@ -209,7 +194,7 @@ static double losses_with(double factor)
 // the further delay that its measured loop bears.
 TEST(measured_margins_are_those_of_runs)
 {
-    scenario s = opened("compare/observer", IDEAL "run.duration=3");
+    scenario s = shipped_with("compare/observer", IDEAL "run.duration=3");
     linear_arm l;
     linear_system loop;
     linear_response r;
@@ -232,7 +217,7 @@ TEST(measured_margins_are_those_of_runs)
         snprintf(changes, sizeof changes,
                  IDEAL "run.duration=3 control.delay=%.6g belief.delay_error=-%.6g", delay, delay);
         SCOPED(run_finish) run_result result;
-        s = opened("compare/observer", changes);
+        s = shipped_with("compare/observer", changes);
         assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
         assert_true((result.summary.settling_time_s < 1) == !more);
         scenario_finish(&s);
@@ -244,7 +229,7 @@ TEST(measured_margins_are_those_of_runs)
 TEST(the_least_push_lifts_the_arm_by_a_micrometre)
 {
     SCOPED(scenario_finish)
-    scenario s = opened("corrected/first-impact", "motor.stiction=0 run.duration=4");
+    scenario s = shipped_with("corrected/first-impact", "motor.stiction=0 run.duration=4");
     linear_arm l;
     double push;
     DONE(linear_arm_init(&l, &s.parameters, LINEAR_CONTACT, &f));

@@ -1,13 +1,12 @@
 // How far a number of links is from a beam.
 #include "src/study/links.h"
 
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 static links_study studied(const char *name, char *const *changes, int count)
 {
-    SCOPED(scenario_finish) scenario s;
+    SCOPED(scenario_finish) scenario s = shipped(name);
     links_study study;
-    assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
     assert_int_equal(scenario_override_all(&s, changes, count, NULL, NULL), STATUS_OK);
     DONE(links_study_compute(&s, NULL, &study, &f));
     assert_int_equal(study.count, LINKS_LENGTHS);
@@ -93,16 +92,13 @@ TEST(uneven_arms_have_no_beam)
 
 TEST(what_has_no_contact_is_refused)
 {
-    SCOPED(scenario_finish) scenario s;
-    fault f;
+    SCOPED(scenario_finish)
+    scenario s = shipped_with("corrected/damped-beam", "motor.voltage=0");
     links_study study;
-    char *changes[] = {"motor.voltage=0"};
-    assert_int_equal(scenario_open(&s, "corrected/damped-beam", NULL, NULL), STATUS_OK);
-    assert_int_equal(scenario_override_all(&s, changes, 1, NULL, NULL), STATUS_OK);
-    assert_int_equal(links_study_compute(&s, NULL, &study, &f), STATUS_BAD_SCENARIO);
-    assert_non_null(strstr(f.text, "no contact"));
+    REFUSED(STATUS_BAD_SCENARIO, "no contact", links_study_compute(&s, NULL, &study, &f));
     assert_int_equal(study.count, 0);
 
+    fault f;
     run_monitor monitor = {0};
     atomic_store(&monitor.stop, true);
     assert_int_equal(links_study_compute(&s, &monitor, &study, &f), STATUS_STOPPED);

@@ -199,9 +199,7 @@ TEST(overflow_stops_the_run_with_a_sentence)
     parameters p = printed_parameters_of(1, 1);
     p.initial.velocity = 1e200;
     SCOPED(free_kept) recording *r = calloc(1, sizeof *r);
-    fault f = {.text = ""};
-    assert_int_equal(run_into(r, p, NULL, &f), STATUS_NOT_FINITE);
-    assert_non_null(strstr(f.text, "t = 0 s"));
+    REFUSED(STATUS_NOT_FINITE, "t = 0 s", run_into(r, p, NULL, &f));
     assert_int_equal(r->count, 1);
     for (int i = 0; i < 3; i++) {
         assert_true(isfinite(r->rows[0].velocity[i]));

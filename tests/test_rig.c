@@ -120,11 +120,10 @@ TEST(commands_of_several_periods_go_out_in_order)
 
 TEST(a_delay_is_at_most_five_periods)
 {
-    fault f;
     scenario s = {.parameters = rig_parameters(SETTINGS("control.delay=0.003"))};
-    assert_int_equal(scenario_override(&s, "control.delay_periods=4.4", &f), STATUS_OK);
-    assert_int_equal(scenario_override(&s, "control.delay_periods=4.5", &f), STATUS_BAD_SCENARIO);
-    assert_non_null(strstr(f.text, "together longer than 5 periods of 0.005 s"));
+    DONE(scenario_override(&s, "control.delay_periods=4.4", &f));
+    REFUSED(STATUS_BAD_SCENARIO, "together longer than 5 periods of 0.005 s",
+            scenario_override(&s, "control.delay_periods=4.5", &f));
 }
 
 TEST(jitter_stays_within_its_width)

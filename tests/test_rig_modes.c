@@ -146,14 +146,12 @@ TEST(unknown_modes_are_refused)
         {"control.law=inverse-dynamics", "press", "cannot be held in a mode"},
     };
     for (EACH(c, cases)) {
-        fault f;
         char setting[128];
         scenario s = {.parameters = rig_parameters(SETTINGS(c->law))};
         snprintf(setting, sizeof setting, "control.lock=%s", c->mode);
-        assert_int_equal(scenario_override(&s, setting, &f), STATUS_BAD_SCENARIO);
-        assert_non_null(strstr(f.text, c->why));
+        REFUSED(STATUS_BAD_SCENARIO, c->why, scenario_override(&s, setting, &f));
         check_close(parameter_get(&s.parameters, PARAMETER_INDEX(control.lock)), 0, 0);
-        assert_int_equal(scenario_override(&s, "control.lock=none", &f), STATUS_OK);
+        DONE(scenario_override(&s, "control.lock=none", &f));
     }
     // without a law it says nothing, like every parameter of the rig
     scenario bare = {.parameters = rig_parameters(NULL)};
@@ -195,11 +193,10 @@ static void assert_same_rows(const trace *a, const trace *b)
 TEST(lock_is_an_input_that_a_saved_scenario_repeats)
 {
     const int lock = PARAMETER_INDEX(control.lock);
-    scenario s, saved;
+    scenario s = shipped("compare/hybrid");
     SCOPED(session_finish) session e;
     fault f = {0};
-    run_result free_run, again;
-    assert_int_equal(scenario_open(&s, "compare/hybrid", fail_on_fault, NULL), STATUS_OK);
+    SCOPED(run_finish) run_result free_run;
     run_scenario(&s, true, &free_run);
     assert_int_equal(session_open(&e, &s, HUGE_VAL, &f), STATUS_OK);
     session_seek(&e, 0.4);
@@ -212,25 +209,13 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
     assert_string_equal(then.control.lock, "approach");
     assert_string_equal(later.control.lock, "none");
 
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    scenario_write(stream, &e.effective);
-    fclose(stream);
-    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
-                     STATUS_OK);
-    run_scenario(&saved, true, &again);
-    assert_same_rows(&again.trace, &e.run.trace);
-    run_finish(&again);
-    scenario_finish(&saved);
-    free(text);
+    free(save_and_compare(&e));
 
     assert_int_equal(session_undo(&e, &f), STATUS_OK);
     assert_int_equal(session_undo(&e, &f), STATUS_OK);
     assert_same_rows(&e.run.trace, &free_run.trace);
     assert_int_equal(session_redo(&e, &f), STATUS_OK);
     check_close(e.run.trace.rows[trace_row_at(&e.run.trace, 0.6)].controller_mode, 0, 0);
-    run_finish(&free_run);
 }
 
 // Held in the pressing mode before there is a wall to press on, the observer follows the flight and

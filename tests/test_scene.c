@@ -305,16 +305,11 @@ TEST(test_file)
 // A wall that moves is drawn where the tip lies on it, at rows and between them.
 TEST(a_wall_that_moves_is_drawn_at_the_tip)
 {
-    SCOPED(forget) recorded r = {0};
-    assert_int_equal(scenario_open(&r.scenario, "corrected/first-impact", complain, NULL),
-                     STATUS_OK);
-    parameters *p = &r.scenario.parameters;
-    static const char *const set[][2] = {
-        {"wall.kind", "plane"}, {"wall.motion", "sine"}, {"wall.motion_amplitude", "0.02"}};
-    for (size_t i = 0; i < 3; i++) {
-        DONE(parameter_set_text(p, parameter_find(set[i][0]), set[i][1], &f));
-    }
-    DONE(parameters_resolve(p, &f));
+    SCOPED(forget)
+    recorded r = {.scenario =
+                      shipped_with("corrected/first-impact",
+                                   "wall.kind=plane wall.motion=sine wall.motion_amplitude=0.02")};
+    const parameters *p = &r.scenario.parameters;
     DONE(run_scenario(&r.scenario, true, &r.result));
     const trace *t = &r.result.trace;
     double farthest = 0;

@@ -2,13 +2,12 @@
 #include "src/study/solve.h"
 
 #include "src/run/run.h"
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 // A shipped scenario with changes; ends with NULL.
 static scenario opened(const char *name, char *const *changes, int count)
 {
-    scenario s;
-    assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
+    scenario s = shipped(name);
     assert_int_equal(scenario_override_all(&s, changes, count, NULL, NULL), STATUS_OK);
     return s;
 }
@@ -164,9 +163,7 @@ TEST(conditions_say_what_they_lack)
     };
     for (EACH(one, wrong)) {
         solve_condition c;
-        fault f;
-        assert_int_equal(solve_condition_read(one->text, &c, &f), STATUS_BAD_ARGUMENT);
-        fail_if(strstr(f.text, one->expected) == NULL, "%s: %s", one->text, f.text);
+        REFUSED(STATUS_BAD_ARGUMENT, one->expected, solve_condition_read(one->text, &c, &f));
     }
 
     const solve_condition c = condition_of("  impacts >= 3 ");

@@ -235,11 +235,9 @@ TEST(more_axes_than_there_may_be_are_refused)
     }
     assert_int_equal(count, TOO_MANY);
     sweep s;
-    fault f = {.text = ""};
     const sweep_request request = {
         .vary = vary, .vary_count = TOO_MANY, .sampling = SWEEP_LATIN, .runs = 3};
-    assert_int_equal(sweep_init(&s, &base, &request, &f), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(f.text, "at most 32 parameters"));
+    REFUSED(STATUS_BAD_ARGUMENT, "at most 32 parameters", sweep_init(&s, &base, &request, &f));
 }
 
 // Rows of runs that the sweep does not have are the work of others.
@@ -260,14 +258,12 @@ TEST(rows_that_are_no_runs_are_refused)
         // whoever goes on with it, and whoever reads from it
         double values[3];
         size_t failed;
-        fault f = {.text = ""};
         sweep_progress progress;
         const sweep_options options = {.jobs = 1};
-        assert_int_equal(sweep_run(&s, store, &options, &progress, &f), STATUS_BAD_ARGUMENT);
-        assert_non_null(strstr(f.text, "of a sweep of 3"));
-        assert_int_equal(sweep_store_quantity(store, "peak_force_N", values, &failed, &f),
-                         STATUS_BAD_ARGUMENT);
-        assert_non_null(strstr(f.text, "no run of the sweep"));
+        REFUSED(STATUS_BAD_ARGUMENT, "of a sweep of 3",
+                sweep_run(&s, store, &options, &progress, &f));
+        REFUSED(STATUS_BAD_ARGUMENT, "no run of the sweep",
+                sweep_store_quantity(store, "peak_force_N", values, &failed, &f));
         sweep_store_close(store);
         assert_refused("rows.sqlite", &s, STATUS_BAD_ARGUMENT, "of a sweep of 3");
         unlink("rows.sqlite");
@@ -310,16 +306,15 @@ TEST(two_sweeps_do_not_write_to_one_file_at_once)
 TEST(a_file_deleted_within_a_transaction_is_missed)
 {
     SCOPED(sweep_finish) sweep s;
-    fault f = {0};
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     SCOPED(sweep_store_close_kept) sweep_store *store = must_open("gone.sqlite", &s);
     const summary result = {.peak_force_N = 2};
-    assert_int_equal(sweep_store_put(store, 0, &result, &f), STATUS_OK);
-    assert_int_equal(sweep_store_commit(store, &f), STATUS_OK);
-    assert_int_equal(sweep_store_put(store, 1, &result, &f), STATUS_OK);
+    DONE(sweep_store_put(store, 0, &result, &f));
+    DONE(sweep_store_commit(store, &f));
+    DONE(sweep_store_put(store, 1, &result, &f));
     unlink("gone.sqlite");
-    assert_int_equal(sweep_store_commit(store, &f), STATUS_CANNOT_WRITE);
-    assert_non_null(strstr(f.text, "'gone.sqlite' was deleted, moved or replaced"));
+    REFUSED(STATUS_CANNOT_WRITE, "'gone.sqlite' was deleted, moved or replaced",
+            sweep_store_commit(store, &f));
 }
 
 TEST(a_failed_run_is_a_row_with_its_message)

@@ -202,8 +202,6 @@ TEST(what_cannot_be_asked_is_refused)
                                     .subject = c->subject,
                                     .runs = 10};
         tuning t;
-        fault f = {0};
-        assert_int_equal(tune_init(&t, &asked, &f), STATUS_BAD_ARGUMENT);
-        fail_if(strstr(f.text, c->says) == NULL, "%s: %s", c->says, f.text);
+        REFUSED(STATUS_BAD_ARGUMENT, c->says, tune_init(&t, &asked, &f));
     }
 }

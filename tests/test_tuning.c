@@ -364,24 +364,12 @@ TEST(test_a_law_that_plans_at_its_start_takes_no_dated_change)
 
 TEST(test_a_saved_tuned_run_is_the_same)
 {
-    SCOPED(scenario_finish) scenario saved;
-    SCOPED(run_finish) run_result again;
-    SCOPED(free_kept) char *text = NULL;
-    size_t size = 0;
     OPEN_SESSION(s, "compare/hybrid");
     session_seek(&s, 0.4);
     change(&s, "control.kp", "14");
     session_seek(&s, 0.7);
     change(&s, "control.force", "1.4");
-    FILE *stream = open_memstream(&text, &size);
-    scenario_write(stream, &s.effective);
-    fclose(stream);
-    assert_int_equal(scenario_parse(&saved, text, size, "saved", NULL, fail_on_fault, NULL),
-                     STATUS_OK);
-    run_scenario(&saved, true, &again);
-    assert_int_equal(again.trace.row_count, s.run.trace.row_count);
-    assert_memory_equal(again.trace.rows, s.run.trace.rows,
-                        again.trace.row_count * sizeof *again.trace.rows);
+    free(save_and_compare(&s));
 }
 
 // Without a law, or under one that hears of every change, all of control.* may change at any time.
