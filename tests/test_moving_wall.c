@@ -236,10 +236,9 @@ TEST(a_face_that_creeps_is_followed_in_long_steps)
                               .face_mass = 1e-6,
                               .motion = {MOTION_SINE, 2e-3, 5, 0, NULL}};
     wall_face face = {0, 0};
-    double time = 0, work = 0;
+    double time = 0;
     for (int i = 0; i < 4000; i++, time += 1e-6) {
         const wall_model w = wall_at(&still, time);
-        work += wall_face_work(&w, face, 1e-6);
         face = wall_face_after(&w, face, 1e-6);
     }
     const wall_model w = wall_at(&still, time);
