@@ -458,3 +458,5 @@ TEST(a_limit_says_what_is_too_much)
     robust_set_finish(NULL);
     robust_case_finish(NULL);
 }
+
+ALL_BETWEEN(enter_folder, leave_folder)
