@@ -404,6 +404,164 @@ TEST(a_report_without_a_folder_is_complained_about)
     REFUSED(STATUS_CANNOT_WRITE, "/proc/nowhere", report_write("/proc/nowhere", NULL, 0, NULL, &f));
 }
 
+// --- what follows the thesis: captions, axes and numbers, by equations that the drawing does not
+// use
+
+static char *caption_of(const char *id)
+{
+    SCOPED(artwork_finish) artwork drawn = open_figure(id, (figure_options){0});
+    return text_plain(drawn.caption);
+}
+
+static void expect_in_caption(const char *id, const char *part)
+{
+    char *caption = caption_of(id);
+    fail_if(strstr(caption, part) == NULL, "%s: '%s' is not in '%s'", id, part, caption);
+    g_free(caption);
+}
+
+// The number behind a start of a line.
+static double number_behind(const char *csv, const char *start)
+{
+    const char *line = strstr(csv, start);
+    fail_if(line == NULL, "no line begins with '%s'", start);
+    return atof(line + strlen(start));
+}
+
+// The number in the second column of the line that begins with a quantity.
+static double value_in(const char *csv, const char *quantity)
+{
+    char start[80];
+    snprintf(start, sizeof start, "\n%s,", quantity);
+    return number_behind(csv, start);
+}
+
+TEST(captions_name_the_constants_of_the_printed_model)
+{
+    expect_in_caption("3.2", "k1 = 90");
+    expect_in_caption("3.10", "1.67·10");
+    expect_in_caption("2.2", "k1 = 90");
+    expect_in_caption("4.1", "90");
+}
+
+TEST(captions_say_whose_shading_it_is)
+{
+    expect_in_caption("3.4", "of the first run (printed)");
+    for (int i = 1; i <= 7; i++) {
+        char id[4] = {'5', '.', (char)('0' + i), '\0'};
+        expect_in_caption(id, "Shaded: impact mode");
+    }
+}
+
+// Simulation and bench stand over the same seconds.
+TEST(chapters_2_and_3_have_one_time_axis)
+{
+    static const char *const ids[] = {"2.4", "2.5", "2.6", "3.2"};
+    for (size_t i = 0; i < G_N_ELEMENTS(ids); i++) {
+        static figure_report r;
+        SCOPED(artwork_finish) artwork drawn = open_figure(ids[i], (figure_options){0});
+        record(&drawn, &r);
+
+        // the last tick stands at the panel's right end
+        bool found = false;
+        for (int k = 0; k < r.text_count; k++) {
+            figure_rect p = r.texts[k].place;
+            found = found || (strcmp(r.texts[k].text, "1.0") == 0 &&
+                              fabs(p.x + p.width / 2 - r.panels[0].x - r.panels[0].width) < 0.6);
+        }
+        fail_if(!found, "%s: its time axis does not end at 1.0 s", ids[i]);
+    }
+}
+
+TEST(the_printed_peak_is_a_point)
+{
+    SCOPED(free_kept) char *csv = csv_of("3.4");
+    const char *row = strstr(csv, ",Table 4.3,");
+    assert_non_null(row);
+    assert_non_null(strstr(row, ",1.84"));
+    expect_in_caption("3.10", "5.22");
+}
+
+// The cut body: the hinge's torque about the centre is the moment of its impulse, a relation of
+// (4.3) and (4.4) that the drawing does not use; and the wall stops the point of collision.
+TEST(the_cut_body_is_in_balance)
+{
+    SCOPED(free_kept) char *csv = csv_of("4.2");
+    double half = 0.25, torque = value_in(csv, "hinge torque impulse Y");
+    check_relative(torque, -half * value_in(csv, "hinge impulse X"), 1e-9);
+    check_relative(value_in(csv, "jump of the point of collision's velocity"),
+                   -value_in(csv, "approach speed"), 1e-6);
+}
+
+// Both states of 3.1 lie on the constraint (3.9).
+TEST(the_last_link_goes_through_the_contact_point)
+{
+    SCOPED(free_kept) char *csv = csv_of("3.1");
+    check_close(value_in(csv, "constraint (3.9)"), 0, 1e-9);
+    check_relative(value_in(csv, "b") / value_in(csv, "a"), tan(0.1), 1e-12);
+}
+
+TEST(the_algorithm_has_the_thesis_numbers)
+{
+    static const char *const numbers[] = {"1", "2", "2.1", "2.2", "3", "3.1", "3.2", "4"};
+    SCOPED(free_kept) char *csv = csv_of("T3.2");
+    const char *at = csv;
+    for (size_t i = 0; i < G_N_ELEMENTS(numbers); i++) {
+        char start[8];
+        snprintf(start, sizeof start, "\n%s,", numbers[i]);
+        at = strstr(at, start);
+        assert_non_null(at);
+        at++;
+    }
+}
+
+// What the thesis prints stands where it prints it, what is computed beside it, and the residual is
+// their difference.
+TEST(printed_values_have_residuals)
+{
+    SCOPED(free_kept) char *csv = csv_of("forces");
+    double printed = number_behind(csv, "force k2 x 100[N],max_force_energy printed,1,");
+    double computed = number_behind(csv, "force k2 x 100[N],max_force_energy,1,");
+    check_close(printed, 23.93, 0);
+    check_close(computed, 23.93, 0.5);
+    check_relative(number_behind(csv, "residual k2 x 100[%],max_force_energy printed,1,"),
+                   100 * (computed / printed - 1), 1e-9);
+    check_close(number_behind(csv, "force k2 x 1[N],max_force_simulation printed,10,"), 7.43, 0);
+    free(csv);
+    csv = csv_of("delays");
+    check_close(number_behind(csv, "delay k2 x 1[ms],delay_dynamics printed,10,"), 109, 1e-9);
+}
+
+// Section 3.1.3: with one run of the algorithm no pair gives a usable force, with two the thesis's
+// does.
+TEST(the_printed_arm_needs_its_second_run)
+{
+    static const char *const starts[] = {"\"two runs, h = 1\u2009ms\",map,",
+                                         "\"one run, 1\u2009ms\",map,",
+                                         "\"one run, 0.2\u2009ms\",map,"};
+    SCOPED(free_kept) char *csv = csv_of("beta-gamma-printed");
+    double least[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, thesis = HUGE_VAL;
+    int cells = 0;
+    for (int panel = 0; panel < 3; panel++) {
+        for (const char *line = strstr(csv, starts[panel]); line != NULL;
+             line = strstr(line + 1, starts[panel])) {
+            char *end;
+            double beta = strtod(line + strlen(starts[panel]), &end);
+            double gamma = strtod(end + 1, &end);
+            double force = end[1] == '\n' ? HUGE_VAL : strtod(end + 1, NULL);
+            least[panel] = fmin(least[panel], force);
+            cells++;
+            if (panel == 0 && fabs(beta - 0.4) < 0.02 && fabs(gamma - 0.5) < 0.03) {
+                thesis = force;
+            }
+        }
+    }
+    assert_int_equal(cells, 900);
+    check_close(thesis, 1, 0.1);
+    check_below(5, least[1]);
+    check_below(2 * least[1], least[2]);
+}
+
 // ---------------------------------------------------------------------------------------------------
 
 static int leave_figures(void **state)
