@@ -46,7 +46,6 @@ static double event_after(const explorer *ex, event_kind kind, double time)
 
 static void change_before_contact(const char *name, const char *setting)
 {
-    char line[96];
     OPEN_EXPLORER(ex, name);
     press(&ex, "<End>II");
     const session *s = &ex.state.session;
@@ -54,8 +53,7 @@ static void change_before_contact(const char *name, const char *setting)
     const size_t row = s->row;
     assert_int_equal(session_sample(s)->contact, 0);
     const double touched = event_after(&ex, EVENT_IMPACT, instant);
-    snprintf(line, sizeof line, ":set %s<Enter>", setting);
-    press(&ex, line);
+    press_text(&ex, ":set %s<Enter>", setting);
 
     // from the row shown on, before what comes; the cursor stays in free flight
     const double changed = event_after(&ex, EVENT_CHANGE, 0);

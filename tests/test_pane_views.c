@@ -81,7 +81,7 @@ TEST(test_statistics_are_from_the_mark_to_the_cursor)
 // they are told; what cannot be read leaves what is there.
 TEST(test_measured_data_touch_when_the_run_does)
 {
-    char path[] = "/tmp/impactlab-data-XXXXXX", line[96];
+    char path[] = "/tmp/impactlab-data-XXXXXX";
     OPEN_EXPLORER(ex, "corrected/first-impact");
     const int file = mkstemp(path);
     FILE *stream = fdopen(file, "w");
@@ -92,8 +92,7 @@ TEST(test_measured_data_touch_when_the_run_does)
         fprintf(stream, "%.17g,%.17g,\n", 1e3 * (t->rows[r].time + 0.125), 1e3 * t->rows[r].force);
     }
     fclose(stream);
-    snprintf(line, sizeof line, ":data %s<Enter>", path);
-    press(&ex, line);
+    press_text(&ex, ":data %s<Enter>", path);
     assert_int_equal(ex.state.measured.row_count, t->row_count);
     for (size_t r = 0; r < t->row_count; r++) {
         check_close(ex.state.measured.rows[r].time, t->rows[r].time, 1e-9);
@@ -114,8 +113,7 @@ TEST(test_measured_data_touch_when_the_run_does)
     free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
     press(&ex, ":open compare/hybrid<Enter>u");
     free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
-    snprintf(line, sizeof line, ":data %s@0.5<Enter>", path);
-    press(&ex, line);
+    press_text(&ex, ":data %s@0.5<Enter>", path);
     check_close(ex.state.measured.rows[0].time, 0.625, 1e-9);
     press(&ex, ":data off<Enter>");
     assert_int_equal(ex.state.measured.row_count, 0);
@@ -166,10 +164,8 @@ TEST(test_a_pane_of_expressions)
     }
 
     // more than there are places for: a sentence; one whose pane was replaced is free again
-    char line[64];
     for (int i = 0; i < 40; i++) {
-        snprintf(line, sizeof line, ":trace force+%d, gap+%d<Enter>", i, i);
-        press(&ex, line);
+        press_text(&ex, ":trace force+%d, gap+%d<Enter>", i, i);
     }
     assert_non_null(strstr(ex.state.message.text, "expressions are shown already"));
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));

@@ -17,10 +17,8 @@ static char *contents(const char *name)
 
 static void save(explorer *ex)
 {
-    char line[128];
     unlink(path);
-    snprintf(line, sizeof line, "session save %s", path);
-    fail_if(!explorer_carry_out(ex, line), "%s", ex->state.message.text);
+    fail_if(!explorer_carry_out(ex, "session save lab.session"), "%s", ex->state.message.text);
 }
 
 // Runs of two scenarios, changes, pushes, pins, panes, axes, zoom and mark come back to the last
@@ -68,9 +66,7 @@ TEST(test_what_was_done_comes_back)
     assert_int_equal(again.state.panes.pane[2].scaling, AXIS_GROW);
 
     // and again
-    char line[128];
-    snprintf(line, sizeof line, "session save %s", path);
-    assert_true(explorer_carry_out(&again, line));
+    assert_true(explorer_carry_out(&again, "session save lab.session"));
     assert_string_equal(contents(path), first);
 
     // the run is changed and undone as any other; opening it is undone, too
@@ -83,16 +79,13 @@ TEST(test_what_was_done_comes_back)
 // No file of others is replaced; the visit's own is.
 TEST(test_only_the_visits_own_file_is_replaced)
 {
-    char line[128];
     put_file(path, "precious");
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    snprintf(line, sizeof line, "session save %s", path);
-    assert_false(explorer_carry_out(&ex, line));
+    assert_false(explorer_carry_out(&ex, "session save lab.session"));
     assert_string_equal(contents(path), "precious");
     save(&ex);
-    assert_true(explorer_carry_out(&ex, line));
-    snprintf(line, sizeof line, "session open %s/none.session", test_folder);
-    assert_false(explorer_carry_out(&ex, line));
+    assert_true(explorer_carry_out(&ex, "session save lab.session"));
+    assert_false(explorer_carry_out(&ex, "session open none.session"));
     assert_shows(&ex, "cannot be opened");
 }
 
