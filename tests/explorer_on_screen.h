@@ -35,11 +35,12 @@ __attribute__((format(printf, 2, 3))) static inline void press_text(explorer *ex
     press(ex, keys);
 }
 
-// Keys that leave a warning.
-static inline void press_warns(explorer *ex, const char *keys)
+// Keys that leave a warning which says this.
+static inline void press_warns(explorer *ex, const char *keys, const char *says)
 {
     press(ex, keys);
-    fail_if(!ex->state.message.warning, "no warning after %s: '%s'", keys, ex->state.message.text);
+    fail_if(!ex->state.message.warning || strstr(ex->state.message.text, says) == NULL,
+            "%s leaves '%s', no warning that says '%s'", keys, ex->state.message.text, says);
 }
 
 // Keys that leave this in the prompt.

@@ -97,8 +97,8 @@ TEST(test_keys_change_the_axis_of_the_pane_in_focus)
     // alone it has all rows
     press_shows(&ex, "e", "!gap ");
     press_shows(&ex, "e", "gap ");
-    press_warns(&ex, ":panes<Enter>w");
-    press_warns(&ex, "a");
+    press_warns(&ex, ":panes<Enter>w", "");
+    press_warns(&ex, "a", "");
     assert_shows(&ex, "no pane of curves");
 }
 

@@ -210,7 +210,7 @@ TEST(test_changes_to_come_are_seen_edited_and_dropped)
     check_close(session_parameters_at(&ex.state.session, 0.5).motor.voltage, 2, 0);
     press(&ex, ":drop 1<Enter>");
     check_close(session_parameters_at(&ex.state.session, 0.5).motor.voltage, 1, 0);
-    press_warns(&ex, ":drop 7<Enter>");
+    press_warns(&ex, ":drop 7<Enter>", "");
 }
 
 TEST(test_nudges_are_one_change_and_reversible)

@@ -127,7 +127,7 @@ TEST(test_the_list_filters_and_opens)
     press(&ex, ":open thesis/fig-3-4<Enter>");
     assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
     assert_shows(&ex, "printed");
-    press_warns(&ex, ":open nowhere<Enter>");
+    press_warns(&ex, ":open nowhere<Enter>", "");
     assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
     press(&ex, "[");
     assert_string_not_equal(ex.state.session.base.name, "thesis/fig-3-4");

@@ -247,7 +247,7 @@ TEST(test_a_limit_is_asked_for_in_few_keys)
     press_shows(&ex, ":solve voltage=0.1:0.2 peak_force_N<lt>2<Enter>",
                 "no limit of motor.voltage from 0.1 to 0.2 V");
     press_shows(&ex, ":solve voltage peak_froce_N<lt>2<Enter>", "did you mean 'peak_force_N'?");
-    press_warns(&ex, ":solve control.law peak_force_N<lt>2<Enter>");
+    press_warns(&ex, ":solve control.law peak_force_N<lt>2<Enter>", "");
     press_shows(&ex, ":solve voltage<Enter>", "solve takes");
     assert_int_equal(ex.state.pinned.count, 1);
 }

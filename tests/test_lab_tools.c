@@ -12,13 +12,6 @@ static void assert_shows_everywhere(explorer *ex, const char *wanted)
     }
 }
 
-static void assert_warned(explorer *ex, const char *keys, const char *says)
-{
-    press(ex, keys);
-    assert_true(ex->state.message.warning);
-    fail_if(strstr(ex->state.message.text, says) == NULL, "%s: %s", keys, ex->state.message.text);
-}
-
 // A file that is removed at the end of the block.
 static void remove_file(char *const *path)
 {
@@ -42,8 +35,8 @@ TEST(notes_are_kept_in_time_and_in_sessions)
         // Enter goes to the selected one
         press(&ex, "<Enter>");
         check_close(ex.state.session.now, 0.1, 1e-3);
-        assert_warned(&ex, ":note<Enter>:note<Enter>", "takes a text");
-        assert_warned(&ex, ":note @nan x<Enter>", "no instant");
+        press_warns(&ex, ":note<Enter>:note<Enter>", "takes a text");
+        press_warns(&ex, ":note @nan x<Enter>", "no instant");
         press(&ex, ":note @0.1 early, by hand<Enter>");
         snprintf(keys, sizeof keys,
                  ":band force 0.1<Enter>:colourby run<Enter>"
@@ -96,8 +89,8 @@ TEST(a_band_tells_where_it_is_left)
     for (size_t i = 0; i < SIZES; i++) {
         free(picture(&ex, sizes[i][0], sizes[i][1], GLYPHS_BRAILLE));
     }
-    assert_warned(&ex, ":band force<Enter>", "a signal and a value");
-    assert_warned(&ex, ":band force -1<Enter>", "above 0");
+    press_warns(&ex, ":band force<Enter>", "a signal and a value");
+    press_warns(&ex, ":band force -1<Enter>", "above 0");
     press(&ex, ":colourby<Enter>");
     free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
     assert_true(run_ink(-1) != run_ink(0) && run_ink(0) != run_ink(1));
@@ -132,9 +125,9 @@ TEST(a_map_gives_what_single_runs_give)
     check_close(ex.state.session.effective.parameters.control.transition_time, 0.2, 0);
     check_close(ex.state.session.effective.parameters.arm.k2, 6, 0);
 
-    assert_warned(&ex, ":sweep arm.k2=1:2:40 motor.voltage=1:2:40<Enter>", "too many");
-    assert_warned(&ex, ":sweep arm.k2=1:2:4 arm.k2=1:2:4<Enter>", "different");
-    assert_warned(&ex, ":sweep arm.k2=1:2:4 motor.voltage<Enter>", "for a map two");
+    press_warns(&ex, ":sweep arm.k2=1:2:40 motor.voltage=1:2:40<Enter>", "too many");
+    press_warns(&ex, ":sweep arm.k2=1:2:4 arm.k2=1:2:4<Enter>", "different");
+    press_warns(&ex, ":sweep arm.k2=1:2:4 motor.voltage<Enter>", "for a map two");
     press(&ex, "M<Esc>");
     assert_false(lab_sweep_is_on(m));
 }
@@ -162,7 +155,7 @@ TEST(the_arm_that_was_measured_is_found)
     press(&ex, ":set arm.k2 5.5<Enter>");
     write_recording(&ex, path);
     press(&ex, "u");
-    assert_warned(&ex, ":identify k2<Enter>", ":data");
+    press_warns(&ex, ":identify k2<Enter>", ":data");
     snprintf(keys, sizeof keys, ":data %s<Enter>:residual force_reading, encoder<Enter>", path);
     press(&ex, keys);
 
@@ -184,8 +177,8 @@ TEST(the_arm_that_was_measured_is_found)
     double found = 0;
     assert_int_equal(sscanf(ex.state.message.text, "k2 %lf", &found), 1);
     check_close(found, 5.5, 0.05);
-    assert_warned(&ex, ":identify nosuch<Enter>", "nosuch");
-    assert_warned(&ex, ":identify<Enter>", "takes parameters");
+    press_warns(&ex, ":identify nosuch<Enter>", "nosuch");
+    press_warns(&ex, ":identify<Enter>", "takes parameters");
     press_shows(&ex, ":data off<Enter>", "no measured data (:data");
 }
 
@@ -204,7 +197,7 @@ TEST(what_is_copied_gives_the_run_again)
     free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
     press(&ex, ":copy screen<Enter>");
     assert_non_null(strstr(ex.state.copied, "impactlab"));
-    assert_warned(&ex, ":copy all<Enter>", "value, run or screen");
+    press_warns(&ex, ":copy all<Enter>", "value, run or screen");
 }
 
 TEST_IN_FOLDER(the_first_visit_is_the_only_one)
@@ -232,5 +225,5 @@ TEST(predictors_and_modes_are_explained)
     assert_shows(&ex, "0 Hz");
     press(&ex, "<Esc>:rate 200<Enter>");
     check_close(ex.state.looks.rate, 200, 0);
-    assert_warned(&ex, ":rate 0.1<Enter>", "at least 1 kB/s");
+    press_warns(&ex, ":rate 0.1<Enter>", "at least 1 kB/s");
 }

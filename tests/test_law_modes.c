@@ -97,9 +97,9 @@ TEST(test_laws_and_modes_are_completed_and_checked)
     OPEN_EXPLORER(ex, "compare/hybrid");
     press_prompts(&ex, ":lock app<Tab>", "lock approach ");
     press_shows(&ex, "<C-u>law rec<Tab><Enter>", "recovering, 200 Hz");
-    press_warns(&ex, ":seek 0.5<Enter>:lock press<Enter>");
+    press_warns(&ex, ":seek 0.5<Enter>:lock press<Enter>", "");
     assert_shows(&ex, "expected none, approach, impact, force or recover");
-    press_warns(&ex, ":lock recover<Enter>:law hybrid<Enter>");
+    press_warns(&ex, ":lock recover<Enter>:law hybrid<Enter>", "");
     assert_shows(&ex, "undo the lock first");
     assert_shows(&ex, "recovering, 200 Hz");
     press_shows(&ex, "u:law inverse-dynamics<Enter>L", "this law cannot be held in a mode");

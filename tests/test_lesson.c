@@ -185,5 +185,5 @@ TEST(test_wrong_answers_are_not_taken)
     assert_true(ex.state.lesson.on);
     press(&ex, ":lesson off<Enter>");
     assert_false(ex.state.lesson.on);
-    press_warns(&ex, ":lesson no-such<Enter>");
+    press_warns(&ex, ":lesson no-such<Enter>", "");
 }

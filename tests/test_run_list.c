@@ -213,7 +213,7 @@ TEST(test_a_sweep_gives_what_single_runs_give)
     assert_int_equal(state_run_count(&ex.state), 1);
 
     // what cannot be run says so
-    press_warns(&ex, ":sweep motor.voltage=1:2:40<Enter>");
+    press_warns(&ex, ":sweep motor.voltage=1:2:40<Enter>", "");
     press(&ex, ":sweep stiction=0.01:0.05:3<Enter>");
     assert_int_equal(sweep->axis.parameter, PARAMETER_INDEX(motor.stiction));
     char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
