@@ -223,7 +223,7 @@ expect 0 figures 3.4 3.5 -o pictures --format svg --latex all.tex
 declare -A besides=([run]='' [predict]='' [modes]='' [converge]='' [compare]='hit.yaml' [show]=''
     [sweep]='--vary motor.voltage=1:2:2' [study]='' [robust]='--set control.force=1 --laws hybrid,force-pd --runs 3'
     [tune]='--set control.force=1 --set control.law=hybrid --vary control.kv=0.5:1 --minimise peak_force_N --runs 6'
-    [calibrate]='' [linear]='' [identify]='--data recorded.csv --fit arm.k2' [solve]='' [animate]='' [lab]='' [lesson]='')
+    [calibrate]='' [linear]='' [identify]='--data recorded.csv --fit motor.resistance' [solve]='' [animate]='' [lab]='' [lesson]='')
 title_of() { sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' "$1" | head -1; }
 expect 0 help
 for command in $(awk '/^  [a-z]/ { print $1 }' out); do
