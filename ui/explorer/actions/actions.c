@@ -125,7 +125,7 @@ bool act_read_pane(explorer_state *st, const char *word, int *index)
 
 // --- the run ----------------------------------------------------------------------------------
 
-#define LONGEST_RUN 0.3 // that is computed again and again while the lab waits [s]
+#define LONGEST_WAIT 9 // for runs that are computed while the lab waits [s]
 
 bool act_tell_failed_run(explorer_state *st)
 {
@@ -154,10 +154,10 @@ bool act_need_whole_run(explorer_state *st)
                       session_end(s), s->effective.parameters.run.duration);
 }
 
-bool act_need_short_runs(explorer_state *st, const char *command)
+bool act_need_short_runs(explorer_state *st, const char *command, int runs)
 {
     const double takes = st->session.run.summary.wall_time_s;
-    return !(isfinite(st->session.patience) && takes > LONGEST_RUN) ||
+    return !(isfinite(st->session.patience) && takes * runs > LONGEST_WAIT) ||
            act_refuse(st, "a run takes %.1f s here: 'impactlab %s' computes them beside", takes,
                       command);
 }

@@ -62,8 +62,8 @@ void act_tell_replay(explorer_state *st);
 // Refused while the run is being computed, for actions that need the complete run.
 bool act_need_whole_run(explorer_state *st);
 
-// Refused where a run takes too long to be computed again and again while the lab waits.
-bool act_need_short_runs(explorer_state *st, const char *command);
+// Refused where so many runs take too long to be computed while the lab waits.
+bool act_need_short_runs(explorer_state *st, const char *command, int runs);
 
 // PATH or PATH=VALUES with the whole path of a parameter that is named by its last part. Returns
 // text.

@@ -92,7 +92,7 @@ bool act_lay_data(explorer_state *st, const char *argument)
 
 // --- identification ---------------------------------------------------------------------------
 
-enum { FIT_STARTS = 4, FIT_THREADS = 4 };
+enum { FIT_STARTS = 4, FIT_THREADS = 4, FIT_RUNS = 400 };
 
 // Says each value with its error, and what is not determined.
 static bool tell_fit(explorer_state *st, const identification *id)
@@ -125,7 +125,7 @@ bool act_identify(explorer_state *st, const char *argument)
         return act_refuse(st, argument[0] == '\0' ? "identify takes parameters, such as k2 stiction"
                                                   : "there are no measured data: :data FILE.csv");
     }
-    if (!act_need_whole_run(st) || !act_need_short_runs(st, "identify")) {
+    if (!act_need_whole_run(st) || !act_need_short_runs(st, "identify", FIT_RUNS)) {
         return false;
     }
 

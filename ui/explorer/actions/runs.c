@@ -328,7 +328,7 @@ bool act_solve(explorer_state *st, const char *argument)
         return act_refuse(st, "solve takes a parameter and a condition, such as motor.voltage "
                               "peak_force_N<2");
     }
-    if (!act_need_whole_run(st) || !act_need_short_runs(st, "solve")) {
+    if (!act_need_whole_run(st) || !act_need_short_runs(st, "solve", 2 * SOLVE_POINTS)) {
         return false;
     }
 
@@ -414,7 +414,7 @@ bool act_sweep(explorer_state *st, const char *argument)
     }
 
     // each run is computed while the lab waits, so they must be short
-    if (!act_need_whole_run(st) || !act_need_short_runs(st, "sweep")) {
+    if (!act_need_whole_run(st) || !act_need_short_runs(st, "sweep", SWEPT_RUNS)) {
         return false;
     }
     if (!act_worked(st, lab_sweep_begin(sweep, argument, &f), &f)) {
