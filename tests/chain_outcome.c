@@ -110,9 +110,9 @@ chain_outcome chain_outcome_of(const chain_start *start)
     }
     o.ended = m->state[SLOT_TIME];
     o.motor_work = motion_motor_work(m, m->state);
-    o.put_in += m->start_energy;
-    o.peak = m->pulse_peak;
-    o.peak_time = m->dof > 1 ? m->pulse_peak_time : 0;
+    o.put_in += m->record.start_energy;
+    o.peak = m->record.pulse_peak;
+    o.peak_time = m->dof > 1 ? m->record.pulse_peak_time : 0;
     const double *quadrature = state_quadratures(m, m->state);
     const double lost[] = {m->state[SLOT_FRICTION_LOSS],   m->state[SLOT_IMPACT_LOSS],
                            quadrature[QUADRATURE_VISCOUS], quadrature[QUADRATURE_DAMPING],

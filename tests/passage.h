@@ -16,7 +16,7 @@ typedef struct passage {
 static inline passage move_on(const arm *a, motion *m, double until, int most_steps)
 {
     passage p = {0};
-    double put_in = m->start_energy;
+    double put_in = m->record.start_energy;
     const double force = state_quadratures(m, m->state)[QUADRATURE_FORCE];
     while (m->state[SLOT_TIME] < until) {
         motion_report r;

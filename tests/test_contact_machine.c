@@ -83,7 +83,7 @@ TEST(an_arm_that_starts_on_a_face_strikes_it)
     SCOPED(motion_destroy_kept) motion *m = r.motion;
     const double inertia = r.inertia, length = r.arm.link_length;
     assert_false(touches(&r));
-    check_relative(m->start_energy, inertia * speed * speed / 2, 1e-12);
+    check_relative(m->record.start_energy, inertia * speed * speed / 2, 1e-12);
 
     motion_report report;
     assert_int_equal(motion_step(&r.arm, m, 0.01, 1e-3, &report), STATUS_OK);
@@ -210,15 +210,15 @@ TEST(a_located_peak_leaves_the_step_as_it_was)
             motion_report report;
             const double start = m->state[SLOT_TIME];
             assert_int_equal(motion_step(&both[i]->arm, m, 0.4, 1e-3, &report), STATUS_OK);
-            check_close(m->state[SLOT_TIME], start + m->made, 1e-14);
+            check_close(m->state[SLOT_TIME], start + m->step.last, 1e-14);
             motion_apply(&both[i]->arm, m, &report);
         }
     }
 
     // after its first pulses
-    assert_true(series.motion->pulse_peak > 1);
-    check_relative(steps.motion->pulse_peak, series.motion->pulse_peak, 1e-9);
-    check_close(steps.motion->pulse_peak_time, series.motion->pulse_peak_time, 1e-5);
+    assert_true(series.motion->record.pulse_peak > 1);
+    check_relative(steps.motion->record.pulse_peak, series.motion->record.pulse_peak, 1e-9);
+    check_close(steps.motion->record.pulse_peak_time, series.motion->record.pulse_peak_time, 1e-5);
     for (int i = 0; i < 2 * series.motion->dof + QUADRATURE_COUNT; i++) {
         check_close(steps.motion->state[SLOT_COUNT + i], series.motion->state[SLOT_COUNT + i],
                     1e-8);
@@ -343,7 +343,7 @@ TEST(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not)
 TEST(a_cut_changes_nothing_before_it)
 {
     moving_rod free = start_rod(SETTINGS("arm.links=1")), cut = start_rod(SETTINGS("arm.links=1"));
-    cut.motion->cut = 0.35; // after the impact
+    cut.motion->record.tstop = 0.35; // after the impact
     motion_report a = next_event(&free, 1), b = next_event(&cut, 1);
     assert_int_equal(a.event, MOTION_IMPACT);
     assert_int_equal(b.event, MOTION_IMPACT);
@@ -494,11 +494,11 @@ TEST(the_peak_of_a_rising_force_is_at_its_end)
             motion_report report;
             assert_int_equal(motion_step(&r.arm, m, touched + k * 2e-4, 2e-4, &report), STATUS_OK);
             motion_apply(&r.arm, m, &report);
-            assert_true(m->pulse_peak >= m->state[SLOT_FORCE] * (1 - 1e-12));
-            assert_true(m->pulse_peak_time <= m->state[SLOT_TIME] + 1e-15);
-            assert_true(m->pulse_peak_time >= touched);
-            if (m->pulse_peak == m->state[SLOT_FORCE] && m->state[SLOT_FORCE] > last) {
-                check_close(m->pulse_peak_time, m->state[SLOT_TIME], 1e-15);
+            assert_true(m->record.pulse_peak >= m->state[SLOT_FORCE] * (1 - 1e-12));
+            assert_true(m->record.pulse_peak_time <= m->state[SLOT_TIME] + 1e-15);
+            assert_true(m->record.pulse_peak_time >= touched);
+            if (m->record.pulse_peak == m->state[SLOT_FORCE] && m->state[SLOT_FORCE] > last) {
+                check_close(m->record.pulse_peak_time, m->state[SLOT_TIME], 1e-15);
                 rising++;
             }
             last = m->state[SLOT_FORCE];

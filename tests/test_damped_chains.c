@@ -58,8 +58,8 @@ static bounces bounces_of(const parameters *p, const engine *by, double gap, dou
             all.slowest = r.speed;
         }
     }
-    all.peak = m->pulse_peak;
-    all.peak_time = m->pulse_peak_time;
+    all.peak = m->record.pulse_peak;
+    all.peak_time = m->record.pulse_peak_time;
     return all;
 }
 

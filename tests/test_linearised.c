@@ -280,8 +280,8 @@ static prediction follow_motion(const arm *source, motion *m, const voltage_prof
     }
     double left =
         chain_kinetic_energy(&a, state_angles(m, m->state), state_velocities(m, m->state));
-    return (prediction){.force = m->pulse_peak,
-                        .delay = m->pulse_peak_time - touch,
+    return (prediction){.force = m->record.pulse_peak,
+                        .delay = m->record.pulse_peak_time - touch,
                         .restitution = (left - kinetic) / most_strain};
 }
 
@@ -353,7 +353,7 @@ TEST(a_pulse_ends_where_the_arm_leaves)
                              STATUS_OK);
             motion_apply(&a, m, &report);
         }
-        check_relative(predicted.peak, m->pulse_peak, 2e-3);
+        check_relative(predicted.peak, m->record.pulse_peak, 2e-3);
         assert_int_equal(isnan(predicted.length), m->state[SLOT_CONTACT] != 0);
         if (!isnan(predicted.length)) {
             check_relative(predicted.length, m->state[SLOT_TIME] - touched, 1e-3);

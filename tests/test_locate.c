@@ -44,8 +44,8 @@ static int events_of(const char *const *settings, const engine *by, double step,
         steps_tried = 0;
         assert_int_equal(motion_step(&a, m, until, step, &report), STATUS_OK);
         if (report.event != MOTION_REACHED) {
-            events[count++] = (found){report.event, m->state[SLOT_TIME], steps_tried, m->pulse_peak,
-                                      m->largest_penetration};
+            events[count++] = (found){report.event, m->state[SLOT_TIME], steps_tried,
+                                      m->record.pulse_peak, m->record.largest_penetration};
         }
         motion_apply(&a, m, &report);
     }

@@ -102,7 +102,7 @@ static void decay_of_mode(const parameters *p, int mode, double *rate, double *f
         state_angles(run, run->state)[i] = small * shape[i];
     }
     motion_evaluate(&m.arm, run, run->state);
-    run->start_energy = chain_strain_energy(&m.arm, state_angles(run, run->state));
+    run->record.start_energy = chain_strain_energy(&m.arm, state_angles(run, run->state));
 
     // amplitudes at equal distances, with y[k+1] + y[k-1] = c y[k] - (e^(-2 d h) - 1) y[k-1]
     double amplitude[52], a = 0, b = 0, c = 0, d = 0, e = 0;
@@ -124,7 +124,7 @@ static void decay_of_mode(const parameters *p, int mode, double *rate, double *f
     *frequency = acos(s / (2 * sqrt(r))) / step;
 
     // the ledger
-    const double put_in = run->start_energy;
+    const double put_in = run->record.start_energy;
     check_below(fabs(motion_energy_residual(&m.arm, run, run->state)), 1e-9 * put_in);
     check_below(0.05 * put_in * *rate * 20 / m.frequencies[mode],
                 state_quadratures(run, run->state)[QUADRATURE_DAMPING]);

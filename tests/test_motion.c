@@ -150,11 +150,11 @@ TEST(a_hub_held_beyond_stiction_is_noted)
         assert_non_null(m);
         motion_start(&a, m, 0, 0);
         assert_int_equal(motion_step(&a, m, 1e-3, 1e-3, &r), STATUS_OK);
-        assert_true(m->state[SLOT_FRICTION] == HUB_STICK && m->overheld == 0);
+        assert_true(m->state[SLOT_FRICTION] == HUB_STICK && m->record.overheld == 0);
         a.motor.stiction = 0.5 * fabs(a.motor.torque);
         motion_end_stride(m);
         assert_int_equal(motion_step(&a, m, 2e-3, 1e-3, &r), STATUS_OK);
-        check_close(m->overheld, 0.5 * fabs(a.motor.torque), 1e-6);
+        check_close(m->record.overheld, 0.5 * fabs(a.motor.torque), 1e-6);
     }
 }
 

@@ -109,7 +109,7 @@ static truth what_happens(const arm *a, motion *m)
         assert_int_equal(code, STATUS_OK);
         motion_apply(a, m, &report);
     } while (report.event != MOTION_REACHED && m->state[SLOT_CONTACT] != 0);
-    return (truth){true, true, m->pulse_peak, m->pulse_peak_time - touch};
+    return (truth){true, true, m->record.pulse_peak, m->record.pulse_peak_time - touch};
 }
 
 typedef struct tally {

@@ -308,8 +308,8 @@ TEST(a_force_that_stays_has_its_peak_at_its_start)
     }
     assert_true(m->state[SLOT_CONTACT] != 0 && m->state[SLOT_FRICTION] == HUB_STICK);
     assert_true(held > 0 && held < 0.8 * end);
-    check_close(m->pulse_peak_time, held, 1e-9);
-    check_close(m->pulse_peak, m->state[SLOT_FORCE], 1e-9 * m->pulse_peak);
+    check_close(m->record.pulse_peak_time, held, 1e-9);
+    check_close(m->record.pulse_peak, m->state[SLOT_FORCE], 1e-9 * m->record.pulse_peak);
 }
 
 // Tip against a flat wall through the hub's axis, where the force has a pole.

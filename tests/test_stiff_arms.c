@@ -97,7 +97,7 @@ TEST(an_arm_made_stiff_changes_its_engine)
         SCOPED(motion_destroy_kept) motion *copy = motion_create(&after, &p.method);
         assert_ptr_equal(copy->engine, m->engine);
         memcpy(copy->state, m->state, (size_t)m->size * sizeof(double));
-        copy->start_energy = m->start_energy;
+        copy->record.start_energy = m->record.start_energy;
         passage on = move_on(&after, m, 0.35, 2000);
         move_on(&after, copy, 0.35, 2000);
         assert_true(on.impacts >= 1);

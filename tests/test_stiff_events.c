@@ -37,8 +37,8 @@ static meetings meetings_by(const parameters *p, const engine *by, double angle,
         motion_apply(&a, m, &r);
     }
 
-    all.peak = m->pulse_peak;
-    all.peak_time = m->pulse_peak_time;
+    all.peak = m->record.pulse_peak;
+    all.peak_time = m->record.pulse_peak_time;
     return all;
 }
 

@@ -146,8 +146,9 @@ TEST(orders_agree_and_the_ledger_closes)
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
         SCOPED(motion_destroy_kept) motion *m = moving.motion;
         double *q = state_angles(m, m->state);
-        m->start_energy = chain_kinetic_energy(&moving.arm, q, state_velocities(m, m->state)) +
-                          chain_strain_energy(&moving.arm, q);
+        m->record.start_energy =
+            chain_kinetic_energy(&moving.arm, q, state_velocities(m, m->state)) +
+            chain_strain_energy(&moving.arm, q);
         double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3),
                whole[SLOT_COUNT + 4 * 3 + QUADRATURE_COUNT + KEPT_COUNT];
         assert_int_equal(motion_try_step(&moving.arm, m, h), STATUS_OK);
@@ -177,9 +178,9 @@ static motion_event step_cut(const moving_arm *moving, double until, double afte
 {
     motion_report report;
     motion *m = moving->motion;
-    m->cut = m->state[SLOT_TIME] + after;
+    m->record.tstop = m->state[SLOT_TIME] + after;
     assert_int_equal(motion_step(&moving->arm, m, until, 1e-3, &report), STATUS_OK);
-    m->cut = HUGE_VAL;
+    m->record.tstop = HUGE_VAL;
     return report.event;
 }
 
@@ -208,10 +209,10 @@ TEST(cut_strides_go_on)
         assert_int_equal(motion_advance(&made[0].arm, whole, UNTIL, 1e-3, &report), STATUS_OK);
         while (met == MOTION_REACHED && cut->state[SLOT_TIME] < UNTIL) {
             const double after = 1e-4 + 0.01 * random_uniform(&g);
-            const long steps = cut->steps;
+            const long steps = cut->record.steps;
             met = step_cut(&made[1], UNTIL, after);
             handed = step_cut(&made[turn], UNTIL, after);
-            assert_true(cut->steps > steps);
+            assert_true(cut->record.steps > steps);
             memcpy(made[5 - turn].motion->state, made[turn].motion->state, size);
             motion_forget_stride(made[5 - turn].motion);
             turn = 5 - turn;

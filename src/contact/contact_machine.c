@@ -388,11 +388,11 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
 
     m->state[SLOT_LAST_IMPACT] = -1;
     m->state[SLOT_START_WEIGHT] = chain_weight_energy(a, state_angles(m, m->state));
-    m->start_energy =
+    m->record.start_energy =
         chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
         chain_strain_energy(a, state_angles(m, m->state));
-    m->steps = 0;
-    m->largest_penetration = m->overheld = 0;
+    m->record.steps = 0;
+    m->record.largest_penetration = m->record.overheld = 0;
     motion_watch(m);
 
     double g, rate;
@@ -402,7 +402,7 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
     const bool closed = g >= -START_ROUNDING * a->links * a->link_length;
     const bool touching = closed && (m->wall_gives ? rate >= 0 : rate == 0);
     resolve(a, m, touching, MOTION_REACHED);
-    m->start_energy += motion_wall_energy(a, m, m->state); // of a depth by rounding
+    m->record.start_energy += motion_wall_energy(a, m, m->state); // of a depth by rounding
     check_invariants(a, m);
 }
 

@@ -49,19 +49,20 @@ bool motion_starts_in_contact(const motion *m);
 // the state lies just beyond the event's root, before the event's jump: the caller may look at it
 // and then calls motion_apply.
 //
-// A step that would go beyond m->cut is first tried as if the cut were not there, and ends at the
-// cut only if no event comes before it. So everything before the cut is, to the last bit, what it
-// would be without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or STATUS_SINGULAR; the
-// state is then the last good one. STATUS_NO_MEMORY as motion_follow_arm says. STATUS_FOLDED on a
-// rigid flat wall that holds an arm folded over the hub's axis (chain_is_folded), or is about to:
-// the state is the folded one, and the motion cannot be continued.
+// A step that would go beyond m->record.tstop is first tried as if the cut were not there, and ends
+// at the cut only if no event comes before it. So everything before the cut is, to the last bit,
+// what it would be without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or
+// STATUS_SINGULAR; the state is then the last good one. STATUS_NO_MEMORY as motion_follow_arm says.
+// STATUS_FOLDED on a rigid flat wall that holds an arm folded over the hub's axis
+// (chain_is_folded), or is about to: the state is the folded one, and the motion cannot be
+// continued.
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report);
 
-// Determines in advance, in m->ahead, how far the next motion_step(a, m, until, step, ...) will go,
-// and updates the recorded peak force for that step. The step may go on to `far` [s], `until` or
-// later, while its stride lasts, which is chosen for `until` only. For a dense engine and an arm
-// that is not held still; motion_step does it itself, up to `until`, if nobody has. An arm that is
-// held folded has no step.
+// Determines in advance, in m->step.coming, how far the next motion_step(a, m, until, step, ...)
+// will go, and updates the recorded peak force for that step. The step may go on to `far` [s],
+// `until` or later, while its stride lasts, which is chosen for `until` only. For a dense engine
+// and an arm that is not held still; motion_step does it itself, up to `until`, if nobody has. An
+// arm that is held folded has no step.
 void motion_examine_step(const arm *a, motion *m, double until, double far, double step);
 
 // The state at `time` within the last step, as much of it as `extent` says, by stepping again from

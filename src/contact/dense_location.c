@@ -168,7 +168,7 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
                         : m->engine->second_derivative(a, m, EVENT_OF_FORCE, lo.time, hi.time);
     const double most = fmax(lo.at.value, hi.at.value) + second * length * length / 8;
     const double change = second * length / 2; // of the slope from the nearer end
-    if (most <= m->pulse_peak * (1 + SAME_PEAK) || fmin(lo.at.slope, hi.at.slope) > change ||
+    if (most <= m->record.pulse_peak * (1 + SAME_PEAK) || fmin(lo.at.slope, hi.at.slope) > change ||
         fmax(lo.at.slope, hi.at.slope) < -change) {
         return;
     }
@@ -214,7 +214,7 @@ void dense_deepest(const arm *a, motion *m, double h)
         for (int k = 0; k < MOST_CUTS && v0 < 0 && v1 > 0 && to - from > 1e-9 * h; k++) {
             const double t = from + (to - from) * v0 / (v0 - v1);
             const value_and_slope g = rest_gap_at(a, m, t);
-            m->largest_penetration = fmax(m->largest_penetration, -g.value);
+            m->record.largest_penetration = fmax(m->record.largest_penetration, -g.value);
             if (g.slope < 0) {
                 from = t, v0 = g.slope, v1 /= 2;
             } else {
@@ -228,7 +228,7 @@ void dense_deepest(const arm *a, motion *m, double h)
 void dense_peak(const arm *a, motion *m, double h)
 {
     enum { CUTS = 4 };
-    if (m->most_force <= m->pulse_peak) {
+    if (m->most_force <= m->record.pulse_peak) {
         return;
     }
 

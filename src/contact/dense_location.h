@@ -12,9 +12,9 @@
 // locate_first_event has them; m->trial is left alone.
 void dense_search_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
 
-// Raises m->pulse_peak to the largest force in [0, h] of a stride in contact.
+// Raises m->record.pulse_peak to the largest force in [0, h] of a stride in contact.
 void dense_peak(const arm *a, motion *m, double h);
 
-// Raises m->largest_penetration to the deepest point in [0, h] of a stride within a wall that
-// gives, or above a face that the arm has left and that is pushed in.
+// Raises m->record.largest_penetration to the deepest point in [0, h] of a stride within a wall
+// that gives, or above a face that the arm has left and that is pushed in.
 void dense_deepest(const arm *a, motion *m, double h);

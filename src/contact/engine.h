@@ -28,9 +28,9 @@
 // release gap and rate start at zero, to rounding (motion_gap_edges).
 //
 // A stride depends only on m->state and on the arguments of `advance`: a motion continued from a
-// copy of its state gives the same bits. In particular it must not depend on m->cut, where a step
-// may end early. A stride may be longer than the step for which it was begun: what the state keeps
-// of it (motion_kept in motion.h) lets the next `advance` continue it.
+// copy of its state gives the same bits. In particular it must not depend on m->record.tstop, where
+// a step may end early. A stride may be longer than the step for which it was begun: what the state
+// keeps of it (motion_kept in motion.h) lets the next `advance` continue it.
 #pragma once
 
 #include <stdbool.h>

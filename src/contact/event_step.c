@@ -32,7 +32,7 @@ static void note_hold(const arm *a, motion *m)
     }
     const double largest = larger(a->motor.stiction, fabs(state[SLOT_MOTOR_TORQUE]));
     if (beyond > HOLD_SHARE * largest + HOLD_ROUNDING * motion_rounding(a, m)) {
-        m->overheld = larger(beyond, m->overheld);
+        m->record.overheld = larger(beyond, m->record.overheld);
     }
 }
 
@@ -41,8 +41,9 @@ static void count_step(motion *m, double passed, double step)
 {
     const double steps = passed / step - 1e-6;
     const long whole = (long)steps; // rounded up, and one at least
-    m->steps += steps > 0 ? whole + ((double)whole < steps) : 1;
-    m->largest_penetration = larger(-state_rest_gap(m->state), m->largest_penetration);
+    m->record.steps += steps > 0 ? whole + ((double)whole < steps) : 1;
+    m->record.largest_penetration =
+        larger(-state_rest_gap(m->state), m->record.largest_penetration);
 }
 
 static void accept(motion *m, double step)
@@ -50,7 +51,7 @@ static void accept(motion *m, double step)
     double *previous = m->state;
     m->state = m->trial;
     m->trial = previous;
-    m->reached = m->holds;
+    m->step.reached = m->step.holds;
     count_step(m, m->state[SLOT_TIME] - previous[SLOT_TIME], step);
     if (!motion_wall_is_rigid(m)) {
         m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
@@ -111,12 +112,12 @@ static status step_to_event(const arm *a, motion *m, double *h, event_function *
     return s == STATUS_OK ? locate_first_event(a, m, h, first, any) : s;
 }
 
-// Ends a step of the `wanted` length that was just tried at m->cut if it goes beyond, or ends
-// within rounding of it.
+// Ends a step of the `wanted` length that was just tried at m->record.tstop if it goes beyond, or
+// ends within rounding of it.
 static status cut_step(const arm *a, motion *m, double step, status tried, double wanted, double *h,
                        event_function *first, bool *any)
 {
-    double left = m->cut - m->state[SLOT_TIME];
+    double left = m->record.tstop - m->state[SLOT_TIME];
     double reached = tried == STATUS_OK ? *h : wanted;
     double spare = tried == STATUS_OK && *any ? 0 : LEAST_AFTER_CUT * step;
     if (reached <= left - spare) {
@@ -189,8 +190,8 @@ static void examine(const arm *a, motion *m, double until, double far, double st
     // it
     if (begun) {
         m->engine->first_event(a, m, &h, &first, &any);
-        if (now + h > m->cut) {
-            h = m->cut - now;
+        if (now + h > m->record.tstop) {
+            h = m->record.tstop - now;
             any = false;
         }
         const bool touches = m->state[SLOT_CONTACT] != 0;
@@ -202,11 +203,11 @@ static void examine(const arm *a, motion *m, double until, double far, double st
             dense_deepest(a, m, h);
         }
     }
-    m->ahead.known = true;
-    m->ahead.begun = begun;
-    m->ahead.length = h;
-    m->ahead.any = any;
-    m->ahead.first = first;
+    m->step.coming.known = true;
+    m->step.coming.begun = begun;
+    m->step.coming.length = h;
+    m->step.coming.any = any;
+    m->step.coming.first = first;
 }
 
 void motion_examine_step(const arm *a, motion *m, double until, double far, double step)
@@ -221,15 +222,15 @@ void motion_examine_step(const arm *a, motion *m, double until, double far, doub
 static status dense_stride(const arm *a, motion *m, double until, double step, double *h,
                            event_function *first, bool *any)
 {
-    if (!m->ahead.known) {
+    if (!m->step.coming.known) {
         examine(a, m, until, until, step);
     }
-    m->ahead.known = false;
-    *h = m->ahead.length;
-    *any = m->ahead.any;
-    *first = m->ahead.first;
-    m->aim = smaller(until, m->cut);
-    if (!m->ahead.begun) {
+    m->step.coming.known = false;
+    *h = m->step.coming.length;
+    *any = m->step.coming.any;
+    *first = m->step.coming.first;
+    m->step.aim = smaller(until, m->record.tstop);
+    if (!m->step.coming.begun) {
         double sum = 0;
         for (int i = 0; i < m->dof; i++) {
             sum += state_accelerations(m, m->state)[i];
@@ -242,7 +243,7 @@ static status dense_stride(const arm *a, motion *m, double until, double step, d
 // A requested instant is reached to the last bit.
 static void meet_stop(motion *m, double until)
 {
-    const double stop = smaller(until, m->cut);
+    const double stop = smaller(until, m->record.tstop);
     if (!instant_after(stop, m->state[SLOT_TIME])) {
         m->state[SLOT_TIME] = stop;
     }
@@ -253,15 +254,15 @@ static void meet_stop(motion *m, double until)
 static void rest(motion *m, double until, double step)
 {
     double *state = m->state;
-    const double now = state[SLOT_TIME], h = smaller(m->cut - now, until - now);
+    const double now = state[SLOT_TIME], h = smaller(m->record.tstop - now, until - now);
     if (state[SLOT_CONTACT] != 0) {
         motion_note_force(m, now, state[SLOT_FORCE]);
     }
     memcpy(m->trial, state, (size_t)m->size * sizeof *state);
     state[SLOT_TIME] += h;
     state_quadratures(m, state)[QUADRATURE_FORCE] += h * state[SLOT_FORCE];
-    m->reached = unknown_energy;
-    m->made = h;
+    m->step.reached = unknown_energy;
+    m->step.last = h;
     count_step(m, state[SLOT_TIME] - now, step);
     meet_stop(m, until);
 }
@@ -272,7 +273,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     *report = (motion_report){.event = MOTION_REACHED};
 
     // a step examined by motion_examine_step needs no search any more
-    if (!m->ahead.known && (m->out_of_memory || held_folded(a, m))) {
+    if (!m->step.coming.known && (m->out_of_memory || held_folded(a, m))) {
         m->failure_time = m->state[SLOT_TIME];
         return m->out_of_memory ? STATUS_NO_MEMORY : STATUS_FOLDED;
     }
@@ -299,7 +300,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     }
 
     accept(m, step);
-    m->made = h;
+    m->step.last = h;
     note_hold(a, m);
     const bool folded = any && (first == EVENT_OF_GAP || first == EVENT_OF_FORCE) &&
                         motion_wall_is_rigid(m) && chain_is_folded(a, state_angles(m, m->state));
@@ -323,7 +324,7 @@ double *motion_between(const arm *a, motion *m, double time, state_extent extent
     double *now = m->state, *start = m->trial;
     m->state = start;
     m->trial = m->between;
-    m->aim = time;
+    m->step.aim = time;
     status s = motion_try_step_for(a, m, time - start[SLOT_TIME], extent);
     m->state = now;
     m->trial = start;

@@ -316,7 +316,8 @@ static status locate_depth(const arm *a, motion *m, double h)
             return failed;
         }
         double v = -m->trial[SLOT_GAP_VELOCITY];
-        m->largest_penetration = fmax(m->largest_penetration, -state_rest_gap(m->trial));
+        m->record.largest_penetration =
+            fmax(m->record.largest_penetration, -state_rest_gap(m->trial));
         if (v > 0) {
             lo = s, v0 = v, v1 /= 2;
         } else {
@@ -353,7 +354,7 @@ status locate_peak(const arm *a, motion *m, double h)
         return STATUS_OK;
     }
     double s = -slope / (2 * curve) * h, top = f0 + slope * (s / h) / 2;
-    if (top <= m->pulse_peak * (1 + 1e-12)) {
+    if (top <= m->record.pulse_peak * (1 + 1e-12)) {
         return STATUS_OK;
     }
 

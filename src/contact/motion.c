@@ -83,8 +83,8 @@ force_bounds motion_force_bounds(const arm *a, const motion *m, double *state)
 
 void motion_watch(motion *m)
 {
-    m->pulse_peak = -1;
-    m->pulse_peak_time = m->state[SLOT_TIME];
+    m->record.pulse_peak = -1;
+    m->record.pulse_peak_time = m->state[SLOT_TIME];
 }
 
 double motion_rounding(const arm *a, const motion *m)
@@ -265,7 +265,7 @@ status motion_try_step(const arm *a, motion *m, double h)
 status motion_try_step_for(const arm *a, motion *m, double h, state_extent extent)
 {
     double *trial = m->trial;
-    m->holds = unknown_energy;
+    m->step.holds = unknown_energy;
     if (motion_held_still(m)) {
         let_time_pass(m, h);
         return STATUS_OK;
@@ -306,4 +306,30 @@ bool motion_between_all(const arm *a, motion *m, const double *times, int count,
         finite = finite && is_finite(m, states[i]);
     }
     return finite;
+}
+
+// --- copies -----------------------------------------------------------------------------------
+
+size_t motion_saved_size(const motion *m)
+{
+    assert(m != NULL);
+    return sizeof m->record + (size_t)m->most_size * sizeof *m->state;
+}
+
+void motion_save(const motion *m, void *bytes)
+{
+    assert(m != NULL && bytes != NULL);
+    const size_t size = (size_t)m->size * sizeof *m->state;
+    memset(bytes, 0, motion_saved_size(m));
+    memcpy(bytes, &m->record, sizeof m->record);
+    memcpy((char *)bytes + sizeof m->record, m->state, size);
+}
+
+void motion_restore(const arm *a, motion *m, const void *bytes)
+{
+    assert(a != NULL && m != NULL && bytes != NULL);
+    motion_follow_arm(a, m);
+    memcpy(&m->record, bytes, sizeof m->record);
+    memcpy(m->state, (const char *)bytes + sizeof m->record, (size_t)m->size * sizeof *m->state);
+    motion_forget_stride(m);
 }

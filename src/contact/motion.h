@@ -80,6 +80,38 @@ enum motion_kept {
     KEPT_COUNT = KEPT_VELOCITIES + 3
 };
 
+// What holds between calls beside the state vector; a checkpoint has both (motion_save).
+typedef struct motion_record {
+    long steps;                 // time steps taken: `step` long, or cut short by an event or a stop
+    double start_energy;        // kinetic and strain energy at the start [J]
+    double tstop;               // where a step ends early, as it was before [s]; HUGE_VAL: nowhere
+    double pulse_peak;          // largest f since the last impact or touch, -1 if none [N]
+    double pulse_peak_time;     // [s]
+    double largest_penetration; // [m]
+    double overheld;            // largest friction torque beyond stiction that held the hub [N m]
+} motion_record;
+
+// The step that was taken last and the one to come. Nothing of it is kept with a state.
+typedef struct motion_steps {
+    double last; // length of the last step, up to its end as the engine located it [s]
+    double aim;  // instant where a state is wanted, if it is to be met to the last bit [s]
+
+    // energies of m->trial, and of m->state as motion_step left it, if the engine computed them
+    // with the state; else unknown_energy
+    state_energy holds, reached;
+    bool history_invalid; // the step in hand may be another arm's: only what the state keeps of it
+                          // is valid
+
+    // the coming step, if motion_examine_step has examined it
+    struct {
+        bool known;
+        bool begun;           // else it cannot be made
+        double length;        // to its end, tstop or the first event [s]
+        bool any;             // an event ends it
+        event_function first; // that event's
+    } coming;
+} motion_steps;
+
 struct motion {
     // A checkpoint is a copy of `state`, size doubles:
     // slots, q[n], w[n], quadratures, accelerations a[n], algorithmic accelerations[n], what is
@@ -90,21 +122,18 @@ struct motion {
     int head_size; // without what only some engines keep
     int dof;
     int link_count;
-    double start_energy; // kinetic and strain energy at the start [J]
 
     // how the smooth motion is advanced
     const engine *engine;
-    bool chosen;         // by the caller: it stays when the arm changes
-    double nominal_step; // method.step [s]
-    double tolerance;    // method.tolerance, of the stiff engine's steps [-]
-    bool wall_gives;     // contact is no constraint
-    bool wall_has_face;  // contact ties the arm to a mass on a spring
-    bool electric;       // the motor's current is followed
-    bool wall_moves;     // nothing rests for long
-    bool wall_is_shaken; // and shakes a face with a mass
-    bool out_of_memory;  // no memory for the engine that a changed arm asks for
-    double cut;          // where a step ends early, its course before unchanged [s]; HUGE_VAL: none
-    double aim; // the instant where a state is wanted, if it is to be met to the last bit [s]
+    bool chosen;                          // by the caller: it stays when the arm changes
+    double nominal_step;                  // method.step [s]
+    double tolerance;                     // method.tolerance, of the stiff engine's steps [-]
+    bool wall_gives;                      // contact is no constraint
+    bool wall_has_face;                   // contact ties the arm to a mass on a spring
+    bool electric;                        // the motor's current is followed
+    bool wall_moves;                      // nothing rests for long
+    bool wall_is_shaken;                  // and shakes a face with a mass
+    bool out_of_memory;                   // no memory for the engine that a changed arm asks for
     double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
 
     // scratch, nothing of it outlives a step
@@ -112,36 +141,15 @@ struct motion {
     double *between; // states within the last step: MOTION_TOGETHER of a dense engine, else one
     double *scratch; // vectors of length dof
     chain_link *links;
-    arm *moved;           // the arm with its wall at an instant, where that moves, else NULL
-    void *memory;         // the engine's own: the stride it is in
-    double most_force;    // upper bound of the force in the stride of a dense engine [N]
-    bool history_invalid; // that stride may be another arm's: only what the state keeps of it is
-                          // valid
-
-    // energies of m->trial, and of m->state as motion_step left it, if the engine computed them
-    // with the state; else unknown_energy
-    state_energy holds, reached;
-
-    double made; // length of the last step, up to its end as the engine located it [s]
-
-    // the coming step, if motion_examine_step has examined it
-    struct {
-        bool known;
-        bool begun;           // else it cannot be made
-        double length;        // to its end, the cut or the first event [s]
-        bool any;             // an event ends it
-        event_function first; // that event's
-    } ahead;
+    arm *moved;        // the arm with its wall at an instant, where that moves, else NULL
+    void *memory;      // the engine's own: the stride it is in
+    double most_force; // upper bound of the force in the stride of a dense engine [N]
+    motion_steps step; // the last one and the coming one
 
     void *block, *engine_block; // where all of that lies
 
-    // records since motion_watch
-    long steps;                 // time steps taken: `step` long, or cut short by an event or a stop
-    double pulse_peak;          // largest f since the last impact or touch, -1 if none [N]
-    double pulse_peak_time;     // [s]
-    double largest_penetration; // [m]
-    double overheld;            // largest friction torque beyond stiction that held the hub [N m]
-    double failure_time;        // instant from which a step failed [s]
+    motion_record record; // that a copy of the state continues with
+    double failure_time;  // instant from which a step failed [s]
 };
 
 // Views into a state vector.
@@ -230,12 +238,20 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method);
 // step fails with STATUS_NO_MEMORY.
 void motion_follow_arm(const arm *a, motion *m);
 
+// Bytes of a copy of state and record, of any engine that a changed arm may get.
+size_t motion_saved_size(const motion *m);
+// Copies state and record; what the state has no use of is zero.
+void motion_save(const motion *m, void *bytes);
+// Goes on with a copy, with the arm as it was then: chooses its engine, and begins its step anew
+// from what the state keeps of it.
+void motion_restore(const arm *a, motion *m, const void *bytes);
+
 // To be called after m->state was overwritten by a copy of an earlier state, even if the arm
 // changed in between.
 static inline void motion_forget_stride(motion *m)
 {
-    m->history_invalid = true;
-    m->ahead.known = false;
+    m->step.history_invalid = true;
+    m->step.coming.known = false;
 }
 
 // To be called after a change, other than a jump of the state, of anything that a stride depends
@@ -263,9 +279,9 @@ void motion_watch(motion *m);
 // Records a force [N] in contact at an instant [s] as the pulse's peak if none was larger.
 static inline void motion_note_force(motion *m, double time, double force)
 {
-    if (force > m->pulse_peak) {
-        m->pulse_peak = force;
-        m->pulse_peak_time = time;
+    if (force > m->record.pulse_peak) {
+        m->record.pulse_peak = force;
+        m->record.pulse_peak_time = time;
     }
 }
 
@@ -411,7 +427,7 @@ double motion_energy_residual(const arm *a, const motion *m, double *state);
 static inline double motion_unaccounted(const motion *m, double *state, double energy)
 {
     const double *quadrature = state_quadratures(m, state);
-    const double stored = energy - m->start_energy;
+    const double stored = energy - m->record.start_energy;
     const double work =
         motion_motor_work(m, state) + state[SLOT_EXTERNAL_WORK] + quadrature[QUADRATURE_PUSHED];
     const double lost = state[SLOT_FRICTION_LOSS] + state[SLOT_IMPACT_LOSS] +

@@ -151,7 +151,7 @@ motion *motion_create_by(const arm *a, const method_parameters *method, const en
     m->dof = a->dof;
     m->link_count = a->links;
     m->nominal_step = method->step;
-    m->cut = HUGE_VAL;
+    m->record.tstop = HUGE_VAL;
     m->head_size = SLOT_COUNT + 4 * a->dof + QUADRATURE_COUNT + KEPT_COUNT;
     choose_engine(a, m, method, chosen);
     m->size = size_of_states(a, m, m->engine);
@@ -187,14 +187,14 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
                    .dof = m->dof,
                    .link_count = m->link_count,
                    .nominal_step = method->step,
-                   .cut = HUGE_VAL,
+                   .record.tstop = HUGE_VAL,
                    .trial = m->trial,
                    .between = m->between,
                    .scratch = m->scratch,
                    .links = m->links,
                    .moved = m->moved,
                    .memory = m->memory,
-                   .history_invalid = true,
+                   .step.history_invalid = true,
                    .block = m->block,
                    .engine_block = m->engine_block};
     choose_engine(a, &next, method, NULL);
@@ -227,7 +227,7 @@ void motion_follow_arm(const arm *a, motion *m)
         return;
     }
     free(m->engine_block);
-    m->ahead.known = false;
+    m->step.coming.known = false;
     m->engine = wanted;
     m->size = size_of_states(a, m, wanted);
     m->out_of_memory = !open_engine(a, m);

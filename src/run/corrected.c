@@ -22,7 +22,7 @@
 // Whether the stretch between two stops is through.
 static bool stretch_is_over(const corrected_run *c)
 {
-    return !(corrected_now(c) < smaller(c->stop, c->motion->cut));
+    return !(corrected_now(c) < smaller(c->stop, c->motion->record.tstop));
 }
 
 // The next instant that steps end at: the rig's, or the end.
@@ -136,7 +136,7 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
         if (failed == STATUS_OK && r->rig != NULL) {
             failed = run_rig(c, f);
         }
-        m->cut = next_cut(r, window, m->state[SLOT_TIME]);
+        m->record.tstop = next_cut(r, window, m->state[SLOT_TIME]);
         c->stop = next_stop(r);
         c->last_event = -1;
         c->at_once = 0;
@@ -242,7 +242,7 @@ static void remark_on_single_link(const corrected_run *c)
 static double rounding_energy(const corrected_run *c)
 {
     const arm *a = &c->arm;
-    const double force = larger(c->motion->pulse_peak, 0);
+    const double force = larger(c->motion->record.pulse_peak, 0);
     const double torque = larger(fabs(a->motor.torque), force * a->links * a->link_length);
     return ANGLE_ROUNDING * (torque + ANGLE_ROUNDING * beam_stiffness(a));
 }
@@ -254,7 +254,7 @@ static void judge(const corrected_run *c)
     const motion *m = c->motion;
     summary *s = &r->result->summary;
     double bound = r->scenario->parameters.method.residual_bound;
-    double energy = m->start_energy + r->state.energy_put_in;
+    double energy = m->record.start_energy + r->state.energy_put_in;
     const double rounding = rounding_energy(c);
     if (r->state.chatters > 0) {
         remark(s,
@@ -285,12 +285,12 @@ static void judge(const corrected_run *c)
         remark(s, "the arm was %.3g m inside a rigid wall: the method was %s%s",
                s->max_penetration_m, m->engine->name, corrected_advice(m));
     }
-    if (m->overheld > 0) {
+    if (m->record.overheld > 0) {
         s->inaccurate = true;
         remark(s,
                "friction held the hub by %.3g N m more than motor.stiction allows, a slip was "
                "missed: the method was %s%s",
-               m->overheld, m->engine->name, corrected_advice(m));
+               m->record.overheld, m->engine->name, corrected_advice(m));
     }
     judge_size(c, energy > rounding ? energy : 0);
 }
@@ -316,8 +316,8 @@ static void sum_up(corrected_run *c, status failed)
     // as if the run ended here; a step that fails in this does not end the run, but may be lost
     fault none;
     loss_unless(corrected_end_step(c, &none) != STATUS_NO_MEMORY);
-    s->steps = (double)m->steps;
-    s->max_penetration_m = fmax(0, m->largest_penetration);
+    s->steps = (double)m->record.steps;
+    s->max_penetration_m = fmax(0, m->record.largest_penetration);
     s->motor_work_J = motion_motor_work(m, m->state);
     if (!motion_wall_is_rigid(m)) {
         s->wall_loss_J = state_quadratures(m, m->state)[QUADRATURE_WALL];
@@ -334,9 +334,9 @@ static void sum_up(corrected_run *c, status failed)
             corrected_close_first_pulse(c);
             s->first_pulse_s = (double)NAN; // it never ended
         }
-        const bool earlier = r->state.earlier_peak > m->pulse_peak;
-        const double peak = earlier ? r->state.earlier_peak : m->pulse_peak;
-        const double when = earlier ? r->state.earlier_peak_time : m->pulse_peak_time;
+        const bool earlier = r->state.earlier_peak > m->record.pulse_peak;
+        const double peak = earlier ? r->state.earlier_peak : m->record.pulse_peak;
+        const double when = earlier ? r->state.earlier_peak_time : m->record.pulse_peak_time;
         if (peak >= 0) {
             s->peak_force_N = peak;
             s->time_to_peak_s = when - s->first_contact_s;

@@ -19,8 +19,8 @@ typedef struct way {
 
 // A step that continues beyond instants at which the run is observed: samples of the rig that
 // change nothing, stops of a program. The motion still stands at the step's start and knows how far
-// the step goes (m->ahead; m->trial is a copy, as after a step); the run has come to an instant
-// within it.
+// the step goes (m->step.coming; m->trial is a copy, as after a step); the run has come to an
+// instant within it.
 typedef struct open_step {
     bool goes_on;     // there is one
     double begun_for; // the stop that it was begun for [s]

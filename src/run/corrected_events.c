@@ -81,8 +81,9 @@ static void open_landing(corrected_run *c, double impulse)
     motion *m = c->motion;
     r->landing_open = true;
     r->landing = (landing){m->state[SLOT_TIME], impulse, (double)NAN, (double)NAN};
-    r->earlier_peak = isnan(c->recording->result->summary.first_contact_s) ? -1 : m->pulse_peak;
-    r->earlier_peak_time = m->pulse_peak_time;
+    r->earlier_peak =
+        isnan(c->recording->result->summary.first_contact_s) ? -1 : m->record.pulse_peak;
+    r->earlier_peak_time = m->record.pulse_peak_time;
     motion_watch(m);
 }
 
@@ -91,9 +92,9 @@ void corrected_close_landing(corrected_run *c)
     recording_state *r = &c->recording->state;
     const motion *m = c->motion;
     r->landing_open = false;
-    if (m->pulse_peak >= 0) {
-        r->landing.peak = m->pulse_peak;
-        r->landing.time_to_peak = m->pulse_peak_time - r->landing.time;
+    if (m->record.pulse_peak >= 0) {
+        r->landing.peak = m->record.pulse_peak;
+        r->landing.time_to_peak = m->record.pulse_peak_time - r->landing.time;
     }
 }
 
@@ -116,9 +117,9 @@ void corrected_close_first_pulse(corrected_run *c)
     summary *s = &r->result->summary;
     r->state.pulse_open = false;
     s->first_pulse_s = m->state[SLOT_TIME] - s->first_contact_s;
-    if (m->pulse_peak >= 0) {
-        s->first_pulse_peak_N = m->pulse_peak;
-        s->first_pulse_time_to_peak_s = m->pulse_peak_time - s->first_contact_s;
+    if (m->record.pulse_peak >= 0) {
+        s->first_pulse_peak_N = m->record.pulse_peak;
+        s->first_pulse_time_to_peak_s = m->record.pulse_peak_time - s->first_contact_s;
     }
     corrected_tell_bounds(r->state.largest, &s->first_pulse_peak_low_N,
                           &s->first_pulse_peak_high_N);
@@ -137,7 +138,7 @@ static bool has_not_touched(const corrected_run *c)
 {
     const summary *s = &c->recording->result->summary;
     return s->first_contact_s < AT_ONCE && s->contact_impulse_Ns == 0 &&
-           c->motion->state[SLOT_TIME] < AT_ONCE && !(c->motion->pulse_peak > NO_FORCE);
+           c->motion->state[SLOT_TIME] < AT_ONCE && !(c->motion->record.pulse_peak > NO_FORCE);
 }
 
 // Its first contact is still to come.

@@ -163,8 +163,8 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
     }
 
     // the force at the start and at the ends of all pieces
-    const double since = rest->start - m->trial[SLOT_TIME], width = (m->made - since) / count;
-    m->engine->dense_output(&c->arm, m, OUTPUT_FORCE, since, m->made, count, at);
+    const double since = rest->start - m->trial[SLOT_TIME], width = (m->step.last - since) / count;
+    m->engine->dense_output(&c->arm, m, OUTPUT_FORCE, since, m->step.last, count, at);
 
     const double slope_share = width / 12;
     double start = rest->start;
@@ -333,7 +333,7 @@ status corrected_record_forces(corrected_run *c)
     // most under a rig need not be cut in pieces, which are shorter for the force than for the
     // sensors
     const bool touches = c->motion->trial[SLOT_CONTACT] != 0;
-    const int pieces = touches ? pieces_of_step(c, c->motion->made, FORCE_REACH) : 0;
+    const int pieces = touches ? pieces_of_step(c, c->motion->step.last, FORCE_REACH) : 0;
     const bool one_piece = pieces == 1 && !decays_outrun(&c->arm);
     if (c->recording->rig != NULL) {
         const status s = follow_with_sensors(c, &force, one_piece);

@@ -116,7 +116,7 @@ void corrected_begin_step(corrected_run *c)
 static bool goes_beyond(const corrected_run *c, double time)
 {
     const motion *m = c->motion;
-    return m->ahead.begun && instant_after(m->state[SLOT_TIME] + m->ahead.length, time);
+    return m->step.coming.begun && instant_after(m->state[SLOT_TIME] + m->step.coming.length, time);
 }
 
 // What the sensors are fixed to at an instant [s] within the step under way: most see nothing but
@@ -210,7 +210,7 @@ status corrected_stride(corrected_run *c, double until, fault *f)
     // or to the end of one; where it stops by itself it is that of a run that nobody steps, to the
     // last bit
     if (until < c->stop && !c->under_way.goes_on) {
-        m->cut = smaller(m->cut, until);
+        m->record.tstop = smaller(m->record.tstop, until);
     }
     return make_step(c, c->stop, f);
 }
@@ -223,8 +223,8 @@ status corrected_end_step(corrected_run *c, fault *f)
     if (!on->goes_on) {
         return STATUS_OK;
     }
-    m->ahead.length = on->now - m->state[SLOT_TIME];
-    m->ahead.any = false;
+    m->step.coming.length = on->now - m->state[SLOT_TIME];
+    m->step.coming.any = false;
     return make_step(c, on->now, f);
 }
 
@@ -266,7 +266,8 @@ static inline status audit(corrected_run *c, state_energy has)
 
     double turned_over = fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
                          fabs(held) + fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED]) +
-                         m->start_energy + fabs(c->arm.motor.torque) * TINY_TURN + TINY_ENERGY;
+                         m->record.start_energy + fabs(c->arm.motor.torque) * TINY_TURN +
+                         TINY_ENERGY;
     // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
     double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
     if (!isfinite(residual) || !isfinite(turned_over)) {
@@ -445,8 +446,10 @@ status corrected_record_step(corrected_run *c, bool at_event)
              chain_weight_energy(a, state_angles(m, m->trial)));
 
     // an arm held still has the energy it had
-    const bool known = m->reached.kinetic >= 0;
-    status s = motion_held_still(m) ? STATUS_OK : known ? audit(c, m->reached) : corrected_audit(c);
+    const bool known = m->step.reached.kinetic >= 0;
+    status s = motion_held_still(m) ? STATUS_OK
+               : known              ? audit(c, m->step.reached)
+                                    : corrected_audit(c);
 
     // how fast the tip came towards the wall on its own
     if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {

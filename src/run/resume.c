@@ -40,7 +40,7 @@ status checkpoint_open_history(recording *r, const motion *m, fault *f)
     assert(r != NULL && m != NULL);
     run_history *h = &r->result->history;
     size_t expected = r->options->rows_expected;
-    size_t size = sizeof(checkpoint) + (size_t)m->most_size * sizeof(double);
+    size_t size = sizeof(checkpoint) + motion_saved_size(m);
 
     // shared, plain, or one that others can share
     if (h->forces.array.reserved > 0) {
@@ -85,14 +85,8 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
                          .force_steps = h->forces.count,
                          .impacted = r->result->before_impact != NULL,
                          .recording = r->state,
-                         .summary = r->result->summary,
-                         .steps = m->steps,
-                         .start_energy = m->start_energy,
-                         .pulse_peak = m->pulse_peak,
-                         .pulse_peak_time = m->pulse_peak_time,
-                         .largest_penetration = m->largest_penetration,
-                         .overheld = m->overheld};
-    memcpy(kept->state, m->state, (size_t)m->size * sizeof(double));
+                         .summary = r->result->summary};
+    motion_save(m, kept->motion);
 
     return true;
 }
@@ -111,15 +105,7 @@ void checkpoint_restore(recording *r, arm *a, motion *m)
     r->state = kept->recording;
 
     // and the motion
-    motion_follow_arm(a, m);
-    memcpy(m->state, kept->state, (size_t)m->size * sizeof(double));
-    motion_forget_stride(m);
-    m->steps = kept->steps;
-    m->start_energy = kept->start_energy;
-    m->pulse_peak = kept->pulse_peak;
-    m->pulse_peak_time = kept->pulse_peak_time;
-    m->largest_penetration = kept->largest_penetration;
-    m->overheld = kept->overheld;
+    motion_restore(a, m, kept->motion);
     recording_publish(r, kept->time);
 }
 

@@ -17,13 +17,7 @@ typedef struct checkpoint {
     recording_state recording;
     summary summary;
     // of the motion
-    long steps;
-    double start_energy;        // [J]
-    double pulse_peak;          // [N]
-    double pulse_peak_time;     // [s]
-    double largest_penetration; // [m]
-    double overheld;            // [N m]
-    double state[];
+    double motion[]; // motion_saved_size bytes
 } checkpoint;
 
 // The checkpoint of a number, oldest first.

@@ -77,64 +77,41 @@ static const double *corrected_state(const stepped_run *run, int *angle_count)
     return state_angles(m, corrected_present(&run->corrected));
 }
 
-// What the stretch and the motion remember; the motion's state follows.
-typedef struct saved_motion {
+// What the stretch remembers; what the motion does follows.
+typedef struct saved_stretch {
     double stop, last_event;
     int at_once;
     open_step under_way;
-    long steps;
-    double start_energy, cut, pulse_peak, pulse_peak_time, largest_penetration, overheld;
-} saved_motion;
+} saved_stretch;
 
 static size_t corrected_saved_size(const stepped_run *run)
 {
-    return sizeof(saved_motion) + (size_t)run->corrected.motion->most_size * sizeof(double);
+    return sizeof(saved_stretch) + motion_saved_size(run->corrected.motion);
 }
 
 static void corrected_save(const stepped_run *run, void *bytes)
 {
     const corrected_run *c = &run->corrected;
-    const motion *m = c->motion;
-    saved_motion saved;
+    saved_stretch saved;
     memset(&saved, 0, sizeof saved);
     saved.stop = c->stop;
     saved.last_event = c->last_event;
     saved.at_once = c->at_once;
     saved.under_way = c->under_way;
-    saved.steps = m->steps;
-    saved.start_energy = m->start_energy;
-    saved.cut = m->cut;
-    saved.pulse_peak = m->pulse_peak;
-    saved.pulse_peak_time = m->pulse_peak_time;
-    saved.largest_penetration = m->largest_penetration;
-    saved.overheld = m->overheld;
     memcpy(bytes, &saved, sizeof saved);
-    char *state = (char *)bytes + sizeof saved;
-    const size_t size = (size_t)m->size * sizeof(double);
-    memcpy(state, m->state, size);
-    memset(state + size, 0, (size_t)m->most_size * sizeof(double) - size);
+    motion_save(c->motion, (char *)bytes + sizeof saved);
 }
 
 static void corrected_restore(stepped_run *run, const void *bytes)
 {
     corrected_run *c = &run->corrected;
-    motion *m = c->motion;
-    saved_motion saved;
-    corrected_bind_arm(c); // to parameters and voltage of then
-    motion_follow_arm(&c->arm, m);
+    saved_stretch saved;
     memcpy(&saved, bytes, sizeof saved);
-    memcpy(m->state, (const char *)bytes + sizeof saved, (size_t)m->size * sizeof(double));
-    motion_forget_stride(m);
+    corrected_bind_arm(c); // to parameters and voltage of then
+    motion_restore(&c->arm, c->motion, (const char *)bytes + sizeof saved);
     c->last_event = saved.last_event;
     c->at_once = saved.at_once;
     c->pace = pace_begin();
-    m->steps = saved.steps;
-    m->start_energy = saved.start_energy;
-    m->cut = saved.cut;
-    m->pulse_peak = saved.pulse_peak;
-    m->pulse_peak_time = saved.pulse_peak_time;
-    m->largest_penetration = saved.largest_penetration;
-    m->overheld = saved.overheld;
 
     // the step under way, looked at again as it was when it was begun
     c->under_way.goes_on = false;

@@ -300,7 +300,7 @@ status sensor_view_compute(const scenario *s, int links, run_monitor *monitor, s
                       s->name, links, p.run.duration);
     }
 
-    view->peak = m->pulse_peak >= 0 ? m->pulse_peak : 0;
+    view->peak = m->record.pulse_peak >= 0 ? m->record.pulse_peak : 0;
     for (int i = 0; i < SENSOR_CONSTANTS; i++) {
         view->sensed[i] = w.lags[i].peak;
         view->delay[i] = w.lags[i].peak_time - w.touched;

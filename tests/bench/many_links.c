@@ -35,7 +35,7 @@ static passage pass(const parameters *p, double angle, double velocity, double a
         give_up("out of memory");
     }
     motion_start(&a, m, angle, velocity);
-    double put_in = m->start_energy;
+    double put_in = m->record.start_energy;
     while (m->state[SLOT_TIME] < duration) {
         motion_report r;
         const double work = m->state[SLOT_MOTOR_WORK];

@@ -152,7 +152,7 @@ static void take_up(const arm *a, motion *m)
     taylor_stride *s = m->memory;
     double *kept = state_kept(m, m->state);
     const size_t start = KEPT_WANTED * sizeof *kept, size = sizeof s->kept - start;
-    if (m->history_invalid || !s->own ||
+    if (m->step.history_invalid || !s->own ||
         memcmp(s->kept + KEPT_WANTED, kept + KEPT_WANTED, size) != 0) {
         prepare(a, m);
         taylor_compute_one(&s->lane);
@@ -206,7 +206,7 @@ static double advance(const arm *a, motion *m, double remaining, double step)
         s->known = 0;
 
         // series of a group that are to be gone on with
-        const double way = smaller(m->cut - m->state[SLOT_TIME], remaining);
+        const double way = smaller(m->record.tstop - m->state[SLOT_TIME], remaining);
         s->own = s->lane.group == NULL || kept[KEPT_LENGTH] > way;
         if (s->own && s->lane.group != NULL) {
             taylor_fetch(&s->lane);
@@ -214,7 +214,7 @@ static double advance(const arm *a, motion *m, double remaining, double step)
     }
 
     s->ready = false;
-    m->history_invalid = false;
+    m->step.history_invalid = false;
     m->most_force = s->lane.block[AT_FORCE_MOST];
     memcpy(s->kept, kept, sizeof s->kept);
     s->used = kept[KEPT_USED];

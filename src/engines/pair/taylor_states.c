@@ -71,9 +71,9 @@ status taylor_state_at(const arm *a, motion *m, double h, state_extent extent)
     int place;
     const taylor_instants *at = instant_at(s, h, &one, &place);
     take_instant(a, m, at, place, m->trial);
-    m->holds = (state_energy){at->kinetic[place], at->strain[place]};
+    m->step.holds = (state_energy){at->kinetic[place], at->strain[place]};
     if (s->lane.form.contact && motion_project(a, m, m->trial)) {
-        m->holds = unknown_energy;
+        m->step.holds = unknown_energy;
     }
     return STATUS_OK;
 }

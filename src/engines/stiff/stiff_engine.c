@@ -73,7 +73,7 @@ static void take_up(stiff_stride *s, const arm *a, motion *m)
     const double *kept = state_kept(m, m->state);
     const size_t from = STIFF_LENGTH,
                  size = (KEPT_COUNT + stiff_kept_size(a) - from) * sizeof *kept;
-    if (!s->known || m->history_invalid || memcmp(s->kept + from, kept + from, size) != 0) {
+    if (!s->known || m->step.history_invalid || memcmp(s->kept + from, kept + from, size) != 0) {
         memcpy(s->kept, kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
         s->step.dof = a->dof;
         s->step.links = a->links;
@@ -102,7 +102,7 @@ static double advance(const arm *a, motion *m, double remaining, double step)
         s->known = false;
         return 0;
     }
-    m->history_invalid = false;
+    m->step.history_invalid = false;
     m->most_force = function_greatest(&s->force);
     memcpy(state_kept(m, m->state), s->kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
     state_kept(m, m->state)[KEPT_USED] = s->used;

@@ -122,7 +122,7 @@ status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
 
     // by the instant itself, which is the same whatever stops were made on the way
     double time = m->state[SLOT_TIME] + h;
-    time = fabs(time - m->aim) <= 4 * DBL_EPSILON * time ? m->aim : time;
+    time = fabs(time - m->step.aim) <= 4 * DBL_EPSILON * time ? m->step.aim : time;
     if (extent == STATE_SENSED) {
         sense_within(s, a, m, time - s->kept[STIFF_TIME], m->trial);
         return STATUS_OK;
