@@ -215,11 +215,11 @@ TEST(measured_margins_are_those_of_runs)
         const double delay = more ? fmin(1.1 * m.delay_s, 0.0249) : 0.9 * m.delay_s;
         char changes[256];
         snprintf(changes, sizeof changes,
-                 IDEAL "run.duration=3 control.delay=%.6g belief.delay_error=-%.6g", delay, delay);
+                 IDEAL "run.duration=6 control.delay=%.6g belief.delay_error=-%.6g", delay, delay);
         SCOPED(run_finish) run_result result;
         s = shipped_with("compare/observer", changes);
         assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
-        assert_true((result.summary.settling_time_s < 1) == !more);
+        assert_true(isfinite(result.summary.settling_time_s) == !more); // or it never does
         scenario_finish(&s);
     }
 }

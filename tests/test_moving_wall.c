@@ -365,15 +365,17 @@ TEST(a_refused_wall_changes_nothing)
 // On walls that come and go by a millimetre a second the law holds its force.
 TEST(the_observer_holds_its_force_on_a_moving_wall)
 {
-    static const char *const on[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
-    for (size_t i = 0; i < 2; i++) {
+    static const char *const on[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt",
+                                     "wall.contact=hunt-crossley"};
+    for (size_t i = 0; i < 3; i++) {
         SCOPED(run_finish)
         run_result r = rig_run(SETTINGS("control.law=observer", "control.force=1",
                                         "control.approach_voltage=1", "run.duration=3",
                                         "wall.motion=sine", on[i]),
                                true);
         for (size_t k = 0; k < r.trace.row_count; k++) {
-            if (r.trace.rows[k].time > 1) {
+            // a wall that takes no energy up is bounced on for longer
+            if (r.trace.rows[k].time > (i < 2 ? 1 : 1.3)) {
                 check_close(r.trace.rows[k].force, 1, 0.1);
             }
         }

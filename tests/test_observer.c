@@ -189,7 +189,7 @@ TEST(two_links_reduce_to_themselves)
 {
     controller_setup s = two_links();
     reduced_arm reduced;
-    assert_null(reduced_arm_init(&reduced, &s));
+    assert_null(reduced_arm_init(&reduced, &s, 0));
     double quarter = s.link_mass * 0.25 / 4, inertia = s.hub_inertia + 2 * s.link_inertia;
     double mass = inertia + 2 * quarter, mu = (quarter - s.link_inertia) / 0.5;
     assert_int_equal(reduced.contact.count, 1);
@@ -214,7 +214,7 @@ TEST(a_touch_loses_energy)
     s.links = 8;
     s.period = 1e-3;
     reduced_arm reduced;
-    assert_null(reduced_arm_init(&reduced, &s));
+    assert_null(reduced_arm_init(&reduced, &s, 0));
     assert_true(reduced.contact.count >= 3);
     double before = 0, after = 0;
     for (int i = 0; i < reduced.contact.count; i++) {
@@ -360,6 +360,7 @@ static observer_arms arms_after(const char *const *settings)
 
     // sample k is what a row between it and the next one shows
     size_t row = 0;
+    int felt = 0;
     double voltage = 0;
     for (int k = 0; k < 160; k++) {
         while (r.trace.rows[row].time < (k + 0.5) * setup.period) {
@@ -375,14 +376,14 @@ static observer_arms arms_after(const char *const *settings)
                                .film = (double)NAN,
                                .accelerometer = (double)NAN,
                                .wanted_mode = -1};
-        bool felt = in.force > s.parameters.control.contact_threshold;
+        felt = in.force > s.parameters.control.contact_threshold ? felt + 1 : 0;
         if (k == 0) {
             observer_arms_start(&arms, &in);
         } else {
             observer_arms_sample(&arms, &in, felt);
             observer_arms_choose(&arms);
         }
-        if (felt && !observer_arms_observer(&arms)->touches) {
+        if (felt > 0 && !observer_arms_observer(&arms)->touches) {
             observer_arms_touch(&arms, in.time);
         }
         voltage = read->voltage;
@@ -391,7 +392,8 @@ static observer_arms arms_after(const char *const *settings)
 }
 
 // Told the truth, the arm told of; told something else, the one that is nearest: of eight links
-// six, and the hub that gives. A stiffness or an inertia believed wrongly is no other arm.
+// six, the tip's mass, and the hub that gives. A stiffness or an inertia believed wrongly is no
+// other arm.
 TEST(readings_tell_which_arm_it_is)
 {
     static const char *const told[][4] = {
@@ -409,10 +411,12 @@ TEST(readings_tell_which_arm_it_is)
     assert_int_equal(three.on, 1);
     observer_arms eight = arms_after(SETTINGS("control.law=observer", "arm.links=8"));
     assert_int_equal(eight.on, 2);
+    observer_arms loaded = arms_after(SETTINGS("control.law=observer", "arm.tip_mass=0.08"));
+    check_close(loaded.arms[loaded.on].observer.arm.inertia, 0.139 + 0.08, 0.005);
     observer_arms gives = arms_after(SETTINGS("control.law=observer", "arm.hub_joint=spring",
                                               "arm.k1=90", "belief.hub_spring_factor=100"));
     assert_int_equal(gives.on, 3);
-    assert_int_equal(gives.count, 4);
+    assert_int_equal(gives.count, 6);
 }
 
 // A stiffness believed wrongly is learned from the readings: half the way to it counts as much as
@@ -426,7 +430,7 @@ TEST(it_learns_how_stiff_the_arm_is)
         p.belief.k2_factor = *c;
         controller_setup setup = setup_of(&p);
         arm_observer o;
-        assert_null(arm_observer_init(&o, &setup, 1));
+        assert_null(arm_observer_init(&o, &setup, 1, 0));
 
         // the hub bends the arm against the wall, the readings are those of the true stiffness
         const double stiffness = 4 * setup.k2 / *c;
@@ -442,7 +446,7 @@ TEST(it_learns_how_stiff_the_arm_is)
             in.tachometer = in.encoder < 0.05 ? 0.5 : 0;
             in.force = stiffness * in.encoder;
             in.voltage = in.force * 2 * setup.link_length / setup.torque_per_volt;
-            arm_observer_sample(&o, &in, true);
+            arm_observer_sample(&o, &in, 2);
         }
 
         // from the believed one towards the true one, and not beyond

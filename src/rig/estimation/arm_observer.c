@@ -28,6 +28,8 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define OFFSET_TIME  0.1    // for which the tachometer counts as one without an offset [s]
 #define LEAST_STIFF  0.2    // share of it that the arm has at least
 #define OUTLIER      4.0    // readings further off, in standard deviations, are worth less
+#define TIP_IMPULSE  0.03   // that the wall may give unseen, a standard deviation [N s]
+#define YOUNG        0.1    // a contact after less time may still throw the tip back [s]
 #define REST         0.01   // a slower hub counts as at rest [rad/s]
 
 // The modes of the present state.
@@ -85,11 +87,12 @@ static void sample_model(const arm_observer *o, const mode_set *set, int torque,
     sampled_model_init(model, torque + 1, rate, input, h);
 }
 
-const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force)
+const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force,
+                              double tip_mass)
 {
     assert(o != NULL && setup != NULL);
     memset(o, 0, sizeof *o);
-    const char *refusal = reduced_arm_init(&o->arm, setup);
+    const char *refusal = reduced_arm_init(&o->arm, setup, tip_mass);
     if (refusal != NULL) {
         return refusal;
     }
@@ -403,9 +406,38 @@ static void learn_stiffness(arm_observer *o, const controller_input *in, double 
     o->stiffness = fmax(LEAST_STIFF, stiffness);
 }
 
-void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes_force)
+// An impulse at the tip that no sensor saw, as variance of an estimate in flight.
+static void doubt_tip(const arm_observer *o, estimator *e)
 {
-    // the motion since the sample before, the old command first
+    const mode_set *free = &o->arm.free;
+    const int n = free->count;
+    const double l = o->arm.length * TIP_IMPULSE;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            e->p[n + i][n + j] += l * l * free->tip[i] * free->tip[j];
+        }
+    }
+}
+
+// Whether the hub's rate is none that the estimate in flight explains: the tip was struck.
+static bool struck(const arm_observer *o, const controller_input *in)
+{
+    const mode_set *set = modes_of(o);
+    const int n = set->count;
+    double off = in->tachometer, ripple = RATE_RIPPLE * in->tachometer;
+    double variance = RATE_NOISE * RATE_NOISE + ripple * ripple;
+    for (int i = 0; i < n; i++) {
+        off -= set->hub[i] * o->e.z[n + i];
+        for (int j = 0; j < n; j++) {
+            variance += set->hub[i] * o->e.p[n + i][n + j] * set->hub[j];
+        }
+    }
+    return off * off > OUTLIER * OUTLIER * variance;
+}
+
+// The motion since the sample before, the old command first, and what the sensors say of it.
+static void follow_motion(arm_observer *o, const controller_input *in)
+{
     const sampled_model *models = o->touches ? o->contact_model : o->free_model;
     if (o->delay > 0) {
         predict(o, &o->e, &models[0], o->delay, o->last_voltage);
@@ -413,14 +445,44 @@ void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes
     if (o->delay < o->period) {
         predict(o, &o->e, &models[1], o->period - o->delay, in->voltage);
     }
-    o->last_voltage = in->voltage;
+    if (!o->touches && struck(o, in)) {
+        doubt_tip(o, &o->e);
+    }
+    take_motion(o, in);
+}
 
-    // what the sensors say
+// The estimate of a tip that is thrown back, beside that of one that stays.
+static void follow_flight(arm_observer *o, const controller_input *in, int felt)
+{
+    const estimator stays = o->e;
+    const double missed = o->missed;
+    o->e = o->flown;
+    o->touches = false;
+    follow_motion(o, in);
+    if (felt > 0) {
+        doubt_tip(o, &o->e);
+    }
+    o->flown = o->e;
+    o->e = stays;
+    o->missed = missed;
+    o->touches = true;
+    o->young = in->time - o->since < YOUNG;
+}
+
+void arm_observer_sample(arm_observer *o, const controller_input *in, int felt)
+{
+    // the motion
     controller_input read = *in;
     read.tachometer -= tachometer_offset(o, in);
     o->moves = fabs(in->tachometer) > MOVES;
-    take_motion(o, &read);
-    if (o->touches && takes_force) {
+    if (o->touches && o->young) {
+        follow_flight(o, &read, felt);
+    }
+    follow_motion(o, &read);
+    o->last_voltage = in->voltage;
+
+    // the first reading of a contact shows its impulse
+    if (o->touches && felt > 1) {
         learn_stiffness(o, in, take_force(o, in));
     }
 
@@ -443,9 +505,17 @@ estimator arm_observer_ahead(const arm_observer *o, double voltage)
     return ahead;
 }
 
-// --- the place of the wall ---
+bool arm_observer_returns(const arm_observer *o)
+{
+    assert(o != NULL);
+    double rate = 0;
+    for (int i = 0; i < o->arm.free.count; i++) {
+        rate += o->arm.free.tip[i] * o->flown.z[o->arm.free.count + i];
+    }
+    return o->touches && o->young && rate > 0;
+}
 
-#define TIP_IMPULSE 0.03 // that the wall may give where contact ends, a standard deviation [N s]
+// --- the place of the wall ---
 
 void arm_observer_touch(arm_observer *o, double time)
 {
@@ -461,6 +531,11 @@ void arm_observer_touch(arm_observer *o, double time)
         met = (met * known + o->wall * variance) / (known + variance);
         variance = known * variance / (known + variance);
     }
+
+    // should it be thrown back,
+    o->flown = o->e;
+    o->young = true;
+    doubt_tip(o, &o->flown);
 
     // what the touch keeps of the motion, seen from there
     double t[N][N] = {{0}};
@@ -499,14 +574,13 @@ void arm_observer_leave(arm_observer *o, double time)
         t[i][wall] = free->momentum[i];
     }
     t[2 * n][wall + 1] = 1;
-    estimator_transform(&o->e, 2 * m + 2, 2 * n + 1, t);
 
-    // an impulse at the tip that no sensor saw
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            double l = o->arm.length * TIP_IMPULSE;
-            o->e.p[n + i][n + j] += l * l * free->tip[i] * free->tip[j];
-        }
+    // a young contact may have been none that the tip stayed in
+    if (o->young) {
+        o->e = o->flown;
+    } else {
+        estimator_transform(&o->e, 2 * m + 2, 2 * n + 1, t);
+        doubt_tip(o, &o->e);
     }
     o->touches = false;
     o->since = time;

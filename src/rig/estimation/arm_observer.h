@@ -19,8 +19,8 @@ typedef struct arm_observer {
     double period, delay;   // [s]
     // either state over the delay of a command, with the one before in effect, and over the rest
     sampled_model free_model[2], contact_model[2];
-    bool touches;
-    estimator e;
+    bool touches, young; // young: a contact that may have ended in a bounce
+    estimator e, flown;  // flown: while a contact is young, as if the tip had been thrown back
     double turned, rate_before; // angle by the tachometer, its last reading [rad], [rad/s]
     double observed;            // for how long [s]
     double last_voltage;        // in effect at the sample before [V]
@@ -39,8 +39,10 @@ typedef struct arm_observer {
 } arm_observer;
 
 // Models the arm that the setup describes, at rest at an angle still to be read, which is to press
-// with about `force` [N]. NULL, or a sentence that says why it cannot.
-const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force);
+// with about `force` [N] and carries tip_mass [kg] at its tip. NULL, or a sentence that says why it
+// cannot.
+const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force,
+                              double tip_mass);
 
 // Starts at rest where the encoder is.
 void arm_observer_start(arm_observer *o, const controller_input *in);
@@ -49,12 +51,16 @@ void arm_observer_start(arm_observer *o, const controller_input *in);
 void arm_observer_know_wall(arm_observer *o, double angle);
 
 // One sample: the estimate follows the arm over the period before it and takes in all readings.
-// takes_force: the force reading too, which shows more than the force just after an impact.
-void arm_observer_sample(arm_observer *o, const controller_input *in, bool takes_force);
+// felt: how many readings in a row have shown contact; the first shows more than the force just
+// after an impact and is not taken in.
+void arm_observer_sample(arm_observer *o, const controller_input *in, int felt);
 
 // The tip met the wall, plastically, or left it, after the last sample and before now.
 void arm_observer_touch(arm_observer *o, double time);
 void arm_observer_leave(arm_observer *o, double time);
+
+// Whether the tip, left by a young contact, is on its way to the wall again.
+bool arm_observer_returns(const arm_observer *o);
 
 // The estimate when a command given now takes effect.
 estimator arm_observer_ahead(const arm_observer *o, double voltage);

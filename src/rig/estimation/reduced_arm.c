@@ -14,12 +14,13 @@
 #define MODES_BELOW 0.5
 
 // The chain that the setup describes, without motor and wall.
-static void nominal_arm(arm *a, const controller_setup *setup)
+static void nominal_arm(arm *a, const controller_setup *setup, double tip_mass)
 {
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     p.arm.links = setup->links;
     p.arm.mass = 2 * setup->link_mass;
+    p.arm.tip_mass = tip_mass;
     p.arm.length = 2 * setup->link_length;
     p.arm.hub_inertia = setup->hub_inertia;
     p.arm.k2 = setup->k2;
@@ -127,12 +128,12 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
     return NULL;
 }
 
-const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup)
+const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, double tip_mass)
 {
     assert(r != NULL && setup != NULL);
     arm a;
     memset(r, 0, sizeof *r);
-    nominal_arm(&a, setup);
+    nominal_arm(&a, setup, tip_mass);
     r->length = 2 * setup->link_length;
 
     // one block for the matrices and shapes of the whole chain

@@ -39,10 +39,11 @@ typedef struct reduced_arm {
     double touch[REDUCED_MODES][REDUCED_MODES]; // X: contact by free
 } reduced_arm;
 
-// Reduces the arm of a setup to the modes below half the Nyquist frequency of its samples, at least
-// one that bends and at most REDUCED_MODES. NULL, or a sentence that says why that cannot be:
-// reduced_arm_no_memory itself where there was no memory, which says nothing of the arm.
-const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup);
+// Reduces the arm of a setup, a mass [kg] at its tip, to the modes below half the Nyquist frequency
+// of its samples, at least one that bends and at most REDUCED_MODES. NULL, or a sentence that says
+// why that cannot be: reduced_arm_no_memory itself where there was no memory, which says nothing of
+// the arm.
+const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, double tip_mass);
 extern const char reduced_arm_no_memory[];
 
 // Static compliance: rotation of the hub per torque with the tip at the wall [rad/(N m)].

@@ -6,9 +6,9 @@
 // what the commanded force stops; where the wall is not in doubt, in the least time that ends so.
 // PRESS lets the force rise and regulates round the rest in which
 // the beam presses with it. HOLD keeps that rest with the command in the middle of friction's band.
-// RECOVER looks for the wall again where contact was lost. A wall that throws the tip back again
-// and again is none that an impact without rebound describes: there CATCH moves the hub, not the
-// tip.
+// RECOVER lands on the wall again, almost at rest, where contact was lost. A wall that throws the
+// tip back again and again is none that an impact without rebound describes: there CATCH moves the
+// hub, not the tip.
 #include <math.h>
 #include <string.h>
 
@@ -34,10 +34,13 @@ static const controller_parameter table[PARAMETERS] = {
 };
 
 // The numbers of the law, derived in docs/explanation/control-design.md.
-#define GUARD_TIME      0.07  // in which a wall that is nearer than believed is looked for [s]
+#define GUARD_TIME      0.05  // in which a wall that is nearer than believed is looked for [s]
 #define BIAS_TIME       0.1   // over which the error of the estimated force is averaged [s]
 #define MOST_CORRECTION 0.3   // that it may add to the force aimed at, a share
-#define LOST_AFTER      2     // readings without force that mean lost contact
+#define LOST_AFTER      4e-3  // without a reading that shows force contact is lost [s]
+#define LAND_SPEED      0.035 // of the tip where it returns, for every newton wanted [rad/s/N],
+#define LAND_TIME       0.1   // or the way left over this, if that is faster [s]
+#define BRAKING         0.5   // share of the force that this may press with meanwhile
 #define REST            0.02  // a slower hub is at rest [rad/s]
 #define HOLD_WITHIN     0.02  // share of the force within which it is held at rest,
 #define HOLD_BEYOND     0.04  // and beyond which it is held no longer,
@@ -47,12 +50,13 @@ static const controller_parameter table[PARAMETERS] = {
 #define SWING_MEAN      0.04  // over which that is averaged [s]
 
 // Of CATCH.
-#define THROWN_BACK   4    // losses of contact after which it begins
+#define THROWN_BACK   3    // losses of contact after which it begins
 #define CATCH_SPEED   1.0  // share of its whole way that the hub goes in a second at first,
-#define CATCH_GROWTH  7.0  // what that gains with the way made [1/s],
-#define CATCH_END     0.03 // and the time constant of its end [s]
+#define CATCH_GROWTH  10.0 // what that gains with the way made [1/s],
+#define CATCH_END     0.06 // and the time constant of its end [s]
 #define CATCH_MEAN    0.01 // over which the reading is averaged [s]
-#define INTEGRAL_TIME 0.1  // of the force error [s]
+#define INTEGRAL_TIME 0.2  // of the force error [s]
+#define STAYS_AFTER   0.05 // in contact for longer, and the force rises as usual [s]
 #define PHASE_LOST    3.0  // inverse of the damping's crossover times the loop's lag
 #define FULL_FRICTION 0.05 // rate from which on friction is compensated whole [rad/s]
 
@@ -66,8 +70,7 @@ typedef struct observer_memory {
     force_rise rise;         // of the first mode in contact
     int mode;
     bool started;
-    bool felt; // the last reading showed contact
-    int readings_without_force;
+    int felt;            // readings in a row that showed contact
     double moved;        // change of the set-point since the sample before [N]
     double force_rate;   // of a set-point that moves from sample to sample [N/s]
     double correction;   // of the force aimed at: what the estimated force is above the reading [N]
@@ -153,6 +156,41 @@ static double friction_ahead(const observer_memory *m, double rate, double wante
     return coulomb_friction(&m->rig, way);
 }
 
+// Speed with which a tip that was thrown back is to meet the wall again: it falls with the way
+// left, and grows with it where the wall is no more [rad/s].
+static double landing_speed(const observer_memory *m, const estimator *e)
+{
+    const double gap = fabs(observer_of(m)->wall - arm_observer_tip(observer_of(m), e));
+    return fmin(fmax(LAND_SPEED * m->p[FORCE_WANTED], gap / LAND_TIME), design_of(m)->touch_speed);
+}
+
+// Lands softly: takes the vibration out of the arm, so that all of it turns towards the wall.
+static double land(const observer_memory *m, const estimator *e)
+{
+    const arm_observer *o = observer_of(m);
+    const mode_set *set = &o->arm.free;
+    const double *gain = design_of(m)->land_gain, speed = landing_speed(m, e);
+    const double rate = arm_observer_rate(o, e), stiction = m->rig.stiction;
+    const int n = set->count;
+
+    // feedback of all deviations but the angle's
+    double torque = 0;
+    for (int i = 0; i < n; i++) {
+        const double off = i > 0 ? -e->z[i] : 0;
+        torque += gain[i] * off + gain[n + i] * (set->momentum[i] * speed - e->z[n + i]);
+    }
+    torque *= m->rig.torque_per_volt;
+
+    // what friction takes of it; of a hub at rest no more than there is
+    const double share = fabs(rate) > REST ? rate / REST : torque / stiction;
+    torque += m->rig.hub_damping * speed - e->z[arm_observer_torque_index(o)] +
+              stiction * fmax(-1, fmin(share, 1));
+
+    // a tip that is still at the wall is pressed on by what brakes the hub
+    torque = fmax(torque, -BRAKING * m->p[FORCE_WANTED] / fabs(arm_observer_force_per_torque(o)));
+    return limited(m, torque / m->rig.torque_per_volt);
+}
+
 // Keeps the arm to the plan: the torque it takes, and feedback of all deviations but the angle.
 static double travel(observer_memory *m, const estimator *e)
 {
@@ -211,6 +249,13 @@ static double stopping_force(const observer_memory *m, const estimator *e)
     return arm_observer_square(o, 0) * coordinate / (set->hub[0] * o->arm.length);
 }
 
+// Share of the stopping force that the force has at least: a tip that lands comes to it sooner with
+// less.
+static double least_share(const observer_memory *m)
+{
+    return m->losses > 0 ? 0.25 : 0.5;
+}
+
 // Limits a command so that the force it causes at once stays within the limit. This applies where
 // the force follows a torque at once, which it does not behind a spring at the hub. A motion that
 // the allowed force cannot stop gets more: only braking reduces it, and braking presses.
@@ -219,7 +264,7 @@ static double within_force(const observer_memory *m, const estimator *e, double 
     const arm_observer *o = observer_of(m);
     double per_volt = arm_observer_force_per_torque(o) * m->rig.torque_per_volt;
     double stopping = stopping_force(m, e), wanted = m->p[FORCE_WANTED];
-    double least = fmax(0, fmin(OBSERVER_LEAST_FORCE * wanted, stopping / 2));
+    double least = fmax(0, fmin(OBSERVER_LEAST_FORCE * wanted, least_share(m) * stopping));
     double most = m->p[FORCE_LIMIT] > 0 ? m->p[FORCE_LIMIT] : HUGE_VAL;
     most = stopping > most ? 2 * stopping - wanted : most;
     if (-per_volt * m->rig.voltage_limit > least) {
@@ -245,7 +290,8 @@ static void plan_rise(observer_memory *m, double time, double coordinate, double
         .rate = rate,
         .divergence = divergence(m),
         .end = mode_at_rest(m, force),
-        .least = fmax(0, fmin(mode_at_rest(m, OBSERVER_LEAST_FORCE * force), stopped / 2)),
+        .least =
+            fmax(0, fmin(mode_at_rest(m, OBSERVER_LEAST_FORCE * force), least_share(m) * stopped)),
         .most = limit > 0 ? mode_at_rest(m, limit) : HUGE_VAL,
         .time = time,
     };
@@ -383,7 +429,7 @@ static void change_arm(observer_memory *m, double time)
         begin_rise(m, time);
     } else if (m->hurries) {
         quickest_touch_init(&m->quickest, design_of(m));
-    } else {
+    } else if (m->mode == TRAVEL) {
         smooth_approach_again(&m->plan, design_of(m));
     }
 }
@@ -395,7 +441,6 @@ static void begin_contact(observer_memory *m, double time)
     m->mode = PRESS;
     m->hurries = false;
     m->correction = 0;
-    m->readings_without_force = 0;
     m->away = 0;
     m->touched = observer_of(m)->met;
     begin_rise(m, time);
@@ -406,28 +451,32 @@ static void follow_contact(observer_memory *m, const controller_input *in)
 {
     const bool arrived = m->hurries && m->quickest.planned && m->quickest.left == 0;
     const bool touches = observer_of(m)->touches;
-    m->felt = in->force > m->p[THRESHOLD];
-    if (!touches && (m->felt || arrived)) {
+    if (!touches && (m->felt > 0 || arrived)) {
         begin_contact(m, in->time);
         return;
     }
 
-    // it ends with several readings that do not
-    m->readings_without_force = m->felt ? 0 : m->readings_without_force + 1;
-    m->away = m->felt ? 0 : m->away + m->rig.period;
+    // a tip that stays is pressed on
+    if (m->mode == CATCH && m->felt > 2 && m->felt * m->rig.period > STAYS_AFTER) {
+        m->mode = PRESS;
+        m->correction = 0;
+        begin_rise(m, in->time);
+    }
+
+    // it ends with readings that do not
+    m->away = m->felt > 0 ? 0 : m->away + m->rig.period;
     const bool caught = m->mode == CATCH && m->away < design_of(m)->ramp_time;
-    if (touches && m->readings_without_force >= LOST_AFTER && !caught) {
+    if (touches && m->away >= LOST_AFTER && !caught) {
         const bool brief = in->time - observer_of(m)->since < design_of(m)->ramp_time;
         m->losses = brief ? m->losses + 1 : 1;
-        if (m->mode != CATCH && m->losses >= THROWN_BACK) {
+        const bool returns = m->losses > 1 && arm_observer_returns(observer_of(m));
+        if (m->mode != CATCH && (returns || m->losses >= THROWN_BACK)) {
             m->mode = CATCH;
             m->way = in->encoder - m->touched;
             m->integral = 0;
             return;
         }
         observer_arms_leave(&m->arms, in->time);
-        smooth_approach_touch(&m->plan, design_of(m),
-                              brief ? design_of(m)->soft_speed : design_of(m)->touch_speed);
         m->mode = RECOVER;
     }
 }
@@ -459,31 +508,32 @@ static void follow_reading(observer_memory *m, double reading)
 
 // Whether the held command is still right. A reading counts as at most five standard deviations
 // off, because the sensor also shows blows on the tip that the hub does not feel.
-static bool holds_right(observer_memory *m, double reading, double rate)
+static bool holds_right(observer_memory *m, double reading)
 {
     double force = m->p[FORCE_WANTED], off = reading - m->held_force;
     double most = 5 * arm_observer_force_noise(force);
     m->held_force += fmin(1, m->rig.period / HOLD_MEAN) * fmax(-most, fmin(off, most));
-    return fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST && rate < 2 * REST;
+    return fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST;
 }
 
-// Whether the hub rests where the force is right, and the beam has come to rest.
+// Whether friction holds the hub at rest where the force is right, and the beam has come to rest.
 static bool rests_right(const observer_memory *m, const estimator *e, double rate)
 {
     double force = m->p[FORCE_WANTED];
-    return rate < REST && fabs(m->mean_force - force) < HOLD_WITHIN * force + HOLD_LEAST &&
+    return m->rig.stiction > 0 && rate < REST &&
+           fabs(m->mean_force - force) < HOLD_WITHIN * force + HOLD_LEAST &&
            fabs(resting_force(m, e) - force) < HOLD_WITHIN * force + HOLD_LEAST &&
            sqrt(m->swing) < HOLD_SWING * force + HOLD_LEAST;
 }
 
-// Holds where it rests right, until the reading's mean says otherwise or the hub moves.
+// Holds where it rests right, until the reading's mean says otherwise.
 static void choose_hold(observer_memory *m, const estimator *e, const controller_input *in)
 {
     const arm_observer *o = observer_of(m);
     double rate = fabs(arm_observer_rate(o, e));
     follow_reading(m, in->force);
     if (m->mode == HOLD) {
-        m->mode = holds_right(m, in->force, rate) ? HOLD : PRESS;
+        m->mode = holds_right(m, in->force) ? HOLD : PRESS;
     } else if (rests_right(m, e, rate)) {
         m->mode = HOLD;
         m->held_force = resting_force(m, e);
@@ -508,8 +558,8 @@ static void sample(void *memory, const controller_input *in, controller_output *
                                     .passed = m->rig.wall_angle + doubt};
         smooth_approach_begin(&m->plan, design_of(m), in->encoder);
     } else {
-        // the first reading of a contact shows its impulse
-        observer_arms_sample(&m->arms, in, m->felt && in->force > m->p[THRESHOLD]);
+        m->felt = in->force > m->p[THRESHOLD] ? m->felt + 1 : 0;
+        observer_arms_sample(&m->arms, in, m->felt);
         if (observer_arms_choose(&m->arms)) {
             change_arm(m, in->time);
         }
@@ -538,8 +588,10 @@ static void sample(void *memory, const controller_input *in, controller_output *
         out->desired_velocity = 0;
         force_now = arm_observer_force(o, &o->e, m->rig.torque_per_volt * in->voltage);
     } else {
-        out->desired_velocity = smooth_approach_speed(&m->plan, design_of(m));
-        out->command = m->hurries ? hurry(m, &ahead) : travel(m, &ahead);
+        const bool lands = m->mode == RECOVER;
+        out->desired_velocity =
+            lands ? landing_speed(m, &ahead) : smooth_approach_speed(&m->plan, design_of(m));
+        out->command = lands ? land(m, &ahead) : m->hurries ? hurry(m, &ahead) : travel(m, &ahead);
     }
 
     out->mode = m->mode;

@@ -10,9 +10,12 @@
 #define PI 3.14159265358979323846
 
 // The numbers of the design, derived in docs/explanation/control-design.md.
-#define TRAVEL_TIME  0.05 // in which the arm takes up a wanted speed [s]
-#define SOFT_SPEED   0.25 // of a soft touch, for every newton wanted [rad/s/N],
-#define LEAST_SPEED  0.15 // but no less, so as to come in time [rad/s]
+#define TRAVEL_TIME  0.05 // in which the arm takes up a wanted speed [s],
+#define LAND_TIME    0.02 // and after a bounce [s]
+#define SOFT_SPEED   0.2  // of a soft touch, for every newton wanted [rad/s/N],
+#define MOST_SPEED   0.45 // at most [rad/s],
+#define LEAST_SPEED  0.12 // and no less, so as to come in time [rad/s],
+#define LEAST_LINKS  0.33 // nor than this with more than two links [rad/s]
 #define LEAST_MARGIN 0.05 // of p h over 1, below which the force does not run away with the motion
 
 // Modal coordinates and rates of one state over a period, under a command that gives so much torque
@@ -54,8 +57,9 @@ static void command_plan(observer_design *d, const controller_setup *setup)
 }
 
 // In flight: the energy of the motion relative to the wanted rotation, and the effort with which
-// the rotation alone has the time constant TRAVEL_TIME.
-static bool find_travel_gain(observer_design *d, const controller_setup *setup)
+// the rotation alone has a time constant [s].
+static bool find_flight_gain(const observer_design *d, const controller_setup *setup, double time,
+                             double *gains)
 {
     const mode_set *set = &d->observer.arm.free;
     const int n = set->count;
@@ -75,13 +79,13 @@ static bool find_travel_gain(observer_design *d, const controller_setup *setup)
     }
 
     // what the motor may do about it; the angle itself is not fed back
-    double time_constant = set->hub[0] * setup->torque_per_volt * TRAVEL_TIME;
+    double time_constant = set->hub[0] * setup->torque_per_volt * time;
     cost.effort = time_constant * time_constant;
     double gain[ESTIMATOR_STATES] = {0};
     if (!quadratic_gain(&model, &cost, gain)) {
         return false;
     }
-    memcpy(d->travel_gain + 1, gain, (size_t)model.n * sizeof gain[0]);
+    memcpy(gains + 1, gain, (size_t)model.n * sizeof gain[0]);
     return true;
 }
 
@@ -135,8 +139,9 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
 
     // a wall that throws back is met softly; more links than two vibrate off under the small
     // force that a soft touch begins with
-    d->soft_speed = fmin(d->touch_speed, fmax(LEAST_SPEED, SOFT_SPEED * task->force));
-    d->arrival_speed = arm->free.count > 2 ? d->touch_speed : d->soft_speed;
+    d->arrival_speed = arm->free.count > 2 ? fmin(d->top_speed, fmax(d->touch_speed, LEAST_LINKS))
+                                           : fmin(fmin(d->touch_speed, MOST_SPEED),
+                                                  fmax(LEAST_SPEED, SOFT_SPEED * task->force));
 
     d->ramp_edge = arm->free.count > 2 ? 2 * PI / sqrt(arm->free.square[2]) : 0;
     d->ramp_time = 2 * PI / sqrt(arm->free.square[1]) + d->ramp_edge;
@@ -146,11 +151,12 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
                                  const observer_task *task)
 {
     assert(d != NULL && setup != NULL && task != NULL && setup->torque_per_volt > 0);
-    const char *refusal = arm_observer_init(&d->observer, setup, task->force);
+    const char *refusal = arm_observer_init(&d->observer, setup, task->force, task->tip_mass);
     if (refusal != NULL) {
         return refusal;
     }
-    if (!find_travel_gain(d, setup) || !find_press_gain(d, setup)) {
+    if (!find_flight_gain(d, setup, TRAVEL_TIME, d->travel_gain) ||
+        !find_flight_gain(d, setup, LAND_TIME, d->land_gain) || !find_press_gain(d, setup)) {
         return "the Riccati equation of its gains has no stabilising solution";
     }
     command_plan(d, setup);
@@ -163,7 +169,8 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
 
 #define AS_STIFF  1.25      // ratio of stiffnesses up to which an arm is one with that told of
 #define HUB_GIVES (1.0 / 6) // of the beam's compliance at the wall, that of a hub on a spring
-#define NO_DOUBT  28        // of -2 log likelihood, 2 log(1e6)
+#define NO_DOUBT  28        // of -2 log likelihood, 2 log(1e6),
+#define NO_MASS   30        // more of it for a mass at the tip, as a wrong inertia looks like one
 
 const observer_design *observer_arms_design(const observer_arms *a)
 {
@@ -180,6 +187,7 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
 {
     assert(a != NULL && setup != NULL && task != NULL);
     static const int links[] = {2, 3, 6};
+    static const double masses[] = {0.04, 0.08}; // [kg]
     a->count = a->on = 0;
     const char *refusal = observer_design_init(&a->arms[a->count++], setup, task);
     if (refusal != NULL) {
@@ -203,6 +211,14 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
     if (refusal == NULL && setup->hub_spring > 2 * other.hub_spring) {
         refusal = observer_design_init(&a->arms[a->count++], &other, task);
     }
+
+    // masses at the tip, which only a flight shows
+    a->loaded = a->count;
+    for (size_t i = 0; i < sizeof masses / sizeof masses[0] && refusal == NULL; i++) {
+        observer_task loaded = *task;
+        loaded.tip_mass = masses[i];
+        refusal = observer_design_init(&a->arms[a->count++], setup, &loaded);
+    }
     return refusal;
 }
 
@@ -220,10 +236,10 @@ void observer_arms_know_wall(observer_arms *a, double angle)
     }
 }
 
-void observer_arms_sample(observer_arms *a, const controller_input *in, bool takes_force)
+void observer_arms_sample(observer_arms *a, const controller_input *in, int felt)
 {
     for (int i = 0; i < a->count; i++) {
-        arm_observer_sample(&a->arms[i].observer, in, takes_force);
+        arm_observer_sample(&a->arms[i].observer, in, felt);
     }
 }
 
@@ -243,11 +259,17 @@ void observer_arms_leave(observer_arms *a, double time)
 
 bool observer_arms_choose(observer_arms *a)
 {
+    const int count = observer_arms_observer(a)->touches ? a->loaded : a->count;
     int best = a->on;
-    for (int i = 0; i < a->count; i++) {
-        best = a->arms[i].observer.missed < a->arms[best].observer.missed ? i : best;
+    double least = observer_arms_observer(a)->missed - NO_DOUBT;
+    for (int i = 0; i < count; i++) {
+        const double missed = a->arms[i].observer.missed + (i >= a->loaded ? NO_MASS : 0);
+        if (missed < least) {
+            best = i;
+            least = missed;
+        }
     }
-    if (observer_arms_observer(a)->missed - a->arms[best].observer.missed < NO_DOUBT) {
+    if (best == a->on) {
         return false;
     }
     a->on = best;

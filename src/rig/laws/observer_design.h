@@ -11,9 +11,10 @@
 typedef struct observer_design {
     arm_observer observer;
     double travel_gain[ESTIMATOR_STATES]; // in flight [V per unit of state]
+    double land_gain[ESTIMATOR_STATES];   // after a bounce [V per unit of state]
     double press_gain[ESTIMATOR_STATES];  // in contact [V per unit of state]
     double touch_speed, top_speed;        // of the rotation [rad/s],
-    double soft_speed, arrival_speed;     // of a touch after a bounce, of the first [rad/s]
+    double arrival_speed;                 // of the first touch [rad/s]
     double ramp_time;                     // of a change of speed that leaves no vibration [s],
     double ramp_edge;                     // of which its acceleration rises, and falls [s]
     double divergence;                    // s, with which a wrong force in contact runs away [1/s]
@@ -26,6 +27,7 @@ typedef struct observer_task {
     double force;            // to press with [N]
     double stopping_force;   // that may be used to stop the tip [N]
     double approach_voltage; // of the fastest approach [V]
+    double tip_mass;         // that the tip carries [kg]
 } observer_task;
 
 // Designs for the arm that the setup describes, of setup->links links. NULL, or a sentence that
@@ -39,11 +41,12 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
 // numbers of links, and a hub that gives. Each has an observer and gains of its own; all observers
 // follow the same readings, and the law goes on with the arm that foretells them best.
 
-enum { OBSERVER_MOST_ARMS = 5 };
+enum { OBSERVER_MOST_ARMS = 7 };
 
 typedef struct observer_arms {
     observer_design arms[OBSERVER_MOST_ARMS]; // the first is the one told of
     int count, on;                            // on: the one that the law goes by
+    int loaded; // the first of those with a mass at the tip, which no contact shows
 } observer_arms;
 
 // Designs for the arm that the setup describes and for those that it may be instead: two, three and
@@ -60,7 +63,7 @@ const arm_observer *observer_arms_observer(const observer_arms *a);
 // What becomes of all observers: arm_observer_start, _know_wall, _sample, _touch and _leave.
 void observer_arms_start(observer_arms *a, const controller_input *in);
 void observer_arms_know_wall(observer_arms *a, double angle);
-void observer_arms_sample(observer_arms *a, const controller_input *in, bool takes_force);
+void observer_arms_sample(observer_arms *a, const controller_input *in, int felt);
 void observer_arms_touch(observer_arms *a, double time);
 void observer_arms_leave(observer_arms *a, double time);
 

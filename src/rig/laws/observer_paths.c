@@ -30,14 +30,6 @@ double smooth_approach_speed(const smooth_approach *p, const observer_design *d)
     return p->state[set->count] / set->momentum[0];
 }
 
-void smooth_approach_touch(smooth_approach *p, const observer_design *d, double speed)
-{
-    assert(p != NULL && d != NULL);
-    plan_from(p, d, speed);
-    p->change[0] = p->change[1] = 0;
-    p->slows = p->searches = true;
-}
-
 // Share of a change of speed that is made after a time: the integral of a trapezoid, which is one
 // vibration's period as a box convolved with the next one's.
 static double share_changed(const observer_design *d, double t)

@@ -30,9 +30,6 @@ typedef struct smooth_approach {
 // speed leaves room to slow down in.
 void smooth_approach_begin(smooth_approach *p, const observer_design *d, double angle);
 
-// Goes on with a speed [rad/s].
-void smooth_approach_touch(smooth_approach *p, const observer_design *d, double speed);
-
 // The plan as it would be, had the present changes of speed been begun for the design of now.
 void smooth_approach_again(smooth_approach *p, const observer_design *d);
 
