@@ -227,3 +227,86 @@ TEST(predictors_and_modes_are_explained)
     check_close(ex.state.looks.rate, 200, 0);
     press_warns(&ex, ":rate 0.1<Enter>", "at least 1 kB/s");
 }
+
+// How many keys are pressed: a name in brackets is one.
+static int key_count(const char *keys)
+{
+    int count = 0;
+    for (; *keys != '\0'; keys += *keys == '<' ? strcspn(keys, ">") + 1 : 1) {
+        count++;
+    }
+    return count;
+}
+
+// Questions and the keys they take, with completion; each answer is on a screen of any size.
+TEST(what_is_wanted_takes_few_keys)
+{
+    static const struct {
+        const char *before, *keys;
+        int most;
+        const char *shows;
+    } cases[] = {
+        {"", ":sol<Tab>vol<Tab> pea<Tab>N<lt>2<Enter>", 25, "1.4441 V: 2.0000 N"},
+        {":trace gap<Enter>", ":tr<Tab>force - vol<Tab><Enter>", 18, "pane 11"},
+        {":trace gap<Enter>", ":tr<Tab>for<Tab><Enter>", 12, "pane 11"},
+        {":open compare/hybrid<Enter>", "b]", 6, "hybrid-printed"},
+        {":open compare/hybrid<Enter>", "K", 1, "is hidden"},
+        {":edit control.transition_time<Enter><Esc>", "<lt><lt><lt>", 5, "0.32 s"},
+    };
+    for (EACH(c, cases)) {
+        OPEN_EXPLORER(ex, "compare/hybrid");
+        press(&ex, ":open corrected/first-impact<Enter>");
+        press(&ex, c->before);
+        press(&ex, c->keys);
+        assert_in_range(key_count(c->keys), 1, c->most);
+        assert_shows_everywhere(&ex, c->shows);
+    }
+}
+
+// A command's description tells which words Tab finds, in expressions behind each operator.
+TEST(arguments_are_completed_by_their_kind)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press_prompts(&ex, ":trace 2*(force-volt<Tab>", "trace 2*(force-voltage ");
+    press_prompts(&ex, "<C-u>limit volt<Tab>", "limit voltage ");
+    press_prompts(&ex, "<Tab>", "limit voltage off ");
+    press_prompts(&ex, "<C-u>phase gap hub_v<Tab>", "phase gap hub_velocity ");
+    press_prompts(&ex, "<C-u>solve motor.voltage set<Tab>", "solve motor.voltage settling_time_s ");
+    press_prompts(&ex, "<C-u>session o<Tab>", "session open ");
+    press_prompts(&ex, "<C-u>colours 2<Tab>", "colours 256 ");
+    press_prompts(&ex, "<C-u>sweep arm.k2=4:6:3 motor.voltage_<Tab>",
+                  "sweep arm.k2=4:6:3 motor.voltage_limit ");
+    press_prompts(&ex, "<C-u>speed x<Tab>", "speed x");
+}
+
+// The first visit of the lab's page, key by key, at three sizes.
+TEST_IN_FOLDER(the_walk_through_does_what_it_says)
+{
+    static const struct {
+        const char *keys, *shows;
+    } steps[] = {
+        {"<Space>i<PgUp>", "t 0.27"},
+        {"b", "first-impact"},
+        {"<Enter><C-u>0.5<Enter>", "motor.voltage = 0.5 V from 0.27"},
+        {"c", "two runs"},
+        {"<Esc>s<Enter>", "saved "},
+        {"o/hybrid<Enter>", "compare/hybrid"},
+        {":save mine.yaml<Enter>", "saved "},
+    };
+    for (size_t i = 0; i < SIZES; i++) {
+        OPEN_EXPLORER(ex, "corrected/first-impact");
+        unlink("mine.yaml");
+        for (EACH(step, steps)) {
+            press(&ex, step->keys);
+            assert_shows_at(&ex, sizes[i][0], sizes[i][1], step->shows);
+        }
+
+        // what was saved gives the run again
+        free(save_and_compare(&ex.state.session));
+        SCOPED(scenario_finish) scenario saved;
+        assert_int_equal(scenario_open(&saved, "mine.yaml", NULL, NULL), STATUS_OK);
+        SCOPED(run_finish) run_result again;
+        run_scenario(&saved, true, &again);
+        assert_same_trace(&ex.state.session.run.trace, &again.trace);
+    }
+}

@@ -1,6 +1,7 @@
 #include "ui/explorer/explorer.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -46,17 +47,14 @@ static bool parameter_value(int parameter, int i, char *text)
            word_between_bars("true|false", i, text);
 }
 
-// The words that a command's description gives it to choose from.
-static bool command_word(const char *command, int i, char *text)
+// The i-th of the words that a command's argument chooses from; those in capitals stand for others.
+static bool argument_word(const char *argument, int i, char *text)
 {
-    static const char *const choosing[] = {"glyphs", "theme", "colours", "mouse", "axis",
-                                           "zoom",   "pan",   "speed",   "lanes", NULL};
-    const int index = explorer_command_find(command);
-    for (int k = 0; choosing[k] != NULL && index >= 0; k++) {
-        const explorer_command *c = &explorer_command_table[index];
-        if (strcmp(c->name, choosing[k]) == 0) {
-            // those in capitals stand for numbers
-            return word_between_bars(c->argument, i, text);
+    char word[CANDIDATE];
+    for (int k = 0; word_between_bars(argument, k, word); k++) {
+        if (word[0] != '\0' && !isupper((unsigned char)word[0]) && i-- == 0) {
+            snprintf(text, CANDIDATE, "%s", word);
+            return true;
         }
     }
     return false;
@@ -66,8 +64,24 @@ static bool command_word(const char *command, int i, char *text)
 typedef struct place {
     int word; // 0: the command
     char command[32];
-    char argument[LINE_TEXT]; // the first one
+    char first[LINE_TEXT]; // argument, where it is complete
+    char kind[LINE_TEXT];  // of word, as the command's description has it, without brackets
 } place;
+
+// What a command's description says of its n-th argument, from 1; the last one may be repeated.
+static void read_kind(const char *argument, int n, char *kind)
+{
+    size_t length = 0;
+    while (n-- > 1 && strchr(argument, ' ') != NULL) {
+        argument = strchr(argument, ' ') + 1;
+    }
+    for (; *argument != '\0' && *argument != ' '; argument++) {
+        if (*argument != '[' && *argument != ']') {
+            kind[length++] = *argument;
+        }
+    }
+    kind[length] = '\0';
+}
 
 static place place_in(const char *line, const char *word)
 {
@@ -79,9 +93,19 @@ static place place_in(const char *line, const char *word)
     argument += strspn(argument, " ");
     snprintf(p.command, sizeof p.command, "%.*s", (int)strcspn(line, " "), line);
     if (p.word > 1) {
-        snprintf(p.argument, sizeof p.argument, "%.*s", (int)strcspn(argument, " "), argument);
+        snprintf(p.first, sizeof p.first, "%.*s", (int)strcspn(argument, " "), argument);
+    }
+    const int index = explorer_command_find(p.command);
+    if (p.word > 0 && index >= 0) {
+        read_kind(explorer_command_table[index].argument, p.word, p.kind);
     }
     return p;
+}
+
+// Whether a kind of argument has this name.
+static bool is_of(const place *p, const char *name)
+{
+    return strstr(p->kind, name) != NULL;
 }
 
 // Writes the i-th candidate for the word that is being typed; false beyond the last.
@@ -90,32 +114,25 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
     const char *name = NULL;
     text[0] = '\0';
 
-    // names of one kind, by the command and which of its words it is
+    // names of one kind, by the command's description or its name
     if (p->word == 0) {
         name = i < explorer_command_count ? explorer_command_table[i].name : NULL;
-    } else if (p->word == 1 &&
-               (strcmp(p->command, "set") == 0 || strcmp(p->command, "edit") == 0)) {
+    } else if (is_of(p, "PATH")) {
         name = i < parameter_count ? parameter_table[i].path : NULL;
-    } else if (strcmp(p->command, "set") == 0) {
-        return p->word == 2 && parameter_value(parameter_of_name(p->argument), i, text);
-    } else if (strcmp(p->command, "solve") == 0 && p->word == 2) {
+    } else if (is_of(p, "QUANTITY")) {
         name = i < summary_count ? summary_table[i].key : NULL;
-    } else if (strcmp(p->command, "sweep") == 0 || strcmp(p->command, "solve") == 0 ||
-               strcmp(p->command, "identify") == 0) {
-        name = i < parameter_count ? parameter_table[i].path : NULL;
-    } else if (strcmp(p->command, "metric") == 0) {
-        name = i < summary_count ? summary_table[i].key : NULL;
-    } else if (strcmp(p->command, "trace") == 0 || strcmp(p->command, "phase") == 0 ||
-               strcmp(p->command, "spectrum") == 0 || strcmp(p->command, "residual") == 0) {
+    } else if (is_of(p, "SIGNAL")) {
         name = i < signal_count ? signal_table[i].name : NULL;
+    } else if (strcmp(p->command, "set") == 0) {
+        return p->word == 2 && parameter_value(parameter_of_name(p->first), i, text);
     } else if (strcmp(p->command, "law") == 0) {
         name = law_name(i);
-    } else if (strcmp(p->command, "lock") == 0) {
+    } else if (is_of(p, "MODE")) {
         name = lock_word(st, i);
     } else if (strcmp(p->command, "open") == 0) {
         name = i < st->scenarios.count ? st->scenarios.names[i] : NULL;
-    } else if (p->word == 1) {
-        return command_word(p->command, i, text);
+    } else {
+        return argument_word(p->kind, i, text);
     }
 
     // only one of those that have a name is a candidate
@@ -193,6 +210,20 @@ static bool complete_common(explorer_state *st, const place *where, int count)
     return act_tell(st, "%s", count > 1 ? listed : "");
 }
 
+// Where the last word begins: behind a blank, in an expression behind an operator, too.
+static int word_begins(const char *text)
+{
+    const char *space = strrchr(text, ' ');
+    const int word = space != NULL ? (int)(space + 1 - text) : 0;
+    const place where = place_in(text, text + word);
+    int begin = (int)strlen(text);
+    while (begin > word &&
+           (!is_of(&where, "SIGNAL") || strchr("+-*/(,", text[begin - 1]) == NULL)) {
+        begin--;
+    }
+    return begin;
+}
+
 bool complete_prompt(explorer_state *st)
 {
     assert(st != NULL);
@@ -201,8 +232,7 @@ bool complete_prompt(explorer_state *st)
 
     // the first time what all agree in, then one after the other
     if (!p->cycling) {
-        const char *space = strrchr(p->text, ' ');
-        p->stem_at = space != NULL ? (int)(space + 1 - p->text) : 0;
+        p->stem_at = word_begins(p->text);
         snprintf(p->stem, sizeof p->stem, "%s", p->replaces ? "" : p->text + p->stem_at);
         p->cycle = -1;
     }

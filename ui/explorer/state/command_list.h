@@ -45,9 +45,10 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
       act_show_difference)                                                                         \
     X("", "sweep", "[PATH=A:B:N [PATH=...]|off]",                                                  \
       "runs with other values: curves and a metric, of two parameters a map", act_sweep)           \
-    X("", "solve", "PATH[=A:B] KEY<VALUE", "limit of a value for a condition: it is pinned",       \
+    X("", "solve", "PATH[=A:B] QUANTITY<VALUE", "limit of a value for a condition: it is pinned",  \
       act_solve)                                                                                   \
-    X("", "metric", "[KEY]", "what the sweep compares by; alone: the next one", act_set_metric)    \
+    X("", "metric", "[QUANTITY]", "what the sweep compares by; alone: the next one",               \
+      act_set_metric)                                                                              \
     X("", "stop", "", "compute no further; Space at its end goes on", act_stop)                    \
     X("", "compare", "", "both runs in numbers", act_compare)                                      \
     X("", "explain", "", "what is selected, in focus and at the cursor", act_explain)              \
@@ -77,13 +78,13 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
       act_axis)                                                                                    \
     X("", "trace", "1-9|SIGNAL...|EXPRESSION",                                                     \
       "show or hide a pane of curves: trace force - force_reading", act_trace_pane)                \
-    X("", "signal", "[NAME|all] [PANE]",                                                           \
+    X("", "signal", "[SIGNAL|all] [PANE]",                                                         \
       "hide a signal of the pane in focus, or show it; alone: the next", act_hide_signal)          \
     X("", "limit", "SIGNAL VALUE|off", "a bound drawn across the panes of a signal",               \
       act_set_limit)                                                                               \
     X("", "band", "SIGNAL TOLERANCE|off", "a band round the baseline's curve, and who leaves it",  \
       act_set_band)                                                                                \
-    X("", "phase", "SIGNAL OVER", "a pane of one signal over another: phase gap force",            \
+    X("", "phase", "SIGNAL SIGNAL", "a pane of one signal over another: phase gap force",          \
       act_phase_pane)                                                                              \
     X("", "residual", "SIGNAL...", "a pane of :data minus the run", act_residual_pane)             \
     X("", "spectrum", "SIGNAL", "a pane of its amplitudes in the visible part", act_spectrum_pane) \
