@@ -154,6 +154,26 @@ kill_folder() {
     fail "killed: other files afterwards of: $*: $(cat err)"
 }
 
+# kill_session INSTANTS: a session that is kept over its own file is the old or the new one, whole
+kill_session() {
+    local i begun took keys=':push 0.01<Enter>b:note again<Enter>:session save day.session<Enter>'
+    local size=(--size 80x24 --keys)
+    rm -f ./*.session
+    "$program" lab hit.yaml "${size[@]}" 'b:set arm.k2 5<Enter>:session save old.session<Enter>' >out 2>err ||
+        fail "no session is kept: $(cat err)"
+    cp old.session day.session
+    begun=$(date +%s%N)
+    "$program" lab day.session "${size[@]}" "$keys" >out 2>err || fail "no session again: $(cat err)"
+    took=$((($(date +%s%N) - begun) / 1000000 + 1))
+    mv day.session new.session
+    cmp -s old.session new.session && fail "the session kept again is the old one"
+    for ((i = 0; i < $1; i++)); do
+        cp old.session day.session
+        kill_within "$took" lab day.session "${size[@]}" "$keys"
+        cmp -s day.session old.session || cmp -s day.session new.session || fail "killed: half a session"
+    done
+}
+
 try r.json run hit.yaml --quiet --json r.json
 try r.csv run hit.yaml --quiet --csv r.csv
 try s.sqlite sweep hit.yaml --vary motor.voltage=1:2:3 --quiet --jobs 1 --db s.sqlite
@@ -172,6 +192,7 @@ mkdir films
 ! command -v ffmpeg >/dev/null ||
     kill_folder films animate hit.yaml --size 320x240 --fps 10 --seconds 1 --gl cairo --quiet -o films/a.mp4
 export XDG_CONFIG_HOME=$folder/settings
+kill_session 50
 kill_folder settings lab hit.yaml --size 80x24 --keys ':theme dark<Enter>:remember<Enter>'
 
 echo "$injected faults injected, $failures broken promises"
