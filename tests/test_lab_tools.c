@@ -277,6 +277,7 @@ TEST(arguments_are_completed_by_their_kind)
     press_prompts(&ex, "<C-u>sweep arm.k2=4:6:3 motor.voltage_<Tab>",
                   "sweep arm.k2=4:6:3 motor.voltage_limit ");
     press_prompts(&ex, "<C-u>speed x<Tab>", "speed x");
+    press_prompts(&ex, "<C-u>panes <Tab>", "panes ");
 }
 
 // The first visit of the lab's page, key by key, at three sizes.

@@ -132,7 +132,7 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
     } else if (strcmp(p->command, "open") == 0) {
         name = i < st->scenarios.count ? st->scenarios.names[i] : NULL;
     } else {
-        return argument_word(p->kind, i, text);
+        return is_of(p, "|") && argument_word(p->kind, i, text);
     }
 
     // only one of those that have a name is a candidate
