@@ -90,6 +90,13 @@ PangoContext *text_context_create(void)
     cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
     cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
     pango_cairo_context_set_font_options(context, options);
+
+    // without memory for its copy the context would draw with other options, and say nothing
+    const cairo_font_options_t *taken = pango_cairo_context_get_font_options(context);
+    if (cairo_font_options_status(options) != CAIRO_STATUS_SUCCESS || taken == NULL ||
+        !cairo_font_options_equal(taken, options)) {
+        g_error("out of memory");
+    }
     cairo_font_options_destroy(options);
     pango_context_set_round_glyph_positions(context, FALSE);
     pango_cairo_context_set_resolution(context, 72);

@@ -20,8 +20,7 @@ static const double pi = 3.14159265358979323846;
 // exp(i angle).
 static double complex turned(double angle)
 {
-    const double complex i = I;
-    return inline_cos(angle) + i * inline_sin(angle);
+    return inline_cos(angle) + (double complex)I * inline_sin(angle);
 }
 
 // The force's part at a frequency [Hz], as that of a sine that begins at 0 s: the mean of the rows
