@@ -222,8 +222,5 @@ static void check_shared_rows(const char *name)
 TEST(test_branches_share_the_rows_before_them)
 {
     check_shared_rows("corrected/free-vibration");
-    // runs that are computed from the start, or in one stride while nothing moves
-    check_shared_rows("compare/open-loop");
-    check_shared_rows("thesis/fig-3-4");
     check_shared_rows("corrected/first-impact");
 }

@@ -270,15 +270,3 @@ TEST(a_run_of_the_rig_is_shared_without_history)
     assert_int_equal(shared.history.forces.array.reserved, 0);
     assert_int_equal(shared.history.checkpoints.reserved, 0);
 }
-
-TEST(equal_rows_are_kept_once)
-{
-    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
-    SCOPED(run_finish) run_result a = run_keeping_history(&s), b = run_keeping_history(&s);
-    size_t before = shared_array_memory();
-    shared_chunks same = run_compare_rows(&a, &b);
-    assert_true(same.rows > 0);
-    run_merge(&a, &b, &same);
-    assert_true(before - shared_array_memory() >= same.rows * ARRAY_CHUNK);
-    check_same_run(&a, &b);
-}

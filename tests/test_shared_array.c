@@ -68,16 +68,6 @@ TEST(shared_arrays_keep_their_place_as_they_grow)
     assert_int_equal(shared_array_memory(), memory + ARRAY_CHUNK);
 }
 
-// Of elements of another size nothing is the same, whatever the bytes.
-TEST(arrays_of_other_elements_are_not_the_same)
-{
-    SCOPED(shared_array_finish) shared_array a = filled(MANY), pairs;
-    assert_true(shared_array_reserve(&pairs, 2 * sizeof(uint64_t), MANY, MANY));
-    assert_true(shared_array_grow(&pairs, MANY / 2));
-    memcpy(pairs.base, a.base, 2 * ARRAY_CHUNK);
-    assert_int_equal(shared_array_same_chunks(&a, &pairs, MANY / 2), 0);
-}
-
 // An array of many chunks.
 TEST(a_long_array_keeps_its_elements)
 {
@@ -127,39 +117,8 @@ TEST(the_beginning_of_a_plain_array_is_copied)
     assert_true(shared_array_reserve(&a, sizeof(uint64_t), MANY, 4 * MANY));
     assert_true(shared_array_share(&a, &plain, MANY));
     check_numbers(&a, MANY);
-    assert_int_equal(shared_array_same_chunks(&a, &plain, MANY), 0);
     shared_array_finish(&plain);
     check_numbers(&a, MANY);
-}
-
-TEST(equal_beginnings_are_found_and_merged)
-{
-    shared_array a = filled(MANY), b = filled(MANY);
-    size_t both = shared_array_memory();
-    assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 2);
-    shared_array_merge(&b, &a, 2);
-    assert_int_equal(both - shared_array_memory(), 2 * ARRAY_CHUNK);
-    check_numbers(&b, MANY);
-    shared_array_finish(&a);
-    check_numbers(&b, MANY);
-    shared_array_finish(&b);
-}
-
-TEST(a_difference_ends_what_is_equal)
-{
-    SCOPED(shared_array_finish) shared_array a = filled(MANY), b = filled(MANY);
-    numbers(&b)[PER_CHUNK + 3] = 0;
-    assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 1);
-    numbers(&b)[0] = 1;
-    assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 0);
-}
-
-// As many as the shorter one has: neither is looked at beyond its end.
-TEST(the_shorter_array_ends_what_is_equal)
-{
-    SCOPED(shared_array_finish) shared_array a = filled(MANY), b = filled(PER_CHUNK);
-    assert_int_equal(shared_array_same_chunks(&a, &b, MANY), 1);
-    assert_int_equal(shared_array_same_chunks(&b, &a, MANY), 1);
 }
 
 TEST(memory_goes_back_with_the_last_array)
@@ -171,8 +130,8 @@ TEST(memory_goes_back_with_the_last_array)
     assert_int_equal(shared_array_memory(), before);
 }
 
-// Many arrays that grow, begin like others, are merged and go, in any order: each keeps its
-// elements, equal chunks are found, and there is memory for as many different chunks as there are.
+// Many arrays that grow, begin like others and go, in any order: each keeps its
+// elements, and there is memory for as many different chunks as there are.
 TEST(any_number_of_arrays_share_their_chunks)
 {
     enum { ARRAYS = 60, MOST = 40, WORDS = ARRAY_CHUNK / 4 / sizeof(uint64_t), STEPS = 1500 };
@@ -212,18 +171,6 @@ TEST(any_number_of_arrays_share_their_chunks)
                 const uint64_t value = random_below(&g, 20) == 0 ? (uint64_t)step : counts[i];
                 uint64_t *element = (uint64_t *)a->base + counts[i] * WORDS;
                 values[i][counts[i]] = element[0] = element[WORDS - 1] = value;
-            }
-        } else if (live[j] && i != j) {
-            // what both begin with
-            const size_t count = counts[i] < counts[j] ? counts[i] : counts[j];
-            size_t equal = 0;
-            while (equal < count && values[i][equal] == values[j][equal]) {
-                equal++;
-            }
-            assert_int_equal(shared_array_same_chunks(a, &arrays[j], count), equal / 4);
-            shared_array_merge(a, &arrays[j], equal / 4);
-            for (size_t k = 0; k < equal / 4; k++) {
-                assert_int_equal(a->chunks[k], arrays[j].chunks[k]);
             }
         }
 

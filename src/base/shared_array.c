@@ -232,45 +232,6 @@ bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
     return true;
 }
 
-size_t shared_array_same_chunks(const shared_array *a, const shared_array *b, size_t count)
-{
-    assert(a != NULL && b != NULL);
-    size_t most = a->size == b->size ? count * a->size / ARRAY_CHUNK : 0;
-    size_t same = 0;
-
-    // the same chunk needs no look; a plain array has none
-    while (same < most && same < a->chunk_count && same < b->chunk_count) {
-        size_t at = same * ARRAY_CHUNK;
-        bool equal =
-            a->chunks[same] == b->chunks[same] ||
-            memcmp((const char *)a->base + at, (const char *)b->base + at, ARRAY_CHUNK) == 0;
-        if (!equal) {
-            break;
-        }
-        same++;
-    }
-    return same;
-}
-
-void shared_array_merge(shared_array *a, const shared_array *with, size_t chunks)
-{
-    assert(a != NULL && with != NULL && chunks <= a->chunk_count && chunks <= with->chunk_count);
-    for (size_t i = 0; i < chunks; i++) {
-        uint32_t old = a->chunks[i], shared = with->chunks[i];
-        if (old == shared) {
-            continue;
-        }
-
-        // the chunk of the other takes the place of an equal one of its own
-        if (!map_chunk(a, i, shared)) {
-            return; // it goes on with its own
-        }
-        share_chunk(shared);
-        a->chunks[i] = shared;
-        release_chunk(old);
-    }
-}
-
 void shared_array_finish(shared_array *a)
 {
     assert(a != NULL);

@@ -36,14 +36,6 @@ bool shared_array_grow(shared_array *a, size_t count);
 // that these fill are shared, the rest is copied. False without memory.
 bool shared_array_share(shared_array *a, const shared_array *from, size_t count);
 
-// How many chunks two shared arrays begin with have the same bytes, of those that their first
-// `count` elements fill.
-size_t shared_array_same_chunks(const shared_array *a, const shared_array *b, size_t count);
-
-// Lets an array share that many of another one's chunks instead of its own, which have the same
-// bytes. Nobody else may be reading it.
-void shared_array_merge(shared_array *a, const shared_array *with, size_t chunks);
-
 void shared_array_finish(shared_array *a); // one of zeroes is allowed
 
 // Memory behind all shared arrays of the program, chunks that several have counted once [bytes].

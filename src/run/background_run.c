@@ -6,15 +6,12 @@
 
 #include "src/base/clock.h"
 #include "src/base/worker_signals.h"
-#include "src/run/resume.h"
 
 struct background_run {
     scenario scenario;
     run_options options;
     run_monitor monitor;
-    run_result other;   // shared with another run, or empty
-    shared_chunks same; // the result's and its beginning
-    run_result result;  // the thread's until it is over; the places of its rows never change
+    run_result result; // the thread's until it is over; the places of its rows never change
     pthread_t thread;
     bool threaded;
     pthread_mutex_t lock;
@@ -26,7 +23,6 @@ static void *compute(void *argument)
 {
     background_run *c = argument;
     run_scenario_with(&c->scenario, &c->options, &c->result);
-    c->same = run_compare_rows(&c->result, &c->other);
     pthread_mutex_lock(&c->lock);
     c->over = true;
     pthread_cond_signal(&c->ended);
@@ -54,7 +50,7 @@ background_run *background_run_start(const scenario *s, const background_options
         return NULL;
     }
 
-    // the scenario, the rows that it begins with, and the run that it may have rows in common with
+    // the scenario and the rows that it begins with
     c->scenario = *s;
     c->options = (run_options){.keep_trace = true,
                                .monitor = &c->monitor,
@@ -63,9 +59,6 @@ background_run *background_run_start(const scenario *s, const background_options
                                .resume = begun != NULL};
     if (begun != NULL) {
         c->result = *begun;
-    }
-    if (how->other != NULL && run_share(how->other, how->rows_expected, &c->other) != STATUS_OK) {
-        c->other = (run_result){0}; // then rows are kept twice
     }
 
     // waiting is by a clock that nobody sets
@@ -130,11 +123,7 @@ run_result background_run_finish(background_run *c)
     if (c->threaded) {
         pthread_join(c->thread, NULL);
     }
-
-    // rows are shared here, where the caller reads no rows
     run_result result = c->result;
-    run_merge(&result, &c->other, &c->same);
-    run_finish(&c->other);
     pthread_mutex_destroy(&c->lock);
     pthread_cond_destroy(&c->ended);
     free(c);

@@ -7,8 +7,6 @@ typedef struct background_run background_run;
 
 typedef struct background_options {
     size_t rows_expected;
-    const run_result *other; // rows at the beginning that are its own are kept once in the end;
-                             // NULL: of no other run
     struct process_transcript *transcript; // of a process that is the controller, NULL: none
     bool at_once;                          // the run is over when background_run_start returns
 } background_options;

@@ -245,37 +245,3 @@ status run_share(const run_result *from, size_t rows_expected, run_result *resul
     }
     return done ? STATUS_OK : STATUS_NO_MEMORY;
 }
-
-static size_t fewer(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
-shared_chunks run_compare_rows(const run_result *result, const run_result *other)
-{
-    assert(result != NULL && other != NULL);
-    const trace *a = &result->trace, *b = &other->trace;
-    const run_history *h = &result->history, *k = &other->history;
-
-    // compared as far as both go
-    size_t rows = fewer(a->row_count, b->row_count);
-    size_t events = fewer(a->event_count, b->event_count);
-    size_t steps = fewer(h->forces.count, k->forces.count);
-    return (shared_chunks){
-        .rows = shared_array_same_chunks(&a->row_array, &b->row_array, rows),
-        .angles = shared_array_same_chunks(&a->angle_array, &b->angle_array, rows),
-        .velocities = shared_array_same_chunks(&a->velocity_array, &b->velocity_array, rows),
-        .events = shared_array_same_chunks(&a->event_array, &b->event_array, events),
-        .forces = shared_array_same_chunks(&h->forces.array, &k->forces.array, steps)};
-}
-
-void run_merge(run_result *result, const run_result *other, const shared_chunks *same)
-{
-    assert(result != NULL && other != NULL && same != NULL);
-    shared_array_merge(&result->trace.row_array, &other->trace.row_array, same->rows);
-    shared_array_merge(&result->trace.angle_array, &other->trace.angle_array, same->angles);
-    shared_array_merge(&result->trace.velocity_array, &other->trace.velocity_array,
-                       same->velocities);
-    shared_array_merge(&result->trace.event_array, &other->trace.event_array, same->events);
-    shared_array_merge(&result->history.forces.array, &other->history.forces.array, same->forces);
-}

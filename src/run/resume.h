@@ -50,17 +50,3 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
 
 // A second result of the same run that shares all rows. STATUS_NO_MEMORY if there is no room.
 status run_share(const run_result *from, size_t rows_expected, run_result *result);
-
-// Numbers of chunks (src/base/shared_array.h) that the rows, angles, velocities, events and forces
-// of two results both begin with.
-typedef struct shared_chunks {
-    size_t rows, angles, velocities, events, forces;
-} shared_chunks;
-
-// Finds the chunks that the two results have in common; both must have their rows in shared arrays,
-// or none.
-shared_chunks run_compare_rows(const run_result *result, const run_result *other);
-
-// Lets result take those chunks of `other` instead of its own equal ones. Nobody may be reading
-// result's rows.
-void run_merge(run_result *result, const run_result *other, const shared_chunks *same);

@@ -199,10 +199,8 @@ static status start_run(session *s, const scenario *effective, fault *f)
     if (s->transcript == NULL && effective->parameters.control.law == LAW_PROCESS) {
         s->transcript = process_transcript_create(); // without memory the program is always asked
     }
-    const background_options how = {.rows_expected = rows,
-                                    .other = s->has_other ? &s->other : NULL,
-                                    .transcript = s->transcript,
-                                    .at_once = isinf(s->patience)};
+    const background_options how = {
+        .rows_expected = rows, .transcript = s->transcript, .at_once = isinf(s->patience)};
     background_run *c = background_run_start(effective, &how, resume ? &run : NULL);
     if (c == NULL) {
         run_finish(&run);
