@@ -1,28 +1,29 @@
-#include "src/base/text_stream.h"
 #include "src/run/corrected.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stddef.h>
 #include <string.h>
 
-#include "src/base/numbers.h"
-#include "src/run/resume.h"
-#include "src/run/recording.h"
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
+#include "src/base/numbers.h"
+#include "src/base/text_stream.h"
+#include "src/run/recording.h"
+#include "src/run/resume.h"
 
-#define SMALL_FLIGHT   1e-10 // motions of this size are followed to 1e-5 of it [rad, m, N m]
-#define SMALL_CONTACT  1e-7  // the same of those that meet the wall
-#define DEEPEST        1e-9  // that an arm may be in a rigid wall by rounding [m]
-#define ANGLE_ROUNDING 1e-16 // of an arm that something holds [rad]
-#define GRID_TOLERANCE 1e-9  // of a step: the end so near a row of the grid has that row
+#define DEEPEST         1e-9  // that an arm may be in a rigid wall by rounding [m]
+#define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
+#define SAME_EVENT_TIME 1e-13 // events nearer than this come at once [s]
+
+enum { MOST_EVENTS_AT_ONCE = 100 }; // events without time passing before the run is given up
+
+// --- between stretches: script and rig --------------------------------------------------------
 
 // Whether the stretch between two stops is through.
 static bool stretch_is_over(const corrected_run *c)
 {
-    return !(corrected_now(c) < smaller(c->stop, c->motion->record.tstop));
+    return !(corrected_now(c) < smaller(c->stretch.stop, c->motion->record.tstop));
 }
 
 // The next instant that steps end at: the rig's, or the end.
@@ -124,7 +125,7 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
         }
 
         // the mean force of the end begins to count here
-        if (!c->under_way.goes_on && same_instant(m->state[SLOT_TIME], window)) {
+        if (!c->stretch.under_way.goes_on && same_instant(m->state[SLOT_TIME], window)) {
             r->state.integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
             r->state.in_window = (force_bounds){0};
         }
@@ -137,9 +138,9 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
             failed = run_rig(c, f);
         }
         m->record.tstop = next_cut(r, window, m->state[SLOT_TIME]);
-        c->stop = next_stop(r);
-        c->last_event = -1;
-        c->at_once = 0;
+        c->stretch.stop = next_stop(r);
+        c->stretch.last_event = -1;
+        c->stretch.at_once = 0;
     }
 
     // the end may lie between rows of the grid
@@ -157,227 +158,239 @@ status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
     return within ? STATUS_OK : begin_stretch(c, ended, f);
 }
 
-// Adds a sentence to the remarks.
-static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char *format, ...)
-{
-    size_t length = strlen(s->message);
-    if (length > 0 && length + 2 < sizeof s->message) {
-        length += (size_t)snprintf(s->message + length, sizeof s->message - length, "; ");
-    }
-    va_list values;
-    va_start(values, format);
-    decimal_vprint(s->message + length, sizeof s->message - length, format, values);
-    va_end(values);
-}
+// --- a step -----------------------------------------------------------------------------------
 
-// The beam as one spring, 0: one link on a rigid hub [N m/rad].
-static double beam_stiffness(const arm *a)
-{
-    return a->links > 1 ? 2 * a->joint_stiffness / a->links : a->hub_stiffness;
-}
-
-// How far so much energy [J] bends the beam, or turns one rigid link in the time [s] it has [rad].
-static double turn_of_energy(const arm *a, double energy, double duration)
-{
-    const double length = a->links * a->link_length;
-    const double inertia = a->hub_inertia + a->links * a->link_mass * length * length / 3;
-    const double beam = beam_stiffness(a);
-    return sqrt(energy / (beam > 0 ? beam : inertia / (duration * duration)));
-}
-
-// Adds a remark where the whole motion is so small that the tolerances of events (absolute lengths,
-// speeds and torques) are too large a share of it. An arm that has not moved is held by friction,
-// or by the wall with more than that.
-static void judge_size(const corrected_run *c, double energy)
-{
-    const arm *a = &c->arm;
-    summary *s = &c->recording->result->summary;
-    const double duration = c->recording->scenario->parameters.run.duration;
-    const double turn = turn_of_energy(a, energy, duration);
-    const double travel = turn * a->links * a->link_length;
-    const double torque = turn > 0 ? energy / turn : fabs(a->motor.torque) - a->motor.stiction;
-
-    const double size = turn > 0 ? smaller(smaller(turn, travel), torque) : torque;
-    const double least = isnan(s->first_contact_s) ? SMALL_FLIGHT : SMALL_CONTACT;
-    if (size > 0 && size < least) {
-        s->inaccurate = true;
-        remark(s,
-               "the %.3g J put in %s by some %.2g rad only (%.2g m at the tip, with torques of "
-               "%.2g N m), so little that the tolerances of contact and friction show",
-               energy, beam_stiffness(a) > 0 ? "bend the beam" : "turn the arm", turn, travel,
-               torque);
-    }
-}
-
-// What friction leaves open of the force of one link.
-static void remark_on_single_link(const corrected_run *c)
+// What comes of a step that ended where `report` says.
+static status record_step(corrected_run *c, motion_report *report)
 {
     const motion *m = c->motion;
-    summary *s = &c->recording->result->summary;
-    if (!isnan(s->peak_force_high_N)) {
-        const bool steady = !isnan(s->steady_force_high_N);
-        remark(s,
-               "wall and friction hold the one link both, so that its force on the wall is "
-               "determined within bounds only, the %s from %.6g to %.6g N; the number given is "
-               "that without friction",
-               steady ? "steady one" : "largest",
-               steady ? s->steady_force_low_N : s->peak_force_low_N,
-               steady ? s->steady_force_high_N : s->peak_force_high_N);
+    const bool at_event = report->event != MOTION_REACHED;
+    status s = corrected_record_step(c, at_event);
+    c->stretch.under_way.goes_on = false;
+    if (s == STATUS_OK && at_event) {
+        s = corrected_pass_event(c, report);
+        bool same = m->state[SLOT_TIME] - c->stretch.last_event < SAME_EVENT_TIME;
+        c->stretch.at_once = same ? c->stretch.at_once + 1 : 0;
+        c->stretch.last_event = m->state[SLOT_TIME];
+    }
+    return s;
+}
+
+// --- the step under way -----------------------------------------------------------------------
+
+// Whether the arm flies under a rig, in strides that outlive steps.
+static bool flies_beyond_samples(const corrected_run *c)
+{
+    const motion *m = c->motion;
+    return c->recording->rig != NULL && m->state[SLOT_CONTACT] == 0 && engine_is_dense(m->engine) &&
+           !m->out_of_memory && !motion_held_still(m);
+}
+
+void corrected_begin_step(corrected_run *c)
+{
+    motion *m = c->motion;
+    const double step = c->recording->now.method.step;
+    assert(!c->stretch.under_way.goes_on);
+    if (!flies_beyond_samples(c)) {
+        motion_examine_step(&c->arm, m, c->stretch.stop, c->stretch.stop, step);
         return;
     }
 
-    // within a wall that gives the depth says the force
-    const bool within = !motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0;
-    if (within && m->dof == 1 && m->state[SLOT_FRICTION] == HUB_STICK) {
-        const force_bounds held = motion_held_forces(&c->arm, m, m->state);
-        remark(s,
-               "friction holds the link where it came to rest in the wall, and would at any force "
-               "from %.6g to %.6g N: on another way there it is another one",
-               held.low, held.high);
-    }
+    // as far as its stride lasts
+    const double now = m->state[SLOT_TIME];
+    motion_examine_step(&c->arm, m, c->stretch.stop,
+                        c->recording->scenario->parameters.run.duration, step);
+    memcpy(m->trial, m->state, (size_t)m->size * sizeof *m->state);
+    c->stretch.under_way = (open_step){.goes_on = true,
+                                       .begun_for = c->stretch.stop,
+                                       .now = now,
+                                       .sensed = corrected_way_at(c, now, m->state)};
 }
 
-// What rounding of the angles makes of the largest torque and the beam's stiffness [J]: an arm that
-// something holds seems to have so much put in.
-static double rounding_energy(const corrected_run *c)
+// Whether the step under way ends after an instant [s].
+static bool goes_beyond(const corrected_run *c, double time)
 {
-    const arm *a = &c->arm;
-    const double force = larger(c->motion->record.pulse_peak, 0);
-    const double torque = larger(fabs(a->motor.torque), force * a->links * a->link_length);
-    return ANGLE_ROUNDING * (torque + ANGLE_ROUNDING * beam_stiffness(a));
-}
-
-// Judges whether the numbers can be relied on, and remarks on what the run left out.
-static void judge(const corrected_run *c)
-{
-    const recording *r = c->recording;
     const motion *m = c->motion;
-    summary *s = &r->result->summary;
-    double bound = r->scenario->parameters.method.residual_bound;
-    double energy = m->record.start_energy + r->state.energy_put_in;
-    const double rounding = rounding_energy(c);
-    if (r->state.chatters > 0) {
-        remark(s,
-               "the wall's restitution would have made the arm bounce without end: %ld times more "
-               "than %d flights in a row were shorter than a hundredth of its shortest period, and "
-               "the impact after them took all the approach speed (chatter)",
-               r->state.chatters, MOTION_MOST_SHORT_FLIGHTS);
-    }
-
-    if (r->state.from_behind > 0) {
-        remark(s,
-               "a point stops the line of the last link on both sides of its base: %ld of the "
-               "touches were behind it, where no link is",
-               r->state.from_behind);
-    }
-
-    remark_on_single_link(c);
-    s->inaccurate = s->energy_residual_J > bound * energy + rounding;
-    if (s->inaccurate) {
-        remark(s,
-               "the energy ledger lacks up to %.3g J of the %.3g J put in, more than "
-               "method.residual_bound = %g allows: the method was %s%s",
-               s->energy_residual_J, energy, bound, m->engine->name, corrected_advice(m));
-    }
-
-    if (motion_wall_is_rigid(m) && s->max_penetration_m > DEEPEST) {
-        s->inaccurate = true;
-        remark(s, "the arm was %.3g m inside a rigid wall: the method was %s%s",
-               s->max_penetration_m, m->engine->name, corrected_advice(m));
-    }
-    if (m->record.overheld > 0) {
-        s->inaccurate = true;
-        remark(s,
-               "friction held the hub by %.3g N m more than motor.stiction allows, a slip was "
-               "missed: the method was %s%s",
-               m->record.overheld, m->engine->name, corrected_advice(m));
-    }
-    judge_size(c, energy > rounding ? energy : 0);
+    return m->step.coming.begun && instant_after(m->state[SLOT_TIME] + m->step.coming.length, time);
 }
 
-// The bounds of the mean force over the last of the run.
-static void tell_steady_bounds(const corrected_run *c)
+// What the sensors are fixed to at an instant [s] within the step under way: most see nothing but
+// the hub, and no force. False if the state there cannot be had.
+static bool sensed_within(const corrected_run *c, double time, sensed_motion *at)
 {
-    const recording *r = c->recording;
-    summary *s = &r->result->summary;
-    const double window = fmin(STEADY_WINDOW, r->scenario->parameters.run.duration);
-    const force_bounds mean = {r->state.in_window.low / window, r->state.in_window.high / window};
-    corrected_tell_bounds(mean, &s->steady_force_low_N, &s->steady_force_high_N);
+    motion *m = c->motion;
+    const sensor_parameters *fitted = &c->recording->rig->sensors.p;
+    *at = (sensed_motion){.force = 0};
+    if (fitted->film || fitted->accelerometer) {
+        double *state = motion_between(&c->arm, m, time, STATE_WHOLE);
+        if (state == NULL) {
+            return false;
+        }
+        *at = corrected_sensed_motion(c, state);
+    }
+
+    const value_and_slope hub = motion_output(&c->arm, m, OUTPUT_HUB, time - m->state[SLOT_TIME]);
+    at->angle = hub.value;
+    at->velocity = hub.slope;
+    return true;
 }
 
-// Sums up what is known of the run, also of one that failed or has not come to its end (`failed`
-// then says so). What it has recorded is then that of a run that ended here.
-static void sum_up(corrected_run *c, status failed)
+// Goes on to an instant [s] within the step under way, with rows and, where the rig acts there,
+// sensors.
+static status go_along(corrected_run *c, double time, fault *f)
+{
+    way to = {.time = time, .integral = c->stretch.under_way.sensed.integral};
+    status s = corrected_record_rows_to(c, time);
+    if (s == STATUS_OK && time == c->stretch.stop) {
+        const bool known = sensed_within(c, time, &to.at);
+        s = known ? corrected_follow_flight(c, &to) : STATUS_NOT_FINITE;
+    }
+
+    // the run is there
+    if (s == STATUS_OK) {
+        c->stretch.under_way.now = time;
+        s = recording_asked_to_stop(c->recording) ? STATUS_STOPPED : s;
+    }
+    return s == STATUS_OK ? s : corrected_explain(c, s, f);
+}
+
+// --- a step to its end ------------------------------------------------------------------------
+
+// Makes the next step, to `until` [s] or the event at its end, and records what comes of it.
+static status make_step(corrected_run *c, double until, fault *f)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    summary *s = &r->result->summary;
+    const double step = r->now.method.step;
+    motion_report report;
+    status s = motion_step(&c->arm, m, until, step, &report);
+    if (s != STATUS_OK) {
+        c->stretch.under_way.goes_on = false;
+        return corrected_explain_step(c, s, f);
+    }
+    s = record_step(c, &report);
 
-    // as if the run ended here; a step that fails in this does not end the run, but may be lost
+    // reasons to end here
+    if (s == STATUS_OK && recording_asked_to_stop(r)) {
+        s = STATUS_STOPPED;
+    }
+    recording_publish(r, m->state[SLOT_TIME]);
+    if (s == STATUS_OK && c->stretch.at_once > MOST_EVENTS_AT_ONCE) {
+        return corrected_explain_standstill(c, report.event, f);
+    }
+    if (s != STATUS_OK) {
+        return corrected_explain(c, s, f);
+    }
+    return pace_keep(&c->pace, &c->arm, m, r->scenario->parameters.run.duration, step, f);
+}
+
+status corrected_stride(corrected_run *c, double until, fault *f)
+{
+    assert(c != NULL && f != NULL);
+    recording *r = c->recording;
+    motion *m = c->motion;
+    if (r->options->rows_expected > 0 && !checkpoint_keep(r, m, c->stretch.last_event)) {
+        return fault_no_memory(f);
+    }
+
+    // within the step under way
+    if (!c->stretch.under_way.goes_on && flies_beyond_samples(c)) {
+        corrected_begin_step(c);
+    }
+    const double next = instant_after(c->stretch.stop, until) ? until : c->stretch.stop;
+    if (c->stretch.under_way.goes_on && goes_beyond(c, next)) {
+        return go_along(c, next, f);
+    }
+
+    // or to the end of one; where it stops by itself it is that of a run that nobody steps, to the
+    // last bit
+    if (until < c->stretch.stop && !c->stretch.under_way.goes_on) {
+        m->record.tstop = smaller(m->record.tstop, until);
+    }
+    const status s = make_step(c, c->stretch.stop, f);
+
+    // the pace is that of strides which the motion chose, not of instants a program asks for
+    if (!(c->motion->state[SLOT_TIME] < until)) {
+        c->pace = pace_begin();
+    }
+    return s;
+}
+
+status corrected_end_step(corrected_run *c, fault *f)
+{
+    assert(c != NULL && f != NULL);
+    motion *m = c->motion;
+    const open_step *on = &c->stretch.under_way;
+    if (!on->goes_on) {
+        return STATUS_OK;
+    }
+    m->step.coming.length = on->now - m->state[SLOT_TIME];
+    m->step.coming.any = false;
+    return make_step(c, on->now, f);
+}
+
+status corrected_act_now(corrected_run *c, const action *todo, fault *f)
+{
+    const status s = corrected_end_step(c, f);
+    return s == STATUS_OK ? corrected_act(c, todo, -1, f) : s;
+}
+
+// --- at present -------------------------------------------------------------------------------
+
+double *corrected_present(const corrected_run *c)
+{
+    motion *m = c->motion;
+    double *within = c->stretch.under_way.goes_on
+                         ? motion_between(&c->arm, m, c->stretch.under_way.now, STATE_WHOLE)
+                         : m->state;
+    return within != NULL ? within : m->state;
+}
+
+sensed_motion corrected_sensed_now(const corrected_run *c)
+{
+    const open_step *on = &c->stretch.under_way;
+    sensed_motion at = on->sensed.at;
+    if (!on->goes_on) {
+        return corrected_sensed_motion(c, c->motion->state);
+    }
+    return on->sensed.time == on->now || sensed_within(c, on->now, &at) ? at : on->sensed.at;
+}
+
+// --- beginning and end ------------------------------------------------------------------------
+
+// Sums the run up where it stands, as if it ended here: a step that fails in this does not end the
+// run, but may be lost.
+static void end_and_summarise(corrected_run *c, status failed)
+{
     fault none;
     loss_unless(corrected_end_step(c, &none) != STATUS_NO_MEMORY);
-    s->steps = (double)m->record.steps;
-    s->max_penetration_m = fmax(0, m->record.largest_penetration);
-    s->motor_work_J = motion_motor_work(m, m->state);
-    if (!motion_wall_is_rigid(m)) {
-        s->wall_loss_J = state_quadratures(m, m->state)[QUADRATURE_WALL];
-    }
-    s->separations += r->state.separated;
-
-    // results of the contact
-    if (r->state.landing_open) {
-        corrected_close_landing(c);
-    }
-    r->result->landing = r->state.landing;
-    if (!isnan(s->first_contact_s)) {
-        if (r->state.pulse_open) {
-            corrected_close_first_pulse(c);
-            s->first_pulse_s = (double)NAN; // it never ended
-        }
-        const bool earlier = r->state.earlier_peak > m->record.pulse_peak;
-        const double peak = earlier ? r->state.earlier_peak : m->record.pulse_peak;
-        const double when = earlier ? r->state.earlier_peak_time : m->record.pulse_peak_time;
-        if (peak >= 0) {
-            s->peak_force_N = peak;
-            s->time_to_peak_s = when - s->first_contact_s;
-        }
-    }
-    corrected_tell_bounds(r->state.largest, &s->peak_force_low_N, &s->peak_force_high_N);
-
-    // results that only a complete run has
-    if (failed == STATUS_OK) {
-        double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
-        recording_finish_summary(r, integral - r->state.integral_at_window);
-        tell_steady_bounds(c);
-        recording_finish_rig_summary(r, state_angles(m, m->state)[0]);
-        judge(c);
-    }
+    corrected_summarise(c, failed);
 }
 
 void corrected_sum_up(corrected_run *c, status failed)
 {
     assert(c != NULL && c->motion != NULL);
     rig *on = c->recording->rig;
-    if (!c->under_way.goes_on) {
-        sum_up(c, failed);
+    if (!c->stretch.under_way.goes_on) {
+        end_and_summarise(c, failed);
         return;
     }
 
     // all that the end of the step under way changes, but for what is summed up
     const motion moving = *c->motion;
-    const open_step under_way = c->under_way;
+    const open_step under_way = c->stretch.under_way;
     const pace paced = c->pace;
     const sensors felt = on->sensors;
     size_t *forces = &c->recording->result->history.forces.count;
     const size_t kept = *forces;
-    sum_up(c, failed);
+    end_and_summarise(c, failed);
 
     // and back to where the step started, which is where it left that
     const double *start = c->motion->trial;
     *c->motion = moving;
     memmove(moving.state, start, (size_t)moving.size * sizeof *start);
     memmove(moving.trial, start, (size_t)moving.size * sizeof *start);
-    c->under_way = under_way;
+    c->stretch.under_way = under_way;
     c->pace = paced;
     on->sensors = felt;
     *forces = kept;
@@ -390,7 +403,7 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
     const parameters *p = &r->scenario->parameters;
     memset(c, 0, offsetof(corrected_run, arm));
     c->recording = r;
-    c->last_event = -1;
+    c->stretch.last_event = -1;
     c->pace = pace_begin();
     corrected_bind_arm(c);
     c->motion = motion_renew(spare, &c->arm, &p->method);
@@ -421,7 +434,7 @@ motion *corrected_finish(corrected_run *c, status failed)
 {
     motion *m = c->motion;
     if (m != NULL) {
-        sum_up(c, failed);
+        end_and_summarise(c, failed);
     }
     wall_path_destroy(c->path);
     c->path = NULL;
@@ -431,4 +444,37 @@ motion *corrected_finish(corrected_run *c, status failed)
 void corrected_close(corrected_run *c, status failed)
 {
     motion_destroy(corrected_finish(c, failed));
+}
+
+// --- the state as bytes ------------------------------------------------------------------------
+
+// The stretch, then what the motion remembers.
+
+size_t corrected_saved_size(const corrected_run *c)
+{
+    return sizeof c->stretch + motion_saved_size(c->motion);
+}
+
+void corrected_save(const corrected_run *c, void *bytes)
+{
+    memcpy(bytes, &c->stretch, sizeof c->stretch);
+    motion_save(c->motion, (char *)bytes + sizeof c->stretch);
+}
+
+void corrected_restore(corrected_run *c, const void *bytes)
+{
+    stretch saved;
+    memcpy(&saved, bytes, sizeof saved);
+    corrected_bind_arm(c); // to parameters and voltage of then
+    motion_restore(&c->arm, c->motion, (const char *)bytes + sizeof saved);
+    c->pace = pace_begin();
+
+    // the step under way, looked at again as it was when it was begun
+    c->stretch = saved;
+    if (saved.under_way.goes_on) {
+        c->stretch.under_way.goes_on = false;
+        c->stretch.stop = saved.under_way.begun_for;
+        corrected_begin_step(c);
+        c->stretch = saved;
+    }
 }

@@ -28,17 +28,20 @@ typedef struct open_step {
     way sensed;       // up to where the sensors have followed the arm
 } open_step;
 
+// The stretch of motion between two stops of script, rig or window.
+typedef struct stretch {
+    double stop;       // where it ends at the latest, 0 before the first [s]
+    double last_event; // in it, -1 if none [s]
+    int at_once;       // events in a row without time passing
+    open_step under_way;
+} stretch;
+
 typedef struct corrected_run {
     recording *recording;
     motion *motion;
 
-    // the stretch between two stops of script, rig or window that the motion is in
-    double stop;       // where it ends at the latest, 0 before the first [s]
-    double last_event; // in it, -1 if none [s]
-    int at_once;       // events in a row without time passing
-    pace pace;         // of the whole run
-    open_step under_way;
-
+    stretch stretch; // that the motion is in
+    pace pace;       // of the whole run
     wall_path *path; // of a wall that a file moves, else NULL
     arm arm;         // with the command in force
 } corrected_run;
@@ -46,7 +49,7 @@ typedef struct corrected_run {
 // The instant that the run has come to [s].
 static inline double corrected_now(const corrected_run *c)
 {
-    return c->under_way.goes_on ? c->under_way.now : c->motion->state[SLOT_TIME];
+    return c->stretch.under_way.goes_on ? c->stretch.under_way.now : c->motion->state[SLOT_TIME];
 }
 
 // Begins a run, or takes one up, in the storage of a motion that is over (`spare`, which may be
@@ -88,9 +91,14 @@ double *corrected_present(const corrected_run *c);
 // What the sensors are fixed to at present.
 sensed_motion corrected_sensed_now(const corrected_run *c);
 
-// Advice to the user where the energy balance does not close: dense engines choose their strides
-// themselves.
-const char *corrected_advice(const motion *m);
+// Carries out an action that belongs to no script, now.
+status corrected_act_now(corrected_run *c, const action *todo, fault *f);
+
+// The whole state but for recording and rig as bytes; and back, after recording and rig were
+// restored.
+size_t corrected_saved_size(const corrected_run *c);
+void corrected_save(const corrected_run *c, void *bytes);
+void corrected_restore(corrected_run *c, const void *bytes);
 
 // --- between steps: events, the script, commands of the rig -----------------------------------
 
@@ -177,3 +185,19 @@ bool flight_separated(const arm *a, motion *m);
 // How fast the tip came towards the wall at most in the step [m/s]: at its ends or, where it was
 // faster and then slower, in between. Negative if it only went away; 0 without a wall.
 double flight_closing_speed(const arm *a, motion *m);
+
+// --- what it comes to -------------------------------------------------------------------------
+
+// Sums up what is known of the run, also of one that failed or has not come to its end (`failed`
+// then says so). What it has recorded is then that of a run that ended here.
+void corrected_summarise(corrected_run *c, status failed);
+
+// Says when and how the run failed, with the method's name. Returns s.
+status corrected_explain(const corrected_run *c, status s, fault *f);
+
+// Says why the motion could not make a step. Returns s.
+status corrected_explain_step(const corrected_run *c, status s, fault *f);
+
+// Says that the run no longer passes time after that event, and what makes it so. Returns
+// STATUS_NO_PROGRESS.
+status corrected_explain_standstill(const corrected_run *c, motion_event last, fault *f);

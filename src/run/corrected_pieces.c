@@ -264,7 +264,7 @@ static status follow_to(corrected_run *c, way w, const way *last, double mean)
 
 status corrected_follow_flight(corrected_run *c, const way *to)
 {
-    way *sensed = &c->under_way.sensed;
+    way *sensed = &c->stretch.under_way.sensed;
     const bool rest = sensors_at_rest(&c->recording->rig->sensors);
     const status s = rest ? STATUS_OK : follow_to(c, *sensed, to, 0);
     *sensed = *to;
@@ -277,7 +277,7 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole, boo
 {
     const motion *m = c->motion;
     sensors *felt = &c->recording->rig->sensors;
-    const open_step *on = &c->under_way;
+    const open_step *on = &c->stretch.under_way;
     const bool rest = on->goes_on && on->sensed.time > whole->start;
     const bool pressed = whole->first != 0 || whole->last != 0 || whole->mean != 0;
     if (!pressed && sensors_at_rest(felt)) {

@@ -90,11 +90,10 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
                                .transcript = l->transcript};
 
     // the run at its start
-    l->run.model = stepped_model_of(&s->parameters);
     status code = recording_begin(&l->recording, &l->scenario, &l->options, &l->result, f);
     if (code == STATUS_OK) {
         l->opened = true;
-        code = l->run.model->open(&l->run, &l->recording, f);
+        code = driver_open(&l->driver, &l->recording, f);
     }
     if (code != STATUS_OK) {
         loop_destroy(l);
@@ -109,7 +108,7 @@ void loop_destroy(run_loop *l)
 {
     if (l != NULL) {
         if (l->opened) {
-            l->run.model->close(&l->run, STATUS_STOPPED);
+            driver_close(&l->driver, STATUS_STOPPED);
         }
         recording_end(&l->recording, STATUS_STOPPED, &l->fault, (time_used){0});
         process_transcript_destroy(l->transcript);
@@ -124,7 +123,7 @@ void loop_destroy(run_loop *l)
 double loop_time(const run_loop *l)
 {
     assert(l != NULL);
-    return l->run.model->time(&l->run);
+    return driver_time(&l->driver);
 }
 
 bool loop_ended(const run_loop *l)
@@ -145,34 +144,19 @@ static status stay_failed(run_loop *l, fault *f)
     return l->failed;
 }
 
-// Whether an instant is still to be gone to; the end is, until it is known to be one.
-static bool lies_ahead(const run_loop *l, double time)
+// Goes on to an instant, if it lies ahead, what is due now first.
+static status advance(run_loop *l, double time, fault *f)
 {
-    return instant_after(time, loop_time(l)) || time >= l->scenario.parameters.run.duration;
-}
-
-// Strides up to an instant, if it lies ahead, what is due now first.
-static void stride_to(run_loop *l, double time)
-{
-    const stepped_model *model = l->run.model;
-    while (l->failed == STATUS_OK && !l->ended && lies_ahead(l, time)) {
-        l->failed = model->approach(&l->run, &l->ended, &l->fault);
-        if (l->failed == STATUS_OK && !l->ended) {
-            l->failed = model->stride(&l->run, time, &l->fault);
-        }
+    if (l->failed == STATUS_OK) {
+        l->failed = driver_advance(&l->driver, time, &l->ended, &l->fault);
     }
-
-    // the end is known as soon as it is reached
-    if (l->failed == STATUS_OK && !l->ended && model->at_end(&l->run)) {
-        l->failed = model->approach(&l->run, &l->ended, &l->fault);
-    }
+    return stay_failed(l, f);
 }
 
 status loop_until(run_loop *l, double time, fault *f)
 {
     assert(l != NULL && isfinite(time) && f != NULL);
-    stride_to(l, time);
-    return stay_failed(l, f);
+    return advance(l, time, f);
 }
 
 status loop_step(run_loop *l, fault *f)
@@ -184,11 +168,10 @@ status loop_step(run_loop *l, fault *f)
     // the next multiple of the step, or what the rig does now and then its next sample
     double next = (floor(loop_time(l) / interval + GRID_TOLERANCE) + 1) * interval;
     if (on != NULL && l->failed == STATUS_OK && !l->ended) {
-        l->failed = l->run.model->approach(&l->run, &l->ended, &l->fault);
-        next = l->run.model->stops_anywhere ? on->sample_time : fmax(next, on->sample_time);
+        l->failed = driver_approach(&l->driver, &l->ended, &l->fault);
+        next = l->driver.is_printed ? fmax(next, on->sample_time) : on->sample_time;
     }
-    stride_to(l, next);
-    return stay_failed(l, f);
+    return advance(l, next, f);
 }
 
 // --- inputs -----------------------------------------------------------------------------------
@@ -205,7 +188,7 @@ static status act(run_loop *l, const action *todo, fault *f)
     if (l->failed != STATUS_OK) {
         return stay_failed(l, f);
     }
-    if (todo->kind == ACTION_PUSH && !l->run.model->takes_pushes) {
+    if (todo->kind == ACTION_PUSH && l->driver.is_printed) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "the printed model takes no pushes");
     }
     if (todo->kind == ACTION_SET && !rig_can_change(&l->recording.now, todo->parameter)) {
@@ -226,7 +209,7 @@ static status act(run_loop *l, const action *todo, fault *f)
         code = code == STATUS_OK ? rig_takes(on, &tried, f) : code;
     }
     if (code == STATUS_OK) {
-        code = l->run.model->act(&l->run, todo, &l->fault);
+        code = driver_act(&l->driver, todo, &l->fault);
         if (code == STATUS_BAD_SCENARIO) { // a wall that would be behind the arm
             *f = l->fault;
             l->fault = (fault){0};
@@ -279,7 +262,7 @@ bool loop_sense(run_loop *l, sensor_reading *reading)
         return false;
     }
     if (!l->ended) {
-        const sensed_motion now = l->run.model->sensed(&l->run);
+        const sensed_motion now = driver_sensed(&l->driver);
         rig_read(on, loop_time(l), &now);
     }
     *reading = on->reading;
@@ -289,13 +272,13 @@ bool loop_sense(run_loop *l, sensor_reading *reading)
 sample loop_row(run_loop *l)
 {
     assert(l != NULL);
-    return l->run.model->row(&l->run);
+    return driver_row(&l->driver);
 }
 
 const double *loop_state(const run_loop *l, int *angle_count)
 {
     assert(l != NULL && angle_count != NULL);
-    return l->run.model->state(&l->run, angle_count);
+    return driver_state(&l->driver, angle_count);
 }
 
 summary loop_summary(run_loop *l)
@@ -310,7 +293,7 @@ summary loop_summary(run_loop *l)
     const summary kept = l->result.summary;
     const recording_state state = l->recording.state;
     const recorded_command command = l->recording.command;
-    l->run.model->sum_up(&l->run, code);
+    driver_sum_up(&l->driver, code);
     recording_tell_fault(&l->result.summary, code, &l->fault);
     const summary all = l->result.summary;
     l->result.summary = kept;

@@ -1,7 +1,7 @@
 // What a loop holds, for the files of src/run/loop.h.
 #pragma once
 
-#include "src/run/stepped.h"
+#include "src/run/driver.h"
 
 struct run_loop {
     scenario scenario; // a copy of one's own
@@ -10,7 +10,7 @@ struct run_loop {
     process_transcript *transcript; // NULL unless control.law is a process
     run_result result;
     recording recording;
-    stepped_run run;
+    run_driver driver;
     bool opened;  // the run is to be closed
     double volts; // commanded [V]
     bool ended;

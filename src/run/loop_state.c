@@ -36,7 +36,7 @@ size_t loop_saved_size(const run_loop *l)
 {
     assert(l != NULL);
     const rig *r = l->recording.rig;
-    return sizeof(saved_head) + l->run.model->saved_size(&l->run) + memory_size(r) + values_size(r);
+    return sizeof(saved_head) + driver_saved_size(&l->driver) + memory_size(r) + values_size(r);
 }
 
 // A number that other bytes behind the head's `check` would not give, but for one in 2^64: eight
@@ -92,8 +92,8 @@ void loop_save(const run_loop *l, void *bytes)
     }
     memcpy(at, &head, sizeof head);
     at += sizeof head;
-    l->run.model->save(&l->run, at);
-    at += l->run.model->saved_size(&l->run);
+    driver_save(&l->driver, at);
+    at += driver_saved_size(&l->driver);
     if (r->rig != NULL) {
         memcpy(at, r->rig->memory, memory_size(r->rig));
         if (l->law.law != NULL) { // which begins with its program's address
@@ -173,8 +173,8 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
     // the rig first: the run's arm has its voltage
     const char *at = (const char *)bytes + sizeof head;
     if (r->rig != NULL) {
-        restore_rig(l, &head.rig, at + l->run.model->saved_size(&l->run));
+        restore_rig(l, &head.rig, at + driver_saved_size(&l->driver));
     }
-    l->run.model->restore(&l->run, at);
+    driver_restore(&l->driver, at);
     return STATUS_OK;
 }

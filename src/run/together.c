@@ -69,8 +69,9 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
 // Where the series of the run's next step are to be computed; NULL if it needs none.
 static taylor_lane *lane_for(corrected_run *run)
 {
-    const double remaining = run->stop - run->motion->state[SLOT_TIME];
-    return run->under_way.goes_on ? NULL : taylor_prepare(&run->arm, run->motion, remaining);
+    const double remaining = run->stretch.stop - run->motion->state[SLOT_TIME];
+    return run->stretch.under_way.goes_on ? NULL
+                                          : taylor_prepare(&run->arm, run->motion, remaining);
 }
 
 // Goes on with a run until it waits for series that can be computed together with others'. False

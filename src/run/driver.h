@@ -1,0 +1,50 @@
+// A run in progress, whichever model it is of, and how it is driven:
+//
+//     driver_open -> driver_advance, to one instant after the other -> driver_close
+#pragma once
+
+#include "src/run/corrected.h"
+#include "src/run/printed.h"
+
+typedef struct run_driver {
+    bool is_printed; // the printed arm's, whose steps end at the times of its rows
+    double duration; // [s]
+    union {
+        corrected_run corrected;
+        printed_run printed;
+    };
+} run_driver;
+
+// Begins a run. Whatever it returns, with f saying why, driver_close is due.
+status driver_open(run_driver *d, recording *r, fault *f);
+
+// Sums up what has been recorded (`failed` is what ended it) and frees the run.
+void driver_close(run_driver *d, status failed);
+
+// Goes on to an instant [s], by phases: what is due of script and rig, then one stride of the
+// motion with its rows and the event at its end. A stride can be cut at any instant, but for the
+// printed arm, which goes on to the first row there or later. What is due at the instant itself
+// happens when the run goes on from it. *ended becomes true where the run is complete; HUGE_VAL:
+// up to there.
+status driver_advance(run_driver *d, double until, bool *ended, fault *f);
+
+// The first of the phases alone: *ended is true if the run is complete.
+status driver_approach(run_driver *d, bool *ended, fault *f);
+
+// Carries out now an action that belongs to no script; of the printed arm no push.
+status driver_act(run_driver *d, const action *todo, fault *f);
+
+// The summary as if the run ended here; `failed` says why it did not come to its end.
+void driver_sum_up(run_driver *d, status failed);
+
+double driver_time(const run_driver *d);    // where it is [s]
+sensed_motion driver_sensed(run_driver *d); // what the sensors are fixed to
+sample driver_row(const run_driver *d);     // the present state
+
+// Angles of all degrees of freedom [rad], then their velocities [rad/s], in place.
+const double *driver_state(const run_driver *d, int *angle_count);
+
+// Everything except recording and rig as bytes; and back, after recording and rig were restored.
+size_t driver_saved_size(const run_driver *d);
+void driver_save(const run_driver *d, void *bytes);
+void driver_restore(run_driver *d, const void *bytes);
