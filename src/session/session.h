@@ -4,7 +4,7 @@
 // does (a changed parameter, a push) is an input with its instant, and the run is that of the
 // scenario and all inputs. So a saved scenario gives the same run by construction, stepping back
 // and forth changes nothing, undo is a shorter list of inputs, and a branch keeps the old run
-// beside the new one; rows that both have are kept once.
+// beside the new one; rows that the new one resumes from are kept once.
 //
 // A run that takes longer than the session's patience is computed by a thread of its own. Until it
 // is over `run` shows the rows there are, session_follow brings more, and `computing` is not NULL.
