@@ -22,10 +22,10 @@ static inline status audit(corrected_run *c, state_energy has)
     double residual = motion_unaccounted(m, m->state, has.kinetic + has.strain + held);
     s->energy_residual_J = larger(fabs(residual), s->energy_residual_J);
 
+    const double torque = c->arm.motor.torque + m->state[SLOT_MOTOR_TORQUE];
     double turned_over = fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
                          fabs(held) + fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED]) +
-                         m->record.start_energy + fabs(c->arm.motor.torque) * TINY_TURN +
-                         TINY_ENERGY;
+                         m->record.start_energy + fabs(torque) * TINY_TURN + TINY_ENERGY;
     // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
     double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
     if (!isfinite(residual) || !isfinite(turned_over)) {
