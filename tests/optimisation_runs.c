@@ -52,11 +52,9 @@ static void print_prediction(const parameters *p, const run_result *result)
         return;
     }
     arm_init(&a, p);
-    motion *m = motion_create(&a, &p->method);
-    status code =
-        predict_linearised(&a, m, result->before_impact, result->before_impact + a.dof, &out);
+    status code = predict_linearised(&a, &p->method, result->before_impact,
+                                     result->before_impact + a.dof, &out);
     printf("predicted %d %a %a %a\n", (int)code, out.force, out.delay, out.impulse);
-    motion_destroy(m);
 }
 
 // What a run leaves, and its status.

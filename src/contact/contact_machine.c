@@ -376,27 +376,26 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
 
 // --- from outside ------------------------------------------------------------------------------
 
-void motion_start(const arm *a, motion *m, double angle, double velocity)
+void motion_start_at(const arm *a, motion *m, const double *angles, const double *velocities,
+                     double current)
 {
-    assert(a != NULL && m != NULL && isfinite(angle) && isfinite(velocity));
+    assert(a != NULL && m != NULL && angles != NULL && velocities != NULL);
     a = motion_arm_at(a, m, 0);
     memset(m->state, 0, (size_t)m->size * sizeof(double));
-    for (int i = 0; i < m->dof; i++) {
-        state_angles(m, m->state)[i] = angle;
-        state_velocities(m, m->state)[i] = velocity;
-    }
+    double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+    memcpy(q, angles, (size_t)m->dof * sizeof *q);
+    memcpy(w, velocities, (size_t)m->dof * sizeof *w);
+    state_quadratures(m, m->state)[QUADRATURE_CURRENT] = current;
 
     m->state[SLOT_LAST_IMPACT] = -1;
-    m->state[SLOT_START_WEIGHT] = chain_weight_energy(a, state_angles(m, m->state));
-    m->record.start_energy =
-        chain_kinetic_energy(a, state_angles(m, m->state), state_velocities(m, m->state)) +
-        chain_strain_energy(a, state_angles(m, m->state));
+    m->state[SLOT_START_WEIGHT] = chain_weight_energy(a, q);
+    m->record.start_energy = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q);
     m->record.steps = 0;
     m->record.largest_penetration = m->record.overheld = 0;
     motion_watch(m);
 
     double g, rate;
-    chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &g, &rate);
+    chain_penetration(a, q, w, &g, &rate);
     // an arm on a rigid wall or a face, at rest, that moves into it counts as free until the impact
     // that follows at once; a gap of rounding is none
     const bool closed = g >= -START_ROUNDING * a->links * a->link_length;
@@ -404,6 +403,17 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
     resolve(a, m, touching, MOTION_REACHED);
     m->record.start_energy += motion_wall_energy(a, m, m->state); // of a depth by rounding
     check_invariants(a, m);
+}
+
+void motion_start(const arm *a, motion *m, double angle, double velocity)
+{
+    assert(a != NULL && m != NULL && isfinite(angle) && isfinite(velocity));
+    double *q = m->scratch, *w = m->trial;
+    for (int i = 0; i < m->dof; i++) {
+        q[i] = angle;
+        w[i] = velocity;
+    }
+    motion_start_at(a, m, q, w, 0);
 }
 
 bool motion_starts_in_contact(const motion *m)

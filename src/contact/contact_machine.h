@@ -36,7 +36,13 @@ typedef struct motion_report {
     bool holds;     // after an event: the arm is in contact
 } motion_report;
 
-// Puts all bodies at `angle` [rad] with `velocity` [rad/s] at time 0 and finds the contact state.
+// Puts the bodies at angles[dof] [rad] with velocities[dof] [rad/s], and a motor with inductance at
+// a current [A], at time 0 and finds the contact state. An arm that moves into a rigid wall there
+// is free until the impact that follows at once.
+void motion_start_at(const arm *a, motion *m, const double *angles, const double *velocities,
+                     double current);
+
+// The same of a straight arm: all bodies at `angle` [rad] with `velocity` [rad/s].
 void motion_start(const arm *a, motion *m, double angle, double velocity);
 
 // Whether a motion that has just been started lies against the wall: held by a rigid one, or on one

@@ -12,9 +12,8 @@
 // carry the stiffening by large bending. The force is then evaluated exactly on the predicted path
 // at four instants before the arm stops, and a cubic through them gives peak and delay.
 //
-// Any other arm, one that bends far, and one damped so strongly that the force peaks early.
-//
-// The pulse is followed on a chain of linear arms, see pulse.h.
+// The pulse of any other arm, of one that bends far, and of one damped so strongly that the force
+// peaks early, is followed by its engine (pulse.h).
 #include "src/predict/linearised.h"
 
 #include <assert.h>
@@ -263,37 +262,28 @@ static bool path_peak(pressed_arm *p, const pressed_path *path, double first, pr
 
 // --- the touch ------------------------------------------------------------------------------
 
-// The velocities just after the touch, and whether it holds: on a rigid wall after a plastic
-// impact, at one that gives if the arm comes nearer. *mode has the motor's current.
-static bool touch_holds(const arm *touched, chain_link *links, const double *q, const double *w,
-                        double *after, contact_state *mode, double *impulse)
+// The velocities just after the plastic impact of two links on a rigid wall, and whether it holds.
+static bool touch_holds(const arm *touched, const double *q, const double *w, double after[2],
+                        contact_state *mode, double *impulse)
 {
-    const int n = touched->dof;
-    const bool gives = wall_gives(&touched->wall);
+    chain_link links[2];
     chain_reaction r;
-    impact_result jump = impact_velocity_increments(touched, links, q, w, 0, 0, after);
-    *impulse = gives ? 0 : fmax(jump.impulse, 0);
-    for (int i = 0; i < n; i++) {
+    const impact_result jump = impact_velocity_increments(touched, links, q, w, 0, 0, after);
+    const double e = wall_restitution(&touched->wall, jump.speed);
+    *impulse = (1 + e) * fmax(jump.impulse, 0);
+    for (int i = 0; i < 2; i++) {
         after[i] = w[i] + (*impulse > 0 ? after[i] : 0);
     }
 
     // an elastic impact throws the arm back
     mode->contact = true;
     mode->friction = after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD;
-    if (gives) {
-        return jump.speed > 0;
-    }
-    if (jump.impulse < 0 || wall_restitution(&touched->wall, jump.speed) > 0) {
+    if (jump.impulse < 0 || e > 0) {
         return false;
     }
-    chain_accelerations(touched, links, q, after, *mode, after + n, &r);
+    double alpha[2];
+    chain_accelerations(touched, links, q, after, *mode, alpha, &r);
     return r.force > 0;
-}
-
-// Two links on a rigid hub whose hub goes on towards the wall: the closed form.
-static bool closed_form_suits(const arm *a, const double *after)
-{
-    return a->dof == 2 && a->links == 2 && after[0] > 0 && !chain_is_loaded(a);
 }
 
 // False if the arm bends further than the few pieces of the closed form are good for, if the force
@@ -313,61 +303,41 @@ static bool predict_closed_form(const arm *touched, const double *q, const doubl
            fabs(p.bend) < CLOSED_FORM_BEND;
 }
 
-status predict_pulse(const arm *a, motion *work, const double *q, const double *w,
-                     const voltage_profile *command, prediction *out)
+status predict_pulse(const arm *a, const method_parameters *method, const double *q,
+                     const double *w, const voltage_profile *command, bool energies,
+                     prediction *out)
 {
-    assert(a != NULL && work != NULL && q != NULL && w != NULL && out != NULL);
+    assert(a != NULL && method != NULL && q != NULL && w != NULL && out != NULL);
     assert(command == NULL || command->count == 0 || (command->times && command->volts));
-    arm touched = touching_now(a, q);
-    double *after = work->scratch;
-    pulse found;
     *out = prediction_none();
     if (!wall_stands(&a->wall)) {
         return STATUS_OK;
     }
-
-    pulse_start start = {.q = q, .w = after};
-    start.command = command != NULL ? *command : (voltage_profile){0};
-    start.mode.current = start.command.current;
-    out->holds = touch_holds(&touched, work->links, q, w, after, &start.mode, &out->impulse);
-    if (!out->holds) {
-        return STATUS_OK;
-    }
-    status code = pulse_follow(&touched, work->links, &start, &found);
-    if (code != STATUS_OK) {
-        return code;
-    }
-
-    // numbers only where they are to be relied on
-    out->doubt = found.doubt;
-    out->holds = found.doubt == DOUBT_NONE;
-    if (out->holds) {
-        out->force = found.peak;
-        out->delay = found.delay;
-        out->restitution = found.restitution;
-    }
-    return STATUS_OK;
+    const arm touched = touching_now(a, q);
+    const pulse_question question = {.q = q,
+                                     .w = w,
+                                     .command = command != NULL ? *command : (voltage_profile){0},
+                                     .energies = energies};
+    return pulse_follow(&touched, method, &question, out);
 }
 
-status predict_linearised(const arm *a, motion *work, const double *q, const double *w,
-                          prediction *out)
+status predict_linearised(const arm *a, const method_parameters *method, const double *q,
+                          const double *w, prediction *out)
 {
-    assert(a != NULL && work != NULL && q != NULL && w != NULL && out != NULL);
-    arm touched = touching_now(a, q);
-    double *after = work->scratch;
-    contact_state mode = {.current = 0};
-    *out = prediction_none();
-    if (!wall_stands(&a->wall)) {
-        return STATUS_OK;
-    }
-
-    out->holds = touch_holds(&touched, work->links, q, w, after, &mode, &out->impulse);
-    if (!out->holds) {
-        return STATUS_OK;
-    }
+    assert(a != NULL && method != NULL && q != NULL && w != NULL && out != NULL);
     assert(a->motor.inductance == 0);
-    if (closed_form_suits(a, after) && predict_closed_form(&touched, q, after, mode, out)) {
-        return STATUS_OK;
+    const bool plain = a->dof == 2 && a->links == 2 && !chain_is_loaded(a) &&
+                       !wall_gives(&a->wall) && wall_stands(&a->wall);
+    if (plain) {
+        // two links on a rigid hub that goes on towards the wall: the closed form
+        const arm touched = touching_now(a, q);
+        double after[2];
+        contact_state mode = {.current = 0};
+        *out = prediction_none();
+        out->holds = touch_holds(&touched, q, w, after, &mode, &out->impulse);
+        if (!out->holds || (after[0] > 0 && predict_closed_form(&touched, q, after, mode, out))) {
+            return STATUS_OK;
+        }
     }
-    return predict_pulse(a, work, q, w, NULL, out);
+    return predict_pulse(a, method, q, w, NULL, false, out);
 }

@@ -16,9 +16,6 @@ typedef struct three_body_state {
 // it as exactly as the predictor claims.
 #define PREDICTION_DOUBT_LIST(X)                                                                   \
     X(DOUBT_NONE, "")                                                                              \
-    X(DOUBT_GRAZE, "the force nearly vanishes before its peak: whether contact is lost then "      \
-                   "cannot be told")                                                               \
-    X(DOUBT_BEND, "the arm bends too far for a chain of linear arms")                              \
     X(DOUBT_LENGTH, "the pulse lasts longer than it can be followed")
 
 typedef enum prediction_doubt {

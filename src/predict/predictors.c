@@ -22,16 +22,19 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
 
     arm a;
     arm_init(&a, p);
-    motion *work = motion_create(&a, &p->method);
     voltage_profile command = question->command;
     command.current = question->current;
-    status code =
-        work == NULL ? STATUS_NO_MEMORY
-        : question->whole_pulse || command.count > 0 || p->motor.inductance > 0
-            ? predict_pulse(&a, work, question->angles, question->velocities, &command, out)
-            : predict_linearised(&a, work, question->angles, question->velocities, out);
-    motion_destroy(work);
+    const double *q = question->angles, *w = question->velocities;
+    const bool as_is = command.count == 0 && p->motor.inductance == 0;
+    status code = as_is ? predict_linearised(&a, &p->method, q, w, out)
+                        : predict_pulse(&a, &p->method, q, w, &command, false, out);
 
+    // e_eq is that of the pulse to its end
+    prediction whole;
+    if (code == STATUS_OK && question->whole_pulse && out->holds) {
+        code = predict_pulse(&a, &p->method, q, w, &command, true, &whole);
+        out->restitution = whole.restitution;
+    }
     if (code != STATUS_OK) {
         fault_set(f, code, "%s", status_text(code));
         return PREDICTION_FAILED;
@@ -116,11 +119,8 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     if (p->wall.motion != MOTION_NONE && p->wall.kind != WALL_NONE) {
         return PREDICTION_STILL_WALL_ONLY;
     }
-    if (p->arm.tilt != 0) {
+    if (which != PREDICTOR_LINEARISED && p->arm.tilt != 0) {
         return PREDICTION_LEVEL_ONLY;
-    }
-    if (p->wall.mass > 0) {
-        return PREDICTION_NO_FACE_ONLY;
     }
     if (which != PREDICTOR_LINEARISED && p->arm.tip_mass > 0) {
         return PREDICTION_BARE_TIP_ONLY;

@@ -16,7 +16,7 @@
     X(PREDICTOR_IMPACT_QUADRATIC, "impact_quadratic", "impact dynamics, closed form",              \
       "closed form", "the same by a quadratic equation")                                           \
     X(PREDICTOR_LINEARISED, "linearised", "linearised constrained arm", "linearised",              \
-      "small vibrations of this arm, with its motor, held to the wall; any number of links")
+      "this arm, with its motor, held to the wall: two links in closed form, others followed")
 
 typedef enum predictor {
 #define PREDICTOR_ENUM(id, name, label, short_label, about) id,
@@ -32,7 +32,6 @@ typedef enum predictor {
     X(PREDICTION_DOUBTFUL, "it cannot be told")                                                    \
     X(PREDICTION_CORRECTED_ONLY, "for the corrected model only")                                   \
     X(PREDICTION_RIGID_WALL_ONLY, "for a rigid wall only")                                         \
-    X(PREDICTION_NO_FACE_ONLY, "for a wall whose face has no mass only")                           \
     X(PREDICTION_STILL_WALL_ONLY, "for a wall at rest only")                                       \
     X(PREDICTION_LEVEL_ONLY, "for an arm in a level plane only")                                   \
     X(PREDICTION_BARE_TIP_ONLY, "for a tip that carries nothing only")                             \
