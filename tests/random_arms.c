@@ -47,6 +47,7 @@
 #define LEAST_FORCE   1e-3  // of which shares are taken: 1e-6 of it counts as tension [N]
 #define LEAST_GAP     2e-12 // what the engines take for a touch, twice [m]
 #define LEAST_WORK    1e-9  // the same of what was put in [J]
+#define PEAK_TIME     1e-5  // what the instant of the largest force may be off by [s]
 
 enum { LONGEST_LIST = 20 };
 
@@ -364,7 +365,7 @@ static bool can_follow(const random_arm *r, const options *o)
 // Distances of two outcomes: contacts as instants times their share of the first speed of approach,
 // momentum and peak as shares.
 typedef struct distances {
-    double time[OUTCOME_CONTACTS], momentum, peak, lost;
+    double time[OUTCOME_CONTACTS], momentum, peak, peak_time, lost;
     int contacts; // in common
     bool same;    // as many contacts
 } distances;
@@ -403,6 +404,9 @@ static distances distances_of(const random_arm *r, const chain_outcome *a, const
     if (a->peak > 0) {
         d.peak = fabs(a->peak - fmax(b->peak, 0)) / fmax(a->peak, LEAST_FORCE);
     }
+    if (r->parameters.wall.motion == MOTION_NONE) { // a wall that swings makes equal peaks
+        d.peak_time = fabs(a->peak_time - b->peak_time);
+    }
     const double put_in = fmax(fmax(a->put_in, b->put_in), LEAST_WORK);
     d.lost = fabs(a->motor_work - b->motor_work) / put_in;
     for (size_t i = 0; i < sizeof a->lost / sizeof *a->lost; i++) {
@@ -420,6 +424,7 @@ static double worst_of(const distances *d, const distances *change, const limits
     }
     worst = fmax(worst, d->momentum / fmax(may->momentum, 10 * change->momentum));
     worst = fmax(worst, d->lost / fmax(LOSSES, 10 * change->lost));
+    worst = fmax(worst, d->peak_time / fmax(PEAK_TIME, 10 * change->peak_time));
     return fmax(worst, d->peak / fmax(may->peak, 10 * change->peak));
 }
 

@@ -881,9 +881,10 @@ static void happen(simulation *s, event e)
         const double speed = impact(s);
         note_contact(s, speed, s->impulses - before);
     } else if (e == TOUCHES) {
+        const double face_rate = s->now.parted ? face_return(&a->wall, s->y[2 * n + 1]) : 0;
         s->now.contact = true;
         s->now.parted = false;
-        note_contact(s, touch_at(s, s->y, s->y + n).rate, 0);
+        note_contact(s, touch_at(s, s->y, s->y + n).rate - face_rate, 0);
         resolve(s, false, EVENTS);
     } else if (e == RELEASES && gives && !face) {
         const touch t = touch_at(s, s->y, s->y + n);
