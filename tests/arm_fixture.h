@@ -23,6 +23,31 @@ static inline parameters fixture_parameters(const char *const *settings)
 
 #define SETTINGS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
+// The same of one text with numbers in it, settings between blanks: settings_of("arm.links=%d
+// wall.angle=%g", links, angle). The next four calls leave it as it is.
+static __attribute__((format(printf, 1, 2), unused)) const char *const *
+settings_of(const char *format, ...)
+{
+    enum { KEPT = 5, MOST = 40 };
+    static char texts[KEPT][4096];
+    static const char *lists[KEPT][MOST];
+    static int next;
+    char *text = texts[next], *rest = NULL;
+    const char **list = lists[next];
+    next = (next + 1) % KEPT;
+    va_list values;
+    va_start(values, format);
+    assert_in_range(vsnprintf(text, sizeof texts[0], format, values), 0, sizeof texts[0] - 1);
+    va_end(values);
+    int count = 0;
+    for (char *item = strtok_r(text, " ", &rest); item != NULL; item = strtok_r(NULL, " ", &rest)) {
+        assert_in_range(count, 0, MOST - 2);
+        list[count++] = item;
+    }
+    list[count] = NULL;
+    return list;
+}
+
 static inline arm arm_of(const parameters *p)
 {
     arm a;

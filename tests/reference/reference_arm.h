@@ -63,11 +63,3 @@ typedef struct reference_answer {
 
 // Simulates the case. On failure returns false with a sentence in message (size bytes).
 bool reference_simulate(const reference_case *c, reference_answer *answer, char *message, int size);
-
-// Largest defect of the equations of motion at a random state (seed): Lagrange's equations, the
-// contact's direction and its acceleration, all from finite differences of energy and gap,
-// relative to the largest torque or acceleration in them.
-double reference_lagrangian_defect(const reference_case *c, unsigned seed);
-
-// Prints the answer with all digits, one quantity a line.
-void reference_print(const reference_case *c, const reference_answer *answer);
