@@ -23,12 +23,12 @@ static inline parameters fixture_parameters(const char *const *settings)
 
 #define SETTINGS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-// The same of one text with numbers in it, settings between blanks: settings_of("arm.links=%d
-// wall.angle=%g", links, angle). The next four calls leave it as it is.
-static __attribute__((format(printf, 1, 2), unused)) const char *const *
-settings_of(const char *format, ...)
+// The same of one text with numbers in it, settings between blanks: given("arm.links=%d
+// wall.angle=%g", links, angle). The next eleven calls leave it as it is.
+static __attribute__((format(printf, 1, 2), unused)) const char *const *given(const char *format,
+                                                                              ...)
 {
-    enum { KEPT = 5, MOST = 40 };
+    enum { KEPT = 12, MOST = 40 };
     static char texts[KEPT][4096];
     static const char *lists[KEPT][MOST];
     static int next;
@@ -47,6 +47,8 @@ settings_of(const char *format, ...)
     list[count] = NULL;
     return list;
 }
+
+#define parameters_with(...) fixture_parameters(given(__VA_ARGS__))
 
 static inline arm arm_of(const parameters *p)
 {

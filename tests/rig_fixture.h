@@ -34,6 +34,10 @@ static inline summary rig_summary(const char *const *settings)
     return s;
 }
 
+// The same of settings as given() takes them.
+#define rig_parameters_with(...) rig_parameters(given(__VA_ARGS__))
+#define rig_summary_with(...)    rig_summary(given(__VA_ARGS__))
+
 // The run under these settings cannot be made, and the sentence says why.
 static inline void check_refused(const char *const *settings, const char *sentence)
 {

@@ -5,9 +5,7 @@
 
 static arm beam_of(int links, parameters *p)
 {
-    char n[32];
-    snprintf(n, sizeof n, "arm.links=%d", links);
-    *p = fixture_parameters(SETTINGS(n, "arm.hub_joint=beam"));
+    *p = parameters_with("arm.links=%d arm.hub_joint=beam", links);
     arm a = arm_of(p);
     return a;
 }
@@ -110,8 +108,7 @@ TEST(frequencies_converge_at_second_order)
 TEST(first_mode_has_the_damping_asked_for)
 {
     const double wanted = 0.02;
-    parameters p =
-        fixture_parameters(SETTINGS("arm.links=8", "arm.hub_joint=beam", "arm.damping_ratio=0.02"));
+    parameters p = parameters_with("arm.links=8 arm.hub_joint=beam arm.damping_ratio=0.02");
     arm a = arm_of(&p);
     int count;
     double frequencies[9], shapes[81];
@@ -126,14 +123,14 @@ TEST(first_mode_has_the_damping_asked_for)
 TEST(any_arm_has_the_damping_asked_for)
 {
     const char *const *const arms[] = {
-        SETTINGS("arm.links=2"),
-        SETTINGS("arm.links=5", "arm.tip_mass=0.1"),
-        SETTINGS("arm.links=5", "arm.hub_joint=beam", "arm.tip_mass=0.1"),
-        SETTINGS("arm.links=4", "arm.joint_stiffness=30,12,5"),
-        SETTINGS("arm.links=4", "arm.joint_stiffness=5,12,30", "arm.link_lengths=0.1,0.4,0.2,0.3"),
-        SETTINGS("arm.links=3", "arm.joint_stiffness=60,5,12", "arm.hub_joint=beam",
-                 "arm.tip_mass=0.05", "arm.link_lengths=0.2,0.5,0.3"),
-        SETTINGS("arm.links=1", "arm.hub_joint=beam"),
+        given("arm.links=2"),
+        given("arm.links=5 arm.tip_mass=0.1"),
+        given("arm.links=5 arm.hub_joint=beam arm.tip_mass=0.1"),
+        given("arm.links=4 arm.joint_stiffness=30,12,5"),
+        given("arm.links=4 arm.joint_stiffness=5,12,30 arm.link_lengths=0.1,0.4,0.2,0.3"),
+        given("arm.links=3 arm.joint_stiffness=60,5,12 arm.hub_joint=beam arm.tip_mass=0.05 "
+              "arm.link_lengths=0.2,0.5,0.3"),
+        given("arm.links=1 arm.hub_joint=beam"),
     };
     for (EACH(c, arms)) {
         parameters p = fixture_parameters(*c);
@@ -153,7 +150,7 @@ TEST(any_arm_has_the_damping_asked_for)
     }
 
     // a rigid arm has no mode
-    parameters p = fixture_parameters(SETTINGS("arm.links=1", "arm.damping_ratio=0.02"));
+    parameters p = parameters_with("arm.links=1 arm.damping_ratio=0.02");
     arm a = arm_of(&p);
     check_close(a.joint_damping, 0, 0);
 }
@@ -168,7 +165,7 @@ TEST(the_highest_frequency_bounds_the_modes)
                                    {"arm.links=3", "arm.hub_joint=rigid"},
                                    {"arm.links=8", "arm.hub_joint=rigid"}};
     for (EACH(c, arms)) {
-        parameters p = fixture_parameters(SETTINGS((*c)[0], (*c)[1]));
+        parameters p = parameters_with("%s %s", (*c)[0], (*c)[1]);
         arm a = arm_of(&p);
         int count;
         double frequencies[9], shapes[81];
@@ -183,7 +180,7 @@ TEST(the_highest_frequency_bounds_the_modes)
 // frequency w and whose sum is 2 zeta w; the faster one is what steps have to follow.
 TEST(an_overdamped_mode_decays_by_the_roots_of_its_equation)
 {
-    parameters p = fixture_parameters(SETTINGS("arm.links=8", "arm.damping_ratio=0.1"));
+    parameters p = parameters_with("arm.links=8 arm.damping_ratio=0.1");
     arm a = arm_of(&p);
     const double w = a.highest_frequency, fast = a.fastest_decay, slow = w * w / fast;
     assert_true(fast > 2 * w);
@@ -197,7 +194,7 @@ TEST(whatever_decays_faster_is_followed)
     const double mass = 0.40108 / 2, l = 0.5;
     for (int spring = 0; spring < 2; spring++) {
         const char *joint = spring ? "arm.hub_joint=spring" : "arm.hub_joint=rigid";
-        parameters p = fixture_parameters(SETTINGS(joint, "motor.viscous_friction=1e3"));
+        parameters p = parameters_with("%s motor.viscous_friction=1e3", joint);
         arm a = arm_of(&p);
         const motor_parameters *m = &p.motor;
         const double emf = m->torque_constant * m->back_emf / m->resistance;
@@ -206,23 +203,22 @@ TEST(whatever_decays_faster_is_followed)
         check_relative(a.fastest_rate, fmax(a.highest_frequency, a.fastest_decay / 8), 1e-12);
 
         // a limited current brakes no less
-        p = fixture_parameters(
-            SETTINGS(joint, "motor.viscous_friction=1e3", "motor.current_limit=2"));
+        p = parameters_with("%s motor.viscous_friction=1e3 motor.current_limit=2", joint);
         arm_init(&a, &p);
         check_relative(a.fastest_decay, (1e3 + emf) / hub, 1e-12);
 
-        p = fixture_parameters(SETTINGS(joint, "motor.inductance=1e-6"));
+        p = parameters_with("%s motor.inductance=1e-6", joint);
         arm_init(&a, &p);
         check_relative(a.fastest_decay, m->resistance / 1e-6, 1e-12);
         check_relative(a.fastest_rate, m->resistance / 1e-6, 1e-12);
 
-        p = fixture_parameters(SETTINGS(joint, "arm.air_drag=1e4"));
+        p = parameters_with("%s arm.air_drag=1e4", joint);
         arm_init(&a, &p);
         check_relative(a.fastest_decay, 1e4 * l / mass, 1e-12);
     }
 
     // a hub that weighs nothing has nothing that brakes it, its link has
-    parameters p = fixture_parameters(SETTINGS("arm.links=2"));
+    parameters p = parameters_with("arm.links=2");
     p.arm.hub_inertia = 0;
     arm a = arm_of(&p);
     check_relative(a.fastest_decay, a.motor.damping / (mass * l * l / 12), 1e-12);
@@ -232,7 +228,7 @@ TEST(whatever_decays_faster_is_followed)
 // decays by 2 zeta of the held arm's frequency, as much more as the free arm is faster squared.
 TEST(damping_by_mode_is_followed)
 {
-    const parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.modal_ratios=0.9"));
+    const parameters p = parameters_with("arm.links=2 arm.modal_ratios=0.9");
     arm a = arm_of(&p);
     int count;
     double held, free[2], shapes[4];
@@ -245,9 +241,8 @@ TEST(damping_by_mode_is_followed)
 // Set up where a longer, stiffer arm was, an arm has nothing of that.
 TEST(an_arm_has_nothing_of_the_one_before)
 {
-    const parameters stiff =
-        fixture_parameters(SETTINGS("arm.links=4", "arm.joint_stiffness=9,500,500"));
-    const parameters soft = fixture_parameters(SETTINGS("arm.links=3", "arm.joint_stiffness=7,5"));
+    const parameters stiff = parameters_with("arm.links=4 arm.joint_stiffness=9,500,500");
+    const parameters soft = parameters_with("arm.links=3 arm.joint_stiffness=7,5");
     arm a = arm_of(&stiff);
     arm_init(&a, &soft);
     check_close(a.joint_stiffness, 7, 0);
@@ -258,8 +253,7 @@ TEST(the_longest_chain_has_the_damping_of_a_beam)
 {
     const char *const hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
     for (int i = 0; i < 2; i++) {
-        const parameters p =
-            fixture_parameters(SETTINGS("arm.links=1024", "arm.damping_ratio=0.03", hubs[i]));
+        const parameters p = parameters_with("arm.links=1024 arm.damping_ratio=0.03 %s", hubs[i]);
         arm a = arm_of(&p);
         const double w = 1.8751 * 1.8751 * sqrt(p.arm.k2 / (2 * p.arm.mass)) / p.arm.length;
         check_relative(a.joint_damping, 2 * 0.03 / w * a.joint_stiffness, 0.01);
@@ -285,10 +279,8 @@ TEST(a_mass_at_the_tip_lowers_the_frequencies)
     const double root = beam_with_mass(0.1);
     double error[2];
     for (int i = 0; i < 2; i++) {
-        char n[32];
-        snprintf(n, sizeof n, "arm.links=%d", 8 << i);
-        parameters p = fixture_parameters(
-            SETTINGS(n, "arm.hub_joint=beam", "arm.tip_mass=0.1", "arm.damping_ratio=0.02"));
+        parameters p = parameters_with(
+            "arm.links=%d arm.hub_joint=beam arm.tip_mass=0.1 arm.damping_ratio=0.02", 8 << i);
         arm a = arm_of(&p);
         int count;
         double frequencies[17], shapes[17 * 17];
@@ -342,10 +334,10 @@ TEST(every_engine_carries_the_mass_of_a_stiff_chain)
         const bool implicit = i % 3 >= 1;
         char n[32];
         snprintf(n, sizeof n, "arm.links=%d", links);
-        parameters p =
-            fixture_parameters(SETTINGS(n, methods[i % 3], "arm.hub_joint=beam", "arm.k2=2e4",
-                                        "motor.stiction=1000", "motor.voltage=0", "wall.kind=none",
-                                        implicit ? "method.step=1e-5" : "method.step=1e-3"));
+        parameters p = parameters_with(
+            "%s %s arm.hub_joint=beam arm.k2=2e4 motor.stiction=1000 motor.voltage=0 "
+            "wall.kind=none %s",
+            n, methods[i % 3], implicit ? "method.step=1e-5" : "method.step=1e-3");
         arm a = arm_of(&p);
         p.arm.tip_mass = 0.1;
         arm_init(&a, &p);

@@ -16,8 +16,8 @@ static controller_setup told(const char *const *settings)
 
 TEST(without_wrong_beliefs_it_is_the_truth)
 {
-    parameters p = rig_parameters(SETTINGS("wall.angle=0.2"));
-    controller_setup s = told(SETTINGS("wall.angle=0.2", "control.delay=2e-3"));
+    parameters p = rig_parameters_with("wall.angle=0.2");
+    controller_setup s = told(given("wall.angle=0.2 control.delay=2e-3"));
     check_close(s.link_mass, p.arm.mass / 2, 0);
     check_close(s.hub_inertia, p.arm.hub_inertia, 0);
     check_close(s.link_inertia, p.arm.link_inertia, 0);
@@ -33,11 +33,11 @@ TEST(without_wrong_beliefs_it_is_the_truth)
 
 TEST(each_belief_changes_what_it_names)
 {
-    controller_setup truth = told(SETTINGS("control.delay=2e-3"));
-    controller_setup s = told(
-        SETTINGS("control.delay=2e-3", "belief.mass_factor=1.5", "belief.inertia_factor=0.5",
-                 "belief.friction_factor=2", "belief.torque_factor=1.2", "belief.k2_factor=0.8",
-                 "belief.wall_error=0.03", "belief.delay_error=-1e-3", "belief.links=5"));
+    controller_setup truth = told(given("control.delay=2e-3"));
+    controller_setup s =
+        told(given("control.delay=2e-3 belief.mass_factor=1.5 belief.inertia_factor=0.5 "
+                   "belief.friction_factor=2 belief.torque_factor=1.2 belief.k2_factor=0.8 "
+                   "belief.wall_error=0.03 belief.delay_error=-1e-3 belief.links=5"));
     check_relative(s.link_mass, 1.5 * truth.link_mass, 1e-15);
     check_relative(s.link_inertia, 1.5 * truth.link_inertia, 1e-15);
     check_relative(s.hub_inertia, 0.5 * truth.hub_inertia, 1e-15);
@@ -58,24 +58,23 @@ TEST(each_belief_changes_what_it_names)
 
 TEST(a_spring_at_the_hub_is_told)
 {
-    controller_setup s =
-        told(SETTINGS("arm.hub_joint=spring", "arm.k1=90", "belief.hub_spring_factor=1.1"));
+    controller_setup s = told(given("arm.hub_joint=spring arm.k1=90 belief.hub_spring_factor=1.1"));
     check_relative(s.hub_spring, 99.0, 1e-15);
 }
 
 // A belief changes the command and nothing of the arm: the same command moves it the same.
 TEST(the_arm_has_no_beliefs)
 {
-    summary truth = rig_summary(SETTINGS("control.law=open-loop"));
-    summary doubted = rig_summary(
-        SETTINGS("control.law=open-loop", "belief.mass_factor=2", "belief.inertia_factor=2",
-                 "belief.friction_factor=2", "belief.torque_factor=2", "belief.k2_factor=2",
-                 "belief.wall_error=0.1", "belief.delay_error=1e-3", "belief.links=7"));
+    summary truth = rig_summary_with("control.law=open-loop");
+    summary doubted =
+        rig_summary_with("control.law=open-loop belief.mass_factor=2 belief.inertia_factor=2 "
+                         "belief.friction_factor=2 belief.torque_factor=2 belief.k2_factor=2 "
+                         "belief.wall_error=0.1 belief.delay_error=1e-3 belief.links=7");
     check_close(doubted.peak_force_N, truth.peak_force_N, 0);
     check_close(doubted.first_contact_s, truth.first_contact_s, 0);
 }
 
 TEST(an_unknown_delay_is_never_negative)
 {
-    check_close(told(SETTINGS("belief.delay_error=-1")).delay, 0, 0);
+    check_close(told(given("belief.delay_error=-1")).delay, 0, 0);
 }

@@ -23,12 +23,9 @@ static double dense_inertia(int k)
 
 static arm make_arm(int links, const char *hub, const char *wall)
 {
-    char n[32], joint[64], kind[64];
-    snprintf(n, sizeof n, "arm.links=%d", links);
-    snprintf(joint, sizeof joint, "arm.hub_joint=%s", hub);
-    snprintf(kind, sizeof kind, "wall.kind=%s", wall);
-    parameters p =
-        fixture_parameters(SETTINGS(n, joint, kind, "arm.k1=90", "arm.damping_ratio=0.02"));
+    parameters p = parameters_with(
+        "arm.links=%d arm.hub_joint=%s wall.kind=%s arm.k1=90 arm.damping_ratio=0.02", links, hub,
+        wall);
     beam = (dense_beam){.length[LARGEST - 1] = 1};
     for (int k = 0; k < links; k++) {
         beam.length[k] = 1.0 / links;
@@ -56,8 +53,8 @@ static arm make_uneven_arm(int links, const char *wall, bool rooted)
                      beam.stiffness[k]);
         }
     }
-    parameters p = fixture_parameters(SETTINGS(n, kind, lengths, springs, "arm.air_drag=0.3",
-                                               rooted ? "arm.hub_joint=beam" : "run.duration=1"));
+    parameters p = parameters_with("%s %s %s %s arm.air_drag=0.3 %s", n, kind, lengths, springs,
+                                   rooted ? "arm.hub_joint=beam" : "run.duration=1");
     arm a = arm_of(&p);
     return a;
 }
@@ -65,10 +62,7 @@ static arm make_uneven_arm(int links, const char *wall, bool rooted)
 // Equal joints that stiffen with their bend.
 static arm make_stiffening_arm(int links, const char *wall)
 {
-    char n[32], kind[64];
-    snprintf(n, sizeof n, "arm.links=%d", links);
-    snprintf(kind, sizeof kind, "wall.kind=%s", wall);
-    parameters p = fixture_parameters(SETTINGS(n, kind, "arm.stiffening=2.5"));
+    parameters p = parameters_with("arm.links=%d wall.kind=%s arm.stiffening=2.5", links, wall);
     beam = (dense_beam){.length[LARGEST - 1] = 1, .stiffening = 2.5 * links * links / 4};
     for (int k = 0; k < links; k++) {
         beam.length[k] = 1.0 / links;
@@ -510,15 +504,15 @@ TEST(a_list_of_one_digit_is_one)
 {
     const double q[2] = {0.3, 0.7};
     arm listed, plain;
-    parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.joint_stiffness=8"));
+    parameters p = parameters_with("arm.links=2 arm.joint_stiffness=8");
     arm_init(&listed, &p);
-    p = fixture_parameters(SETTINGS("arm.links=2", "arm.k2=8"));
+    p = parameters_with("arm.links=2 arm.k2=8");
     arm_init(&plain, &p);
     check_relative(chain_strain_energy(&listed, q), 0.5 * 8 * 0.4 * 0.4, 1e-14);
     check_relative(listed.highest_frequency, plain.highest_frequency, 1e-9);
 
     double x, y;
-    p = fixture_parameters(SETTINGS("arm.links=1", "arm.link_lengths=2"));
+    p = parameters_with("arm.links=1 arm.link_lengths=2");
     arm_init(&listed, &p);
     chain_node(&listed, q, 1, &x, &y);
     check_close(x, 2 * cos(q[0]), 1e-14);

@@ -25,7 +25,7 @@ static sweep_axis varied_axis(const char *name)
 static compare_row row_of(scenario *s, const char *name, const char *law)
 {
     SCOPED(run_finish) run_result r;
-    *s = (scenario){.name = (char *)name, .parameters = rig_parameters(SETTINGS(law))};
+    *s = (scenario){.name = (char *)name, .parameters = rig_parameters_with("%s", law)};
     assert_int_equal(run_scenario(s, false, &r), STATUS_OK);
     compare_row row = compare_row_of(s, &r);
     return row;
@@ -138,7 +138,7 @@ TEST(nothing_beats_the_best)
             SCOPED(run_finish) run_result r;
             snprintf(force, sizeof force, "control.force=%g", 0.5 * k);
             scenario s = {.name = (char *)"it",
-                          .parameters = rig_parameters(SETTINGS(laws[i], force))};
+                          .parameters = rig_parameters_with("%s %s", laws[i], force)};
             assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
             compare_row row = compare_row_of(&s, &r);
             check_below(row.values[1], row.values[0]);
@@ -152,7 +152,7 @@ TEST(nothing_beats_the_best)
     for (int i = 0; i < 5; i++) {
         SCOPED(run_finish) run_result r;
         s = (scenario){.name = (char *)"it",
-                       .parameters = rig_parameters(SETTINGS("control.law=hybrid", beyond[i]))};
+                       .parameters = rig_parameters_with("control.law=hybrid %s", beyond[i])};
         run_scenario(&s, false, &r);
         compare_row row = compare_row_of(&s, &r);
         assert_true(isnan(row.values[1]) && isnan(row.values[4]));
@@ -165,10 +165,9 @@ TEST(a_gentle_run_is_held_against_its_band)
 {
     static const double command[] = {0.7, 0.77}, pressed[] = {0, 0.8};
     for (int i = 0; i < 4; i++) {
-        char force[32];
-        snprintf(force, sizeof force, "control.force=%g", command[i / 2]);
         scenario s = {.name = (char *)"it",
-                      .parameters = rig_parameters(SETTINGS("control.law=hybrid", force))};
+                      .parameters = rig_parameters_with("control.law=hybrid control.force=%g",
+                                                        command[i / 2])};
         SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         r.summary.peak_force_N = pressed[i % 2];
@@ -264,13 +263,13 @@ TEST(forms_are_written_to_the_letter)
 TEST(a_row_has_the_numbers_of_its_run)
 {
     const char *const *const cases[] = {
-        SETTINGS("control.law=hybrid", "control.force=2"),
-        SETTINGS("control.law=none"),
-        SETTINGS("control.law=hybrid", "initial.velocity=0.1"),
-        SETTINGS("control.law=hybrid", "wall.restitution=0.3"),
-        SETTINGS("control.law=hybrid", "arm.links=3"),
-        SETTINGS("control.law=force-pd", "control.force=0"),
-        SETTINGS("control.law=hybrid", "run.duration=0.01"),
+        given("control.law=hybrid control.force=2"),
+        given("control.law=none"),
+        given("control.law=hybrid initial.velocity=0.1"),
+        given("control.law=hybrid wall.restitution=0.3"),
+        given("control.law=hybrid arm.links=3"),
+        given("control.law=force-pd control.force=0"),
+        given("control.law=hybrid run.duration=0.01"),
     };
     const action push = {.time = 0.5, .kind = ACTION_PUSH, .parameter = -1, .value = 1e-3};
     for (size_t i = 0; i < 1 + sizeof cases / sizeof cases[0]; i++) {

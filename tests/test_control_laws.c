@@ -64,11 +64,9 @@ TEST(settings_go_before_the_scenario_and_that_before_the_default)
         kp++;
     }
     double initial = parameter_table[PARAMETER_INDEX(control.kp)].default_corrected;
-    check_close(value_of(kp, SETTINGS("control.law=hybrid")), initial, 0);
-    check_close(value_of(kp, SETTINGS("control.law=hybrid", "control.kp=3")), 3, 0);
-    check_close(
-        value_of(kp, SETTINGS("control.law=hybrid", "control.kp=3", "control.settings=kp=4")), 4,
-        0);
+    check_close(value_of(kp, given("control.law=hybrid")), initial, 0);
+    check_close(value_of(kp, given("control.law=hybrid control.kp=3")), 3, 0);
+    check_close(value_of(kp, given("control.law=hybrid control.kp=3 control.settings=kp=4")), 4, 0);
 }
 
 TEST(initial_values_of_ones_own_parameters_take_effect)
@@ -84,7 +82,7 @@ TEST(initial_values_of_ones_own_parameters_take_effect)
     check_close(values[0], 7, 0);
     check_close(values[1], 0.5, 0);
     check_close(values[2], parameter_table[PARAMETER_INDEX(control.kv)].default_corrected, 0);
-    p = rig_parameters(SETTINGS("control.kp=2"));
+    p = rig_parameters_with("control.kp=2");
     assert_int_equal(controller_values(&own, &p, values, &f), STATUS_OK);
     check_close(values[0], 2, 0);
 

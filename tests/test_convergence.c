@@ -52,7 +52,7 @@ TEST(the_implicit_methods_are_of_second_order_through_impacts)
     static const char *const keys[] = {"first_contact_s", "contact_impulse_Ns",
                                        "first_pulse_peak_N", "steady_force_N", "motor_work_J"};
     for (int m = 0; m < 2; m++) {
-        convergence_panel panel = panel_of(SETTINGS(methods[m]));
+        convergence_panel panel = panel_of(given("%s", methods[m]));
         check_close(panel.step[0], 1e-3, 0);
         check_close(panel.step[2], 2.5e-4, 0);
         for (int k = 0; k < 5; k++) {
@@ -63,7 +63,7 @@ TEST(the_implicit_methods_are_of_second_order_through_impacts)
 
 TEST(the_event_method_needs_no_shorter_step)
 {
-    convergence_panel panel = panel_of(SETTINGS("method.step=2e-3"));
+    convergence_panel panel = panel_of(given("method.step=2e-3"));
     for (int i = 0; i < 2; i++) {
         const convergence_row *peak = row_of(&panel, "first_pulse_peak_N");
         check_relative(peak->value[i], peak->value[2], 1e-9);
@@ -144,8 +144,8 @@ TEST(a_run_that_fails_is_told_with_its_step)
 {
     static char name[] = "test";
     scenario s = {.name = name,
-                  .parameters = fixture_parameters(SETTINGS(
-                      "method.name=newmark", "method.gamma=0.3", "arm.links=8", "run.duration=3"))};
+                  .parameters = parameters_with(
+                      "method.name=newmark method.gamma=0.3 arm.links=8 run.duration=3")};
     convergence_panel panel;
     REFUSED(STATUS_UNSTABLE, "with a step of 0.001 s", convergence_compute(&s, NULL, &panel, &f));
 
@@ -203,8 +203,7 @@ TEST(a_study_that_is_stopped_keeps_the_runs_before)
     static method_study study;
     // its shortest steps would take hours
     scenario s = {.name = name,
-                  .parameters = fixture_parameters(
-                      SETTINGS("run.duration=50", "wall.angle=3", "motor.voltage=0.01"))};
+                  .parameters = parameters_with("run.duration=50 wall.angle=3 motor.voltage=0.01")};
     run_monitor monitor = {0};
     fault f = {0};
     thrd_t other;
@@ -236,9 +235,8 @@ TEST(a_study_runs_each_method_at_each_step_once)
     } both;
     static const method_study none;
     scenario s = {.name = name,
-                  .parameters =
-                      fixture_parameters(SETTINGS("run.duration=0.1", "wall.angle=0",
-                                                  "initial.angle=-1e-4", "motor.voltage=1"))};
+                  .parameters = parameters_with(
+                      "run.duration=0.1 wall.angle=0 initial.angle=-1e-4 motor.voltage=1")};
     run_monitor monitor = {0};
     DONE(method_study_compute(&s, &monitor, &both.study, &f));
     assert_int_equal(atomic_load(&monitor.pieces), STUDY_RUNS);

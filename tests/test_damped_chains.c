@@ -9,9 +9,9 @@
 TEST(a_chain_that_bends_keeps_its_strides)
 {
     for (int kind = 0; kind < 2; kind++) {
-        const parameters p = fixture_parameters(
-            SETTINGS("arm.links=256", "arm.damping_ratio=0.01", "motor.voltage=1",
-                     kind == 0 ? "wall.kind=point" : "wall.kind=plane"));
+        const parameters p =
+            parameters_with("arm.links=256 arm.damping_ratio=0.01 motor.voltage=1 %s",
+                            kind == 0 ? "wall.kind=point" : "wall.kind=plane");
         const passage all = passage_of(&p, 0, 0, 0.36, 200);
         assert_int_equal(all.impacts, 1);
         check_below(all.open, 1e-7);
@@ -22,9 +22,8 @@ TEST(a_chain_that_bends_keeps_its_strides)
 // shorter than any of the slow decays take, and soon as long again as before.
 TEST(a_strongly_damped_chain_that_bounces_keeps_its_strides)
 {
-    const parameters p =
-        fixture_parameters(SETTINGS("arm.links=64", "arm.damping_ratio=0.3", "arm.hub_joint=spring",
-                                    "wall.restitution=0.8", "wall.angle=2.1", "motor.voltage=5"));
+    const parameters p = parameters_with("arm.links=64 arm.damping_ratio=0.3 arm.hub_joint=spring "
+                                         "wall.restitution=0.8 wall.angle=2.1 motor.voltage=5");
     const passage all = passage_of(&p, 0, 0, 0.9, 400);
     assert_true(all.impacts > 1);
     check_below(all.open, 1e-7);
@@ -67,10 +66,10 @@ static bounces bounces_of(const parameters *p, const engine *by, double gap, dou
 // their speed makes the peak force, however long the run is.
 TEST(low_bounces_are_those_of_power_series)
 {
-    const parameters p = fixture_parameters(
-        SETTINGS("arm.links=18", "arm.damping_ratio=0.9149", "arm.k2=50.78", "arm.mass=1.48",
-                 "arm.hub_inertia=0.02198", "motor.voltage=2.55", "motor.stiction=0",
-                 "wall.kind=plane", "wall.angle=0.1", "wall.restitution=0.2228783812"));
+    const parameters p =
+        parameters_with("arm.links=18 arm.damping_ratio=0.9149 arm.k2=50.78 arm.mass=1.48 "
+                        "arm.hub_inertia=0.02198 motor.voltage=2.55 motor.stiction=0 "
+                        "wall.kind=plane wall.angle=0.1 wall.restitution=0.2228783812");
     for (int i = 1; i <= 4; i++) {
         const bounces stiff = bounces_of(&p, &stiff_engine, 1e-4, 0.65, 1.6e-4 * i * i);
         assert_int_equal(stiff.impacts, 7);
@@ -112,10 +111,10 @@ TEST(flights_lower_than_any_rounding_are_those_of_power_series)
 // strides end before it.
 TEST(a_slow_arm_meets_its_wall_in_time)
 {
-    const parameters p = fixture_parameters(
-        SETTINGS("arm.links=11", "arm.hub_joint=beam", "arm.damping_ratio=0.1", "arm.k2=15",
-                 "arm.mass=0.28", "arm.hub_inertia=1.4e-4", "motor.voltage=4e-6",
-                 "motor.stiction=3e-7", "wall.angle=1e-5", "method.rest_speed=1e-8"));
+    const parameters p =
+        parameters_with("arm.links=11 arm.hub_joint=beam arm.damping_ratio=0.1 arm.k2=15 "
+                        "arm.mass=0.28 arm.hub_inertia=1.4e-4 motor.voltage=4e-6 "
+                        "motor.stiction=3e-7 wall.angle=1e-5 method.rest_speed=1e-8");
     static const double first[] = {4.0014973e-4,  7.9890865e-4,  1.19090023e-3, 1.57891664e-3,
                                    1.96957387e-3, 2.36983598e-3, 2.78682441e-3, 3.22850009e-3,
                                    3.70475134e-3, 4.22916186e-3};
@@ -131,9 +130,8 @@ TEST(a_slow_arm_meets_its_wall_in_time)
 // to rest for good [s], all that moves it being `share` of what it is at a wall at 1 rad.
 static void hub_events(double share, double instant[3])
 {
-    parameters p =
-        fixture_parameters(SETTINGS("arm.links=32", "arm.damping_ratio=0.05", "wall.kind=plane",
-                                    "wall.angle=1", "motor.voltage=10", "motor.stiction=0.45"));
+    parameters p = parameters_with("arm.links=32 arm.damping_ratio=0.05 wall.kind=plane "
+                                   "wall.angle=1 motor.voltage=10 motor.stiction=0.45");
     p.wall.angle *= share;
     p.motor.voltage *= share;
     p.motor.stiction *= share;

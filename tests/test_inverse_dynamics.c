@@ -166,14 +166,14 @@ static travelled travel(const char *const *settings)
 
 TEST(tip_follows_its_plan_and_rests)
 {
-    travelled ideal = travel(SETTINGS("motor.stiction=0"));
+    travelled ideal = travel(given("motor.stiction=0"));
     check_below(ideal.tip_error, 1e-3);
     check_below(ideal.left_moving, 1e-3);
     // the hub starts before the tip
     check_below(0.1, ideal.hub_ahead);
     check_close(ideal.tip_ahead, 0, 1e-3);
     // friction that is known costs little
-    travelled rough = travel(SETTINGS("motor.stiction=0.045"));
+    travelled rough = travel(given("motor.stiction=0.045"));
     check_below(rough.tip_error, 0.01);
     check_below(rough.left_moving, 0.01);
 }
@@ -182,8 +182,8 @@ TEST(tip_follows_its_plan_and_rests)
 // body.
 TEST(rigid_body_torque_leaves_vibration)
 {
-    travelled rigid = travel(SETTINGS("motor.stiction=0", "belief.k2_factor=100"));
-    travelled flexible = travel(SETTINGS("motor.stiction=0"));
+    travelled rigid = travel(given("motor.stiction=0 belief.k2_factor=100"));
+    travelled flexible = travel(given("motor.stiction=0"));
     check_below(0.2, rigid.left_moving);
     check_below(100 * flexible.left_moving, rigid.left_moving);
     check_below(30 * flexible.tip_error, rigid.tip_error);
@@ -194,7 +194,7 @@ TEST(wrong_stiffness_costs)
 {
     const char *const factors[] = {"belief.k2_factor=0.8", "belief.k2_factor=1.2"};
     for (int i = 0; i < 2; i++) {
-        travelled wrong = travel(SETTINGS("motor.stiction=0", factors[i]));
+        travelled wrong = travel(given("motor.stiction=0 %s", factors[i]));
         check_below(0.02, wrong.left_moving);
         check_below(0.01, wrong.tip_error);
         check_below(wrong.tip_error, 0.1);
@@ -219,11 +219,11 @@ TEST(tip_meets_the_wall_as_fast_as_planned)
     const double speeds[] = {0.1, 0.2, 0.4, 0.8};
     for (int i = 0; i < 4; i++) {
         for (int seed = 1; seed <= 5; seed++) {
-            char speed[48], random[32];
+            char speed[48];
             snprintf(speed, sizeof speed, "control.arrival_speed=%g", speeds[i]);
-            snprintf(random, sizeof random, "control.seed=%d", seed);
             SCOPED(run_finish)
-            run_result r = rig_run(SETTINGS("control.law=inverse-dynamics", speed, random), false);
+            run_result r = rig_run(
+                given("control.law=inverse-dynamics %s control.seed=%d", speed, seed), false);
             check_relative(first_impact(&r)->speed, speeds[i], 0.03);
             check_close(first_impact(&r)->time, 0.583, 0.006);
             check_close(r.summary.steady_force_N, 1, 0.03);
@@ -237,10 +237,11 @@ TEST(force_follows_its_plan)
     const char *const speeds[] = {"control.arrival_speed=0", "control.arrival_speed=0.3"};
     for (int i = 0; i < 2; i++) {
         SCOPED(run_finish)
-        run_result r = rig_run(SETTINGS("control.law=inverse-dynamics", "sensor.ideal=true",
-                                        "motor.stiction=0", "control.rate=5000",
-                                        "control.transition_time=0.1", speeds[i]),
-                               true);
+        run_result r =
+            rig_run(given("control.law=inverse-dynamics sensor.ideal=true motor.stiction=0 "
+                          "control.rate=5000 control.transition_time=0.1 %s",
+                          speeds[i]),
+                    true);
         for (size_t k = 0; k < r.trace.row_count; k++) {
             const sample *row = &r.trace.rows[k];
             // a touch without speed comes when the force is above what the tip is off its plan
@@ -259,9 +260,8 @@ TEST(press_ends_near_its_force)
     const double peaks[] = {1.05, 1.3, 1.5};
     for (int i = 0; i < 3; i++) {
         for (int seed = 1; seed <= 5; seed++) {
-            char random[32];
-            snprintf(random, sizeof random, "control.seed=%d", seed);
-            summary s = rig_summary(SETTINGS("control.law=inverse-dynamics", errors[i], random));
+            summary s = rig_summary_with("control.law=inverse-dynamics %s control.seed=%d",
+                                         errors[i], seed);
             check_close(s.steady_force_N, 1, 0.05);
             check_below(s.peak_force_N, peaks[i]);
         }
@@ -270,8 +270,7 @@ TEST(press_ends_near_its_force)
 
 TEST(early_touch_moves_the_plan_on)
 {
-    run_result r =
-        rig_run(SETTINGS("control.law=inverse-dynamics", "belief.wall_error=0.02"), true);
+    run_result r = rig_run(given("control.law=inverse-dynamics belief.wall_error=0.02"), true);
     double touch = first_impact(&r)->time;
     check_below(touch, 0.5);
     for (size_t i = 0; i < r.trace.row_count; i++) {

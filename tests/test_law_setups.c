@@ -12,7 +12,7 @@ TEST(laws_know_any_delay)
     for (int i = 0; i < 2; i++) {
         for (int k = 0; k < 3; k++) {
             const summary s =
-                rig_summary(SETTINGS(laws[i], delays[k], "control.delay=0", "control.force=1"));
+                rig_summary_with("%s %s control.delay=0 control.force=1", laws[i], delays[k]);
             assert_true(s.impacts >= 1);
             check_relative(s.steady_force_N, 1.0, 0.1);
         }
@@ -23,15 +23,15 @@ TEST(a_motor_without_torque_is_said)
 {
     static const char *const laws[] = {"control.law=optimal", "control.law=observer"};
     for (int i = 0; i < 2; i++) {
-        check_refused(SETTINGS(laws[i], "motor.amplifier_gain=0"), "it needs a motor");
+        check_refused(given("%s motor.amplifier_gain=0", laws[i]), "it needs a motor");
     }
 }
 
 // Links that throw the force of an impact nowhere: the law brakes by the spring alone.
 TEST(links_without_a_force_of_their_own_are_pressed)
 {
-    const summary s = rig_summary(SETTINGS("control.law=optimal", "arm.mass=0.4",
-                                           "arm.link_inertia=0.0125", "control.force=1"));
+    const summary s = rig_summary_with(
+        "control.law=optimal arm.mass=0.4 arm.link_inertia=0.0125 control.force=1");
     assert_true(s.impacts >= 1);
     assert_true(isfinite(s.peak_force_N));
 }
@@ -39,8 +39,8 @@ TEST(links_without_a_force_of_their_own_are_pressed)
 // A mass without inertia moves at its commanded speed.
 TEST(an_admittance_may_have_no_mass)
 {
-    const summary s = rig_summary(
-        SETTINGS("control.law=admittance", "control.settings=mass_time=0", "run.duration=3"));
+    const summary s =
+        rig_summary_with("control.law=admittance control.settings=mass_time=0 run.duration=3");
     check_relative(s.steady_force_N, 1.0, 0.2);
 }
 
@@ -48,9 +48,8 @@ TEST(an_admittance_may_have_no_mass)
 TEST(a_forecast_knows_the_hubs_spring)
 {
     const char *const *const joints[] = {
-        SETTINGS("control.law=speed-limit", "control.force_limit=2", "arm.hub_joint=spring",
-                 "arm.k1=2000"),
-        SETTINGS("control.law=speed-limit", "control.force_limit=2")};
+        given("control.law=speed-limit control.force_limit=2 arm.hub_joint=spring arm.k1=2000"),
+        given("control.law=speed-limit control.force_limit=2")};
     for (int i = 0; i < 2; i++) {
         const summary s = rig_summary(joints[i]);
         assert_true(s.impacts >= 1);
@@ -80,7 +79,7 @@ static status run_with_change(const char *const *settings, const char *path, con
 // goes on as it was.
 TEST(a_transition_leads_where_it_is_told)
 {
-    const char *const *const settings = SETTINGS("control.law=hybrid", "control.force=1");
+    const char *const *const settings = given("control.law=hybrid control.force=1");
     const double touch = rig_summary(settings).first_contact_s;
     static const struct {
         const char *path, *text;
@@ -100,10 +99,10 @@ TEST(a_transition_leads_where_it_is_told)
 TEST(a_rate_set_at_the_start_is_that_of_the_rig)
 {
     SCOPED(run_finish) run_result r;
-    const char *const *const settings = SETTINGS("control.law=hybrid", "control.rate=200");
+    const char *const *const settings = given("control.law=hybrid control.rate=200");
     assert_int_equal(run_with_change(settings, "control.rate", "100", 0, &r), STATUS_OK);
     SCOPED(run_finish)
-    run_result from_the_start = rig_run(SETTINGS("control.law=hybrid", "control.rate=100"), false);
+    run_result from_the_start = rig_run(given("control.law=hybrid control.rate=100"), false);
     check_relative(r.summary.peak_force_N, from_the_start.summary.peak_force_N, 1e-9);
     check_relative(r.summary.first_contact_s, from_the_start.summary.first_contact_s, 1e-9);
 }
@@ -112,8 +111,8 @@ TEST(a_rate_set_at_the_start_is_that_of_the_rig)
 TEST(a_refused_change_says_its_time)
 {
     SCOPED(run_finish) run_result r;
-    assert_int_equal(run_with_change(SETTINGS("control.law=observer", "control.force=1"),
-                                     "control.rate", "250", 0.3, &r),
+    assert_int_equal(run_with_change(given("control.law=observer control.force=1"), "control.rate",
+                                     "250", 0.3, &r),
                      STATUS_BAD_SCENARIO);
     assert_non_null(strstr(r.summary.message, "at t = 0.3 s the controller 'observer' refuses: "
                                               "it takes its model and its rate at the start only"));
@@ -124,8 +123,8 @@ TEST(a_limit_may_change)
 {
     SCOPED(run_finish) run_result r;
     const char *const *const settings =
-        SETTINGS("control.law=speed-limit", "control.force_limit=4", "control.approach_voltage=5",
-                 "control.speed_limit=100", "control.force=0.3", "initial.angle=-0.4");
+        given("control.law=speed-limit control.force_limit=4 control.approach_voltage=5 "
+              "control.speed_limit=100 control.force=0.3 initial.angle=-0.4");
     assert_int_equal(run_with_change(settings, "control.force_limit", "1", 0.05, &r), STATUS_OK);
     const summary high = rig_summary(settings);
     check_below(r.summary.peak_force_N, high.peak_force_N);

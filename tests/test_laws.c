@@ -10,17 +10,17 @@
 
 TEST(hybrid_makes_contact_once_and_settles)
 {
-    summary one = rig_summary(SETTINGS("control.law=hybrid", "control.force=1"));
-    summary two = rig_summary(SETTINGS("control.law=hybrid", "control.force=2"));
+    summary one = rig_summary_with("control.law=hybrid control.force=1");
+    summary two = rig_summary_with("control.law=hybrid control.force=2");
     check_close(one.impacts, 1, 0);
     check_close(one.separations, 0, 0);
     check_close(one.settling_time_s, 0.3, 0.1);
     check_close(two.separations, 0, 0);
     check_below(two.settling_time_s, one.settling_time_s);
-    summary printed_one = rig_summary(
-        SETTINGS("control.law=hybrid", "arm.model=printed", "control.coefficients=printed"));
-    summary printed_two = rig_summary(SETTINGS("control.law=hybrid", "arm.model=printed",
-                                               "control.coefficients=printed", "control.force=2"));
+    summary printed_one =
+        rig_summary_with("control.law=hybrid arm.model=printed control.coefficients=printed");
+    summary printed_two = rig_summary_with(
+        "control.law=hybrid arm.model=printed control.coefficients=printed control.force=2");
     check_close(printed_one.separations, 0, 0);
     check_close(printed_one.settling_time_s, 0.3, 0.1);
     check_below(printed_two.settling_time_s, printed_one.settling_time_s);
@@ -28,9 +28,9 @@ TEST(hybrid_makes_contact_once_and_settles)
 
 TEST(hybrid_force_follows_its_coefficients)
 {
-    summary corrected = rig_summary(SETTINGS("control.law=hybrid", "sensor.ideal=true"));
-    summary printed = rig_summary(
-        SETTINGS("control.law=hybrid", "sensor.ideal=true", "control.coefficients=printed"));
+    summary corrected = rig_summary_with("control.law=hybrid sensor.ideal=true");
+    summary printed =
+        rig_summary_with("control.law=hybrid sensor.ideal=true control.coefficients=printed");
     check_close(corrected.steady_force_N, 1, 0.02);
     // 3 f l and a torque gain: f (1 + kp/(4 k2)) = (1.5 + kp/(4 k2)) f_command
     double share = 10.15 / (4 * 4.92);
@@ -41,7 +41,7 @@ TEST(hybrid_force_follows_its_coefficients)
 TEST(quintic_joins_contact_and_rest)
 {
     SCOPED(run_finish)
-    run_result r = rig_run(SETTINGS("control.law=hybrid", "sensor.ideal=true"), true);
+    run_result r = rig_run(given("control.law=hybrid sensor.ideal=true"), true);
     const trace *t = &r.trace;
     size_t first = 0, last = 0;
     for (size_t i = 0; i < t->row_count; i++) {
@@ -63,12 +63,12 @@ TEST(quintic_joins_contact_and_rest)
 
 TEST(gains_have_both_readings)
 {
-    summary torque = rig_summary(SETTINGS("control.law=hybrid", "control.coefficients=printed",
-                                          "control.gains=torque", "sensor.ideal=true"));
-    summary volts = rig_summary(SETTINGS("control.law=hybrid", "control.coefficients=printed",
-                                         "control.gains=volts", "sensor.ideal=true"));
-    summary printed = rig_summary(SETTINGS("control.law=hybrid", "control.coefficients=printed",
-                                           "control.gains=printed", "sensor.ideal=true"));
+    summary torque = rig_summary_with(
+        "control.law=hybrid control.coefficients=printed control.gains=torque sensor.ideal=true");
+    summary volts = rig_summary_with(
+        "control.law=hybrid control.coefficients=printed control.gains=volts sensor.ideal=true");
+    summary printed = rig_summary_with(
+        "control.law=hybrid control.coefficients=printed control.gains=printed sensor.ideal=true");
     // a volt is 0.4377 N m: read as volts the gain pulls less against the wrong feed-forward
     check_below(torque.steady_force_N + 0.05, volts.steady_force_N);
     check_close(printed.steady_force_N, volts.steady_force_N, 0.02);
@@ -100,25 +100,23 @@ static int failures_of(const char *const *settings)
 TEST(the_thesis_needs_its_200_hertz)
 {
     // a separate hub before the beam, a delay of one period: 100 Hz fails, 200 Hz does not
-    assert_int_equal(failures_of(SETTINGS("control.rate=100")), 5);
-    assert_int_equal(failures_of(SETTINGS("control.rate=150")), 5);
-    assert_int_equal(failures_of(SETTINGS("control.rate=200")), 0);
-    assert_int_equal(failures_of(SETTINGS("control.rate=500")), 0);
-    assert_int_equal(failures_of(SETTINGS("control.rate=2000")), 0);
+    assert_int_equal(failures_of(given("control.rate=100")), 5);
+    assert_int_equal(failures_of(given("control.rate=150")), 5);
+    assert_int_equal(failures_of(given("control.rate=200")), 0);
+    assert_int_equal(failures_of(given("control.rate=500")), 0);
+    assert_int_equal(failures_of(given("control.rate=2000")), 0);
     // as printed, arm and law, on its own grid of 1 ms
-    assert_int_equal(failures_of(SETTINGS("control.rate=100", "arm.model=printed",
-                                          "control.coefficients=printed")),
-                     5);
-    assert_int_equal(failures_of(SETTINGS("control.rate=200", "arm.model=printed",
-                                          "control.coefficients=printed")),
-                     0);
+    assert_int_equal(
+        failures_of(given("control.rate=100 arm.model=printed control.coefficients=printed")), 5);
+    assert_int_equal(
+        failures_of(given("control.rate=200 arm.model=printed control.coefficients=printed")), 0);
     // without the delay 50 Hz fails and 100 Hz does; gains in volts are weaker, and so do not
-    assert_int_equal(failures_of(SETTINGS("control.rate=50", "control.delay_periods=0")), 5);
-    assert_int_equal(failures_of(SETTINGS("control.rate=100", "control.delay_periods=0")), 0);
-    assert_int_equal(failures_of(SETTINGS("control.rate=100", "control.gains=volts")), 0);
+    assert_int_equal(failures_of(given("control.rate=50 control.delay_periods=0")), 5);
+    assert_int_equal(failures_of(given("control.rate=100 control.delay_periods=0")), 0);
+    assert_int_equal(failures_of(given("control.rate=100 control.gains=volts")), 0);
     // hub and beam as one body: no rate that a computer of the time had is too low
-    assert_int_equal(failures_of(SETTINGS("control.rate=50", "arm.hub_joint=rigid")), 0);
-    assert_int_equal(failures_of(SETTINGS("control.rate=20", "arm.hub_joint=rigid")), 5);
+    assert_int_equal(failures_of(given("control.rate=50 arm.hub_joint=rigid")), 0);
+    assert_int_equal(failures_of(given("control.rate=20 arm.hub_joint=rigid")), 5);
 }
 
 // What fails is the velocity gain on the hub alone: held for a period T and a period late,
@@ -127,12 +125,11 @@ TEST(the_rate_limits_the_velocity_gain)
 {
     const double rates[] = {100, 150, 200, 300, 500};
     for (int i = 0; i < 5; i++) {
-        char rate[32], low[32], high[32];
-        snprintf(rate, sizeof rate, "control.rate=%g", rates[i]);
-        snprintf(low, sizeof low, "control.kv=%g", 0.55 * 5.2e-3 * rates[i]);
-        snprintf(high, sizeof high, "control.kv=%g", 1.6 * 5.2e-3 * rates[i]);
-        assert_int_equal(failures_of(SETTINGS(rate, low)), 0);
-        assert_true(failures_of(SETTINGS(rate, high)) >= 4);
+        assert_int_equal(
+            failures_of(given("control.rate=%g control.kv=%g", rates[i], 0.55 * 5.2e-3 * rates[i])),
+            0);
+        assert_true(failures_of(given("control.rate=%g control.kv=%g", rates[i],
+                                      1.6 * 5.2e-3 * rates[i])) >= 4);
     }
 }
 
@@ -150,10 +147,10 @@ TEST(optimal_law_beats_the_hybrid)
                  {"control.force=3", 1.0 / 3}};
     for (int i = 0; i < 4; i++) {
         for (int seed = 1; seed <= 10; seed++) {
-            char text[32];
-            snprintf(text, sizeof text, "control.seed=%d", seed);
-            summary hybrid = rig_summary(SETTINGS("control.law=hybrid", cases[i].force, text));
-            summary optimal = rig_summary(SETTINGS("control.law=optimal", cases[i].force, text));
+            summary hybrid =
+                rig_summary_with("control.law=hybrid %s control.seed=%d", cases[i].force, seed);
+            summary optimal =
+                rig_summary_with("control.law=optimal %s control.seed=%d", cases[i].force, seed);
             check_close(optimal.separations, 0, 0);
             check_below(optimal.force_over_command_N,
                         fmax(cases[i].share * hybrid.force_over_command_N, 1e-9));
@@ -171,8 +168,8 @@ TEST(optimal_law_stands_wrong_beliefs)
                                   "control.force=3"};
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 4; k++) {
-            summary hybrid = rig_summary(SETTINGS("control.law=hybrid", forces[k], beliefs[i]));
-            summary optimal = rig_summary(SETTINGS("control.law=optimal", forces[k], beliefs[i]));
+            summary hybrid = rig_summary_with("control.law=hybrid %s %s", forces[k], beliefs[i]);
+            summary optimal = rig_summary_with("control.law=optimal %s %s", forces[k], beliefs[i]);
             check_close(optimal.separations, 0, 0);
             // (a law that stays below the command has no overshoot to be beaten)
             check_below(optimal.force_over_command_N,
@@ -188,15 +185,15 @@ TEST(predictive_law_keeps_its_limit)
     const double limits[] = {0.7, 1, 1.5, 2};
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 8; k++) {
-            char limit[48], seed[32], angle[48];
+            char limit[48];
             snprintf(limit, sizeof limit, "control.force_limit=%g", limits[i]);
-            snprintf(seed, sizeof seed, "control.seed=%d", k);
-            snprintf(angle, sizeof angle, "initial.angle=%g", -0.2 - 0.013 * k);
-            summary fast = rig_summary(SETTINGS("control.law=predictive", limit, seed, angle,
-                                                "control.force=0.5", "control.approach_voltage=5"));
-            summary blind =
-                rig_summary(SETTINGS("control.law=optimal", seed, angle, "control.force=0.5",
-                                     "control.approach_voltage=5"));
+            summary fast =
+                rig_summary_with("control.law=predictive %s control.seed=%d initial.angle=%g "
+                                 "control.force=0.5 control.approach_voltage=5",
+                                 limit, k, -0.2 - 0.013 * k);
+            summary blind = rig_summary_with("control.law=optimal control.seed=%d initial.angle=%g "
+                                             "control.force=0.5 control.approach_voltage=5",
+                                             k, -0.2 - 0.013 * k);
             check_below(fast.peak_force_N, limits[i]);
             check_below(2, blind.peak_force_N);
             // and no slower than that needs: the limit is nearly used
@@ -209,8 +206,8 @@ TEST(predictive_law_keeps_its_limit)
 
 TEST(bang_bang_hits_harder_than_the_plain_approach)
 {
-    summary plain = rig_summary(SETTINGS("control.law=hybrid"));
-    summary bang = rig_summary(SETTINGS("control.law=bang-bang"));
+    summary plain = rig_summary_with("control.law=hybrid");
+    summary bang = rig_summary_with("control.law=bang-bang");
     check_below(1.2 * plain.peak_force_N, bang.peak_force_N);
     check_below(plain.contact_impulse_Ns, bang.contact_impulse_Ns);
 }
@@ -242,7 +239,7 @@ TEST(slower_approach_hits_softer)
     const char *const limits[] = {"control.speed_limit=0.6", "control.speed_limit=0.4",
                                   "control.speed_limit=0.2"};
     for (int i = 0; i < 3; i++) {
-        summary s = rig_summary(SETTINGS("control.law=speed-limit", limits[i], "run.duration=2.5"));
+        summary s = rig_summary_with("control.law=speed-limit %s run.duration=2.5", limits[i]);
         check_below(s.contact_impulse_Ns, last);
         last = s.contact_impulse_Ns;
     }
@@ -257,19 +254,19 @@ TEST(every_law_ends_near_its_force)
                                 "control.law=discontinuous",  "control.law=recovering",
                                 "control.law=optimal",        "control.law=bang-bang"};
     for (EACH(c, laws)) {
-        summary s = rig_summary(SETTINGS(*c));
+        summary s = rig_summary_with("%s", *c);
         check_close(s.steady_force_N, 1, 0.05);
     }
-    summary integral = rig_summary(SETTINGS("control.law=force-integral", "run.duration=4"));
+    summary integral = rig_summary_with("control.law=force-integral run.duration=4");
     check_close(integral.steady_force_N, 1, 0.05);
 }
 
 TEST(recovering_law_returns_to_position_control)
 {
     SCOPED(run_finish)
-    run_result r = rig_run(SETTINGS("control.law=recovering", "control.approach_voltage=7",
-                                    "control.force=0.5", "run.duration=2"),
-                           true);
+    run_result r = rig_run(
+        given("control.law=recovering control.approach_voltage=7 control.force=0.5 run.duration=2"),
+        true);
     bool recovered = false, pressed_after = false;
     for (size_t i = 0; i < r.trace.row_count; i++) {
         recovered |= r.trace.rows[i].controller_mode == 3;
@@ -284,11 +281,11 @@ TEST(impedance_gives_way_by_its_stiffness)
 {
     static const double stiffness[] = {5, 20, 40};
     for (EACH(c, stiffness)) {
-        char setting[64];
-        snprintf(setting, sizeof setting, "control.settings=stiffness=%g", *c);
-        summary right = rig_summary(SETTINGS("control.law=impedance", "motor.stiction=0", setting));
-        summary off = rig_summary(SETTINGS("control.law=impedance", "motor.stiction=0", setting,
-                                           "belief.wall_error=0.02"));
+        summary right = rig_summary_with(
+            "control.law=impedance motor.stiction=0 control.settings=stiffness=%g", *c);
+        summary off = rig_summary_with("control.law=impedance motor.stiction=0 "
+                                       "control.settings=stiffness=%g belief.wall_error=0.02",
+                                       *c);
         double k = *c, beam = 4 * 4.92;
         check_close(off.steady_force_N - right.steady_force_N, 0.02 * k * beam / (k + beam), 0.02);
         check_close(right.steady_error_N, 0, 0.02);
@@ -299,7 +296,7 @@ TEST(impedance_gives_way_by_its_stiffness)
 TEST(several_settings_are_taken)
 {
     const controller *law = controller_of(LAW_IMPEDANCE);
-    parameters p = rig_parameters(SETTINGS("control.law=impedance"));
+    parameters p = rig_parameters_with("control.law=impedance");
     double one[16], both[16];
     assert_true(law->parameter_count >= 2 && law->parameter_count <= 16);
     strcpy(p.control.settings, "stiffness=7");
@@ -382,7 +379,7 @@ TEST(admittance_ends_with_the_force)
     static const char *const wrong[] = {"belief.wall_error=0.02", "belief.k2_factor=0.75",
                                         "belief.torque_factor=0.85", "control.force=2"};
     for (EACH(c, wrong)) {
-        summary s = rig_summary(SETTINGS("control.law=admittance", "run.duration=2", *c));
+        summary s = rig_summary_with("control.law=admittance run.duration=2 %s", *c);
         check_close(s.steady_error_N, 0, 0.05);
         check_below(s.force_over_command_N, 0.2 * s.force_command_N);
     }
@@ -397,10 +394,10 @@ TEST(the_impact_angle_can_be_measured)
     static const char *const beliefs[] = {"belief.wall_error=-0.02", "belief.wall_error=0",
                                           "belief.wall_error=0.02"};
     for (int b = 0; b < 3; b++) {
-        summary told = rig_summary(SETTINGS("control.law=hybrid", beliefs[b]));
+        summary told = rig_summary_with("control.law=hybrid %s", beliefs[b]);
         check_close(fabs(told.steady_error_N), b == 1 ? 0 : 0.13, 0.02);
         for (int i = 0; i < 2; i++) {
-            summary s = rig_summary(SETTINGS("control.law=hybrid", sources[i], beliefs[b]));
+            summary s = rig_summary_with("control.law=hybrid %s %s", sources[i], beliefs[b]);
             check_below(fabs(s.steady_error_N), 0.06);
             assert_int_equal(s.separations, 0);
         }
@@ -410,7 +407,7 @@ TEST(the_impact_angle_can_be_measured)
 // The sensor is fitted with it, and cannot be left out.
 TEST(an_impact_angle_needs_its_sensor)
 {
-    parameters p = rig_parameters(SETTINGS("control.impact_angle=film"));
+    parameters p = rig_parameters_with("control.impact_angle=film");
     assert_true(p.sensor.film && !p.sensor.accelerometer);
     fault f;
     parameters_defaults(&p, ARM_CORRECTED);

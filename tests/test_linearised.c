@@ -31,11 +31,9 @@ static motion *before_impact(const arm *a, const method_parameters *method)
 // Prediction at the instant before the first contact, and what the simulation then did.
 static comparison compare(double k2, double volts, const char *wall, const char *more)
 {
-    char k2_text[48], volts_text[48];
-    snprintf(k2_text, sizeof k2_text, "arm.k2=%.17g", k2);
-    snprintf(volts_text, sizeof volts_text, "motor.voltage=%.17g", volts);
-    scenario s = {.parameters = fixture_parameters(
-                      SETTINGS(k2_text, volts_text, wall, more, "run.duration=2"))};
+    scenario s = {.parameters =
+                      parameters_with("arm.k2=%.17g motor.voltage=%.17g %s %s run.duration=2", k2,
+                                      volts, wall, more)};
     run_result r;
     comparison c;
     assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
@@ -214,7 +212,7 @@ TEST(one_link_presses_with_its_motor)
     const double at[] = {0.05}, more[] = {3}, off[] = {0};
     const voltage_profile none = {0}, stronger = {1, at, more}, weaker = {1, at, off};
     const char *const *const rigid =
-        SETTINGS("arm.links=1", "motor.voltage=1", "motor.stiction=0", "wall.angle=0.1");
+        given("arm.links=1 motor.voltage=1 motor.stiction=0 wall.angle=0.1");
     const parameters p = fixture_parameters(rigid);
     const double per_volt = motor_torque_per_volt(&p.motor) / p.arm.length;
     prediction out = of_one_link(rigid, &none);
@@ -224,10 +222,9 @@ TEST(one_link_presses_with_its_motor)
     check_relative(of_one_link(rigid, &weaker).force, per_volt, 1e-6);
 
     // v sqrt(k m), m the rod's and the hub's inertia over the square of its length
-    const char *const *const soft =
-        SETTINGS("arm.links=1", "motor.voltage=0", "motor.stiction=0", "motor.viscous_friction=0",
-                 "motor.back_emf=0", "wall.angle=0.1", "wall.contact=kelvin-voigt",
-                 "wall.stiffness=1e5", "wall.damping=0");
+    const char *const *const soft = given(
+        "arm.links=1 motor.voltage=0 motor.stiction=0 motor.viscous_friction=0 motor.back_emf=0 "
+        "wall.angle=0.1 wall.contact=kelvin-voigt wall.stiffness=1e5 wall.damping=0");
     const parameters s = fixture_parameters(soft);
     const double mass = s.arm.mass / 3 + s.arm.hub_inertia / (s.arm.length * s.arm.length);
     out = of_one_link(soft, &none);
@@ -238,7 +235,7 @@ TEST(one_link_presses_with_its_motor)
 // Where no wall stands there is nothing to be touched.
 TEST(without_a_wall_there_is_no_touch)
 {
-    parameters p = fixture_parameters(SETTINGS("wall.kind=none"));
+    parameters p = parameters_with("wall.kind=none");
     arm a = arm_of(&p);
     const double q[2] = {0.1, 0.1}, w[2] = {0.6, 0.8};
     prediction out;
@@ -286,7 +283,7 @@ static prediction follow_motion(const arm *source, motion *m, const voltage_prof
 
 static void predict_and_follow(const char *joint, const char *links, const voltage_profile *command)
 {
-    parameters p = fixture_parameters(SETTINGS(joint, links, "arm.k1=90", "motor.voltage=1"));
+    parameters p = parameters_with("%s %s arm.k1=90 motor.voltage=1", joint, links);
     arm a = arm_of(&p);
     SCOPED(motion_destroy_kept) motion *m = before_impact(&a, &p.method);
     prediction out;
@@ -319,7 +316,7 @@ TEST(a_prescribed_voltage_is_followed)
 
 TEST(an_elastic_impact_does_not_hold)
 {
-    parameters p = fixture_parameters(SETTINGS("wall.restitution=0.5"));
+    parameters p = parameters_with("wall.restitution=0.5");
     arm a = arm_of(&p);
     const double q[2] = {0.1, 0.1}, w[2] = {0.6, 0.8};
     prediction out;
@@ -332,7 +329,7 @@ TEST(an_elastic_impact_does_not_hold)
 // long as the force does not vanish in between, else the first peak is.
 TEST(a_force_that_vanishes_ends_the_pulse)
 {
-    parameters p = fixture_parameters(SETTINGS("motor.voltage=1"));
+    parameters p = parameters_with("motor.voltage=1");
     arm a = arm_of(&p);
     SCOPED(motion_destroy_kept) motion *m = before_impact(&a, &p.method);
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
@@ -375,8 +372,8 @@ TEST(a_gentle_touch_is_one_oscillation)
     for (int i = 0; i < 48; i++) {
         const double size = 1e-3; // of all of it, so that nothing bends far
         const double ratio = ratios[i / 12];
-        parameters p = fixture_parameters(
-            SETTINGS(walls[i / 6 % 2], "motor.stiction=0", "wall.angle=0", "method.rest_speed=0"));
+        parameters p = parameters_with("%s motor.stiction=0 wall.angle=0 method.rest_speed=0",
+                                       walls[i / 6 % 2]);
         p.arm.damping_ratio = ratio;
         p.motor.voltage = size * touches[i % 6].volts;
         arm a = arm_of(&p);

@@ -107,8 +107,7 @@ TEST(a_touch_between_the_ends_of_a_step_is_found)
     const double wall = 0.1, reach[] = {0.5, 0.9, 0.99};
     for (int i = 0; i < 3; i++) {
         // it turns back after 2 ms, when `reach` of its way leads to the wall
-        parameters p =
-            fixture_parameters(SETTINGS("arm.links=1", "motor.voltage=-2", "motor.stiction=0"));
+        parameters p = parameters_with("arm.links=1 motor.voltage=-2 motor.stiction=0");
         arm a = arm_of(&p);
         SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &explicit_engine);
         motion_start(&a, m, 0, 0);

@@ -7,11 +7,10 @@
 
 static void check_case(int links, const char *hub, const char *wall, double volts)
 {
-    char n[32], v[48];
-    snprintf(n, sizeof n, "arm.links=%d", links);
-    snprintf(v, sizeof v, "motor.voltage=%.17g", volts);
-    scenario s = {.parameters = fixture_parameters(SETTINGS("method.name=generalized-alpha", n, hub,
-                                                            wall, v, "run.duration=1"))};
+    scenario s = {
+        .parameters = parameters_with(
+            "method.name=generalized-alpha arm.links=%d %s %s motor.voltage=%.17g run.duration=1",
+            links, hub, wall, volts)};
     SCOPED(run_finish) run_result r;
     fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%d links, %s, %s, %g V: %s", links, hub,
             wall, volts, r.summary.message);
@@ -57,8 +56,8 @@ TEST(the_event_method_stays_exact)
     };
     for (EACH(one, cases)) {
         const char *const *c = *one;
-        scenario s = {.parameters = fixture_parameters(
-                          SETTINGS(c[0], c[1], c[2], c[3], c[4], "run.duration=0.32"))};
+        scenario s = {.parameters = parameters_with("%s %s %s %s %s run.duration=0.32", c[0], c[1],
+                                                    c[2], c[3], c[4])};
         SCOPED(run_finish) run_result r;
         fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s, %s, %s, %s: %s", c[0], c[1], c[2],
                 c[3], r.summary.message);
@@ -72,12 +71,11 @@ TEST(the_event_method_stays_exact)
 // What a chain with 1 % damping gives the wall in the first 50 ms of contact, impulses and forces.
 static double momentum_of_50_ms(int links)
 {
-    char n[32];
-    snprintf(n, sizeof n, "arm.links=%d", links);
-    scenario s = {.parameters = fixture_parameters(
-                      SETTINGS(n, "arm.hub_joint=beam", "arm.damping_ratio=0.01", "wall.kind=plane",
-                               "motor.voltage=1", "initial.angle=0.095", "initial.velocity=0.7",
-                               "run.duration=0.0571"))};
+    scenario s = {
+        .parameters = parameters_with(
+            "arm.links=%d arm.hub_joint=beam arm.damping_ratio=0.01 wall.kind=plane "
+            "motor.voltage=1 initial.angle=0.095 initial.velocity=0.7 run.duration=0.0571",
+            links)};
 
     // the run is shorter than the window of the steady force, which is then the mean of all of it
     SCOPED(run_finish) run_result r;
@@ -112,10 +110,11 @@ TEST(strides_follow_the_fastest_link)
     static const char *const steps[] = {"method.step=1e-3", "method.step=2e-4", "method.step=5e-5"};
     summary first = {0};
     for (int i = 0; i < 3; i++) {
-        scenario s = {.parameters = fixture_parameters(
-                          SETTINGS("arm.links=3", "arm.hub_joint=beam", "wall.kind=plane",
-                                   "wall.angle=0.1", "motor.voltage=1", "motor.viscous_friction=0",
-                                   "motor.amplifier_gain=1000", "run.duration=1", steps[i]))};
+        scenario s = {
+            .parameters = parameters_with(
+                "arm.links=3 arm.hub_joint=beam wall.kind=plane wall.angle=0.1 motor.voltage=1 "
+                "motor.viscous_friction=0 motor.amplifier_gain=1000 run.duration=1 %s",
+                steps[i])};
         SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
         assert_string_equal(summary_status(&r.summary), "ok");

@@ -26,8 +26,8 @@ static held_modes modes_of(const parameters *p)
 // Joints that the arm does not have take no part; an arm may have as many as a list has numbers.
 TEST(only_joints_that_are_there_are_damped)
 {
-    const char *const *const arms[] = {SETTINGS("arm.links=5"),
-                                       SETTINGS("arm.links=32", "arm.hub_joint=beam")};
+    const char *const *const arms[] = {given("arm.links=5"),
+                                       given("arm.links=32 arm.hub_joint=beam")};
     for (int j = 0; j < 2; j++) {
         parameters p = fixture_parameters(arms[j]);
         double rows[PARAMETER_MODES_MOST][PARAMETER_LIST_MOST];
@@ -48,15 +48,13 @@ TEST(only_joints_that_are_there_are_damped)
 TEST(structural_damping_is_of_the_first_mode)
 {
     const char *const *const arms[] = {
-        SETTINGS("arm.damping_ratio=0.03", "arm.links=4", "arm.link_lengths=0.2,0.3,0.1,0.4",
-                 "arm.joint_stiffness=9,5,12"),
-        SETTINGS("arm.damping_ratio=0.03", "arm.links=3", "arm.hub_joint=beam",
-                 "arm.link_lengths=0.2,0.3,0.5", "arm.joint_stiffness=20,9,5"),
-        SETTINGS("arm.damping_ratio=0.03", "arm.links=1", "arm.hub_joint=beam",
-                 "arm.joint_stiffness=7"),
-        SETTINGS("arm.damping_ratio=0.03", "arm.links=1", "arm.hub_joint=spring", "arm.k1=30"),
-        SETTINGS("arm.damping_ratio=0.03", "arm.links=1", "arm.hub_joint=spring",
-                 "arm.tip_mass=0.2")};
+        given("arm.damping_ratio=0.03 arm.links=4 arm.link_lengths=0.2,0.3,0.1,0.4 "
+              "arm.joint_stiffness=9,5,12"),
+        given("arm.damping_ratio=0.03 arm.links=3 arm.hub_joint=beam arm.link_lengths=0.2,0.3,0.5 "
+              "arm.joint_stiffness=20,9,5"),
+        given("arm.damping_ratio=0.03 arm.links=1 arm.hub_joint=beam arm.joint_stiffness=7"),
+        given("arm.damping_ratio=0.03 arm.links=1 arm.hub_joint=spring arm.k1=30"),
+        given("arm.damping_ratio=0.03 arm.links=1 arm.hub_joint=spring arm.tip_mass=0.2")};
     for (EACH(c, arms)) {
         parameters p = fixture_parameters(*c);
         held_modes m = modes_of(&p);
@@ -68,7 +66,7 @@ TEST(structural_damping_is_of_the_first_mode)
         }
     }
 
-    parameters rod = fixture_parameters(SETTINGS("arm.damping_ratio=0.03", "arm.links=1"));
+    parameters rod = parameters_with("arm.damping_ratio=0.03 arm.links=1");
     held_modes none = modes_of(&rod);
     assert_int_equal(none.count, 0);
     check_close(none.arm.joint_damping, 0, 0);
@@ -146,18 +144,18 @@ TEST(modes_decay_with_the_ratios_of_the_list)
     const double ratios[] = {0.02, 0.3, 0.005, 0};
     for (int hub = 0; hub < 2; hub++) {
         for (int mode = 0; mode < 4; mode++) {
-            parameters p = fixture_parameters(SETTINGS(hubs[hub], "arm.links=5", "wall.kind=none",
-                                                       "arm.modal_ratios=0.02,0.3,0.005",
-                                                       "motor.stiction=1000", "motor.voltage=0"));
+            parameters p =
+                parameters_with("%s arm.links=5 wall.kind=none arm.modal_ratios=0.02,0.3,0.005 "
+                                "motor.stiction=1000 motor.voltage=0",
+                                hubs[hub]);
             check_decay(&p, mode, ratios[mode]);
         }
     }
 
     // and links that differ
-    parameters p = fixture_parameters(
-        SETTINGS("arm.links=4", "wall.kind=none", "arm.modal_ratios=0.02,0.3,0.1",
-                 "arm.joint_stiffness=8,11,5", "arm.link_lengths=0.2,0.3,0.4,0.1",
-                 "motor.stiction=1000", "motor.voltage=0"));
+    parameters p = parameters_with(
+        "arm.links=4 wall.kind=none arm.modal_ratios=0.02,0.3,0.1 arm.joint_stiffness=8,11,5 "
+        "arm.link_lengths=0.2,0.3,0.4,0.1 motor.stiction=1000 motor.voltage=0");
     check_decay(&p, 0, 0.02);
     check_decay(&p, 1, 0.3);
     check_decay(&p, 2, 0.1);
@@ -168,9 +166,8 @@ TEST(air_takes_from_all_modes_alike)
 {
     const double drag = 0.5, rate = drag / 0.40108 / 2;
     for (int mode = 0; mode < 3; mode++) {
-        parameters p =
-            fixture_parameters(SETTINGS("arm.links=4", "wall.kind=none", "arm.air_drag=0.5",
-                                        "motor.stiction=1000", "motor.voltage=0"));
+        parameters p = parameters_with(
+            "arm.links=4 wall.kind=none arm.air_drag=0.5 motor.stiction=1000 motor.voltage=0");
         held_modes m = modes_of(&p);
         check_decay(&p, mode, rate / m.frequencies[mode]);
     }
@@ -180,8 +177,8 @@ TEST(air_takes_from_all_modes_alike)
 TEST(ratios_in_proportion_are_structural_damping)
 {
     for (int hub = 0; hub < 2; hub++) {
-        parameters p = fixture_parameters(
-            SETTINGS(hubs[hub], "arm.links=5", "arm.damping_ratio=0.03", "wall.kind=plane"));
+        parameters p =
+            parameters_with("%s arm.links=5 arm.damping_ratio=0.03 wall.kind=plane", hubs[hub]);
         held_modes m = modes_of(&p);
         char list[160] = "arm.modal_ratios=";
         for (int i = 0; i < m.count; i++) {
@@ -189,8 +186,7 @@ TEST(ratios_in_proportion_are_structural_damping)
             snprintf(list + used, sizeof list - used, "%s%.15g", i > 0 ? "," : "",
                      0.03 * m.frequencies[i] / m.frequencies[0]);
         }
-        parameters q =
-            fixture_parameters(SETTINGS(hubs[hub], "arm.links=5", list, "wall.kind=plane"));
+        parameters q = parameters_with("%s arm.links=5 %s wall.kind=plane", hubs[hub], list);
         arm b = arm_of(&q);
         assert_int_equal(b.damped_modes, m.count);
 
@@ -217,8 +213,7 @@ TEST(ratios_in_proportion_are_structural_damping)
 // An arm that turns as a whole loses nothing to damping by mode.
 TEST(an_arm_that_turns_as_a_whole_is_not_damped)
 {
-    parameters p = fixture_parameters(
-        SETTINGS("arm.links=5", "arm.hub_joint=beam", "arm.modal_ratios=0.1,0.2"));
+    parameters p = parameters_with("arm.links=5 arm.hub_joint=beam arm.modal_ratios=0.1,0.2");
     held_modes m = modes_of(&p);
     double angle[MOST] = {0}, velocity[MOST], alpha[MOST];
     chain_link work[MOST];

@@ -106,9 +106,9 @@ TEST(a_current_drive_knows_no_back_emf)
 TEST(free_motion_is_that_of_the_drive)
 {
     for (int current = 0; current <= 1; current++) {
-        parameters p = fixture_parameters(SETTINGS(
-            "arm.links=1", "wall.kind=none", "motor.stiction=0", "motor.viscous_friction=0",
-            "motor.voltage=2", current ? "motor.drive=current" : "motor.drive=voltage"));
+        parameters p = parameters_with("arm.links=1 wall.kind=none motor.stiction=0 "
+                                       "motor.viscous_friction=0 motor.voltage=2 %s",
+                                       current ? "motor.drive=current" : "motor.drive=voltage");
         arm a = arm_of(&p);
         SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         motion_report report;
@@ -150,10 +150,8 @@ static double current_of(const motion *m)
 TEST(current_of_a_held_motor_rises_as_in_a_coil)
 {
     for (int links = 1; links <= 2; links++) {
-        char n[32];
-        snprintf(n, sizeof n, "arm.links=%d", links);
-        parameters p = fixture_parameters(
-            SETTINGS(n, "wall.kind=none", "motor.stiction=1000", "motor.inductance=0.1"));
+        parameters p = parameters_with(
+            "arm.links=%d wall.kind=none motor.stiction=1000 motor.inductance=0.1", links);
         arm a = arm_of(&p);
         for (int i = 1; i <= 4; i++) {
             const double t = 0.002 * i, full = 6.02 / 33.6;
@@ -168,9 +166,8 @@ TEST(current_of_a_held_motor_rises_as_in_a_coil)
 TEST(a_free_link_and_its_coil_are_two_exponentials)
 {
     const double inductance = 0.5, t = 0.15;
-    parameters p = fixture_parameters(SETTINGS("arm.links=1", "wall.kind=none", "motor.stiction=0",
-                                               "motor.viscous_friction=0", "motor.inductance=0.5",
-                                               "motor.voltage=2"));
+    parameters p = parameters_with("arm.links=1 wall.kind=none motor.stiction=0 "
+                                   "motor.viscous_friction=0 motor.inductance=0.5 motor.voltage=2");
     arm a = arm_of(&p);
     const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
     const double kt = p.motor.torque_constant, kb = p.motor.back_emf, r = p.motor.resistance;
@@ -190,9 +187,9 @@ TEST(a_free_link_and_its_coil_are_two_exponentials)
 // from which the approach to the idle speed is exponential.
 TEST(a_limited_current_accelerates_evenly_at_first)
 {
-    parameters p = fixture_parameters(SETTINGS("arm.links=1", "wall.kind=none", "motor.stiction=0",
-                                               "motor.viscous_friction=0",
-                                               "motor.current_limit=0.2", "motor.voltage=2"));
+    parameters p =
+        parameters_with("arm.links=1 wall.kind=none motor.stiction=0 motor.viscous_friction=0 "
+                        "motor.current_limit=0.2 motor.voltage=2");
     arm a = arm_of(&p);
     const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
     const double kt = p.motor.torque_constant, kb = p.motor.back_emf, r = p.motor.resistance;
@@ -206,8 +203,8 @@ TEST(a_limited_current_accelerates_evenly_at_first)
     }
 
     // a coil reaches the limit on the way to more, and stays there with the hub held
-    p = fixture_parameters(SETTINGS("wall.kind=none", "motor.stiction=1000", "motor.inductance=0.1",
-                                    "motor.current_limit=0.1"));
+    p = parameters_with(
+        "wall.kind=none motor.stiction=1000 motor.inductance=0.1 motor.current_limit=0.1");
     arm_init(&a, &p);
     const double reached = -0.1 / 33.6 * log(1 - 0.1 * 33.6 / 6.02);
     SCOPED(motion_destroy_kept)
@@ -224,7 +221,7 @@ TEST(a_small_inductance_is_none_in_the_limit)
     const char *const coils[] = {"motor.inductance=0", "motor.inductance=2e-3",
                                  "motor.inductance=1e-3"};
     for (int i = 0; i < 3; i++) {
-        parameters p = fixture_parameters(SETTINGS(coils[i]));
+        parameters p = parameters_with("%s", coils[i]);
         arm a = arm_of(&p);
         SCOPED(motion_destroy_kept)
         motion *m = motion_until(&a, &p, 0.5); // through impact and pulse

@@ -237,8 +237,8 @@ TEST(overshoot_is_small_when_told_the_truth)
     const char *const forces[] = {"control.force=0.5", "control.force=1", "control.force=2",
                                   "control.force=4"};
     for (int i = 0; i < 4; i++) {
-        summary hybrid = rig_summary(SETTINGS("control.law=hybrid", forces[i]));
-        summary s = rig_summary(SETTINGS("control.law=observer", forces[i]));
+        summary hybrid = rig_summary_with("control.law=hybrid %s", forces[i]);
+        summary s = rig_summary_with("control.law=observer %s", forces[i]);
         check_below(s.force_over_command_N, 0.1 * s.force_command_N);
         check_below(s.settling_time_s, 0.3);
         check_below(s.first_contact_s + s.settling_time_s,
@@ -268,7 +268,7 @@ TEST(wrong_beliefs_do_no_harm)
                                    "sensor.tachometer_offset=0.02",
                                    "sensor.tachometer_offset=-0.02"};
     for (EACH(c, beliefs)) {
-        summary s = rig_summary(SETTINGS("control.law=observer", "run.duration=2", *c));
+        summary s = rig_summary_with("control.law=observer run.duration=2 %s", *c);
         check_below(s.force_over_command_N, 0.3);
         assert_false(isnan(s.settling_time_s));
         check_close(s.steady_error_N, 0, 0.05);
@@ -278,16 +278,13 @@ TEST(wrong_beliefs_do_no_harm)
 // A tip thrown back is met softly: the second meeting is no harder than the command allows.
 TEST(walls_that_throw_back_are_met_softly)
 {
-    static const char *const walls[][2] = {{"wall.restitution=0.1"},
-                                           {"wall.restitution=0.2"},
-                                           {"wall.contact=kelvin-voigt", "wall.stiffness=1000"},
-                                           {"wall.contact=kelvin-voigt", "wall.stiffness=5000"}};
+    static const char *const walls[] = {"wall.restitution=0.1", "wall.restitution=0.2",
+                                        "wall.contact=kelvin-voigt wall.stiffness=1000",
+                                        "wall.contact=kelvin-voigt wall.stiffness=5000"};
     for (EACH(c, walls)) {
         for (int newtons = 1; newtons <= 3; newtons += 2) {
-            char force[32];
-            snprintf(force, sizeof force, "control.force=%d", newtons);
-            summary s = rig_summary(
-                SETTINGS("control.law=observer", "run.duration=2", force, (*c)[0], (*c)[1]));
+            summary s = rig_summary_with("control.law=observer run.duration=2 control.force=%d %s",
+                                         newtons, *c);
             check_below(s.smoothed_over_command_N, 0.3 * newtons);
             check_below(s.settling_time_s, 0.3);
             check_below(s.first_contact_s, 1.5 * 0.293); // open-loop's
@@ -297,8 +294,8 @@ TEST(walls_that_throw_back_are_met_softly)
 
 TEST(a_delay_untold_does_no_harm)
 {
-    summary s = rig_summary(
-        SETTINGS("control.law=observer", "control.delay=5e-3", "belief.delay_error=-5e-3"));
+    summary s =
+        rig_summary_with("control.law=observer control.delay=5e-3 belief.delay_error=-5e-3");
     check_below(s.force_over_command_N, 0.3);
     check_below(s.settling_time_s, 0.3);
     check_close(s.steady_error_N, 0, 0.05);
@@ -307,13 +304,12 @@ TEST(a_delay_untold_does_no_harm)
 // Arms of more links than it is told of, and arms that it is told of.
 TEST(it_settles_on_many_links)
 {
-    static const char *const links[][2] = {{"arm.links=3", "belief.links=3"},
-                                           {"arm.links=5", "belief.links=5"},
-                                           {"arm.links=8", "belief.links=8"}};
+    static const int links[] = {3, 5, 8};
     for (EACH(c, links)) {
         for (int told = 0; told < 2; told++) {
-            summary s = rig_summary(SETTINGS("control.law=observer", "arm.damping_ratio=0.01",
-                                             (*c)[0], told ? (*c)[1] : "belief.links=2"));
+            summary s = rig_summary_with("control.law=observer arm.damping_ratio=0.01 "
+                                         "arm.links=%d belief.links=%d",
+                                         *c, told ? *c : 2);
             check_below(s.smoothed_over_command_N, 0.3);
             check_below(s.settling_time_s, 0.3);
             check_close(s.steady_error_N, 0, 0.05);
@@ -338,8 +334,8 @@ TEST(a_hub_on_a_spring_does_not_swing)
 {
     static const char *const springs[] = {"arm.k1=90", "arm.k1=150", "arm.k1=300"};
     for (int i = 0; i < 3; i++) {
-        summary s = rig_summary(SETTINGS("control.law=observer", "control.force=2",
-                                         "arm.hub_joint=spring", springs[i]));
+        summary s = rig_summary_with("control.law=observer control.force=2 arm.hub_joint=spring %s",
+                                     springs[i]);
         check_below(s.settling_time_s, 0.3);
         check_close(s.steady_error_N, 0, 0.05);
     }
@@ -396,25 +392,25 @@ static observer_arms arms_after(const char *const *settings)
 // other arm.
 TEST(readings_tell_which_arm_it_is)
 {
-    static const char *const told[][4] = {
-        {"control.law=observer"},
-        {"control.law=observer", "belief.k2_factor=1.2"},
-        {"control.law=observer", "belief.mass_factor=0.87"},
-        {"control.law=observer", "arm.links=3", "belief.links=3"},
-        {"control.law=observer", "arm.links=8", "belief.links=8", "arm.damping_ratio=0.01"},
+    static const char *const told[] = {
+        "",
+        "belief.k2_factor=1.2",
+        "belief.mass_factor=0.87",
+        "arm.links=3 belief.links=3",
+        "arm.links=8 belief.links=8 arm.damping_ratio=0.01",
     };
     for (EACH(c, told)) {
-        assert_int_equal(arms_after(SETTINGS((*c)[0], (*c)[1], (*c)[2], (*c)[3])).on, 0);
+        assert_int_equal(arms_after(given("control.law=observer %s", *c)).on, 0);
     }
 
-    observer_arms three = arms_after(SETTINGS("control.law=observer", "arm.links=3"));
+    observer_arms three = arms_after(given("control.law=observer arm.links=3"));
     assert_int_equal(three.on, 1);
-    observer_arms eight = arms_after(SETTINGS("control.law=observer", "arm.links=8"));
+    observer_arms eight = arms_after(given("control.law=observer arm.links=8"));
     assert_int_equal(eight.on, 2);
-    observer_arms loaded = arms_after(SETTINGS("control.law=observer", "arm.tip_mass=0.08"));
+    observer_arms loaded = arms_after(given("control.law=observer arm.tip_mass=0.08"));
     check_close(loaded.arms[loaded.on].observer.arm.inertia, 0.139 + 0.08, 0.005);
-    observer_arms gives = arms_after(SETTINGS("control.law=observer", "arm.hub_joint=spring",
-                                              "arm.k1=90", "belief.hub_spring_factor=100"));
+    observer_arms gives = arms_after(
+        given("control.law=observer arm.hub_joint=spring arm.k1=90 belief.hub_spring_factor=100"));
     assert_int_equal(gives.on, 3);
     assert_int_equal(gives.count, 6);
 }
@@ -497,23 +493,19 @@ TEST(the_tip_comes_back_no_faster_than_it_came)
     run_finish(&r);
 
     // contact that is never lost has nothing to come back from
-    check_close(rig_summary(SETTINGS("control.law=observer")).return_speed_m_s, 0, 0);
+    check_close(rig_summary_with("control.law=observer").return_speed_m_s, 0, 0);
 }
 
 // Walls that give, and that throw the tip back: it comes to rest on them with the wanted force.
 TEST(it_settles_on_walls_that_give)
 {
-    static const char *const walls[][3] = {
-        {"wall.contact=kelvin-voigt", "wall.stiffness=200", NULL},
-        {"wall.contact=kelvin-voigt", "wall.stiffness=2e4", NULL},
-        {"wall.contact=kelvin-voigt", "wall.stiffness=1e6", NULL},
-        {"wall.contact=kelvin-voigt", "wall.stiffness=1e5", "wall.mass=0.01"},
-        {"wall.contact=hunt-crossley", "wall.stiffness=5000", NULL},
-        {"wall.contact=hunt-crossley", "wall.stiffness=7.5e4", NULL},
-        {"wall.contact=hunt-crossley", "wall.stiffness=1e6", NULL}};
+    static const char *const walls[] = {
+        "kelvin-voigt wall.stiffness=200",   "kelvin-voigt wall.stiffness=2e4",
+        "kelvin-voigt wall.stiffness=1e6",   "kelvin-voigt wall.stiffness=1e5 wall.mass=0.01",
+        "hunt-crossley wall.stiffness=5000", "hunt-crossley wall.stiffness=7.5e4",
+        "hunt-crossley wall.stiffness=1e6"};
     for (EACH(c, walls)) {
-        summary s = rig_summary(
-            SETTINGS("control.law=observer", "run.duration=2.5", (*c)[0], (*c)[1], (*c)[2]));
+        summary s = rig_summary_with("control.law=observer run.duration=2.5 wall.contact=%s", *c);
         check_below(s.settling_time_s, 1.5);
         check_below(s.separations, 40);
         check_close(s.steady_error_N, 0, 0.05);
@@ -524,13 +516,12 @@ TEST(it_settles_on_walls_that_give)
 // rate or at once (0).
 static run_result force_after_change(double from, double to, double rate)
 {
-    char force[32], force_rate[32];
+    char force[32];
     snprintf(force, sizeof force, "control.force=%g", from);
-    snprintf(force_rate, sizeof force_rate, "control.force_rate=%g", rate);
     action change = {
         .time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(control.force), .value = to};
-    scenario s = {.parameters = rig_parameters(
-                      SETTINGS("control.law=observer", force, force_rate, "run.duration=2")),
+    scenario s = {.parameters = rig_parameters_with(
+                      "control.law=observer %s control.force_rate=%g run.duration=2", force, rate),
                   .actions = &change,
                   .action_count = 1};
     run_result r;
@@ -569,8 +560,7 @@ TEST(it_follows_a_setpoint_in_contact)
 // A tip that drifts to the wall where no force is wanted is touched by, and nothing presses on it.
 TEST(no_force_is_wanted_and_none_is_held)
 {
-    const summary m =
-        rig_summary(SETTINGS("control.law=observer", "control.force=0", "initial.velocity=2"));
+    const summary m = rig_summary_with("control.law=observer control.force=0 initial.velocity=2");
     check_below(0, m.first_contact_s);
     check_below(fabs(m.steady_force_N), 0.05);
 }

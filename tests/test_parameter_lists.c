@@ -112,8 +112,7 @@ TEST(lists_contradict_other_parameters)
 // Of a beam in one link only the root bends, and k2 is that spring.
 TEST(one_link_bends_at_its_root_alone)
 {
-    parameters one =
-        fixture_parameters(SETTINGS("arm.links=1", "arm.hub_joint=beam", "arm.joint_stiffness=5"));
+    parameters one = parameters_with("arm.links=1 arm.hub_joint=beam arm.joint_stiffness=5");
     assert_true(parameters_even_links(&one.arm));
     check_close(one.arm.k2, 5, 1e-12);
     check_close(one.arm.k1, 5, 1e-12);
@@ -123,9 +122,9 @@ TEST(one_link_bends_at_its_root_alone)
 TEST(what_follows_from_others_may_not_change)
 {
     fault f;
-    parameters beam = fixture_parameters(SETTINGS("arm.hub_joint=beam"));
-    parameters spring = fixture_parameters(SETTINGS("arm.hub_joint=spring"));
-    parameters list = fixture_parameters(SETTINGS("arm.joint_stiffness=10"));
+    parameters beam = parameters_with("arm.hub_joint=beam");
+    parameters spring = parameters_with("arm.hub_joint=spring");
+    parameters list = parameters_with("arm.joint_stiffness=10");
     assert_int_equal(parameter_may_change(&beam, PARAMETER_INDEX(arm.k1), &f), STATUS_BAD_SCENARIO);
     assert_string_equal(f.path, "arm.k1");
     assert_int_equal(parameter_may_change(&spring, PARAMETER_INDEX(arm.k1), &f), STATUS_OK);
@@ -154,23 +153,22 @@ static void check_same_bytes(const char *const *settings, const char *const *lis
 
 TEST(equal_numbers_are_the_uniform_arm_to_the_last_bit)
 {
-    check_same_bytes(SETTINGS("arm.k2=7"), SETTINGS("arm.joint_stiffness=7"));
-    check_same_bytes(SETTINGS("arm.links=4", "arm.k2=5", "wall.kind=plane"),
-                     SETTINGS("arm.links=4", "arm.joint_stiffness=10,10,10", "wall.kind=plane",
-                              "arm.link_lengths=0.25,0.25,0.25,0.25"));
-    check_same_bytes(
-        SETTINGS("arm.links=4", "arm.k2=5", "arm.hub_joint=beam"),
-        SETTINGS("arm.links=4", "arm.joint_stiffness=20,10,10,10", "arm.hub_joint=beam"));
+    check_same_bytes(given("arm.k2=7"), given("arm.joint_stiffness=7"));
+    check_same_bytes(given("arm.links=4 arm.k2=5 wall.kind=plane"),
+                     given("arm.links=4 arm.joint_stiffness=10,10,10 wall.kind=plane "
+                           "arm.link_lengths=0.25,0.25,0.25,0.25"));
+    check_same_bytes(given("arm.links=4 arm.k2=5 arm.hub_joint=beam"),
+                     given("arm.links=4 arm.joint_stiffness=20,10,10,10 arm.hub_joint=beam"));
 }
 
 // Lists that differ from the uniform arm by nothing that counts.
 TEST(the_general_way_meets_the_uniform_one)
 {
     SCOPED(run_finish)
-    run_result one = run_of(SETTINGS("arm.links=4", "arm.k2=5", "run.duration=0.33"));
+    run_result one = run_of(given("arm.links=4 arm.k2=5 run.duration=0.33"));
     SCOPED(run_finish)
-    run_result other = run_of(
-        SETTINGS("arm.links=4", "arm.joint_stiffness=10,10.000000000001,10", "run.duration=0.33"));
+    run_result other =
+        run_of(given("arm.links=4 arm.joint_stiffness=10,10.000000000001,10 run.duration=0.33"));
     check_relative(other.summary.first_contact_s, one.summary.first_contact_s, 1e-12);
     check_relative(other.summary.contact_impulse_Ns, one.summary.contact_impulse_Ns, 1e-10);
     check_relative(other.summary.first_pulse_peak_N, one.summary.first_pulse_peak_N, 1e-9);
@@ -198,16 +196,15 @@ TEST(k2_of_a_list_bends_the_same_under_a_tip_load)
         const char *const list =
             hub ? "arm.joint_stiffness=30,12,9,14" : "arm.joint_stiffness=12,9,14";
         const char *const *listed =
-            SETTINGS("arm.links=4", hubs[hub], list, "arm.link_lengths=0.2,0.3,0.25,0.25");
-        char k2[48];
-        snprintf(k2, sizeof k2, "arm.k2=%.17g", fixture_parameters(listed).arm.k2);
-        check_relative(tip_compliance(SETTINGS("arm.links=4", hubs[hub], k2)),
+            given("arm.links=4 %s %s arm.link_lengths=0.2,0.3,0.25,0.25", hubs[hub], list);
+        check_relative(tip_compliance(given("arm.links=4 %s arm.k2=%.17g", hubs[hub],
+                                            fixture_parameters(listed).arm.k2)),
                        tip_compliance(listed), 1e-13);
     }
 
     // a beam cut into unequal links has its joints from the middles of two links
-    parameters p = fixture_parameters(
-        SETTINGS("arm.links=3", "arm.EI=2", "arm.hub_joint=beam", "arm.link_lengths=0.2,0.3,0.5"));
+    parameters p =
+        parameters_with("arm.links=3 arm.EI=2 arm.hub_joint=beam arm.link_lengths=0.2,0.3,0.5");
     double stiffness[PARAMETER_LIST_MOST];
     parameters_joint_stiffness(&p.arm, stiffness);
     check_relative(stiffness[0], 2 / 0.1, 1e-15);
@@ -230,7 +227,7 @@ TEST(a_beam_cut_into_unequal_links_converges)
             snprintf(lengths + used, sizeof lengths - used, "%s%g", k > 0 ? "," : "",
                      k < n / 2 ? 1.2 / n : 0.8 / n);
         }
-        parameters p = fixture_parameters(SETTINGS(links, lengths, "arm.hub_joint=beam"));
+        parameters p = parameters_with("%s %s arm.hub_joint=beam", links, lengths);
         int count;
         double w[21], shapes[21 * 21];
         arm a = arm_of(&p);
@@ -247,8 +244,8 @@ TEST(a_beam_cut_into_unequal_links_converges)
 // The linearised arm takes any links and joints, the thesis's two links say that they do not.
 TEST(predictors_take_lists_or_say_so)
 {
-    parameters p = fixture_parameters(
-        SETTINGS("arm.links=3", "arm.joint_stiffness=8,5", "arm.link_lengths=0.4,0.35,0.25"));
+    parameters p =
+        parameters_with("arm.links=3 arm.joint_stiffness=8,5 arm.link_lengths=0.4,0.35,0.25");
     const double q[3] = {0.1, 0.1, 0.1}, w[3] = {0.6, 0.6, 0.6};
     const prediction_question question = {.parameters = &p,
                                           .bodies = {{0.1, 0.1, 0.1}, {0.6, 0.6, 0.6}},
@@ -264,9 +261,9 @@ TEST(predictors_take_lists_or_say_so)
 
         // against the run from there
         SCOPED(run_finish)
-        run_result r = run_of(SETTINGS("arm.links=3", "arm.joint_stiffness=8,5",
-                                       "arm.link_lengths=0.4,0.35,0.25", "initial.angle=0.1",
-                                       "initial.velocity=0.6", "run.duration=0.3"));
+        run_result r =
+            run_of(given("arm.links=3 arm.joint_stiffness=8,5 arm.link_lengths=0.4,0.35,0.25 "
+                         "initial.angle=0.1 initial.velocity=0.6 run.duration=0.3"));
         check_relative(answer.prediction.force, r.summary.first_pulse_peak_N, 0.01);
         check_relative(answer.prediction.impulse, r.summary.contact_impulse_Ns, 1e-6);
     }

@@ -33,10 +33,10 @@ TEST(a_run_plays_back_its_own_csv)
         char column[64], shift[64];
         snprintf(column, sizeof column, "control.playback_column=%s", c->column);
         snprintf(shift, sizeof shift, "control.playback_shift=%s", c->shift);
-        const summary was = record(SETTINGS(c->law, c->rate, c->delay));
+        const summary was = record(given("%s %s %s", c->law, c->rate, c->delay));
         const summary is =
-            rig_summary(SETTINGS("control.law=playback", "control.playback_file=recorded.csv",
-                                 column, shift, c->rate, c->delay));
+            rig_summary_with("control.law=playback control.playback_file=recorded.csv %s %s %s %s",
+                             column, shift, c->rate, c->delay);
         assert_true(was.peak_force_N > 0);
         check_close(is.first_contact_s, was.first_contact_s, 0);
         check_close(is.peak_force_N, was.peak_force_N, 0);
@@ -62,11 +62,11 @@ TEST(a_command_is_held_or_goes_straight)
         char hold[64], shift[64];
         snprintf(hold, sizeof hold, "control.playback_hold=%s", c->hold);
         snprintf(shift, sizeof shift, "control.playback_shift=%s", c->shift);
-        run_result r =
-            rig_run(SETTINGS("control.law=playback", "control.playback_file=u.csv",
-                             "control.playback_column=u", hold, shift, "control.rate=1000",
-                             "sensor.ideal=true", "run.duration=0.45", "wall.kind=none"),
-                    true);
+        run_result r = rig_run(
+            given("control.law=playback control.playback_file=u.csv control.playback_column=u %s "
+                  "%s control.rate=1000 sensor.ideal=true run.duration=0.45 wall.kind=none",
+                  hold, shift),
+            true);
         const size_t row = trace_rows_until(&r.trace, c->time) - 1;
         check_close(r.trace.rows[row].voltage, c->volts, 1e-9);
         run_finish(&r);
@@ -89,12 +89,10 @@ TEST(a_file_with_faults_is_told_with_its_place)
     };
     for (EACH(c, cases)) {
         put_file("bad.csv", c->text);
-        check_refused(SETTINGS("control.law=playback", "control.playback_file=bad.csv"),
-                      c->sentence);
+        check_refused(given("control.law=playback control.playback_file=bad.csv"), c->sentence);
     }
     unlink("bad.csv");
-    check_refused(SETTINGS("control.law=playback", "control.playback_file=bad.csv"),
-                  "cannot be opened");
+    check_refused(given("control.law=playback control.playback_file=bad.csv"), "cannot be opened");
 
     // without a file there is nothing to play
     parameters p = rig_parameters(NULL);

@@ -14,7 +14,7 @@ TEST(plugin_controls_the_arm)
 {
     char file[160];
     plugin_setting(file, sizeof file, soft_push_file);
-    summary s = rig_summary(SETTINGS("control.law=plugin", file, "control.force=1.5"));
+    summary s = rig_summary_with("control.law=plugin %s control.force=1.5", file);
     check_close(s.separations, 0, 0);
     check_relative(s.steady_force_N, 1.5, 0.06);
     summary slow = rig_summary(SETTINGS("control.law=plugin", file, "control.force=1.5",
@@ -26,24 +26,22 @@ TEST(wrong_plugins_are_refused)
 {
     char file[160];
     plugin_setting(file, sizeof file, soft_push_file);
-    check_refused(SETTINGS("control.law=plugin", "control.plugin=/nonexistent.so"),
-                  "/nonexistent.so");
-    check_refused(SETTINGS("control.law=plugin", file, "control.settings=dampin=1"),
+    check_refused(given("control.law=plugin control.plugin=/nonexistent.so"), "/nonexistent.so");
+    check_refused(given("control.law=plugin %s control.settings=dampin=1", file),
                   "did you mean 'damping'?");
-    check_refused(SETTINGS("control.law=plugin", file, "control.settings=damping=-1"),
+    check_refused(given("control.law=plugin %s control.settings=damping=-1", file),
                   "from 0 to 100");
-    check_refused(SETTINGS("control.law=plugin", file, "control.lock=force"),
+    check_refused(given("control.law=plugin %s control.lock=force", file),
                   "expected none, approach or push");
-    check_refused(SETTINGS("control.law=plugin", file, "control.settings=damping"),
-                  "damping=NUMBER");
-    check_refused(SETTINGS("control.law=plugin", file, "motor.amplifier_gain=0"), "no torque");
+    check_refused(given("control.law=plugin %s control.settings=damping", file), "damping=NUMBER");
+    check_refused(given("control.law=plugin %s motor.amplifier_gain=0", file), "no torque");
     plugin_setting(file, sizeof file, outdated_file);
-    check_refused(SETTINGS("control.law=plugin", file), "compile it again");
+    check_refused(given("control.law=plugin %s", file), "compile it again");
     plugin_setting(file, sizeof file, silent_file);
-    check_refused(SETTINGS("control.law=plugin", file), "has no function `sample`");
+    check_refused(given("control.law=plugin %s", file), "has no function `sample`");
 
     // a shared object that is no controller
-    check_refused(SETTINGS("control.law=plugin", "control.plugin=libm.so.6"),
+    check_refused(given("control.law=plugin control.plugin=libm.so.6"),
                   "libm.so.6 has no function " CONTROLLER_ENTRY);
 }
 
@@ -53,14 +51,14 @@ TEST(modes_of_a_plugin_are_its_own)
     char file[160], names[4][MODE_NAME_SIZE];
     bool lockable;
     plugin_setting(file, sizeof file, soft_push_file);
-    parameters p = rig_parameters(SETTINGS("control.law=plugin", file));
+    parameters p = rig_parameters_with("control.law=plugin %s", file);
     assert_true(rig_mode_names(&p, names, 4, &lockable) == 2 && lockable);
     assert_string_equal(names[0], "approach");
     assert_string_equal(names[1], "push");
 
     p.code_allowed = false;
     assert_true(rig_mode_names(&p, names, 4, &lockable) == 0 && !lockable);
-    p = rig_parameters(SETTINGS("control.law=plugin", "control.plugin=/nonexistent.so"));
+    p = rig_parameters_with("control.law=plugin control.plugin=/nonexistent.so");
     assert_true(rig_mode_names(&p, names, 4, &lockable) == 0 && !lockable);
 }
 
@@ -72,7 +70,7 @@ TEST(command_that_is_not_finite_stops_the_run)
         SCOPED(run_finish) run_result r;
         plugin_setting(file, sizeof file, broken_file);
         scenario s = {.parameters =
-                          rig_parameters(SETTINGS("control.law=plugin", file, models[i]))};
+                          rig_parameters_with("control.law=plugin %s %s", file, models[i])};
         assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
         assert_non_null(strstr(r.summary.message, "at t = 0.1 s the controller 'broken'"));
         check_close(r.trace.rows[r.trace.row_count - 1].time, 0.1, 0.0011);
@@ -85,7 +83,7 @@ TEST(modes_are_the_plugins_own)
     char file[160], names[4][MODE_NAME_SIZE];
     bool lockable = false;
     plugin_setting(file, sizeof file, soft_push_file);
-    parameters p = rig_parameters(SETTINGS("control.law=plugin", file));
+    parameters p = rig_parameters_with("control.law=plugin %s", file);
     assert_int_equal(rig_mode_names(&p, names, 4, &lockable), 2);
     assert_true(lockable);
     assert_string_equal(names[0], "approach");

@@ -136,16 +136,16 @@ TEST(who_cannot_answer_says_why)
         predictor which;
         prediction_outcome outcome;
     } cases[] = {
-        {SETTINGS("wall.contact=kelvin-voigt"), PREDICTOR_ENERGY, PREDICTION_RIGID_WALL_ONLY},
-        {SETTINGS("arm.tip_mass=0.1"), PREDICTOR_IMPACT_DYNAMICS, PREDICTION_BARE_TIP_ONLY},
-        {SETTINGS("arm.links=3", "arm.joint_stiffness=5,9"), PREDICTOR_IMPACT_QUADRATIC,
+        {given("wall.contact=kelvin-voigt"), PREDICTOR_ENERGY, PREDICTION_RIGID_WALL_ONLY},
+        {given("arm.tip_mass=0.1"), PREDICTOR_IMPACT_DYNAMICS, PREDICTION_BARE_TIP_ONLY},
+        {given("arm.links=3 arm.joint_stiffness=5,9"), PREDICTOR_IMPACT_QUADRATIC,
          PREDICTION_EQUAL_LINKS_ONLY},
-        {SETTINGS("arm.stiffening=10"), PREDICTOR_ENERGY, PREDICTION_EQUAL_LINKS_ONLY},
-        {SETTINGS("arm.links=3", "arm.modal_ratios=0.1,0.2"), PREDICTOR_ENERGY,
+        {given("arm.stiffening=10"), PREDICTOR_ENERGY, PREDICTION_EQUAL_LINKS_ONLY},
+        {given("arm.links=3 arm.modal_ratios=0.1,0.2"), PREDICTOR_ENERGY,
          PREDICTION_EQUAL_LINKS_ONLY},
-        {SETTINGS("arm.air_drag=0.1"), PREDICTOR_ENERGY, PREDICTION_EQUAL_LINKS_ONLY},
-        {SETTINGS("motor.current_limit=1"), PREDICTOR_ENERGY, PREDICTION_UNLIMITED_ONLY},
-        {SETTINGS("motor.current_limit=1", "motor.inductance=1e-3"), PREDICTOR_IMPACT_DYNAMICS,
+        {given("arm.air_drag=0.1"), PREDICTOR_ENERGY, PREDICTION_EQUAL_LINKS_ONLY},
+        {given("motor.current_limit=1"), PREDICTOR_ENERGY, PREDICTION_UNLIMITED_ONLY},
+        {given("motor.current_limit=1 motor.inductance=1e-3"), PREDICTOR_IMPACT_DYNAMICS,
          PREDICTION_UNLIMITED_ONLY},
     };
     for (EACH(c, cases)) {
@@ -158,8 +158,7 @@ TEST(who_cannot_answer_says_why)
     }
 
     // an amplifier that controls its current needs no limit
-    parameters drive = fixture_parameters(
-        SETTINGS("motor.drive=current", "motor.current_limit=5", "motor.voltage=1"));
+    parameters drive = parameters_with("motor.drive=current motor.current_limit=5 motor.voltage=1");
     prediction_question limited = {.parameters = &drive, .bodies = closing};
     assert_int_equal(predict_with(PREDICTOR_ENERGY, &limited).outcome, PREDICTION_HOLDS);
 
@@ -221,9 +220,9 @@ TEST(a_current_that_lags_is_followed)
                                         "wall.contact=kelvin-voigt"};
     int held = 0;
     for (int i = 0; i < 4 * 2 * 4 * 3; i++) {
-        scenario s = {.parameters = fixture_parameters(SETTINGS(lags[i % 4], limits[i / 4 % 2],
-                                                                arms[i / 8 % 4], walls[i / 32],
-                                                                "run.duration=3"))};
+        scenario s = {.parameters =
+                          parameters_with("%s %s %s %s run.duration=3", lags[i % 4],
+                                          limits[i / 4 % 2], arms[i / 8 % 4], walls[i / 32])};
         prediction_answer answers[PREDICTOR_COUNT];
         SCOPED(run_finish) run_result r = predicted_run(&s, answers);
         const prediction_answer *own = &answers[PREDICTOR_LINEARISED];
@@ -270,9 +269,9 @@ TEST(an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns)
     int held = 0;
     for (int i = 0; i < 4 * 2; i++) {
         const char *const *start = starts[i / 2];
-        scenario s = {.parameters = fixture_parameters(
-                          SETTINGS(start[0], start[1], start[2], "wall.angle=0", "run.duration=3",
-                                   i % 2 ? "arm.links=3" : "arm.links=2"))};
+        scenario s = {.parameters = parameters_with("%s %s %s wall.angle=0 run.duration=3 %s",
+                                                    start[0], start[1], start[2],
+                                                    i % 2 ? "arm.links=3" : "arm.links=2")};
         prediction_answer answers[PREDICTOR_COUNT];
         SCOPED(run_finish) run_result r = predicted_run(&s, answers);
         const sample *row = row_before_landing(&r);

@@ -20,13 +20,11 @@
 
 static chain_outcome library_outcome(const reference_case *c, bool by_formula)
 {
-    char links[32], damping[48], restitution[48];
-    snprintf(links, sizeof links, "arm.links=%d", c->links);
-    snprintf(damping, sizeof damping, "arm.damping_ratio=%.17g", c->damping);
-    snprintf(restitution, sizeof restitution, "wall.restitution=%.17g", c->restitution);
-    parameters p = fixture_parameters(SETTINGS(
-        links, damping, restitution, c->beam_root ? "arm.hub_joint=beam" : "arm.hub_joint=rigid",
-        c->plane_wall ? "wall.kind=plane" : "wall.kind=point", "motor.voltage=1"));
+    parameters p = parameters_with(
+        "arm.links=%d arm.damping_ratio=%.17g wall.restitution=%.17g %s %s motor.voltage=1",
+        c->links, c->damping, c->restitution,
+        c->beam_root ? "arm.hub_joint=beam" : "arm.hub_joint=rigid",
+        c->plane_wall ? "wall.kind=plane" : "wall.kind=point");
 
     const chain_start start = {&p,          c->angle,    c->velocity,
                                c->duration, c->duration, by_formula ? &explicit_engine : NULL};

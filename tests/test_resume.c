@@ -58,7 +58,7 @@ static scenario changed_late(const scenario *s, action *change)
 TEST(a_resumed_run_is_the_run_from_the_start)
 {
     action change;
-    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=4", "motor.stiction=0"))};
+    scenario s = {.parameters = parameters_with("run.duration=4 motor.stiction=0")};
     scenario later = changed_late(&s, &change);
     run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
     assert_true(old.history.checkpoint_count > 2);
@@ -75,10 +75,10 @@ TEST(a_resumed_run_is_the_run_from_the_start)
 // back to it: bounds and landing are those of the whole run.
 TEST(bounds_and_landing_are_resumed)
 {
-    const char *const *const arms[] = {
-        SETTINGS("run.duration=4", "arm.links=1"), SETTINGS("run.duration=2.55", "arm.links=1"),
-        SETTINGS("run.duration=4", "wall.angle=0", "initial.velocity=0.5", "arm.links=3",
-                 "wall.contact=kelvin-voigt")};
+    const char *const *const arms[] = {given("run.duration=4 arm.links=1"),
+                                       given("run.duration=2.55 arm.links=1"),
+                                       given("run.duration=4 wall.angle=0 initial.velocity=0.5 "
+                                             "arm.links=3 wall.contact=kelvin-voigt")};
     for (int i = 0; i < 3; i++) {
         const int volts = PARAMETER_INDEX(motor.voltage);
         action actions[] = {{.time = 1.5, .kind = ACTION_SET, .parameter = volts, .value = 0.5},
@@ -101,10 +101,9 @@ TEST(bounds_and_landing_are_resumed)
 TEST(a_face_on_its_way_back_is_resumed_where_it_was)
 {
     const int volts = PARAMETER_INDEX(motor.voltage);
-    const char *const *const walls[] = {SETTINGS("run.duration=4", "wall.contact=kelvin-voigt",
-                                                 "wall.stiffness=100", "wall.damping=500"),
-                                        SETTINGS("run.duration=4", "wall.contact=hunt-crossley",
-                                                 "wall.stiffness=1e4", "wall.damping=2e7")};
+    const char *const *const walls[] = {
+        given("run.duration=4 wall.contact=kelvin-voigt wall.stiffness=100 wall.damping=500"),
+        given("run.duration=4 wall.contact=hunt-crossley wall.stiffness=1e4 wall.damping=2e7")};
     for (int i = 0; i < 2; i++) {
         action actions[] = {{.time = 1, .kind = ACTION_SET, .parameter = volts, .value = -0.5},
                             {.time = 2.5, .kind = ACTION_SET, .parameter = volts, .value = 2}};
@@ -137,9 +136,8 @@ TEST(an_arm_made_stiff_is_resumed_as_it_is)
     for (int links = 2; links <= 3; links++) {
         action changes[2] = {
             {.time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k1), .value = 1e8}};
-        scenario s = {.parameters =
-                          fixture_parameters(SETTINGS("run.duration=4", "arm.hub_joint=spring",
-                                                      "arm.k1=500", "arm.damping_ratio=0.02"))};
+        scenario s = {.parameters = parameters_with(
+                          "run.duration=4 arm.hub_joint=spring arm.k1=500 arm.damping_ratio=0.02")};
         s.parameters.arm.links = links;
         scenario later = changed_late(&s, &changes[1]);
         s.actions = later.actions = changes;
@@ -181,8 +179,7 @@ TEST(scripts_that_part_are_resumed_where_they_part)
     scenario s[SCRIPTS];
     run_result whole[SCRIPTS];
     for (int i = 0; i < SCRIPTS; i++) {
-        s[i] = (scenario){.parameters =
-                              fixture_parameters(SETTINGS("run.duration=4", "motor.stiction=0")),
+        s[i] = (scenario){.parameters = parameters_with("run.duration=4 motor.stiction=0"),
                           .actions = scripts[i],
                           .action_count = counts[i]};
         whole[i] = run_keeping_history(&s[i]);
@@ -221,8 +218,8 @@ TEST(scripts_that_part_are_resumed_where_they_part)
 
 TEST(a_longer_run_goes_on_from_a_shorter_one)
 {
-    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
-    scenario longer = {.parameters = fixture_parameters(SETTINGS("run.duration=5"))};
+    scenario s = {.parameters = parameters_with("run.duration=3")};
+    scenario longer = {.parameters = parameters_with("run.duration=5")};
     SCOPED(run_finish)
     run_result old = run_keeping_history(&s), whole = run_keeping_history(&longer), result;
     assert_true(resumed(&old, &s, &longer, &result));
@@ -231,8 +228,8 @@ TEST(a_longer_run_goes_on_from_a_shorter_one)
 
 TEST(another_arm_has_nothing_in_common)
 {
-    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
-    scenario other = {.parameters = fixture_parameters(SETTINGS("run.duration=3", "arm.k2=5"))};
+    scenario s = {.parameters = parameters_with("run.duration=3")};
+    scenario other = {.parameters = parameters_with("run.duration=3 arm.k2=5")};
     SCOPED(run_finish) run_result old = run_keeping_history(&s);
     run_result result;
     assert_false(run_resume(&old, &s, &other, ROWS, &result));
@@ -240,7 +237,7 @@ TEST(another_arm_has_nothing_in_common)
 
 TEST(a_run_without_history_cannot_be_resumed)
 {
-    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
+    scenario s = {.parameters = parameters_with("run.duration=3")};
     run_result old, result;
     assert_int_equal(run_scenario(&s, true, &old), STATUS_OK);
     assert_false(run_resume(&old, &s, &s, ROWS, &result));
@@ -249,7 +246,7 @@ TEST(a_run_without_history_cannot_be_resumed)
 
 TEST(a_shared_result_outlives_the_first)
 {
-    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=3"))};
+    scenario s = {.parameters = parameters_with("run.duration=3")};
     run_result old = run_keeping_history(&s), again = run_keeping_history(&s), shared;
     assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
     check_same_run(&shared, &old);
@@ -262,8 +259,7 @@ TEST(a_shared_result_outlives_the_first)
 // On the rig runs have rows but no history, and none when they are shared.
 TEST(a_run_of_the_rig_is_shared_without_history)
 {
-    scenario s = {.parameters =
-                      fixture_parameters(SETTINGS("run.duration=1", "control.law=open-loop"))};
+    scenario s = {.parameters = parameters_with("run.duration=1 control.law=open-loop")};
     SCOPED(run_finish) run_result old = run_keeping_history(&s), shared;
     assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
     check_same_run(&shared, &old);

@@ -8,7 +8,7 @@ GIVEN_BACK(run_loop, loop_destroy)
 
 TEST(command_holds_between_samples)
 {
-    SCOPED(run_finish) run_result r = rig_run(SETTINGS("control.law=hybrid"), true);
+    SCOPED(run_finish) run_result r = rig_run(given("control.law=hybrid"), true);
     const trace *t = &r.trace;
     int changes = 0;
     for (size_t i = 1; i < t->row_count; i++) {
@@ -25,7 +25,7 @@ TEST(command_holds_between_samples)
 TEST(delay_shifts_the_command)
 {
     SCOPED(run_finish)
-    run_result r = rig_run(SETTINGS("control.law=hybrid", "control.delay=0.002"), true);
+    run_result r = rig_run(given("control.law=hybrid control.delay=0.002"), true);
     const trace *t = &r.trace;
     for (size_t i = 1; i < t->row_count; i++) {
         if (t->rows[i].voltage != t->rows[i - 1].voltage) {
@@ -43,8 +43,9 @@ TEST(a_command_still_on_its_way_does_not_count)
                                        "run.duration=0.305"};
     for (EACH(c, ends)) {
         SCOPED(run_finish)
-        run_result r = rig_run(SETTINGS("control.law=force-pd", "control.force_gain=5",
-                                        "control.delay=0.003068", "control.seed=423", *c),
+        run_result r = rig_run(given("control.law=force-pd control.force_gain=5 "
+                                     "control.delay=0.003068 control.seed=423 %s",
+                                     *c),
                                true);
         double largest = 0;
         for (size_t k = 0; k < r.trace.row_count; k++) {
@@ -63,8 +64,8 @@ TEST(a_command_a_period_late_goes_out_with_the_next_sample)
         rig *r;
         bool changed;
         double latest = 0;
-        parameters p = rig_parameters(SETTINGS("control.law=force-pd", "control.delay_periods=1",
-                                               jitters[k], "sensor.ideal=true"));
+        parameters p = rig_parameters_with(
+            "control.law=force-pd control.delay_periods=1 %s sensor.ideal=true", jitters[k]);
         DONE(rig_create(&r, &p, NULL, &f));
         for (int i = 0; i < 300; i++) {
             // forces that never repeat, so that every command is another one
@@ -92,10 +93,10 @@ TEST(commands_of_several_periods_go_out_in_order)
     for (int k = 0; k < 4; k++) {
         rig *r;
         bool changed;
-        double given[64] = {0}, taken[64] = {0}, before = -1;
+        double wanted[64] = {0}, taken[64] = {0}, before = -1;
         int out = 0, samples = 0;
-        parameters p = rig_parameters(
-            SETTINGS("control.law=force-pd", delays[k / 2], jitters[k % 2], "sensor.ideal=true"));
+        parameters p = rig_parameters_with("control.law=force-pd %s %s sensor.ideal=true",
+                                           delays[k / 2], jitters[k % 2]);
         DONE(rig_create(&r, &p, NULL, &f));
         while (samples < 60) {
             const double time = rig_next_time(r);
@@ -104,10 +105,10 @@ TEST(commands_of_several_periods_go_out_in_order)
             assert_true(time >= before);
             before = time;
             if (r->samples > samples) {
-                given[samples] = r->output.command;
+                wanted[samples] = r->output.command;
                 taken[samples++] = time;
             }
-            if (changed && out < samples && r->voltage == given[out]) {
+            if (changed && out < samples && r->voltage == wanted[out]) {
                 check_below(time - taken[out], r->delay + 1e-9);
                 check_below(k % 2 == 0 ? r->delay : r->delay - 0.005, time - taken[out] + 1e-9);
                 out++;
@@ -120,7 +121,7 @@ TEST(commands_of_several_periods_go_out_in_order)
 
 TEST(a_delay_is_at_most_five_periods)
 {
-    scenario s = {.parameters = rig_parameters(SETTINGS("control.delay=0.003"))};
+    scenario s = {.parameters = rig_parameters_with("control.delay=0.003")};
     DONE(scenario_override(&s, "control.delay_periods=4.4", &f));
     REFUSED(STATUS_BAD_SCENARIO, "together longer than 5 periods of 0.005 s",
             scenario_override(&s, "control.delay_periods=4.5", &f));
@@ -131,7 +132,7 @@ TEST(jitter_stays_within_its_width)
     rig *r;
     bool changed;
     double widest = 0;
-    parameters p = rig_parameters(SETTINGS("control.law=open-loop", "control.jitter=0.001"));
+    parameters p = rig_parameters_with("control.law=open-loop control.jitter=0.001");
     DONE(rig_create(&r, &p, NULL, &f));
     for (int i = 0; i < 500; i++) {
         double time = rig_next_time(r), off = time - i * 0.005;
@@ -146,8 +147,8 @@ TEST(jitter_stays_within_its_width)
 
 TEST(rig_changes_the_bare_arm_only_by_its_converter)
 {
-    summary bare = rig_summary(SETTINGS("control.law=none"));
-    summary on = rig_summary(SETTINGS("control.law=open-loop", "sensor.ideal=true"));
+    summary bare = rig_summary_with("control.law=none");
+    summary on = rig_summary_with("control.law=open-loop sensor.ideal=true");
     check_close(on.first_contact_s, bare.first_contact_s, 1e-9);
     check_relative(on.peak_force_N, bare.peak_force_N, 1e-6);
     check_close(on.impacts, bare.impacts, 0);
@@ -165,8 +166,8 @@ TEST(energy_under_a_limit_that_changes)
                         .kind = ACTION_SET,
                         .parameter = PARAMETER_INDEX(motor.voltage_limit),
                         .value = 1};
-        scenario s = {.parameters = rig_parameters(SETTINGS(models[i], "control.law=open-loop",
-                                                            "control.approach_voltage=5")),
+        scenario s = {.parameters = rig_parameters_with(
+                          "%s control.law=open-loop control.approach_voltage=5", models[i]),
                       .actions = &lower,
                       .action_count = 1};
         SCOPED(run_finish) run_result r;
@@ -191,7 +192,7 @@ TEST(errors_are_from_the_last_command)
 {
     action raise = {
         .time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(control.force), .value = 2};
-    scenario s = {.parameters = rig_parameters(SETTINGS("control.law=force-pd", "run.duration=3")),
+    scenario s = {.parameters = rig_parameters_with("control.law=force-pd run.duration=3"),
                   .actions = &raise,
                   .action_count = 1};
     SCOPED(run_finish) run_result r;
@@ -207,11 +208,10 @@ TEST(errors_are_from_the_last_command)
 TEST(same_seed_same_bytes)
 {
     SCOPED(run_finish)
-    run_result a = rig_run(SETTINGS("control.law=optimal", "control.jitter=0.0005"), true);
+    run_result a = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
     SCOPED(run_finish)
-    run_result b = rig_run(SETTINGS("control.law=optimal", "control.jitter=0.0005"), true);
-    run_result c =
-        rig_run(SETTINGS("control.law=optimal", "control.jitter=0.0005", "control.seed=2"), true);
+    run_result b = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
+    run_result c = rig_run(given("control.law=optimal control.jitter=0.0005 control.seed=2"), true);
     assert_int_equal(a.trace.row_count, b.trace.row_count);
     assert_memory_equal(a.trace.rows, b.trace.rows, a.trace.row_count * sizeof(sample));
     assert_true(a.summary.peak_force_N != c.summary.peak_force_N);
@@ -222,17 +222,13 @@ TEST(same_seed_same_bytes)
 // that the controller has to believe in, (5.26), is the one measured there.
 TEST(many_links_want_their_own_stiffness)
 {
-    run_result r =
-        rig_run(SETTINGS("control.law=open-loop", "arm.links=12", "run.duration=4"), true);
+    run_result r = rig_run(given("control.law=open-loop arm.links=12 run.duration=4"), true);
     const sample *last = &r.trace.rows[r.trace.row_count - 1];
     double measured = last->force * 0.5 / (2 * last->first_angle);
-    char factor[64];
     run_finish(&r);
-    snprintf(factor, sizeof factor, "belief.k2_factor=%.6g", measured / 4.92);
-    summary nominal =
-        rig_summary(SETTINGS("control.law=hybrid", "arm.links=12", "run.duration=2.5"));
-    summary looked_up =
-        rig_summary(SETTINGS("control.law=hybrid", "arm.links=12", factor, "run.duration=2.5"));
+    summary nominal = rig_summary_with("control.law=hybrid arm.links=12 run.duration=2.5");
+    summary looked_up = rig_summary_with(
+        "control.law=hybrid arm.links=12 belief.k2_factor=%.6g run.duration=2.5", measured / 4.92);
     check_below(nominal.steady_force_N, 0.8);
     check_close(looked_up.steady_force_N, 1, 0.12); // it still swings a little
 }
@@ -241,8 +237,8 @@ TEST(many_links_want_their_own_stiffness)
 // would be too short for an implicit method.
 TEST(instants_apart_by_rounding_are_one)
 {
-    summary s = rig_summary(SETTINGS("control.law=hybrid", "arm.links=12", "wall.kind=plane",
-                                     "method.name=newmark", "run.duration=1.5"));
+    summary s = rig_summary_with(
+        "control.law=hybrid arm.links=12 wall.kind=plane method.name=newmark run.duration=1.5");
     check_below(0, s.impacts);
 }
 
@@ -251,9 +247,9 @@ TEST(instants_apart_by_rounding_are_one)
 TEST(a_command_that_alternates_passes_time)
 {
     const char *const *const arms[] = {
-        SETTINGS("run.duration=40"), SETTINGS("run.duration=4", "motor.stiction=0.3"),
-        SETTINGS("run.duration=4", "wall.kind=plane", "control.delay_periods=0.5"),
-        SETTINGS("run.duration=4", "arm.hub_joint=spring")};
+        given("run.duration=40"), given("run.duration=4 motor.stiction=0.3"),
+        given("run.duration=4 wall.kind=plane control.delay_periods=0.5"),
+        given("run.duration=4 arm.hub_joint=spring")};
     const loop_options options = {.commanded = true};
     for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
         const scenario s = {.parameters = fixture_parameters(arms[i])};

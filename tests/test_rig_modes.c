@@ -31,13 +31,12 @@ static const sample *answer_at(const run_result *r, double time)
 TEST(every_lockable_law_stays_in_every_mode_of_its_own)
 {
     int lockable = 0;
-    char setting[64];
     for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
         const controller *c = controller_of(law);
         lockable += c->lockable;
         for (int mode = 0; c->lockable && c->modes[mode] != NULL; mode++) {
-            snprintf(setting, sizeof setting, "control.law=%s", c->name);
-            SCOPED(run_finish) run_result r = locked_run(SETTINGS(setting), c->modes[mode]);
+            SCOPED(run_finish)
+            run_result r = locked_run(given("control.law=%s", c->name), c->modes[mode]);
             for (size_t i = 0; i < r.trace.row_count; i++) {
                 const sample *row = &r.trace.rows[i];
                 fail_if(row->time > LOCK_TIME && row->time < RELEASE_TIME &&
@@ -56,10 +55,9 @@ TEST(approach_means_the_approach_command)
                                        "force-pd", "force-integral", "discontinuous",
                                        "optimal"};
     for (EACH(c, laws)) {
-        char setting[64];
-        snprintf(setting, sizeof setting, "control.law=%s", *c);
         SCOPED(run_finish)
-        run_result r = locked_run(SETTINGS(setting, "control.approach_voltage=0.8"), "approach");
+        run_result r =
+            locked_run(given("control.law=%s control.approach_voltage=0.8", *c), "approach");
         check_close(answer_at(&r, 0.6)->command, 0.8, 0);
         check_close(answer_at(&r, 0.89)->command, 0.8, 0);
         // it is in contact, and detects it once it is free
@@ -71,8 +69,7 @@ TEST(approach_means_the_approach_command)
 TEST(force_means_the_force_law_at_once)
 {
     // in free flight, from the first sample on
-    run_result r =
-        rig_run(SETTINGS("control.law=hybrid", "control.lock=force", "sensor.ideal=true"), true);
+    run_result r = rig_run(given("control.law=hybrid control.lock=force sensor.ideal=true"), true);
     const sample *first = &r.trace.rows[0];
     double final = 0.5 / (2 * 4.92), torque = 2 * 1 * 0.5 + 10.15 * (final - first->hub_angle);
     check_close(first->controller_mode, 2, 0);
@@ -87,8 +84,7 @@ TEST(impact_mode_is_planned_anew_and_waits_at_its_end)
 {
     SCOPED(run_finish)
     run_result r = locked_run(
-        SETTINGS("control.law=hybrid", "sensor.ideal=true", "control.transition_time=0.2"),
-        "impact");
+        given("control.law=hybrid sensor.ideal=true control.transition_time=0.2"), "impact");
     const sample *before = answer_at(&r, LOCK_TIME - 0.005), *entry = answer_at(&r, LOCK_TIME);
     double final = 0.5 / (2 * 4.92);
     check_close(before->controller_mode, 2, 0);
@@ -111,10 +107,8 @@ TEST(release_goes_on_from_the_command_in_effect)
         {"predictive", "hold"},
     };
     for (EACH(c, cases)) {
-        char setting[64];
-        snprintf(setting, sizeof setting, "control.law=%s", (*c)[0]);
         SCOPED(run_finish)
-        run_result r = locked_run(SETTINGS(setting, "sensor.ideal=true"), (*c)[1]);
+        run_result r = locked_run(given("control.law=%s sensor.ideal=true", (*c)[0]), (*c)[1]);
         double last = answer_at(&r, RELEASE_TIME - 0.005)->command;
         double next = answer_at(&r, RELEASE_TIME)->command;
         fail_if(fabs(next - last) > 0.1, "%s released from %s jumps from %g V to %g V", (*c)[0],
@@ -129,7 +123,7 @@ TEST(observers_survive_a_lock_in_contact)
     static const char *const modes[] = {"approach", "press", "hold"};
     for (size_t i = 0; i < 6; i++) {
         run_result r =
-            locked_run(SETTINGS(laws[i / 3], "control.approach_voltage=2"), modes[i % 3]);
+            locked_run(given("%s control.approach_voltage=2", laws[i / 3]), modes[i % 3]);
         check_close(r.summary.steady_force_N, 1, 0.1);
         run_finish(&r);
     }
@@ -147,7 +141,7 @@ TEST(unknown_modes_are_refused)
     };
     for (EACH(c, cases)) {
         char setting[128];
-        scenario s = {.parameters = rig_parameters(SETTINGS(c->law))};
+        scenario s = {.parameters = rig_parameters_with("%s", c->law)};
         snprintf(setting, sizeof setting, "control.lock=%s", c->mode);
         REFUSED(STATUS_BAD_SCENARIO, c->why, scenario_override(&s, setting, &f));
         check_close(parameter_get(&s.parameters, PARAMETER_INDEX(control.lock)), 0, 0);
@@ -224,7 +218,7 @@ TEST(pressing_from_the_start_finds_the_wall)
 {
     const char *const laws[] = {"control.law=optimal", "control.law=predictive"};
     for (int i = 0; i < 2; i++) {
-        summary s = rig_summary(SETTINGS(laws[i], "control.lock=press"));
+        summary s = rig_summary_with("%s control.lock=press", laws[i]);
         check_close(s.steady_force_N, 1, 0.03);
         check_below(s.peak_force_N, 2);
         check_close(s.separations, 0, 0);
@@ -265,10 +259,8 @@ TEST(every_mode_is_gone_into_from_every_other)
             }
         }
 
-        char setting[64];
-        snprintf(setting, sizeof setting, "control.law=%s", c->name);
-        scenario s = {.parameters = rig_parameters(
-                          SETTINGS(setting, models[law / LAW_PLUGIN], "run.duration=0.8")),
+        scenario s = {.parameters = rig_parameters_with("control.law=%s %s run.duration=0.8",
+                                                        c->name, models[law / LAW_PLUGIN]),
                       .actions = script,
                       .action_count = count};
         SCOPED(run_finish) run_result r;
@@ -284,7 +276,7 @@ TEST(every_mode_is_gone_into_from_every_other)
 // No more names are written than there is room for.
 TEST(names_of_modes_keep_to_their_room)
 {
-    parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
+    parameters p = rig_parameters_with("control.law=hybrid");
     char names[3][MODE_NAME_SIZE] = {"", "", "untouched"};
     bool lockable;
     assert_int_equal(rig_mode_names(&p, names, 1, &lockable), 1);
@@ -300,7 +292,7 @@ TEST(only_the_law_itself_gives_modes)
 {
     char names[8][MODE_NAME_SIZE];
     bool lockable = false;
-    parameters p = rig_parameters(SETTINGS("control.law=hybrid"));
+    parameters p = rig_parameters_with("control.law=hybrid");
     strcpy(p.control.plugin, "/nowhere/at-all.so");
     for (int allowed = 0; allowed < 2; allowed++) {
         p.code_allowed = allowed;

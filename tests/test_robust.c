@@ -56,8 +56,7 @@ TEST(cases_are_what_differs)
     assert_string_equal(set.cases[1].title, "two at once");
 
     // the first is the scenario itself, the second differs in what it says
-    scenario derived,
-        base = {.name = "test", .parameters = rig_parameters(SETTINGS("run.duration=1"))};
+    scenario derived, base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
     assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
     assert_int_equal(derived.action_count, 0);
     assert_int_equal(derived.parameters.arm.links, 2);
@@ -131,8 +130,7 @@ TEST(pushes_of_a_case_must_act)
                  {"a=1\ncase later: push=1@0.1; push=1@9\n", "a push at 9 s is outside"},
                  {"a=1\ncase short: run.duration=0.4; push=1@0.5\n", "expected 0 to 0.4 s"},
                  {"a=1\ncase old: arm.model=printed; push=1@0.1\n", "takes no pushes"}};
-    scenario base = {.name = "test", .parameters = rig_parameters(SETTINGS("run.duration=1"))},
-             derived;
+    scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")}, derived;
     base.parameters.control.law = LAW_NONE;
     for (EACH(c, wrong)) {
         SCOPED(robust_set_finish) robust_set set;
@@ -171,7 +169,7 @@ static char *judged(int law, char *const *lines, int count, size_t runs, int job
     SCOPED(sweep_finish) sweep s;
     SCOPED(sweep_store_close_kept) sweep_store *store;
     sweep_progress progress;
-    scenario base = {.name = "test", .parameters = rig_parameters(SETTINGS("run.duration=1"))};
+    scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
     base.parameters.control.law = law;
     base.parameters.set[PARAMETER_INDEX(control.law)] = 1; // a default would come back
     sweep_request request = {
@@ -293,7 +291,7 @@ TEST(one_run_is_all_its_quantiles)
     char *const lines[] = {"wall.kind=point"};
     SCOPED(robust_law_finish) robust_law found;
     free(judged(LAW_HYBRID, lines, 1, 1, 1, &found));
-    summary s = rig_summary(SETTINGS("control.law=hybrid", "run.duration=1"));
+    summary s = rig_summary_with("control.law=hybrid run.duration=1");
     for (int i = 0; i < ROBUST_QUANTILES; i++) {
         check_relative(found.overshoot[i], 100 * s.force_over_command_N / s.force_command_N, 1e-12);
         check_relative(found.settling[i], s.settling_time_s, 1e-12);
@@ -419,7 +417,7 @@ TEST(a_limit_says_what_is_too_much)
     robust_law_finish(&found);
 
     free(judged(LAW_HYBRID, links, 1, 1, 1, &found));
-    const summary s = rig_summary(SETTINGS("control.law=hybrid", "run.duration=1", "arm.links=3"));
+    const summary s = rig_summary_with("control.law=hybrid run.duration=1 arm.links=3");
     check_relative(found.overshoot[ROBUST_MEDIAN],
                    100 * s.smoothed_over_command_N / s.force_command_N, 1e-12);
     robust_law_finish(&found);
@@ -449,7 +447,7 @@ TEST(a_limit_says_what_is_too_much)
         assert_non_null(strstr(text, "\"smoothed_overshoot_worst_percent\": "));
         robust_law_finish(&found);
     }
-    const summary two = rig_summary(SETTINGS("control.law=hybrid", "run.duration=1"));
+    const summary two = rig_summary_with("control.law=hybrid run.duration=1");
     free(judged(LAW_HYBRID, &kinds[0].line, 1, 1, 1, &found));
     check_relative(found.smoothed[ROBUST_WORST],
                    100 * two.smoothed_over_command_N / two.force_command_N, 1e-12);

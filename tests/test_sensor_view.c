@@ -105,8 +105,8 @@ static scenario fast_touch(void)
 {
     static char name[] = "test";
     return (scenario){.name = name,
-                      .parameters = fixture_parameters(
-                          SETTINGS("wall.kind=plane", "motor.voltage=5", "run.duration=0.5"))};
+                      .parameters =
+                          parameters_with("wall.kind=plane motor.voltage=5 run.duration=0.5")};
 }
 
 // The force of the ideal contact has no limit, what a sensor of 1 ms reads has the beam's.
@@ -265,11 +265,9 @@ TEST(a_view_is_what_a_run_comes_to)
     static const int links[] = {2, 3, 6};
     for (int kind = 0; kind < 6; kind++) {
         scenario s = fast_touch();
-        char n[32];
-        snprintf(n, sizeof n, "arm.links=%d", links[kind % 3]);
-        s.parameters = fixture_parameters(
-            SETTINGS("wall.kind=plane", "motor.voltage=5", "run.duration=0.5", n,
-                     kind < 3 ? "wall.restitution=0" : "wall.restitution=0.3", "method.step=1e-5"));
+        s.parameters = parameters_with(
+            "wall.kind=plane motor.voltage=5 run.duration=0.5 arm.links=%d %s method.step=1e-5",
+            links[kind % 3], kind < 3 ? "wall.restitution=0" : "wall.restitution=0.3");
         const run_options options = {.keep_trace = true};
         SCOPED(run_finish) run_result r;
         sensor_view view;
@@ -329,9 +327,10 @@ TEST(an_arm_against_the_wall_is_felt_from_the_start)
     static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
     for (int i = 0; i < 2; i++) {
         scenario s = fast_touch();
-        s.parameters = fixture_parameters(
-            SETTINGS("wall.kind=plane", "wall.angle=0.1", "initial.angle=0.1", "motor.voltage=5",
-                     "arm.links=3", "method.step=1e-5", "run.duration=0.02", walls[i]));
+        s.parameters = parameters_with(
+            "wall.kind=plane wall.angle=0.1 initial.angle=0.1 motor.voltage=5 arm.links=3 "
+            "method.step=1e-5 run.duration=0.02 %s",
+            walls[i]);
         const run_options options = {.keep_trace = true};
         SCOPED(run_finish) run_result r;
         sensor_view view;

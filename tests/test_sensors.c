@@ -26,7 +26,7 @@ static void follow_force(sensors *s, double h, double first, double last, double
 
 TEST(encoder_steps_by_one_count)
 {
-    sensors s = fresh_sensors(SETTINGS("sensor.encoder_counts=500"), 1);
+    sensors s = fresh_sensors(given("sensor.encoder_counts=500"), 1);
     const double count = 2 * PI / 500;
     double last = read_hub(&s, -0.1, 0, 0).encoder;
     int steps = 0;
@@ -154,8 +154,8 @@ TEST(strides_of_nearly_one_length_decay_by_their_own)
 // What has no noise takes no numbers from the others.
 TEST(quiet_sensors_draw_nothing)
 {
-    const char *const *one = SETTINGS("sensor.adc_bits=0", "sensor.fsr_noise=0");
-    const char *const *two = SETTINGS("sensor.adc_bits=0", "sensor.fsr_noise=0.01");
+    const char *const *one = given("sensor.adc_bits=0 sensor.fsr_noise=0");
+    const char *const *two = given("sensor.adc_bits=0 sensor.fsr_noise=0.01");
     sensors alone = fresh_sensors(one, 7), both = fresh_sensors(two, 7);
     for (int i = 0; i < 100; i++) {
         const double taken = read_hub(&alone, 0, 0.5, 1).tachometer;
@@ -175,12 +175,12 @@ TEST(sensors_at_rest_remember_no_force)
         *(double *[]){&s.fsr.value, &s.piezo_rise.value, &s.piezo_leak.value}[i] = 1e-9;
         assert_false(sensors_at_rest(&s));
     }
-    sensors film = fresh_sensors(SETTINGS("sensor.film=true"), 1);
-    sensors accelerometer = fresh_sensors(SETTINGS("sensor.accelerometer=true"), 1);
+    sensors film = fresh_sensors(given("sensor.film=true"), 1);
+    sensors accelerometer = fresh_sensors(given("sensor.accelerometer=true"), 1);
     assert_false(sensors_at_rest(&film) || sensors_at_rest(&accelerometer));
 
     // an instant sensor keeps nothing of a blow
-    sensors ideal = fresh_sensors(SETTINGS("sensor.ideal=true", "sensor.piezo=true"), 1);
+    sensors ideal = fresh_sensors(given("sensor.ideal=true sensor.piezo=true"), 1);
     sensors_strike(&ideal, 0.1);
     assert_true(sensors_at_rest(&ideal));
     sensors real = fresh;
@@ -220,7 +220,7 @@ TEST(divider_follows_the_power_law)
 
 TEST(noise_has_its_spread_and_follows_its_seed)
 {
-    const char *const *quiet = SETTINGS("sensor.tachometer_ripple=0", "sensor.adc_bits=0");
+    const char *const *quiet = given("sensor.tachometer_ripple=0 sensor.adc_bits=0");
     sensors s = fresh_sensors(quiet, 7), twin = fresh_sensors(quiet, 7);
     sensors other = fresh_sensors(quiet, 8);
     double sum = 0, squares = 0;
@@ -242,8 +242,7 @@ TEST(noise_has_its_spread_and_follows_its_seed)
 TEST(ripple_follows_the_shaft)
 {
     sensors s = fresh_sensors(
-        SETTINGS("sensor.tachometer_noise=0", "sensor.adc_bits=0", "sensor.tachometer_ripple=0.05"),
-        1);
+        given("sensor.tachometer_noise=0 sensor.adc_bits=0 sensor.tachometer_ripple=0.05"), 1);
     check_close(read_hub(&s, 0.5 * PI / 79, 2, 0).tachometer, 2.1, 1e-9);
     check_close(read_hub(&s, 1.5 * PI / 79, 2, 0).tachometer, 1.9, 1e-9);
 }
@@ -289,8 +288,8 @@ TEST(sensors_show_what_they_are_calibrated_for)
 // A force that goes up and down shows the loop of a play, and nothing is left where it ends.
 TEST(hysteresis_is_a_play)
 {
-    sensors s = fresh_sensors(SETTINGS("sensor.fsr_hysteresis=0.1", "sensor.fsr_noise=0",
-                                       "sensor.fsr_rise_time=0", "sensor.adc_bits=0"),
+    sensors s = fresh_sensors(given("sensor.fsr_hysteresis=0.1 sensor.fsr_noise=0 "
+                                    "sensor.fsr_rise_time=0 sensor.adc_bits=0"),
                               1);
     const struct {
         double force, shown;
@@ -305,7 +304,7 @@ TEST(hysteresis_is_a_play)
 
 TEST(ideal_sensors_tell_the_truth)
 {
-    sensors s = fresh_sensors(SETTINGS("sensor.ideal=true"), 1);
+    sensors s = fresh_sensors(given("sensor.ideal=true"), 1);
     sensor_reading r = read_hub(&s, 0.1234567, -1.2345678, 3.456789);
     check_close(r.encoder, 0.1234567, 0);
     check_close(r.tachometer, -1.2345678, 1e-12);

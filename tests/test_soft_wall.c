@@ -23,10 +23,10 @@ static run_result run_of(const parameters *p, bool rows)
 // A rod on a hub without drive and friction: near the wall a mass that moves straight.
 static parameters single_mass(const char *contact, const char *stiffness, const char *damping)
 {
-    return fixture_parameters(
-        SETTINGS("arm.links=1", "motor.voltage=0", "motor.back_emf=0", "motor.viscous_friction=0",
-                 "motor.stiction=0", "wall.kind=plane", "wall.angle=0", "initial.angle=-0.001",
-                 "initial.velocity=0.1", "run.duration=0.05", contact, stiffness, damping));
+    return parameters_with("arm.links=1 motor.voltage=0 motor.back_emf=0 motor.viscous_friction=0 "
+                           "motor.stiction=0 wall.kind=plane wall.angle=0 initial.angle=-0.001 "
+                           "initial.velocity=0.1 run.duration=0.05 %s %s %s",
+                           contact, stiffness, damping);
 }
 
 static double kinetic(double v)
@@ -131,12 +131,11 @@ TEST(a_face_with_a_mass_has_the_closed_form)
 // was, wherever rows and strides end. A face that swings out with the arm on it is no separation.
 TEST(an_arm_is_deepest_or_apart_beside_its_face)
 {
-    parameters p = fixture_parameters(
-        SETTINGS("arm.links=1", "arm.hub_joint=spring", "arm.k1=7306.2", "arm.mass=0.48164",
-                 "motor.stiction=2", "motor.voltage=-0.18352", "wall.kind=plane",
-                 "wall.contact=kelvin-voigt", "wall.stiffness=16.826", "wall.damping=0",
-                 "wall.mass=0.9856", "initial.angle=0.0988025", "initial.velocity=0.489266",
-                 "run.duration=0.08", "method.step=1e-5"));
+    parameters p = parameters_with(
+        "arm.links=1 arm.hub_joint=spring arm.k1=7306.2 arm.mass=0.48164 motor.stiction=2 "
+        "motor.voltage=-0.18352 wall.kind=plane wall.contact=kelvin-voigt "
+        "wall.stiffness=16.826 wall.damping=0 wall.mass=0.9856 initial.angle=0.0988025 "
+        "initial.velocity=0.489266 run.duration=0.08 method.step=1e-5");
     SCOPED(run_finish) run_result r = run_of(&p, true);
     double deepest = 0, farthest = 0;
     for (size_t i = 0; i < r.trace.row_count; i++) {
@@ -147,13 +146,12 @@ TEST(an_arm_is_deepest_or_apart_beside_its_face)
     run_finish(&r);
 
     // in contact beyond where the wall is at rest, after one flight
-    p = fixture_parameters(
-        SETTINGS("arm.links=3", "arm.hub_joint=spring", "arm.joint_stiffness=8.38,6.2",
-                 "arm.link_lengths=0.256,0.448,0.426", "arm.k1=2561.9", "arm.mass=0.17225",
-                 "arm.damping_ratio=0.0066045", "motor.current_limit=0.93877",
-                 "motor.voltage=3.1376", "wall.contact=kelvin-voigt", "wall.stiffness=97351",
-                 "wall.damping=2.8066", "wall.mass=0.8488", "initial.angle=0.0969451",
-                 "initial.velocity=0.380345", "run.duration=0.08", "method.step=1e-5"));
+    p = parameters_with(
+        "arm.links=3 arm.hub_joint=spring arm.joint_stiffness=8.38,6.2 "
+        "arm.link_lengths=0.256,0.448,0.426 arm.k1=2561.9 arm.mass=0.17225 "
+        "arm.damping_ratio=0.0066045 motor.current_limit=0.93877 motor.voltage=3.1376 "
+        "wall.contact=kelvin-voigt wall.stiffness=97351 wall.damping=2.8066 wall.mass=0.8488 "
+        "initial.angle=0.0969451 initial.velocity=0.380345 run.duration=0.08 method.step=1e-5");
     r = run_of(&p, true);
     for (size_t i = 0; i < r.trace.row_count; i++) {
         farthest = fmax(farthest, r.trace.rows[i].contact ? r.trace.rows[i].gap : 0);
@@ -166,13 +164,12 @@ TEST(an_arm_is_deepest_or_apart_beside_its_face)
 // contact.
 TEST(an_arm_leaves_a_light_face_once)
 {
-    parameters p = fixture_parameters(
-        SETTINGS("arm.links=3", "arm.hub_joint=beam", "arm.k2=21.5522",
-                 "arm.link_lengths=0.37,0.314,0.24", "arm.mass=0.4157", "arm.tip_mass=0.0015214",
-                 "arm.damping_ratio=0.0041139", "motor.voltage=0.40338", "motor.stiction=0.5",
-                 "motor.current_limit=0.0082505", "wall.kind=plane", "wall.contact=kelvin-voigt",
-                 "wall.stiffness=2.8373e6", "wall.damping=0", "wall.mass=3.886e-5",
-                 "initial.angle=0.0483042", "initial.velocity=2.96367", "run.duration=0.1"));
+    parameters p = parameters_with(
+        "arm.links=3 arm.hub_joint=beam arm.k2=21.5522 arm.link_lengths=0.37,0.314,0.24 "
+        "arm.mass=0.4157 arm.tip_mass=0.0015214 arm.damping_ratio=0.0041139 motor.voltage=0.40338 "
+        "motor.stiction=0.5 motor.current_limit=0.0082505 wall.kind=plane "
+        "wall.contact=kelvin-voigt wall.stiffness=2.8373e6 wall.damping=0 wall.mass=3.886e-5 "
+        "initial.angle=0.0483042 initial.velocity=2.96367 run.duration=0.1");
     SCOPED(run_finish) run_result r = run_of(&p, true);
     double released = -1;
     for (size_t i = 0; i < r.trace.event_count; i++) {
@@ -189,9 +186,8 @@ TEST(an_arm_leaves_a_light_face_once)
 // part is known to rounding only, and that makes no contact.
 TEST(an_arm_leaves_a_returning_face_once)
 {
-    parameters p = fixture_parameters(SETTINGS("wall.kind=plane", "wall.stiffness=3e5",
-                                               "initial.angle=0.0881", "initial.velocity=2.6",
-                                               "motor.voltage=2.8", "run.duration=0.15"));
+    parameters p = parameters_with("wall.kind=plane wall.stiffness=3e5 initial.angle=0.0881 "
+                                   "initial.velocity=2.6 motor.voltage=2.8 run.duration=0.15");
     for (int i = 0; i < 2 * 46; i++) {
         p.wall.contact = i < 46 ? WALL_KELVIN_VOIGT : WALL_HUNT_CROSSLEY;
         p.wall.damping = pow(10, -10 + i % 46 / 3.0); // to a return in 0.3 s
@@ -232,8 +228,8 @@ TEST(a_face_bounces_the_arm_like_two_masses)
 // First pulse of two links at a face of the given mass; impulse counted in.
 static run_result face_run(const char *contact, const char *mass_text)
 {
-    parameters p = fixture_parameters(SETTINGS(contact, mass_text, "wall.stiffness=75e3",
-                                               "motor.voltage=2", "run.duration=0.25"));
+    parameters p = parameters_with("%s %s wall.stiffness=75e3 motor.voltage=2 run.duration=0.25",
+                                   contact, mass_text);
     return run_of(&p, false);
 }
 
@@ -266,9 +262,9 @@ TEST(a_light_face_on_a_strong_damper_is_no_face)
     const char *const light[] = {"wall.mass=1e-6", "wall.mass=1e-7", "wall.mass=1e-9"};
     run_result each[4];
     for (int i = 0; i < 4; i++) {
-        parameters p = fixture_parameters(
-            SETTINGS("wall.contact=kelvin-voigt", i < 3 ? light[i] : "wall.mass=0",
-                     "motor.voltage=2", "wall.damping=1e3", "run.duration=0.25"));
+        parameters p = parameters_with(
+            "wall.contact=kelvin-voigt %s motor.voltage=2 wall.damping=1e3 run.duration=0.25",
+            i < 3 ? light[i] : "wall.mass=0");
         each[i] = run_of(&p, false);
     }
 
@@ -450,12 +446,11 @@ TEST(a_step_from_the_touch_is_of_order_n_plus_1)
 // first contact with one that gives.
 static void bounce(const char *contact, double stiffness, double velocities[2])
 {
-    char k[48];
     bool rigid = strcmp(contact, "wall.contact=rigid") == 0;
-    snprintf(k, sizeof k, "wall.stiffness=%g", stiffness);
-    parameters p = fixture_parameters(SETTINGS(contact, k, "wall.damping=0", "initial.angle=0.09",
-                                               "initial.velocity=0.5", "motor.voltage=2",
-                                               rigid ? "wall.restitution=1" : "arm.links=2"));
+    parameters p =
+        parameters_with("%s wall.stiffness=%g wall.damping=0 initial.angle=0.09 "
+                        "initial.velocity=0.5 motor.voltage=2 %s",
+                        contact, stiffness, rigid ? "wall.restitution=1" : "arm.links=2");
     motion_report report;
     arm a = arm_of(&p);
     SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
@@ -495,9 +490,10 @@ TEST(a_stiff_wall_holds_like_a_rigid_one)
                                      {"wall.contact=kelvin-voigt", "wall.stiffness=1e3"},
                                      {"wall.contact=kelvin-voigt", "wall.stiffness=1e4"}};
     for (int i = 0; i < 3; i++) {
-        parameters p = fixture_parameters(
-            SETTINGS(walls[i][0], walls[i][1], "wall.damping=5", "arm.damping_ratio=0.3",
-                     "motor.stiction=0", "motor.voltage=5", "wall.kind=point", "run.duration=8"));
+        parameters p =
+            parameters_with("%s %s wall.damping=5 arm.damping_ratio=0.3 motor.stiction=0 "
+                            "motor.voltage=5 wall.kind=point run.duration=8",
+                            walls[i][0], walls[i][1]);
         SCOPED(run_finish) run_result r = run_of(&p, false);
         force[i] = r.summary.steady_force_N;
     }
@@ -515,7 +511,7 @@ TEST(a_wall_without_damping_takes_nothing)
                                             "wall.stiffness=1e15"};
     for (size_t i = 0; i < 6; i++) {
         const parameters p =
-            fixture_parameters(SETTINGS(walls[i / 3], stiffness[i % 3], "wall.damping=0"));
+            parameters_with("%s %s wall.damping=0", walls[i / 3], stiffness[i % 3]);
         SCOPED(run_finish) run_result r = run_of(&p, false);
         assert_false(isnan(r.summary.first_contact_s));
         check_close(r.summary.wall_loss_J, 0, 0);
@@ -531,10 +527,9 @@ TEST(a_slow_face_lets_go_behind_the_wall)
         parameters p =
             i == 0
                 ? single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e5", "wall.damping=400")
-                : fixture_parameters(SETTINGS("arm.links=4", "arm.hub_joint=beam",
-                                              "motor.voltage=8", "wall.kind=plane",
-                                              "wall.contact=hunt-crossley", "wall.stiffness=1e5",
-                                              "wall.damping=1e6", "run.duration=0.2"));
+                : parameters_with("arm.links=4 arm.hub_joint=beam motor.voltage=8 "
+                                  "wall.kind=plane wall.contact=hunt-crossley "
+                                  "wall.stiffness=1e5 wall.damping=1e6 run.duration=0.2");
         SCOPED(run_finish) run_result r = run_of(&p, true);
         const event *release = r.trace.events;
         while (release->kind != EVENT_RELEASE) {
@@ -587,10 +582,9 @@ static double contact_time(const run_result *r, int i)
 // meets it again on its way back.
 TEST(a_face_without_mass_is_the_limit_of_light_ones)
 {
-    parameters p = fixture_parameters(
-        SETTINGS("arm.links=4", "arm.hub_joint=beam", "motor.voltage=4", "wall.kind=plane",
-                 "wall.angle=0.1", "wall.contact=kelvin-voigt", "wall.stiffness=2000",
-                 "wall.damping=100", "run.duration=0.5"));
+    parameters p = parameters_with(
+        "arm.links=4 arm.hub_joint=beam motor.voltage=4 wall.kind=plane wall.angle=0.1 "
+        "wall.contact=kelvin-voigt wall.stiffness=2000 wall.damping=100 run.duration=0.5");
     run_result r[3];
     for (int i = 0; i < 3; i++) {
         p.wall.mass = i == 0 ? 0 : i == 1 ? 2e-4 : 1e-4;
@@ -625,9 +619,9 @@ TEST(a_mass_at_the_tip_strikes_a_rigid_wall)
                                        {"method.name=newmark", "method.step=1e-4"}};
     double impulse[3], contact[3];
     for (int i = 0; i < 3; i++) {
-        parameters p = fixture_parameters(SETTINGS(methods[i][0], methods[i][1], "arm.links=3",
-                                                   "arm.hub_joint=beam", "arm.tip_mass=0.05",
-                                                   "run.duration=0.4"));
+        parameters p = parameters_with(
+            "%s %s arm.links=3 arm.hub_joint=beam arm.tip_mass=0.05 run.duration=0.4",
+            methods[i][0], methods[i][1]);
         SCOPED(run_finish) run_result r = run_of(&p, false);
         impulse[i] = r.summary.contact_impulse_Ns;
         contact[i] = r.summary.first_contact_s;

@@ -7,11 +7,9 @@
 // (I + m l^2/4) a + k1 theta = 0. k1 is chosen for the wanted frequency.
 static arm oscillator(double frequency, const char *method, const char *more, method_parameters *mp)
 {
-    char k1[64];
-    snprintf(k1, sizeof k1, "arm.k1=%.17g", frequency * frequency * 0.40108 / 3);
-    parameters p =
-        fixture_parameters(SETTINGS("arm.links=1", "arm.hub_joint=spring", k1, "wall.kind=none",
-                                    "motor.voltage=0", "motor.stiction=1000", method, more));
+    parameters p = parameters_with("arm.links=1 arm.hub_joint=spring arm.k1=%.17g wall.kind=none "
+                                   "motor.voltage=0 motor.stiction=1000 %s %s",
+                                   frequency * frequency * 0.40108 / 3, method, more);
     arm a = arm_of(&p);
     *mp = p.method;
     return a;
@@ -139,9 +137,9 @@ TEST(generalised_alpha_damps_the_highest_modes_as_asked)
 // Free, undamped motion of a bent chain: largest change of energy over the time, relative.
 static double energy_drift(const char *links, const char *hub, double duration)
 {
-    parameters p = fixture_parameters(SETTINGS(links, hub, "wall.kind=none", "motor.voltage=0",
-                                               "motor.stiction=0", "motor.viscous_friction=0",
-                                               "motor.back_emf=0"));
+    parameters p = parameters_with("%s %s wall.kind=none motor.voltage=0 motor.stiction=0 "
+                                   "motor.viscous_friction=0 motor.back_emf=0",
+                                   links, hub);
     arm a = arm_of(&p);
     SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     motion_start(&a, m, 0, 1);
@@ -176,8 +174,8 @@ static double distance_to_event_method(const char *links, const char *wall, cons
 {
     double angle[2];
     for (int side = 0; side < 2; side++) {
-        parameters p = fixture_parameters(
-            SETTINGS(links, wall, "arm.damping_ratio=0.02", side ? "method.name=event" : method));
+        parameters p = parameters_with("%s %s arm.damping_ratio=0.02 %s", links, wall,
+                                       side ? "method.name=event" : method);
         arm a = arm_of(&p);
         SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         motion_start(&a, m, 0, 0);

@@ -50,8 +50,8 @@ TEST(each_arm_has_its_engine)
 TEST(a_stiff_hub_takes_few_strides)
 {
     for (int links = 2; links <= 4; links++) {
-        parameters p = fixture_parameters(SETTINGS("arm.hub_joint=spring", "arm.hub_inertia=1e-6",
-                                                   "arm.damping_ratio=0.02", "motor.voltage=1"));
+        parameters p = parameters_with(
+            "arm.hub_joint=spring arm.hub_inertia=1e-6 arm.damping_ratio=0.02 motor.voltage=1");
         p.arm.links = links;
         passage stiff = passage_of(&p, 0, 0, 0.35, 2000);
         assert_true(stiff.impacts >= 1);
@@ -62,9 +62,8 @@ TEST(a_stiff_hub_takes_few_strides)
 // The two-link arm of a stiffer hub, and by the explicit formula.
 TEST(a_stiff_pair_moves_as_by_the_formula)
 {
-    parameters p = fixture_parameters(SETTINGS("arm.links=2", "arm.hub_joint=spring",
-                                               "arm.hub_inertia=2e-4", "arm.damping_ratio=0.02",
-                                               "motor.voltage=1", "wall.restitution=0.5"));
+    parameters p = parameters_with("arm.links=2 arm.hub_joint=spring arm.hub_inertia=2e-4 "
+                                   "arm.damping_ratio=0.02 motor.voltage=1 wall.restitution=0.5");
     passage stiff = passage_of(&p, 0.09, 0.3, 0.1, 2000);
     passage formula = passage_by(&p, &explicit_engine, 0.09, 0.3, 0.1, 200000);
     assert_true(stiff.impacts > 2);
@@ -77,8 +76,8 @@ TEST(a_stiff_pair_moves_as_by_the_formula)
 TEST(an_arm_made_stiff_changes_its_engine)
 {
     for (int links = 2; links <= 3; links++) {
-        parameters p = fixture_parameters(SETTINGS("arm.hub_joint=spring", "arm.k1=500",
-                                                   "arm.damping_ratio=0", "motor.voltage=1"));
+        parameters p =
+            parameters_with("arm.hub_joint=spring arm.k1=500 arm.damping_ratio=0 motor.voltage=1");
         p.arm.links = links;
         arm before, after;
         arm_init(&before, &p);
@@ -115,11 +114,11 @@ TEST(an_arm_made_stiff_changes_its_engine)
 TEST(a_stride_that_begins_does_not_unsettle_the_force)
 {
     scenario s = {
-        .parameters = fixture_parameters(SETTINGS(
-            "arm.links=7", "arm.hub_joint=spring", "arm.k1=28214.187", "arm.length=0.384470708390",
-            "arm.mass=0.230311454988", "arm.hub_inertia=2.421274642e-4", "arm.k2=3.677424150693",
-            "arm.damping_ratio=1", "wall.kind=plane", "wall.angle=1.722191930126",
-            "motor.stiction=0.01", "motor.voltage=-0.965138971621489", "run.duration=2"))};
+        .parameters = parameters_with(
+            "arm.links=7 arm.hub_joint=spring arm.k1=28214.187 arm.length=0.384470708390 "
+            "arm.mass=0.230311454988 arm.hub_inertia=2.421274642e-4 arm.k2=3.677424150693 "
+            "arm.damping_ratio=1 wall.kind=plane wall.angle=1.722191930126 "
+            "motor.stiction=0.01 motor.voltage=-0.965138971621489 run.duration=2")};
     SCOPED(run_finish) run_result r;
     assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
     const double steady = r.summary.steady_force_N;
@@ -137,9 +136,9 @@ TEST(a_run_that_could_not_end_says_so)
 {
     static const char *const dampers[] = {"wall.damping=1e12", "wall.damping=1e15"};
     for (EACH(c, dampers)) {
-        scenario s = {.parameters = fixture_parameters(SETTINGS("wall.contact=kelvin-voigt", *c,
-                                                                "initial.angle=0.099",
-                                                                "initial.velocity=0.7"))};
+        scenario s = {
+            .parameters = parameters_with(
+                "wall.contact=kelvin-voigt %s initial.angle=0.099 initial.velocity=0.7", *c)};
         SCOPED(run_finish) run_result r;
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
         assert_int_equal(r.summary.status, STATUS_NO_PROGRESS);
@@ -230,7 +229,7 @@ TEST(a_run_that_stands_still_at_a_wall_says_so)
     }
 
     // strides half of which end in contact, and a look in flight
-    parameters p = fixture_parameters(SETTINGS("wall.contact=kelvin-voigt"));
+    parameters p = parameters_with("wall.contact=kelvin-voigt");
     arm a = arm_of(&p);
     SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     assert_non_null(m);
@@ -278,7 +277,7 @@ TEST(a_loop_makes_as_many_strides_as_are_asked_for)
     enum { EPISODES = 750, STEPS = 100, INSTANTS = 70000 };
     char name[] = "rewound", none[] = "";
     scenario s = {.name = name, .file = none, .title = none, .description = none};
-    s.parameters = fixture_parameters(SETTINGS("run.duration=1"));
+    s.parameters = parameters_with("run.duration=1");
     const loop_options options = {0};
     run_loop *l;
     DONE(loop_create(&l, &s, &options, &f));
@@ -316,7 +315,7 @@ TEST(an_arm_that_starts_on_the_wall_strikes_it)
 {
     static const int links[] = {1, 2, 3, 6, 8, 10, 16};
     for (int i = 0; i < 7 * 4; i++) {
-        parameters p = fixture_parameters(SETTINGS("motor.voltage=1"));
+        parameters p = parameters_with("motor.voltage=1");
         p.arm.links = links[i / 4];
         p.wall.kind = i & 1 ? WALL_PLANE : WALL_POINT;
         p.wall.restitution = i & 2 ? 0.5 : 0;
@@ -334,15 +333,14 @@ TEST(an_arm_that_starts_on_the_wall_strikes_it)
 // explicit formula needs a million strides for this; its answers are given.
 TEST(an_impact_is_one_of_the_exact_gap)
 {
-    parameters p = fixture_parameters(
-        SETTINGS("wall.kind=plane", "arm.links=6", "arm.hub_joint=spring",
-                 "motor.voltage=-0.5147139341175766", "motor.amplifier_gain=13.842765371652092",
-                 "motor.torque_constant=0.3932365213925073", "motor.back_emf=0",
-                 "motor.viscous_friction=0.015406106879498435", "motor.stiction=0",
-                 "wall.angle=1.0716751263078903", "wall.restitution=0.9370014048532785",
-                 "arm.length=0.450056287740594", "arm.mass=987.1087265748487",
-                 "arm.hub_inertia=8.737877005452665e-06", "arm.k1=6.9454369649959515",
-                 "arm.k2=0.017774528852759045", "arm.damping_ratio=0.4640065081757673"));
+    parameters p = parameters_with(
+        "wall.kind=plane arm.links=6 arm.hub_joint=spring motor.voltage=-0.5147139341175766 "
+        "motor.amplifier_gain=13.842765371652092 motor.torque_constant=0.3932365213925073 "
+        "motor.back_emf=0 motor.viscous_friction=0.015406106879498435 motor.stiction=0 "
+        "wall.angle=1.0716751263078903 wall.restitution=0.9370014048532785 "
+        "arm.length=0.450056287740594 arm.mass=987.1087265748487 "
+        "arm.hub_inertia=8.737877005452665e-06 arm.k1=6.9454369649959515 "
+        "arm.k2=0.017774528852759045 arm.damping_ratio=0.4640065081757673");
     passage stiff = passage_of(&p, 0.84478210510148122, 3.1260960827520616, 0.13, 5000);
     assert_int_equal(stiff.impacts, 1);
     check_relative(stiff.momentum, 129.426073814, 1e-9);
@@ -353,16 +351,14 @@ TEST(an_impact_is_one_of_the_exact_gap)
 // small changes mean there is told by its energy, not by velocities of next to nothing.
 TEST(an_arm_at_rest_takes_few_strides)
 {
-    parameters p = fixture_parameters(SETTINGS(
-        "wall.kind=plane", "arm.links=17", "arm.hub_joint=spring",
-        "motor.voltage=6.7365767390474254", "motor.amplifier_gain=14.453409212005569",
-        "motor.torque_constant=6.1153868614456117", "motor.back_emf=0.26887346231218617",
-        "motor.resistance=8.0031000871345093", "motor.viscous_friction=0.020549187441489439",
-        "motor.stiction=0.18169370328427453", "wall.angle=-0.17752419360221161",
-        "wall.restitution=1", "arm.length=1.4657183229289217",
-        "arm.hub_inertia=0.021138195229693537", "arm.k1=94477.653277027581",
-        "arm.k2=13673.25777524287", "arm.damping_ratio=0.040977110363111233",
-        "initial.angle=-0.4"));
+    parameters p = parameters_with(
+        "wall.kind=plane arm.links=17 arm.hub_joint=spring motor.voltage=6.7365767390474254 "
+        "motor.amplifier_gain=14.453409212005569 motor.torque_constant=6.1153868614456117 "
+        "motor.back_emf=0.26887346231218617 motor.resistance=8.0031000871345093 "
+        "motor.viscous_friction=0.020549187441489439 motor.stiction=0.18169370328427453 "
+        "wall.angle=-0.17752419360221161 wall.restitution=1 arm.length=1.4657183229289217 "
+        "arm.hub_inertia=0.021138195229693537 arm.k1=94477.653277027581 arm.k2=13673.25777524287 "
+        "arm.damping_ratio=0.040977110363111233 initial.angle=-0.4");
     passage stiff = passage_of(&p, -0.35592624390555305, 1.7913204322644631, 0.3, 3000);
     assert_true(stiff.impacts > 100);
     check_below(stiff.open, 1e-6);
@@ -372,9 +368,9 @@ TEST(an_arm_at_rest_takes_few_strides)
 // as far in a stride as the vibration.
 TEST(what_a_fast_hub_loses_is_all_booked)
 {
-    parameters p = fixture_parameters(
-        SETTINGS("arm.hub_joint=beam", "arm.length=27.7", "arm.mass=594", "arm.hub_inertia=0.0022",
-                 "arm.k2=176", "motor.back_emf=15", "motor.stiction=0", "motor.voltage=-3"));
+    parameters p = parameters_with(
+        "arm.hub_joint=beam arm.length=27.7 arm.mass=594 arm.hub_inertia=0.0022 arm.k2=176 "
+        "motor.back_emf=15 motor.stiction=0 motor.voltage=-3");
     for (int links = 3; links <= 12; links += 3) {
         p.arm.links = links;
         check_below(passage_of(&p, -0.8, 0, 0.3, 1000).open, 1e-9);
@@ -387,11 +383,12 @@ TEST(an_arm_without_damping_loses_nothing_to_it)
 {
     for (int i = 0; i < 8; i++) {
         const bool joints = i & 1, hub = i & 2, stands = i & 4;
-        parameters p = fixture_parameters(SETTINGS(
-            "arm.links=4", "arm.hub_joint=spring", "arm.hub_inertia=2e-4", "arm.k1=169468",
+        parameters p = parameters_with(
+            "arm.links=4 arm.hub_joint=spring arm.hub_inertia=2e-4 arm.k1=169468 %s %s "
+            "motor.back_emf=0 motor.voltage=0.5 %s",
             joints ? "arm.damping_ratio=1e-3" : "arm.damping_ratio=0",
-            hub ? "motor.viscous_friction=0.01" : "motor.viscous_friction=0", "motor.back_emf=0",
-            "motor.voltage=0.5", stands ? "wall.kind=point" : "wall.kind=none"));
+            hub ? "motor.viscous_friction=0.01" : "motor.viscous_friction=0",
+            stands ? "wall.kind=point" : "wall.kind=none");
         arm a = arm_of(&p);
         SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
         motion_start(&a, m, 0.09, 0.3);

@@ -117,11 +117,10 @@ TEST(events_within_a_stride_are_the_formulas)
 // formula does, and what comes afterwards is the same.
 TEST(bounces_end_where_no_engine_tells_them)
 {
-    const parameters p = fixture_parameters(
-        SETTINGS("arm.links=11", "arm.hub_joint=spring", "arm.damping_ratio=0.0211439",
-                 "wall.restitution=0.2997", "wall.angle=1.2349084692906555e-7",
-                 "motor.voltage=5.7081e-6", "arm.k2=4.64501", "arm.k1=211.051", "arm.mass=0.12368",
-                 "arm.hub_inertia=0.050495", "motor.stiction=0", "method.rest_speed=8.56e-10"));
+    const parameters p = parameters_with(
+        "arm.links=11 arm.hub_joint=spring arm.damping_ratio=0.0211439 wall.restitution=0.2997 "
+        "wall.angle=1.2349084692906555e-7 motor.voltage=5.7081e-6 arm.k2=4.64501 arm.k1=211.051 "
+        "arm.mass=0.12368 arm.hub_inertia=0.050495 motor.stiction=0 method.rest_speed=8.56e-10");
     const meetings stiff = meetings_by(&p, &stiff_engine, 1.20397e-7, 1.24542e-6, 0.00753);
     const meetings formula = meetings_by(&p, &explicit_engine, 1.20397e-7, 1.24542e-6, 0.00753);
     assert_int_equal(stiff.count, formula.count);
@@ -132,11 +131,11 @@ TEST(bounces_end_where_no_engine_tells_them)
 // nanosecond late would leave another force.
 TEST(slow_impacts_are_in_time)
 {
-    const parameters p = fixture_parameters(SETTINGS(
-        "arm.links=14", "arm.hub_joint=spring", "arm.damping_ratio=0.769416",
-        "wall.restitution=0.600972", "wall.angle=1.0272161409848381e-7", "motor.voltage=2.00084e-6",
-        "arm.k2=6.35355", "arm.mass=0.290645", "arm.k1=230.417", "arm.hub_inertia=2.04816e-4",
-        "motor.stiction=8.7131e-9", "method.rest_speed=1e-13"));
+    const parameters p = parameters_with(
+        "arm.links=14 arm.hub_joint=spring arm.damping_ratio=0.769416 "
+        "wall.restitution=0.600972 wall.angle=1.0272161409848381e-7 motor.voltage=2.00084e-6 "
+        "arm.k2=6.35355 arm.mass=0.290645 arm.k1=230.417 arm.hub_inertia=2.04816e-4 "
+        "motor.stiction=8.7131e-9 method.rest_speed=1e-13");
     const meetings stiff = meetings_by(&p, &stiff_engine, 1.02316e-7, 3.07823e-7, 0.003);
     assert_int_equal(stiff.count, 7);
     check_close(stiff.time[6], 1.3360170227229612e-3, 1e-10);
@@ -147,11 +146,10 @@ TEST(slow_impacts_are_in_time)
 // gap, which is a length.
 TEST(a_slow_arm_touches_in_time)
 {
-    const parameters p = fixture_parameters(
-        SETTINGS("arm.links=10", "arm.hub_joint=beam", "arm.damping_ratio=0.423252",
-                 "wall.angle=7.8856745847127184e-7", "motor.voltage=1.605e-7", "arm.k2=2.07622",
-                 "arm.mass=0.14437", "arm.hub_inertia=0.042581", "motor.stiction=5.1311e-8",
-                 "method.rest_speed=1.66e-10"));
+    const parameters p = parameters_with(
+        "arm.links=10 arm.hub_joint=beam arm.damping_ratio=0.423252 "
+        "wall.angle=7.8856745847127184e-7 motor.voltage=1.605e-7 arm.k2=2.07622 arm.mass=0.14437 "
+        "arm.hub_inertia=0.042581 motor.stiction=5.1311e-8 method.rest_speed=1.66e-10");
     const meetings stiff = meetings_by(&p, &stiff_engine, 7.88542e-7, 6.75857e-9, 0.01);
     assert_true(stiff.count > 0);
     assert_int_equal(stiff.event[0], MOTION_IMPACT);
@@ -162,11 +160,11 @@ TEST(a_slow_arm_touches_in_time)
 // was: a fixed tolerance of 1e-9 N would be 1e-4 s late.
 TEST(a_slow_arm_leaves_in_time)
 {
-    const parameters p = fixture_parameters(
-        SETTINGS("arm.links=24", "arm.hub_joint=spring", "arm.damping_ratio=0.00164715",
-                 "wall.angle=5.1124406976777767e-8", "motor.voltage=1.6161e-6", "arm.k2=3.51557",
-                 "arm.k1=19.0639", "arm.mass=0.10088", "arm.hub_inertia=0.0012667",
-                 "motor.stiction=4.1505e-8", "method.rest_speed=9.31e-10"));
+    const parameters p = parameters_with(
+        "arm.links=24 arm.hub_joint=spring arm.damping_ratio=0.00164715 "
+        "wall.angle=5.1124406976777767e-8 motor.voltage=1.6161e-6 arm.k2=3.51557 "
+        "arm.k1=19.0639 arm.mass=0.10088 arm.hub_inertia=0.0012667 motor.stiction=4.1505e-8 "
+        "method.rest_speed=9.31e-10");
     const meetings stiff = meetings_by(&p, &stiff_engine, 5.1118e-8, 2.19239e-9, 0.0065);
     assert_int_equal(stiff.count, 2);
     assert_int_equal(stiff.event[0], MOTION_IMPACT);
@@ -180,10 +178,9 @@ TEST(a_slow_arm_leaves_in_time)
 // faster than the one before, but for what it falls beyond the wall within 2e-14 m.
 TEST(bounces_lower_than_rounding_do_not_gain)
 {
-    const parameters p = fixture_parameters(
-        SETTINGS("arm.links=14", "arm.damping_ratio=0.477", "arm.k2=23.7", "arm.mass=0.865",
-                 "arm.hub_inertia=0.0217", "motor.voltage=4.95", "wall.kind=plane",
-                 "wall.angle=1.043", "wall.restitution=0.0189"));
+    const parameters p = parameters_with(
+        "arm.links=14 arm.damping_ratio=0.477 arm.k2=23.7 arm.mass=0.865 arm.hub_inertia=0.0217 "
+        "motor.voltage=4.95 wall.kind=plane wall.angle=1.043 wall.restitution=0.0189");
     for (int i = 0; i < 12; i++) {
         arm a = arm_of(&p);
         SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
@@ -214,11 +211,11 @@ TEST(bounces_lower_than_rounding_do_not_gain)
 // nothing of the bounce that follows.
 TEST(a_step_that_ends_in_a_flight_is_no_bounce)
 {
-    const parameters p = fixture_parameters(SETTINGS(
-        "arm.links=12", "arm.hub_joint=spring", "arm.damping_ratio=0.456079", "wall.kind=plane",
-        "wall.restitution=0.868528", "wall.angle=4.51e-6", "motor.voltage=-6.74594e-7",
-        "arm.k2=1.95253", "arm.mass=0.583359", "arm.k1=136.203", "arm.hub_inertia=1.37267e-5",
-        "motor.stiction=0", "motor.viscous_friction=0.00571998", "method.rest_speed=1e-8"));
+    const parameters p = parameters_with(
+        "arm.links=12 arm.hub_joint=spring arm.damping_ratio=0.456079 wall.kind=plane "
+        "wall.restitution=0.868528 wall.angle=4.51e-6 motor.voltage=-6.74594e-7 "
+        "arm.k2=1.95253 arm.mass=0.583359 arm.k1=136.203 arm.hub_inertia=1.37267e-5 "
+        "motor.stiction=0 motor.viscous_friction=0.00571998 method.rest_speed=1e-8");
     const double angle = 4.5e-6, velocity = 3.4e-6, until = 4e-3;
     const meetings all = meetings_by(&p, &stiff_engine, angle, velocity, until);
     assert_true(all.count > 10);
@@ -254,10 +251,10 @@ static bool grazes(const parameters *p, const engine *by, double wall)
 TEST(a_graze_within_a_stride_is_found)
 {
     for (int i = 0; i < 2; i++) {
-        parameters p = fixture_parameters(
-            SETTINGS("arm.links=4", "arm.hub_joint=spring", "arm.hub_inertia=2.29663e-4",
-                     "arm.damping_ratio=7.92665e-4", "arm.k1=169468", "motor.voltage=-1",
-                     "motor.stiction=0", i == 0 ? "wall.kind=point" : "wall.kind=plane"));
+        parameters p = parameters_with(
+            "arm.links=4 arm.hub_joint=spring arm.hub_inertia=2.29663e-4 "
+            "arm.damping_ratio=7.92665e-4 arm.k1=169468 motor.voltage=-1 motor.stiction=0 %s",
+            i == 0 ? "wall.kind=point" : "wall.kind=plane");
         arm a = arm_of(&p);
         motion *m = motion_create(&a, &p.method);
         assert_ptr_equal(m->engine, &stiff_engine);

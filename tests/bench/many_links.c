@@ -76,10 +76,8 @@ static passage best_pass(const parameters *p, double angle, double velocity, dou
 
 static parameters chain_of(int links, double damping)
 {
-    char count[32], ratio[48];
-    snprintf(count, sizeof count, "arm.links=%d", links);
-    snprintf(ratio, sizeof ratio, "arm.damping_ratio=%g", damping);
-    return fixture_parameters(SETTINGS(count, ratio, "arm.hub_joint=beam", "wall.kind=plane"));
+    return parameters_with("arm.links=%d arm.damping_ratio=%g arm.hub_joint=beam wall.kind=plane",
+                           links, damping);
 }
 
 // The first 50 ms after the tip meets the wall at 0.7 m/s: what they take beyond the way to it.
