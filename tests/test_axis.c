@@ -1,25 +1,8 @@
 // Figures over logarithmic axes, judged by the pixels of an image.
-#include "render/plot/axis.h"
-#include "render/plot/plot.h"
+#include "tests/plot_fixture.h"
 
 #include "render/page/palette.h"
-#include "render/page/text.h"
-#include "tests/check.h"
-
-enum { SCALE = 2 };
-
-static cairo_surface_t *paint(const figure *fig)
-{
-    double width = fig->width * 72 / 25.4 * SCALE, height = fig->height * 72 / 25.4 * SCALE;
-    cairo_surface_t *image =
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
-    cairo_t *cr = cairo_create(image);
-    cairo_scale(cr, SCALE, SCALE);
-    DONE(figure_paint(cr, fig, NULL, &f));
-    cairo_destroy(cr);
-    cairo_surface_flush(image);
-    return image;
-}
+#include "render/plot/axis.h"
 
 // Middle of the pixels of a series' colour between two columns; false if there is none.
 static bool middle_of(cairo_surface_t *image, int slot, int from, int to, double *x, double *y)
@@ -76,7 +59,7 @@ TEST(decades_are_evenly_spaced)
                                 .series = series,
                                 .series_count = 3};
     figure fig = figure_of(&panel);
-    cairo_surface_t *image = paint(&fig);
+    cairo_surface_t *image = paint_pixels(&fig, 2, NULL);
     for (int i = 0; i < 3; i++) {
         assert_true(middle_of(image, slots[i], 0, cairo_image_surface_get_width(image), &at_x[i],
                               &at_y[i]));
@@ -98,7 +81,7 @@ TEST(points_at_or_below_zero_are_left_out)
     const figure_panel empty = {
         .y = {.name = "empty", .scale = SCALE_LOGARITHMIC}, .series = &nothing, .series_count = 1};
     figure fig = figure_of(&panel);
-    cairo_surface_destroy(paint(&fig));
+    cairo_surface_destroy(paint_pixels(&fig, 2, NULL));
     cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 300, 300);
     cairo_t *cr = cairo_create(image);
     fig = figure_of(&empty);
@@ -107,7 +90,7 @@ TEST(points_at_or_below_zero_are_left_out)
     cairo_surface_destroy(image);
 }
 
-TEST_IN_FOLDER(file_and_data_are_written)
+TEST(file_and_data_are_written)
 {
     static const double x[] = {2, 20}, y[] = {0.5, 0.25};
     const figure_series s = {.name = "cost", .label = "cost", .x = x, .y = y, .count = 2};
@@ -115,17 +98,13 @@ TEST_IN_FOLDER(file_and_data_are_written)
                                 .series = &s,
                                 .series_count = 1};
     const figure fig = figure_of(&panel);
-    char text[512] = "";
-    fault f;
-    assert_int_equal(figure_write(&fig, "a.svg", &f), STATUS_OK);
-    assert_int_equal(figure_write_csv(&fig, "a.csv", &f), STATUS_OK);
-    FILE *file = fopen("a.csv", "r");
-    assert_non_null(file);
-    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
-    fclose(file);
+    size_t length;
+    DONE(figure_write(&fig, "a.svg", &f));
+    DONE(figure_write_csv(&fig, "a.csv", &f));
+    SCOPED(free_kept) char *text = read_file("a.csv", &length);
     assert_non_null(strstr(text, "cost"));
     assert_non_null(strstr(text, "20,0.25"));
-    assert_int_equal(figure_write(&fig, "a.txt", &f), STATUS_BAD_ARGUMENT);
+    REFUSED(STATUS_BAD_ARGUMENT, "a.txt", figure_write(&fig, "a.txt", &f));
 }
 
 // However narrow, an axis of two decades or more has two labels: one alone gives no scale.
@@ -142,11 +121,4 @@ TEST(a_narrow_axis_has_two_labels)
     }
 }
 
-static int release(void **state)
-{
-    (void)state;
-    text_release();
-    return 0;
-}
-
-ALL_BETWEEN(NULL, release)
+ALL_BETWEEN(enter_folder, leave_plot_folder)

@@ -4,16 +4,10 @@
 //
 // The program's own functions that draw a text or a legend's line are intercepted, so that texts
 // can be left out, drawn alone, and asked for their looks.
-#include "tests/check.h"
+#include "tests/plot_fixture.h"
 
-#include <cairo.h>
-#include <glib.h>
-
-#include "render/figures/figures.h"
-#include "render/page/text.h"
 #include "render/plot/drawing.h"
 #include "tests/colour_vision.h"
-#include "tests/rect_check.h"
 
 static const double widths[] = {85, 180}; // [mm]
 
@@ -125,27 +119,6 @@ void __wrap_draw_swatch(drawing *d, panel_layout *l, int index, double x, double
 
 // ---- pictures
 
-static artwork open_figure(int i, figure_options o)
-{
-    fault f = {0};
-    artwork drawn;
-    fail_if(figure_open(thesis_figure_at(i), &o, &drawn, &f) != STATUS_OK, "%s: %s",
-            thesis_figure_at(i)->id, f.text);
-    return drawn;
-}
-
-static cairo_surface_t *pixels_of(const artwork *a, figure_report *report)
-{
-    cairo_surface_t *surface = cairo_image_surface_create(
-        CAIRO_FORMAT_RGB24, (int)ceil(a->width * SCALE), (int)ceil(a->height * SCALE));
-    cairo_surface_set_device_scale(surface, SCALE, SCALE);
-    cairo_t *cr = cairo_create(surface);
-    DONE(a->paint(cr, a->what, report, &f));
-    cairo_destroy(cr);
-    cairo_surface_flush(surface);
-    return surface;
-}
-
 // The picture without its texts; they go into masks.
 static cairo_surface_t *without_texts(const artwork *a)
 {
@@ -154,7 +127,7 @@ static cairo_surface_t *without_texts(const artwork *a)
     cairo_surface_set_device_scale(of_alone, SCALE, SCALE);
     alone = cairo_create(of_alone);
     masks = g_array_new(FALSE, FALSE, sizeof(letter_mask));
-    cairo_surface_t *surface = pixels_of(a, NULL);
+    cairo_surface_t *surface = page_pixels(a, SCALE, NULL);
     cairo_destroy(alone);
     cairo_surface_destroy(of_alone);
     return surface;
@@ -171,7 +144,7 @@ static void free_masks(void)
     masks = NULL;
 }
 
-static const unsigned char *pixel(cairo_surface_t *surface, int x, int y)
+static const unsigned char *bytes_at(cairo_surface_t *surface, int x, int y)
 {
     return cairo_image_surface_get_data(surface) +
            (ptrdiff_t)y * cairo_image_surface_get_stride(surface) + 4 * (ptrdiff_t)x;
@@ -189,7 +162,7 @@ static colour ground_of(cairo_surface_t *surface, const letter_mask *m)
     memset(count, 0, sizeof count);
     for (int j = 0; j < m->height; j++) {
         for (int i = 0; i < m->width; i++) {
-            const unsigned char *p = pixel(surface, m->x + i, m->y + j);
+            const unsigned char *p = bytes_at(surface, m->x + i, m->y + j);
             int bin = (p[2] >> 4) << 8 | (p[1] >> 4) << 4 | p[0] >> 4;
             memcpy(example[bin], p, 3);
             count[bin]++;
@@ -206,7 +179,7 @@ static double crossed(cairo_surface_t *surface, const letter_mask *m, colour gro
     int letters = 0, on_ink = 0;
     for (int j = 0; j < m->height; j++) {
         for (int i = 0; i < m->width; i++) {
-            const unsigned char *p = pixel(surface, m->x + i, m->y + j);
+            const unsigned char *p = bytes_at(surface, m->x + i, m->y + j);
             if (m->cover[(ptrdiff_t)j * m->width + i] < 100) {
                 continue;
             }
@@ -256,13 +229,7 @@ static void check_texts(const artwork *a, const char *id, double width)
 // Nothing leaves the page, no text covers another, none is smaller than can be read.
 static void check_page(const artwork *a, const figure_report *r, const char *id, double width)
 {
-    figure_rect ink, page = {0, 0, a->width, a->height};
-    cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
-    cairo_t *cr = cairo_create(surface);
-    DONE(a->paint(cr, a->what, NULL, &f));
-    cairo_recording_surface_ink_extents(surface, &ink.x, &ink.y, &ink.width, &ink.height);
-    cairo_destroy(cr);
-    cairo_surface_destroy(surface);
+    const figure_rect ink = record_page(a, NULL), page = {0, 0, a->width, a->height};
     check_close(a->width, width / 25.4 * 72, 1e-6);
     if (!rect_is_within(&ink, &page, 1)) {
         complain_of("%s at %g mm: its ink leaves the page", id, width);
@@ -281,7 +248,7 @@ static void check_page(const artwork *a, const figure_report *r, const char *id,
             figure_rect wider = t->place;
             wider.x -= 1.5;
             wider.width += 3;
-            if (rects_overlap(&wider, &r->texts[k].place)) {
+            if (overlap(&wider, &r->texts[k].place)) {
                 complain_of("%s at %g mm: '%s' covers '%s'", id, width, t->text, r->texts[k].text);
             }
         }
@@ -309,20 +276,6 @@ static void recolour(recoloured *out, const figure *fig, int shift)
             out->series[p][i].colour = (out->series[p][i].colour + shift) % 8;
         }
     }
-}
-
-static cairo_surface_t *pixels_of_plot(const figure *fig, figure_report *report)
-{
-    double width, height;
-    figure_size(fig, &width, &height);
-    cairo_surface_t *surface = cairo_image_surface_create(
-        CAIRO_FORMAT_RGB24, (int)ceil(width * SCALE), (int)ceil(height * SCALE));
-    cairo_surface_set_device_scale(surface, SCALE, SCALE);
-    cairo_t *cr = cairo_create(surface);
-    DONE(figure_paint(cr, fig, report, &f));
-    cairo_destroy(cr);
-    cairo_surface_flush(surface);
-    return surface;
 }
 
 // Whether ink of curves may be at a point of the page [pt].
@@ -353,11 +306,12 @@ static void check_frames(const figure *fig, const char *id, double width)
     static figure_report r;
     static recoloured other;
     recolour(&other, fig, 1);
-    cairo_surface_t *one = pixels_of_plot(fig, &r), *two = pixels_of_plot(&other.figure, NULL);
+    cairo_surface_t *one = paint_pixels(fig, SCALE, &r),
+                    *two = paint_pixels(&other.figure, SCALE, NULL);
     int outside = 0, inside = 0;
     for (int j = 0; j < cairo_image_surface_get_height(one); j++) {
         for (int i = 0; i < cairo_image_surface_get_width(one); i++) {
-            if (memcmp(pixel(one, i, j), pixel(two, i, j), 3) != 0) {
+            if (memcmp(bytes_at(one, i, j), bytes_at(two, i, j), 3) != 0) {
                 bool allowed = may_have_ink(fig, &r, (i + 0.5) / SCALE, (j + 0.5) / SCALE);
                 inside += allowed;
                 outside += !allowed;
@@ -424,7 +378,7 @@ static void check_legends(const figure *fig, figure_theme theme, const char *id,
     figure copy = *fig;
     copy.theme = theme;
     swatch_count = 0;
-    cairo_surface_destroy(pixels_of_plot(&copy, NULL));
+    cairo_surface_destroy(paint_pixels(&copy, SCALE, NULL));
     for (int i = 0; i < swatch_count; i++) {
         for (int k = 0; k < i; k++) {
             const swatch *a = &swatches[i], *b = &swatches[k];
@@ -457,8 +411,8 @@ TEST(every_figure_can_be_read)
         for (size_t k = 0; k < G_N_ELEMENTS(widths); k++) {
             const char *id = thesis_figure_at(i)->id;
             SCOPED(artwork_finish)
-            artwork drawn = open_figure(i, (figure_options){.look.width = widths[k]});
-            cairo_surface_destroy(pixels_of(&drawn, &r));
+            artwork drawn = open_figure(id, (figure_options){.look.width = widths[k]});
+            cairo_surface_destroy(page_pixels(&drawn, SCALE, &r));
             check_page(&drawn, &r, id, widths[k]);
             check_texts(&drawn, id, widths[k]);
             if (drawn.plotted != NULL) {
@@ -499,9 +453,4 @@ TEST(colours_are_far_from_each_other)
     assert_int_equal(complaints, 0);
 }
 
-int main(void)
-{
-    int failed = run_cases(NULL, NULL);
-    text_release();
-    return failed != 0;
-}
+ALL_BETWEEN(enter_folder, leave_plot_folder)

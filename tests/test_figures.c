@@ -1,72 +1,15 @@
 // The catalogue of figures and tables, judged by what is drawn: texts and where they are, numbers
 // next to them, bytes of files.
-#include "tests/check.h"
+#include "tests/plot_fixture.h"
 
-#include <cairo.h>
-
-#include "render/figures/figures.h"
 #include "render/figures/report.h"
-#include "render/page/text.h"
-#include "tests/rect_check.h"
 
-static char *read_file(const char *path, size_t *length)
-{
-    FILE *stream = fopen(path, "rb");
-    fail_if(stream == NULL, "%s cannot be read", path);
-    fseek(stream, 0, SEEK_END);
-    *length = (size_t)ftell(stream);
-    rewind(stream);
-    char *text = malloc(*length + 1);
-    assert_non_null(text);
-    assert_int_equal(fread(text, 1, *length, stream), *length);
-    text[*length] = '\0';
-    fclose(stream);
-    return text;
-}
-
-static artwork open_figure(const char *id, figure_options o)
-{
-    fault f = {0};
-    artwork drawn;
-    const thesis_figure *which = thesis_figure_find(id);
-    assert_non_null(which);
-    fail_if(figure_open(which, &o, &drawn, &f) != STATUS_OK, "%s: %s", id, f.text);
-    return drawn;
-}
-
-// Paints it on an unbounded recording; reports, and gives what the ink covers.
-static figure_rect record(const artwork *a, figure_report *report)
-{
-    fault f = {0};
-    figure_rect ink;
-    cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
-    cairo_t *cr = cairo_create(surface);
-    fail_if(a->paint(cr, a->what, report, &f) != STATUS_OK, "%s: %s", a->title, f.text);
-    assert_int_equal(cairo_status(cr), CAIRO_STATUS_SUCCESS);
-    cairo_recording_surface_ink_extents(surface, &ink.x, &ink.y, &ink.width, &ink.height);
-    cairo_destroy(cr);
-    cairo_surface_destroy(surface);
-    return ink;
-}
-
-// Nothing leaves the page and no text covers another.
-static void expect_tidy(const char *id, figure_options o)
+static void expect_tidy_figure(const char *id, figure_options o)
 {
     static figure_report r;
     SCOPED(artwork_finish) artwork drawn = open_figure(id, o);
-    figure_rect ink = record(&drawn, &r), page = {0, 0, ceil(drawn.width), ceil(drawn.height)};
-    fail_if(!rect_is_within(&ink, &page, 0.5),
-            "%s: ink at %g, %g of %g x %g leaves the page of %g x %g", id, ink.x, ink.y, ink.width,
-            ink.height, page.width, page.height);
+    expect_tidy_page(&drawn, &r);
     assert_true(r.text_count >= 3);
-    for (int i = 0; i < r.text_count; i++) {
-        fail_if(!rect_is_within(&r.texts[i].place, &page, 0.5), "%s: '%s' is not within the page",
-                id, r.texts[i].text);
-        for (int k = 0; k < i; k++) {
-            fail_if(rects_overlap(&r.texts[i].place, &r.texts[k].place), "%s: '%s' covers '%s'", id,
-                    r.texts[i].text, r.texts[k].text);
-        }
-    }
 }
 
 // But those that take long: test_figure_legibility looks at them.
@@ -77,7 +20,7 @@ TEST(every_figure_is_tidy)
         if (thesis_figure_at(i)->slow) {
             continue;
         }
-        expect_tidy(thesis_figure_at(i)->id, (figure_options){0});
+        expect_tidy_figure(thesis_figure_at(i)->id, (figure_options){0});
     }
 }
 
@@ -89,27 +32,26 @@ TEST(figures_fit_a_column_of_85_mm)
         artwork drawn = open_figure(*c, (figure_options){.look.width = 85});
         check_close(drawn.width, 85 / 25.4 * 72, 1e-6);
         artwork_finish(&drawn);
-        expect_tidy(*c, (figure_options){.look.width = 85});
+        expect_tidy_figure(*c, (figure_options){.look.width = 85});
     }
 }
 
-static bool has_text(const figure_report *r, const char *wanted)
+static bool mentions(const figure_report *r, const char *wanted)
 {
+    bool found = false;
     for (int i = 0; i < r->text_count; i++) {
-        if (strstr(r->texts[i].text, wanted) != NULL) {
-            return true;
-        }
+        found = found || strstr(r->texts[i].text, wanted) != NULL;
     }
-    return false;
+    return found;
 }
 
 static void expect_texts(const char *id, const char *const *texts)
 {
     static figure_report r;
     SCOPED(artwork_finish) artwork drawn = open_figure(id, (figure_options){0});
-    record(&drawn, &r);
+    record_page(&drawn, &r);
     for (; *texts != NULL; texts++) {
-        fail_if(!has_text(&r, *texts), "%s: '%s' is not drawn", id, *texts);
+        fail_if(!mentions(&r, *texts), "%s: '%s' is not drawn", id, *texts);
     }
 }
 
@@ -130,15 +72,12 @@ TEST(the_predictors_figures_have_the_legends_colours)
     static const char *const ids[] = {"4.4", "4.5"};
     for (int k = 0; k < 2; k++) {
         SCOPED(artwork_finish) artwork drawn = open_figure(ids[k], (figure_options){0});
-        int width = (int)drawn.width, height = (int)drawn.height, blue = 0;
-        cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
-        cairo_t *cr = cairo_create(surface);
-        DONE(drawn.paint(cr, drawn.what, NULL, &f));
-        cairo_destroy(cr);
-        cairo_surface_flush(surface);
-        const unsigned char *bytes = cairo_image_surface_get_data(surface);
-        for (int i = 0; i < width * height; i++) {
-            const unsigned char *p = bytes + (i / width) * cairo_image_surface_get_stride(surface) +
+        int blue = 0;
+        cairo_surface_t *surface = page_pixels(&drawn, 1, NULL);
+        const int width = cairo_image_surface_get_width(surface);
+        for (int i = 0; i < width * cairo_image_surface_get_height(surface); i++) {
+            const unsigned char *p = cairo_image_surface_get_data(surface) +
+                                     (i / width) * cairo_image_surface_get_stride(surface) +
                                      4 * (ptrdiff_t)(i % width);
             bool green = p[1] > p[0] + 30 && p[1] > p[2] + 30;
             // between the vermillion of the assumption and orange lies the weight of green
@@ -196,10 +135,7 @@ TEST(recorded_signals_stand_beside_their_picture)
 
 static status overlaid(const char *csv, const char *id, fault *f)
 {
-    FILE *stream = fopen("measured.csv", "w");
-    assert_non_null(stream);
-    fputs(csv, stream);
-    fclose(stream);
+    put_file("measured.csv", csv);
     SCOPED(free_kept) char *path = strdup("measured.csv");
     const figure_options o = {.overlay = path};
     status code = figure_draw(id, &o, "overlaid", "svg", NULL, f);
@@ -285,18 +221,6 @@ TEST(table_cells_are_right)
 // ---- files
 // ---------------------------------------------------------------------------------------
 
-static void expect_same_file(const char *name)
-{
-    char first[80], second[80];
-    size_t lengths[2];
-    snprintf(first, sizeof first, "once/%s", name);
-    snprintf(second, sizeof second, "twice/%s", name);
-    SCOPED(free_kept)
-    char *a = read_file(first, &lengths[0]), *b = read_file(second, &lengths[1]);
-    assert_int_equal(lengths[0], lengths[1]);
-    assert_memory_equal(a, b, lengths[0]);
-}
-
 TEST(a_second_run_writes_the_same_bytes)
 {
     static const char *const ids[] = {"2.3", "4.2", "4.6", "5.7", "T4.2"};
@@ -311,9 +235,11 @@ TEST(a_second_run_writes_the_same_bytes)
     for (int i = 0; i < 5; i++) {
         static const char *const endings[] = {"png", "pdf", "svg", "csv"};
         for (int k = 0; k < 4; k++) {
-            char name[64];
-            snprintf(name, sizeof name, "%s.%s", thesis_figure_find(ids[i])->file, endings[k]);
-            expect_same_file(name);
+            char first[64], second[64];
+            const char *file = thesis_figure_find(ids[i])->file;
+            snprintf(first, sizeof first, "once/%s.%s", file, endings[k]);
+            snprintf(second, sizeof second, "twice/%s.%s", file, endings[k]);
+            expect_same_bytes(first, second);
         }
     }
 }
@@ -339,12 +265,7 @@ TEST(themes_change_the_page)
         for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
             SCOPED(artwork_finish)
             artwork drawn = open_figure(ids[i], (figure_options){.look.theme = theme});
-            cairo_surface_t *surface =
-                cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)drawn.width, 40);
-            cairo_t *cr = cairo_create(surface);
-            DONE(drawn.paint(cr, drawn.what, NULL, &f));
-            cairo_destroy(cr);
-            cairo_surface_flush(surface);
+            cairo_surface_t *surface = page_pixels(&drawn, 1, NULL);
             unsigned char corner = cairo_image_surface_get_data(surface)[4];
             assert_true(theme == THEME_DARK ? corner < 60 : corner > 250);
             cairo_surface_destroy(surface);
@@ -460,7 +381,7 @@ TEST(chapters_2_and_3_have_one_time_axis)
     for (size_t i = 0; i < G_N_ELEMENTS(ids); i++) {
         static figure_report r;
         SCOPED(artwork_finish) artwork drawn = open_figure(ids[i], (figure_options){0});
-        record(&drawn, &r);
+        record_page(&drawn, &r);
 
         // the last tick stands at the panel's right end
         bool found = false;
@@ -562,12 +483,4 @@ TEST(the_printed_arm_needs_its_second_run)
     check_below(2 * least[1], least[2]);
 }
 
-// ---------------------------------------------------------------------------------------------------
-
-static int leave_figures(void **state)
-{
-    text_release();
-    return leave_folder(state);
-}
-
-ALL_BETWEEN(enter_folder, leave_figures)
+ALL_BETWEEN(enter_folder, leave_plot_folder)

@@ -419,8 +419,8 @@ TEST(mono_has_no_colour)
     static figure_report r;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    cairo_surface_t *colour = paint_pixels(&s.figure.figure, 1.5, &r);
-    assert_true(coloured_pixels(colour, 1.5, r.page) > 1000);
+    cairo_surface_t *coloured = paint_pixels(&s.figure.figure, 1.5, &r);
+    assert_true(coloured_pixels(coloured, 1.5, r.page) > 1000);
     s.figure.figure.theme = THEME_MONO;
     cairo_surface_t *mono = paint_pixels(&s.figure.figure, 1.5, &r);
     for (int y = 0; y < cairo_image_surface_get_height(mono); y++) {
@@ -428,20 +428,20 @@ TEST(mono_has_no_colour)
             assert_int_equal(saturation(pixel_at(mono, x, y)), 0);
         }
     }
-    cairo_surface_destroy(colour);
+    cairo_surface_destroy(coloured);
     cairo_surface_destroy(mono);
 }
 
 // ---- runs side by side
 
 // The key has an entry that looks like a series in one respect: its colour, or its line.
-static bool is_in_key(const figure *fig, const figure_series *s, bool colour)
+static bool is_in_key(const figure *fig, const figure_series *s, bool by_colour)
 {
     bool found = false;
     for (int i = 0; i < fig->key->series_count; i++) {
         const figure_series *k = &fig->key->series[i];
-        found = found || (k->label != NULL && (colour ? k->colour == s->colour
-                                                      : k->colour == 6 && k->style == s->style));
+        found = found || (k->label != NULL && (by_colour ? k->colour == s->colour
+                                                         : k->colour == 6 && k->style == s->style));
     }
     return found;
 }

@@ -6,23 +6,6 @@
 #include "render/figures/recipe.h"
 #include "render/figures/run_figure.h"
 
-static artwork open_figure(const char *id, const figure_options *o)
-{
-    fault f = {0};
-    artwork drawn;
-    fail_if(figure_open(thesis_figure_find(id), o, &drawn, &f) != STATUS_OK, "%s: %s", id, f.text);
-    return drawn;
-}
-
-static void report_of(const artwork *a, figure_report *r)
-{
-    cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
-    cairo_t *cr = cairo_create(surface);
-    DONE(a->paint(cr, a->what, r, &f));
-    cairo_destroy(cr);
-    cairo_surface_destroy(surface);
-}
-
 TEST(bare_pages_have_no_title_and_no_caption)
 {
     static figure_report r;
@@ -30,9 +13,9 @@ TEST(bare_pages_have_no_title_and_no_caption)
     for (size_t k = 0; k < G_N_ELEMENTS(some); k++) {
         figure_options dressed = {.look.width = 120}, bare = {.look = {.width = 120, .bare = true}};
         SCOPED(artwork_finish)
-        artwork a = open_figure(some[k], &dressed), b = open_figure(some[k], &bare);
+        artwork a = open_figure(some[k], dressed), b = open_figure(some[k], bare);
         check_below(b.height, a.height - 12);
-        report_of(&b, &r);
+        record_page(&b, &r);
         char *start = g_strndup(b.title, 12);
         for (int t = 0; t < r.text_count; t++) {
             assert_null(strstr(r.texts[t].text, start));
@@ -128,14 +111,6 @@ TEST(serif_pictures_have_serif_letters)
 
 // ---- measured data over runs
 
-static void write_measured(const char *name, const char *text)
-{
-    FILE *stream = fopen(name, "w");
-    assert_non_null(stream);
-    fputs(text, stream);
-    fclose(stream);
-}
-
 TEST(measured_data_have_a_panel_of_residuals)
 {
     static figure_report r;
@@ -143,7 +118,7 @@ TEST(measured_data_have_a_panel_of_residuals)
     SCOPED(synthetic_finish) synthetic s;
     run_figure drawn;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    write_measured("bench.csv", "time[s],cell[N]\n0.30,0\n0.325,2\n0.345,1.6\n");
+    put_file("bench.csv", "time[s],cell[N]\n0.30,0\n0.325,2\n0.345,1.6\n");
     char *spec = g_strconcat("bench.csv", ":cell@0.02", NULL);
     const trace_run run = {&s.scenario, &s.result, "run"};
     const figure_options o = {.overlay = spec, .signals = "force,hub_angle+last_angle"};
@@ -209,14 +184,7 @@ TEST(shipped_recipes_are_drawn)
         heard = heard != NULL ? g_string_truncate(heard, 0) : g_string_new(NULL);
         fail_if(recipe_open(path, &o, listen, NULL, &drawn, &f) != STATUS_OK, "%s: %s%s", path,
                 heard->str, f.text);
-        report_of(&drawn, &r);
-        for (int k = 0; k < r.text_count; k++) {
-            expect_inside(&r.texts[k].place, &r.page, r.texts[k].text);
-            for (int n = 0; n < k; n++) {
-                fail_if(overlap(&r.texts[k].place, &r.texts[n].place), "%s: '%s' covers '%s'", name,
-                        r.texts[k].text, r.texts[n].text);
-            }
-        }
+        expect_tidy_page(&drawn, &r);
         artwork_finish(&drawn);
         g_free(path);
     }
@@ -231,17 +199,17 @@ TEST(multiples_are_runs_at_their_values)
     artwork drawn;
     size_t length;
     static figure_report r;
-    write_measured("many.yaml", "runs: [{name: arm, scenario: corrected/first-impact}]\n"
-                                "multiples: {vary: motor.voltage, values: [1 V, 2 V]}\n"
-                                "panels: [{signals: [force]}, {signals: [hub_angle]}]\n");
+    put_file("many.yaml", "runs: [{name: arm, scenario: corrected/first-impact}]\n"
+                          "multiples: {vary: motor.voltage, values: [1 V, 2 V]}\n"
+                          "panels: [{signals: [force]}, {signals: [hub_angle]}]\n");
     DONE(open_recipe("many.yaml", &drawn, &f));
-    report_of(&drawn, &r);
+    record_page(&drawn, &r);
     assert_int_equal(r.panel_count, 4);
     DONE(drawn.write_csv(drawn.what, "many.csv", &f));
     artwork_finish(&drawn);
 
-    write_measured("one.yaml", "runs: [{name: arm 2 V, scenario: corrected/first-impact, set: "
-                               "{motor.voltage: 2}}]\npanels: [{signals: [force]}]\n");
+    put_file("one.yaml", "runs: [{name: arm 2 V, scenario: corrected/first-impact, set: "
+                         "{motor.voltage: 2}}]\npanels: [{signals: [force]}]\n");
     DONE(open_recipe("one.yaml", &drawn, &f));
     DONE(drawn.write_csv(drawn.what, "one.csv", &f));
     artwork_finish(&drawn);
@@ -319,7 +287,7 @@ TEST(faults_of_recipes_have_their_places)
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         fault f = {0};
         artwork drawn;
-        write_measured("bad.yaml", cases[i].text);
+        put_file("bad.yaml", cases[i].text);
         assert_int_equal(open_recipe("bad.yaml", &drawn, &f), STATUS_BAD_SCENARIO);
         char *expected = g_strconcat("bad.yaml", cases[i].said, NULL);
         fail_if(strstr(heard->str, expected) == NULL, "expected '%s', heard '%s'", expected,
@@ -330,7 +298,7 @@ TEST(faults_of_recipes_have_their_places)
     // what is found out only when a run is opened has a place, too
     fault f = {0};
     artwork drawn;
-    write_measured("bad.yaml", "runs:\n  - scenario: no/such\npanels: [{signals: [force]}]\n");
+    put_file("bad.yaml", "runs:\n  - scenario: no/such\npanels: [{signals: [force]}]\n");
     assert_true(open_recipe("bad.yaml", &drawn, &f) != STATUS_OK);
     assert_non_null(strstr(f.text, "bad.yaml:2:5: "));
 }
