@@ -76,14 +76,13 @@ TEST(initial_values_of_ones_own_parameters_take_effect)
                                           {.name = "kv"}};
     const controller own = {.name = "own", .parameters = table, .parameter_count = 3};
     double values[3];
-    fault f;
     parameters p = rig_parameters(NULL);
-    assert_int_equal(controller_values(&own, &p, values, &f), STATUS_OK);
+    DONE(controller_values(&own, &p, values, &f));
     check_close(values[0], 7, 0);
     check_close(values[1], 0.5, 0);
     check_close(values[2], parameter_table[PARAMETER_INDEX(control.kv)].default_corrected, 0);
     p = rig_parameters_with("control.kp=2");
-    assert_int_equal(controller_values(&own, &p, values, &f), STATUS_OK);
+    DONE(controller_values(&own, &p, values, &f));
     check_close(values[0], 2, 0);
 
     // with a unit or a sentence it is the controller's own, for any name
@@ -94,7 +93,7 @@ TEST(initial_values_of_ones_own_parameters_take_effect)
     const controller partly = {.name = "partly", .parameters = parts, .parameter_count = 3};
     const parameter_info *info = &parameter_table[PARAMETER_INDEX(control.kp)];
     p = rig_parameters(NULL);
-    assert_int_equal(controller_values(&partly, &p, values, &f), STATUS_OK);
+    DONE(controller_values(&partly, &p, values, &f));
     check_close(values[0], 5, 0);
     check_close(values[1], 3, 0);
     check_close(values[2], info->default_corrected, 0);
@@ -112,7 +111,7 @@ TEST(initial_values_of_ones_own_parameters_take_effect)
 
     const controller_parameter unknown[] = {{.name = "nothing"}};
     const controller vague = {.name = "vague", .parameters = unknown, .parameter_count = 1};
-    assert_int_equal(controller_values(&vague, &p, values, &f), STATUS_BAD_SCENARIO);
+    REFUSED(STATUS_BAD_SCENARIO, "", controller_values(&vague, &p, values, &f));
 }
 
 // A setting that is none says which one and what was expected; of a name the nearest.

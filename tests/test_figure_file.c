@@ -157,23 +157,19 @@ TEST(csv_holds_what_is_drawn)
 
 TEST(faults_are_sentences)
 {
-    fault f = {0};
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     figure *fig = &s.figure.figure;
-    assert_int_equal(figure_write(fig, "x.gif", &f), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(f.text, ".svg"));
-    assert_int_equal(figure_write(fig, "png", &f), STATUS_BAD_ARGUMENT);
-    assert_int_equal(figure_write(fig, "nowhere/x.png", &f), STATUS_CANNOT_WRITE);
-    assert_non_null(strstr(f.text, "nowhere/x.png"));
+    REFUSED(STATUS_BAD_ARGUMENT, ".svg", figure_write(fig, "x.gif", &f));
+    REFUSED(STATUS_BAD_ARGUMENT, "", figure_write(fig, "png", &f));
+    REFUSED(STATUS_CANNOT_WRITE, "nowhere/x.png", figure_write(fig, "nowhere/x.png", &f));
     fig->dpi = 1e6;
-    assert_int_equal(figure_write(fig, "x.png", &f), STATUS_BAD_ARGUMENT);
+    REFUSED(STATUS_BAD_ARGUMENT, "", figure_write(fig, "x.png", &f));
     fig->dpi = 0;
     fig->width = 20;
-    assert_int_equal(figure_write(fig, "x.png", &f), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(f.text, "larger page"));
+    REFUSED(STATUS_BAD_ARGUMENT, "larger page", figure_write(fig, "x.png", &f));
     fig->panel_count = 0;
-    assert_int_equal(figure_write(fig, "x.pdf", &f), STATUS_BAD_ARGUMENT);
+    REFUSED(STATUS_BAD_ARGUMENT, "", figure_write(fig, "x.pdf", &f));
     // nothing was left behind
     assert_int_not_equal(access("x.png", F_OK), 0);
     assert_int_not_equal(access("x.pdf", F_OK), 0);

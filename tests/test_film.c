@@ -93,10 +93,9 @@ TEST(test_frames)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
-    fault f = {0};
     char path[256];
     snprintf(path, sizeof path, "%s", "frames");
-    fail_if(film_of(&r, &options, path, &f) != STATUS_OK, "%s", f.text);
+    DONE(film_of(&r, &options, path, &f));
     assert_int_equal(count_files(path), 5);
     cairo_surface_t *frame = cairo_image_surface_create_from_png("frames/frame-00003.png");
     assert_int_equal(cairo_image_surface_get_width(frame), 320);
@@ -104,8 +103,7 @@ TEST(test_frames)
     check_below(100, count_pixels(frame, count_beam));
     cairo_surface_destroy(frame);
     // frames of two films do not mix
-    assert_int_equal(film_of(&r, &options, path, &f), STATUS_CANNOT_WRITE);
-    assert_non_null(strstr(f.text, "not empty"));
+    REFUSED(STATUS_CANNOT_WRITE, "not empty", film_of(&r, &options, path, &f));
 }
 
 static void expect_same_frames(const char *one, const char *two, int count)
@@ -350,7 +348,6 @@ TEST(test_encoder_hangs)
                                           "#!/bin/sh\ncat >/dev/null\nexec sleep 1000\n"};
     SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
-    fault f = {0};
     options.stop = &stopped;
     struct sigaction act = {.sa_handler = stop_now};
     sigaction(SIGALRM, &act, NULL);
@@ -359,7 +356,7 @@ TEST(test_encoder_hangs)
         int before = count_files(test_folder);
         stopped = 0;
         alarm(1);
-        assert_int_equal(film_of(&r, &options, "half.mp4", &f), STATUS_STOPPED);
+        REFUSED(STATUS_STOPPED, "", film_of(&r, &options, "half.mp4", &f));
         assert_int_equal(count_files(test_folder), before);
         restore_encoder(old);
     }
@@ -369,14 +366,12 @@ TEST(test_film_refused)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
-    fault f = {0};
-    assert_int_equal(film_file_check("film.avi", &f), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(f.text, ".webm"));
+    REFUSED(STATUS_BAD_ARGUMENT, ".webm", film_file_check("film.avi", &f));
     options.width = 321;
-    assert_int_equal(film_of(&r, &options, "odd.mp4", &f), STATUS_BAD_ARGUMENT);
+    REFUSED(STATUS_BAD_ARGUMENT, "", film_of(&r, &options, "odd.mp4", &f));
     options = small_film();
     options.seconds = -1;
-    assert_int_equal(film_of(&r, &options, "odd.mp4", &f), STATUS_BAD_ARGUMENT);
+    REFUSED(STATUS_BAD_ARGUMENT, "", film_of(&r, &options, "odd.mp4", &f));
 }
 
 ALL_BETWEEN(enter_folder, tear_down)

@@ -409,12 +409,8 @@ TEST(an_impact_angle_needs_its_sensor)
 {
     parameters p = rig_parameters_with("control.impact_angle=film");
     assert_true(p.sensor.film && !p.sensor.accelerometer);
-    fault f;
     parameters_defaults(&p, ARM_CORRECTED);
-    assert_int_equal(
-        parameter_set_text(&p, parameter_find("control.impact_angle"), "accelerometer", &f),
-        STATUS_OK);
-    assert_int_equal(parameter_set_text(&p, parameter_find("sensor.accelerometer"), "false", &f),
-                     STATUS_OK);
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
+    DONE(parameter_set_text(&p, parameter_find("control.impact_angle"), "accelerometer", &f));
+    DONE(parameter_set_text(&p, parameter_find("sensor.accelerometer"), "false", &f));
+    REFUSED(STATUS_BAD_SCENARIO, "", parameters_resolve(&p, &f));
 }

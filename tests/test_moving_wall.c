@@ -403,10 +403,9 @@ static void write_sine(double amplitude, double f, double from, double to, doubl
 // neither jumps at a row; a step of the engine ends at each.
 TEST(a_spline_is_smooth_up_to_the_acceleration)
 {
-    fault f;
     wall_path *path;
     write_sine(2e-3, 3, -0.25, 0.25, 0.02);
-    assert_int_equal(wall_path_create(&path, path_csv, &f), STATUS_OK);
+    DONE(wall_path_create(&path, path_csv, &f));
     const wall_motion m = {.kind = MOTION_FILE, .time = 0.4, .path = path};
     for (size_t i = 0; i < path->rows; i++) {
         const double t = 0.4 + path->times[i], next = 1e-9;

@@ -203,11 +203,10 @@ TEST(the_work_is_done_without_threads)
     }
 
     // failures and stops end it at once
-    fault f = {.text = ""};
     tally failing = {.fail_at = 10}, stopped = {.stop = 1};
     pool_work w = work_on(&failing);
     threads_left = 0;
-    assert_int_equal(pool_run(&w, 4, &f), STATUS_CANNOT_WRITE);
+    REFUSED(STATUS_CANNOT_WRITE, "", pool_run(&w, 4, &f));
     assert_int_equal(failing.total, 10);
     assert_int_equal(failing.computed, 10);
     w = work_on(&stopped);

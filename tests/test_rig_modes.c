@@ -189,15 +189,14 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
     const int lock = PARAMETER_INDEX(control.lock);
     scenario s = shipped("compare/hybrid");
     SCOPED(session_finish) session e;
-    fault f = {0};
     SCOPED(run_finish) run_result free_run;
     run_scenario(&s, true, &free_run);
-    assert_int_equal(session_open(&e, &s, HUGE_VAL, &f), STATUS_OK);
+    DONE(session_open(&e, &s, HUGE_VAL, &f));
     session_seek(&e, 0.4);
-    assert_int_equal(session_change(&e, lock, "approach", &f), STATUS_OK);
+    DONE(session_change(&e, lock, "approach", &f));
     session_seek(&e, 0.7);
-    assert_int_equal(session_change(&e, lock, "none", &f), STATUS_OK);
-    assert_int_equal(session_change(&e, lock, "nonsense", &f), STATUS_BAD_SCENARIO);
+    DONE(session_change(&e, lock, "none", &f));
+    REFUSED(STATUS_BAD_SCENARIO, "", session_change(&e, lock, "nonsense", &f));
     assert_int_equal(e.input_count, 2);
     parameters then = session_parameters_at(&e, 0.5), later = session_parameters_at(&e, 0.8);
     assert_string_equal(then.control.lock, "approach");
@@ -205,10 +204,10 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
 
     free(save_and_compare(&e));
 
-    assert_int_equal(session_undo(&e, &f), STATUS_OK);
-    assert_int_equal(session_undo(&e, &f), STATUS_OK);
+    DONE(session_undo(&e, &f));
+    DONE(session_undo(&e, &f));
     assert_same_rows(&e.run.trace, &free_run.trace);
-    assert_int_equal(session_redo(&e, &f), STATUS_OK);
+    DONE(session_redo(&e, &f));
     check_close(e.run.trace.rows[trace_row_at(&e.run.trace, 0.6)].controller_mode, 0, 0);
 }
 

@@ -282,9 +282,8 @@ TEST(a_wrong_override_changes_nothing)
     // nor does a whole set of parameters that contradict one another
     SCOPED(scenario_finish) scenario s = good("{}");
     parameters wrong = s.parameters, before = s.parameters;
-    fault f = {0};
-    assert_int_equal(parameter_set_text(&wrong, PARAMETER_INDEX(wall.angle), "-2", &f), STATUS_OK);
-    assert_int_equal(scenario_take_parameters(&s, &wrong, &f), STATUS_BAD_SCENARIO);
+    DONE(parameter_set_text(&wrong, PARAMETER_INDEX(wall.angle), "-2", &f));
+    REFUSED(STATUS_BAD_SCENARIO, "", scenario_take_parameters(&s, &wrong, &f));
     assert_memory_equal(&s.parameters, &before, sizeof before);
 }
 

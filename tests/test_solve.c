@@ -173,23 +173,21 @@ TEST(conditions_say_what_they_lack)
 
 TEST(parameters_that_are_no_numbers_have_no_range)
 {
-    fault f;
     SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("method.name", 0, 1);
-    assert_int_equal(solve_usual_range(&axis, &s, &f), STATUS_BAD_ARGUMENT);
+    REFUSED(STATUS_BAD_ARGUMENT, "", solve_usual_range(&axis, &s, &f));
     axis = axis_of("motor.voltage", 0, 0);
-    assert_int_equal(solve_usual_range(&axis, &s, &f), STATUS_OK);
+    DONE(solve_usual_range(&axis, &s, &f));
     assert_true(axis.low < 1 && axis.high > 1);
 }
 
 TEST(one_can_be_stopped)
 {
-    fault f;
     solution found;
     run_monitor monitor = {0};
     SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("motor.voltage", 0, 5);
     const solve_condition c = condition_of("peak_force_N<2");
     atomic_store(&monitor.stop, true);
-    assert_int_equal(solve(&s, &axis, &c, 5, 1, &monitor, &found, &f), STATUS_STOPPED);
+    REFUSED(STATUS_STOPPED, "", solve(&s, &axis, &c, 5, 1, &monitor, &found, &f));
 }
