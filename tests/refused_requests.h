@@ -271,3 +271,19 @@ static inline void try_with_scenario(scenario_work *does, const char *settings)
 {
     try_each(&(attempt){.on_scenario = does, .about = settings});
 }
+
+// The main of a test: its cases on scenarios of this text. With an argument the first request of
+// each place is refused, not only some of all.
+#define REFUSING_MAIN(text, set_up, tear_down)                                                     \
+    int main(int count, char **arguments)                                                          \
+    {                                                                                              \
+        (void)arguments;                                                                           \
+        everywhere = count > 1;                                                                    \
+        scenario_text = text;                                                                      \
+        return run_cases(set_up, tear_down);                                                       \
+    }
+
+static inline int refuse_in_folder(void **state)
+{
+    return use_refusing_allocators(state) != 0 || enter_folder(state) != 0;
+}

@@ -285,11 +285,4 @@ TEST(many_runs)
     try_with_scenario(put_side_by_side, "");
 }
 
-// with an argument: the first request of each place is refused, not only some of all
-int main(int count, char **arguments)
-{
-    (void)arguments;
-    everywhere = count > 1;
-    scenario_text = whole_scenario;
-    return run_cases(use_refusing_allocators, NULL);
-}
+REFUSING_MAIN(whole_scenario, use_refusing_allocators, NULL)

@@ -15,18 +15,6 @@ GIVEN_BACK(sweep_store, sweep_store_close)
 
 // --- scenarios by name --------------------------------------------------------------------------
 
-static char folder[] = "/tmp/no-memory-XXXXXX";
-
-static void put_in_folder(const char *name, const char *text)
-{
-    char path[64];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    assert_int_equal(fclose(file), 0);
-}
-
 static void write_sentence(void *out, const char *sentence)
 {
     fprintf(out, "%s\n", sentence);
@@ -72,14 +60,12 @@ static status place_of(const char *name, FILE *out)
 static const char short_run[] = "title: t\nwall: {angle: 0}\nmotor: {voltage: 4 V}\n"
                                 "run: {duration: 0.12 s}\ninitial: {angle: -0.01 rad}\n";
 
-static char set_path[64]; // of the file with the cases
-
 static status draw_cases(scenario *s, FILE *out)
 {
     SCOPED(robust_set_finish) robust_set set;
     fault f = {0};
     scenario derived;
-    status code = robust_set_read(&set, set_path, &f);
+    status code = robust_set_read(&set, "set", &f);
     for (int i = 0; code == STATUS_OK && i < set.case_count; i++) {
         code = robust_case_scenario(&derived, s, &set.cases[i], &f);
         if (code == STATUS_OK) {
@@ -145,15 +131,14 @@ static status measure_stiffness(scenario *s, FILE *out)
 // Two parts into files, together into a third, and read as columns.
 static status sweep_in_parts(scenario *s, FILE *out)
 {
-    char paths[3][64], *files[] = {paths[0], paths[1]};
+    char *files[] = {(char[]){"0.sqlite"}, (char[]){"1.sqlite"}, (char[]){"2.sqlite"}};
     char *vary[] = {(char[]){"motor.voltage=1:3"}};
     sweep_request request = {
         .vary = vary, .vary_count = 1, .sampling = SWEEP_LATIN, .runs = 4, .seed = 1};
     sweep w;
     fault f = {0};
     for (int i = 0; i < 3; i++) {
-        snprintf(paths[i], sizeof paths[i], "%s/%d.sqlite", folder, i);
-        unlink(paths[i]);
+        unlink(files[i]);
     }
 
     // the parts
@@ -172,15 +157,15 @@ static status sweep_in_parts(scenario *s, FILE *out)
     const char *const keys[] = {"motor.voltage", "peak_force_N"};
     double *columns[2] = {NULL, NULL};
     size_t count = 0;
-    code = code == STATUS_OK ? sweep_merge(files, 2, paths[2], &merged, &f) : code;
-    code = code == STATUS_OK ? sweep_table_read(paths[2], keys, 2, columns, &count, &f) : code;
+    code = code == STATUS_OK ? sweep_merge(files, 2, files[2], &merged, &f) : code;
+    code = code == STATUS_OK ? sweep_table_read(files[2], keys, 2, columns, &count, &f) : code;
     for (size_t i = 0; i < count && code == STATUS_OK; i++) {
         fprintf(out, "%a %a\n", columns[0][i], columns[1][i]);
     }
     free(columns[0]);
     free(columns[1]);
     for (int i = 0; i < 3; i++) {
-        unlink(paths[i]);
+        unlink(files[i]);
     }
     if (begun) {
         sweep_finish(&w);
@@ -213,16 +198,16 @@ static status run(scenario *s, FILE *out)
 
 TEST(a_name_means_the_same_scenario)
 {
-    put_in_folder("own.yaml", "title: Own\n");
+    put_file("own.yaml", "title: Own\n");
     SCOPED(free_kept)
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     char path[64];
-    setenv("IMPACTLAB_SCENARIOS", folder, 1);
-    snprintf(path, sizeof path, "%s/own", folder);
+    setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
+    snprintf(path, sizeof path, "%s/own", test_folder);
     try_all(look_up, "own");
     try_all(look_up, path);
     try_all(look_up, "owm");
-    try_all(look_up, folder);
+    try_all(look_up, test_folder);
     try_all(list_all, "");
     try_all(place_of, "own.yaml");
     setenv("IMPACTLAB_SCENARIOS", before, 1);
@@ -230,8 +215,7 @@ TEST(a_name_means_the_same_scenario)
 
 TEST(sets_and_studies)
 {
-    put_in_folder("set", "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
-    snprintf(set_path, sizeof set_path, "%s/set", folder);
+    put_file("set", "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
     try_with_scenario(draw_cases, "");
     try_all(thesis, "");
     try_with_scenario(sensor, "");
@@ -250,28 +234,4 @@ TEST(runs_of_the_printed_model)
     try_with_scenario(run, "arm.model=printed control.law=hybrid");
 }
 
-static int make_folder(void **state)
-{
-    return use_refusing_allocators(state) != 0 || mkdtemp(folder) == NULL;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    static const char *const files[] = {"own.yaml", "set"};
-    char path[64];
-    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, files[i]);
-        unlink(path);
-    }
-    return rmdir(folder); // nothing else stays
-}
-
-// with an argument: the first request of each place is refused, not only some of all
-int main(int count, char **arguments)
-{
-    (void)arguments;
-    everywhere = count > 1;
-    scenario_text = short_run;
-    return run_cases(make_folder, remove_folder);
-}
+REFUSING_MAIN(short_run, refuse_in_folder, leave_folder)

@@ -18,17 +18,10 @@ GIVEN_BACK(sweep_store, sweep_store_close)
 
 GIVEN_BACK(run_loop, loop_destroy)
 
-static char folder[] = "/tmp/refused-inits-XXXXXX";
-
 static const char *put(const char *name, const char *text)
 {
-    static char path[64];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    assert_int_equal(fclose(file), 0);
-    return path;
+    put_file(name, text);
+    return name;
 }
 
 // Each takes what it is about, makes one, and finishes it whatever came of it.
@@ -225,26 +218,4 @@ TEST(what_is_refused_by_its_arguments_is_finished)
     }
 }
 
-static int begin(void **state)
-{
-    scenario_text = "title: A\nrun: {duration: 0.02 s}\n";
-    return mkdtemp(folder) == NULL || use_refusing_allocators(state);
-}
-
-static int end(void **state)
-{
-    (void)state;
-    static const char *const files[] = {"t.csv", "a.set", "a.session", "r.csv"};
-    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-        char path[64];
-        snprintf(path, sizeof path, "%s/%s", folder, files[i]);
-        unlink(path);
-    }
-    return rmdir(folder);
-}
-
-int main(int count, char **words)
-{
-    everywhere = count > 1 && strcmp(words[1], "everywhere") == 0;
-    return run_cases(begin, end);
-}
+REFUSING_MAIN("title: A\nrun: {duration: 0.02 s}\n", refuse_in_folder, leave_folder)

@@ -36,69 +36,37 @@ static sqlite3_file *real_file(sqlite3_file *f)
     return (sqlite3_file *)((refusing_file *)f + 1);
 }
 
-static int file_close(sqlite3_file *f)
-{
-    return real_file(f)->pMethods->xClose(real_file(f));
-}
-
-static int file_read(sqlite3_file *f, void *to, int size, sqlite3_int64 at)
-{
-    return refuses() ? SQLITE_IOERR_READ
-                     : real_file(f)->pMethods->xRead(real_file(f), to, size, at);
-}
-
-static int file_write(sqlite3_file *f, const void *from, int size, sqlite3_int64 at)
-{
-    return refuses() ? SQLITE_FULL : real_file(f)->pMethods->xWrite(real_file(f), from, size, at);
-}
-
-static int file_truncate(sqlite3_file *f, sqlite3_int64 size)
-{
-    return refuses() ? SQLITE_IOERR_TRUNCATE
-                     : real_file(f)->pMethods->xTruncate(real_file(f), size);
-}
+// A method of a file: the real one's, but where the call is refused with a code; 0: it never is.
+#define FILE_METHOD(name, method, code, parameters, arguments)                                     \
+    static int name parameters                                                                     \
+    {                                                                                              \
+        return (code) != 0 && refuses() ? (code) : real_file(f)->pMethods->method arguments;       \
+    }
+FILE_METHOD(file_close, xClose, 0, (sqlite3_file * f), (real_file(f)))
+FILE_METHOD(file_read, xRead, SQLITE_IOERR_READ,
+            (sqlite3_file * f, void *to, int size, sqlite3_int64 at), (real_file(f), to, size, at))
+FILE_METHOD(file_write, xWrite, SQLITE_FULL,
+            (sqlite3_file * f, const void *from, int size, sqlite3_int64 at),
+            (real_file(f), from, size, at))
+FILE_METHOD(file_truncate, xTruncate, SQLITE_IOERR_TRUNCATE, (sqlite3_file * f, sqlite3_int64 size),
+            (real_file(f), size))
+FILE_METHOD(file_size, xFileSize, SQLITE_IOERR_FSTAT, (sqlite3_file * f, sqlite3_int64 *size),
+            (real_file(f), size))
+FILE_METHOD(file_lock, xLock, SQLITE_IOERR_LOCK, (sqlite3_file * f, int level),
+            (real_file(f), level))
+FILE_METHOD(file_unlock, xUnlock, 0, (sqlite3_file * f, int level), (real_file(f), level))
+FILE_METHOD(file_is_reserved, xCheckReservedLock, SQLITE_IOERR_CHECKRESERVEDLOCK,
+            (sqlite3_file * f, int *result), (real_file(f), result))
+FILE_METHOD(file_control, xFileControl, 0, (sqlite3_file * f, int what, void *argument),
+            (real_file(f), what, argument))
+FILE_METHOD(file_sector, xSectorSize, 0, (sqlite3_file * f), (real_file(f)))
+FILE_METHOD(file_device, xDeviceCharacteristics, 0, (sqlite3_file * f), (real_file(f)))
 
 // What power that fails would lose is not tested: nothing has to come to the disk.
 static int file_sync(sqlite3_file *f, int flags)
 {
     (void)f, (void)flags;
     return refuses() ? SQLITE_IOERR_FSYNC : SQLITE_OK;
-}
-
-static int file_size(sqlite3_file *f, sqlite3_int64 *size)
-{
-    return refuses() ? SQLITE_IOERR_FSTAT : real_file(f)->pMethods->xFileSize(real_file(f), size);
-}
-
-static int file_lock(sqlite3_file *f, int level)
-{
-    return refuses() ? SQLITE_IOERR_LOCK : real_file(f)->pMethods->xLock(real_file(f), level);
-}
-
-static int file_unlock(sqlite3_file *f, int level)
-{
-    return real_file(f)->pMethods->xUnlock(real_file(f), level);
-}
-
-static int file_is_reserved(sqlite3_file *f, int *result)
-{
-    return refuses() ? SQLITE_IOERR_CHECKRESERVEDLOCK
-                     : real_file(f)->pMethods->xCheckReservedLock(real_file(f), result);
-}
-
-static int file_control(sqlite3_file *f, int what, void *argument)
-{
-    return real_file(f)->pMethods->xFileControl(real_file(f), what, argument);
-}
-
-static int file_sector(sqlite3_file *f)
-{
-    return real_file(f)->pMethods->xSectorSize(real_file(f));
-}
-
-static int file_device(sqlite3_file *f)
-{
-    return real_file(f)->pMethods->xDeviceCharacteristics(real_file(f));
 }
 
 static int system_open(sqlite3_vfs *v, const char *name, sqlite3_file *f, int flags, int *given)

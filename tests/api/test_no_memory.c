@@ -15,10 +15,4 @@ TEST(every_call_says_that_it_was_refused)
     try_all(call_library, "");
 }
 
-// with an argument: the first request of each place is refused, not only some of all
-int main(int count, char **arguments)
-{
-    (void)arguments;
-    everywhere = count > 1;
-    return run_cases(use_refusing_allocators, NULL);
-}
+REFUSING_MAIN("", use_refusing_allocators, NULL)
