@@ -8,23 +8,35 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-// Handles of each kind, and what calls write to.
+// What calls report to.
+extern impactlab_error told;
+
+// Handles of each kind.
 typedef struct handles {
-    impactlab_error error;
     impactlab_scenario *scenario;
     impactlab_run *run;
     impactlab_loop *loop; // commanded
 } handles;
 
-// A call that must have been done.
-void check_done(int status, const impactlab_error *error);
+GIVEN_BACK(impactlab_scenario, impactlab_scenario_destroy)
+GIVEN_BACK(impactlab_run, impactlab_run_destroy)
+GIVEN_BACK(impactlab_loop, impactlab_loop_destroy)
 
-// Set-up and tear-down of a test: *state is the handles of corrected/first-impact.
+// Handles that are destroyed when their block is left: own_run *run;
+#define own_scenario SCOPED(impactlab_scenario_destroy_kept) impactlab_scenario
+#define own_run      SCOPED(impactlab_run_destroy_kept) impactlab_run
+#define own_loop     SCOPED(impactlab_loop_destroy_kept) impactlab_loop
+
+// A call that must have been done.
+void check_done(int status);
+
+// Set-up and tear-down of a test: `h` is the handles of corrected/first-impact.
+extern handles *h;
 int make_handles(void **state);
 int free_handles(void **state);
 
 // A call that must be refused with a sentence that has the words.
-void check_refused(const handles *h, int status, const char *words);
+void check_refused(int status, const char *words);
 
-// A case whose *state is the handles.
+// A case with the handles.
 #define TEST_OF_HANDLES(name) TEST_BETWEEN(name, make_handles, free_handles)

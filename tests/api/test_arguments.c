@@ -6,15 +6,14 @@
 // A call without the argument of that name is refused by its name, with an error and without.
 #define LACKS(name, ...)                                                                           \
     do {                                                                                           \
-        impactlab_error *error = &h->error;                                                        \
-        check_refused(h, __VA_ARGS__, name);                                                       \
+        impactlab_error *error = &told;                                                            \
+        check_refused(__VA_ARGS__, name);                                                          \
         error = NULL;                                                                              \
         assert_int_equal(__VA_ARGS__, IMPACTLAB_BAD_ARGUMENT);                                     \
     } while (0)
 
 TEST_OF_HANDLES(scenarios_say_what_they_lack)
 {
-    handles *h = *state;
     impactlab_scenario *s = h->scenario, *made;
     char **names, *text, room[16];
     size_t count;
@@ -55,7 +54,6 @@ TEST_OF_HANDLES(scenarios_say_what_they_lack)
 
 TEST_OF_HANDLES(runs_say_what_they_lack)
 {
-    handles *h = *state;
     impactlab_run *made;
     impactlab_series series;
     impactlab_table table;
@@ -90,7 +88,6 @@ TEST_OF_HANDLES(runs_say_what_they_lack)
 
 TEST_OF_HANDLES(loops_say_what_they_lack)
 {
-    handles *h = *state;
     impactlab_loop *l = h->loop, *made;
     impactlab_run *run;
     impactlab_reading reading;
@@ -139,7 +136,6 @@ TEST_OF_HANDLES(nothing_has_nothing)
     assert_true(impactlab_run_quantities(NULL, &value, 1) > 10);
     assert_int_equal(impactlab_run_event_count(NULL), 0);
     assert_int_equal(impactlab_run_event(NULL, 0, &event), 0);
-    handles *h = *state;
     assert_int_equal(impactlab_run_event(h->run, 0, NULL), 0);
     assert_int_equal(impactlab_loop_step(h->loop, NULL), IMPACTLAB_OK);
     assert_true(impactlab_loop_time(h->loop) > 0);
@@ -155,88 +151,78 @@ TEST_OF_HANDLES(nothing_has_nothing)
 
 TEST_OF_HANDLES(names_that_are_not_known)
 {
-    handles *h = *state;
-    impactlab_error *error = &h->error;
     impactlab_series series;
     char room[16];
     double value;
-    check_refused(h, impactlab_run_quantity(h->run, "peak_force", &value, error), "peak_force_N");
-    check_refused(h, impactlab_run_quantity(h->run, "zzzzzzzzzzzz", &value, error), "no quantity");
-    check_refused(h, impactlab_run_signal(h->run, "forse", &series, error), "'force'");
-    check_refused(h, impactlab_loop_signal(h->loop, "zzzzzzzzzzzz", &value, error), "no signal");
-    check_refused(h, impactlab_loop_set_input(h->loop, "motor.volt", 1, error), "motor.voltage");
-    check_refused(h, impactlab_loop_set_text(h->loop, "motor.volt", "1", error), "motor.voltage");
-    check_refused(h, impactlab_scenario_number(h->scenario, "arm.k", &value, error), "arm.k");
-    check_refused(h, impactlab_scenario_text(h->scenario, "arm.k", room, 16, error), "arm.k");
-    check_refused(h, impactlab_scenario_set_number(h->scenario, "arm.k", 1, error), "arm.k");
-    check_refused(h, impactlab_scenario_add_change(h->scenario, 0, "motor.volt", "1", error),
+    check_refused(impactlab_run_quantity(h->run, "peak_force", &value, &told), "peak_force_N");
+    check_refused(impactlab_run_quantity(h->run, "zzzzzzzzzzzz", &value, &told), "no quantity");
+    check_refused(impactlab_run_signal(h->run, "forse", &series, &told), "'force'");
+    check_refused(impactlab_loop_signal(h->loop, "zzzzzzzzzzzz", &value, &told), "no signal");
+    check_refused(impactlab_loop_set_input(h->loop, "motor.volt", 1, &told), "motor.voltage");
+    check_refused(impactlab_loop_set_text(h->loop, "motor.volt", "1", &told), "motor.voltage");
+    check_refused(impactlab_scenario_number(h->scenario, "arm.k", &value, &told), "arm.k");
+    check_refused(impactlab_scenario_text(h->scenario, "arm.k", room, 16, &told), "arm.k");
+    check_refused(impactlab_scenario_set_number(h->scenario, "arm.k", 1, &told), "arm.k");
+    check_refused(impactlab_scenario_add_change(h->scenario, 0, "motor.volt", "1", &told),
                   "motor.voltage");
     assert_int_equal(impactlab_scenario_is_set(h->scenario, "arm.k"), 0);
 
     // a text that is too long for its room is not cut
     strcpy(room, "untouched");
-    check_refused(h, impactlab_scenario_text(h->scenario, "wall.kind", room, 3, error), "3");
+    check_refused(impactlab_scenario_text(h->scenario, "wall.kind", room, 3, &told), "3");
     assert_string_equal(room, "untouched");
 }
 
 TEST_OF_HANDLES(numbers_that_cannot_be)
 {
-    handles *h = *state;
-    impactlab_error *error = &h->error;
     impactlab_scenario *s = h->scenario;
     const double nan = (double)NAN;
-    check_refused(h, impactlab_loop_step_until(h->loop, nan, error), "not finite");
-    check_refused(h, impactlab_loop_command(h->loop, nan, error), "not finite");
-    check_refused(h, impactlab_loop_push(h->loop, nan, error), "not finite");
-    check_refused(h, impactlab_loop_set_input(h->loop, "wall.angle", nan, error), "wall.angle");
-    check_refused(h, impactlab_loop_set_text(h->loop, "motor.voltage", "1 m", error), "V");
-    check_refused(h, impactlab_loop_set_text(h->loop, "arm.links", "4", error), "arm.links");
-    check_refused(h, impactlab_scenario_add_push(s, 0.1, nan, error), "not finite");
-    check_refused(h, impactlab_scenario_add_push(s, 0.4, 1, error), "0.3 s");
-    check_refused(h, impactlab_scenario_add_change(s, nan, "motor.voltage", "1", error), "instant");
-    check_refused(h, impactlab_scenario_add_change(s, 0.1, "motor.voltage", "much", error),
+    check_refused(impactlab_loop_step_until(h->loop, nan, &told), "not finite");
+    check_refused(impactlab_loop_command(h->loop, nan, &told), "not finite");
+    check_refused(impactlab_loop_push(h->loop, nan, &told), "not finite");
+    check_refused(impactlab_loop_set_input(h->loop, "wall.angle", nan, &told), "wall.angle");
+    check_refused(impactlab_loop_set_text(h->loop, "motor.voltage", "1 m", &told), "V");
+    check_refused(impactlab_loop_set_text(h->loop, "arm.links", "4", &told), "arm.links");
+    check_refused(impactlab_scenario_add_push(s, 0.1, nan, &told), "not finite");
+    check_refused(impactlab_scenario_add_push(s, 0.4, 1, &told), "0.3 s");
+    check_refused(impactlab_scenario_add_change(s, nan, "motor.voltage", "1", &told), "instant");
+    check_refused(impactlab_scenario_add_change(s, 0.1, "motor.voltage", "much", &told),
                   "motor.voltage");
-    check_refused(h, impactlab_scenario_add_change(s, 0.1, "arm.links", "4", error), "arm.links");
-    check_refused(h, impactlab_scenario_set_number(s, "arm.k2", -1, error), "arm.k2");
-    check_refused(h, impactlab_loop_set_input(h->loop, "arm.links", 4, error), "arm.links");
+    check_refused(impactlab_scenario_add_change(s, 0.1, "arm.links", "4", &told), "arm.links");
+    check_refused(impactlab_scenario_set_number(s, "arm.k2", -1, &told), "arm.k2");
+    check_refused(impactlab_loop_set_input(h->loop, "arm.links", 4, &told), "arm.links");
 
     // none of it has left anything
     char *yaml;
-    check_done(impactlab_scenario_yaml(s, &yaml, error), error);
+    check_done(impactlab_scenario_yaml(s, &yaml, &told));
     assert_null(strstr(yaml, "\nscript:"));
     impactlab_text_free(yaml);
     assert_true(impactlab_loop_time(h->loop) == 0);
-    check_done(impactlab_loop_step(h->loop, error), error);
+    check_done(impactlab_loop_step(h->loop, &told));
 }
 
 // What follows from another parameter does not change by itself, neither now nor later.
 TEST_OF_HANDLES(what_follows_cannot_be_scripted)
 {
-    handles *h = *state;
-    impactlab_error *error = &h->error;
-    check_done(impactlab_scenario_set(h->scenario, "arm.hub_joint", "beam", error), error);
-    check_refused(h, impactlab_scenario_add_change(h->scenario, 0.1, "arm.k1", "90", error),
+    check_done(impactlab_scenario_set(h->scenario, "arm.hub_joint", "beam", &told));
+    check_refused(impactlab_scenario_add_change(h->scenario, 0.1, "arm.k1", "90", &told),
                   "arm.hub_joint = spring");
-    assert_string_equal(error->parameter, "arm.k1");
+    assert_string_equal(told.parameter, "arm.k1");
 }
 
 TEST_OF_HANDLES(sets_are_taken_whole_or_not)
 {
-    handles *h = *state;
     const char *const wrong[] = {"motor.voltage=3", "arm.k2=soft"};
     const char *const holed[] = {"motor.voltage=3", NULL, "arm.k2=5"};
     const char *const together[] = {"arm.links=4", "wall.kind=plane", "motor.voltage=3 V"};
     double value;
-    check_refused(h, impactlab_scenario_set_all(h->scenario, wrong, 2, &h->error), "arm.k2");
-    check_refused(h, impactlab_scenario_set_all(h->scenario, holed, 3, &h->error),
-                  "assignments[i]");
-    check_done(impactlab_scenario_number(h->scenario, "motor.voltage", &value, &h->error),
-               &h->error);
+    check_refused(impactlab_scenario_set_all(h->scenario, wrong, 2, &told), "arm.k2");
+    check_refused(impactlab_scenario_set_all(h->scenario, holed, 3, &told), "assignments[i]");
+    check_done(impactlab_scenario_number(h->scenario, "motor.voltage", &value, &told));
     assert_true(value == 1);
-    check_done(impactlab_scenario_set_all(h->scenario, together, 3, &h->error), &h->error);
-    check_done(impactlab_scenario_set_all(h->scenario, NULL, 0, &h->error), &h->error);
-    check_done(impactlab_scenario_number(h->scenario, "motor.voltage", &value, &h->error),
-               &h->error);
+    check_done(impactlab_scenario_set_all(h->scenario, together, 3, &told));
+    check_done(impactlab_scenario_set_all(h->scenario, NULL, 0, &told));
+    check_done(impactlab_scenario_number(h->scenario, "motor.voltage", &value, &told));
     assert_true(value == 3);
     assert_int_equal(impactlab_freedoms(h->scenario), 4);
 }
@@ -251,7 +237,6 @@ static void push(void *memory, const controller_input *in, controller_output *ou
 // The rig calls parts of a controller without asking again, so that one without them is refused.
 TEST_OF_HANDLES(controllers_are_whole)
 {
-    handles *h = *state;
     static const char *const modes[] = {"push", NULL};
     const controller whole = {.interface = CONTROLLER_INTERFACE,
                               .name = "whole",
@@ -272,18 +257,17 @@ TEST_OF_HANDLES(controllers_are_whole)
 
     impactlab_run *run;
     for (size_t i = 0; i < COUNT(lacking); i++) {
-        check_refused(h,
-                      impactlab_run_create_with(&run, h->scenario, 0, &lacking[i], NULL, &h->error),
+        check_refused(impactlab_run_create_with(&run, h->scenario, 0, &lacking[i], NULL, &told),
                       "the controller");
         assert_null(run);
     }
-    check_done(impactlab_run_create_with(&run, h->scenario, 0, &whole, NULL, &h->error), &h->error);
+    check_done(impactlab_run_create_with(&run, h->scenario, 0, &whole, NULL, &told));
     impactlab_run_destroy(run);
 
     // one that wants all the memory there could be gets none, and not less than it asked for
     controller greedy = whole;
     greedy.memory_size = SIZE_MAX;
-    assert_int_equal(impactlab_run_create_with(&run, h->scenario, 0, &greedy, NULL, &h->error),
+    assert_int_equal(impactlab_run_create_with(&run, h->scenario, 0, &greedy, NULL, &told),
                      IMPACTLAB_NO_MEMORY);
     impactlab_run_destroy(run);
 
@@ -293,8 +277,7 @@ TEST_OF_HANDLES(controllers_are_whole)
     controller numbered = whole;
     numbered.parameters = &gain;
     numbered.parameter_count = 1;
-    check_done(impactlab_run_create_with(&run, h->scenario, 0, &numbered, NULL, &h->error),
-               &h->error);
+    check_done(impactlab_run_create_with(&run, h->scenario, 0, &numbered, NULL, &told));
     impactlab_run_destroy(run);
 }
 
@@ -306,69 +289,60 @@ static int take(void *context, const impactlab_outcome *outcome)
 
 TEST_OF_HANDLES(batches_look_before_they_run)
 {
-    handles *h = *state;
-    impactlab_error *error = &h->error;
     const char *const paths[] = {"motor.voltage"}, *const unknown[] = {"motor.volt"};
     const char *const none[] = {NULL};
     const double volts[] = {1, 2, 3};
     size_t taken = 0;
     impactlab_scenario *s = h->scenario;
-    check_refused(h, impactlab_batch(NULL, paths, 1, volts, 3, 1, take, &taken, error), "scenario");
-    check_refused(h, impactlab_batch(s, NULL, 1, volts, 3, 1, take, &taken, error), "paths");
-    check_refused(h, impactlab_batch(s, paths, 1, NULL, 3, 1, take, &taken, error), "values");
-    check_refused(h, impactlab_batch(s, paths, 1, volts, 3, 1, NULL, &taken, error), "take");
-    check_refused(h, impactlab_batch(s, unknown, 1, volts, 3, 1, take, &taken, error),
+    check_refused(impactlab_batch(NULL, paths, 1, volts, 3, 1, take, &taken, &told), "scenario");
+    check_refused(impactlab_batch(s, NULL, 1, volts, 3, 1, take, &taken, &told), "paths");
+    check_refused(impactlab_batch(s, paths, 1, NULL, 3, 1, take, &taken, &told), "values");
+    check_refused(impactlab_batch(s, paths, 1, volts, 3, 1, NULL, &taken, &told), "take");
+    check_refused(impactlab_batch(s, unknown, 1, volts, 3, 1, take, &taken, &told),
                   "motor.voltage");
-    check_refused(h, impactlab_batch(s, none, 1, volts, 3, 1, take, &taken, error), "paths[i]");
+    check_refused(impactlab_batch(s, none, 1, volts, 3, 1, take, &taken, &told), "paths[i]");
     assert_int_equal(taken, 0);
 
     // on all processors, on far too many threads, and the same run several times
-    check_done(impactlab_batch(s, paths, 1, volts, 3, 0, take, &taken, error), error);
-    check_done(impactlab_batch(s, paths, 1, volts, 3, 1000000, take, &taken, error), error);
-    check_done(impactlab_batch(s, NULL, 0, NULL, 2, 1, take, &taken, error), error);
-    check_done(impactlab_batch(s, paths, 1, NULL, 0, 1, take, &taken, error), error);
+    check_done(impactlab_batch(s, paths, 1, volts, 3, 0, take, &taken, &told));
+    check_done(impactlab_batch(s, paths, 1, volts, 3, 1000000, take, &taken, &told));
+    check_done(impactlab_batch(s, NULL, 0, NULL, 2, 1, take, &taken, &told));
+    check_done(impactlab_batch(s, paths, 1, NULL, 0, 1, take, &taken, &told));
     assert_int_equal(taken, 8);
 
     // an impossible value is reported before any run
     const char *const two[] = {"arm.k2", "motor.voltage"};
     const double values[] = {5, 1, -5, 1};
-    check_refused(h, impactlab_batch(s, two, 2, values, 2, 1, take, &taken, error), "arm.k2");
+    check_refused(impactlab_batch(s, two, 2, values, 2, 1, take, &taken, &told), "arm.k2");
     assert_int_equal(taken, 8);
 }
 
 TEST_OF_HANDLES(states_of_others_are_refused)
 {
-    handles *h = *state;
     impactlab_loop *other;
     const size_t size = impactlab_loop_state_size(h->loop);
     SCOPED(free_kept) void *bytes = malloc(size);
-    check_refused(h, impactlab_loop_save_state(h->loop, bytes, size - 1, &h->error), "room");
-    check_done(impactlab_loop_save_state(h->loop, bytes, size, &h->error), &h->error);
-    check_done(impactlab_scenario_set(h->scenario, "motor.voltage", "2", &h->error), &h->error);
-    check_done(impactlab_loop_create(&other, h->scenario, IMPACTLAB_COMMAND, &h->error), &h->error);
-    check_refused(h, impactlab_loop_restore_state(other, bytes, size, &h->error),
-                  "another scenario");
+    check_refused(impactlab_loop_save_state(h->loop, bytes, size - 1, &told), "room");
+    check_done(impactlab_loop_save_state(h->loop, bytes, size, &told));
+    check_done(impactlab_scenario_set(h->scenario, "motor.voltage", "2", &told));
+    check_done(impactlab_loop_create(&other, h->scenario, IMPACTLAB_COMMAND, &told));
+    check_refused(impactlab_loop_restore_state(other, bytes, size, &told), "another scenario");
     impactlab_loop_destroy(other);
 
     // one with a script that sets a number or a text, likewise
-    impactlab_loop *scripted;
-    check_done(impactlab_scenario_add_change(h->scenario, 0.1, "motor.voltage", "1", &h->error),
-               &h->error);
-    check_done(impactlab_loop_create(&other, h->scenario, IMPACTLAB_COMMAND, &h->error), &h->error);
-    check_done(impactlab_scenario_add_push(h->scenario, 0.1, 1e-3, &h->error), &h->error);
-    check_done(impactlab_loop_create(&scripted, h->scenario, IMPACTLAB_COMMAND, &h->error),
-               &h->error);
-    check_done(impactlab_loop_save_state(other, bytes, size, &h->error), &h->error);
-    check_refused(h, impactlab_loop_restore_state(scripted, bytes, size, &h->error),
-                  "another scenario");
+    own_loop *scripted;
+    check_done(impactlab_scenario_add_change(h->scenario, 0.1, "motor.voltage", "1", &told));
+    check_done(impactlab_loop_create(&other, h->scenario, IMPACTLAB_COMMAND, &told));
+    check_done(impactlab_scenario_add_push(h->scenario, 0.1, 1e-3, &told));
+    check_done(impactlab_loop_create(&scripted, h->scenario, IMPACTLAB_COMMAND, &told));
+    check_done(impactlab_loop_save_state(other, bytes, size, &told));
+    check_refused(impactlab_loop_restore_state(scripted, bytes, size, &told), "another scenario");
     impactlab_loop_destroy(other);
-    impactlab_loop_destroy(scripted);
 }
 
 // A caller who passes no fault gets the same status, on success and on failure.
 TEST_OF_HANDLES(an_error_may_be_left_out)
 {
-    handles *h = *state;
     static const char *const wrong[] = {"arm.k2=stiff", "motor.voltage=high"};
     static const char *const right[] = {"arm.k2=5", "motor.voltage=1"};
     const char text[] = "title: t\narm: {k2: stiff}\n";
