@@ -63,52 +63,6 @@ TEST(what_is_no_list_of_its_numbers_is_refused)
     check_refused("arm.modal_ratios", "0.1,-0.1", "-0.1 is out of range");
 }
 
-static void check_conflict(const char *const *settings, const char *path, const char *expected)
-{
-    parameters p;
-    fault f = {0};
-    parameters_defaults(&p, ARM_CORRECTED);
-    for (int i = 0; settings[i] != NULL; i += 2) {
-        assert_int_equal(parameter_set_text(&p, parameter_index(settings[i]), settings[i + 1], &f),
-                         STATUS_OK);
-    }
-    assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
-    fail_if(strstr(f.text, expected) == NULL, "'%s', expected '%s'", f.text, expected);
-    assert_string_equal(f.path, path);
-}
-
-TEST(lists_contradict_other_parameters)
-{
-    const char *const stiffness = "arm.joint_stiffness", *const lengths = "arm.link_lengths";
-    check_conflict(SETTINGS("arm.links", "4", stiffness, "10,12"), stiffness,
-                   "has 2 numbers, expected 3");
-    check_conflict(SETTINGS("arm.links", "3", "arm.hub_joint", "beam", stiffness, "10,12"),
-                   stiffness, "has 2 numbers, expected 3");
-    check_conflict(SETTINGS("arm.links", "3", lengths, "0.5,0.5"), lengths, "has 2 numbers");
-    check_conflict(SETTINGS(stiffness, "10", "arm.k2", "10"), stiffness, "arm.k2 are both given");
-    check_conflict(SETTINGS(stiffness, "10", "arm.EI", "10"), stiffness, "arm.EI are both given");
-    check_conflict(SETTINGS("arm.k2", "4", "arm.EI", "10"), "arm.EI", "both given");
-    check_conflict(SETTINGS(lengths, "0.4,0.6", "arm.length", "1"), lengths, "both given");
-    check_conflict(SETTINGS(lengths, "0.4,0.6", "arm.link_inertia", "1e-5"), "arm.link_inertia",
-                   "two equal links");
-    check_conflict(SETTINGS(lengths, "0.4,0.6", "method.name", "newmark"), lengths, "event only");
-    check_conflict(SETTINGS("arm.air_drag", "0.1", "arm.model", "printed"), "arm.air_drag",
-                   "printed model has not");
-    check_conflict(SETTINGS(stiffness, "10", "arm.stiffening", "1"), "arm.stiffening",
-                   "equal links and joints");
-    check_conflict(SETTINGS("arm.modal_ratios", "0.1,0.2"), "arm.modal_ratios",
-                   "expected at most 1");
-    check_conflict(
-        SETTINGS("arm.links", "24", "arm.modal_ratios", "0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0.1"),
-        "arm.modal_ratios", "has 17 numbers, expected at most 16");
-    check_conflict(SETTINGS("arm.links", "1", "arm.modal_ratios", "0.1,0.2"), "arm.modal_ratios",
-                   "expected at most 0: arm.links = 1");
-    check_conflict(SETTINGS("arm.links", "1", lengths, "0.5,0.5"), lengths, "has 2 numbers");
-    check_conflict(SETTINGS("arm.links", "3", lengths, "1"), lengths, "has 1 number, but");
-    check_conflict(SETTINGS("arm.modal_ratios", "0.1", "arm.damping_ratio", "0.1"),
-                   "arm.modal_ratios", "both given");
-}
-
 // Of a beam in one link only the root bends, and k2 is that spring.
 TEST(one_link_bends_at_its_root_alone)
 {

@@ -174,52 +174,6 @@ TEST(impossible_combinations_point_at_the_key)
         (const char *const[]){"f.yaml:1:30: ", "f.yaml:1:44: ", "f.yaml:2:14: ", "f.yaml:3:16: "});
 }
 
-// Conditions of one parameter on others, each reported at the place of one of them.
-TEST(what_does_not_go_together_is_refused)
-{
-    static const struct {
-        const char *text, *what;
-    } cases[] = {
-        {"arm: {links: 3, link_lengths: [0.1, 0.2]}", "arm.links = 3"},
-        {"arm: {links: 1, hub_joint: beam, link_lengths: [0.1, 0.2]}", "arm.links = 1"},
-        {"arm: {link_lengths: [0.1, 0.2], length: 0.3}", "both given"},
-        {"arm: {link_lengths: [0.1, 0.2], link_inertia: 1e-5}", "two equal links"},
-        {"arm: {joint_stiffness: [7], EI: 2}", "arm.EI are both given"},
-        {"arm: {hub_joint: beam, joint_stiffness: [7]}", "a joint before each"},
-        {"arm: {modal_ratios: [0.1], damping_ratio: 0.1}", "both given"},
-        {"arm: {modal_ratios: [0.1, 0.1, 0.1]}", "expected at most 1"},
-        {"arm: {links: 200, modal_ratios: [0.1]}", "at most"},
-        {"arm: {stiffening: 1, joint_stiffness: [7]}", "equal links and joints"},
-        {"arm: {stiffening: 1, link_lengths: [0.1, 0.2]}", "equal links and joints"},
-        {"arm: {air_drag: 1}\nmethod: {name: newmark}", "method.name = event only"},
-        {"arm: {modal_ratios: [0.1]}\nmethod: {name: newmark}", "method.name = event only"},
-        {"motor: {inductance: 1 H}\nmethod: {name: newmark}", "method.name = event only"},
-        {"motor: {current_limit: 1 A}\nmethod: {name: newmark}", "under a voltage"},
-        {"motor: {drive: current, inductance: 0.1 H}", "motor.drive = voltage"},
-        {"motor: {transconductance: 1}", "motor.drive = current"},
-        {"wall: {mass: 1 kg}", "not rigid"},
-        {"wall: {mass: 1 kg, contact: hunt-crossley}", "not hunt-crossley"},
-        {"wall: {mass: 1e-12 kg, contact: kelvin-voigt}", "expected 0 (none) or at least"},
-        {"wall: {restitution: 0.5, contact: kelvin-voigt}", "wall.restitution is for"},
-        {"wall: {contact: kelvin-voigt}\nmethod: {name: newmark}", "kelvin-voigt runs with"},
-        {"wall: {contact: hunt-crossley}\nmethod: {name: newmark}", "hunt-crossley runs with"},
-        {"control: {law: plugin}", "control.plugin"},
-        {"control: {law: process}", "control.command"},
-        {"control: {law: hybrid, jitter: 0.01 s}", "jitter"},
-        {"control: {law: hybrid, impact_angle: film}\nsensor: {film: false}", "sensor.film"},
-        {"control: {law: hybrid, impact_angle: accelerometer}\nsensor: {accelerometer: false}",
-         "sensor.accelerometer = false"},
-    };
-    for (EACH(c, cases)) {
-        scenario s;
-        sentences all;
-        const status code = parse(&s, c->text, &all);
-        fail_if(code != STATUS_BAD_SCENARIO || all.count != 1 || strstr(all.text, c->what) == NULL,
-                "%s: %d faults, expected one about '%s':\n%s", c->text, all.count, c->what,
-                all.text);
-    }
-}
-
 // However the reader comes upon them: the keys of the whole before those within.
 TEST(faults_of_one_line_are_told_from_left_to_right)
 {
