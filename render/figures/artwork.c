@@ -75,16 +75,14 @@ status artwork_write(const artwork *a, const figure_options *options, const char
 
     // every form of the picture
     for (int i = 0; formats[i] != NULL && code == STATUS_OK; i++) {
-        char *path = text_printf("%s/%s.%s", folder, file, formats[i]);
+        g_autofree char *path = text_printf("%s/%s.%s", folder, file, formats[i]);
         code = picture_write(&p, path, f);
-        g_free(path);
     }
 
     // and its numbers
     if (code == STATUS_OK) {
-        char *path = text_printf("%s/%s.csv", folder, file);
+        g_autofree char *path = text_printf("%s/%s.csv", folder, file);
         code = a->write_csv(a->what, path, f);
-        g_free(path);
     }
     return code;
 }
@@ -155,9 +153,8 @@ static void release_plotted(void *what)
 static void append_plain(GString *out, const char *before, const char *markup)
 {
     if (markup != NULL && markup[0] != '\0') {
-        char *plain = text_plain(markup);
+        g_autofree char *plain = text_plain(markup);
         text_append(out, "%s%s", before, plain);
-        g_free(plain);
     }
 }
 
@@ -347,20 +344,19 @@ static char *stem_of(const char *path)
 // A picture's path as the .tex file would name it: alone if both stand in one folder.
 static char *path_from(const char *tex, const char *file)
 {
-    char *tex_folder = g_path_get_dirname(tex), *folder = g_path_get_dirname(file);
+    g_autofree char *tex_folder = g_path_get_dirname(tex), *folder = g_path_get_dirname(file);
     bool same = strcmp(tex_folder, folder) == 0;
-    g_free(tex_folder);
-    g_free(folder);
     return same ? g_path_get_basename(file) : g_strdup(file);
 }
 
 void latex_print(FILE *stream, const artwork *a, const char *tex, const char *file)
 {
     assert(stream != NULL && a != NULL && tex != NULL && file != NULL);
-    char *path = path_from(tex, file), *stem = stem_of(file);
-    char *title = text_escape(a->title != NULL ? a->title : ""), *heading = latex_of_markup(title);
-    char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
-    char *alt = latex_escape(a->alternative != NULL ? a->alternative : a->title);
+    g_autofree char *path = path_from(tex, file), *stem = stem_of(file);
+    g_autofree char *title = text_escape(a->title != NULL ? a->title : ""),
+                    *heading = latex_of_markup(title);
+    g_autofree char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
+    g_autofree char *alt = latex_escape(a->alternative != NULL ? a->alternative : a->title);
 
     GString *out = g_string_new(NULL);
     text_append(out,
@@ -375,12 +371,6 @@ void latex_print(FILE *stream, const artwork *a, const char *tex, const char *fi
     fputs(out->str, stream);
 
     g_string_free(out, TRUE);
-    g_free(path);
-    g_free(stem);
-    g_free(title);
-    g_free(heading);
-    g_free(caption);
-    g_free(alt);
 }
 
 static status write_text(const char *path, const char *text, fault *f)
@@ -407,14 +397,11 @@ static char *beside(const char *file, const char *ending)
 status caption_write(const artwork *a, const char *file, fault *f)
 {
     assert(a != NULL && file != NULL);
-    char *caption = text_plain(a->caption != NULL ? a->caption : ""), *path = beside(file, ".txt");
-    char *text = text_printf("%s%s%s\n", a->title != NULL ? a->title : "",
-                             caption[0] != '\0' ? "\n\n" : "", caption);
-    status code = write_text(path, text, f);
-    g_free(text);
-    g_free(path);
-    g_free(caption);
-    return code;
+    g_autofree char *caption = text_plain(a->caption != NULL ? a->caption : ""),
+                    *path = beside(file, ".txt");
+    g_autofree char *text = text_printf("%s%s%s\n", a->title != NULL ? a->title : "",
+                                        caption[0] != '\0' ? "\n\n" : "", caption);
+    return write_text(path, text, f);
 }
 
 status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
@@ -425,9 +412,8 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
 
     status code = picture_write(&p, path, f);
     if (code == STATUS_OK && with_csv) {
-        char *csv = beside(path, ".csv");
+        g_autofree char *csv = beside(path, ".csv");
         code = a->write_csv(a->what, csv, f);
-        g_free(csv);
     }
 
     // text of a picture that has none of its own

@@ -51,12 +51,11 @@ static cut_body cut_last_body(const diagram *d)
 static void write_value(sketch *s, point at, double ax, const char *symbol, double value,
                         const char *unit)
 {
-    char *number = text_number(value, 3), shown[32];
+    g_autofree char *number = text_number(value, 3);
+    char shown[32];
     text_unit(unit, shown, sizeof shown);
-    char *text = text_printf("%s = %s\u2009%s", symbol, number, shown);
+    g_autofree char *text = text_printf("%s = %s\u2009%s", symbol, number, shown);
     sketch_text(s, at, (anchor){ax, 0.5}, text, SKETCH_SMALL);
-    g_free(text);
-    g_free(number);
 }
 
 // The whole arm, its hinge to the last body cut.

@@ -90,9 +90,8 @@ static void draw_angle(sketch *s, point at, double radius, double to, const char
 
 static char *force_text(const char *symbol, double force)
 {
-    char *quantity = text_quantity(force, 3, "N");
+    g_autofree char *quantity = text_quantity(force, 3, "N");
     char *text = text_printf("%s = %s", symbol, quantity);
-    g_free(quantity);
     return text;
 }
 
@@ -128,9 +127,8 @@ static void draw_contact(sketch *s, const diagram *d)
     sketch_text(s, (point){(one.joint.x + one.end.x) / 2 - 8, (one.joint.y + one.end.y) / 2 - 8},
                 (anchor){1, 1}, "<i>l</i>", SKETCH_LABEL);
 
-    char *force = force_text("<i>f</i>", of->one.force);
+    g_autofree char *force = force_text("<i>f</i>", of->one.force);
     draw_wall(s, contact, direction_of(one.joint, contact), force);
-    g_free(force);
 
     // which is which
     char text[96];
@@ -238,9 +236,8 @@ static void draw_deformation(sketch *s, const diagram *d)
     draw_angle(s, peak.joint, 66, direction_of(peak.joint, peak.end),
                "<i>θ</i><sub>3</sub> − <i>θ</i><sub>0</sub>");
 
-    char *force = force_text("<i>f</i><sub>max</sub>", of->one.force);
+    g_autofree char *force = force_text("<i>f</i><sub>max</sub>", of->one.force);
     draw_wall(s, contact, direction_of(peak.joint, contact), force);
-    g_free(force);
 
     // a name at each joint
     sketch_text(s, shifted(assumed.joint, 0, -5), (anchor){0.5, 1}, "energy principle",

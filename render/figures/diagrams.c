@@ -376,7 +376,7 @@ static void draw_stages(sketch *s, double x, double y)
 // A plot as a part of the page, laid out in the page's own points.
 static void paint_part(sketch *s, const figure *fig, double x, double y)
 {
-    figure_report *part = g_new0(figure_report, 1);
+    g_autofree figure_report *part = g_new0(figure_report, 1);
     cairo_save(s->cr);
     cairo_translate(s->cr, x, y);
     cairo_scale(s->cr, 1 / s->scale, 1 / s->scale);
@@ -386,14 +386,11 @@ static void paint_part(sketch *s, const figure *fig, double x, double y)
     // its texts into the report of the whole
     for (int i = 0; i < part->text_count; i++) {
         figure_rect r = part->texts[i].place;
-        char *text = text_escape(part->texts[i].text);
+        g_autofree char *text = text_escape(part->texts[i].text);
         r.x += s->scale * x;
         r.y += s->scale * y;
         report_add_text(s->report, text, part->texts[i].size, r);
-        g_free(text);
     }
-
-    g_free(part);
 }
 
 static void draw_sensor(sketch *s, const diagram *d)

@@ -246,11 +246,9 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
                          "%s shows no recorded signals that %s could choose or lie over", which->id,
                          o->overlay != NULL ? o->overlay : o->signals);
     }
-    char *title = title_of(which);
-    status code =
-        which->open != NULL ? which->open(title, o, out, f) : open_signals(which, title, o, out, f);
-    g_free(title);
-    return code;
+    g_autofree char *title = title_of(which);
+    return which->open != NULL ? which->open(title, o, out, f)
+                               : open_signals(which, title, o, out, f);
 }
 
 status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
@@ -272,7 +270,7 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
 
     // picture, numbers, caption and what LaTeX needs
     if (code == STATUS_OK) {
-        char *first = text_printf("%s/%s.%s", folder, which->file, list[0]);
+        g_autofree char *first = text_printf("%s/%s.%s", folder, which->file, list[0]);
         code = artwork_write(&drawn, o, folder, which->file, list, f);
         if (code == STATUS_OK && o->look.bare) {
             code = caption_write(&drawn, first, f);
@@ -280,7 +278,6 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
         if (code == STATUS_OK && tex != NULL && o->latex != NULL) {
             latex_print(tex, &drawn, o->latex, first);
         }
-        g_free(first);
         artwork_finish(&drawn);
     }
 

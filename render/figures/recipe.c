@@ -34,9 +34,8 @@ static void release(void *owner)
 // A file as the recipe's folder sees it; a scenario's name stays.
 static char *path_of(const recipe_figure *fig, const char *name)
 {
-    char *folder = g_path_get_dirname(fig->path);
+    g_autofree char *folder = g_path_get_dirname(fig->path);
     char *path = g_path_is_absolute(name) ? g_strdup(name) : g_build_filename(folder, name, NULL);
-    g_free(folder);
     return path;
 }
 
@@ -49,13 +48,12 @@ static status at_source(const recipe_figure *fig, const recipe_source *s, status
 
 static status open_run(recipe_figure *fig, const recipe_source *s, opened_source *out, fault *f)
 {
-    char *beside = path_of(fig, s->scenario);
+    g_autofree char *beside = path_of(fig, s->scenario);
     bool file = g_file_test(beside, G_FILE_TEST_IS_REGULAR);
 
     status code = run_begin_changed(&out->run, file ? beside : s->scenario, s->change,
                                     s->change_count, NULL, f);
     out->ran = code == STATUS_OK;
-    g_free(beside);
     return code;
 }
 
@@ -71,12 +69,8 @@ static status open_data(recipe_figure *fig, const recipe_source *s, opened_sourc
         }
     }
 
-    char *path = path_of(fig, s->file), *name = NULL;
-    status code =
-        overlay_read_column(&out->data.trace, path, s->column, s->shift, shown, count, &name, f);
-    g_free(name);
-    g_free(path);
-    return code;
+    g_autofree char *path = path_of(fig, s->file), *name = NULL;
+    return overlay_read_column(&out->data.trace, path, s->column, s->shift, shown, count, &name, f);
 }
 
 static status open_source(recipe_figure *fig, int index, fault *f)
@@ -91,10 +85,9 @@ static status open_source(recipe_figure *fig, int index, fault *f)
     } else if (s->kind == SOURCE_DATA) {
         code = open_data(fig, s, out, &why);
     } else {
-        char *path = path_of(fig, s->file);
+        g_autofree char *path = path_of(fig, s->file);
         const char *const keys[] = {s->x, s->y, s->z};
         code = sweep_table_read(path, keys, s->z != NULL ? 3 : 2, out->columns, &out->count, &why);
-        g_free(path);
     }
 
     return code == STATUS_OK ? code : at_source(fig, s, code, &why, f);
@@ -129,9 +122,8 @@ static char *parameters_of(const recipe_figure *fig)
     GString *out = g_string_new(NULL);
     for (int i = 0; i < fig->recipe.source_count; i++) {
         if (fig->sources[i].ran) {
-            char *line = parameters_line(&fig->sources[i].run.scenario);
+            g_autofree char *line = parameters_line(&fig->sources[i].run.scenario);
             text_append(out, "%s%s", out->len > 0 ? "; " : "", line);
-            g_free(line);
         }
     }
     return g_string_free(out, FALSE);

@@ -28,13 +28,12 @@ figure_axis recipe_column_axis(recipe_figure *fig, const char *key)
                                         : NULL;
 
     // what neither table describes goes by its own name, without a unit
-    char *label = words != NULL ? text_label(words) : g_strdup(key);
+    g_autofree char *label = words != NULL ? text_label(words) : g_strdup(key);
     figure_axis axis = {.name = key,
                         .label = owned_figure_keep(&fig->plot, text_escape(label)),
                         .unit = parameter >= 0  ? parameter_table[parameter].unit
                                 : quantity >= 0 ? summary_table[quantity].unit
                                                 : ""};
-    g_free(label);
     return axis;
 }
 
@@ -182,11 +181,10 @@ static void add_signal(recipe_figure *fig, int panel, int source, int signal, in
     const char *label = label_of(fig, from);
     if (signals > 1) {
         const opened_source *first = &fig->sources[0];
-        char *symbol = trace_symbol(data ? &first->run.scenario : run.scenario, index);
+        g_autofree char *symbol = trace_symbol(data ? &first->run.scenario : run.scenario, index);
         label = owned_figure_keep(&fig->plot, fig->recipe.source_count > 1
                                                   ? text_printf("%s %s", label, symbol)
                                                   : g_strdup(symbol));
-        g_free(symbol);
     }
 
     // measured data are points without a line
@@ -232,7 +230,8 @@ static void describe_axis(recipe_figure *fig, int panel)
     // a signal, or a column of a table
     if (from->signal_count > 0) {
         const signal_info *signal = &signal_table[signal_index(from->signals[0])];
-        char *symbol = trace_symbol(&fig->sources[0].run.scenario, signal_index(signal->name));
+        g_autofree char *symbol =
+            trace_symbol(&fig->sources[0].run.scenario, signal_index(signal->name));
 
         y->name = signal->name;
         y->unit = signal->unit;
@@ -244,7 +243,6 @@ static void describe_axis(recipe_figure *fig, int panel)
             &fig->plot, from->of >= 0             ? text_printf("Difference of %s", symbol)
                         : from->signal_count == 1 ? text_printf("%s %s", signal->quantity, symbol)
                                                   : g_strdup(signal->quantity));
-        g_free(symbol);
     } else if (from->source_count > 0) {
         const recipe_source *table = &fig->recipe.sources[from->sources[0]];
         figure_axis column = recipe_column_axis(fig, table->y);

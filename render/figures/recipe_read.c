@@ -64,14 +64,13 @@ static const char *heading_of(recipe_context *c, const multiples *m, int index)
     const char *value = m->value[index], *rest = value + strspn(value, "+-.0123456789eE");
     char unit[64];
     text_unit(rest[0] == '\0' ? info->unit : "", unit, sizeof unit);
-    char *escaped = text_escape(value);
+    g_autofree char *escaped = text_escape(value);
 
     // the name of the parameter says what a number without any unit is
     const char *dot = strrchr(info->path, '.');
     bool bare = rest[0] == '\0' && unit[0] == '\0';
     char *heading = bare ? text_printf("%s = %s", dot != NULL ? dot + 1 : info->path, escaped)
                          : text_printf("%s%s%s", escaped, unit[0] != '\0' ? "\u2009" : "", unit);
-    g_free(escaped);
     return keep(c, heading);
 }
 

@@ -78,15 +78,14 @@ static void put_title_page(cairo_t *cr, PangoContext *context, const report *r)
     double step = fmin(12, (PAGE_HEIGHT - PAGE_MARGIN - y) / r->items->len);
     for (guint i = 0; i < r->items->len; i++, y += step) {
         const report_item *item = report_item_at(r, i);
-        char *title = text_escape(item->drawn.title), page[16];
-        char *target = text_printf("dest='item-%u'", i);
+        g_autofree char *title = text_escape(item->drawn.title);
+        char page[16];
+        g_autofree char *target = text_printf("dest='item-%u'", i);
         g_snprintf(page, sizeof page, "%d", item->page);
         cairo_tag_begin(cr, CAIRO_TAG_LINK, target);
         put_text(cr, context, title, fmin(8, 0.7 * step), false, PAGE_MARGIN, y);
         put_text(cr, context, page, fmin(8, 0.7 * step), false, PAGE_WIDTH - PAGE_MARGIN - 14, y);
         cairo_tag_end(cr, CAIRO_TAG_LINK);
-        g_free(target);
-        g_free(title);
     }
 }
 
@@ -94,16 +93,14 @@ static void put_title_page(cairo_t *cr, PangoContext *context, const report *r)
 static void mark_item(cairo_t *cr, const report_item *item, guint index)
 {
     cairo_surface_t *surface = cairo_get_target(cr);
-    char *place = text_printf("name='item-%u'", index);
-    char *target = text_printf("dest='item-%u'", index);
+    g_autofree char *place = text_printf("name='item-%u'", index);
+    g_autofree char *target = text_printf("dest='item-%u'", index);
     cairo_tag_begin(cr, CAIRO_TAG_DEST, place);
     cairo_tag_end(cr, CAIRO_TAG_DEST);
     if (cairo_surface_get_type(surface) == CAIRO_SURFACE_TYPE_PDF) {
         cairo_pdf_surface_add_outline(surface, CAIRO_PDF_OUTLINE_ROOT, item->drawn.title, target,
                                       0);
     }
-    g_free(target);
-    g_free(place);
 }
 
 static status paint_page(cairo_t *cr, const void *what, fault *f)
@@ -232,14 +229,13 @@ static void add_parameter_row(table_page *t, const parameter_info *info, int ind
 static table_page *new_parameter_table(const char *group, size_t length)
 {
     table_page *t = g_new0(table_page, 1);
-    char *title = text_printf("Parameters: %.*s", (int)length, group);
+    g_autofree char *title = text_printf("Parameters: %.*s", (int)length, group);
     table_begin(t, title);
     table_add_column(t, "Parameter", 3.7, TEXT_LEFT);
     table_add_column(t, "Corrected", 1.1, TEXT_LEFT);
     table_add_column(t, "Printed", 1.1, TEXT_LEFT);
     table_add_column(t, "Unit", 0.9, TEXT_LEFT);
     table_add_column(t, "Meaning", 3.2, TEXT_LEFT);
-    g_free(title);
     return t;
 }
 
@@ -278,8 +274,8 @@ static void clear_item(gpointer data)
 
 static status write_both(const report *r, const char *folder, fault *f)
 {
-    char *html = g_strconcat(folder, "/report.html", NULL);
-    char *pdf = g_strconcat(folder, "/report.pdf", NULL);
+    g_autofree char *html = g_strconcat(folder, "/report.html", NULL);
+    g_autofree char *pdf = g_strconcat(folder, "/report.pdf", NULL);
 
     // after a fault nothing more is written
     status code = make_folder(folder, f);
@@ -289,8 +285,6 @@ static status write_both(const report *r, const char *folder, fault *f)
     if (code == STATUS_OK) {
         code = write_pdf(r, pdf, f);
     }
-    g_free(html);
-    g_free(pdf);
     return code;
 }
 

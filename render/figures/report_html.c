@@ -166,9 +166,8 @@ static void add_contents(const report *r, GString *html)
 {
     g_string_append(html, "<nav><ol>\n");
     for (guint i = 0; i < r->items->len; i++) {
-        char *title = text_escape(report_item_at(r, i)->drawn.title);
+        g_autofree char *title = text_escape(report_item_at(r, i)->drawn.title);
         text_append(html, "<li><a href=\"#item-%u\">%s</a></li>\n", i, title);
-        g_free(title);
     }
     g_string_append(html, "</ol></nav>\n");
 }
@@ -176,7 +175,7 @@ static void add_contents(const report *r, GString *html)
 // A picture with many cells, which would be many thousand paths: as a PNG in the page.
 static status add_png(GString *html, const picture *p, const char *alternative, fault *f)
 {
-    char *name = NULL, *bytes = NULL;
+    g_autofree char *name = NULL, *bytes = NULL;
     gsize length = 0;
     GError *error = NULL;
     int file = g_file_open_tmp("impactlab-XXXXXX.png", &name, &error);
@@ -189,13 +188,10 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
 
     status code = picture_write(p, name, f);
     if (code == STATUS_OK && g_file_get_contents(name, &bytes, &length, NULL)) {
-        char *text = g_base64_encode((const guchar *)bytes, length);
+        g_autofree char *text = g_base64_encode((const guchar *)bytes, length);
         text_append(html, "<img alt=\"%s\" src=\"data:image/png;base64,%s\">\n", alternative, text);
-        g_free(text);
     }
     unlink(name);
-    g_free(bytes);
-    g_free(name);
     return code;
 }
 
@@ -203,28 +199,24 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
 static status add_svg(GString *html, const picture *p, guint index, GHashTable *letters, fault *f)
 {
     // its own identifiers, as all figures stand in one page
-    char *svg = picture_svg(p, f);
+    g_autofree char *svg = picture_svg(p, f);
     if (svg == NULL) {
         return f->code;
     }
 
     // then smaller: fewer bytes, and letters shared with the other figures
-    char *prefix = text_printf("i%u-", index);
+    g_autofree char *prefix = text_printf("i%u-", index);
     char *root = strstr(svg, "<svg"), *own = svg_prefix_ids(root ? root : svg, prefix);
-    char *small = svg_compact(own), *shared = svg_share_symbols(small, letters);
+    g_autofree char *small = svg_compact(own), *shared = svg_share_symbols(small, letters);
     g_string_append(html, shared);
-    g_free(shared);
-    g_free(small);
     g_free(own);
-    g_free(prefix);
-    g_free(svg);
     return STATUS_OK;
 }
 
 // A text as a JSON string that may stand in an attribute.
 static void add_json_text(GString *out, const char *markup)
 {
-    char *plain = text_plain(markup != NULL ? markup : "");
+    g_autofree char *plain = text_plain(markup != NULL ? markup : "");
     g_string_append(out, "&quot;");
 
     // escaped twice: for JSON, and for the attribute around it
@@ -247,7 +239,6 @@ static void add_json_text(GString *out, const char *markup)
         }
     }
     g_string_append(out, "&quot;");
-    g_free(plain);
 }
 
 static void add_json_axis(GString *out, const char *name, double low, double high)
@@ -322,14 +313,15 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
     const artwork *drawn = &item->drawn;
     picture p = artwork_picture(drawn, &options);
     p.dpi = SCREEN_DPI; // of what has too many cells for paths
-    char *alternative = text_escape(p.alternative != NULL ? p.alternative : drawn->title);
+    g_autofree char *alternative =
+        text_escape(p.alternative != NULL ? p.alternative : drawn->title);
     bool map = drawn->plotted != NULL && drawn->plotted->panels[0].map != NULL;
     text_append(html, "<figure role=\"img\" aria-label=\"%s\"", alternative);
 
     // where its panels are is known once it has been painted
     status code = STATUS_OK;
     if (drawn->plotted != NULL && !map) {
-        figure_report *seen = g_new0(figure_report, 1);
+        g_autofree figure_report *seen = g_new0(figure_report, 1);
         cairo_surface_t *nowhere = cairo_recording_surface_create(CAIRO_CONTENT_COLOR, NULL);
         cairo_t *cr = cairo_create(nowhere);
         code = drawn->paint(cr, drawn->what, seen, f);
@@ -338,7 +330,6 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
             add_panels(html, drawn->plotted, seen);
         }
         cairo_surface_destroy(nowhere);
-        g_free(seen);
     }
 
     g_string_append(html, ">\n");
@@ -347,7 +338,6 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
         code = heavy ? add_png(html, &p, alternative, f) : add_svg(html, &p, index, letters, f);
     }
     g_string_append(html, "</figure>\n");
-    g_free(alternative);
     return code;
 }
 
@@ -356,7 +346,7 @@ static status add_section(const report *r, guint index, GString *html, GHashTabl
 {
     status code = STATUS_OK;
     const report_item *item = report_item_at(r, index);
-    char *title = text_escape(item->drawn.title);
+    g_autofree char *title = text_escape(item->drawn.title);
     text_append(html, "<section id=\"item-%u\">\n<h2>%s</h2>\n", index, title);
 
     // the item itself
@@ -376,7 +366,6 @@ static status add_section(const report *r, guint index, GString *html, GHashTabl
     }
 
     g_string_append(html, "</p>\n</section>\n");
-    g_free(title);
     return code;
 }
 

@@ -63,15 +63,13 @@ static void add_motor_row(table_page *t, const parameters *p, const char *symbol
     int index = parameter_find(path);
     const parameter_info *info = &parameter_table[index];
     text_unit(info->unit, unit, sizeof unit);
-    char *used =
+    g_autofree char *used =
         text_printf("%.6g\u2009%s", parameter_get(p, index), strcmp(unit, "ohm") == 0 ? "Ω" : unit);
-    char *name = text_printf("%s: %s", path, info->description);
+    g_autofree char *name = text_printf("%s: %s", path, info->description);
     if (t->column_count == 3) {
         table_add_group(t, name);
     }
     table_add_row(t, (const char *[]){symbol, printed, used, name});
-    g_free(used);
-    g_free(name);
 }
 
 status table_motor(const char *title, const figure_options *o, artwork *out, fault *f)
@@ -239,9 +237,8 @@ static char *cell_text(const char *format, double value)
     if (!isfinite(value)) {
         return g_strdup("–");
     }
-    char *text = text_printf(format, fabs(value));
+    g_autofree char *text = text_printf(format, fabs(value));
     char *cell = g_strconcat(value < 0 ? "\u2212" : "", text, NULL);
-    g_free(text);
     return cell;
 }
 
@@ -265,10 +262,9 @@ static void add_model(table_page *t, const table_row *row, double scale, const c
     for (int i = 0; i < TABLE_VOLTAGES; i++) {
         difference[i] = row->computed[i] / row->printed[i] - 1;
     }
-    char *name = text_printf("%s model", row->model);
+    g_autofree char *name = text_printf("%s model", row->model);
     add_values(t, name, row->computed, scale, format);
     add_values(t, "  difference (%)", difference, 100, "%.1f");
-    g_free(name);
 }
 
 static status open_predictions(const char *table, const char *title, const figure_options *o,
@@ -344,13 +340,11 @@ status table_errors(const char *title, const figure_options *o, artwork *out, fa
     table_add_column(t, "Corrected (%)", 1.2, TEXT_RIGHT);
 
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
-        char *printed =
+        g_autofree char *printed =
             cell_text("%.1f", 100 * tables_mean_error(all, "printed", quantities[q].quantity));
-        char *corrected =
+        g_autofree char *corrected =
             cell_text("%.1f", 100 * tables_mean_error(all, "corrected", quantities[q].quantity));
         table_add_row(t, (const char *[]){quantities[q].label, printed, corrected});
-        g_free(printed);
-        g_free(corrected);
     }
 
     t->caption =

@@ -177,15 +177,13 @@ char *text_number(double value, int digits)
 char *text_label(const char *description)
 {
     assert(description != NULL);
-    char *valid = g_utf8_make_valid(description, -1);
-    char *label = g_strndup(valid, strcspn(valid, ",:;("));
+    g_autofree char *valid = g_utf8_make_valid(description, -1);
+    g_autofree char *label = g_strndup(valid, strcspn(valid, ",:;("));
     g_strchomp(label);
     gunichar first = g_utf8_get_char(label);
     char letter[8] = "";
     letter[g_unichar_to_utf8(g_unichar_toupper(first), letter)] = '\0';
     char *whole = g_strconcat(letter, label[0] != '\0' ? g_utf8_next_char(label) : "", NULL);
-    g_free(label);
-    g_free(valid);
     return whole;
 }
 

@@ -193,9 +193,8 @@ const char *picture_software(void)
     // made by whichever thread comes first
     static gsize software;
     if (g_once_init_enter(&software)) {
-        char *named = text_printf("impactlab %s", lab_version());
+        g_autofree char *named = text_printf("impactlab %s", lab_version());
         g_once_init_leave(&software, (gsize)g_intern_string(named));
-        g_free(named);
     }
     return (const char *)software;
 }
@@ -305,9 +304,8 @@ static status write_png(FILE *stream, const picture *p, fault *f)
 static void set_metadata(cairo_surface_t *surface, cairo_pdf_metadata_t what, const char *value)
 {
     if (value != NULL) {
-        char *valid = g_utf8_make_valid(value, -1);
+        g_autofree char *valid = g_utf8_make_valid(value, -1);
         cairo_pdf_surface_set_metadata(surface, what, valid);
-        g_free(valid);
     }
 }
 
@@ -349,9 +347,8 @@ static cairo_status_t to_string(void *string, const unsigned char *bytes, unsign
 static void add_element(GString *out, const char *indent, const char *name, const char *content)
 {
     if (content != NULL) {
-        char *escaped = text_escape(content);
+        g_autofree char *escaped = text_escape(content);
         text_append(out, "%s<%s>%s</%s>\n", indent, name, escaped, name);
-        g_free(escaped);
     }
 }
 
@@ -404,12 +401,11 @@ char *picture_svg(const picture *p, fault *f)
 static status write_svg(FILE *stream, const picture *p, fault *f)
 {
     fault why = {0};
-    char *svg = picture_svg(p, &why);
+    g_autofree char *svg = picture_svg(p, &why);
     if (svg == NULL) {
         return fault_set(f, why.code, "%s", why.text);
     }
     fputs(svg, stream);
-    g_free(svg);
     return STATUS_OK;
 }
 

@@ -80,7 +80,7 @@ static void frame_heights(PangoContext *context, const sketch_frame *frame, doub
         return;
     }
 
-    char *title = text_escape(frame->title);
+    g_autofree char *title = text_escape(frame->title);
     text_block t = title_block(frame, title), c = caption_block(frame);
     text_measure(context, &t, &width, &height);
     *above += height + TITLE_SPACE;
@@ -89,7 +89,6 @@ static void frame_heights(PangoContext *context, const sketch_frame *frame, doub
         text_measure(context, &c, &width, &height);
         *below += height + TITLE_SPACE;
     }
-    g_free(title);
 }
 
 void sketch_size(const sketch_frame *frame, double *width, double *height)
@@ -160,10 +159,9 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
     }
 
     // title above, caption below
-    char *title = text_escape(frame->title);
+    g_autofree char *title = text_escape(frame->title);
     const text_block heading = title_block(frame, title);
     draw_block(s, &heading, (point){s->left, SKETCH_MARGIN}, (anchor){0, 0}, s->colours->text);
-    g_free(title);
     if (frame->caption != NULL) {
         const text_block caption = caption_block(frame);
         draw_block(s, &caption, (point){s->left, s->bottom + TITLE_SPACE}, (anchor){0, 0},

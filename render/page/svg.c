@@ -64,11 +64,10 @@ static char *rename_ids(const char *svg, GHashTable *names, const char *prefix)
 
         g_string_append_len(out, svg, (gssize)length);
         svg += length;
-        char *id = g_strndup(svg, id_length(svg));
+        g_autofree char *id = g_strndup(svg, id_length(svg));
         const char *name = names != NULL ? g_hash_table_lookup(names, id) : NULL;
         text_append(out, "%s%s", name ? "" : prefix, name ? name : id);
         svg += strlen(id);
-        g_free(id);
     }
     return g_string_free(out, FALSE);
 }
@@ -335,11 +334,10 @@ char *svg_compact(const char *svg)
         size_t joint = last != (size_t)-1 ? joint_of(out, last, tag) : (size_t)-1;
         if (joint != (size_t)-1) {
             // the data go to the end of the path before, in place of its quote and slash
-            char *data = g_strdup(out->str + joint);
+            g_autofree char *data = g_strdup(out->str + joint);
             g_string_truncate(out, tag);
             g_string_truncate(out, out->len - strlen("\"/>"));
             g_string_append(out, data);
-            g_free(data);
             continue;
         }
         last = strncmp(out->str + tag, "<path", 5) == 0 && g_str_has_suffix(out->str, "\"/>")

@@ -101,11 +101,10 @@ static double widest_word(PangoContext *context, const sketch_frame *frame, cons
 
     // measured as the cell would set it, bold or not
     for (int i = 0; words[i] != NULL; i++) {
-        char *word = text_escape(words[i]);
+        g_autofree char *word = text_escape(words[i]);
         text_block t = cell_block(frame, word, bold);
         text_measure(context, &t, &width, &height);
         widest = fmax(widest, width);
-        g_free(word);
     }
     g_strfreev(words);
     g_free(plain);
@@ -264,9 +263,8 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
 
 static void write_plain(csv_writer *csv, const char *markup)
 {
-    char *plain = text_plain(markup);
+    g_autofree char *plain = text_plain(markup);
     csv_text(csv, plain);
-    g_free(plain);
 }
 
 status table_write_csv(const table_page *t, const char *path, fault *f)

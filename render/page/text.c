@@ -142,14 +142,12 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     pango_font_description_free(font);
 
     // text that is no markup is shown as it is
-    char *valid = text_printable(t->markup), *markup = translated(t, valid);
+    g_autofree char *valid = text_printable(t->markup), *markup = translated(t, valid);
     if (pango_parse_markup(markup, -1, 0, NULL, NULL, NULL, NULL)) {
         pango_layout_set_markup(layout, markup, -1);
     } else {
         pango_layout_set_text(layout, valid, -1);
     }
-    g_free(markup);
-    g_free(valid);
 
     pango_layout_set_alignment(layout, alignments[t->align]);
     // lines stand alike, with raised letters in them or not
@@ -224,7 +222,7 @@ void report_add_text(figure_report *report, const char *markup, double size, fig
     }
 
     figure_text *t = &report->texts[report->text_count++];
-    char *plain = text_plain(markup);
+    g_autofree char *plain = text_plain(markup);
     const char *end;
     bool indexed = strstr(markup, "<sub>") != NULL || strstr(markup, "<sup>") != NULL;
 
@@ -237,7 +235,6 @@ void report_add_text(figure_report *report, const char *markup, double size, fig
     if (!g_utf8_validate(t->text, -1, &end)) {
         t->text[end - t->text] = '\0';
     }
-    g_free(plain);
 }
 
 static void (*end_of_program)(const char *reason);

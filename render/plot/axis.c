@@ -238,10 +238,9 @@ char *axis_label(const char *label, const char *unit, int exponent)
     if (bare) {
         return g_strdup(label ? label : "");
     }
-    char *whole = unit_markup(unit, exponent);
+    g_autofree char *whole = unit_markup(unit, exponent);
     bool named = label != NULL && label[0] != '\0';
     char *both = g_strconcat(named ? label : "", named ? " " : "", whole, NULL);
-    g_free(whole);
     return both;
 }
 

@@ -117,12 +117,10 @@ static char *fitting_title(const drawing *d, const axis *a, double length)
 
 double axis_title_height(const drawing *d, const axis *a, double length)
 {
-    char *title = fitting_title(d, a, length);
+    g_autofree char *title = fitting_title(d, a, length);
     text_block t = figure_text_of(d, title, d->style.label);
     t.width = length;
-    double height = title[0] == '\0' ? 0 : height_of(d, t);
-    g_free(title);
-    return height;
+    return title[0] == '\0' ? 0 : height_of(d, t);
 }
 
 void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y)
@@ -229,7 +227,7 @@ bool has_y_labels(const drawing *d, const panel_layout *l)
 void draw_y_title(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
-    char *title = fitting_title(d, &l->y, box->height + PANEL_SPACE);
+    g_autofree char *title = fitting_title(d, &l->y, box->height + PANEL_SPACE);
     text_block t = figure_text_of(d, title, d->style.label);
     t.align = TEXT_CENTRE;
     t.width = box->height + PANEL_SPACE;
@@ -237,17 +235,15 @@ void draw_y_title(drawing *d, const panel_layout *l)
         draw_rotated(d, t, d->column[l->column].edge, box->y + box->height / 2,
                      d->style.colours->text);
     }
-    g_free(title);
 }
 
 void draw_x_titles(drawing *d)
 {
-    char *title = axis_title(&d->x);
+    g_autofree char *title = axis_title(&d->x);
     // once below all columns
     if (d->fig->x.label != NULL) {
         draw_text(d, figure_text_of(d, title, d->style.label),
                   (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
                   (anchor){0.5, 0}, d->style.colours->text);
     }
-    g_free(title);
 }

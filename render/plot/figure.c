@@ -103,9 +103,8 @@ void figure_size(const figure *fig, double *width, double *height)
     // the axis below, title and caption
     points += 2 * PAGE_MARGIN + 24;
     if (fig->title != NULL && !fig->bare) {
-        char *title = text_escape(fig->title);
+        g_autofree char *title = text_escape(fig->title);
         points += wrapped_height(fig, title, TITLE_LETTERS, true);
-        g_free(title);
     }
     if (fig->caption != NULL && !fig->bare) {
         points += wrapped_height(fig, fig->caption, SMALL_LETTERS, false);
@@ -190,12 +189,11 @@ static void draw_frame_texts(drawing *d)
 
     // the title above
     if (fig->title != NULL && !fig->bare) {
-        char *title = text_escape(fig->title);
+        g_autofree char *title = text_escape(fig->title);
         text_block t = figure_text_of(d, title, d->style.title);
         t.bold = t.balanced = true;
         t.width = width;
         draw_text(d, t, left, d->title_y, (anchor){0, 0}, d->style.colours->text);
-        g_free(title);
     }
 
     // the caption below
@@ -322,9 +320,8 @@ typedef struct long_form {
 // A name, or without one the label without markup, with its unit.
 static void write_name(long_form *t, const char *name, const char *label, const char *unit)
 {
-    char *plain = name ? g_strdup(name) : text_plain(label ? label : "");
+    g_autofree char *plain = name ? g_strdup(name) : text_plain(label ? label : "");
     csv_heading(&t->csv, plain, unit != NULL && unit[0] != '\0' ? unit : NULL);
-    g_free(plain);
 }
 
 static void write_panel_name(long_form *t, const figure_panel *panel)
@@ -402,9 +399,8 @@ static void write_instant(long_form *t, const char *panel, const char *series, d
 static void write_marks(long_form *t, const figure *fig)
 {
     for (int i = 0; i < fig->mark_count; i++) {
-        char *label = text_plain(fig->marks[i].label ? fig->marks[i].label : "");
+        g_autofree char *label = text_plain(fig->marks[i].label ? fig->marks[i].label : "");
         write_instant(t, "mark", label, fig->marks[i].x);
-        g_free(label);
     }
     for (int i = 0; i < fig->interval_count; i++) {
         write_instant(t, "interval", "begins", fig->intervals[i].from);

@@ -134,9 +134,8 @@ static double left_space(const drawing *d, const panel_layout *l)
     double left = axis_title_height(d, &l->y, l->plane.box.height + PANEL_SPACE) + LABEL_SPACE +
                   widest_tick(d, &l->y, d->style.tick) + TICK_SPACE + TICK_LENGTH;
     if (l->panel->impulse_count > 0 && l->panel->impulse_label != NULL) {
-        char *label = impulse_strip_label(l->panel);
+        g_autofree char *label = impulse_strip_label(l->panel);
         left = fmax(left, width_of(d, label, d->style.small) + TICK_SPACE + TICK_LENGTH);
-        g_free(label);
     }
 
     return left;
@@ -234,12 +233,11 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
     // from the top: title, legend, labels of marks
     d->title_y = y;
     if (fig->title != NULL && !fig->bare) {
-        char *title = text_escape(fig->title);
+        g_autofree char *title = text_escape(fig->title);
         text_block t = figure_text_of(d, title, d->style.title);
         t.bold = t.balanced = true;
         t.width = frame_text_width(d, &left);
         y += height_of(d, t) + 3;
-        g_free(title);
     }
 
     d->legend_y = y;

@@ -291,7 +291,7 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
     picture_stroke(d->cr);
 
     // what it is, upwards at the right
-    char *title = axis_title(&l->colours);
+    g_autofree char *title = axis_title(&l->colours);
     text_block t = figure_text_of(d, title, d->style.label);
     t.align = TEXT_CENTRE;
     t.width = box->height;
@@ -299,5 +299,4 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
                  right + TICK_LENGTH + TICK_SPACE + widest_tick(d, &l->colours, d->style.tick) +
                      LABEL_SPACE,
                  box->y + box->height / 2, d->style.colours->text);
-    g_free(title);
 }

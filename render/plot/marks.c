@@ -400,10 +400,9 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
                 continue;
             }
             bool before = m->onwards && d->mark_text_x[i] < x;
-            char *towards = before ? g_strconcat(m->label, ARROW, NULL) : NULL;
+            g_autofree char *towards = before ? g_strconcat(m->label, ARROW, NULL) : NULL;
             t.markup = before ? towards : t.markup;
             draw_text(d, t, d->mark_text_x[i] + shift, top, (anchor){0, 0}, d->style.colours->text);
-            g_free(towards);
         }
         draw_hairline(d, x, top + 1, last->box.y + last->box.height);
     }

@@ -88,9 +88,8 @@ static status read_file(trace *t, const overlay_spec *spec, const trace_panel *p
     }
 
     // named by its file
-    char *file = g_path_get_basename(spec->path);
+    g_autofree char *file = g_path_get_basename(spec->path);
     *name = spec->column != NULL ? text_printf("%s: %s", file, spec->column) : g_strdup(file);
-    g_free(file);
 
     const int signal =
         spec->column != NULL ? signal_of(&table, spec->column, panels, panel_count) : 0;

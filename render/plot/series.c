@@ -311,9 +311,8 @@ static int impulse_exponent(const figure_panel *panel)
 char *impulse_strip_label(const figure_panel *panel)
 {
     assert(panel != NULL && panel->impulse_label != NULL);
-    char *unit = axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
+    g_autofree char *unit = axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
     char *label = g_strconcat(panel->impulse_label, "\n", unit, NULL);
-    g_free(unit);
     return label;
 }
 
@@ -325,7 +324,7 @@ static void label_impulse(drawing *d, const panel_layout *l, int index, double b
 {
     double width, height;
     const figure_impulse *all = l->panel->impulses, *p = &all[index];
-    char *markup = text_number(p->size / pow(10, impulse_exponent(l->panel)), 3);
+    g_autofree char *markup = text_number(p->size / pow(10, impulse_exponent(l->panel)), 3);
     text_block t = figure_text_of(d, markup, d->style.small);
     text_measure(d->context, &t, &width, &height);
     double x = plane_x(&l->plane, p->x);
@@ -352,7 +351,6 @@ static void label_impulse(drawing *d, const panel_layout *l, int index, double b
             break;
         }
     }
-    g_free(markup);
 }
 
 static bool impulse_shows(const drawing *d, const figure_impulse *p)
@@ -419,12 +417,11 @@ void draw_impulses(drawing *d, const panel_layout *l)
 
     // what they are, with their unit, at the left
     if (panel->impulse_label != NULL) {
-        char *label = impulse_strip_label(panel);
+        g_autofree char *label = impulse_strip_label(panel);
         text_block t = figure_text_of(d, label, d->style.small);
         t.align = TEXT_RIGHT;
         t.leading = impulse_exponent(panel) != 0 ? STRIP_LEADING : 0;
         draw_text(d, t, left - TICK_LENGTH - TICK_SPACE, base + 1.5, (anchor){1, 1},
                   d->style.colours->text);
-        g_free(label);
     }
 }

@@ -219,11 +219,10 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->symbol = trace_keep(texts, trace_series_symbol(s, index));
         } else if (!alone && !named) {
             // the first of its signals speaks for the other run
-            char *symbol = trace_series_symbol(s, index), *run_name = text_escape(runs[run].name);
+            g_autofree char *symbol = trace_series_symbol(s, index),
+                            *run_name = text_escape(runs[run].name);
             out->label = trace_keep(texts, text_printf("%s  %s", symbol, run_name));
             named = true;
-            g_free(symbol);
-            g_free(run_name);
         }
     }
 }

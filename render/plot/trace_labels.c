@@ -58,9 +58,8 @@ char *trace_series_label(const scenario *s, int index, bool joined)
     char *symbol = symbol_markup(s, signal), *label;
 
     if (twin >= 0) {
-        char *other = symbol_markup(s, &signal_table[twin]);
+        g_autofree char *other = symbol_markup(s, &signal_table[twin]);
         label = text_printf("%s = %s  hub and first link", symbol, other);
-        g_free(other);
     } else {
         // what belongs to no body is described as a whole
         label = text_printf("%s  %s", symbol,
@@ -77,19 +76,16 @@ char *trace_series_symbol(const scenario *s, int index)
     int twin = trace_hub_is_first_link(s) ? first_link_twin(index) : -1;
     char *symbol = symbol_markup(s, &signal_table[index]);
     if (twin >= 0) {
-        char *other = symbol_markup(s, &signal_table[twin]), *own = symbol;
+        g_autofree char *other = symbol_markup(s, &signal_table[twin]), *own = symbol;
         symbol = text_printf("%s = %s", own, other);
-        g_free(other);
-        g_free(own);
     }
     return symbol;
 }
 
 char *trace_axis_label(const scenario *s, const signal_info *signal)
 {
-    char *symbol = symbol_markup(s, signal);
+    g_autofree char *symbol = symbol_markup(s, signal);
     char *label = text_printf("%s %s", signal->quantity, symbol);
-    g_free(symbol);
     return label;
 }
 
@@ -145,10 +141,9 @@ static void add_drive(GString *out, const parameters *p)
 static void add_printed_constants(GString *out, const parameters *p)
 {
     if (p->arm.model == ARM_PRINTED) {
-        char *inertia = text_number(p->arm.link_inertia, 3);
+        g_autofree char *inertia = text_number(p->arm.link_inertia, 3);
         text_append(out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = ", p->arm.k1);
         text_append(out, "%s\u2009kg·m²", inertia);
-        g_free(inertia);
     }
 }
 
@@ -166,9 +161,8 @@ static void add_shading(GString *out, const trace_run *runs, int run_count, cons
     }
 
     // several could be meant, so it is named
-    char *name = text_escape(runs[0].name);
+    g_autofree char *name = text_escape(runs[0].name);
     text_append(out, "Shaded: %s of the first run (%s), whose marks are shown.", shaded, name);
-    g_free(name);
 }
 
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
@@ -180,7 +174,7 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
 
     // the arm and what drives it
     GString *out = g_string_new(p->arm.model == ARM_PRINTED ? "Printed model" : "Corrected model");
-    char *step = duration_text(p->method.step);
+    g_autofree char *step = duration_text(p->method.step);
     text_append(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
                 hub_texts[p->arm.hub_joint]);
     add_printed_constants(out, p);
@@ -201,12 +195,10 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
 
     // what went wrong
     if (run->result->summary.status != STATUS_OK) {
-        char *why = text_escape(run->result->summary.message);
+        g_autofree char *why = text_escape(run->result->summary.message);
         text_append(out, " <b>The run failed:</b> %s", why);
-        g_free(why);
     }
 
-    g_free(step);
     return g_string_free(out, FALSE);
 }
 

@@ -45,9 +45,8 @@ static char *action_label(const scenario *s, const event *e)
 
 static char *mode_label(const char *name, double mode)
 {
-    char *escaped = name != NULL ? text_escape(name) : text_printf("%g", mode);
+    g_autofree char *escaped = name != NULL ? text_escape(name) : text_printf("%g", mode);
     char *label = text_printf(name != NULL ? "%s mode" : "mode %s", escaped);
-    g_free(escaped);
     return label;
 }
 

@@ -213,8 +213,8 @@ static status record(film_making *m, const char *path, fault *f)
 {
     // the same notes as a picture's, of the first run
     const film_plan *plan = m->plan;
-    char *values = parameters_line(plan->runs[0].scenario);
-    char *title = scenario_title(plan->runs[0].scenario);
+    g_autofree char *values = parameters_line(plan->runs[0].scenario);
+    g_autofree char *title = scenario_title(plan->runs[0].scenario);
     const png_note notes[] = {{"Title", title},
                               {"Software", picture_software()},
                               {"Parameters", values},
@@ -235,8 +235,6 @@ static status record(film_making *m, const char *path, fault *f)
             film_file_abandon(m->file);
         }
     }
-    g_free(title);
-    g_free(values);
     return code;
 }
 

@@ -82,7 +82,7 @@ void labels_caption(const labels *l, const char *title, const char *facts, doubl
     assert(l != NULL && title != NULL && facts != NULL && width > 0);
     double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale, line, all;
     double top = bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * l->scale;
-    char *escaped = text_escape(title);
+    g_autofree char *escaped = text_escape(title);
 
     // a title of several lines grows upwards
     text_block t = {.markup = escaped, .size = TITLE_LETTERS * l->scale, .bold = true};
@@ -94,7 +94,6 @@ void labels_caption(const labels *l, const char *title, const char *facts, doubl
     text_draw(l->cr, l->context, &t);
     draw_text(l, left, bottom - FACT_LETTERS * 1.25 * l->scale, facts, FACT_LETTERS, false,
               l->faint);
-    g_free(escaped);
 }
 
 void labels_inset(const labels *l, double left, double bottom, double larger)

@@ -209,9 +209,8 @@ static status draw_labels(scene *sc, const double *times, const colour *inks, in
         }
         decimal_print(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s",
                       1e3 * time, sc->grid, bending);
-        char *title = scenario_title(sc->scenario);
+        g_autofree char *title = scenario_title(sc->scenario);
         labels_caption(&l, title, facts, TITLE_SHARE * sc->camera.width);
-        g_free(title);
         if (count > 1 && !sc->options.keyless) {
             labels_instants(&l, times, inks, count);
         }
@@ -346,8 +345,8 @@ static status check_instants(const scene_picture *p, fault *f)
 static status write_surface(const scene *sc, cairo_surface_t *surface, const char *path, fault *f)
 {
     whole_file file;
-    char *values = parameters_line(sc->scenario);
-    char *title = scenario_title(sc->scenario);
+    g_autofree char *values = parameters_line(sc->scenario);
+    g_autofree char *title = scenario_title(sc->scenario);
     const png_note notes[] = {{"Title", title},
                               {"Software", picture_software()},
                               {"Parameters", values},
@@ -358,8 +357,6 @@ static status write_surface(const scene *sc, cairo_surface_t *surface, const cha
         code = png_file_write(file.stream, surface, PICTURE_DPI, notes, 4, f);
         code = whole_file_close(&file, code, f);
     }
-    g_free(title);
-    g_free(values);
     return code;
 }
 
