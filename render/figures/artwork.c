@@ -20,19 +20,6 @@ status make_folder(const char *folder, fault *f)
     return STATUS_OK;
 }
 
-status artwork_check_formats(char *const *formats, fault *f)
-{
-    assert(formats != NULL);
-    for (int i = 0; formats[i] != NULL; i++) {
-        if (picture_format_of(formats[i]) == FORMAT_NONE) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "there is no figure format '%s', expected png, pdf or svg",
-                             formats[i]);
-        }
-    }
-    return STATUS_OK;
-}
-
 static status paint_artwork(cairo_t *cr, const void *what, fault *f)
 {
     const artwork *a = what;
@@ -60,31 +47,10 @@ picture artwork_picture(const artwork *a, const figure_options *options)
 void artwork_finish(artwork *a)
 {
     if (a->release != NULL) {
-        a->release(a->what);
+        a->release(a->owner);
     }
     g_free(a->alternative);
     memset(a, 0, sizeof *a);
-}
-
-status artwork_write(const artwork *a, const figure_options *options, const char *folder,
-                     const char *file, char *const *formats, fault *f)
-{
-    assert(a != NULL && options != NULL && folder != NULL && file != NULL && formats != NULL);
-    picture p = artwork_picture(a, options);
-    status code = make_folder(folder, f);
-
-    // every form of the picture
-    for (int i = 0; formats[i] != NULL && code == STATUS_OK; i++) {
-        g_autofree char *path = text_printf("%s/%s.%s", folder, file, formats[i]);
-        code = picture_write(&p, path, f);
-    }
-
-    // and its numbers
-    if (code == STATUS_OK) {
-        g_autofree char *path = text_printf("%s/%s.csv", folder, file);
-        code = a->write_csv(a->what, path, f);
-    }
-    return code;
 }
 
 // ---- tables
@@ -113,6 +79,7 @@ artwork artwork_of_table(table_page *t)
                  .parameters = t->parameters,
                  .table = t,
                  .what = t,
+                 .owner = t,
                  .paint = paint_table,
                  .write_csv = write_table,
                  .release = release_table};
@@ -122,31 +89,14 @@ artwork artwork_of_table(table_page *t)
 
 // ---- plotted figures
 
-typedef struct plotted {
-    const figure *figure;
-    void *owner;
-    void (*release)(void *owner);
-} plotted;
-
 static status paint_plotted(cairo_t *cr, const void *what, figure_report *report, fault *f)
 {
-    const plotted *p = what;
-    return figure_paint(cr, p->figure, report, f);
+    return figure_paint(cr, what, report, f);
 }
 
 static status write_plotted(const void *what, const char *path, fault *f)
 {
-    const plotted *p = what;
-    return figure_write_csv(p->figure, path, f);
-}
-
-static void release_plotted(void *what)
-{
-    plotted *p = what;
-    if (p->release != NULL) {
-        p->release(p->owner);
-    }
-    g_free(p);
+    return figure_write_csv(what, path, f);
 }
 
 // Appends a plain text that was given as markup.
@@ -198,21 +148,16 @@ static char *describe_figure(const figure *fig)
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner))
 {
     assert(fig != NULL);
-
-    // what paints and releases it later; the figure stays its owner's
-    plotted *p = g_new0(plotted, 1);
-    *p = (plotted){fig, owner, release};
-
-    // everything but its size and alternative text
     artwork a = {.title = fig->title,
                  .caption = fig->caption,
                  .parameters = fig->parameters,
+                 .alternative = describe_figure(fig),
                  .plotted = fig,
-                 .what = p,
+                 .what = fig,
                  .paint = paint_plotted,
                  .write_csv = write_plotted,
-                 .release = release_plotted};
-    a.alternative = describe_figure(fig);
+                 .owner = owner,
+                 .release = release};
     figure_size(fig, &a.width, &a.height);
     return a;
 }
@@ -373,17 +318,6 @@ void latex_print(FILE *stream, const artwork *a, const char *tex, const char *fi
     g_string_free(out, TRUE);
 }
 
-static status write_text(const char *path, const char *text, fault *f)
-{
-    whole_file out;
-    status code = whole_file_open(&out, path, f);
-    if (code == STATUS_OK) {
-        fputs(text, out.stream);
-        code = whole_file_commit(&out, f);
-    }
-    return code;
-}
-
 // ---- what stands beside a picture
 
 // The picture's path with another ending.
@@ -394,14 +328,19 @@ static char *beside(const char *file, const char *ending)
     return text_printf("%.*s%s", (int)length, file, ending);
 }
 
-status caption_write(const artwork *a, const char *file, fault *f)
+// Title and caption as plain text in the .txt of a picture.
+static status write_caption(const artwork *a, const char *file, fault *f)
 {
-    assert(a != NULL && file != NULL);
-    g_autofree char *caption = text_plain(a->caption != NULL ? a->caption : ""),
-                    *path = beside(file, ".txt");
-    g_autofree char *text = text_printf("%s%s%s\n", a->title != NULL ? a->title : "",
-                                        caption[0] != '\0' ? "\n\n" : "", caption);
-    return write_text(path, text, f);
+    whole_file out;
+    g_autofree char *caption = text_plain(a->caption != NULL ? a->caption : "");
+    g_autofree char *path = beside(file, ".txt");
+    status code = whole_file_open(&out, path, f);
+    if (code == STATUS_OK) {
+        fprintf(out.stream, "%s%s%s\n", a->title != NULL ? a->title : "",
+                caption[0] != '\0' ? "\n\n" : "", caption);
+        code = whole_file_commit(&out, f);
+    }
+    return code;
 }
 
 status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
@@ -418,7 +357,7 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
 
     // text of a picture that has none of its own
     if (code == STATUS_OK && o->look.bare) {
-        code = caption_write(a, path, f);
+        code = write_caption(a, path, f);
     }
 
     if (code == STATUS_OK && o->latex != NULL) {

@@ -25,27 +25,20 @@ typedef struct artwork {
     const table_page *table;        // of a table, else NULL
     const figure *plotted;          // of a plotted figure, else NULL
     bool cells;                     // a picture with very many cells
-    void *what;                     // owned; for the functions below
+    const void *what;               // for the functions below
     // draws it with the page's top left corner at the origin of cr, in points; *report (may be
     // NULL) is filled
     status (*paint)(cairo_t *cr, const void *what, figure_report *report, fault *f);
     // writes the numbers that are drawn
     status (*write_csv)(const void *what, const char *path, fault *f);
-    void (*release)(void *what);
+    void *owner;                  // holds `what`
+    void (*release)(void *owner); // NULL: nothing to free
 } artwork;
 
 // The picture of an artwork, valid as long as the artwork.
 picture artwork_picture(const artwork *a, const figure_options *options);
 
 void artwork_finish(artwork *a);
-
-// Fails at a format other than png, pdf and svg.
-status artwork_check_formats(char *const *formats, fault *f);
-
-// Writes FOLDER/FILE.png ... for every format and FOLDER/FILE.csv. The folder is created if it does
-// not exist. STATUS_CANNOT_WRITE with path and reason.
-status artwork_write(const artwork *a, const figure_options *options, const char *folder,
-                     const char *file, char *const *formats, fault *f);
 
 // An artwork of a plotted figure. `owner` holds what the figure borrows and the figure itself;
 // release (NULL: nothing to free) frees it.
@@ -72,9 +65,6 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
 
 // Sets the ends of a figure's horizontal axis to --from and --to.
 void figure_take_range(figure *fig, const figure_options *o);
-
-// Writes title and caption as plain text into the .txt of a picture.
-status caption_write(const artwork *a, const char *file, fault *f);
 
 // Prints a figure environment: the path of the picture relative to the folder of the .tex file, its
 // width, alternative text, caption and the label fig:NAME with the name of the picture.

@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "render/figures/diagram.h"
-#include "render/figures/figures.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 
@@ -55,13 +54,12 @@ static void write_value(sketch *s, point at, double ax, const char *symbol, doub
     char shown[32];
     text_unit(unit, shown, sizeof shown);
     g_autofree char *text = text_printf("%s = %s\u2009%s", symbol, number, shown);
-    sketch_text(s, at, (anchor){ax, 0.5}, text, SKETCH_SMALL);
+    sketch_small(s, at, (anchor){ax, 0.5}, text);
 }
 
 // The whole arm, its hinge to the last body cut.
 static void draw_arm(sketch *s, const diagram *d)
 {
-    char text[96];
     double l = d->p.arm.length / 2, wall = d->p.wall.angle;
     view v = {s->left + 40, s->top + 62, 270, ACROSS};
     point joint = view_end((point){0, 0}, l, d->before.angle[1] - wall);
@@ -78,8 +76,8 @@ static void draw_arm(sketch *s, const diagram *d)
     sketch_disc(s, hub_page, 14, SKETCH_INK, false);
     sketch_disc(s, hub_page, 2, SKETCH_INK, true);
     sketch_disc(s, joint_page, 2.6, SKETCH_INK, true);
-    sketch_text(s, shifted(hub_page, 0, 18), (anchor){0.5, 0}, "hub", SKETCH_SMALL);
-    sketch_text(s, shifted(contact, 8, 4), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)", SKETCH_SMALL);
+    sketch_small(s, shifted(hub_page, 0, 18), (anchor){0.5, 0}, "hub");
+    sketch_small(s, shifted(contact, 8, 4), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)");
 
     // velocities of the joint: before to the left of it, after to the right
     double y = joint_page.y - 6;
@@ -87,23 +85,23 @@ static void draw_arm(sketch *s, const diagram *d)
                  (point){joint_page.x - 6, y - SPEED_LENGTH * joint_before}, 2);
     sketch_dashed_arrow(s, (point){joint_page.x + 6, y},
                         (point){joint_page.x + 6, y - SPEED_LENGTH * joint_after}, 1);
-    decimal_print(text, sizeof text, "before\n%.3f\u2009m/s", joint_before);
-    sketch_text(s, (point){joint_page.x - 12, y - 4}, (anchor){1, 1}, text, SKETCH_SMALL);
-    decimal_print(text, sizeof text, "after\n%.3f\u2009m/s", joint_after);
-    sketch_text(s, (point){joint_page.x + 12, y - 4}, (anchor){0, 1}, text, SKETCH_SMALL);
+    sketch_small(s, (point){joint_page.x - 12, y - 4}, (anchor){1, 1}, "before\n%.3f\u2009m/s",
+                 joint_before);
+    sketch_small(s, (point){joint_page.x + 12, y - 4}, (anchor){0, 1}, "after\n%.3f\u2009m/s",
+                 joint_after);
 
     // the tip arrives, and is stopped by the wall's impulse
     sketch_arrow(s, (point){contact.x - 8, contact.y + 6 + SPEED_LENGTH * tip_before},
                  shifted(contact, -8, 6), 2);
-    decimal_print(text, sizeof text, "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
-    sketch_text(s, shifted(contact, -14, 14), (anchor){1, 0}, text, SKETCH_SMALL);
+    sketch_small(s, shifted(contact, -14, 14), (anchor){1, 0},
+                 "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
     sketch_arrow(s, shifted(contact, 0, -50), shifted(contact, 0, -6), 5);
-    decimal_print(text, sizeof text, "impulse %.4f\u2009N·s", d->impulse);
-    sketch_text(s, shifted(contact, 0, -53), (anchor){0.5, 1}, text, SKETCH_SMALL);
+    sketch_small(s, shifted(contact, 0, -53), (anchor){0.5, 1}, "impulse %.4f\u2009N·s",
+                 d->impulse);
 
     // where the last body is cut free
     sketch_dashed(s, shifted(joint_page, 0, -12), shifted(joint_page, 0, 34), SKETCH_FAINT);
-    sketch_text(s, shifted(joint_page, -4, 34), (anchor){1, 1}, "cut", SKETCH_SMALL);
+    sketch_small(s, shifted(joint_page, -4, 34), (anchor){1, 1}, "cut");
 }
 
 // The last body on its own, along the page.
@@ -117,8 +115,8 @@ static void draw_cut_body(sketch *s, const diagram *d)
     sketch_bar(s, hinge, (point){centre.x + metre * b.half, y}, 9);
     sketch_mass_point(s, centre);
     sketch_disc(s, hinge, 2.6, SKETCH_INK, true);
-    sketch_text(s, (point){centre.x - 5, y - 7}, (anchor){1, 1}, "<i>C</i>", SKETCH_LABEL);
-    sketch_text(s, (point){hit.x + 8, y + 3}, (anchor){0, 0}, "<i>P</i>", SKETCH_LABEL);
+    sketch_label(s, (point){centre.x - 5, y - 7}, (anchor){1, 1}, "<i>C</i>");
+    sketch_label(s, (point){hit.x + 8, y + 3}, (anchor){0, 0}, "<i>P</i>");
 
     // impulses of wall and hinge: an arrow that points down ends at the body
     double wall = IMPULSE_LENGTH * fabs(b.wall_impulse);
@@ -172,17 +170,17 @@ static void add_cut_body_values(diagram *d)
     diagram_add_value(d, "jump of the point of collision's velocity", b.point_jump, "m/s");
 }
 
-status diagram_collision(const char *title, const figure_options *o, artwork *out, fault *f)
+status diagram_collision(const figure_order *order, artwork *out, fault *f)
 {
-    assert(title != NULL && o != NULL && out != NULL);
-    diagram *d = diagram_create(title, NULL, 140 + BODY_HEIGHT, o);
+    diagram *d = diagram_create(order, 140 + BODY_HEIGHT, draw_collision);
 
     // the impact, and what the links do after it
     double speed = 0, impulse = 0;
-    status code = diagram_take_impact(d, "corrected/first-impact", &speed, f);
-    if (code == STATUS_OK) {
-        code = predict_velocity_jump(&d->p, &d->before, d->after, &impulse, f);
+    status code = diagram_take_impact(d, order, &speed, f);
+    if (code != STATUS_OK) {
+        return code;
     }
+    code = predict_velocity_jump(&d->p, &d->before, d->after, &impulse, f);
     if (code != STATUS_OK) {
         diagram_release(d);
         return code;
@@ -190,7 +188,6 @@ status diagram_collision(const char *title, const figure_options *o, artwork *ou
 
     // angles and velocities of both links
     static const char *const bodies[] = {"hub", "first link", "last link"};
-    d->draw = draw_collision;
     for (int i = 1; i < 3; i++) {
         diagram_add_value(d, bodies[i], d->before.angle[i], "rad");
         diagram_add_value(d, bodies[i], d->before.velocity[i], "rad/s before");
@@ -199,7 +196,8 @@ status diagram_collision(const char *title, const figure_options *o, artwork *ou
     diagram_add_value(d, "approach speed", speed, "m/s");
     add_cut_body_values(d);
 
-    d->caption = text_printf(
+    return diagram_open(
+        d, out,
         "Above: the arm of corrected/first-impact at the instant of its first contact, seen along "
         "the line to the contact point and enlarged %g times across it; the links' angular "
         "velocities jump from %.3f and %.3f\u2009rad/s to %.3f and \u2212%.3f\u2009rad/s. Below: "
@@ -208,8 +206,4 @@ status diagram_collision(const char *title, const figure_options *o, artwork *ou
         "jumps that they make, (4.3) to (4.5). Parts across the body, up and counterclockwise "
         "positive; solid arrows act, dashed ones follow.",
         ACROSS, d->before.velocity[1], d->before.velocity[2], d->after[1], fabs(d->after[2]));
-    d->frame.caption = d->caption;
-
-    *out = artwork_of_diagram(d);
-    return STATUS_OK;
 }

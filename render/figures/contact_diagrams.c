@@ -2,7 +2,6 @@
 #include <math.h>
 
 #include "render/figures/diagram.h"
-#include "render/figures/figures.h"
 #include "render/figures/run_figure.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
@@ -77,8 +76,7 @@ static void draw_wall(sketch *s, point at, double direction, const char *force)
 
     point start = {at.x + (FORCE_LENGTH + 4) * nx, at.y + (FORCE_LENGTH + 4) * ny};
     sketch_arrow(s, start, (point){at.x + 4 * nx, at.y + 4 * ny}, 5);
-    sketch_text(s, (point){start.x + 4 * nx, start.y + 4 * ny}, (anchor){0.5, 1}, force,
-                SKETCH_LABEL);
+    sketch_label(s, (point){start.x + 4 * nx, start.y + 4 * ny}, (anchor){0.5, 1}, force);
 }
 
 // An angle with the dashed line that it is measured from.
@@ -110,35 +108,33 @@ static void draw_contact(sketch *s, const diagram *d)
     sketch_dashed(s, one.hub, shifted(foot, 46, 0), SKETCH_FAINT);
     sketch_dashed(s, contact, shifted(contact, 46, 0), SKETCH_FAINT);
     sketch_measure(s, (point){one.hub.x, foot.y + 16}, shifted(foot, 0, 16));
-    sketch_text(s, (point){(one.hub.x + foot.x) / 2, foot.y + 18}, (anchor){0.5, 0}, "<i>a</i>",
-                SKETCH_LABEL);
+    sketch_label(s, (point){(one.hub.x + foot.x) / 2, foot.y + 18}, (anchor){0.5, 0}, "<i>a</i>");
     sketch_measure(s, (point){contact.x + 38, foot.y}, shifted(contact, 38, 0));
-    sketch_text(s, (point){contact.x + 42, (foot.y + contact.y) / 2}, (anchor){0, 0.5}, "<i>b</i>",
-                SKETCH_LABEL);
-    sketch_text(s, shifted(contact, 8, 3), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)", SKETCH_LABEL);
+    sketch_label(s, (point){contact.x + 42, (foot.y + contact.y) / 2}, (anchor){0, 0.5},
+                 "<i>b</i>");
+    sketch_label(s, shifted(contact, 8, 3), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)");
 
     // both configurations, and the angles of the first
     draw_full_arm(s, one);
     draw_dashed_arm(s, other, 0);
     draw_angle(s, one.hub, 84, direction_of(one.hub, one.joint), "<i>θ</i><sub>2</sub>");
     draw_angle(s, one.joint, 62, direction_of(one.joint, one.end), "<i>θ</i><sub>3</sub>");
-    sketch_text(s, (point){(one.hub.x + one.joint.x) / 2 - 10, (one.hub.y + one.joint.y) / 2 - 6},
-                (anchor){1, 1}, "<i>l</i>", SKETCH_LABEL);
-    sketch_text(s, (point){(one.joint.x + one.end.x) / 2 - 8, (one.joint.y + one.end.y) / 2 - 8},
-                (anchor){1, 1}, "<i>l</i>", SKETCH_LABEL);
+    sketch_label(s, (point){(one.hub.x + one.joint.x) / 2 - 10, (one.hub.y + one.joint.y) / 2 - 6},
+                 (anchor){1, 1}, "<i>l</i>");
+    sketch_label(s, (point){(one.joint.x + one.end.x) / 2 - 8, (one.joint.y + one.end.y) / 2 - 8},
+                 (anchor){1, 1}, "<i>l</i>");
 
     g_autofree char *force = force_text("<i>f</i>", of->one.force);
     draw_wall(s, contact, direction_of(one.joint, contact), force);
 
     // which is which
-    char text[96];
     double key = s->top + 14;
     sketch_bar(s, (point){s->left + 4, key}, (point){s->left + 26, key}, 5);
-    decimal_print(text, sizeof text, "<i>t</i> = %.2f\u2009s", of->one.time);
-    sketch_text(s, (point){s->left + 32, key}, (anchor){0, 0.5}, text, SKETCH_SMALL);
+    sketch_small(s, (point){s->left + 32, key}, (anchor){0, 0.5}, "<i>t</i> = %.2f\u2009s",
+                 of->one.time);
     sketch_dashed(s, (point){s->left + 4, key + 14}, (point){s->left + 26, key + 14}, 0);
-    decimal_print(text, sizeof text, "the next step, <i>t</i> = %.2f\u2009s", of->other.time);
-    sketch_text(s, (point){s->left + 32, key + 14}, (anchor){0, 0.5}, text, SKETCH_SMALL);
+    sketch_small(s, (point){s->left + 32, key + 14}, (anchor){0, 0.5},
+                 "the next step, <i>t</i> = %.2f\u2009s", of->other.time);
 }
 
 // The pair of successive rows in contact between which the first link turns most.
@@ -165,10 +161,10 @@ static void add_shape_values(diagram *d, const arm_shape *a)
     diagram_add_value(d, "force f", a->force, "N");
 }
 
-status diagram_contact(const char *title, const figure_options *o, artwork *out, fault *f)
+status diagram_contact(const figure_order *order, artwork *out, fault *f)
 {
     opened_run run;
-    status code = run_begin(&run, "thesis/fig-3-1", "method.step=0.01", f);
+    status code = run_begin(&run, order->which->scenario, "method.step=0.01", f);
     if (code != STATUS_OK) {
         return code;
     }
@@ -176,11 +172,10 @@ status diagram_contact(const char *title, const figure_options *o, artwork *out,
     // two steps during contact
     const trace *t = &run.result.trace;
     size_t first = liveliest_pair(t);
-    diagram *d = diagram_create(title, NULL, 232, o);
+    diagram *d = diagram_create(order, 232, draw_contact);
     shapes *of = d->shapes = g_new0(shapes, 1);
     d->p = run.scenario.parameters;
     d->parameters = parameters_line(&run.scenario);
-    d->draw = draw_contact;
     of->one = shape_of(&t->rows[first]);
     of->other = shape_of(&t->rows[first + 1 < t->row_count ? first + 1 : first]);
     run_end(&run);
@@ -196,7 +191,8 @@ status diagram_contact(const char *title, const figure_options *o, artwork *out,
                           d->p.arm.length / 2 * sin(of->one.last - of->one.first),
                       "m");
 
-    d->caption = text_printf(
+    return diagram_open(
+        d, out,
         "The printed model in contact, 1\u2009V, at two successive steps of 10\u2009ms: "
         "<i>θ</i><sub>2</sub> = %.4f and %.4f, <i>θ</i><sub>3</sub> = %.4f and %.4f\u2009rad. The "
         "line of the last link always passes through the contact point (<i>a</i>, <i>b</i>) = "
@@ -204,10 +200,6 @@ status diagram_contact(const char *title, const figure_options *o, artwork *out,
         "across the reference line, angles with it.",
         of->one.first, of->other.first, of->one.last, of->other.last, a, b, d->p.arm.k1,
         CONTACT_ACROSS);
-    d->frame.caption = d->caption;
-
-    *out = artwork_of_diagram(d);
-    return STATUS_OK;
 }
 
 // ---- 4.6: the largest deformation
@@ -226,8 +218,8 @@ static void draw_deformation(sketch *s, const diagram *d)
     draw_dashed_arm(s, touch, SKETCH_FAINT);
     draw_dashed_arm(s, assumed, 1);
     draw_full_arm(s, peak);
-    sketch_text(s, shifted(contact, 8, 3), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)", SKETCH_LABEL);
-    sketch_text(s, shifted(peak.hub, 0, 15), (anchor){0.5, 0}, "<i>O</i>", SKETCH_LABEL);
+    sketch_label(s, shifted(contact, 8, 3), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)");
+    sketch_label(s, shifted(peak.hub, 0, 15), (anchor){0.5, 0}, "<i>O</i>");
 
     // angles from that line
     diagram_angle(s, peak.hub,
@@ -240,11 +232,9 @@ static void draw_deformation(sketch *s, const diagram *d)
     draw_wall(s, contact, direction_of(peak.joint, contact), force);
 
     // a name at each joint
-    sketch_text(s, shifted(assumed.joint, 0, -5), (anchor){0.5, 1}, "energy principle",
-                SKETCH_SMALL);
-    sketch_text(s, shifted(peak.joint, 0, 14), (anchor){0.5, 0}, "at the peak", SKETCH_SMALL);
-    sketch_text(s, (point){touch.joint.x, peak.hub.y + 4}, (anchor){0.5, 0}, "at first contact",
-                SKETCH_SMALL);
+    sketch_small(s, shifted(assumed.joint, 0, -5), (anchor){0.5, 1}, "energy principle");
+    sketch_small(s, shifted(peak.joint, 0, 14), (anchor){0.5, 0}, "at the peak");
+    sketch_small(s, (point){touch.joint.x, peak.hub.y + 4}, (anchor){0.5, 0}, "at first contact");
 }
 
 // The row nearest to an instant.
@@ -271,28 +261,27 @@ static const sample *row_before(const trace *t, double contact)
     return before;
 }
 
-status diagram_deformation(const char *title, const figure_options *o, artwork *out, fault *f)
+status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 {
     opened_run run;
-    status code = run_begin(&run, "corrected/first-impact", NULL, f);
+    status code = run_begin(&run, order->which->scenario, NULL, f);
     if (code != STATUS_OK) {
         return code;
     }
     const summary *m = &run.result.summary;
     if (!isfinite(m->first_pulse_time_to_peak_s)) {
         run_end(&run);
-        return fault_set(f, STATUS_BAD_SCENARIO, "corrected/first-impact: no pulse to draw");
+        return fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse to draw", order->which->scenario);
     }
 
     // first contact and the peak
     const trace *t = &run.result.trace;
     const sample *before = row_before(t, m->first_contact_s);
     double delay = m->first_pulse_time_to_peak_s, energy;
-    diagram *d = diagram_create(title, NULL, 148, o);
+    diagram *d = diagram_create(order, 148, draw_deformation);
     shapes *of = d->shapes = g_new0(shapes, 1);
     d->p = run.scenario.parameters;
     d->parameters = parameters_line(&run.scenario);
-    d->draw = draw_deformation;
     of->one = shape_of(row_at(t, m->first_contact_s + delay));
     of->one.force = m->first_pulse_peak_N;
     of->other = shape_of(before);
@@ -307,7 +296,8 @@ status diagram_deformation(const char *title, const figure_options *o, artwork *
     add_shape_values(d, &of->other);
     diagram_add_value(d, "bend by the energy principle", -bend, "rad");
 
-    d->caption = text_printf(
+    return diagram_open(
+        d, out,
         "The arm of corrected/first-impact %.1f\u2009ms after first contact, at its peak force of "
         "%.3g\u2009N: <i>θ</i><sub>2</sub> = %.4f, <i>θ</i><sub>3</sub> = %.4f\u2009rad, bend "
         "\u2212%.4f\u2009rad; <i>θ</i><sub>0</sub> = %g\u2009rad is the line to the contact point. "
@@ -316,8 +306,4 @@ status diagram_deformation(const char *title, const figure_options *o, artwork *
         "itself takes. Enlarged %g times across the line, angles with it.",
         1e3 * delay, of->one.force, of->one.first, of->one.last, fabs(of->one.last - of->one.first),
         wall, 1e3 * energy, bend, PEAK_ACROSS);
-    d->frame.caption = d->caption;
-
-    *out = artwork_of_diagram(d);
-    return STATUS_OK;
 }

@@ -73,47 +73,44 @@ void diagram_release(void *what)
     g_free(d);
 }
 
-diagram *diagram_create(const char *title, const char *caption, double body,
-                        const figure_options *o)
+diagram *diagram_create(const figure_order *order, double body,
+                        void (*draw)(sketch *s, const diagram *d))
 {
-    assert(title != NULL && o != NULL);
     diagram *d = g_new0(diagram, 1);
-    d->title = g_strdup(title);
-    d->caption = g_strdup(caption);
-    d->frame = (sketch_frame){
-        .title = d->title, .caption = d->caption, .body_height = body, .look = o->look};
+    d->draw = draw;
+    d->title = g_strdup(order->title);
+    d->frame = (sketch_frame){.title = d->title, .body_height = body, .look = order->options->look};
     parameters_defaults(&d->p, ARM_CORRECTED);
     parameters_resolve(&d->p, NULL);
     return d;
 }
 
-status diagram_take_impact(diagram *d, const char *name, double *speed, fault *f)
+status diagram_take_impact(diagram *d, const figure_order *order, double *speed, fault *f)
 {
     opened_run run;
-    status code = run_begin(&run, name, NULL, f);
+    status code = run_begin(&run, order->which->scenario, NULL, f);
     if (code != STATUS_OK) {
+        diagram_release(d);
         return code;
     }
+    d->p = run.scenario.parameters;
+    d->parameters = parameters_line(&run.scenario);
 
     // the first impact of the run
     const trace *t = &run.result.trace;
-    code = STATUS_BAD_SCENARIO;
-    for (size_t i = 0; i < t->event_count && code != STATUS_OK; i++) {
-        if (t->events[i].kind == EVENT_IMPACT) {
-            const double *touch = run.result.before_impact;
-            code = STATUS_OK;
-            *speed = t->events[i].speed;
-            d->impulse = t->events[i].impulse;
-            d->before =
-                (three_body_state){{touch[0], touch[0], touch[1]}, {touch[2], touch[2], touch[3]}};
-        }
+    size_t first = 0;
+    while (first < t->event_count && t->events[first].kind != EVENT_IMPACT) {
+        first++;
     }
-
-    if (code != STATUS_OK) {
-        fault_set(f, code, "%s: no impact to draw", name);
+    if (first < t->event_count) {
+        const double *touch = run.result.before_impact;
+        *speed = t->events[first].speed;
+        d->impulse = t->events[first].impulse;
+        d->before =
+            (three_body_state){{touch[0], touch[0], touch[1]}, {touch[2], touch[2], touch[3]}};
     } else {
-        d->p = run.scenario.parameters;
-        d->parameters = parameters_line(&run.scenario);
+        code = fault_set(f, STATUS_BAD_SCENARIO, "%s: no impact to draw", order->which->scenario);
+        diagram_release(d);
     }
     run_end(&run);
     return code;
@@ -134,20 +131,24 @@ void diagram_angle(sketch *s, point at, angle_arc a)
 {
     double middle = (a.from + a.to) / 2, away = a.radius + 3;
     sketch_arc(s, (arc){at, a.radius, a.from, a.to, true}, SKETCH_INK);
-    sketch_text(s, (point){at.x + away * cos(middle), at.y - away * sin(middle)}, (anchor){0, 0.5},
-                a.markup, SKETCH_LABEL);
+    sketch_label(s, (point){at.x + away * cos(middle), at.y - away * sin(middle)}, (anchor){0, 0.5},
+                 a.markup);
 }
 
-artwork artwork_of_diagram(diagram *d)
+status diagram_open(diagram *d, artwork *out, const char *caption, ...)
 {
-    assert(d != NULL && d->title != NULL);
-    artwork a = {.title = d->title,
-                 .caption = d->frame.caption,
-                 .parameters = d->parameters,
-                 .what = d,
-                 .paint = paint_diagram,
-                 .write_csv = write_diagram,
-                 .release = diagram_release};
-    sketch_size(&d->frame, &a.width, &a.height);
-    return a;
+    va_list list;
+    va_start(list, caption);
+    d->frame.caption = d->caption = text_vprintf(caption, list);
+    va_end(list);
+    *out = (artwork){.title = d->title,
+                     .caption = d->caption,
+                     .parameters = d->parameters,
+                     .what = d,
+                     .owner = d,
+                     .paint = paint_diagram,
+                     .write_csv = write_diagram,
+                     .release = diagram_release};
+    sketch_size(&d->frame, &out->width, &out->height);
+    return STATUS_OK;
 }

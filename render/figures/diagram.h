@@ -1,7 +1,7 @@
 // Shared by the thesis's diagrams: a drawing with the numbers it shows.
 #pragma once
 
-#include "render/figures/artwork.h"
+#include "render/figures/figures.h"
 #include "render/page/sketch.h"
 #include "src/predict/predict.h"
 
@@ -47,19 +47,20 @@ typedef struct angle_arc {
 } angle_arc;
 void diagram_angle(sketch *s, point at, angle_arc a);
 
-// The first impact of a scenario: d takes its parameters, its impulse and the arm the instant
-// before, *speed that of the contact point [m/s]. Returns the status of the run,
-// STATUS_BAD_SCENARIO if there is no impact.
-status diagram_take_impact(diagram *d, const char *name, double *speed, fault *f);
+// The first impact of the figure's scenario: d takes its parameters, its impulse and the arm the
+// instant before, *speed that of the contact point [m/s]. Returns the status of the run,
+// STATUS_BAD_SCENARIO if there is no impact; on failure d is released.
+status diagram_take_impact(diagram *d, const figure_order *order, double *speed, fault *f);
 
-// A diagram with the corrected arm's default parameters; title and caption are copied, `body` is
-// the drawing's height [pt]. Set `draw`, then give it to artwork_of_diagram.
-diagram *diagram_create(const char *title, const char *caption, double body,
-                        const figure_options *o);
+// A diagram with the corrected arm's default parameters, drawn by `draw`; `body` is the drawing's
+// height [pt].
+diagram *diagram_create(const figure_order *order, double body,
+                        void (*draw)(sketch *s, const diagram *d));
 void diagram_release(void *what);
 
 // Adds a number to those that the diagram's CSV lists.
 void diagram_add_value(diagram *d, const char *name, double value, const char *unit);
 
-// The diagram as an artwork, which owns it.
-artwork artwork_of_diagram(diagram *d);
+// Gives the diagram its caption, printed as by text_printf, and opens it: the artwork owns it.
+status diagram_open(diagram *d, artwork *out, const char *caption, ...)
+    __attribute__((format(printf, 3, 4)));

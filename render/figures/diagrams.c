@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "render/figures/diagram.h"
-#include "render/figures/figures.h"
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "src/base/text_stream.h"
@@ -21,9 +20,9 @@ static void draw_angle(sketch *s, point at, double radius, double angle, const c
 {
     sketch_dashed(s, at, (point){at.x + radius + 14, at.y}, SKETCH_FAINT);
     sketch_arc(s, (arc){at, radius, 0, angle, true}, SKETCH_INK);
-    sketch_text(s,
-                (point){at.x + (radius + 3) * cos(angle / 2), at.y - (radius + 3) * sin(angle / 2)},
-                (anchor){0, 0.5}, markup, SKETCH_LABEL);
+    sketch_label(
+        s, (point){at.x + (radius + 3) * cos(angle / 2), at.y - (radius + 3) * sin(angle / 2)},
+        (anchor){0, 0.5}, markup);
 }
 
 // A dimension line parallel to a link, `away` points from it.
@@ -36,9 +35,9 @@ static void draw_length(sketch *s, point from, point to, double away, anchor par
     const point end = shifted(to, away * nx, away * ny);
     double beyond = away < 0 ? -3 : 3;
     sketch_measure(s, start, end);
-    sketch_text(s,
-                (point){(start.x + end.x) / 2 + beyond * nx, (start.y + end.y) / 2 + beyond * ny},
-                part, markup, SKETCH_LABEL);
+    sketch_label(s,
+                 (point){(start.x + end.x) / 2 + beyond * nx, (start.y + end.y) / 2 + beyond * ny},
+                 part, markup);
 }
 
 static void draw_links(sketch *s, const diagram *d)
@@ -65,23 +64,22 @@ static void draw_links(sketch *s, const diagram *d)
     sketch_line(s, hub_page, rim_page, 0.8, SKETCH_INK);
     sketch_arc(s, (arc){hub_page, v.metre * radius + 8, -75 * DEGREE, hub - 40 * DEGREE, true},
                SKETCH_INK);
-    sketch_text(s, shifted(rim_page, 12, 6), (anchor){0, 0.5},
-                "<i>θ</i><sub>1</sub>, <i>I</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_label(s, shifted(rim_page, 12, 6), (anchor){0, 0.5},
+                 "<i>θ</i><sub>1</sub>, <i>I</i><sub>1</sub>");
     sketch_spiral(s, hub_page, 13, 0);
     sketch_spiral(s, joint_page, 11, 0);
-    sketch_text(s, (point){hub_page.x - v.metre * radius - 4, hub_page.y}, (anchor){1, 0.5},
-                "<i>k</i><sub>1</sub>", SKETCH_LABEL);
-    sketch_text(s, shifted(joint_page, 0, 14), (anchor){0.5, 0}, "<i>k</i><sub>2</sub>",
-                SKETCH_LABEL);
+    sketch_label(s, (point){hub_page.x - v.metre * radius - 4, hub_page.y}, (anchor){1, 0.5},
+                 "<i>k</i><sub>1</sub>");
+    sketch_label(s, shifted(joint_page, 0, 14), (anchor){0.5, 0}, "<i>k</i><sub>2</sub>");
     draw_length(s, hub_page, c1_page, 35, (anchor){0.5, 1}, "<i>ε</i><sub>2</sub>");
     draw_length(s, joint_page, c2_page, 17, (anchor){1, 1}, "<i>ε</i><sub>3</sub>");
     draw_length(s, hub_page, joint_page, 54, (anchor){0.5, 1}, "<i>l</i>");
     draw_length(s, joint_page, tip_page, 36, (anchor){1, 1}, "<i>l</i>");
-    sketch_text(s, shifted(c1_page, 30, -13), (anchor){0.5, 1},
-                "<i>m</i><sub>2</sub>, <i>I</i><sub>2</sub>", SKETCH_LABEL);
-    sketch_text(s, shifted(c2_page, 64, -22), (anchor){0, 0},
-                "<i>m</i><sub>3</sub>, <i>I</i><sub>3</sub>", SKETCH_LABEL);
-    sketch_text(s, shifted(tip_page, 7, 0), (anchor){0, 0.5}, "tip", SKETCH_LABEL);
+    sketch_label(s, shifted(c1_page, 30, -13), (anchor){0.5, 1},
+                 "<i>m</i><sub>2</sub>, <i>I</i><sub>2</sub>");
+    sketch_label(s, shifted(c2_page, 64, -22), (anchor){0, 0},
+                 "<i>m</i><sub>3</sub>, <i>I</i><sub>3</sub>");
+    sketch_label(s, shifted(tip_page, 7, 0), (anchor){0, 0.5}, "tip");
 }
 
 static void add_arm_values(diagram *d)
@@ -96,14 +94,14 @@ static void add_arm_values(diagram *d)
     diagram_add_value(d, "spring of the beam k2", a->k2, "N m/rad");
 }
 
-status diagram_links(const char *title, const figure_options *o, artwork *out, fault *f)
+status diagram_links(const figure_order *order, artwork *out, fault *f)
 {
     (void)f;
-    diagram *d = diagram_create(title, NULL, 190, o);
-    d->draw = draw_links;
+    diagram *d = diagram_create(order, 190, draw_links);
     add_arm_values(d);
 
-    d->caption = text_printf(
+    return diagram_open(
+        d, out,
         "Hub (body 1) and two rigid links (bodies 2 and 3) in the proportions of the model, bent "
         "far more than in use. <i>l</i> = %g\u2009m, <i>ε</i> = %g\u2009m, <i>m</i> = "
         "%.4g\u2009kg, "
@@ -114,10 +112,6 @@ status diagram_links(const char *title, const figure_options *o, artwork *out, f
         "1.67·10<sup>−5</sup>\u2009kg·m². Angles are absolute.",
         d->p.arm.length / 2, d->p.arm.length / 4, d->p.arm.mass / 2, d->p.arm.link_inertia,
         d->p.arm.hub_inertia, d->p.arm.k1, d->p.arm.k2);
-    d->frame.caption = d->caption;
-
-    *out = artwork_of_diagram(d);
-    return STATUS_OK;
 }
 
 // ---- 2.3: free bodies
@@ -143,66 +137,57 @@ static void draw_free_bodies(sketch *s, const diagram *d)
     sketch_disc(s, h, 0.9 * metre * HUB_RADIUS, SKETCH_INK, false);
     sketch_disc(s, h, 2, SKETCH_INK, true);
     sketch_arc(s, (arc){h, 11, 200 * DEGREE, 40 * DEGREE, true}, 0);
-    sketch_text(s, shifted(h, 19, -14), (anchor){0, 1}, "\u2212<i>τ</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_label(s, shifted(h, 19, -14), (anchor){0, 1}, "\u2212<i>τ</i><sub>1</sub>");
     sketch_arc(s, (arc){h, 30, -150 * DEGREE, -40 * DEGREE, true}, 2);
-    sketch_text(s, shifted(h, 0, 36), (anchor){0.5, 0}, "motor <i>τ</i><sub>m</sub>, friction",
-                SKETCH_SMALL);
-    sketch_text(s, shifted(h, 0, -40), (anchor){0.5, 1}, "body 1", SKETCH_SMALL);
+    sketch_small(s, shifted(h, 0, 36), (anchor){0.5, 0}, "motor <i>τ</i><sub>m</sub>, friction");
+    sketch_small(s, shifted(h, 0, -40), (anchor){0.5, 1}, "body 1");
 
     sketch_bar(s, a, b, 7);
     sketch_mass_point(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2});
     draw_torque(s, a, 120, 250);
-    sketch_text(s, shifted(a, -10, -21), (anchor){0.5, 1}, "<i>τ</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_label(s, shifted(a, -10, -21), (anchor){0.5, 1}, "<i>τ</i><sub>1</sub>");
     draw_torque(s, b, -110, 60);
-    sketch_text(s, shifted(b, 2, -16), (anchor){1, 1}, "<i>τ</i><sub>2</sub>", SKETCH_LABEL);
+    sketch_label(s, shifted(b, 2, -16), (anchor){1, 1}, "<i>τ</i><sub>2</sub>");
     sketch_arrow(s, a, shifted(a, 8, 36), 5);
-    sketch_text(s, shifted(a, 12, 37), (anchor){0, 0.5}, "<i>f</i><sub>1</sub>", SKETCH_LABEL);
+    sketch_label(s, shifted(a, 12, 37), (anchor){0, 0.5}, "<i>f</i><sub>1</sub>");
     sketch_arrow(s, b, shifted(b, -8, 36), 5);
-    sketch_text(s, shifted(b, -12, 37), (anchor){1, 0.5}, "<i>f</i><sub>2</sub>", SKETCH_LABEL);
-    sketch_text(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2 + 9}, (anchor){0.5, 0}, "body 2",
-                SKETCH_SMALL);
+    sketch_label(s, shifted(b, -12, 37), (anchor){1, 0.5}, "<i>f</i><sub>2</sub>");
+    sketch_small(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2 + 9}, (anchor){0.5, 0}, "body 2");
 
     sketch_bar(s, c, t, 7);
     sketch_mass_point(s, (point){(c.x + t.x) / 2, (c.y + t.y) / 2});
     draw_torque(s, c, 230, 110);
-    sketch_text(s, shifted(c, 8, 18), (anchor){0.5, 0}, "\u2212<i>τ</i><sub>2</sub>", SKETCH_LABEL);
+    sketch_label(s, shifted(c, 8, 18), (anchor){0.5, 0}, "\u2212<i>τ</i><sub>2</sub>");
     sketch_arrow(s, c, shifted(c, 8, -36), 5);
-    sketch_text(s, shifted(c, 12, -37), (anchor){0, 0.5}, "\u2212<i>f</i><sub>2</sub>",
-                SKETCH_LABEL);
+    sketch_label(s, shifted(c, 12, -37), (anchor){0, 0.5}, "\u2212<i>f</i><sub>2</sub>");
     // the wall pushes back, across the last link
     double away = 40;
     sketch_arrow(s, (point){t.x - away * sin(second), t.y - away * cos(second)}, shifted(t, 0, -4),
                  5);
-    sketch_text(s, (point){t.x - away * sin(second) - 5, t.y - away * cos(second)},
-                (anchor){1, 0.5}, "<i>f</i>", SKETCH_LABEL);
-    sketch_text(s, (point){(c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10}, (anchor){0, 0}, "body 3",
-                SKETCH_SMALL);
+    sketch_label(s, (point){t.x - away * sin(second) - 5, t.y - away * cos(second)},
+                 (anchor){1, 0.5}, "<i>f</i>");
+    sketch_small(s, (point){(c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10}, (anchor){0, 0}, "body 3");
 }
 
-status diagram_free_bodies(const char *title, const figure_options *o, artwork *out, fault *f)
+status diagram_free_bodies(const figure_order *order, artwork *out, fault *f)
 {
     (void)f;
-    diagram *d = diagram_create(
-        title,
+    diagram *d = diagram_create(order, 158, draw_free_bodies);
+    add_arm_values(d);
+    return diagram_open(
+        d, out,
         "Each body on its own with what its neighbours do to it: torques <i>τ</i> of the springs "
         "<i>k</i><sub>1</sub>, <i>k</i><sub>2</sub> and forces <i>f</i><sub>1</sub>, "
         "<i>f</i><sub>2</sub> of the hinges, equal and opposite on both sides of a joint. Added "
         "up over bodies 2 and 3, <i>τ</i><sub>2</sub> and <i>f</i><sub>2</sub> cancel; the printed "
         "(2.16) keeps <i>k</i><sub>2</sub> all the same. The contact force <i>f</i> acts across "
-        "the last link.",
-        158, o);
-
-    d->draw = draw_free_bodies;
-    add_arm_values(d);
-    *out = artwork_of_diagram(d);
-    return STATUS_OK;
+        "the last link.");
 }
 
 // ---- 4.1: springs in series
 
 static void draw_springs(sketch *s, const diagram *d)
 {
-    char text[128];
     double y = s->top + 46, wall = s->right - 40, mass = s->left + 74;
 
     // the floor and the mass on it
@@ -214,10 +199,9 @@ static void draw_springs(sketch *s, const diagram *d)
     cairo_set_line_width(s->cr, 0.8);
     picture_stroke(s->cr);
 
-    sketch_text(s, (point){mass, y}, (anchor){0.5, 0.5}, "<i>m</i><sub>c</sub>", SKETCH_LABEL);
+    sketch_label(s, (point){mass, y}, (anchor){0.5, 0.5}, "<i>m</i><sub>c</sub>");
     sketch_arrow(s, (point){mass - 14, y - 30}, (point){mass + 34, y - 30}, 2);
-    sketch_text(s, (point){mass + 38, y - 30}, (anchor){0, 0.5}, "<i>v</i><sub>0</sub>",
-                SKETCH_LABEL);
+    sketch_label(s, (point){mass + 38, y - 30}, (anchor){0, 0.5}, "<i>v</i><sub>0</sub>");
 
     // both springs in series, to the wall
     double middle = (mass + 26 + wall) / 2;
@@ -227,34 +211,30 @@ static void draw_springs(sketch *s, const diagram *d)
     sketch_wall(s, (point){wall, y + 34}, (point){wall, y - 34});
 
     // their stiffnesses
-    decimal_print(text, sizeof text, "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad", d->p.arm.k1);
-    sketch_text(s, (point){(mass + 26 + middle) / 2, y + 26}, (anchor){0.5, 0}, text, SKETCH_SMALL);
-    decimal_print(text, sizeof text, "<i>k</i><sub>2</sub> = %g\u2009N·m/rad", d->p.arm.k2);
-    sketch_text(s, (point){(middle + wall) / 2, y + 26}, (anchor){0.5, 0}, text, SKETCH_SMALL);
+    sketch_small(s, (point){(mass + 26 + middle) / 2, y + 26}, (anchor){0.5, 0},
+                 "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad", d->p.arm.k1);
+    sketch_small(s, (point){(middle + wall) / 2, y + 26}, (anchor){0.5, 0},
+                 "<i>k</i><sub>2</sub> = %g\u2009N·m/rad", d->p.arm.k2);
 
     double k1 = d->p.arm.k1, k2 = d->p.arm.k2;
-    decimal_print(text, sizeof text,
-                  "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + 1/<i>k</i><sub>2</sub>,   "
-                  "<i>k</i><sub>eq</sub> = %.5g\u2009N·m/rad",
-                  k1 * k2 / (k1 + k2));
-    sketch_text(s, (point){(s->left + s->right) / 2, y + 50}, (anchor){0.5, 0}, text, SKETCH_LABEL);
+    sketch_label(s, (point){(s->left + s->right) / 2, y + 50}, (anchor){0.5, 0},
+                 "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + 1/<i>k</i><sub>2</sub>,   "
+                 "<i>k</i><sub>eq</sub> = %.5g\u2009N·m/rad",
+                 k1 * k2 / (k1 + k2));
 }
 
-status diagram_springs(const char *title, const figure_options *o, artwork *out, fault *f)
+status diagram_springs(const figure_order *order, artwork *out, fault *f)
 {
-    assert(title != NULL && o != NULL && out != NULL);
-    diagram *d = diagram_create(title, NULL, 108, o);
+    diagram *d = diagram_create(order, 108, draw_springs);
     double speed = 0;
     parameters defaults = d->p;
-    status code = diagram_take_impact(d, "corrected/first-impact", &speed, f);
+    status code = diagram_take_impact(d, order, &speed, f);
     if (code != STATUS_OK) {
-        diagram_release(d);
         return code;
     }
 
     // drawn with the defaults, not with the run's wall
     d->p = defaults;
-    d->draw = draw_springs;
     add_arm_values(d);
 
     diagram_add_value(d, "stiffness in series",
@@ -263,17 +243,14 @@ status diagram_springs(const char *title, const figure_options *o, artwork *out,
     diagram_add_value(d, "impulse", d->impulse, "N s");
     diagram_add_value(d, "mass at the contact point", d->impulse / speed, "kg");
 
-    d->caption = text_printf(
+    return diagram_open(
+        d, out,
         "What the wall feels: a mass on the arm's springs in series. The stiff hub joint hardly "
         "counts, the beam's spring takes almost all the energy. At 1\u2009V the contact point "
         "arrives with <i>v</i><sub>0</sub> = %.3g\u2009m/s and the impact of %.3g\u2009N·s shows a "
         "mass <i>m</i><sub>c</sub> = %.3g\u2009kg there, of the beam's %.3g\u2009kg. "
         "<i>k</i><sub>1</sub> as the thesis prints it; its tables need 90\u2009N·m/rad.",
         speed, d->impulse, d->impulse / speed, d->p.arm.mass);
-    d->frame.caption = d->caption;
-
-    *out = artwork_of_diagram(d);
-    return STATUS_OK;
 }
 
 // The circuit's resistors are the thesis's. Supply and sensor, which it does not print, are the
@@ -301,30 +278,29 @@ static void draw_amplifier(sketch *s, double x, double y)
     wire(s, x, y - 22, x, y + 22);
     wire(s, x, y - 22, x + 40, y);
     wire(s, x, y + 22, x + 40, y);
-    sketch_text(s, (point){x + 7, y - 10}, (anchor){0.5, 0.5}, "+", SKETCH_LABEL);
-    sketch_text(s, (point){x + 7, y + 10}, (anchor){0.5, 0.5}, "\u2212", SKETCH_LABEL);
+    sketch_label(s, (point){x + 7, y - 10}, (anchor){0.5, 0.5}, "+");
+    sketch_label(s, (point){x + 7, y + 10}, (anchor){0.5, 0.5}, "\u2212");
 }
 
 static void draw_divider(sketch *s, const sensor_parameters *p, double x, double y)
 {
-    char text[96];
 
     // supply
-    decimal_print(text, sizeof text, "<i>V</i><sub>+</sub> = %g\u2009V", p->fsr_supply);
-    sketch_text(s, (point){x, y}, (anchor){0.5, 0}, text, SKETCH_SMALL);
+    sketch_small(s, (point){x, y}, (anchor){0.5, 0}, "<i>V</i><sub>+</sub> = %g\u2009V",
+                 p->fsr_supply);
     sketch_disc(s, (point){x, y + 14}, 1.8, SKETCH_INK, false);
     wire(s, x, y + 16, x, y + 20);
 
     // sensor, which the force presses
     sketch_resistor(s, (point){x, y + 18}, (point){x, y + 62});
-    sketch_text(s, (point){x + 9, y + 40}, (anchor){0, 0.5}, "FSR", SKETCH_SMALL);
+    sketch_small(s, (point){x + 9, y + 40}, (anchor){0, 0.5}, "FSR");
     sketch_arrow(s, (point){x - 34, y + 40}, (point){x - 8, y + 40}, 5);
-    sketch_text(s, (point){x - 38, y + 40}, (anchor){1, 0.5}, "<i>f</i>", SKETCH_LABEL);
+    sketch_label(s, (point){x - 38, y + 40}, (anchor){1, 0.5}, "<i>f</i>");
 
     // measuring resistor to ground; the divider's output between them
     sketch_resistor(s, (point){x, y + 62}, (point){x, y + 116});
-    decimal_print(text, sizeof text, "<i>R</i><sub>M</sub>\n%g\u2009kΩ", p->fsr_divider / 1e3);
-    sketch_text(s, (point){x - 9, y + 92}, (anchor){1, 0.5}, text, SKETCH_SMALL);
+    sketch_small(s, (point){x - 9, y + 92}, (anchor){1, 0.5}, "<i>R</i><sub>M</sub>\n%g\u2009kΩ",
+                 p->fsr_divider / 1e3);
     draw_ground(s, x, y + 112);
     sketch_disc(s, (point){x, y + 62}, 1.7, SKETCH_INK, true);
 }
@@ -343,34 +319,33 @@ static void draw_stages(sketch *s, double x, double y)
     wire(s, first + 52, y + 44, first - 10, y + 44);
     wire(s, first - 10, y + 44, first - 10, y + 20);
     wire(s, first - 10, y + 20, first, y + 20);
-    sketch_text(s, (point){first + 10, y - 20}, (anchor){0.5, 1}, "buffer", SKETCH_SMALL);
+    sketch_small(s, (point){first + 10, y - 20}, (anchor){0.5, 1}, "buffer");
 
     // the amplifier
     draw_amplifier(s, second, y + 20);
-    sketch_text(s, (point){second + 14, y - 10}, (anchor){0.5, 1},
-                "gain 1 + <i>R</i><sub>6</sub>/<i>R</i><sub>5</sub> = 2", SKETCH_SMALL);
+    sketch_small(s, (point){second + 14, y - 10}, (anchor){0.5, 1},
+                 "gain 1 + <i>R</i><sub>6</sub>/<i>R</i><sub>5</sub> = 2");
 
     // its feedback
     wire(s, second, y + 30, node, y + 30);
     wire(s, node, y + 30, node, y + 62);
     sketch_disc(s, (point){node, y + 62}, 1.7, SKETCH_INK, true);
     sketch_resistor(s, (point){node, y + 62}, (point){second + 54, y + 62});
-    sketch_text(s, (point){(node + second + 54) / 2, y + 69}, (anchor){0.5, 0},
-                "<i>R</i><sub>6</sub> = 10\u2009kΩ", SKETCH_SMALL);
+    sketch_small(s, (point){(node + second + 54) / 2, y + 69}, (anchor){0.5, 0},
+                 "<i>R</i><sub>6</sub> = 10\u2009kΩ");
     wire(s, second + 54, y + 62, second + 54, y + 20);
     sketch_disc(s, (point){second + 54, y + 20}, 1.7, SKETCH_INK, true);
 
     // and the divider that sets its gain
     sketch_resistor(s, (point){node, y + 62}, (point){node, y + 106});
-    sketch_text(s, (point){node - 9, y + 86}, (anchor){1, 0.5}, "<i>R</i><sub>5</sub>\n10\u2009kΩ",
-                SKETCH_SMALL);
+    sketch_small(s, (point){node - 9, y + 86}, (anchor){1, 0.5},
+                 "<i>R</i><sub>5</sub>\n10\u2009kΩ");
     draw_ground(s, node, y + 102);
 
     // output
     wire(s, second + 40, y + 20, second + 86, y + 20);
     sketch_disc(s, (point){second + 88, y + 20}, 1.8, SKETCH_INK, false);
-    sketch_text(s, (point){second + 92, y + 12}, (anchor){1, 1}, "<i>V</i><sub>out</sub>",
-                SKETCH_LABEL);
+    sketch_label(s, (point){second + 92, y + 12}, (anchor){1, 1}, "<i>V</i><sub>out</sub>");
 }
 
 // A plot as a part of the page, laid out in the page's own points.
@@ -421,21 +396,13 @@ static void draw_sensor(sketch *s, const diagram *d)
     paint_part(s, &plot, s->left, s->top + 186);
 }
 
-status diagram_sensor(const char *title, const figure_options *o, artwork *out, fault *f)
+status diagram_sensor(const figure_order *order, artwork *out, fault *f)
 {
     (void)f;
 
-    diagram *d = diagram_create(title, NULL, 186 + 52 / 25.4 * 72, o);
+    diagram *d = diagram_create(order, 186 + 52 / 25.4 * 72, draw_sensor);
     const sensor_parameters *p = &d->p.sensor;
-    d->caption = text_printf(
-        "The sheet sensor (FSR) and the measuring resistor divide the supply; a buffer keeps the "
-        "divider unloaded, a second amplifier doubles its output. Resistors as in the thesis; "
-        "supply and sensor are not printed there and are the rig's: %g\u2009V, %g\u2009kΩ at "
-        "1\u2009N, resistance falling with the power %g of the force up to %g\u2009N.",
-        p->fsr_supply, p->fsr_resistance / 1e3, p->fsr_exponent, p->fsr_saturation);
-
     d->frame.caption = d->caption;
-    d->draw = draw_sensor;
     diagram_add_value(d, "measuring resistor", p->fsr_divider, "ohm");
     diagram_add_value(d, "gain resistor R5", R_GAIN, "ohm");
     diagram_add_value(d, "gain resistor R6", R_GAIN, "ohm");
@@ -454,6 +421,11 @@ status diagram_sensor(const char *title, const figure_options *o, artwork *out, 
         d->curve_y[i] = fsr_volts(p, d->curve_x[i]);
     }
 
-    *out = artwork_of_diagram(d);
-    return STATUS_OK;
+    return diagram_open(
+        d, out,
+        "The sheet sensor (FSR) and the measuring resistor divide the supply; a buffer keeps the "
+        "divider unloaded, a second amplifier doubles its output. Resistors as in the thesis; "
+        "supply and sensor are not printed there and are the rig's: %g\u2009V, %g\u2009kΩ at "
+        "1\u2009N, resistance falling with the power %g of the force up to %g\u2009N.",
+        p->fsr_supply, p->fsr_resistance / 1e3, p->fsr_exponent, p->fsr_saturation);
 }

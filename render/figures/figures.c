@@ -190,9 +190,10 @@ static void add_facts(signal_figure *s, const thesis_figure *which, const figure
     }
 }
 
-static status open_signals(const thesis_figure *which, const char *title, const figure_options *o,
-                           artwork *out, fault *f)
+static status open_signals(const figure_order *order, artwork *out, fault *f)
 {
+    const thesis_figure *which = order->which;
+    const figure_options *o = order->options;
     trace_run runs[2];
     trace_panel panels[THESIS_PANELS];
     signal_figure *s = g_new0(signal_figure, 1);
@@ -210,8 +211,8 @@ static status open_signals(const thesis_figure *which, const char *title, const 
     panels[0].modes = which->modes;
 
     if (code == STATUS_OK) {
-        code = run_figure_init(&s->figure, title, panels, which->panel_count, runs, s->run_count, o,
-                               f);
+        code = run_figure_init(&s->figure, order->title, panels, which->panel_count, runs,
+                               s->run_count, o, f);
     }
 
     if (code != STATUS_OK) {
@@ -247,8 +248,8 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
                          o->overlay != NULL ? o->overlay : o->signals);
     }
     g_autofree char *title = title_of(which);
-    return which->open != NULL ? which->open(title, o, out, f)
-                               : open_signals(which, title, o, out, f);
+    const figure_order order = {which, title, o};
+    return which->open != NULL ? which->open(&order, out, f) : open_signals(&order, out, f);
 }
 
 status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
@@ -261,26 +262,32 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
                          thesis_figures[0].id, thesis_figures[FIGURES - 1].id);
     }
 
+    // every format is known before anything is computed
+    g_auto(GStrv) list = g_strsplit(formats, ",", -1);
+    for (int i = 0; list[i] != NULL; i++) {
+        if (picture_format_of(list[i]) == FORMAT_NONE) {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             "there is no figure format '%s', expected png, pdf or svg", list[i]);
+        }
+    }
     artwork drawn;
-    char **list = g_strsplit(formats, ",", -1);
-    status code = artwork_check_formats(list, f);
-    if (code == STATUS_OK) {
-        code = figure_open(which, o, &drawn, f);
+    status code = figure_open(which, o, &drawn, f);
+    if (code != STATUS_OK) {
+        return code;
     }
 
-    // picture, numbers, caption and what LaTeX needs
-    if (code == STATUS_OK) {
-        g_autofree char *first = text_printf("%s/%s.%s", folder, which->file, list[0]);
-        code = artwork_write(&drawn, o, folder, which->file, list, f);
-        if (code == STATUS_OK && o->look.bare) {
-            code = caption_write(&drawn, first, f);
+    // numbers, caption and what LaTeX needs go with the first picture
+    figure_options beside = *o;
+    beside.latex = NULL;
+    code = make_folder(folder, f);
+    for (int i = 0; list[i] != NULL && code == STATUS_OK; i++) {
+        g_autofree char *path = text_printf("%s/%s.%s", folder, which->file, list[i]);
+        beside.look.bare = o->look.bare && i == 0;
+        code = artwork_publish(&drawn, &beside, path, i == 0, f);
+        if (code == STATUS_OK && i == 0 && tex != NULL && o->latex != NULL) {
+            latex_print(tex, &drawn, o->latex, path);
         }
-        if (code == STATUS_OK && tex != NULL && o->latex != NULL) {
-            latex_print(tex, &drawn, o->latex, first);
-        }
-        artwork_finish(&drawn);
     }
-
-    g_strfreev(list);
+    artwork_finish(&drawn);
     return code;
 }

@@ -4,8 +4,11 @@
 
 #include "render/figures/artwork.h"
 #include "render/plot/trace_plot.h"
+#include "src/study/thesis_tables.h"
 
 enum { THESIS_PANELS = 3 };
+
+typedef struct figure_order figure_order;
 
 typedef struct thesis_figure {
     const char *id;       // "3.4", "T4.1", "beta-gamma"
@@ -22,16 +25,23 @@ typedef struct thesis_figure {
     bool slow;            // takes as long as all others, so it is started first
     int printed_voltage;  // the peak of Table 4.3 in this column as a point, 1 to 4; 0: none
     // opens it; NULL for recorded signals in `panels`
-    status (*open)(const char *title, const figure_options *o, artwork *out, fault *f);
+    status (*open)(const figure_order *order, artwork *out, fault *f);
+    int variant; // of what one function opens in several ways
     trace_panel panels[THESIS_PANELS];
     int panel_count;
 } thesis_figure;
 
+// A figure that is to be opened.
+struct figure_order {
+    const thesis_figure *which;
+    const char *title;
+    const figure_options *options;
+};
+
 // The functions that open drawn figures: each makes the runs it needs and fails as they do; the
 // title is copied.
 #define TRACED(...)
-#define DRAWN(function, ...)                                                                       \
-    status function(const char *title, const figure_options *o, artwork *out, fault *f);
+#define DRAWN(function, ...) status function(const figure_order *order, artwork *out, fault *f);
 #include "render/figures/catalogue.inc"
 #undef TRACED
 #undef DRAWN
@@ -55,3 +65,14 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
 // status of the run or of writing.
 status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
                    FILE *tex, fault *f);
+
+// --- Tables 4.1 to 4.3, computed once for all pages that show them
+
+// All rows, computed at the first call, on any thread; valid until the program ends. NULL with a
+// reason if they cannot be computed.
+const thesis_tables *computed_tables(fault *f);
+
+// The row of a table ("4.1"), model ("printed") and quantity ("max_force_energy"), which must
+// exist.
+const table_row *computed_row(const thesis_tables *t, const char *table, const char *model,
+                              const char *quantity);

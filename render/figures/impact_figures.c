@@ -11,14 +11,12 @@
 #include "render/figures/run_figure.h"
 #include "src/base/numbers.h"
 
-#define IMPACT_SCENARIO "corrected/first-impact"
-
 enum { PANELS = 2, ASSUMED_POINTS = 101, MARKS = 2 };
 
 // A figure with everything it borrows.
 typedef struct impact_figure {
     owned_figure plot;
-    figure_level levels[PANELS];
+    figure_level peak_level;
     figure_mark marks[MARKS];
     figure_interval interval;
     figure_impulse impulse;
@@ -35,22 +33,21 @@ static void release_impact(void *owner)
 }
 
 // Runs the scenario and describes what all these figures share. NULL if it fails.
-static impact_figure *new_impact(const char *title, const char *of, const char *change,
-                                 const figure_options *o, fault *f)
+static impact_figure *new_impact(const figure_order *order, fault *f)
 {
     impact_figure *fig = g_new0(impact_figure, 1);
-    if (run_begin(&fig->run, of, change, f) != STATUS_OK) {
+    const char *of = order->which->scenario;
+    if (run_begin(&fig->run, of, NULL, f) != STATUS_OK) {
         g_free(fig);
         return NULL;
     }
 
     // the pulse that the figure is about
     const summary *m = &fig->run.result.summary;
-    owned_figure_init(&fig->plot, title, PANELS);
+    owned_figure_init(&fig->plot, order->title, PANELS);
     fig->contact = m->first_contact_s;
     fig->peak_time = m->first_contact_s + m->first_pulse_time_to_peak_s;
     fig->peak = m->first_pulse_peak_N;
-
     if (!isfinite(fig->peak_time)) {
         fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to draw", of);
         release_impact(fig);
@@ -59,35 +56,26 @@ static impact_figure *new_impact(const char *title, const char *of, const char *
 
     fig->plot.figure.parameters =
         owned_figure_keep(&fig->plot, parameters_line(&fig->run.scenario));
-    figure_take_look(&fig->plot.figure, &o->look);
+    figure_take_look(&fig->plot.figure, &order->options->look);
     return fig;
 }
 
-static figure_series *add_series(impact_figure *fig, int panel, figure_series s)
+static void add_series(impact_figure *fig, int panel, figure_series s)
 {
-    figure_series *out = &fig->plot.series[panel][fig->plot.panels[panel].series_count++];
-    *out = s;
-    return out;
+    fig->plot.series[panel][fig->plot.panels[panel].series_count++] = s;
 }
 
-// A recorded signal over time.
+// A recorded signal over time, in the rows' own numbers.
 static void add_signal(impact_figure *fig, int panel, const char *name, const char *label)
 {
-    const trace *t = &fig->run.result.trace;
-    const signal_info *signal = &signal_table[signal_index(name)];
-    const char *base = (const char *)t->rows;
-    fig->plot.panels[panel].y.name = signal->name;
-    fig->plot.panels[panel].y.unit = signal->unit;
-
-    // its values are read in place, in the rows of the run
-    add_series(fig, panel,
-               (figure_series){.name = signal->name,
-                               .label = label,
-                               .x = (const double *)(base + offsetof(sample, time)),
-                               .y = (const double *)(base + signal->offset),
-                               .count = t->row_count,
-                               .stride = sizeof(sample),
-                               .colour = signal->colour});
+    const trace_run rows = {
+        .scenario = &fig->run.scenario, .result = &fig->run.result, .points = true};
+    figure_series s = trace_series(&rows, signal_index(name), fig->plot.kept);
+    s.label = label;
+    s.style = LINE_SOLID;
+    add_series(fig, panel, s);
+    fig->plot.panels[panel].y.name = name;
+    fig->plot.panels[panel].y.unit = signal_table[signal_index(name)].unit;
 }
 
 // ---- the force pulse
@@ -113,12 +101,10 @@ static status paint_profile(cairo_t *cr, const void *what, figure_report *report
                     .scale = 1};
         double y = plane_y(&p, 1.13 * fig->peak), x0 = plane_x(&p, fig->contact);
         double x1 = plane_x(&p, fig->peak_time);
-        char text[64];
         cairo_save(cr);
         sketch_measure(&s, (point){x0, y}, (point){x1, y});
-        decimal_print(text, sizeof text, "<i>T</i> = %.1f\u2009ms",
-                      1e3 * (fig->peak_time - fig->contact));
-        sketch_text(&s, (point){(x0 + x1) / 2, y - 2}, (anchor){0.5, 1}, text, SKETCH_SMALL);
+        sketch_small(&s, (point){(x0 + x1) / 2, y - 2}, (anchor){0.5, 1}, "<i>T</i> = %.1f\u2009ms",
+                     1e3 * (fig->peak_time - fig->contact));
         cairo_restore(cr);
         g_object_unref(s.context);
     }
@@ -143,18 +129,15 @@ static void show_pulse(impact_figure *fig, double low, double high)
     fig->plot.figure.marks = fig->marks;
     fig->plot.figure.mark_count = 2;
 
-    fig->plot.figure.x.name = "time";
-    fig->plot.figure.x.label = "Time <i>t</i>";
-    fig->plot.figure.x.unit = "s";
-    fig->plot.figure.x.low = low;
-    fig->plot.figure.x.high = high;
+    fig->plot.figure.x =
+        (figure_axis){"time", "Time <i>t</i>", .unit = "s", .low = low, .high = high};
 }
 
-status figure_force_profile(const char *title, const figure_options *o, artwork *out, fault *f)
+status figure_force_profile(const figure_order *order, artwork *out, fault *f)
 {
-    impact_figure *fig = new_impact(title, IMPACT_SCENARIO, NULL, o, f);
+    impact_figure *fig = new_impact(order, f);
     if (fig == NULL) {
-        return f != NULL ? f->code : STATUS_BAD_SCENARIO;
+        return f->code;
     }
 
     const summary *m = &fig->run.result.summary;
@@ -173,10 +156,10 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
     panel->impulse_label = "Impulse <i>p</i>";
     panel->impulse_unit = "N s";
 
-    fig->levels[0] = (figure_level){
-        fig->peak, owned_figure_keep(
-                       &fig->plot, text_printf("<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak))};
-    panel->levels = fig->levels;
+    fig->peak_level = (figure_level){
+        fig->peak,
+        owned_figure_printf(&fig->plot, "<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak)};
+    panel->levels = &fig->peak_level;
     panel->level_count = 1;
 
     // the contact is shaded; the measure of T stands at the top of the panel
@@ -197,6 +180,7 @@ status figure_force_profile(const char *title, const figure_options *o, artwork 
                      .caption = fig->plot.figure.caption,
                      .parameters = fig->plot.figure.parameters,
                      .what = fig,
+                     .owner = fig,
                      .paint = paint_profile,
                      .write_csv = write_profile,
                      .release = release_impact};
@@ -270,17 +254,17 @@ static double departure(const impact_figure *fig, const char *name, const assump
     return most;
 }
 
-static status assumed_motion(const char *title, bool of_angle, const figure_options *o,
-                             artwork *out, fault *f)
+status assumed_motion(const figure_order *order, artwork *out, fault *f)
 {
     static const char *const signals[2][PANELS] = {{"first_velocity", "last_velocity"},
                                                    {"first_angle", "last_angle"}};
     static const char *const labels[2][PANELS] = {
         {"Angular velocity <i>θ̇</i><sub>2</sub>", "Angular velocity <i>θ̇</i><sub>3</sub>"},
         {"Angle <i>θ</i><sub>2</sub>", "Angle <i>θ</i><sub>3</sub>"}};
-    impact_figure *fig = new_impact(title, IMPACT_SCENARIO, NULL, o, f);
+    const bool of_angle = order->which->variant == 1;
+    impact_figure *fig = new_impact(order, f);
     if (fig == NULL) {
-        return f != NULL ? f->code : STATUS_BAD_SCENARIO;
+        return f->code;
     }
 
     // where the assumed motion starts
@@ -307,28 +291,18 @@ static status assumed_motion(const char *title, bool of_angle, const figure_opti
     show_pulse(fig, fig->contact - 0.4 * period, fig->contact + 1.4 * period);
     fig->plot.figure.panel_count = PANELS;
 
-    fig->plot.figure.caption = owned_figure_keep(
-        &fig->plot,
-        text_printf("First and last link of corrected/first-impact from first contact to "
-                    "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
-                    "departure between them: %.2g and %.2g\u2009%s.",
-                    1e3 * period,
-                    of_angle ? "The angles that belong to velocities falling to zero in a "
-                               "straight line"
-                             : "The predictors assume that velocities fall to zero in a "
-                               "straight line",
-                    most[0], most[1], of_angle ? "rad" : "rad/s"));
+    fig->plot.figure.caption =
+        owned_figure_printf(&fig->plot,
+                            "First and last link of corrected/first-impact from first contact to "
+                            "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
+                            "departure between them: %.2g and %.2g\u2009%s.",
+                            1e3 * period,
+                            of_angle ? "The angles that belong to velocities falling to zero in a "
+                                       "straight line"
+                                     : "The predictors assume that velocities fall to zero in a "
+                                       "straight line",
+                            most[0], most[1], of_angle ? "rad" : "rad/s");
 
     *out = artwork_of_figure(&fig->plot.figure, fig, release_impact);
     return STATUS_OK;
-}
-
-status figure_linear_velocity(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    return assumed_motion(title, false, o, out, f);
-}
-
-status figure_quadratic_angle(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    return assumed_motion(title, true, o, out, f);
 }

@@ -5,7 +5,6 @@
 #include <glib.h>
 #include <string.h>
 
-#include "render/figures/thesis_tables.h"
 #include "render/page/text.h"
 #include "render/plot/drawing.h"
 
@@ -31,27 +30,27 @@ typedef struct printed_kind {
     double scale;                   // from N or s to that unit
 } printed_kind;
 
-static const printed_kind forces = {
-    .quantities = {{"max_force_energy", "max_force_energy printed", "energy principle",
-                    MARKER_CIRCLE, 0},
-                   {"max_force_dynamics", "max_force_dynamics printed", "impact dynamics",
-                    MARKER_SQUARE, 5},
-                   {"max_force_simulation", "max_force_simulation printed", "simulation",
-                    MARKER_TRIANGLE, 2}},
-    .count = 3,
-    .name = "force",
-    .axis = "Peak force",
-    .unit = "N",
-    .scale = 1};
-static const printed_kind delays = {.quantities = {{"delay_dynamics", "delay_dynamics printed",
-                                                    "impact dynamics", MARKER_SQUARE, 5},
-                                                   {"delay_simulation", "delay_simulation printed",
-                                                    "simulation", MARKER_TRIANGLE, 2}},
-                                    .count = 2,
-                                    .name = "delay",
-                                    .axis = "Delay",
-                                    .unit = "ms",
-                                    .scale = 1e3};
+static const printed_kind kinds[] = {
+    {.quantities = {{"max_force_energy", "max_force_energy printed", "energy principle",
+                     MARKER_CIRCLE, 0},
+                    {"max_force_dynamics", "max_force_dynamics printed", "impact dynamics",
+                     MARKER_SQUARE, 5},
+                    {"max_force_simulation", "max_force_simulation printed", "simulation",
+                     MARKER_TRIANGLE, 2}},
+     .count = 3,
+     .name = "force",
+     .axis = "Peak force",
+     .unit = "N",
+     .scale = 1},
+    {.quantities = {{"delay_dynamics", "delay_dynamics printed", "impact dynamics", MARKER_SQUARE,
+                     5},
+                    {"delay_simulation", "delay_simulation printed", "simulation", MARKER_TRIANGLE,
+                     2}},
+     .count = 2,
+     .name = "delay",
+     .axis = "Delay",
+     .unit = "ms",
+     .scale = 1e3}};
 
 // The figure with all that it borrows.
 typedef struct printed_values {
@@ -108,13 +107,13 @@ static void add_table(printed_values *v, const printed_kind *kind, int t,
 
     // the names are those of the CSV
     double factor = rows[0]->k2_factor;
-    char *name = owned_figure_keep(plot, text_printf("%s k2 x %g", kind->name, factor));
-    char *residual = owned_figure_keep(plot, text_printf("residual k2 x %g", factor));
+    const char *name = owned_figure_printf(plot, "%s k2 x %g", kind->name, factor);
+    const char *residual = owned_figure_printf(plot, "residual k2 x %g", factor);
 
     // 1, 2, 5, 10 V are nearly even on a logarithmic axis
     *shown = (figure_panel){
-        .heading = owned_figure_keep(
-            plot, text_printf("Table %s: <i>k</i><sub>2</sub> × %g", rows[0]->table, factor)),
+        .heading = owned_figure_printf(plot, "Table %s: <i>k</i><sub>2</sub> × %g", rows[0]->table,
+                                       factor),
         .weight = VALUES_WEIGHT,
         .legend = LEGEND_NONE,
         .y = {.name = name, .label = kind->axis, .unit = kind->unit, .with_zero = true},
@@ -130,27 +129,25 @@ static void add_table(printed_values *v, const printed_kind *kind, int t,
         .series_count = kind->count};
 }
 
-static status open_values(const printed_kind *kind, const char *title, const figure_options *o,
-                          artwork *out, fault *f)
+status printed_values_figure(const figure_order *order, artwork *out, fault *f)
 {
     static const char *const tables[TABLES] = {"4.1", "4.2", "4.3"};
     static const figure_tick voltages[] = {{1, "1"}, {2, "2"}, {5, "5"}, {10, "10"}};
+    const printed_kind *kind = &kinds[order->which->variant];
     const thesis_tables *all = computed_tables(f);
     if (all == NULL) {
-        return f != NULL ? f->code : STATUS_NO_MEMORY;
+        return f->code;
     }
 
     printed_values *v = g_new0(printed_values, 1);
     figure *fig = &v->plot.figure;
-    owned_figure_init(&v->plot, title, PANELS);
-    fig->caption = owned_figure_keep(
+    owned_figure_init(&v->plot, order->title, PANELS);
+    fig->caption = owned_figure_printf(
         &v->plot,
-        text_printf(
-            "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, whose constants were "
-            "inferred from these tables (docs/explanation/model.md). Residual: what the model "
-            "gives "
-            "beyond what is printed, in per cent of that. %s.",
-            picture_software()));
+        "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, whose constants were "
+        "inferred from these tables (docs/explanation/model.md). Residual: what the model gives "
+        "beyond what is printed, in per cent of that. %s.",
+        picture_software());
     fig->columns = TABLES;
     fig->common_legend = true;
     fig->x = (figure_axis){.name = "voltage",
@@ -160,7 +157,7 @@ static status open_values(const printed_kind *kind, const char *title, const fig
                            .room = 0.06,
                            .ticks = voltages,
                            .tick_count = (int)G_N_ELEMENTS(voltages)};
-    figure_take_look(fig, &o->look);
+    figure_take_look(fig, &order->options->look);
     memcpy(v->voltage, all->voltage, sizeof v->voltage);
 
     // panels side by side have their residuals in a row below, panels in a column next to them
@@ -176,14 +173,4 @@ static status open_values(const printed_kind *kind, const char *title, const fig
 
     *out = artwork_of_figure(fig, v, release_values);
     return STATUS_OK;
-}
-
-status printed_forces(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    return open_values(&forces, title, o, out, f);
-}
-
-status printed_delays(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    return open_values(&delays, title, o, out, f);
 }

@@ -9,19 +9,36 @@
 #include "render/figures/run_figure.h"
 #include "render/page/text.h"
 
-enum { MAP_PANELS = 3, MAP_LAYERS = 4, MAP_COLUMNS = 40, MAP_ROWS = 30, MAP_RINGS = 3 };
+enum {
+    MAP_PANELS = 3,
+    MAP_LAYERS = 4,
+    MAP_COLUMNS = 40, // most of a map
+    MAP_ROWS = 30,
+    MAP_RINGS = 3,
+    SAMPLES = 600 // of a force
+};
 
-// A map with everything its figure borrows. Fill the first block, then compute and open.
-typedef struct newmark_map {
-    int columns, rows;                // of cells, up to MAP_COLUMNS and MAP_ROWS
+typedef struct newmark_map newmark_map;
+
+// What a map shows.
+typedef struct newmark_kind {
+    const char *change;               // of the figure's scenario, for the run of reference
+    double beyond;                    // that the cells' runs go on beyond the window [s]
+    int columns, rows;                // of cells
     const char *headings[MAP_PANELS]; // markup
-    figure_axis scale;                // of the numbers
-    bool reversed;                    // low values are bright
+    figure_axis scale;                // of the numbers; low values are bright
     // the number of a pair in a panel, from a run of its own on any thread; not finite if the run
     // failed
-    double (*value)(const void *context, int panel, double beta, double gamma);
-    void *context; // for value
-    void (*release)(void *context);
+    double (*value)(const newmark_map *m, int panel, double beta, double gamma);
+} newmark_kind;
+
+// A map with everything its figure borrows.
+struct newmark_map {
+    const newmark_kind *kind;
+    opened_run run;        // of reference
+    scenario base;         // borrowed from it
+    double from, peak;     // of its first pulse: first contact [s] and force [N]
+    double force[SAMPLES]; // in the window [N]
 
     owned_figure plot;
     int layer_count;
@@ -32,7 +49,7 @@ typedef struct newmark_map {
     double ring_beta[MAP_RINGS], ring_gamma[MAP_RINGS];
     double ring_value[MAP_PANELS][MAP_RINGS];
     int next; // next cell to be computed
-} newmark_map;
+};
 
 // Ends of the axes; cells lie evenly between them.
 #define BETA_HIGH  0.5
@@ -40,7 +57,8 @@ typedef struct newmark_map {
 #define GAMMA_LOW  0.4
 #define GAMMA_HIGH 1.0
 
-#define WEIGHT     1.4 // of a panel's height
+#define WEIGHT     1.4  // of a panel's height
+#define WINDOW     0.15 // length of the force that is looked at, from first contact [s]
 
 // ---- what lies over the cells
 
@@ -55,21 +73,6 @@ static void add_layer(newmark_map *m, figure_series layer)
         }
     }
     m->layer_count++;
-}
-
-static void newmark_map_add_rings(newmark_map *m, const char *name, const char *label)
-{
-    assert(m != NULL && name != NULL && label != NULL);
-    add_layer(m, (figure_series){.name = name,
-                                 .label = label,
-                                 .x = m->ring_beta,
-                                 .y = m->ring_gamma,
-                                 .shade = m->ring_value[0],
-                                 .count = MAP_RINGS,
-                                 .marker = MARKER_CIRCLE,
-                                 .radius = 3.6,
-                                 .no_line = true,
-                                 .rim = true});
 }
 
 // Table 3.1: gamma = 1/2 and 2 beta = gamma; beta = 1/4, where contact sets its own bound; and the
@@ -112,27 +115,61 @@ static void add_bounds(newmark_map *m)
 static gpointer compute_cells(gpointer data)
 {
     newmark_map *m = data;
-    const int cells = m->columns * m->rows, count = MAP_PANELS * cells;
+    const int rows = m->kind->rows, cells = m->kind->columns * rows, count = MAP_PANELS * cells;
 
     // the longest runs, of the last panel, first: so both threads end together
     for (int taken = g_atomic_int_add(&m->next, 1); taken < count;
          taken = g_atomic_int_add(&m->next, 1)) {
         int job = count - 1 - taken, panel = job / cells, cell = job % cells;
         m->values[panel][cell] =
-            m->value(m->context, panel, m->beta[cell / m->rows], m->gamma[cell % m->rows]);
+            m->kind->value(m, panel, m->beta[cell / rows], m->gamma[cell % rows]);
     }
     return NULL;
 }
 
-static void newmark_map_compute(newmark_map *m)
+static void newmark_map_destroy(void *what)
 {
-    assert(m != NULL && m->value != NULL);
-    assert(m->columns > 1 && m->columns <= MAP_COLUMNS && m->rows > 1 && m->rows <= MAP_ROWS);
-    for (int i = 0; i < m->columns; i++) {
-        m->beta[i] = fmax(BETA_LEAST, BETA_HIGH * (i + 0.5) / m->columns);
+    newmark_map *m = what;
+    run_end(&m->run);
+    owned_figure_finish(&m->plot);
+    g_free(m);
+}
+
+// A map with its run of reference; NULL with STATUS_BAD_SCENARIO if that has no pulse, or with the
+// run's status.
+static newmark_map *newmark_map_create(const newmark_kind *kind, const figure_order *order,
+                                       fault *f)
+{
+    newmark_map *m = g_new0(newmark_map, 1);
+    if (run_begin(&m->run, order->which->scenario, kind->change, f) != STATUS_OK) {
+        g_free(m);
+        return NULL;
     }
-    for (int i = 0; i < m->rows; i++) {
-        m->gamma[i] = GAMMA_LOW + (GAMMA_HIGH - GAMMA_LOW) * (i + 0.5) / m->rows;
+    owned_figure_init(&m->plot, order->title, MAP_PANELS);
+    m->kind = kind;
+    m->base = m->run.scenario;
+    m->from = m->run.result.summary.first_contact_s;
+    m->peak = m->run.result.summary.first_pulse_peak_N;
+    m->base.parameters.run.duration = m->from + WINDOW + kind->beyond;
+    m->plot.figure.parameters = owned_figure_keep(&m->plot, parameters_line(&m->run.scenario));
+    if (!isfinite(m->from) || !(m->peak > 0)) {
+        fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to compare",
+                  order->which->scenario);
+        newmark_map_destroy(m);
+        return NULL;
+    }
+    return m;
+}
+
+static void compute(newmark_map *m)
+{
+    const int columns = m->kind->columns, rows = m->kind->rows;
+    assert(columns > 1 && columns <= MAP_COLUMNS && rows > 1 && rows <= MAP_ROWS);
+    for (int i = 0; i < columns; i++) {
+        m->beta[i] = fmax(BETA_LEAST, BETA_HIGH * (i + 0.5) / columns);
+    }
+    for (int i = 0; i < rows; i++) {
+        m->gamma[i] = GAMMA_LOW + (GAMMA_HIGH - GAMMA_LOW) * (i + 0.5) / rows;
     }
 
     add_bounds(m);
@@ -147,13 +184,13 @@ static void describe_panel(newmark_map *m, int panel)
 {
     m->maps[panel] = (figure_map){.x = m->beta,
                                   .y = m->gamma,
-                                  .columns = (size_t)m->columns,
-                                  .rows = (size_t)m->rows,
+                                  .columns = (size_t)m->kind->columns,
+                                  .rows = (size_t)m->kind->rows,
                                   .z = m->values[panel]};
     m->colours[panel] =
-        (figure_colours){.axis = m->scale, .reversed = m->reversed, .bar = panel == MAP_PANELS - 1};
+        (figure_colours){.axis = m->kind->scale, .reversed = true, .bar = panel == MAP_PANELS - 1};
     m->plot.panels[panel] = (figure_panel){
-        .heading = m->headings[panel],
+        .heading = m->kind->headings[panel],
         .y = {.name = "gamma", .label = "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH},
         .weight = WEIGHT,
         .map = &m->maps[panel],
@@ -162,20 +199,8 @@ static void describe_panel(newmark_map *m, int panel)
         .series_count = m->layer_count};
 }
 
-// Frees a map and its context.
-static void newmark_map_destroy(void *what)
+static artwork open_map(newmark_map *m, const figure_options *o)
 {
-    newmark_map *m = what;
-    if (m->release != NULL) {
-        m->release(m->context);
-    }
-    owned_figure_finish(&m->plot);
-    g_free(m);
-}
-
-static artwork newmark_map_open(newmark_map *m, const figure_options *o)
-{
-    assert(m != NULL && o != NULL);
     for (int panel = 0; panel < MAP_PANELS; panel++) {
         describe_panel(m, panel);
     }
@@ -193,25 +218,10 @@ static artwork newmark_map_open(newmark_map *m, const figure_options *o)
 
 // ==== the figures
 
-#define MAP_SCENARIO     "corrected/first-impact"
-#define PRINTED_SCENARIO "thesis/fig-3-4"
-#define WINDOW           0.15 // length of the force that is looked at, from first contact [s]
-
-enum { SAMPLES = 600 };
-
 // ---- the corrected arm: error of the force
 
 static const double steps[MAP_PANELS] = {5e-3, 1e-3, 2e-4}; // [s]
 static const double radii[MAP_RINGS] = {1, 0.8, 0.5};       // generalised-alpha's rho
-
-// What the runs of the corrected arm are measured against.
-typedef struct event_reference {
-    scenario base;         // borrowed from `run`
-    opened_run run;        // of the event method
-    double from;           // first contact [s]
-    double force[SAMPLES]; // [N]
-    double peak;           // [N]
-} event_reference;
 
 // Force at evenly spaced instants of the window, straight lines between rows.
 static void sample_force(const trace *t, double from, double *out)
@@ -230,43 +240,42 @@ static void sample_force(const trace *t, double from, double *out)
 }
 
 // Root of the mean square difference from the reference, in per cent of its peak.
-static double force_error(const event_reference *r, const method_parameters *method)
+static double force_error(const newmark_map *m, const method_parameters *method)
 {
     run_result result;
     double force[SAMPLES], sum = 0;
 
-    scenario s = r->base;
+    scenario s = m->base;
     s.parameters.method = *method;
     if (run_scenario(&s, true, &result) != STATUS_OK) {
         run_finish(&result);
         return (double)INFINITY;
     }
 
-    sample_force(&result.trace, r->from, force);
+    sample_force(&result.trace, m->from, force);
     run_finish(&result);
 
     // root of the mean square, in per cent of the peak
     for (int i = 0; i < SAMPLES; i++) {
-        sum += (force[i] - r->force[i]) * (force[i] - r->force[i]);
+        sum += (force[i] - m->force[i]) * (force[i] - m->force[i]);
     }
-    return 100 * sqrt(sum / SAMPLES) / r->peak;
+    return 100 * sqrt(sum / SAMPLES) / m->peak;
 }
 
-static double newmark_error(const void *context, int panel, double beta, double gamma)
+static double newmark_error(const newmark_map *m, int panel, double beta, double gamma)
 {
-    const event_reference *r = context;
-    method_parameters method = r->base.parameters.method;
+    method_parameters method = m->base.parameters.method;
     method.name = METHOD_NEWMARK;
     method.step = steps[panel];
     method.beta = beta;
     method.gamma = gamma;
-    return force_error(r, &method);
+    return force_error(m, &method);
 }
 
-// Generalised-alpha's own errors, at the pairs (beta, gamma) of its spectral radii.
-static void compute_rings(newmark_map *m, const event_reference *r)
+// Generalised-alpha's own errors, as rings at the pairs (beta, gamma) of its spectral radii.
+static void add_rings(newmark_map *m)
 {
-    method_parameters method = r->base.parameters.method;
+    method_parameters method = m->base.parameters.method;
     method.name = METHOD_GENERALIZED_ALPHA;
     for (int i = 0; i < MAP_RINGS; i++) {
         double rho = radii[i], am = (2 * rho - 1) / (rho + 1), af = rho / (rho + 1);
@@ -275,51 +284,27 @@ static void compute_rings(newmark_map *m, const event_reference *r)
         method.spectral_radius = rho;
         for (int panel = 0; panel < MAP_PANELS; panel++) {
             method.step = steps[panel];
-            m->ring_value[panel][i] = force_error(r, &method);
+            m->ring_value[panel][i] = force_error(m, &method);
         }
     }
+
+    add_layer(m, (figure_series){.name = "generalized-alpha",
+                                 .label = "generalised-alpha, <i>ρ</i> = 1, 0.8, 0.5 from below",
+                                 .x = m->ring_beta,
+                                 .y = m->ring_gamma,
+                                 .shade = m->ring_value[0],
+                                 .count = MAP_RINGS,
+                                 .marker = MARKER_CIRCLE,
+                                 .radius = 3.6,
+                                 .no_line = true,
+                                 .rim = true});
 }
 
-static void release_event_reference(void *context)
+status stability_map(const figure_order *order, artwork *out, fault *f)
 {
-    event_reference *r = context;
-    run_end(&r->run);
-    g_free(r);
-}
-
-// The run whose first pulse is the reference of the cells. STATUS_BAD_SCENARIO without a pulse.
-static status begin_reference(opened_run *run, const char *of, const char *change, fault *f)
-{
-    status code = run_begin(run, of, change, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    const summary *m = &run->result.summary;
-    if (!isfinite(m->first_contact_s) || !(m->first_pulse_peak_N > 0)) {
-        run_end(run);
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to compare",
-                         of);
-    }
-    return STATUS_OK;
-}
-
-status stability_map(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    // what is measured against
-    event_reference *r = g_new0(event_reference, 1);
-    status code = begin_reference(&r->run, MAP_SCENARIO, "method.name=event", f);
-    if (code != STATUS_OK) {
-        g_free(r);
-        return code;
-    }
-    r->from = r->run.result.summary.first_contact_s;
-    r->peak = r->run.result.summary.first_pulse_peak_N;
-    sample_force(&r->run.result.trace, r->from, r->force);
-    r->base = r->run.scenario;
-    r->base.parameters.run.duration = r->from + WINDOW + 0.01;
-
-    newmark_map *m = g_new0(newmark_map, 1);
-    *m = (newmark_map){
+    static const newmark_kind kind = {
+        .change = "method.name=event",
+        .beyond = 0.01,
         .columns = MAP_COLUMNS,
         .rows = MAP_ROWS,
         .headings = {"<i>h</i> = 5\u2009ms", "<i>h</i> = 1\u2009ms", "<i>h</i> = 0.2\u2009ms"},
@@ -329,30 +314,26 @@ status stability_map(const char *title, const figure_options *o, artwork *out, f
                   .scale = SCALE_LOGARITHMIC,
                   .low = 0.01,
                   .high = 100},
-        .reversed = true,
-        .value = newmark_error,
-        .context = r,
-        .release = release_event_reference};
-    owned_figure_init(&m->plot, title, MAP_PANELS);
-    m->plot.figure.parameters = owned_figure_keep(&m->plot, parameters_line(&r->run.scenario));
-    m->plot.figure.caption = owned_figure_keep(
+        .value = newmark_error};
+    newmark_map *m = newmark_map_create(&kind, order, f);
+    if (m == NULL) {
+        return f->code;
+    }
+    m->plot.figure.caption = owned_figure_printf(
         &m->plot,
-        text_printf(
-            "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). Error: root "
-            "of "
-            "the mean square difference of the contact force from the event method's over the "
-            "%g\u2009ms after first contact, in per cent of its peak. Lines: <i>γ</i> = ½ and "
-            "2<i>β</i> = <i>γ</i>, between which Table 3.1 promises stability at any step; dashed: "
-            "<i>β</i> = ¼, below which the constraint of the contact makes accelerations grow from "
-            "step to step, whatever <i>γ</i>. Hatched: the run was stopped because its "
-            "energy no longer balanced. Rings have the colour of their own method's error.",
-            1e3 * WINDOW));
+        "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). Error: root of "
+        "the mean square difference of the contact force from the event method's over the "
+        "%g\u2009ms after first contact, in per cent of its peak. Lines: <i>γ</i> = ½ and "
+        "2<i>β</i> = <i>γ</i>, between which Table 3.1 promises stability at any step; dashed: "
+        "<i>β</i> = ¼, below which the constraint of the contact makes accelerations grow from "
+        "step to step, whatever <i>γ</i>. Hatched: the run was stopped because its "
+        "energy no longer balanced. Rings have the colour of their own method's error.",
+        1e3 * WINDOW);
 
-    newmark_map_compute(m);
-    compute_rings(m, r);
-    newmark_map_add_rings(m, "generalized-alpha",
-                          "generalised-alpha, <i>ρ</i> = 1, 0.8, 0.5 from below");
-    *out = newmark_map_open(m, o);
+    sample_force(&m->run.result.trace, m->from, m->force);
+    compute(m);
+    add_rings(m);
+    *out = open_map(m, order->options);
     return STATUS_OK;
 }
 
@@ -365,81 +346,48 @@ static const struct {
 } printed_settings[MAP_PANELS] = {
     {REEVALUATE_RHS, 1e-3}, {REEVALUATE_NONE, 1e-3}, {REEVALUATE_NONE, 2e-4}};
 
-enum { PRINTED_COLUMNS = 20, PRINTED_ROWS = 15 };
-
-// The run of Fig. 3.4.
-typedef struct printed_reference {
-    scenario base; // borrowed from `run`
-    opened_run run;
-    double peak; // of its first pulse [N]
-} printed_reference;
-
-static void release_printed_reference(void *context)
-{
-    printed_reference *r = context;
-    run_end(&r->run);
-    g_free(r);
-}
-
 // The largest force in times that of Fig. 3.4.
-static double printed_force(const void *context, int panel, double beta, double gamma)
+static double printed_force(const newmark_map *m, int panel, double beta, double gamma)
 {
-    const printed_reference *r = context;
     run_result result;
-    scenario s = r->base;
+    scenario s = m->base;
     s.parameters.printed.reevaluation = printed_settings[panel].reevaluation;
     s.parameters.method.step = printed_settings[panel].step;
     s.parameters.method.beta = beta;
     s.parameters.method.gamma = gamma;
     status code = run_scenario(&s, false, &result);
-    double force = code == STATUS_OK ? result.summary.peak_force_N / r->peak : (double)INFINITY;
+    double force = code == STATUS_OK ? result.summary.peak_force_N / m->peak : (double)INFINITY;
     run_finish(&result);
     return force;
 }
 
-status printed_stability_map(const char *title, const figure_options *o, artwork *out, fault *f)
+status printed_stability_map(const figure_order *order, artwork *out, fault *f)
 {
-    printed_reference *r = g_new0(printed_reference, 1);
-    status code = begin_reference(&r->run, PRINTED_SCENARIO, NULL, f);
-    if (code != STATUS_OK) {
-        g_free(r);
-        return code;
+    static const newmark_kind kind = {.columns = 20,
+                                      .rows = 15,
+                                      .headings = {"two runs, <i>h</i> = 1\u2009ms",
+                                                   "one run, 1\u2009ms", "one run, 0.2\u2009ms"},
+                                      .scale = {.name = "largest_force",
+                                                .label = "Peak over that of Fig. 3.4",
+                                                .scale = SCALE_LOGARITHMIC,
+                                                .low = 0.5,
+                                                .high = 500},
+                                      .value = printed_force};
+    newmark_map *m = newmark_map_create(&kind, order, f);
+    if (m == NULL) {
+        return f->code;
     }
-    r->peak = r->run.result.summary.first_pulse_peak_N;
-    r->base = r->run.scenario;
-    r->base.parameters.run.duration = r->run.result.summary.first_contact_s + WINDOW;
-
-    newmark_map *m = g_new0(newmark_map, 1);
-    *m = (newmark_map){.columns = PRINTED_COLUMNS,
-                       .rows = PRINTED_ROWS,
-                       .headings = {"two runs, <i>h</i> = 1\u2009ms", "one run, 1\u2009ms",
-                                    "one run, 0.2\u2009ms"},
-                       .scale = {.name = "largest_force",
-                                 .label = "Peak over that of Fig. 3.4",
-                                 .scale = SCALE_LOGARITHMIC,
-                                 .low = 0.5,
-                                 .high = 500},
-                       .reversed = true,
-                       .value = printed_force,
-                       .context = r,
-                       .release = release_printed_reference};
-    owned_figure_init(&m->plot, title, MAP_PANELS);
-    m->plot.figure.parameters = owned_figure_keep(&m->plot, parameters_line(&r->run.scenario));
-    m->plot.figure.caption = owned_figure_keep(
+    m->plot.figure.caption = owned_figure_printf(
         &m->plot,
-        text_printf(
-            "The printed model (thesis/fig-3-4, 1\u2009V), largest contact force of the %g\u2009ms "
-            "after first contact, in times the %.3g\u2009N of Fig. 3.4. Two runs: accelerations "
-            "and "
-            "force "
-            "are computed once more from the constraint's second derivative (3.13), the thesis's "
-            "remedy. One run: without it no pair gives a usable force, and a shorter step "
-            "makes it worse, because the impulse of the impact is delivered within one step. Lines "
-            "as "
-            "in the map of the corrected arm. Hatched: the equations of a step became singular.",
-            1e3 * WINDOW, r->peak));
+        "The printed model (thesis/fig-3-4, 1\u2009V), largest contact force of the %g\u2009ms "
+        "after first contact, in times the %.3g\u2009N of Fig. 3.4. Two runs: accelerations and "
+        "force are computed once more from the constraint's second derivative (3.13), the thesis's "
+        "remedy. One run: without it no pair gives a usable force, and a shorter step "
+        "makes it worse, because the impulse of the impact is delivered within one step. Lines as "
+        "in the map of the corrected arm. Hatched: the equations of a step became singular.",
+        1e3 * WINDOW, m->peak);
 
-    newmark_map_compute(m);
-    *out = newmark_map_open(m, o);
+    compute(m);
+    *out = open_map(m, order->options);
     return STATUS_OK;
 }

@@ -1,5 +1,4 @@
-#include "render/figures/thesis_tables.h"
-
+// The thesis's tables as pages.
 #include <assert.h>
 #include <glib.h>
 #include <math.h>
@@ -9,7 +8,6 @@
 #include "render/figures/figures.h"
 #include "render/page/text.h"
 #include "src/arm/modes.h"
-#include "src/study/thesis_tables.h"
 
 G_LOCK_DEFINE_STATIC(tables);
 
@@ -42,12 +40,24 @@ const table_row *computed_row(const thesis_tables *t, const char *table, const c
 
 // ==== pages
 
-static table_page *new_table(const char *title, const figure_options *o)
+static table_page *new_table(const figure_order *order)
 {
     table_page *t = g_new0(table_page, 1);
-    table_begin(t, title);
-    t->look = o->look;
+    table_begin(t, order->title);
+    t->look = order->options->look;
     return t;
+}
+
+// Gives a table its caption, printed as by text_printf, and opens it.
+__attribute__((format(printf, 3, 4))) static status open_table(table_page *t, artwork *out,
+                                                               const char *caption, ...)
+{
+    va_list list;
+    va_start(list, caption);
+    t->caption = text_vprintf(caption, list);
+    va_end(list);
+    *out = artwork_of_table(t);
+    return STATUS_OK;
 }
 
 // ---- 2.1: the motor
@@ -72,7 +82,7 @@ static void add_motor_row(table_page *t, const parameters *p, const char *symbol
     table_add_row(t, (const char *[]){symbol, printed, used, name});
 }
 
-status table_motor(const char *title, const figure_options *o, artwork *out, fault *f)
+status table_motor(const figure_order *order, artwork *out, fault *f)
 {
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
@@ -81,11 +91,11 @@ status table_motor(const char *title, const figure_options *o, artwork *out, fau
         return code;
     }
 
-    table_page *t = new_table(title, o);
+    table_page *t = new_table(order);
     table_add_column(t, "Symbol", 0.75, TEXT_LEFT);
     table_add_column(t, "Thesis", 1.75, TEXT_LEFT);
     table_add_column(t, "As used", 1.75, TEXT_LEFT);
-    if (!(o->look.width > 0 && o->look.width < DESCRIPTIONS_BESIDE)) {
+    if (!(t->look.width > 0 && t->look.width < DESCRIPTIONS_BESIDE)) {
         table_add_column(t, "Parameter", 3.2, TEXT_LEFT);
     }
 
@@ -98,10 +108,9 @@ status table_motor(const char *title, const figure_options *o, artwork *out, fau
     add_motor_row(t, &p, "", "6.02 (section 2.3)", "motor.amplifier_gain");
     add_motor_row(t, &p, "", "10\u2009V (section 2.3)", "motor.voltage_limit");
 
-    t->caption = g_strdup("The printed <i>k</i><sub>T</sub> counts kilograms of force; times "
-                          "9.80665\u2009m/s² it is equal to <i>k</i><sub>B</sub>, as it must be.");
-    *out = artwork_of_table(t);
-    return STATUS_OK;
+    return open_table(t, out,
+                      "The printed <i>k</i><sub>T</sub> counts kilograms of force; times "
+                      "9.80665\u2009m/s² it is equal to <i>k</i><sub>B</sub>, as it must be.");
 }
 
 // ---- 3.1: stability
@@ -110,25 +119,16 @@ status table_motor(const char *title, const figure_options *o, artwork *out, fau
 static void add_pair(table_page *t, const char *name, double beta, double gamma, double fastest)
 {
     bool always = 2 * beta >= gamma;
-    char *pair = text_printf("%.4g, %.4g", beta, gamma), *bound, *step;
-
     // a pair with a bound has a longest step, that of the fastest mode
-    if (always) {
-        bound = g_strdup("none");
-        step = g_strdup("any");
-    } else {
-        double critical = 1 / sqrt(gamma / 2 - beta);
-        bound = text_printf("%.4g", critical);
-        step = text_printf("%.3g\u2009ms", 1e3 * critical / fastest);
-    }
-
-    table_add_row(t, (const char *[]){name, pair, bound, step, gamma > 0.5 ? "1" : "2"});
-    g_free(pair);
-    g_free(bound);
-    g_free(step);
+    double critical = always ? 0 : 1 / sqrt(gamma / 2 - beta);
+    g_autofree char *pair = text_printf("%.4g, %.4g", beta, gamma);
+    g_autofree char *bound = text_printf("%.4g", critical);
+    g_autofree char *step = text_printf("%.3g\u2009ms", 1e3 * critical / fastest);
+    table_add_row(t, (const char *[]){name, pair, always ? "none" : bound, always ? "any" : step,
+                                      gamma > 0.5 ? "1" : "2"});
 }
 
-status table_stability(const char *title, const figure_options *o, artwork *out, fault *f)
+status table_stability(const figure_order *order, artwork *out, fault *f)
 {
     arm a;
     parameters p;
@@ -148,7 +148,7 @@ status table_stability(const char *title, const figure_options *o, artwork *out,
     }
     double fastest = frequencies[count - 1];
 
-    table_page *t = new_table(title, o);
+    table_page *t = new_table(order);
     table_add_column(t, "Method", 2.3, TEXT_LEFT);
     table_add_column(t, "<i>β</i>, <i>γ</i>", 1.5, TEXT_LEFT);
     table_add_column(t, "Largest <i>ωh</i>", 1.1, TEXT_RIGHT);
@@ -167,20 +167,18 @@ status table_stability(const char *title, const figure_options *o, artwork *out,
     add_pair(t, "Fox and Goodwin", 1.0 / 12, 0.5, fastest);
     add_pair(t, "central differences", 0, 0.5, fastest);
 
-    t->caption = text_printf(
+    return open_table(
+        t, out,
         "Without damping; <i>ω</i> is the fastest mode, for the two-link arm with the printed hub "
         "spring %.4g\u2009rad/s. <i>γ</i> > ½ damps fast modes and costs one order. In contact "
         "<i>β</i> "
         "has to exceed ¼ as well, whatever the step: figure beta-gamma.",
         fastest);
-
-    *out = artwork_of_table(t);
-    return STATUS_OK;
 }
 
 // ---- 3.2: the algorithm
 
-status table_algorithm(const char *title, const figure_options *o, artwork *out, fault *f)
+status table_algorithm(const figure_order *order, artwork *out, fault *f)
 {
     static const char *const rows[][3] = {
         {"1", "Start from given angles and velocities; accelerations are zero.",
@@ -203,7 +201,7 @@ status table_algorithm(const char *title, const figure_options *o, artwork *out,
     };
     (void)f;
 
-    table_page *t = new_table(title, o);
+    table_page *t = new_table(order);
     table_add_column(t, "", 0.35, TEXT_LEFT);
     table_add_column(t, "What happens in a step", 4, TEXT_LEFT);
     table_add_column(t, "In the lab", 1.2, TEXT_LEFT);
@@ -212,12 +210,10 @@ status table_algorithm(const char *title, const figure_options *o, artwork *out,
         table_add_row(t, rows[i]);
     }
 
-    t->caption = g_strdup("Numbered as in the thesis, told as the lab runs it for the printed "
-                          "model. The corrected model locates "
-                          "contact and release in time instead (docs/explanation/model.md).");
-
-    *out = artwork_of_table(t);
-    return STATUS_OK;
+    return open_table(t, out,
+                      "Numbered as in the thesis, told as the lab runs it for the printed "
+                      "model. The corrected model locates "
+                      "contact and release in time instead (docs/explanation/model.md).");
 }
 
 // ---- 4.1 to 4.3: predictions
@@ -267,16 +263,17 @@ static void add_model(table_page *t, const table_row *row, double scale, const c
     add_values(t, "  difference (%)", difference, 100, "%.1f");
 }
 
-static status open_predictions(const char *table, const char *title, const figure_options *o,
-                               artwork *out, fault *f)
+// "T4.2" and its like.
+status table_predictions(const figure_order *order, artwork *out, fault *f)
 {
+    const char *table = order->which->id + 1;
     const thesis_tables *all = computed_tables(f);
     if (all == NULL) {
-        return f != NULL ? f->code : STATUS_NO_MEMORY;
+        return f->code;
     }
 
     // a column for each voltage
-    table_page *t = new_table(title, o);
+    table_page *t = new_table(order);
     table_add_column(t, "Command", 2.2, TEXT_LEFT);
     static const char *const heads[TABLE_VOLTAGES] = {"1\u2009V", "2\u2009V", "5\u2009V",
                                                       "10\u2009V"};
@@ -298,43 +295,26 @@ static status open_predictions(const char *table, const char *title, const figur
         add_model(t, corrected, scale, format);
     }
 
-    t->caption = text_printf(
+    t->parameters = text_printf("table=%s", table);
+    return open_table(
+        t, out,
         "<i>k</i><sub>2</sub> = %g\u2009N·m/rad, wall at 0.1\u2009rad. Differences are from what "
         "the thesis prints. The printed model has the constants inferred from these tables "
         "(docs/explanation/model.md); the corrected one has the mechanics derived anew and is not "
         "meant to agree. –: the arm swings away as it touches, there is no pulse.",
         4.92 * computed_row(all, table, "printed", "max_force_energy")->k2_factor);
-
-    t->parameters = text_printf("table=%s", table);
-    *out = artwork_of_table(t);
-    return STATUS_OK;
-}
-
-status table_hundredfold(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    return open_predictions("4.1", title, o, out, f);
-}
-
-status table_tenfold(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    return open_predictions("4.2", title, o, out, f);
-}
-
-status table_nominal(const char *title, const figure_options *o, artwork *out, fault *f)
-{
-    return open_predictions("4.3", title, o, out, f);
 }
 
 // ---- how near the computed tables come
 
-status table_errors(const char *title, const figure_options *o, artwork *out, fault *f)
+status table_errors(const figure_order *order, artwork *out, fault *f)
 {
     const thesis_tables *all = computed_tables(f);
     if (all == NULL) {
-        return f != NULL ? f->code : STATUS_NO_MEMORY;
+        return f->code;
     }
 
-    table_page *t = new_table(title, o);
+    table_page *t = new_table(order);
     table_add_column(t, "Row", 3, TEXT_LEFT);
     table_add_column(t, "Printed (%)", 1.2, TEXT_RIGHT);
     table_add_column(t, "Corrected (%)", 1.2, TEXT_RIGHT);

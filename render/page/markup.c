@@ -217,31 +217,31 @@ char *text_escape(const char *bytes)
 
 // Without memory GLib ends the program, and so does this; GLib's own printing leaves the text out
 // and says nothing.
-__attribute__((format(printf, 2, 0))) static void append_list(GString *text, const char *format,
-                                                              va_list list)
+char *text_vprintf(const char *format, va_list list)
 {
     char *printed = decimal_vtext(format, list);
     if (printed == NULL) {
         g_error("out of memory");
     }
-    g_string_append(text, printed);
+    char *text = g_strdup(printed);
     free(printed);
+    return text;
 }
 
 char *text_printf(const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    GString *text = g_string_new(NULL);
-    append_list(text, format, list);
+    char *text = text_vprintf(format, list);
     va_end(list);
-    return g_string_free(text, FALSE);
+    return text;
 }
 
 void text_append(GString *text, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    append_list(text, format, list);
+    g_autofree char *printed = text_vprintf(format, list);
     va_end(list);
+    g_string_append(text, printed);
 }

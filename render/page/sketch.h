@@ -8,8 +8,6 @@
 
 #define SKETCH_WIDTH  370.0 // a page as designed (130 mm)
 #define SKETCH_MARGIN 8.0
-#define SKETCH_LABEL  8.0 // size of letters
-#define SKETCH_SMALL  7.0
 
 // Title, caption and size of a drawing.
 typedef struct sketch_frame {
@@ -92,8 +90,12 @@ void sketch_resistor(const sketch *s, point from, point to);
 // A fixed surface: a line, hatched on its right-hand side as seen from its start.
 void sketch_wall(const sketch *s, point from, point to);
 
-// A text with its anchor at a place.
-void sketch_text(sketch *s, point at, anchor part, const char *markup, double size);
+// A text with its anchor at a place, printed as by text_printf, in the letters of labels or
+// smaller.
+void sketch_label(sketch *s, point at, anchor part, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+void sketch_small(sketch *s, point at, anchor part, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 // A text that begins at a point, wrapped at its width; its size is that of a designed page. The
 // frame's family replaces the block's.

@@ -3,6 +3,7 @@
 
 #include <glib.h>
 #include <pango/pangocairo.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -39,6 +40,7 @@ char *text_escape(const char *bytes);
 // As g_strdup_printf and g_string_append_printf, with a decimal point in every locale; a refused
 // request for memory ends the program, where those leave the text out.
 char *text_printf(const char *format, ...) __attribute__((format(printf, 1, 2)));
+char *text_vprintf(const char *format, va_list list) __attribute__((format(printf, 1, 0)));
 void text_append(GString *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // Any bytes as valid UTF-8 of printable characters and line feeds. Free the result with g_free.

@@ -42,6 +42,15 @@ void *owned_figure_keep(owned_figure *o, void *block)
     return block;
 }
 
+const char *owned_figure_printf(owned_figure *o, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    char *text = text_vprintf(format, list);
+    va_end(list);
+    return owned_figure_keep(o, text);
+}
+
 void figure_take_look(figure *fig, const page_look *look)
 {
     assert(fig != NULL && look != NULL);

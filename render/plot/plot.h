@@ -184,8 +184,10 @@ void owned_figure_finish(owned_figure *o);
 // The same on the heap; NULL is accepted.
 void owned_figure_destroy(owned_figure *o);
 
-// Gives a block from g_malloc to the figure, and returns it.
+// Gives a block from g_malloc to the figure, and returns it; and a text as text_printf makes it.
 void *owned_figure_keep(owned_figure *o, void *block);
+const char *owned_figure_printf(owned_figure *o, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 // Applies the given look to a figure; fields that are zero have no effect.
 void figure_take_look(figure *fig, const page_look *look);
