@@ -18,14 +18,15 @@ typedef struct figure_options {
 } figure_options;
 
 typedef struct artwork {
-    double width, height;           // of the page [pt]
-    const char *title, *parameters; // plain, for the file's metadata
-    const char *caption;            // markup, NULL for none
-    char *alternative;              // plain: alternative text; owned
-    const table_page *table;        // of a table, else NULL
-    const figure *plotted;          // of a plotted figure, else NULL
-    bool cells;                     // a picture with very many cells
-    const void *what;               // for the functions below
+    const char *title;       // plain
+    const char *caption;     // markup, NULL for none
+    const char *parameters;  // plain, for the file's metadata
+    double width, height;    // of the page [pt]
+    char *alternative;       // plain: alternative text; owned
+    const table_page *table; // of a table, else NULL
+    const figure *plotted;   // of a plotted figure, else NULL
+    bool cells;              // a picture with very many cells
+    const void *what;        // for the functions below
     // draws it with the page's top left corner at the origin of cr, in points; *report (may be
     // NULL) is filled
     status (*paint)(cairo_t *cr, const void *what, figure_report *report, fault *f);

@@ -145,15 +145,9 @@ static void add_printed_peak(signal_figure *s, const thesis_figure *which, GStri
     // where the thesis has it: as long after the run's own first contact
     s->printed_force = forces[column];
     s->printed_time = m->first_contact_s + delays[column];
-    t->series[0][panel->series_count++] = (figure_series){.name = "Table 4.3",
-                                                          .label = "Table 4.3",
-                                                          .x = &s->printed_time,
-                                                          .y = &s->printed_force,
-                                                          .count = 1,
-                                                          .colour = 5,
-                                                          .no_line = true,
-                                                          .marker = MARKER_DIAMOND,
-                                                          .radius = 2.6};
+    t->series[0][panel->series_count++] = (figure_series){
+        "Table 4.3", "Table 4.3",     .x = &s->printed_time,    .y = &s->printed_force, .count = 1,
+        .colour = 5, .no_line = true, .marker = MARKER_DIAMOND, .radius = 2.6};
 
     // how far the run is from it
     double more = m->first_pulse_peak_N - forces[column];
@@ -201,11 +195,8 @@ static status open_signals(const figure_order *order, artwork *out, fault *f)
     // the same panels for each model
     status code = run_scenarios(s, which, f);
     for (int i = 0; i < s->run_count; i++) {
-        runs[i] = (trace_run){.scenario = &s->runs[i].scenario,
-                              .result = &s->runs[i].result,
-                              .name = which->names[i],
-                              .steps = which->steps && i == 0,
-                              .brief = i == 1};
+        runs[i] = (trace_run){&s->runs[i].scenario, &s->runs[i].result, which->names[i],
+                              .steps = which->steps && i == 0, .brief = i == 1};
     }
     memcpy(panels, which->panels, sizeof panels);
     panels[0].modes = which->modes;

@@ -230,13 +230,8 @@ static void add_assumption(impact_figure *fig, int panel, const assumption *a, c
 
     // dashed, as it is no result of the run
     add_series(fig, panel,
-               (figure_series){.name = "assumed",
-                               .label = label,
-                               .x = x,
-                               .y = y,
-                               .count = ASSUMED_POINTS,
-                               .colour = 5,
-                               .style = LINE_DASHED});
+               (figure_series){"assumed", label, .x = x, .y = y, .count = ASSUMED_POINTS,
+                               .colour = 5, .style = LINE_DASHED});
 }
 
 // Largest distance of a recorded signal from the assumption between contact and peak.

@@ -24,33 +24,29 @@ typedef struct printed_quantity {
 
 // What a figure shows of them.
 typedef struct printed_kind {
-    printed_quantity quantities[QUANTITIES];
-    int count;
     const char *name, *axis, *unit; // of the values
     double scale;                   // from N or s to that unit
+    int count;                      // of quantities
+    printed_quantity quantities[QUANTITIES];
 } printed_kind;
 
 static const printed_kind kinds[] = {
-    {.quantities = {{"max_force_energy", "max_force_energy printed", "energy principle",
-                     MARKER_CIRCLE, 0},
-                    {"max_force_dynamics", "max_force_dynamics printed", "impact dynamics",
-                     MARKER_SQUARE, 5},
-                    {"max_force_simulation", "max_force_simulation printed", "simulation",
-                     MARKER_TRIANGLE, 2}},
-     .count = 3,
-     .name = "force",
-     .axis = "Peak force",
-     .unit = "N",
-     .scale = 1},
-    {.quantities = {{"delay_dynamics", "delay_dynamics printed", "impact dynamics", MARKER_SQUARE,
-                     5},
-                    {"delay_simulation", "delay_simulation printed", "simulation", MARKER_TRIANGLE,
-                     2}},
-     .count = 2,
-     .name = "delay",
-     .axis = "Delay",
-     .unit = "ms",
-     .scale = 1e3}};
+    {"force",
+     "Peak force",
+     "N",
+     1,
+     3,
+     {{"max_force_energy", "max_force_energy printed", "energy principle", MARKER_CIRCLE, 0},
+      {"max_force_dynamics", "max_force_dynamics printed", "impact dynamics", MARKER_SQUARE, 5},
+      {"max_force_simulation", "max_force_simulation printed", "simulation", MARKER_TRIANGLE, 2}}},
+    {"delay",
+     "Delay",
+     "ms",
+     1e3,
+     2,
+     {{"delay_dynamics", "delay_dynamics printed", "impact dynamics", MARKER_SQUARE, 5},
+      {"delay_simulation", "delay_simulation printed", "simulation", MARKER_TRIANGLE, 2}}},
+};
 
 // The figure with all that it borrows.
 typedef struct printed_values {
@@ -112,8 +108,7 @@ static void add_table(printed_values *v, const printed_kind *kind, int t,
 
     // 1, 2, 5, 10 V are nearly even on a logarithmic axis
     *shown = (figure_panel){
-        .heading = owned_figure_printf(plot, "Table %s: <i>k</i><sub>2</sub> × %g", rows[0]->table,
-                                       factor),
+        owned_figure_printf(plot, "Table %s: <i>k</i><sub>2</sub> × %g", rows[0]->table, factor),
         .weight = VALUES_WEIGHT,
         .legend = LEGEND_NONE,
         .y = {.name = name, .label = kind->axis, .unit = kind->unit, .with_zero = true},

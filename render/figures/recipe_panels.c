@@ -131,14 +131,9 @@ static void add_map(recipe_figure *fig, int panel, int source)
         describe_cells(fig, panel, s);
         return;
     }
-    fig->plot.series[panel][p->series_count++] = (figure_series){.name = from->name,
-                                                                 .x = s->columns[0],
-                                                                 .y = s->columns[1],
-                                                                 .shade = s->columns[2],
-                                                                 .count = s->count,
-                                                                 .no_line = true,
-                                                                 .marker = MARKER_CIRCLE,
-                                                                 .radius = 2.4};
+    fig->plot.series[panel][p->series_count++] = (figure_series){
+        from->name,        .x = s->columns[0], .y = s->columns[1],      .shade = s->columns[2],
+        .count = s->count, .no_line = true,    .marker = MARKER_CIRCLE, .radius = 2.4};
 }
 
 static void add_table(recipe_figure *fig, int panel, int source)

@@ -46,8 +46,7 @@ static double item_height(const report_item *item)
 static void put_text(cairo_t *cr, PangoContext *context, const char *markup, double size, bool bold,
                      double x, double y)
 {
-    text_block t = {
-        .markup = markup, .size = size, .bold = bold, .width = PAGE_WIDTH - PAGE_MARGIN - x};
+    text_block t = {markup, size, .bold = bold, .width = PAGE_WIDTH - PAGE_MARGIN - x};
     set_colour(cr, palette_of(THEME_COLOUR)->text);
     cairo_move_to(cr, x, y);
     text_draw(cr, context, &t);

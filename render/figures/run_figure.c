@@ -188,10 +188,8 @@ status run_figure_init(run_figure *r, const char *title, const trace_panel *pane
     if (code == STATUS_OK && o->overlay != NULL) {
         code = overlay_read(&r->overlay.trace, o->overlay, r->panels, r->panel_count,
                             &r->overlay_name, f);
-        all[run_count++] = (trace_run){.scenario = runs[0].scenario,
-                                       .result = &r->overlay,
-                                       .name = r->overlay_name,
-                                       .points = true};
+        all[run_count++] =
+            (trace_run){runs[0].scenario, &r->overlay, r->overlay_name, .points = true};
     }
     if (code == STATUS_OK) {
         code =

@@ -84,29 +84,12 @@ static void add_bounds(newmark_map *m)
     static const double quarter_x[] = {0.25, 0.25}, quarter_y[] = {GAMMA_LOW, GAMMA_HIGH};
     static const double thesis_x[] = {0.4}, thesis_y[] = {0.5};
 
-    add_layer(m, (figure_series){.name = "bounds",
-                                 .label = "Table 3.1",
-                                 .x = bound_x,
-                                 .y = bound_y,
-                                 .count = 5,
-                                 .colour = 6,
-                                 .rim = true});
-    add_layer(m, (figure_series){.name = "contact",
-                                 .label = "<i>β</i> = ¼",
-                                 .x = quarter_x,
-                                 .y = quarter_y,
-                                 .count = 2,
-                                 .colour = 6,
-                                 .style = LINE_DASHED,
-                                 .rim = true});
-    add_layer(m, (figure_series){.name = "thesis",
-                                 .label = "the thesis: 0.4, 0.5",
-                                 .x = thesis_x,
-                                 .y = thesis_y,
-                                 .count = 1,
-                                 .marker = MARKER_CROSS,
-                                 .radius = 3,
-                                 .no_line = true,
+    add_layer(m, (figure_series){"bounds", "Table 3.1", .x = bound_x, .y = bound_y, .count = 5,
+                                 .colour = 6, .rim = true});
+    add_layer(m, (figure_series){"contact", "<i>β</i> = ¼", .x = quarter_x, .y = quarter_y,
+                                 .count = 2, .colour = 6, .style = LINE_DASHED, .rim = true});
+    add_layer(m, (figure_series){"thesis", "the thesis: 0.4, 0.5", .x = thesis_x, .y = thesis_y,
+                                 .count = 1, .marker = MARKER_CROSS, .radius = 3, .no_line = true,
                                  .rim = true});
 }
 
@@ -182,11 +165,8 @@ static void compute(newmark_map *m)
 
 static void describe_panel(newmark_map *m, int panel)
 {
-    m->maps[panel] = (figure_map){.x = m->beta,
-                                  .y = m->gamma,
-                                  .columns = (size_t)m->kind->columns,
-                                  .rows = (size_t)m->kind->rows,
-                                  .z = m->values[panel]};
+    m->maps[panel] = (figure_map){m->beta, m->gamma, .columns = (size_t)m->kind->columns,
+                                  .rows = (size_t)m->kind->rows, .z = m->values[panel]};
     m->colours[panel] =
         (figure_colours){.axis = m->kind->scale, .reversed = true, .bar = panel == MAP_PANELS - 1};
     m->plot.panels[panel] = (figure_panel){
@@ -288,16 +268,11 @@ static void add_rings(newmark_map *m)
         }
     }
 
-    add_layer(m, (figure_series){.name = "generalized-alpha",
-                                 .label = "generalised-alpha, <i>ρ</i> = 1, 0.8, 0.5 from below",
-                                 .x = m->ring_beta,
-                                 .y = m->ring_gamma,
-                                 .shade = m->ring_value[0],
-                                 .count = MAP_RINGS,
-                                 .marker = MARKER_CIRCLE,
-                                 .radius = 3.6,
-                                 .no_line = true,
-                                 .rim = true});
+    add_layer(m, (figure_series){"generalized-alpha",
+                                 "generalised-alpha, <i>ρ</i> = 1, 0.8, 0.5 from below",
+                                 .x = m->ring_beta, .y = m->ring_gamma, .shade = m->ring_value[0],
+                                 .count = MAP_RINGS, .marker = MARKER_CIRCLE, .radius = 3.6,
+                                 .no_line = true, .rim = true});
 }
 
 status stability_map(const figure_order *order, artwork *out, fault *f)

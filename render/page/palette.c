@@ -28,27 +28,13 @@ static const colour on_black[SLOTS] = {
 static const colour greys[] = {RGB(0, 0, 0), RGB(90, 90, 90), RGB(140, 140, 140)};
 
 static const palette themes[] = {
-    [THEME_COLOUR] = {.page = RGB(255, 255, 255),
-                      .text = RGB(25, 25, 25),
-                      .faint_text = RGB(95, 95, 95),
-                      .axis = RGB(60, 60, 60),
-                      .grid = RGB(228, 228, 228),
-                      .shade = RGB(240, 243, 247),
-                      .mark = RGB(130, 130, 130)},
-    [THEME_MONO] = {.page = RGB(255, 255, 255),
-                    .text = RGB(0, 0, 0),
-                    .faint_text = RGB(80, 80, 80),
-                    .axis = RGB(40, 40, 40),
-                    .grid = RGB(226, 226, 226),
-                    .shade = RGB(241, 241, 241),
-                    .mark = RGB(120, 120, 120)},
-    [THEME_DARK] = {.page = RGB(20, 22, 26),
-                    .text = RGB(230, 230, 230),
-                    .faint_text = RGB(165, 165, 165),
-                    .axis = RGB(170, 170, 170),
-                    .grid = RGB(52, 55, 60),
-                    .shade = RGB(34, 39, 48),
-                    .mark = RGB(135, 135, 135)},
+    // page, text, faint text, axis, grid, shade, mark
+    [THEME_COLOUR] = {RGB(255, 255, 255), RGB(25, 25, 25), RGB(95, 95, 95), RGB(60, 60, 60),
+                      RGB(228, 228, 228), RGB(240, 243, 247), RGB(130, 130, 130)},
+    [THEME_MONO] = {RGB(255, 255, 255), RGB(0, 0, 0), RGB(80, 80, 80), RGB(40, 40, 40),
+                    RGB(226, 226, 226), RGB(241, 241, 241), RGB(120, 120, 120)},
+    [THEME_DARK] = {RGB(20, 22, 26), RGB(230, 230, 230), RGB(165, 165, 165), RGB(170, 170, 170),
+                    RGB(52, 55, 60), RGB(34, 39, 48), RGB(135, 135, 135)},
 };
 
 const palette *palette_of(figure_theme theme)

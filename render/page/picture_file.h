@@ -11,9 +11,9 @@
 typedef enum picture_format { FORMAT_NONE, FORMAT_PNG, FORMAT_PDF, FORMAT_SVG } picture_format;
 
 typedef struct picture {
+    const char *title;       // this and other texts: for the file's metadata, plain, NULL for none
     double width, height;    // of the page [pt]
     double dpi;              // of a PNG; 0: 200
-    const char *title;       // for the file's metadata, all plain and NULL for none
     const char *software;    // "impactlab 0.1.0"
     const char *parameters;  // parameters with which the picture was made
     const char *command;     // that made it

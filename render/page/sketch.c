@@ -65,10 +65,8 @@ static text_block title_block(const sketch_frame *frame, const char *markup)
 
 static text_block caption_block(const sketch_frame *frame)
 {
-    return (text_block){.markup = frame->caption,
-                        .size = frame_letters(frame, CAPTION_SIZE),
-                        .family = frame->look.font,
-                        .width = inner_width(frame),
+    return (text_block){frame->caption, frame_letters(frame, CAPTION_SIZE),
+                        .family = frame->look.font, .width = inner_width(frame),
                         .scale = page_scale(frame)};
 }
 

@@ -86,9 +86,7 @@ static sketch_frame bare_frame(const table_page *t)
 
 static text_block cell_block(const sketch_frame *frame, const char *markup, bool bold)
 {
-    return (text_block){.markup = markup,
-                        .size = sketch_letters(frame, CELL_SIZE),
-                        .family = frame->look.font,
+    return (text_block){markup, sketch_letters(frame, CELL_SIZE), .family = frame->look.font,
                         .bold = bold};
 }
 
@@ -203,9 +201,7 @@ static void draw_cells(sketch *s, const table_layout *l, const table_page *t, ch
         const char *text = cells != NULL ? cells[i] : t->columns[i].label;
         if (text[0] != '\0') {
             sketch_wrapped(s, (point){x + CELL_SPACE, y},
-                           &(text_block){.markup = text,
-                                         .size = CELL_SIZE,
-                                         .bold = bold,
+                           &(text_block){text, CELL_SIZE, .bold = bold,
                                          .align = t->columns[i].align,
                                          .width = l->widths[i] - 2 * CELL_SPACE});
         }
@@ -219,9 +215,7 @@ static void draw_group(sketch *s, const char *heading, double y, double height)
     cairo_rectangle(s->cr, s->left, y, s->right - s->left, height);
     cairo_fill(s->cr);
     sketch_wrapped(s, (point){s->left + CELL_SPACE, y + CELL_SPACE},
-                   &(text_block){.markup = heading,
-                                 .size = CELL_SIZE,
-                                 .bold = true,
+                   &(text_block){heading, CELL_SIZE, .bold = true,
                                  .width = s->right - s->left - 2 * CELL_SPACE});
 }
 

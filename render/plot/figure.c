@@ -309,12 +309,9 @@ static status paint(cairo_t *cr, const void *what, fault *f)
 status figure_write(const figure *fig, const char *path, fault *f)
 {
     assert(fig != NULL && path != NULL);
-    picture p = {.dpi = fig->dpi,
-                 .title = fig->title,
-                 .software = fig->software,
-                 .parameters = fig->parameters,
-                 .paint = paint,
-                 .what = fig};
+    picture p = {
+        fig->title,     .dpi = fig->dpi, .software = fig->software, .parameters = fig->parameters,
+        .paint = paint, .what = fig};
     figure_size(fig, &p.width, &p.height);
     return picture_write(&p, path, f);
 }

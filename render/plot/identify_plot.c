@@ -42,10 +42,8 @@ owned_figure *identify_figure_create(const identification *id)
         }
         residual += t->contact_count;
         panel->heading = owned_figure_keep(o, g_markup_escape_text(t->file, -1));
-        panel->y = (figure_axis){.name = "residual",
-                                 .label = "Residual over its deviation",
-                                 .symbol = "r/σ",
-                                 .room = 0.05};
+        panel->y =
+            (figure_axis){"residual", "Residual over its deviation", .symbol = "r/σ", .room = 0.05};
     }
 
     char changes[SCENARIO_CHANGES];

@@ -51,12 +51,9 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
             y[1][i] = r->gain[i] != 0 ? at * 180 / PI + 360 * turns : (double)NAN;
         }
         for (int panel = 0; panel < 2; panel++) {
-            o->series[panel][k] = (figure_series){.name = curves[k].name,
-                                                  .label = curves[k].name,
-                                                  .x = x,
-                                                  .y = y[panel],
-                                                  .count = n,
-                                                  .colour = palette_slot(k)};
+            o->series[panel][k] =
+                (figure_series){curves[k].name, curves[k].name, .x = x,
+                                .y = y[panel],  .count = n,     .colour = palette_slot(k)};
             o->panels[panel].series_count = count;
             o->panels[panel].weight = 1.2;
         }
@@ -65,8 +62,7 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
     o->panels[0].y = (figure_axis){.name = "gain", .label = "Gain", .unit = "dB"};
     o->panels[1].y = (figure_axis){.name = "phase", .label = "Phase", .unit = "°"};
     o->panels[1].legend = LEGEND_NONE;
-    o->figure.x = (figure_axis){
-        .name = "frequency", .label = "Frequency", .unit = "Hz", .scale = SCALE_LOGARITHMIC};
+    o->figure.x = (figure_axis){"frequency", "Frequency", .unit = "Hz", .scale = SCALE_LOGARITHMIC};
     return o;
 }
 

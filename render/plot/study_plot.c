@@ -42,11 +42,8 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
     }
     o->panels[0].series_count = t->count;
     o->panels[0].weight = 2.4;
-    o->panels[0].y = (figure_axis){.name = "share",
-                                   .label = "Runs with at most this overshoot",
-                                   .unit = "%",
-                                   .low = 0,
-                                   .high = 100};
+    o->panels[0].y = (figure_axis){"share", "Runs with at most this overshoot", .unit = "%",
+                                   .low = 0, .high = 100};
 
     // the page
     o->figure.title =
@@ -56,10 +53,8 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
         o, text_printf("%zu runs a law. Overshoot of the force: %s%s. impactlab %s.",
                        t->laws[0].runs, robust_overshoot_of(&t->laws[0]),
                        t->laws[0].by_smoothed > 0 ? " (mean over 5 ms)" : "", lab_version()));
-    o->figure.x = (figure_axis){.name = "overshoot",
-                                .label = "Overshoot over the commanded force",
-                                .unit = "%",
-                                .room = 0.02};
+    o->figure.x =
+        (figure_axis){"overshoot", "Overshoot over the commanded force", .unit = "%", .room = 0.02};
     return o;
 }
 
@@ -164,10 +159,9 @@ static figure_axis describe_axis(sweep_drawing *s, varied *v, const sweep_axis *
     *v = (varied){.axis = axis,
                   .words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
 
-    figure_axis out = {.name = own(s, g_strdup(axis->name)),
-                       .label = axis->element > 0 || info == &setting_info
-                                    ? own(s, text_escape(axis->name))
-                                    : label_of(s, info->description),
+    figure_axis out = {own(s, g_strdup(axis->name)),
+                       axis->element > 0 || info == &setting_info ? own(s, text_escape(axis->name))
+                                                                  : label_of(s, info->description),
                        .unit = info->unit,
                        .scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR,
                        .room = DOTS_ROOM};
@@ -339,12 +333,8 @@ static void describe_map(sweep_drawing *s, const sweep_picture *p)
     }
 
     figure_map *map = own(s, g_new(figure_map, 1));
-    *map = (figure_map){.x = x->place,
-                        .y = y->place,
-                        .columns = x->count,
-                        .rows = y->count,
-                        .z = z,
-                        .contours = !x->words && !y->words};
+    *map = (figure_map){x->place,         y->place, .columns = x->count,
+                        .rows = y->count, .z = z,   .contours = !x->words && !y->words};
     s->drawn->panels[0].map = map;
     s->drawn->figure.x.room = s->drawn->panels[0].y.room = 0;
 }
@@ -473,12 +463,8 @@ owned_figure *tune_figure_create(const tuning *t, const char *changes)
                                       .marker = MARKER_CIRCLE,
                                       .radius = marker_radius(t->done),
                                       .colour = palette_slot(0)};
-    o->series[0][1] = (figure_series){.name = "least",
-                                      .label = "the least so far",
-                                      .x = number,
-                                      .y = least,
-                                      .count = t->done,
-                                      .colour = palette_slot(1)};
+    o->series[0][1] = (figure_series){"least",    "the least so far", .x = number,
+                                      .y = least, .count = t->done,   .colour = palette_slot(1)};
     o->panels[0].series_count = 2;
     o->panels[0].weight = PANEL_WEIGHT;
     o->panels[0].y = (figure_axis){.name = "value",

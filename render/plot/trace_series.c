@@ -167,11 +167,8 @@ static figure_series series_of(const trace_run *run, int index)
     const trace *rows = &run->result->trace;
     const signal_info *signal = &signal_table[index];
     const char *base = (const char *)rows->rows;
-    figure_series s = {.name = signal->name,
-                       .count = rows->row_count,
-                       .stride = sizeof(sample),
-                       .colour = signal->colour,
-                       .style = signal->style};
+    figure_series s = {signal->name, .count = rows->row_count, .stride = sizeof(sample),
+                       .colour = signal->colour, .style = signal->style};
 
     // a run without rows gives no addresses
     if (base != NULL) {

@@ -219,12 +219,9 @@ static status record(film_making *m, const char *path, fault *f)
                               {"Software", picture_software()},
                               {"Parameters", values},
                               {"Renderer", film_painter_name(m->painter)}};
-    const film_facts facts = {.width = plan->options.width,
-                              .height = plan->options.height,
-                              .frames_per_second = plan->options.frames_per_second,
-                              .notes = notes,
-                              .note_count = 4,
-                              .stop = plan->options.stop};
+    const film_facts facts = {
+        plan->options.width, plan->options.height, plan->options.frames_per_second,
+        .notes = notes,      .note_count = 4,      .stop = plan->options.stop};
 
     status code = film_file_open(&m->file, path, &facts, f);
     if (code == STATUS_OK) {

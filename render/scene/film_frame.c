@@ -88,8 +88,7 @@ film_clock film_clock_of(const run_result *const *results, int count, double sec
 film_clock film_clock_round(double start, double end, double instant, double slow)
 {
     assert(end >= start && isfinite(instant) && slow >= 1);
-    film_clock c = {
-        .start = start, .end = end, .slow = slow, .impacts = {instant}, .impact_count = 1};
+    film_clock c = {start, end, .slow = slow, .impacts = {instant}, .impact_count = 1};
     set_windows(&c);
     return c;
 }
@@ -192,9 +191,7 @@ static status describe_traces(const film_plan *plan, trace_figure *t, fault *f)
     trace_run runs[FILM_RUNS];
 
     for (int i = 0; i < plan->run_count; i++) {
-        runs[i] = (trace_run){.scenario = plan->runs[i].scenario,
-                              .result = plan->runs[i].result,
-                              .name = plan->runs[i].name,
+        runs[i] = (trace_run){plan->runs[i].scenario, plan->runs[i].result, plan->runs[i].name,
                               .rank = plan->run_count > 1 ? i + 1 : 0};
     }
     return plan->run_count == 1

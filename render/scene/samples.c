@@ -22,9 +22,7 @@ bool samples_init(sample_buffer *b, int width, int height, int samples)
 {
     assert(b != NULL && width > 0 && height > 0);
     assert(samples > 0 && samples * SAMPLE_TILE <= ROW_MOST);
-    *b = (sample_buffer){.width = width,
-                         .height = height,
-                         .samples = samples,
+    *b = (sample_buffer){width, height, .samples = samples,
                          .tiles_across = (width + SAMPLE_TILE - 1) / SAMPLE_TILE,
                          .tiles_down = (height + SAMPLE_TILE - 1) / SAMPLE_TILE};
     b->pixels = calloc(sample_count(b), sizeof *b->pixels);

@@ -24,18 +24,15 @@ enum {
 #define INSET_SHARE  0.30  // of the picture's width, for the inset
 #define INSET_MARGIN 0.02  // of the picture's width
 
-static const surroundings light_surroundings = {.page = {1, 1, 1},
-                                                .ground = {0.953, 0.957, 0.965},
-                                                .line = {0.816, 0.835, 0.859},
-                                                .far = {0.94, 0.945, 0.955},
-                                                .strong = {0.13, 0.14, 0.16},
-                                                .faint = {0.34, 0.36, 0.39}};
-static const surroundings dark_surroundings = {.page = {0.07, 0.075, 0.085},
-                                               .ground = {0.12, 0.13, 0.145},
-                                               .line = {0.23, 0.245, 0.27},
-                                               .far = {0.14, 0.15, 0.165},
-                                               .strong = {0.94, 0.945, 0.955},
-                                               .faint = {0.72, 0.74, 0.77}};
+// Page, ground, lines, the distant past; strong and faint letters.
+static const surroundings light_surroundings = {
+    {1.00, 1.000, 1.000}, {0.953, 0.957, 0.965}, {0.816, 0.835, 0.859},
+    {0.94, 0.945, 0.955}, {0.130, 0.140, 0.160}, {0.340, 0.360, 0.390},
+};
+static const surroundings dark_surroundings = {
+    {0.07, 0.075, 0.085}, {0.12, 0.13, 0.145},  {0.23, 0.245, 0.27},
+    {0.14, 0.15, 0.165},  {0.94, 0.945, 0.955}, {0.72, 0.74, 0.77},
+};
 
 static status check_options(const scene *sc, fault *f)
 {
@@ -178,15 +175,17 @@ static double letter_scale(const scene *sc)
                                    : fmin(sc->camera.height / 720, sc->camera.width / 800);
 }
 
+static labels labels_of(const scene *sc, cairo_surface_t *onto)
+{
+    const surroundings *around = sc->around;
+    return (labels){cairo_create(onto), sc->context,   &sc->camera,
+                    around->strong,     around->faint, letter_scale(sc)};
+}
+
 static status draw_labels(scene *sc, const double *times, const colour *inks, int count,
                           cairo_surface_t *onto, fault *f)
 {
-    labels l = {.cr = cairo_create(onto),
-                .context = sc->context,
-                .camera = &sc->camera,
-                .strong = sc->around->strong,
-                .faint = sc->around->faint,
-                .scale = letter_scale(sc)};
+    labels l = labels_of(sc, onto);
     double time = times[count - 1];
     vector start, end;
     draw_flashes(sc, &l, time);
@@ -246,12 +245,7 @@ static status paint_inset(scene *sc, const double *times, int count, cairo_surfa
         const vector at = scene_contact(sc, &row);
         const double larger =
             labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
-        labels l = {.cr = cairo_create(onto),
-                    .context = sc->context,
-                    .camera = &sc->camera,
-                    .strong = sc->around->strong,
-                    .faint = sc->around->faint,
-                    .scale = letter_scale(sc)};
+        labels l = labels_of(sc, onto);
         cairo_set_source_surface(l.cr, view, left, margin);
         cairo_paint(l.cr);
         set_colour(l.cr, sc->around->faint);
