@@ -79,6 +79,7 @@ typedef void recipe_taker(recipe_context *c, const tree_node *node, void *into);
 // The type of a key's value.
 typedef enum value_kind {
     VALUE_OWN,    // read by a function of its own
+    VALUE_LIST,   // of items that the function reads
     VALUE_TEXT,   // const char *
     VALUE_TRUTH,  // bool
     VALUE_NUMBER, // double
@@ -86,44 +87,51 @@ typedef enum value_kind {
     VALUE_TAKEN   // read already
 } value_kind;
 
-// A key of a map; the list of keys ends with one that is NULL.
+// A key of a map.
 typedef struct recipe_key {
     const char *key;
     value_kind kind;
     size_t offset, second; // of its field, or of both fields of a pair, in the object of the map
-    recipe_taker *take;    // VALUE_OWN
-    const char *example;   // example of a line, for the first key of a map
+    recipe_taker *take;    // VALUE_OWN, VALUE_LIST
 } recipe_key;
 
-// Rows of such lists: a key with a value for a field, and a key with a function of its own.
+enum { RECIPE_KEYS = 13 }; // most keys of a map, with one that is NULL after the last
+
+// A map: what sentences call it, an example of a line, and its keys.
+typedef struct recipe_form {
+    const char *what, *example;
+    recipe_key keys[RECIPE_KEYS];
+} recipe_form;
+
 #define FIELD_KEY(name, value, type, field)                                                        \
     {                                                                                              \
-        .key = (name), .kind = (value), .offset = offsetof(type, field)                            \
+        name, value, offsetof(type, field)                                                         \
     }
 #define PAIR_KEY(name, type, one, other)                                                           \
     {                                                                                              \
-        .key = (name), .kind = VALUE_PAIR, .offset = offsetof(type, one),                          \
-        .second = offsetof(type, other)                                                            \
+        name, VALUE_PAIR, offsetof(type, one), offsetof(type, other)                               \
     }
-#define OWN_KEY(name, taker, line)                                                                 \
+#define OWN_KEY(name, taker)                                                                       \
     {                                                                                              \
-        .key = (name), .take = (taker), .example = (line)                                          \
+        name, VALUE_OWN, .take = taker                                                             \
+    }
+#define LIST_KEY(name, taker)                                                                      \
+    {                                                                                              \
+        name, VALUE_LIST, .take = taker                                                            \
     }
 
 // A function that reads a value; its object gets a name for readability.
 #define TAKE(name, what) static void name(recipe_context *c, const tree_node *node, void *into)
 
+// Keeps a text from g_malloc with the recipe, and returns it.
+const char *recipe_keep(recipe_context *c, char *text);
+
 // A text, kept by the recipe; NULL after a fault.
 const char *recipe_text(recipe_context *c, const tree_node *node, const char *what);
 void recipe_number(recipe_context *c, const tree_node *node, const char *what, double *value);
 
-// Reads every key of a map by the table; unknown keys are reported with the most similar one.
-void recipe_map(recipe_context *c, const tree_node *map, const char *what, const recipe_key *keys,
-                void *into);
-
-// Each item of a list.
-void recipe_list(recipe_context *c, const tree_node *list, const char *what, recipe_taker *take,
-                 void *into);
+// Reads every key of a map by its form; unknown keys are reported with the most similar one.
+void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form, void *into);
 
 // Room for the items that a list is read into.
 typedef struct recipe_room {

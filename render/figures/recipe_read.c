@@ -21,12 +21,6 @@ typedef struct multiples {
     int count;
 } multiples;
 
-static const char *keep(recipe_context *c, char *text)
-{
-    g_ptr_array_add(c->recipe->owned, text);
-    return text;
-}
-
 TAKE(take_vary, multiples)
 {
     const char *path = recipe_text(c, node, "vary");
@@ -71,7 +65,7 @@ static const char *heading_of(recipe_context *c, const multiples *m, int index)
     bool bare = rest[0] == '\0' && unit[0] == '\0';
     char *heading = bare ? text_printf("%s = %s", dot != NULL ? dot + 1 : info->path, escaped)
                          : text_printf("%s%s%s", escaped, unit[0] != '\0' ? "\u2009" : "", unit);
-    return keep(c, heading);
+    return recipe_keep(c, heading);
 }
 
 // A run with the parameter at a value; false after a fault.
@@ -82,8 +76,9 @@ static bool add_run(recipe_context *c, const multiples *m, int index, recipe_sou
         return false;
     }
     run.label = run.label != NULL ? run.label : run.name;
-    run.name = keep(c, text_printf("%s %s", run.name, m->value[index]));
-    run.change[run.change_count++] = keep(c, text_printf("%s=%s", m->parameter, m->value[index]));
+    run.name = recipe_keep(c, text_printf("%s %s", run.name, m->value[index]));
+    run.change[run.change_count++] =
+        recipe_keep(c, text_printf("%s=%s", m->parameter, m->value[index]));
     r->sources[r->source_count++] = run;
     return true;
 }
@@ -140,13 +135,13 @@ static bool repeat_panels(recipe_context *c, const multiples *m, int at[][RECIPE
 // Reads `multiples` and repeats runs and panels for each of its values, after both are read.
 static void take_multiples(recipe_context *c, const tree_node *node)
 {
-    static const recipe_key keys[] = {OWN_KEY("vary", take_vary, "vary: motor.voltage"),
-                                      OWN_KEY("values", take_values, NULL),
-                                      {0}};
+    static const recipe_form form = {"multiples",
+                                     "vary: motor.voltage",
+                                     {OWN_KEY("vary", take_vary), OWN_KEY("values", take_values)}};
     recipe *r = c->recipe;
     multiples m = {0};
     int at[MULTIPLES_MOST][RECIPE_SOURCES];
-    recipe_map(c, node, "multiples", keys, &m);
+    recipe_map(c, node, &form, &m);
     if (c->reader.faults > 0) {
         return;
     }
@@ -216,11 +211,6 @@ TAKE(take_source, panel)
     }
 }
 
-TAKE(take_sources, panel)
-{
-    recipe_list(c, node, "from", take_source, into);
-}
-
 TAKE(take_difference, panel)
 {
     recipe_panel *p = into;
@@ -245,12 +235,10 @@ TAKE(take_weight, panel)
 
 TAKE(take_note, panel)
 {
-    static const recipe_key keys[] = {{.key = "text",
-                                       .kind = VALUE_TEXT,
-                                       .offset = offsetof(figure_note, text),
-                                       .example = "text: here"},
-                                      PAIR_KEY("at", figure_note, x, y),
-                                      {0}};
+    static const recipe_form form = {
+        "a note",
+        "text: here",
+        {FIELD_KEY("text", VALUE_TEXT, figure_note, text), PAIR_KEY("at", figure_note, x, y)}};
     recipe_panel *p = into;
     int index =
         recipe_add(c, node, &p->note_count, (recipe_room){"a panel", "notes", RECIPE_NOTES});
@@ -260,18 +248,13 @@ TAKE(take_note, panel)
 
     figure_note *note = &p->notes[index];
     *note = (figure_note){0};
-    recipe_map(c, node, "a note", keys, note);
+    recipe_map(c, node, &form, note);
     if (note->text == NULL) {
         p->note_count--;
         if (node->kind == TREE_MAP && recipe_child(node, "text") == NULL) {
             report_node(&c->reader, node, "a note needs 'text'");
         }
     }
-}
-
-TAKE(take_notes, panel)
-{
-    recipe_list(c, node, "notes", take_note, into);
 }
 
 // Fills in what a panel does not say, and looks whether its parts go together.
@@ -300,17 +283,16 @@ static void complete_panel(recipe_context *c, const tree_node *node, recipe_pane
 
 TAKE(take_panel, recipe)
 {
-    static const recipe_key keys[] = {OWN_KEY("signals", take_signals, "signals: [force]"),
-                                      OWN_KEY("from", take_sources, NULL),
-                                      OWN_KEY("difference", take_difference, NULL),
-                                      FIELD_KEY("heading", VALUE_TEXT, recipe_panel, heading),
-                                      FIELD_KEY("label", VALUE_TEXT, recipe_panel, label),
-                                      OWN_KEY("weight", take_weight, NULL),
-                                      FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, zero),
-                                      FIELD_KEY("log", VALUE_TRUTH, recipe_panel, logarithmic),
-                                      PAIR_KEY("range", recipe_panel, low, high),
-                                      OWN_KEY("notes", take_notes, NULL),
-                                      {0}};
+    static const recipe_form form = {
+        "a panel",
+        "signals: [force]",
+        {OWN_KEY("signals", take_signals), LIST_KEY("from", take_source),
+         OWN_KEY("difference", take_difference),
+         FIELD_KEY("heading", VALUE_TEXT, recipe_panel, heading),
+         FIELD_KEY("label", VALUE_TEXT, recipe_panel, label), OWN_KEY("weight", take_weight),
+         FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, zero),
+         FIELD_KEY("log", VALUE_TRUTH, recipe_panel, logarithmic),
+         PAIR_KEY("range", recipe_panel, low, high), LIST_KEY("notes", take_note)}};
     recipe *r = into;
     int index =
         recipe_add(c, node, &r->panel_count, (recipe_room){"a figure", "panels", FIGURE_PANELS});
@@ -320,30 +302,21 @@ TAKE(take_panel, recipe)
 
     recipe_panel *p = &r->panels[index];
     *p = (recipe_panel){.of = -1, .less = -1, .at = {node->line, node->column}};
-    recipe_map(c, node, "a panel", keys, p);
-
+    recipe_map(c, node, &form, p);
     complete_panel(c, node, p);
 }
 
 // ---- the top
 
-TAKE(take_panels, recipe)
-{
-    recipe_list(c, node, "panels", take_panel, into);
-}
-
 TAKE(take_x, recipe)
 {
-    static const recipe_key keys[] = {{.key = "range",
-                                       .kind = VALUE_PAIR,
-                                       .offset = offsetof(recipe, from),
-                                       .second = offsetof(recipe, to),
-                                       .example = "range: [0, 1]"},
+    static const recipe_form form = {"x",
+                                     "range: [0, 1]",
+                                     {PAIR_KEY("range", recipe, from, to),
                                       FIELD_KEY("label", VALUE_TEXT, recipe, x_label),
                                       FIELD_KEY("unit", VALUE_TEXT, recipe, x_unit),
-                                      FIELD_KEY("log", VALUE_TRUTH, recipe, logarithmic),
-                                      {0}};
-    recipe_map(c, node, "x", keys, into);
+                                      FIELD_KEY("log", VALUE_TRUTH, recipe, logarithmic)}};
+    recipe_map(c, node, &form, into);
 }
 
 TAKE(take_columns, recipe)
@@ -360,42 +333,36 @@ TAKE(take_columns, recipe)
 
 TAKE(take_mark, recipe)
 {
-    static const recipe_key keys[] = {{.key = "at",
-                                       .kind = VALUE_NUMBER,
-                                       .offset = offsetof(figure_mark, x),
-                                       .example = "at: 0.36"},
-                                      FIELD_KEY("label", VALUE_TEXT, figure_mark, label),
-                                      {0}};
+    static const recipe_form form = {"a mark",
+                                     "at: 0.36",
+                                     {FIELD_KEY("at", VALUE_NUMBER, figure_mark, x),
+                                      FIELD_KEY("label", VALUE_TEXT, figure_mark, label)}};
     recipe *r = into;
     int index =
         recipe_add(c, node, &r->mark_count, (recipe_room){"a figure", "marks", RECIPE_MARKS});
     if (index >= 0) {
-        recipe_map(c, node, "a mark", keys, &r->marks[index]);
+        recipe_map(c, node, &form, &r->marks[index]);
     }
-}
-
-TAKE(take_marks, recipe)
-{
-    recipe_list(c, node, "marks", take_mark, into);
 }
 
 static void take_recipe(recipe_context *c, const tree_node *root)
 {
-    static const recipe_key keys[] = {OWN_KEY("panels", take_panels, "panels:"),
+    static const recipe_form form = {"a recipe",
+                                     "panels:",
+                                     {LIST_KEY("panels", take_panel),
                                       FIELD_KEY("title", VALUE_TEXT, recipe, title),
                                       FIELD_KEY("caption", VALUE_TEXT, recipe, caption),
-                                      OWN_KEY("x", take_x, NULL),
-                                      OWN_KEY("columns", take_columns, NULL),
+                                      OWN_KEY("x", take_x),
+                                      OWN_KEY("columns", take_columns),
                                       FIELD_KEY("shared", VALUE_TRUTH, recipe, shared),
                                       FIELD_KEY("contact", VALUE_TRUTH, recipe, contact),
-                                      OWN_KEY("marks", take_marks, NULL),
-                                      {.key = "multiples", .kind = VALUE_TAKEN},
-                                      {.key = "runs", .kind = VALUE_TAKEN},
-                                      {.key = "data", .kind = VALUE_TAKEN},
-                                      {.key = "tables", .kind = VALUE_TAKEN},
-                                      {0}};
+                                      LIST_KEY("marks", take_mark),
+                                      {"multiples", VALUE_TAKEN},
+                                      {"runs", VALUE_TAKEN},
+                                      {"data", VALUE_TAKEN},
+                                      {"tables", VALUE_TAKEN}}};
 
-    if (!reader_expect_map(&c->reader, root, "a recipe", "panels:")) {
+    if (!reader_expect_map(&c->reader, root, form.what, form.example)) {
         return;
     }
 
@@ -403,7 +370,7 @@ static void take_recipe(recipe_context *c, const tree_node *root)
     recipe_take_sources(c, root);
 
     // the rest, in any order
-    recipe_map(c, root, "a recipe", keys, c->recipe);
+    recipe_map(c, root, &form, c->recipe);
 
     if (c->recipe->panel_count == 0 && c->reader.faults == 0) {
         report_node(&c->reader, root, "there are no panels here");

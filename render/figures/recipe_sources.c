@@ -8,15 +8,19 @@
 
 // ==== values, with faults that name their place
 
+const char *recipe_keep(recipe_context *c, char *text)
+{
+    g_ptr_array_add(c->recipe->owned, text);
+    return text;
+}
+
 const char *recipe_text(recipe_context *c, const tree_node *node, const char *what)
 {
     if (!node_is_scalar(node) || node_is_empty(node)) {
         report_node(&c->reader, node, "%s is %s, expected text", what, node_kind_name(node));
         return NULL;
     }
-    char *copy = g_strdup(node->text);
-    g_ptr_array_add(c->recipe->owned, copy);
-    return copy;
+    return recipe_keep(c, g_strdup(node->text));
 }
 
 static bool read_truth(recipe_context *c, const tree_node *node, const char *what)
@@ -33,7 +37,7 @@ void recipe_number(recipe_context *c, const tree_node *node, const char *what, d
     reader_quantity(&c->reader, node, what, "", value);
 }
 
-static bool read_pair(recipe_context *c, const tree_node *node, const char *what, double *a,
+static void read_pair(recipe_context *c, const tree_node *node, const char *what, double *a,
                       double *b)
 {
     bool pair = node->kind == TREE_LIST && node->first != NULL && node->first->next != NULL &&
@@ -41,19 +45,33 @@ static bool read_pair(recipe_context *c, const tree_node *node, const char *what
     if (!pair) {
         report_node(&c->reader, node, "%s is %s, expected two numbers such as [0, 1]", what,
                     node_kind_name(node));
-        return false;
+        return;
     }
-    bool first = reader_quantity(&c->reader, node->first, what, "", a);
-    return reader_quantity(&c->reader, node->first->next, what, "", b) && first;
+    recipe_number(c, node->first, what, a);
+    recipe_number(c, node->first->next, what, b);
+}
+
+static const tree_node *first_item(recipe_context *c, const tree_node *list, const char *what)
+{
+    if (list->kind != TREE_LIST) {
+        report_node(&c->reader, list, "%s is %s, expected a list", what, node_kind_name(list));
+        return NULL;
+    }
+    return list->first;
 }
 
 // Takes the value under a key that was found.
 static void take_value(recipe_context *c, const tree_node *node, const recipe_key *key, void *into)
 {
-    void *field = (char *)into + key->offset, *second = (char *)into + key->second;
+    void *field = (char *)into + key->offset;
     switch (key->kind) {
     case VALUE_OWN:
         key->take(c, node, into);
+        break;
+    case VALUE_LIST:
+        for (const tree_node *i = first_item(c, node, key->key); i != NULL; i = i->next) {
+            key->take(c, i, into);
+        }
         break;
     case VALUE_TEXT:
         *(const char **)field = recipe_text(c, node, key->key);
@@ -65,17 +83,17 @@ static void take_value(recipe_context *c, const tree_node *node, const recipe_ke
         recipe_number(c, node, key->key, field);
         break;
     case VALUE_PAIR:
-        read_pair(c, node, key->key, field, second);
+        read_pair(c, node, key->key, field, (double *)((char *)into + key->second));
         break;
     case VALUE_TAKEN:
         break;
     }
 }
 
-void recipe_map(recipe_context *c, const tree_node *map, const char *what, const recipe_key *keys,
-                void *into)
+void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form, void *into)
 {
-    if (!reader_expect_map(&c->reader, map, what, keys[0].example)) {
+    const recipe_key *keys = form->keys;
+    if (!reader_expect_map(&c->reader, map, form->what, form->example)) {
         return;
     }
 
@@ -92,20 +110,8 @@ void recipe_map(recipe_context *c, const tree_node *map, const char *what, const
             take_value(c, child, found, into);
         } else if (key != NULL) {
             report_node(&c->reader, child->key, "unknown key '%.60s' in %s, did you mean '%s'?",
-                        key, what, near.best != NULL ? near.best : keys[0].key);
+                        key, form->what, near.best != NULL ? near.best : keys[0].key);
         }
-    }
-}
-
-void recipe_list(recipe_context *c, const tree_node *list, const char *what, recipe_taker *take,
-                 void *into)
-{
-    if (list->kind != TREE_LIST) {
-        report_node(&c->reader, list, "%s is %s, expected a list", what, node_kind_name(list));
-        return;
-    }
-    for (const tree_node *item = list->first; item != NULL; item = item->next) {
-        take(c, item, into);
     }
 }
 
@@ -131,13 +137,9 @@ const tree_node *recipe_child(const tree_node *map, const char *key)
 
 // ==== sources: runs, measured data, tables
 
-#define SOURCE                   ((recipe_source *)into)
-
-#define SOURCE_TEXT(name, field) FIELD_KEY(name, VALUE_TEXT, recipe_source, field)
-
 TAKE(take_shift, source)
 {
-    reader_quantity(&c->reader, node, "shift", "s", &SOURCE->shift);
+    reader_quantity(&c->reader, node, "shift", "s", &((recipe_source *)into)->shift);
 }
 
 bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char *path)
@@ -177,25 +179,9 @@ TAKE(take_set, source)
             report_node(&c->reader, child, "%s is %s, expected a value", path,
                         node_kind_name(child));
         } else {
-            char *change = text_printf("%s=%s", path, child->text);
-            g_ptr_array_add(c->recipe->owned, change);
-            s->change[s->change_count++] = change;
+            s->change[s->change_count++] = recipe_keep(c, text_printf("%s=%s", path, child->text));
         }
     }
-}
-
-// Adds a source; NULL if there is no room.
-static recipe_source *new_source(recipe_context *c, const tree_node *node, source_kind kind)
-{
-    recipe *r = c->recipe;
-    const recipe_room room = {"a recipe", "runs, data and tables", RECIPE_SOURCES};
-    int index = recipe_add(c, node, &r->source_count, room);
-    if (index < 0) {
-        return NULL;
-    }
-    recipe_source *s = &r->sources[index];
-    *s = (recipe_source){.kind = kind, .at = {node->line, node->column}};
-    return s;
 }
 
 // What every source has, and what each kind needs.
@@ -218,8 +204,7 @@ static void check_source(recipe_context *c, const tree_node *node, recipe_source
         for (int i = 0; i < s->change_count; i++) {
             text_append(label, "%s%s", i == 0 ? ", with " : ", ", s->change[i]);
         }
-        g_ptr_array_add(c->recipe->owned, label->str);
-        s->label = g_string_free(label, FALSE);
+        s->label = recipe_keep(c, g_string_free(label, FALSE));
     }
 
     // a name that only it has
@@ -232,62 +217,44 @@ static void check_source(recipe_context *c, const tree_node *node, recipe_source
     }
 }
 
-// A source of a kind, with its keys; checked as a whole, as what is missing shows only at its end.
-static void take_source(recipe_context *c, const tree_node *node, source_kind kind,
-                        const recipe_key *keys)
+#define SOURCE_TEXT(name, field) FIELD_KEY(name, VALUE_TEXT, recipe_source, field)
+
+// The list of each kind of source, and one of them.
+static const struct {
+    const char *key;
+    recipe_form form;
+} lists[] = {
+    [SOURCE_RUN] = {"runs",
+                    {"a run",
+                     "scenario: thesis/fig-3-4",
+                     {SOURCE_TEXT("scenario", scenario), SOURCE_TEXT("name", name),
+                      SOURCE_TEXT("label", label), OWN_KEY("set", take_set)}}},
+    [SOURCE_DATA] = {"data",
+                     {"data",
+                      "file: bench.csv",
+                      {SOURCE_TEXT("file", file), SOURCE_TEXT("name", name),
+                       SOURCE_TEXT("label", label), SOURCE_TEXT("column", column),
+                       OWN_KEY("shift", take_shift)}}},
+    [SOURCE_TABLE] = {"tables",
+                      {"a table",
+                       "file: sweep.sqlite",
+                       {SOURCE_TEXT("file", file), SOURCE_TEXT("name", name),
+                        SOURCE_TEXT("label", label), SOURCE_TEXT("x", x), SOURCE_TEXT("y", y),
+                        SOURCE_TEXT("z", z)}}},
+};
+
+// A source, checked as a whole, as what is missing shows only at its end.
+static void take_source(recipe_context *c, const tree_node *node, source_kind kind)
 {
-    static const char *const names[] = {
-        [SOURCE_RUN] = "a run", [SOURCE_DATA] = "data", [SOURCE_TABLE] = "a table"};
-    recipe_source *s = new_source(c, node, kind);
-    if (s != NULL) {
-        recipe_map(c, node, names[kind], keys, s);
+    recipe *r = c->recipe;
+    const recipe_room room = {"a recipe", "runs, data and tables", RECIPE_SOURCES};
+    int index = recipe_add(c, node, &r->source_count, room);
+    if (index >= 0) {
+        recipe_source *s = &r->sources[index];
+        *s = (recipe_source){.kind = kind, .at = {node->line, node->column}};
+        recipe_map(c, node, &lists[kind].form, s);
         check_source(c, node, s);
     }
-}
-
-TAKE(take_run, recipe)
-{
-    (void)into;
-    static const recipe_key keys[] = {{.key = "scenario",
-                                       .kind = VALUE_TEXT,
-                                       .offset = offsetof(recipe_source, scenario),
-                                       .example = "scenario: thesis/fig-3-4"},
-                                      SOURCE_TEXT("name", name),
-                                      SOURCE_TEXT("label", label),
-                                      OWN_KEY("set", take_set, NULL),
-                                      {0}};
-    take_source(c, node, SOURCE_RUN, keys);
-}
-
-TAKE(take_data, recipe)
-{
-    (void)into;
-    static const recipe_key keys[] = {{.key = "file",
-                                       .kind = VALUE_TEXT,
-                                       .offset = offsetof(recipe_source, file),
-                                       .example = "file: bench.csv"},
-                                      SOURCE_TEXT("name", name),
-                                      SOURCE_TEXT("label", label),
-                                      SOURCE_TEXT("column", column),
-                                      OWN_KEY("shift", take_shift, NULL),
-                                      {0}};
-    take_source(c, node, SOURCE_DATA, keys);
-}
-
-TAKE(take_table, recipe)
-{
-    (void)into;
-    static const recipe_key keys[] = {{.key = "file",
-                                       .kind = VALUE_TEXT,
-                                       .offset = offsetof(recipe_source, file),
-                                       .example = "file: sweep.sqlite"},
-                                      SOURCE_TEXT("name", name),
-                                      SOURCE_TEXT("label", label),
-                                      SOURCE_TEXT("x", x),
-                                      SOURCE_TEXT("y", y),
-                                      SOURCE_TEXT("z", z),
-                                      {0}};
-    take_source(c, node, SOURCE_TABLE, keys);
 }
 
 int recipe_find_source(recipe_context *c, const tree_node *node)
@@ -308,16 +275,12 @@ int recipe_find_source(recipe_context *c, const tree_node *node)
 
 void recipe_take_sources(recipe_context *c, const tree_node *root)
 {
-    static const struct {
-        const char *key;
-        recipe_taker *take;
-    } lists[] = {{"runs", take_run}, {"data", take_data}, {"tables", take_table}};
-
     // in this order, whatever the recipe's
-    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
-        const tree_node *node = recipe_child(root, lists[i].key);
-        if (node != NULL) {
-            recipe_list(c, node, lists[i].key, lists[i].take, c->recipe);
+    for (size_t kind = 0; kind < G_N_ELEMENTS(lists); kind++) {
+        const tree_node *list = recipe_child(root, lists[kind].key);
+        const tree_node *item = list != NULL ? first_item(c, list, lists[kind].key) : NULL;
+        for (; item != NULL; item = item->next) {
+            take_source(c, item, (source_kind)kind);
         }
     }
 }
