@@ -10,120 +10,13 @@
 #include "src/base/numbers.h"
 #include "src/base/whole_file.h"
 
-static const char report_script_curves[] =
-    "'use strict';\n"
-    "for (const fig of document.querySelectorAll('figure[data-panels]')) {\n"
-    "  const svg = fig.querySelector('svg'), panels = JSON.parse(fig.dataset.panels);\n"
-    "  const whole = svg.getAttribute('viewBox').split(' ').map(Number);\n"
-    "  let view = whole.slice();\n"
-    // the points of a path on the page, gaps as NaN
-    "  const points = p => {\n"
-    "    const out = [], d = p.getAttribute('d').match(/[A-Za-z]|-?\\d*\\.?\\d+/g) || [];\n"
-    "    for (let i = 0, c = '', x = 0, y = 0; i < d.length;) {\n"
-    "      if (/[A-Za-z]/.test(d[i])) { c = d[i++]; continue; }\n"
-    "      x = (c === 'l' ? x : 0) + +d[i]; y = (c === 'l' ? y : 0) + +d[i + 1]; i += 2;\n"
-    "      if (c === 'M') { out.push([NaN, NaN]); }\n"
-    "      out.push([x, y]);\n"
-    "    }\n"
-    "    return out;\n"
-    "  };\n"
-    "  const near = (a, b) => a.every((v, i) => Math.abs(v - b[i]) < 4);\n"
-    "  const inkOf = p => (getComputedStyle(p).stroke.match(/[\\d.]+/g) || []).map(Number);\n"
-    "  const lines = [...svg.querySelectorAll('path')].filter(\n"
-    "    p => getComputedStyle(p).fill === 'none' && /M/.test(p.getAttribute('d')));\n"
-    "  for (const panel of panels) {\n"
-    "    const [x, y, w, h] = panel.box;\n"
-    "    for (const s of panel.series) {\n"
-    "      s.paths = lines.filter(p => {\n"
-    "        const b = p.getBBox(), ink = inkOf(p);\n"
-    "        return ink.length > 2 && near(ink.slice(0, 3), s.ink) && b.width > 0.05 * w &&\n"
-    "          b.x > x - 6 && b.x + b.width < x + w + 6 && b.y > y - 6 && b.y + b.height < y + h + "
-    "6 &&\n"
-    "          (getComputedStyle(p).strokeDasharray === 'none') !== s.dashed;\n"
-    "      });\n"
-    "      s.points = s.paths.filter(p => points(p).length > 3).flatMap(points);\n"
-    "    }\n"
-    "  }\n"
-    // a button for each curve, by its name in all panels
-    "  const row = document.createElement('div');\n"
-    "  row.className = 'curves';\n"
-    "  const names = [...new Set(panels.flatMap(p => p.series.map(s => s.label)))];\n"
-    "  for (const name of names.length > 1 ? names : []) {\n"
-    "    const button = document.createElement('button');\n"
-    "    button.textContent = name;\n"
-    "    button.type = 'button';\n"
-    "    button.setAttribute('aria-pressed', 'true');\n"
-    "    button.onclick = () => {\n"
-    "      const on = button.getAttribute('aria-pressed') !== 'true';\n"
-    "      button.setAttribute('aria-pressed', on);\n"
-    "      for (const s of panels.flatMap(p => p.series).filter(s => s.label === name)) {\n"
-    "        s.off = !on;\n"
-    "        s.paths.forEach(p => p.style.opacity = on ? '' : '0.06');\n"
-    "      }\n"
-    "    };\n"
-    "    row.append(button);\n"
-    "  }\n"
-    "  const tip = document.createElement('output');\n"
-    "  fig.append(row, tip);\n"
-    "  const show = () => svg.setAttribute('viewBox', view.join(' '));\n"
-    "  const at = e => {\n"
-    "    const m = svg.getScreenCTM().inverse();\n"
-    "    return [m.a * e.clientX + m.e, m.d * e.clientY + m.f];\n"
-    "  };\n"
-    "  const value = (share, range, log) => log\n"
-    "    ? range[0] * Math.pow(range[1] / range[0], share)\n"
-    "    : range[0] + share * (range[1] - range[0]);\n"
-    "  const digits = v => String(+v.toPrecision(4));\n";
-
-// Its second half: actions of the pointer.
-static const char report_script_pointer[] =
-    // values at the pointer, interpolated linearly
-    "  svg.addEventListener('mousemove', e => {\n"
-    "    const [px, py] = at(e);\n"
-    "    const panel = panels.find(p => px >= p.box[0] && px <= p.box[0] + p.box[2] &&\n"
-    "      py >= p.box[1] && py <= p.box[1] + p.box[3]);\n"
-    "    if (!panel) { tip.textContent = ''; return; }\n"
-    "    const [x, y, w, h] = panel.box;\n"
-    "    const said = [panel.xname + ' ' + digits(value((px - x) / w, panel.x, panel.xlog))];\n"
-    "    for (const s of panel.series.filter(s => !s.off)) {\n"
-    "      for (let i = 1; i < s.points.length; i++) {\n"
-    "        const [a, b] = [s.points[i - 1], s.points[i]];\n"
-    "        if (a[0] <= px && px <= b[0]) {\n"
-    "          const v = b[0] > a[0] ? a[1] + (px - a[0]) / (b[0] - a[0]) * (b[1] - a[1]) : b[1];\n"
-    "          said.push(s.label + ' ' + digits(value((y + h - v) / h, panel.y, panel.ylog)) +\n"
-    "            (panel.unit ? ' ' + panel.unit : ''));\n"
-    "          break;\n"
-    "        }\n"
-    "      }\n"
-    "    }\n"
-    "    tip.textContent = said.join('   ');\n"
-    "  });\n"
-    "  svg.addEventListener('mouseleave', () => { tip.textContent = ''; });\n"
-    // the wheel with Ctrl or Shift zooms, so that a page still scrolls; dragging moves
-    "  svg.addEventListener('wheel', e => {\n"
-    "    if (!e.ctrlKey && !e.shiftKey) { return; }\n"
-    "    e.preventDefault();\n"
-    "    const [px, py] = at(e), by = Math.exp((e.deltaY || e.deltaX) / 400);\n"
-    "    const k = Math.min(whole[2] / view[2], Math.max(by, 0.02 * whole[2] / view[2]));\n"
-    "    view = [px - k * (px - view[0]), py - k * (py - view[1]), k * view[2], k * view[3]];\n"
-    "    show();\n"
-    "  }, {passive: false});\n"
-    "  svg.addEventListener('mousedown', e => {\n"
-    "    const from = at(e);\n"
-    "    const move = f => {\n"
-    "      const to = at(f);\n"
-    "      view = [view[0] + from[0] - to[0], view[1] + from[1] - to[1], view[2], view[3]];\n"
-    "      show();\n"
-    "    };\n"
-    "    const end = () => { removeEventListener('mousemove', move); "
-    "removeEventListener('mouseup', end); };\n"
-    "    addEventListener('mousemove', move);\n"
-    "    addEventListener('mouseup', end);\n"
-    "  });\n"
-    "  svg.addEventListener('dblclick', () => { view = whole.slice(); show(); });\n"
-    "}\n";
-
-// ==== the page
+// Style and script, line by line; the build makes these of report.css and report.js.
+static const char *const style[] = {
+#include "render/figures/report.css.inc"
+};
+static const char *const script[] = {
+#include "render/figures/report.js.inc"
+};
 
 status report_item_done(const report *r, fault *f)
 {
@@ -135,32 +28,29 @@ status report_item_done(const report *r, fault *f)
 
 #define SCREEN_DPI 130.0
 
-static const char *const page_head =
-    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-    "<meta name=\"viewport\" content=\"width=device-width\">\n<title>%s</title>\n<style>\n"
-    "body{font-family:'DejaVu Sans',sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;"
-    "line-height:1.5;color:#191919}\n"
-    "h1{font-size:1.6rem}h2{font-size:1.1rem;margin-top:3rem}\n"
-    "nav ol{columns:2;font-size:.85rem;padding-left:1.5rem}\n"
-    "svg{max-width:100%%;height:auto}\n"
-    "table{border-collapse:collapse;font-size:.85rem;margin:.5rem 0}\n"
-    "th,td{padding:.15rem .6rem;text-align:left;vertical-align:top}\n"
-    "thead th{border-top:2px solid;border-bottom:1px solid}\n"
-    "tbody{border-bottom:2px solid}\n"
-    ".number{text-align:right}.group{background:#f0f3f7}\n"
-    ".note,.facts{font-size:.8rem;color:#5f5f5f}\n"
-    "figure{margin:0}figure "
-    "output{display:block;min-height:1.4em;font-size:.8rem;white-space:pre-wrap}\n"
-    ".curves button{font:inherit;font-size:.75rem;margin-right:.4rem;border:1px solid #b5b5b5;"
-    "border-radius:.2rem;background:#f0f3f7}\n"
-    ".curves "
-    "button[aria-pressed=false]{background:none;color:#8a8a8a;text-decoration:line-through}\n"
-    "code{background:#f0f3f7;padding:.1rem .3rem}\n"
-    "</style>\n</head>\n<body>\n<h1>%s</h1>\n"
-    "<p>%s <q>Printed</q> is the thesis's model with its slips, <q>corrected</q> the mechanics "
-    "derived anew.</p>\n"
-    "<p class=\"note\">Point at a curve for its values; Ctrl or Shift and the wheel zoom, dragging "
-    "moves, a double click shows all again; the buttons take curves away.</p>\n";
+static void add_lines(GString *html, const char *const *lines, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        g_string_append(html, lines[i]);
+    }
+}
+
+static void add_head(const report *r, GString *html)
+{
+    text_append(html,
+                "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                "<meta name=\"viewport\" content=\"width=device-width\">\n<title>%s</title>\n"
+                "<style>\n",
+                r->heading);
+    add_lines(html, style, G_N_ELEMENTS(style));
+    text_append(
+        html,
+        "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the thesis's model "
+        "with its slips, <q>corrected</q> the mechanics derived anew.</p>\n"
+        "<p class=\"note\">Point at a curve for its values; Ctrl or Shift and the wheel zoom, "
+        "dragging moves, a double click shows all again; the buttons take curves away.</p>\n",
+        r->heading, r->preface);
+}
 
 static void add_contents(const report *r, GString *html)
 {
@@ -377,7 +267,7 @@ status report_write_html(const report *r, const char *path, fault *f)
     GHashTable *letters = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
 
     // the whole page first: nothing is written of one that fails
-    text_append(html, page_head, r->heading, r->heading, r->preface);
+    add_head(r, html);
     add_contents(r, html);
     for (guint i = 0; i < r->items->len && code == STATUS_OK; i++) {
         code = add_section(r, i, html, letters, f);
@@ -385,8 +275,9 @@ status report_write_html(const report *r, const char *path, fault *f)
             code = report_item_done(r, f);
         }
     }
-    text_append(html, "<script>\n%s%s</script>\n</body>\n</html>\n", report_script_curves,
-                report_script_pointer);
+    g_string_append(html, "<script>\n");
+    add_lines(html, script, G_N_ELEMENTS(script));
+    g_string_append(html, "</script>\n</body>\n</html>\n");
 
     if (code == STATUS_OK) {
         code = whole_file_open(&file, path, f);
