@@ -54,16 +54,9 @@ static void put_text(cairo_t *cr, PangoContext *context, const char *markup, dou
 
 static void put_facts(cairo_t *cr, PangoContext *context, const report_item *item, double y)
 {
-    GString *facts = g_string_new(NULL);
-    text_append(facts, "Model: %s.", item->model);
-    if (item->scenario != NULL) {
-        text_append(facts, "  Scenario: %s.", item->scenario);
-    }
-    if (item->command != NULL) {
-        text_append(facts, "  Again: <b>%s</b>", item->command);
-    }
+    g_autoptr(GString) facts = g_string_new(NULL);
+    report_add_facts(facts, item, "  ", "b");
     put_text(cr, context, facts->str, 7, false, PAGE_MARGIN + SKETCH_MARGIN, y);
-    g_string_free(facts, TRUE);
 }
 
 static void put_title_page(cairo_t *cr, PangoContext *context, const report *r)

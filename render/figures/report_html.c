@@ -7,7 +7,6 @@
 #include "render/page/palette.h"
 #include "render/page/svg.h"
 #include "render/page/text.h"
-#include "src/base/numbers.h"
 #include "src/base/whole_file.h"
 
 // Style and script, line by line; the build makes these of report.css and report.js.
@@ -17,6 +16,17 @@ static const char *const style[] = {
 static const char *const script[] = {
 #include "render/figures/report.js.inc"
 };
+
+void report_add_facts(GString *out, const report_item *item, const char *gap, const char *tag)
+{
+    text_append(out, "Model: %s.", item->model);
+    if (item->scenario != NULL) {
+        text_append(out, "%sScenario: %s.", gap, item->scenario);
+    }
+    if (item->command != NULL) {
+        text_append(out, "%sAgain: <%s>%s</%s>", gap, tag, item->command, tag);
+    }
+}
 
 status report_item_done(const report *r, fault *f)
 {
@@ -96,103 +106,77 @@ static status add_svg(GString *html, const picture *p, guint index, GHashTable *
 
     // then smaller: fewer bytes, and letters shared with the other figures
     g_autofree char *prefix = text_printf("i%u-", index);
-    char *root = strstr(svg, "<svg"), *own = svg_prefix_ids(root ? root : svg, prefix);
+    const char *root = strstr(svg, "<svg");
+    g_autofree char *own = svg_prefix_ids(root != NULL ? root : svg, prefix);
     g_autofree char *small = svg_compact(own), *shared = svg_share_symbols(small, letters);
     g_string_append(html, shared);
-    g_free(own);
     return STATUS_OK;
 }
 
-// A text as a JSON string that may stand in an attribute.
-static void add_json_text(GString *out, const char *markup)
+static void add_json_text(GString *out, const char *name, const char *markup)
 {
     g_autofree char *plain = text_plain(markup != NULL ? markup : "");
-    g_string_append(out, "&quot;");
-
-    // escaped twice: for JSON, and for the attribute around it
+    text_append(out, "\"%s\":\"", name);
     for (const char *c = plain; *c != '\0'; c++) {
-        switch (*c) {
-        case '"':
-            g_string_append(out, "\\&quot;");
-            break;
-        case '\\':
-            g_string_append(out, "\\\\");
-            break;
-        case '&':
-            g_string_append(out, "&amp;");
-            break;
-        case '<':
-            g_string_append(out, "&lt;");
-            break;
-        default:
-            g_string_append_c(out, (guchar)*c < ' ' ? ' ' : *c);
+        if (*c == '"' || *c == '\\') {
+            g_string_append_c(out, '\\');
         }
+        g_string_append_c(out, (guchar)*c < ' ' ? ' ' : *c);
     }
-    g_string_append(out, "&quot;");
-}
-
-static void add_json_axis(GString *out, const char *name, double low, double high)
-{
-    char text[96];
-    decimal_print(text, sizeof text, "&quot;%s&quot;:[%.9g,%.9g],", name, low, high);
-    g_string_append(out, text);
+    g_string_append_c(out, '"');
 }
 
 // Colour, pattern and name of the curves of a panel.
 static void add_json_series(GString *out, const figure_panel *panel)
 {
-    g_string_append(out, "&quot;series&quot;:[");
     const char *before = "";
-
-    // points alone are no curve
+    g_string_append(out, ",\"series\":[");
     for (int i = 0; i < panel->series_count; i++) {
         const figure_series *s = &panel->series[i];
         if (s->no_line) {
-            continue;
+            continue; // points alone are no curve
         }
 
         // in bytes, for the script that compares it with the strokes of the drawing
         const colour c = palette_series(THEME_COLOUR, s->colour, i);
         bool dashed = s->secondary || s->style != LINE_SOLID;
-        text_append(out,
-                    "%s{&quot;ink&quot;:[%d,%d,%d],&quot;dashed&quot;:%s,"
-                    "&quot;label&quot;:",
-                    before, (int)(255 * c.red + 0.5), (int)(255 * c.green + 0.5),
-                    (int)(255 * c.blue + 0.5), dashed ? "true" : "false");
-        add_json_text(out, s->label != NULL ? s->label : s->name);
+        text_append(out, "%s{\"ink\":[%d,%d,%d],\"dashed\":%s,", before, (int)(255 * c.red + 0.5),
+                    (int)(255 * c.green + 0.5), (int)(255 * c.blue + 0.5),
+                    dashed ? "true" : "false");
+        add_json_text(out, "label", s->label != NULL ? s->label : s->name);
         g_string_append_c(out, '}');
         before = ",";
     }
     g_string_append(out, "]}");
 }
 
-// Places, ranges and curves of all panels, for the script.
-static void add_panels(GString *out, const figure *fig, const figure_report *seen)
+// Places, ranges and curves of all panels as JSON in an attribute, for the script.
+static void add_panels(GString *html, const figure *fig, const figure_report *seen)
 {
-    char text[160];
-    g_string_append(out, " data-panels=\"[");
+    g_autoptr(GString) json = g_string_new("[");
     for (int i = 0; i < seen->panel_count; i++) {
         const figure_rect *box = &seen->panels[i];
         const figure_range *range = &seen->ranges[i];
 
         // where the panel stands and what its edges mean, to turn a place into values
-        decimal_print(text, sizeof text, "%s{&quot;box&quot;:[%.2f,%.2f,%.2f,%.2f],",
-                      i > 0 ? "," : "", box->x, box->y, box->width, box->height);
-        g_string_append(out, text);
-        add_json_axis(out, "x", range->x_low, range->x_high);
-        add_json_axis(out, "y", range->y_low, range->y_high);
-        text_append(out, "&quot;xlog&quot;:%s,&quot;ylog&quot;:%s,&quot;xname&quot;:",
+        text_append(json,
+                    "%s{\"box\":[%.2f,%.2f,%.2f,%.2f],\"x\":[%.9g,%.9g],\"y\":[%.9g,%.9g],"
+                    "\"xlog\":%s,\"ylog\":%s,",
+                    i > 0 ? "," : "", box->x, box->y, box->width, box->height, range->x_low,
+                    range->x_high, range->y_low, range->y_high,
                     range->x_logarithmic ? "true" : "false",
                     range->y_logarithmic ? "true" : "false");
 
         // what stands beside the values
-        add_json_text(out, fig->x.name);
-        g_string_append(out, ",&quot;unit&quot;:");
-        add_json_text(out, fig->panels[i].y.unit);
-        g_string_append_c(out, ',');
-        add_json_series(out, &fig->panels[i]);
+        add_json_text(json, "xname", fig->x.name);
+        g_string_append_c(json, ',');
+        add_json_text(json, "unit", fig->panels[i].y.unit);
+        add_json_series(json, &fig->panels[i]);
     }
-    g_string_append(out, "]\"");
+    g_string_replace(json, "&", "&amp;", 0);
+    g_string_replace(json, "<", "&lt;", 0);
+    g_string_replace(json, "\"", "&quot;", 0);
+    text_append(html, " data-panels=\"%s]\"", json->str);
 }
 
 // The figure with what it shows in words, and for the script what its axes mean.
@@ -247,14 +231,8 @@ static status add_section(const report *r, guint index, GString *html, GHashTabl
     }
 
     // what it is made of, and how
-    text_append(html, "<p class=\"facts\">Model: %s.", item->model);
-    if (item->scenario != NULL) {
-        text_append(html, " Scenario: %s.", item->scenario);
-    }
-    if (item->command != NULL) {
-        text_append(html, " Again: <code>%s</code>", item->command);
-    }
-
+    g_string_append(html, "<p class=\"facts\">");
+    report_add_facts(html, item, " ", "code");
     g_string_append(html, "</p>\n</section>\n");
     return code;
 }
@@ -263,8 +241,8 @@ status report_write_html(const report *r, const char *path, fault *f)
 {
     whole_file file;
     status code = STATUS_OK;
-    GString *html = g_string_new(NULL);
-    GHashTable *letters = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    g_autoptr(GString) html = g_string_new(NULL);
+    g_autoptr(GHashTable) letters = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
 
     // the whole page first: nothing is written of one that fails
     add_head(r, html);
@@ -287,7 +265,5 @@ status report_write_html(const report *r, const char *path, fault *f)
         fwrite(html->str, 1, html->len, file.stream);
         code = whole_file_commit(&file, f);
     }
-    g_hash_table_destroy(letters);
-    g_string_free(html, TRUE);
     return code;
 }

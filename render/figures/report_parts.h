@@ -29,5 +29,8 @@ static inline report_item *report_item_at(const report *r, guint index)
 // Counts a finished item; STATUS_STOPPED if the report is to end here.
 status report_item_done(const report *r, fault *f);
 
+// Appends what an item is made of, and the command for it in an element of its own.
+void report_add_facts(GString *out, const report_item *item, const char *gap, const char *tag);
+
 // Writes FOLDER/report.html. Returns the status of painting and writing.
 status report_write_html(const report *r, const char *path, fault *f);
