@@ -573,9 +573,6 @@ says err "expected a range, motor.voltage=a:b"
 expect 2 solve hit.yaml motor.voltage peak_force_N
 says err "KEY<VALUE"
 
-expect 0 study sensor --plot sensor.pdf
-says out "beam"
-[ -s sensor.pdf ] && [ -s sensor.csv ] || fail "study draws nothing"
 expect 0 study links --json links.json --plot links.svg
 says out "take "
 grep -q '"limits"' links.json && [ -s links.svg ] || fail "study links writes no limits or draws nothing"

@@ -62,9 +62,10 @@ awk '/"method": "newmark"/ { on = 1 } /"method": "gen/ { exit } on && /first_con
 [ -s m.svg ] && [ -s m.csv ] || fail "study methods draws nothing"
 
 # --- a sensor reads less the slower it is, and never more than the impulse over its time constant
-expect 0 study sensor corrected/plane-wall-fast --json s.json
-awk '/"peak_N"/ { gsub(/,/, ""); p[++n % 4] = $2 } /"time_to_peak_s"/ { k++ } n % 4 == 0 && n > seen {
-        seen = n; if (!(p[2] > p[3] && p[3] > p[0])) bad = 1 } END { exit bad || n != 32 }' s.json ||
+expect 0 study links corrected/plane-wall-fast --json s.json
+awk '/"first_impulse_Ns":/ { gsub(/,/, ""); i = $2 } /"sensed_[^"]*":/ { gsub(/,/, ""); p[n++ % 3] = $2 }
+    /"sensed_2ms_N":/ && !(p[0] > p[1] && p[1] > p[2] && p[0] >= i / 0.5e-3 - 1e-6) { bad = 1 }
+    END { exit bad || n != 18 }' s.json ||
     fail "a slower sensor reads more"
 
 # --- modes: what is printed is what --json has; four times the stiffness, twice the frequency

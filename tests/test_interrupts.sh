@@ -82,8 +82,8 @@ grep -q '"scenario": "brief.yaml"' rows.json || fail "the object that was done i
 
 interrupted converge endless.yaml
 says err "0 of 3 runs"
-interrupted study sensor endless.yaml
-says err "0 of 8 numbers of links"
+interrupted study links endless.yaml
+says err "0 of 6 numbers of links"
 interrupted study methods endless.yaml
 says err "0 of 40 runs"
 interrupted predict endless.yaml

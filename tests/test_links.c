@@ -1,4 +1,5 @@
 // How far a number of links is from a beam.
+#include "src/run/run.h"
 #include "src/study/links.h"
 
 #include "tests/shipped_scenario.h"
@@ -11,6 +12,16 @@ static links_study studied(const char *name, char *const *changes, int count)
     DONE(links_study_compute(&s, NULL, &study, &f));
     assert_int_equal(study.count, LINKS_LENGTHS);
     return study;
+}
+
+// That of a fast arm and a rigid wall.
+static const links_study *of_fast_arm(void)
+{
+    static links_study study;
+    if (study.count == 0) {
+        study = studied("corrected/plane-wall-fast", NULL, 0);
+    }
+    return &study;
 }
 
 static const links_row *row_of(const links_study *study, const char *key)
@@ -46,9 +57,8 @@ TEST(small_motion_tends_to_the_beam)
 // within a hundredth. An undamped beam has it, a damped one and a wall that gives do not.
 TEST(a_blow_tends_to_the_stopped_beam)
 {
-    const links_study study = studied("corrected/plane-wall-fast", NULL, 0);
-    const links_row *momentum = row_of(&study, "momentum_2ms_Ns"),
-                    *sensed = row_of(&study, "sensed_1ms_N");
+    const links_row *momentum = row_of(of_fast_arm(), "momentum_2ms_Ns"),
+                    *sensed = row_of(of_fast_arm(), "sensed_1ms_N");
     check_relative(momentum->value[LINKS_LENGTHS - 1], momentum->beam, 5e-3);
     check_relative(sensed->value[LINKS_LENGTHS - 1], sensed->beam, 5e-3);
     assert_true(momentum->enough >= 8 && momentum->enough <= 32);
@@ -60,6 +70,98 @@ TEST(a_blow_tends_to_the_stopped_beam)
                       slow = studied("corrected/plane-wall-fast", damped, 1);
     assert_true(isnan(row_of(&soft, "momentum_2ms_Ns")->beam));
     assert_true(isnan(row_of(&slow, "sensed_1ms_N")->beam));
+}
+
+// What a run of the same arm comes to, by its rows and events: first impulse, momentum of 2 ms, and
+// a lag of 1 ms that is stepped finely through the first 20 ms.
+TEST(a_blow_is_what_rows_and_events_come_to)
+{
+    static const char *const bounces[] = {"wall.restitution=0", "wall.restitution=0.3"};
+    for (int kind = 0; kind < 2; kind++) {
+        char *changes[] = {(char *)bounces[kind]};
+        const links_study study = studied("corrected/plane-wall-fast", changes, 1);
+        for (int i = 0; i < 3; i++) {
+            char changed[80];
+            snprintf(changed, sizeof changed, "arm.links=%d method.step=1e-5 %s", links_numbers[i],
+                     bounces[kind]);
+            SCOPED(scenario_finish)
+            scenario s = shipped_with("corrected/plane-wall-fast", changed);
+            SCOPED(run_finish) run_result r;
+            assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+            const double touch = r.summary.first_contact_s, end = touch + 0.02;
+
+            // impulses at their instants, forces between them
+            double momentum = 0, first = 0, peak = 0, value = 0, largest = 0;
+            size_t next = 0;
+            for (size_t k = 0; k + 1 < r.trace.row_count; k++) {
+                const sample *a = &r.trace.rows[k], *b = a + 1;
+                for (; next < r.trace.event_count && r.trace.events[next].time <= a->time; next++) {
+                    const event *e = &r.trace.events[next];
+                    if (e->kind == EVENT_IMPACT && e->time <= end) {
+                        first = e->time == touch ? e->impulse : first;
+                        momentum += e->time <= touch + 2e-3 ? e->impulse : 0;
+                        value += e->impulse / 1e-3;
+                    }
+                }
+                if (a->time < touch || b->time > end + 1e-9) {
+                    continue;
+                }
+                const double h = b->time - a->time, mean = (a->force + b->force) / 2;
+                largest = fmax(largest, value);
+                momentum += b->time <= touch + 2e-3 + 1e-9 ? h * mean : 0;
+                peak = fmax(peak, fmax(a->force, b->force));
+                value = mean + (value - mean) * exp(-h / 1e-3);
+            }
+            check_relative(row_of(&study, "first_impulse_Ns")->value[i], first, 1e-9);
+            check_relative(row_of(&study, "momentum_2ms_Ns")->value[i], momentum, 1e-3);
+            check_relative(row_of(&study, "peak_20ms_N")->value[i], peak, 1e-3);
+            check_relative(row_of(&study, "sensed_1ms_N")->value[i], largest, 1e-4);
+        }
+    }
+}
+
+// With two links a sensor reads the first impulse over its time constant.
+TEST(two_links_read_as_one_impulse)
+{
+    const double impulse = row_of(of_fast_arm(), "first_impulse_Ns")->value[0];
+    check_relative(row_of(of_fast_arm(), "sensed_500us_N")->value[0], impulse / 0.5e-3, 1e-12);
+    check_relative(row_of(of_fast_arm(), "sensed_2ms_N")->value[0], impulse / 2e-3, 1e-12);
+    check_close(impulse, 0.15583707, 1e-6); // docs/explanation/trust.md
+}
+
+// The force of the ideal contact has no limit, its first impulse neither.
+TEST(a_rigid_contact_has_no_limit)
+{
+    const links_row *peak = row_of(of_fast_arm(), "peak_20ms_N"),
+                    *impulse = row_of(of_fast_arm(), "first_impulse_Ns");
+    for (int i = 1; i < LINKS_LENGTHS; i++) {
+        check_below(1.5 * peak->value[i - 1], peak->value[i]);
+        check_below(impulse->value[i], 0.6 * impulse->value[i - 1]);
+    }
+    assert_int_equal(peak->enough + impulse->enough, 0);
+}
+
+// The limit against the transform it comes from: y(t) of K / sqrt(t) by the substitution u =
+// sqrt(t).
+TEST(the_beams_limit_is_the_lag_of_an_inverse_root)
+{
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    DONE(parameters_resolve(&p, &f));
+    const double tau = 1e-3, k = links_beam_momentum(&p, 2, 1) / 2;
+    double largest = 0;
+    for (double t = 0.5 * tau; t < 1.5 * tau; t += 0.002 * tau) {
+        enum { PIECES = 2000 };
+        double sum = 0, width = sqrt(t) / PIECES;
+        for (int i = 0; i < PIECES; i++) {
+            double u = (i + 0.5) * width;
+            sum += 2 * k / tau * exp((u * u - t) / tau) * width;
+        }
+        largest = fmax(largest, sum);
+    }
+    check_relative(links_beam_sensed(&p, 2, tau), largest, 1e-5);
+    // K itself for the default beam, by hand: EI = 2.46 N m2, rho A = 0.40108 kg/m
+    check_relative(k, 2 * pow(2.46, 0.25) * pow(0.40108, 0.75) / sqrt(2 * 3.14159265358979), 1e-12);
 }
 
 // Enough is the fewest from which on all are near, not the first that happens to be.
@@ -97,6 +199,8 @@ TEST(what_has_no_contact_is_refused)
     links_study study;
     REFUSED(STATUS_BAD_SCENARIO, "no contact", links_study_compute(&s, NULL, &study, &f));
     assert_int_equal(study.count, 0);
+    SCOPED(scenario_finish) scenario two = shipped("thesis/fig-3-4");
+    REFUSED(STATUS_BAD_SCENARIO, "printed", links_study_compute(&two, NULL, &study, &f));
 
     run_monitor monitor = {0};
     atomic_store(&monitor.stop, true);

@@ -5,7 +5,6 @@
 #include "src/study/calibrate.h"
 #include "src/study/convergence.h"
 #include "src/study/robust.h"
-#include "src/study/sensor_view.h"
 #include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
 #include "src/study/thesis_tables.h"
@@ -88,15 +87,6 @@ static status thesis(const char *ignored, FILE *out)
     for (int i = 0; i < t.row_count && code == STATUS_OK; i++) {
         fprintf(out, "%a %a\n", t.rows[i].computed[0], t.rows[i].computed[3]);
     }
-    return code;
-}
-
-static status sensor(scenario *s, FILE *out)
-{
-    sensor_view view;
-    fault f = {0};
-    const status code = sensor_view_compute(s, 4, NULL, &view, &f);
-    fprintf(out, "%a %a %a\n", view.peak, view.momentum, view.sensed[0]);
     return code;
 }
 
@@ -218,7 +208,6 @@ TEST(sets_and_studies)
     put_file("set", "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
     try_with_scenario(draw_cases, "");
     try_all(thesis, "");
-    try_with_scenario(sensor, "");
     try_with_scenario(converge, "");
     try_with_scenario(measure_stiffness, "");
 }

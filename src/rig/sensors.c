@@ -142,9 +142,8 @@ static double left_after(first_order_lag *y, double h)
     return y->left - y->left * (longer / y->time_constant);
 }
 
-// Over a time h [s], the input being the parabola through `first` and `last` with the given mean:
 // y' = (f - y)/lag with f = first + slope u + curve u^2, u = t/h.
-static void lag_follow(first_order_lag *y, double h, double first, double last, double mean)
+void lag_follow(first_order_lag *y, double h, double first, double last, double mean)
 {
     double lag = y->time_constant;
     const bool nothing = y->value == 0 && first == 0 && last == 0 && mean == 0;
@@ -170,8 +169,7 @@ static void lag_follow(first_order_lag *y, double h, double first, double last, 
     y->value = at_end + (y->value - at_start) * left_after(y, h);
 }
 
-// Under a pulse of the input, given by its integral.
-static void lag_strike(first_order_lag *y, double pulse)
+void lag_strike(first_order_lag *y, double pulse)
 {
     if (y->time_constant > 0) {
         y->value += pulse / y->time_constant;

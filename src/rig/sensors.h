@@ -35,6 +35,12 @@ typedef struct first_order_lag {
     double left;    // exp(-stretch/time_constant)
 } first_order_lag;
 
+// The lag's value after a time h [s] of an input that is the parabola through `first` and `last`
+// with the given mean: exact.
+void lag_follow(first_order_lag *y, double h, double first, double last, double mean);
+// Under a pulse of the input, given by its integral.
+void lag_strike(first_order_lag *y, double pulse);
+
 // White noise of its own.
 enum { NOISE_AHEAD = 16 };
 typedef struct noise_source {

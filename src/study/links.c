@@ -4,25 +4,128 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "src/base/plain_math.h"
 #include "src/arm/modes.h"
+#include "src/base/plain_math.h"
+#include "src/rig/sensors.h"
 #include "src/run/run.h"
 #include "src/study/convergence.h"
-#include "src/study/sensor_view.h"
 
 const int links_numbers[LINKS_LENGTHS] = {2, 4, 8, 16, 32, 64};
 
-enum row_index { MOMENTUM, SENSED, CONTACT_TIME, STEADY_FORCE, FREE, PINNED, COMPLIANCE };
+#define SENSOR_WINDOW   0.02  // after first contact in which largest values are looked for [s]
+#define MOMENTUM_WINDOW 0.002 // and over which momentum is summed [s]
+#define PIECE           1e-5  // of a step, at whose ends the sensors are looked at [s]
+
+enum { SENSORS = 3 };
+static const double sensor_constants[SENSORS] = {0.5e-3, 1e-3, 2e-3}; // [s]
+
+enum row_index {
+    IMPULSE,
+    PEAK,
+    MOMENTUM,
+    SENSED,
+    CONTACT_TIME = SENSED + SENSORS,
+    STEADY_FORCE,
+    FREE,
+    PINNED,
+    COMPLIANCE
+};
 
 static const links_row blank_rows[LINKS_QUANTITIES] = {
+    [IMPULSE] = {.key = "first_impulse_Ns", .label = "first impulse", .unit = "N s"},
+    [PEAK] = {.key = "peak_20ms_N", .label = "largest force", .unit = "N"},
     [MOMENTUM] = {.key = "momentum_2ms_Ns", .label = "momentum of 2 ms", .unit = "N s"},
-    [SENSED] = {.key = "sensed_1ms_N", .label = "sensor of 1 ms", .unit = "N"},
+    [SENSED] = {.key = "sensed_500us_N", .label = "sensor of 0.5 ms", .unit = "N"},
+    [SENSED + 1] = {.key = "sensed_1ms_N", .label = "sensor of 1 ms", .unit = "N"},
+    [SENSED + 2] = {.key = "sensed_2ms_N", .label = "sensor of 2 ms", .unit = "N"},
     [CONTACT_TIME] = {.key = "first_pulse_s", .label = "contact time", .unit = "s"},
     [STEADY_FORCE] = {.key = "steady_force_N", .label = "steady force", .unit = "N"},
     [FREE] = {.key = "frequency_tip_free_Hz", .label = "frequency, tip free", .unit = "Hz"},
     [PINNED] = {.key = "frequency_tip_pinned_Hz", .label = "frequency, tip pinned", .unit = "Hz"},
     [COMPLIANCE] = {.key = "tip_compliance_m_per_N", .label = "compliance", .unit = "m/N"},
 };
+
+// --- the blow -------------------------------------------------------------------------------
+
+// What the contact gives in its first milliseconds, and what sensors read of it.
+typedef struct blow {
+    double touch;           // first contact [s]
+    double speed, impulse;  // of the first impact [m/s], [N s]
+    double momentum;        // impulses and forces over MOMENTUM_WINDOW [N s]
+    double peak;            // largest force, impulses excluded [N]
+    double sensed[SENSORS]; // largest values [N]
+    first_order_lag lags[SENSORS];
+} blow;
+
+static void look_at_sensors(blow *b)
+{
+    for (int k = 0; k < SENSORS; k++) {
+        b->sensed[k] = fmax(b->sensed[k], b->lags[k].value);
+    }
+}
+
+// An impact within the window.
+static void take_impulse(blow *b, const event *e)
+{
+    const double impulse = e->delivered_by_step ? 0 : e->impulse;
+    if (e->time == b->touch) {
+        b->speed = e->speed;
+        b->impulse = e->impulse;
+    }
+    b->momentum += e->time <= b->touch + MOMENTUM_WINDOW ? impulse : 0;
+    for (int k = 0; k < SENSORS; k++) {
+        lag_strike(&b->lags[k], impulse);
+    }
+    look_at_sensors(b);
+}
+
+// The force over a step, from the touch and up to the window's end, piece by piece.
+static void take_force(blow *b, const force_step *step)
+{
+    const step_parabola p = step_parabola_of(step);
+    const double length = step->end - step->start, early = b->touch + MOMENTUM_WINDOW;
+    const double end = fmin(step->end, b->touch + SENSOR_WINDOW);
+    double from = fmax(step->start, b->touch), to;
+    for (; from < end; from = to) {
+        to = fmin(from + PIECE, end);
+        to = from < early ? fmin(to, early) : to;
+        const double s = (from - step->start) / length, u = (to - step->start) / length;
+        const double first = p.first + s * (p.slope + s * p.curve);
+        const double last = p.first + u * (p.slope + u * p.curve);
+        const double mean = p.first + p.slope * (s + u) / 2 + p.curve * (s * s + s * u + u * u) / 3;
+        b->momentum += to <= early ? (to - from) * mean : 0;
+        b->peak = fmax(b->peak, fmax(first, last));
+        for (int k = 0; k < SENSORS; k++) {
+            lag_follow(&b->lags[k], to - from, first, last, mean);
+        }
+        look_at_sensors(b);
+    }
+}
+
+// The blow of a run that has a contact.
+static blow blow_of(const run_result *result)
+{
+    const force_history *h = &result->history.forces;
+    const trace *t = &result->trace;
+    blow b = {.touch = result->summary.first_contact_s};
+    size_t next = 0;
+    for (int k = 0; k < SENSORS; k++) {
+        b.lags[k].time_constant = sensor_constants[k];
+    }
+    for (size_t i = 0; i < h->count; i++) {
+        const force_step *step = &force_steps(h)[i];
+        if (step->start >= b.touch + SENSOR_WINDOW) {
+            break;
+        }
+        for (; next < t->event_count && t->events[next].time <= step->start; next++) {
+            if (t->events[next].kind == EVENT_IMPACT) {
+                take_impulse(&b, &t->events[next]);
+            }
+        }
+        take_force(&b, step);
+    }
+    return b;
+}
 
 // --- one number of links --------------------------------------------------------------------
 
@@ -70,29 +173,34 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor, lin
                              double *speed, fault *f)
 {
     links_row *rows = study->rows;
-    sensor_view view;
     scenario changed;
     status code = with_links(s, links_numbers[i], &changed, f);
-    if (code == STATUS_OK) {
-        code = sensor_view_compute(s, links_numbers[i], monitor, &view, f);
-    }
     if (code != STATUS_OK) {
         return code;
     }
-    *speed = view.speed;
-    rows[MOMENTUM].value[i] = view.momentum;
-    rows[SENSED].value[i] = view.sensed[1];
 
     // the whole run; one that failed has what it has until then, which is not its end
     run_result result;
-    const run_options options = {.monitor = monitor};
+    const run_options options = {.monitor = monitor, .keep_forces = true};
     code = run_scenario_with(&changed, &options, &result);
-    if (code == STATUS_OK) {
-        rows[CONTACT_TIME].value[i] = result.summary.first_pulse_s;
-        rows[STEADY_FORCE].value[i] = result.summary.steady_force_N;
-    } else {
+    if (code != STATUS_OK) {
         fault_set_at(f, code, result.summary.path, "with %d links: %.700s", links_numbers[i],
                      result.summary.message);
+    } else if (isnan(result.summary.first_contact_s)) {
+        code =
+            fault_set(f, STATUS_BAD_SCENARIO, "%s: with %d links there is no contact within %g s",
+                      s->name, links_numbers[i], s->parameters.run.duration);
+    } else {
+        const blow b = blow_of(&result);
+        *speed = b.speed;
+        rows[IMPULSE].value[i] = b.impulse;
+        rows[PEAK].value[i] = b.peak;
+        rows[MOMENTUM].value[i] = b.momentum;
+        for (int k = 0; k < SENSORS; k++) {
+            rows[SENSED + k].value[i] = b.sensed[k];
+        }
+        rows[CONTACT_TIME].value[i] = result.summary.first_pulse_s;
+        rows[STEADY_FORCE].value[i] = result.summary.steady_force_N;
     }
     run_finish(&result);
     if (code != STATUS_OK) {
@@ -108,6 +216,27 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor, lin
     }
     rows[COMPLIANCE].value[i] = tip_compliance(&changed.parameters);
     return code;
+}
+
+// --- the beam -------------------------------------------------------------------------------
+
+#define DAWSON_LARGEST 0.5410442246351817 // of Dawson's integral, at 0.9241388730
+
+// K [N s^(1/2)].
+static double beam_constant(const parameters *p, double speed)
+{
+    double bending = p->arm.k2 * p->arm.length / 2, density = p->arm.mass / p->arm.length;
+    return speed * plain_pow(bending, 0.25) * plain_pow(density, 0.75) / sqrt(2 * M_PI);
+}
+
+double links_beam_momentum(const parameters *p, double speed, double time)
+{
+    return 2 * beam_constant(p, speed) * sqrt(time);
+}
+
+double links_beam_sensed(const parameters *p, double speed, double time_constant)
+{
+    return 2 * beam_constant(p, speed) / sqrt(time_constant) * DAWSON_LARGEST;
 }
 
 // --- limits ---------------------------------------------------------------------------------
@@ -142,16 +271,16 @@ static void compute_beam(const parameters *p, double speed, links_row *rows)
     if (p->arm.tip_mass > 0 || !parameters_even_links(&p->arm)) {
         return;
     }
-    rows[MOMENTUM].beam = sensor_beam_momentum(p, speed, MOMENTUM_WINDOW);
-    rows[SENSED].beam = sensor_beam_peak(p, speed, sensor_constants[1]);
+    if (p->wall.contact == WALL_RIGID && p->arm.damping_ratio == 0) {
+        // the blow's closed form is that of a beam without damping which the wall stops at once
+        rows[MOMENTUM].beam = links_beam_momentum(p, speed, MOMENTUM_WINDOW);
+        for (int k = 0; k < SENSORS; k++) {
+            rows[SENSED + k].beam = links_beam_sensed(p, speed, sensor_constants[k]);
+        }
+    }
     rows[FREE].beam = 1.8751040687119611 * 1.8751040687119611 * rate;
     rows[PINNED].beam = 3.9266023120479187 * 3.9266023120479187 * rate;
     rows[COMPLIANCE].beam = length * length * length / (3 * bending);
-
-    // the blow's closed form is that of a beam without damping which the wall stops at once
-    if (p->wall.contact != WALL_RIGID || p->arm.damping_ratio > 0) {
-        rows[MOMENTUM].beam = rows[SENSED].beam = (double)NAN;
-    }
 }
 
 int links_enough(const links_row *row)
@@ -173,6 +302,11 @@ status links_study_compute(const scenario *s, run_monitor *monitor, links_study 
     assert(s != NULL && study != NULL);
     double speed = (double)NAN;
     *study = (links_study){0};
+    if (s->parameters.arm.model == ARM_PRINTED) {
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "%s: the printed model has two links only, expected arm.model = corrected",
+                         s->name);
+    }
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         study->rows[k] = blank_rows[k];
         study->rows[k].order = study->rows[k].limit = study->rows[k].error = (double)NAN;

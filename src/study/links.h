@@ -5,7 +5,7 @@
 #include "src/run/run_result.h"
 #include "src/scenario/scenario.h"
 
-enum { LINKS_LENGTHS = 6, LINKS_QUANTITIES = 7 };
+enum { LINKS_LENGTHS = 6, LINKS_QUANTITIES = 11 };
 extern const int links_numbers[LINKS_LENGTHS]; // 2, 4, 8 ... 64
 
 #define LINKS_ENOUGH 0.05 // of the beam's value, or the limit's, that a number of links may be off
@@ -31,14 +31,23 @@ typedef struct links_study {
 // limit where there is none), 0 if there are none.
 int links_enough(const links_row *row);
 
-// Runs the scenario with each number of links: momentum of the first 2 ms and what a sensor of 1 ms
-// reads (sensor_view.h), contact time and steady force (of the run's summary), the first frequency
-// with the tip free and pinned, hub held, and the tip's compliance. Fails as sensor_view_compute
-// does; *study then has the numbers of links before. STATUS_STOPPED if `monitor` (NULL: nobody
-// looks on) asked for it.
+// The Euler-Bernoulli beam whose tip is stopped from the speed v [m/s] presses, as long as nothing
+// has come back from its other end, without damping and on a rigid wall, with K / sqrt(t),
 //
-// The beam: 4 EI v (rho A / 4 EI)^(3/4) sqrt(t / pi) [N s] in t after a blow with speed v, as long
-// as nothing has come back from its other end, without damping and on a rigid wall; (beta L)^2
-// sqrt(EI / (m L^3)) with beta L = 1.8751 and 3.9266; L^3 / (3 EI). It has no closed form with a
-// mass at the tip or uneven links.
+//     K = v (EI)^(1/4) (rho A)^(3/4) / sqrt(2 pi),     EI = k2 L / 2,  rho A = mass / L.
+//
+// Its momentum in t is 2 K sqrt(t) [N s]; a sensor, a first-order lag of the time constant tau,
+// reads 2 K / sqrt(tau) D(sqrt(t / tau)) with Dawson's integral D, at most at t = 0.854 tau [N].
+double links_beam_momentum(const parameters *p, double speed, double time);
+double links_beam_sensed(const parameters *p, double speed, double time_constant);
+
+// Runs the scenario with each number of links: impulse of the first impact, largest force (impulses
+// excluded) of the first 20 ms, momentum of the first 2 ms, what sensors of 0.5, 1 and 2 ms read at
+// most in 20 ms; contact time and steady force (of the run's summary), the first frequency with the
+// tip free and pinned, hub held, and the tip's compliance. STATUS_BAD_SCENARIO for the printed
+// model or if there is no contact; else fails as the run does. *study then has the numbers of links
+// before. STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for it.
+//
+// The beam besides: (beta L)^2 sqrt(EI / (m L^3)) with beta L = 1.8751 and 3.9266; L^3 / (3 EI). It
+// has no closed form with a mass at the tip or uneven links.
 status links_study_compute(const scenario *s, run_monitor *monitor, links_study *study, fault *f);
