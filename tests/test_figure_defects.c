@@ -14,7 +14,7 @@ TEST(the_last_of_twenty_links_is_body_21)
     trace_figure_finish(&s.figure);
     s.scenario.parameters.arm.links = 20;
     DONE(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f));
-    record(&s.figure.figure, &r);
+    record(&s.figure.plot.figure, &r);
     expect_text(&r, "\u03b821  last link");
     assert_false(has_text(&r, "\u03b83  last link"));
 }
@@ -29,7 +29,7 @@ TEST(the_peak_is_on_the_curve)
     s.result.summary.first_pulse_peak_N = 2.125;
     s.result.summary.first_pulse_time_to_peak_s = 0.0354;
     DONE(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f));
-    const figure_series *force = &s.figure.panels[0].series[0];
+    const figure_series *force = &s.figure.plot.panels[0].series[0];
     bool found = false;
     double before = -1;
     for (size_t i = 0; i < force->count; i++) {
@@ -71,14 +71,14 @@ static void check_labels(const char *name, double from, double to,
         static trace_figure t;
         assert_int_equal(trace_figure_init(&t, NULL, usual_panels, USUAL_PANELS, &run, 1, NULL),
                          STATUS_OK);
-        t.figure.width = narrow ? 85 : 170;
-        t.figure.x.low = from;
-        t.figure.x.high = to;
-        record(&t.figure, &r);
-        expect_tidy(&t.figure);
-        assert_true(t.figure.mark_count > 0);
-        for (int i = 0; i < t.figure.mark_count; i++) {
-            const figure_mark *m = &t.figure.marks[i];
+        t.plot.figure.width = narrow ? 85 : 170;
+        t.plot.figure.x.low = from;
+        t.plot.figure.x.high = to;
+        record(&t.plot.figure, &r);
+        expect_tidy(&t.plot.figure);
+        assert_true(t.plot.figure.mark_count > 0);
+        for (int i = 0; i < t.plot.figure.mark_count; i++) {
+            const figure_mark *m = &t.plot.figure.marks[i];
             const figure_range *range = &r.ranges[0];
             const figure_rect *box = &r.panels[0];
             if (m->x < range->x_low || m->x > range->x_high) {

@@ -12,7 +12,7 @@ TEST(same_bytes_also_for_later_figures)
         for (int i = 0; i < 3; i++) {
             char name[64];
             snprintf(name, sizeof name, "same-%d.%s", n, formats[i]);
-            write_figure(&s.figure.figure, name);
+            write_figure(&s.figure.plot.figure, name);
             if (n == 2 || n == 20) {
                 char first[64];
                 snprintf(first, sizeof first, "same-1.%s", formats[i]);
@@ -55,7 +55,7 @@ TEST(pdf_embeds_fonts_and_has_no_type_3)
 {
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    write_figure(&s.figure.figure, "fonts.pdf");
+    write_figure(&s.figure.plot.figure, "fonts.pdf");
     GString *pdf = unpack_pdf("fonts.pdf");
     assert_true(contains(pdf, "/FontFile2"));
     assert_true(contains(pdf, "DejaVuSans"));
@@ -73,10 +73,10 @@ TEST(png_knows_its_resolution_and_origin)
 {
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 2);
-    s.figure.figure.width = 127;
-    s.figure.figure.height = 101.6;
-    s.figure.figure.dpi = 300;
-    write_figure(&s.figure.figure, "notes.png");
+    s.figure.plot.figure.width = 127;
+    s.figure.plot.figure.height = 101.6;
+    s.figure.plot.figure.dpi = 300;
+    write_figure(&s.figure.plot.figure, "notes.png");
     FILE *file = fopen("notes.png", "rb");
     assert_non_null(file);
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
@@ -107,7 +107,7 @@ TEST(svg_ids_are_unique_and_all_references_resolve)
     SCOPED(synthetic_finish) synthetic s;
     size_t length;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    write_figure(&s.figure.figure, "ids.svg");
+    write_figure(&s.figure.plot.figure, "ids.svg");
     SCOPED(free_kept) char *svg = read_file("ids.svg", &length);
     assert_non_null(strstr(svg, "<metadata>"));
     assert_non_null(strstr(svg, "<title>Synthetic run &amp; &lt;more&gt;</title>"));
@@ -159,7 +159,7 @@ TEST(faults_are_sentences)
 {
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    figure *fig = &s.figure.figure;
+    figure *fig = &s.figure.plot.figure;
     REFUSED(STATUS_BAD_ARGUMENT, ".svg", figure_write(fig, "x.gif", &f));
     REFUSED(STATUS_BAD_ARGUMENT, "", figure_write(fig, "png", &f));
     REFUSED(STATUS_CANNOT_WRITE, "nowhere/x.png", figure_write(fig, "nowhere/x.png", &f));
@@ -183,7 +183,7 @@ TEST(a_full_disk_is_noticed)
     for (int i = 0; i < 3; i++) {
         fault f = {0};
         assert_int_equal(symlink("/dev/full", names[i]), 0);
-        assert_int_equal(figure_write(&s.figure.figure, names[i], &f), STATUS_CANNOT_WRITE);
+        assert_int_equal(figure_write(&s.figure.plot.figure, names[i], &f), STATUS_CANNOT_WRITE);
         assert_true(strlen(f.text) > 10);
     }
 }

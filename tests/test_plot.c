@@ -78,7 +78,7 @@ TEST(all_texts_of_a_run_are_drawn)
     static figure_report r;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    record(&s.figure.figure, &r);
+    record(&s.figure.plot.figure, &r);
     static const char *const wanted[] = {"Synthetic run & <more>",
                                          "Time t (s)",
                                          "Contact force f (N)",
@@ -110,13 +110,13 @@ TEST(nothing_is_clipped_or_covered)
         for (int theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
             SCOPED(synthetic_finish) synthetic s;
             synthetic_init(&s, run_panels, RUN_PANELS);
-            s.figure.figure.width = widths[i];
-            s.figure.figure.theme = theme;
-            expect_tidy(&s.figure.figure);
+            s.figure.plot.figure.width = widths[i];
+            s.figure.plot.figure.theme = theme;
+            expect_tidy(&s.figure.plot.figure);
             for (int p = 0; p < RUN_PANELS; p++) {
-                s.figure.panels[p].legend = LEGEND_ENDS;
+                s.figure.plot.panels[p].legend = LEGEND_ENDS;
             }
-            expect_tidy(&s.figure.figure);
+            expect_tidy(&s.figure.plot.figure);
         }
     }
 }
@@ -133,11 +133,11 @@ TEST(many_marks_and_impulses_stay_readable)
     }
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    s.figure.figure.marks = marks;
-    s.figure.figure.mark_count = 60;
-    s.figure.panels[0].impulses = impulses;
-    s.figure.panels[0].impulse_count = 300;
-    expect_tidy(&s.figure.figure);
+    s.figure.plot.figure.marks = marks;
+    s.figure.plot.figure.mark_count = 60;
+    s.figure.plot.panels[0].impulses = impulses;
+    s.figure.plot.panels[0].impulse_count = 300;
+    expect_tidy(&s.figure.plot.figure);
 }
 
 TEST(layout_is_the_same_on_every_surface)
@@ -145,9 +145,9 @@ TEST(layout_is_the_same_on_every_surface)
     static figure_report reference, other;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    record(&s.figure.figure, &reference);
+    record(&s.figure.plot.figure, &reference);
     for (double scale = 1; scale < 4; scale += 0.77) {
-        cairo_surface_destroy(paint_pixels(&s.figure.figure, scale, &other));
+        cairo_surface_destroy(paint_pixels(&s.figure.plot.figure, scale, &other));
         assert_int_equal(other.text_count, reference.text_count);
         for (int i = 0; i < reference.text_count; i++) {
             assert_string_equal(other.texts[i].text, reference.texts[i].text);
@@ -165,9 +165,9 @@ TEST(impulses_do_not_touch_the_force_axis)
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 1);
     figure_impulse huge[] = {{0.31, 5000}};
-    s.figure.panels[0].impulses = huge;
-    s.figure.panels[0].impulse_count = 1;
-    record(&s.figure.figure, &r);
+    s.figure.plot.panels[0].impulses = huge;
+    s.figure.plot.panels[0].impulse_count = 1;
+    record(&s.figure.plot.figure, &r);
     expect_text(&r, "5\u00b7103");
     expect_text(&r, "2");
     expect_inside(&r.panels[0], &r.page, "the panel");
@@ -185,9 +185,9 @@ TEST(the_unit_of_small_impulses_is_on_the_page)
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 1);
     figure_impulse small[] = {{0.31, 4.02e-3}};
-    s.figure.panels[0].impulses = small;
-    s.figure.panels[0].impulse_count = 1;
-    record(&s.figure.figure, &r);
+    s.figure.plot.panels[0].impulses = small;
+    s.figure.plot.panels[0].impulse_count = 1;
+    record(&s.figure.plot.figure, &r);
     expect_text(&r, "4.02");
     for (int i = 0; i < r.text_count; i++) {
         expect_inside(&r.texts[i].place, &r.page, r.texts[i].text);
@@ -202,9 +202,9 @@ TEST(the_exponent_of_small_impulses_stands_clear_of_their_name)
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 1);
     figure_impulse small[] = {{0.31, 4.02e-3}};
-    s.figure.panels[0].impulses = small;
-    s.figure.panels[0].impulse_count = 1;
-    cairo_surface_t *image = paint_pixels(&s.figure.figure, SCALE, &r);
+    s.figure.plot.panels[0].impulses = small;
+    s.figure.plot.panels[0].impulse_count = 1;
+    cairo_surface_t *image = paint_pixels(&s.figure.plot.figure, SCALE, &r);
 
     // lines of letters, counted down the text's place
     int lines = 0;
@@ -345,11 +345,11 @@ TEST(legend_and_inset_keep_off_the_data)
     static figure_report with, without;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    figure *fig = &s.figure.figure;
+    figure *fig = &s.figure.plot.figure;
     record(fig, &with);
     for (int i = 0; i < RUN_PANELS; i++) {
-        s.figure.panels[i].legend = LEGEND_NONE;
-        s.figure.panels[i].zoom_to = s.figure.panels[i].zoom_from;
+        s.figure.plot.panels[i].legend = LEGEND_NONE;
+        s.figure.plot.panels[i].zoom_to = s.figure.plot.panels[i].zoom_from;
     }
     cairo_surface_t *image = paint_pixels(fig, 3, &without);
     for (int i = 0; i < RUN_PANELS; i++) {
@@ -419,10 +419,10 @@ TEST(mono_has_no_colour)
     static figure_report r;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    cairo_surface_t *coloured = paint_pixels(&s.figure.figure, 1.5, &r);
+    cairo_surface_t *coloured = paint_pixels(&s.figure.plot.figure, 1.5, &r);
     assert_true(coloured_pixels(coloured, 1.5, r.page) > 1000);
-    s.figure.figure.theme = THEME_MONO;
-    cairo_surface_t *mono = paint_pixels(&s.figure.figure, 1.5, &r);
+    s.figure.plot.figure.theme = THEME_MONO;
+    cairo_surface_t *mono = paint_pixels(&s.figure.plot.figure, 1.5, &r);
     for (int y = 0; y < cairo_image_surface_get_height(mono); y++) {
         for (int x = 0; x < cairo_image_surface_get_width(mono); x++) {
             assert_int_equal(saturation(pixel_at(mono, x, y)), 0);
@@ -470,35 +470,38 @@ TEST(each_curve_of_a_comparison_says_run_and_signal)
         // colours are the runs', lines the signals': that of a body is the same in all panels
         line_style of_body[4];
         for (int p = 0; p < 3; p++) {
-            const figure_panel *panel = &t.figure.panels[p];
+            const figure_panel *panel = &t.plot.figure.panels[p];
             assert_int_equal(panel->series_count, count * signals[p]);
             for (int i = 0; i < panel->series_count; i++) {
                 const figure_series *one = &panel->series[i];
                 const int run = i / signals[p], signal = i % signals[p];
                 const int body = signal_table[signal_find(panels[p].signals[signal])].body;
                 assert_int_equal(one->run, run + 1);
-                assert_int_equal(one->colour, t.figure.panels[0].series[run * signals[0]].colour);
+                assert_int_equal(one->colour,
+                                 t.plot.figure.panels[0].series[run * signals[0]].colour);
                 if (run == 0 && p == (body == BODY_HUB)) {
                     of_body[body] = one->style;
                 }
                 assert_int_equal(one->style, of_body[body]);
-                assert_true(is_in_key(&t.figure, one, true) && is_in_key(&t.figure, one, false));
+                assert_true(is_in_key(&t.plot.figure, one, true) &&
+                            is_in_key(&t.plot.figure, one, false));
             }
         }
         assert_true(of_body[BODY_HUB] != of_body[BODY_FIRST_LINK] &&
                     of_body[BODY_HUB] != of_body[BODY_LAST_LINK] &&
                     of_body[BODY_FIRST_LINK] != of_body[BODY_LAST_LINK]);
         for (int i = 1; i < count; i++) {
-            assert_int_not_equal(t.figure.key->series[i].colour, t.figure.key->series[0].colour);
+            assert_int_not_equal(t.plot.figure.key->series[i].colour,
+                                 t.plot.figure.key->series[0].colour);
         }
 
         // the key is drawn once, above the panels
         for (int narrow = 0; narrow < 2; narrow++) {
             static figure_report r;
-            t.figure.width = narrow ? 85 : 170;
-            t.figure.height = 230;
-            record(&t.figure, &r);
-            expect_tidy(&t.figure);
+            t.plot.figure.width = narrow ? 85 : 170;
+            t.plot.figure.height = 230;
+            record(&t.plot.figure, &r);
+            expect_tidy(&t.plot.figure);
             int times = 0;
             for (int i = 0; i < r.text_count; i++) {
                 const bool named = strcmp(r.texts[i].text, names[0]) == 0;

@@ -122,7 +122,7 @@ TEST(measured_data_have_a_panel_of_residuals)
     const trace_run run = {&s.scenario, &s.result, "run"};
     const figure_options o = {.overlay = spec, .signals = "force,hub_angle+last_angle"};
     DONE(run_figure_init(&drawn, "t", NULL, 0, &run, 1, &o, &f));
-    const figure *fig = &drawn.traces.figure;
+    const figure *fig = &drawn.traces.plot.figure;
     record(fig, &r);
     expect_text(&r, "bench.csv: cell");
     expect_text(&r, "Residual (N)");

@@ -134,7 +134,7 @@ static void add_printed_peak(signal_figure *s, const thesis_figure *which, GStri
 {
     double forces[TABLE_VOLTAGES], delays[TABLE_VOLTAGES];
     trace_figure *t = &s->figure.traces;
-    figure_panel *panel = &t->panels[0];
+    figure_panel *panel = &t->plot.panels[0];
     const summary *m = &s->runs[0].result.summary;
     int column = which->printed_voltage - 1;
     bool known = tables_printed("4.3", "max_force_simulation", forces) &&
@@ -145,7 +145,7 @@ static void add_printed_peak(signal_figure *s, const thesis_figure *which, GStri
     // where the thesis has it: as long after the run's own first contact
     s->printed_force = forces[column];
     s->printed_time = m->first_contact_s + delays[column];
-    t->series[0][panel->series_count++] = (figure_series){
+    t->plot.series[0][panel->series_count++] = (figure_series){
         "Table 4.3", "Table 4.3",     .x = &s->printed_time,    .y = &s->printed_force, .count = 1,
         .colour = 5, .no_line = true, .marker = MARKER_DIAMOND, .radius = 2.6};
 
@@ -163,7 +163,7 @@ static void add_printed_peak(signal_figure *s, const thesis_figure *which, GStri
 // What the catalogue adds to a figure of recorded signals.
 static void add_facts(signal_figure *s, const thesis_figure *which, const figure_options *o)
 {
-    figure *fig = &s->figure.traces.figure;
+    figure *fig = &s->figure.traces.plot.figure;
     GString *caption = g_string_new(fig->caption);
     if (which->note != NULL) {
         text_append(caption, " %s", which->note);
@@ -212,7 +212,7 @@ static status open_signals(const figure_order *order, artwork *out, fault *f)
     }
 
     add_facts(s, which, o);
-    *out = artwork_of_figure(&s->figure.traces.figure, s, release_signals);
+    *out = artwork_of_figure(&s->figure.traces.plot.figure, s, release_signals);
     return STATUS_OK;
 }
 

@@ -70,7 +70,7 @@ static void add_signal(impact_figure *fig, int panel, const char *name, const ch
 {
     const trace_run rows = {
         .scenario = &fig->run.scenario, .result = &fig->run.result, .points = true};
-    figure_series s = trace_series(&rows, signal_index(name), fig->plot.kept);
+    figure_series s = trace_series(&rows, signal_index(name), &fig->plot);
     s.label = label;
     s.style = LINE_SOLID;
     add_series(fig, panel, s);

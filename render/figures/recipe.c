@@ -149,8 +149,7 @@ static void describe(recipe_figure *fig, const figure_options *o)
 
     // the first run's contact
     if (r->contact && fig->sources[0].ran) {
-        fig->plot.figure.intervals = trace_contact(
-            &fig->sources[0].run.result.trace, &fig->plot.figure.interval_count, fig->plot.kept);
+        trace_shade_contact(&fig->plot, &fig->sources[0].run.result.trace);
     }
 
     figure_take_look(&fig->plot.figure, &o->look);

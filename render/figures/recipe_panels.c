@@ -170,7 +170,7 @@ static void add_signal(recipe_figure *fig, int panel, int source, int signal, in
     const trace_run run = {
         .scenario = &s->run.scenario, .result = data ? &s->data : &s->run.result, .points = data};
     figure_series *out = &fig->plot.series[panel][p->series_count];
-    *out = trace_series(&run, index, fig->plot.kept);
+    *out = trace_series(&run, index, &fig->plot);
 
     // several signals of one run are told by their symbols, several runs by their labels
     const char *label = label_of(fig, from);
@@ -199,7 +199,7 @@ static void add_difference(recipe_figure *fig, int panel)
     const recipe_panel *from = &fig->recipe.panels[panel];
     figure_series *s = &fig->plot.series[panel][0];
     *s = trace_difference(trace_of(fig, from->of), trace_of(fig, from->less),
-                          signal_index(from->signals[0]), fig->plot.kept);
+                          signal_index(from->signals[0]), &fig->plot);
 
     // points where data are compared, else a line
     bool data = fig->recipe.sources[from->of].kind == SOURCE_DATA;

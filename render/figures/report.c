@@ -319,7 +319,7 @@ static status open_scenario(report_item *item, const char *name, run_monitor *mo
     item->scenario = own->run.scenario.name;
     item->model = printed ? "printed" : "corrected";
     item->command = text_printf("impactlab run %s --plot FILE.pdf", name);
-    item->drawn = artwork_of_figure(&own->figure.traces.figure, own, release_run);
+    item->drawn = artwork_of_figure(&own->figure.traces.plot.figure, own, release_run);
     return STATUS_OK;
 }
 

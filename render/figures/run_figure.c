@@ -163,7 +163,6 @@ void run_figure_finish(run_figure *r)
     trace_figure_finish(&r->traces);
     trace_finish(&r->overlay.trace);
     g_free(r->overlay_name);
-    g_free(r->title);
     g_strfreev(r->names);
     memset(r, 0, sizeof *r);
 }
@@ -174,7 +173,6 @@ status run_figure_init(run_figure *r, const char *title, const trace_panel *pane
     assert(r != NULL && runs != NULL && run_count >= 1 && o != NULL);
     trace_run all[TRACE_RUNS];
     memset(r, 0, sizeof *r);
-    r->title = g_strdup(title);
     status code = choose_panels(r, panels, panel_count, o, f);
     if (code == STATUS_OK && run_count + (o->overlay != NULL) > TRACE_RUNS) {
         code = fault_set(f, STATUS_BAD_ARGUMENT, "a figure shows at most %d runs and data",
@@ -192,14 +190,13 @@ status run_figure_init(run_figure *r, const char *title, const trace_panel *pane
             (trace_run){runs[0].scenario, &r->overlay, r->overlay_name, .points = true};
     }
     if (code == STATUS_OK) {
-        code =
-            trace_figure_init(&r->traces, r->title, r->panels, r->panel_count, all, run_count, f);
+        code = trace_figure_init(&r->traces, title, r->panels, r->panel_count, all, run_count, f);
     }
     if (code != STATUS_OK) {
         run_figure_finish(r);
         return code;
     }
-    figure_take_look(&r->traces.figure, &o->look);
-    figure_take_range(&r->traces.figure, o);
+    figure_take_look(&r->traces.plot.figure, &o->look);
+    figure_take_range(&r->traces.plot.figure, o);
     return STATUS_OK;
 }

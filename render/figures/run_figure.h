@@ -36,7 +36,6 @@ typedef struct run_figure {
     trace_figure traces;
     run_result overlay; // its trace alone
     char *overlay_name;
-    char *title; // NULL: the scenario's
     trace_panel panels[FIGURE_PANELS];
     int panel_count;
     char **names; // of the requested signals

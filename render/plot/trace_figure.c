@@ -55,7 +55,7 @@ static line_style free_line(const trace_figure *t, const trace_panel *panels, in
                                                     LINE_DOTTED};
     bool taken[TRACE_SIGNALS] = {false};
 
-    for (int p = 0; p < t->figure.panel_count; p++) {
+    for (int p = 0; p < t->plot.figure.panel_count; p++) {
         bool here = false;
         for (int i = 0; i < TRACE_SIGNALS && panels[p].signals[i] != NULL; i++) {
             here = here || meaning_of(signal_index(panels[p].signals[i])) == meaning;
@@ -79,7 +79,7 @@ static line_style free_line(const trace_figure *t, const trace_panel *panels, in
 
 static void add_entry(trace_figure *t, figure_series entry, int meaning, char *label)
 {
-    entry.name = entry.label = trace_keep(t->owned, label);
+    entry.name = entry.label = owned_figure_keep(&t->plot, label);
     t->key_signals[t->key.series_count] = meaning;
     t->key_series[t->key.series_count++] = entry;
 }
@@ -134,11 +134,11 @@ static void make_key(trace_figure *t, const trace_panel *panels, const trace_run
         return;
     }
     t->key.series = t->key_series;
-    t->figure.key = &t->key;
-    t->figure.common_legend = true;
+    t->plot.figure.key = &t->key;
+    t->plot.figure.common_legend = true;
 
     // signals, and data
-    for (int p = 0; p < t->figure.panel_count; p++) {
+    for (int p = 0; p < t->plot.figure.panel_count; p++) {
         add_signals(t, panels, p, runs, run_count);
     }
     for (int run = 0; run < run_count; run++) {
@@ -160,9 +160,9 @@ static void make_key(trace_figure *t, const trace_panel *panels, const trace_run
 
 // The series of one run.
 static void add_series(trace_figure *t, int panel_index, const trace_panel *from,
-                       const trace_run *runs, int run, int run_count, GPtrArray *texts)
+                       const trace_run *runs, int run, int run_count)
 {
-    figure_panel *panel = &t->panels[panel_index];
+    figure_panel *panel = &t->plot.panels[panel_index];
     const scenario *s = runs[run].scenario;
     bool alone = from->signals[1] == NULL, points = run > 0 && runs[run].points, named = false;
 
@@ -176,11 +176,11 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         }
 
         // as the signal table has it
-        figure_series *out = &t->series[panel_index][panel->series_count++];
-        *out = trace_series(&runs[run], index, texts);
+        figure_series *out = &t->plot.series[panel_index][panel->series_count++];
+        *out = trace_series(&runs[run], index, &t->plot);
         for (int k = 0; k + 1 < panel->series_count && run == 0; k++) {
             // two readings of one quantity: the second in grey
-            out->colour = t->series[panel_index][k].colour == out->colour ? 7 : out->colour;
+            out->colour = t->plot.series[panel_index][k].colour == out->colour ? 7 : out->colour;
         }
 
         // the second run stands back
@@ -190,7 +190,8 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->radius = STEP_RADIUS;
         }
         if (run > 0) {
-            out->name = trace_keep(texts, g_strconcat(out->name, " ", runs[run].name, NULL));
+            out->name =
+                owned_figure_keep(&t->plot, g_strconcat(out->name, " ", runs[run].name, NULL));
             out->colour = alone ? 6 : runs[run].brief ? 7 : out->colour;
         }
 
@@ -209,19 +210,19 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->secondary = false;
             out->marker = MARKER_CIRCLE;
             out->colour = 6;
-            out->label = named ? NULL : trace_keep(texts, text_escape(runs[run].name));
+            out->label = named ? NULL : owned_figure_keep(&t->plot, text_escape(runs[run].name));
             named = true;
         } else if (alone && run_count > 1 && panel_index == 0) {
             // the first panel's legend holds for all
-            out->label = trace_keep(texts, text_escape(runs[run].name));
+            out->label = owned_figure_keep(&t->plot, text_escape(runs[run].name));
         } else if (!alone && run == 0) {
-            out->label = trace_keep(texts, trace_series_label(s, index, true));
-            out->symbol = trace_keep(texts, trace_series_symbol(s, index));
+            out->label = owned_figure_keep(&t->plot, trace_series_label(s, index, true));
+            out->symbol = owned_figure_keep(&t->plot, trace_series_symbol(s, index));
         } else if (!alone && !named) {
             // the first of its signals speaks for the other run
             g_autofree char *symbol = trace_series_symbol(s, index),
                             *run_name = text_escape(runs[run].name);
-            out->label = trace_keep(texts, text_printf("%s  %s", symbol, run_name));
+            out->label = owned_figure_printf(&t->plot, "%s  %s", symbol, run_name);
             named = true;
         }
     }
@@ -238,33 +239,33 @@ static void set_zoom(figure_panel *panel, const trace_run *run)
 }
 
 static void describe_panel(trace_figure *t, int index, const trace_panel *from,
-                           const trace_run *runs, int run_count, GPtrArray *texts)
+                           const trace_run *runs, int run_count)
 {
-    figure_panel *panel = &t->panels[index];
+    figure_panel *panel = &t->plot.panels[index];
     const signal_info *first = &signal_table[signal_index(from->signals[0])];
     const wall_parameters *wall = &runs[0].scenario->parameters.wall;
 
     // the axis
     panel->y.name = first->name;
     panel->y.unit = first->unit;
-    panel->y.label =
-        from->label ? from->label : trace_keep(texts, trace_axis_label(runs[0].scenario, first));
+    panel->y.label = from->label
+                         ? from->label
+                         : owned_figure_keep(&t->plot, trace_axis_label(runs[0].scenario, first));
     if (from->signals[1] == NULL) {
         panel->y.symbol =
-            trace_keep(texts, trace_symbol(runs[0].scenario, signal_index(first->name)));
+            owned_figure_keep(&t->plot, trace_symbol(runs[0].scenario, signal_index(first->name)));
     }
     panel->weight = from->weight;
     panel->y.with_zero = from->with_zero;
-    panel->series = t->series[index];
 
     // curves of all runs
     for (int run = 0; run < run_count; run++) {
-        add_series(t, index, from, runs, run, run_count, texts);
+        add_series(t, index, from, runs, run, run_count);
     }
 
     // what is drawn with them
     if (from->impulses) {
-        panel->impulses = trace_impulses(&runs[0].result->trace, &panel->impulse_count, texts);
+        panel->impulses = trace_impulses(&runs[0].result->trace, &panel->impulse_count, &t->plot);
         panel->impulse_label = "Impulse";
         panel->impulse_unit = signal_table[SIGNAL_INDEX(impulse)].unit;
     }
@@ -280,12 +281,12 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
 
 // A panel of what was measured less what was computed, for the first signal that has data.
 static void add_residuals(trace_figure *t, const trace_panel *panels, const trace_run *computed,
-                          const trace_run *measured, GPtrArray *owned)
+                          const trace_run *measured)
 {
     const trace *data = &measured->result->trace;
 
     // the first panel with a measured signal
-    int last = t->figure.panel_count, panel = 0;
+    int last = t->plot.figure.panel_count, panel = 0;
     while (panel < last && !trace_has(data, signal_index(panels[panel].signals[0]))) {
         panel++;
     }
@@ -294,21 +295,19 @@ static void add_residuals(trace_figure *t, const trace_panel *panels, const trac
     }
 
     int index = signal_index(panels[panel].signals[0]);
-    t->residual = trace_difference(data, &computed->result->trace, index, owned);
-    t->residual.name = "residual";
-    t->residual.colour = 6;
-    t->residual.marker = MARKER_CIRCLE;
-    t->residual.no_line = true;
-
-    t->panels[last] = (figure_panel){.y = {.name = "residual",
-                                           .label = "Residual",
-                                           .symbol = "Δ",
-                                           .unit = signal_table[index].unit,
-                                           .with_zero = true},
-                                     .series = &t->residual,
-                                     .series_count = 1,
-                                     .weight = 0.6};
-    t->figure.panel_count++;
+    figure_series *s = &t->plot.series[last][0];
+    *s = trace_difference(data, &computed->result->trace, index, &t->plot);
+    s->name = "residual";
+    s->colour = 6;
+    s->marker = MARKER_CIRCLE;
+    s->no_line = true;
+    t->plot.panels[last] =
+        (figure_panel){.y = {"residual", "Residual", .symbol = "Δ",
+                             .unit = signal_table[index].unit, .with_zero = true},
+                       .series = s,
+                       .series_count = 1,
+                       .weight = 0.6};
+    t->plot.figure.panel_count++;
 }
 
 static status check_panels(const trace_panel *panels, int count, int run_count, fault *f)
@@ -344,55 +343,46 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     }
 
     // what is shaded
-    const trace *rows = &runs[0].result->trace;
     bool modes = false;
     for (int i = 0; i < panel_count; i++) {
         modes = modes || panels[i].modes;
     }
-    bool (*shaded)(const sample *row) = modes ? trace_in_second_mode : trace_in_contact;
     const char *mode = modes ? trace_mode_name(runs[0].scenario, 1) : NULL;
 
-    // the page
-    GPtrArray *texts = t->owned = g_ptr_array_new_with_free_func(g_free);
-    figure *fig = &t->figure;
-    fig->title = title ? title : trace_keep(texts, scenario_title(runs[0].scenario));
-
-    char *shading =
+    g_autofree char *shading =
         mode != NULL ? text_printf("%s mode", mode) : g_strdup(modes ? "second mode" : "contact");
-    fig->caption = trace_keep(texts, trace_caption(runs, run_count, shading));
-    g_free(shading);
-    fig->x.name = "time";
-    fig->x.label = "Time <i>t</i>";
-    fig->x.unit = "s";
-    fig->panels = t->panels;
-    fig->panel_count = panel_count;
+
+    // the page
+    g_autofree char *own_title = title == NULL ? scenario_title(runs[0].scenario) : NULL;
+    owned_figure_init(&t->plot, title != NULL ? title : own_title, panel_count);
+    figure *fig = &t->plot.figure;
+    fig->caption = owned_figure_keep(&t->plot, trace_caption(runs, run_count, shading));
+    fig->x = (figure_axis){"time", "Time <i>t</i>", .unit = "s"};
+    fig->parameters = owned_figure_keep(&t->plot, parameters_line(runs[0].scenario));
 
     // panels with their curves; side by side, runs are told by colours and signals by lines
     make_key(t, panels, runs, run_count);
     for (int i = 0; i < panel_count; i++) {
-        describe_panel(t, i, &panels[i], runs, run_count, texts);
+        describe_panel(t, i, &panels[i], runs, run_count);
     }
 
     for (int run = 1; run < run_count; run++) {
         if (runs[run].points) {
-            add_residuals(t, panels, &runs[0], &runs[run], texts);
+            add_residuals(t, panels, &runs[0], &runs[run]);
         }
     }
 
     // marks and shading
-    trace_mark_events(t, &runs[0], texts);
+    trace_mark_events(t, &runs[0]);
     fig->marks = t->marks;
-    fig->intervals = trace_intervals(rows, shaded, &fig->interval_count, texts);
-
-    fig->software = picture_software();
-    fig->parameters = trace_keep(texts, parameters_line(runs[0].scenario));
+    (modes ? trace_shade_second_mode : trace_shade_contact)(&t->plot, &runs[0].result->trace);
     return STATUS_OK;
 }
 
 void trace_figure_finish(trace_figure *t)
 {
-    if (t->owned != NULL) {
-        g_ptr_array_free(t->owned, TRUE);
+    if (t->plot.kept != NULL) {
+        owned_figure_finish(&t->plot);
     }
     memset(t, 0, sizeof *t);
 }
@@ -407,15 +397,15 @@ const trace_panel usual_panels[USUAL_PANELS] = {
 // Puts notes behind a figure's marks.
 static void add_notes(trace_figure *t, const figure_mark *notes, int count)
 {
-    figure *fig = &t->figure;
+    figure *fig = &t->plot.figure;
     figure_mark *all = g_new0(figure_mark, (gsize)(fig->mark_count + count) + 1);
     memcpy(all, fig->marks, (size_t)fig->mark_count * sizeof *all);
     for (int i = 0; i < count; i++) {
         figure_mark *m = &all[fig->mark_count++];
         *m = (figure_mark){.x = notes[i].x};
-        m->label = trace_keep(t->owned, g_markup_escape_text(notes[i].label, -1));
+        m->label = owned_figure_keep(&t->plot, g_markup_escape_text(notes[i].label, -1));
     }
-    fig->marks = trace_keep(t->owned, all);
+    fig->marks = owned_figure_keep(&t->plot, all);
 }
 
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
@@ -430,7 +420,7 @@ status plot_run(const scenario *s, const run_result *result, const run_result *o
         if (note_count > 0) {
             add_notes(&t, notes, note_count);
         }
-        code = figure_write(&t.figure, path, f);
+        code = figure_write(&t.plot.figure, path, f);
         trace_figure_finish(&t);
     }
     return code;

@@ -3,9 +3,6 @@
 
 #include "render/plot/trace_plot.h"
 
-// Adds a block, mostly a text, to those that are freed with the figure.
-void *trace_keep(GPtrArray *owned, void *block);
-
 // --- labels: trace_labels.c. Free the texts with g_free.
 
 // Whether the run was on the rig, with a controller.
@@ -33,15 +30,10 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 // --- what happened: trace_series.c
 
 // Marks contact, peak, release and changes by the script; on the rig changes of mode.
-void trace_mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts);
+void trace_mark_events(trace_figure *t, const trace_run *run);
 
-bool trace_in_contact(const sample *row);
-bool trace_in_second_mode(const sample *row);
+// Shades where the controller was in its second mode.
+void trace_shade_second_mode(owned_figure *o, const trace *rows);
 
-// Intervals from each first row with the property to the next one without it. The array is added
-// to `owned`.
-figure_interval *trace_intervals(const trace *rows, bool (*is_so)(const sample *row), int *count,
-                                 GPtrArray *owned);
-
-// The impulses of all impacts. The array is added to `owned`.
-figure_impulse *trace_impulses(const trace *rows, int *count, GPtrArray *owned);
+// The impulses of all impacts, kept by the figure.
+figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o);

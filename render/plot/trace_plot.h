@@ -37,15 +37,11 @@ enum { TRACE_KEY = TRACE_RUNS + FIGURE_PANELS * TRACE_SIGNALS };
 
 // A figure with everything it borrows, except for the runs.
 typedef struct trace_figure {
-    figure figure;
-    figure_panel panels[FIGURE_PANELS];
-    figure_series series[FIGURE_PANELS][TRACE_SIGNALS * TRACE_RUNS];
-    figure_series residual; // in an additional last panel, if there are reference data
-    figure_panel key;       // of runs side by side: their colours, then lines, then data
+    owned_figure plot; // with an additional last panel of residuals, if there are reference data
+    figure_panel key;  // of runs side by side: their colours, then lines, then data
     figure_series key_series[TRACE_KEY];
     int key_signals[TRACE_KEY]; // what the entry is a line of, see trace_figure.c; 0: no signal
     figure_level wall;
-    GPtrArray *owned; // blocks
     figure_mark marks[TRACE_MARKS];
 } trace_figure;
 
@@ -58,16 +54,15 @@ char *parameters_line(const scenario *s);
 // A signal's symbol as markup, with the index of its body in the scenario. To be freed with g_free.
 char *trace_symbol(const scenario *s, int index);
 
-// A signal of a run over time; for the force the peaks are added to the rows. Storage made for it
-// is added to `owned`.
-figure_series trace_series(const trace_run *run, int index, GPtrArray *owned);
+// A signal of a run over time; for the force the peaks are added to the rows. Storage made for it,
+// and for the following, is kept by the figure.
+figure_series trace_series(const trace_run *run, int index, owned_figure *o);
 
 // A signal at the instants of one run less that of another, interpolated linearly between its rows.
-// The numbers are added to `owned`.
-figure_series trace_difference(const trace *of, const trace *less, int index, GPtrArray *owned);
+figure_series trace_difference(const trace *of, const trace *less, int index, owned_figure *o);
 
-// The intervals of contact; the array is added to `owned`.
-figure_interval *trace_contact(const trace *rows, int *count, GPtrArray *owned);
+// Makes the intervals of contact those that the figure shades.
+void trace_shade_contact(owned_figure *o, const trace *rows);
 
 // Describes the panels (at most FIGURE_PANELS) of the runs (at most TRACE_RUNS). `title` is plain,
 // NULL for the first scenario's. The runs must outlive the figure. STATUS_BAD_ARGUMENT for an

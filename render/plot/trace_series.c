@@ -10,15 +10,9 @@
 
 // ==== what happened
 
-void *trace_keep(GPtrArray *owned, void *block)
-{
-    g_ptr_array_add(owned, block);
-    return block;
-}
-
 static void add_mark(trace_figure *t, double time, const char *label)
 {
-    t->marks[t->figure.mark_count++] = (figure_mark){.x = time, .label = label};
+    t->marks[t->plot.figure.mark_count++] = (figure_mark){.x = time, .label = label};
 }
 
 // What the script did at an event, "voltage 2 V"; NULL if the event is no action.
@@ -51,7 +45,7 @@ static char *mode_label(const char *name, double mode)
 }
 
 // Where the controller went into another mode, with the mode's name. False if it never did.
-static bool mark_modes(trace_figure *t, const trace_run *run, GPtrArray *texts)
+static bool mark_modes(trace_figure *t, const trace_run *run)
 {
     const trace *rows = &run->result->trace;
     bool marked = false;
@@ -60,10 +54,11 @@ static bool mark_modes(trace_figure *t, const trace_run *run, GPtrArray *texts)
     // wherever the mode is another than in the last row that had one
     for (size_t i = 0; i < rows->row_count; i++) {
         double now = rows->rows[i].controller_mode;
-        if (isfinite(now) && isfinite(mode) && now != mode && t->figure.mark_count < TRACE_MARKS) {
+        if (isfinite(now) && isfinite(mode) && now != mode &&
+            t->plot.figure.mark_count < TRACE_MARKS) {
             const char *name = trace_mode_name(run->scenario, (int)now);
-            add_mark(t, rows->rows[i].time, trace_keep(texts, mode_label(name, now)));
-            t->marks[t->figure.mark_count - 1].onwards = true;
+            add_mark(t, rows->rows[i].time, owned_figure_keep(&t->plot, mode_label(name, now)));
+            t->marks[t->plot.figure.mark_count - 1].onwards = true;
             marked = true;
         }
         mode = isfinite(now) ? now : mode;
@@ -78,12 +73,12 @@ static char *peak_label(double force)
     return label;
 }
 
-void trace_mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts)
+void trace_mark_events(trace_figure *t, const trace_run *run)
 {
     const summary *m = &run->result->summary;
 
     // modes of a controller say more than contacts
-    if (trace_on_the_rig(run->scenario) && mark_modes(t, run, texts)) {
+    if (trace_on_the_rig(run->scenario) && mark_modes(t, run)) {
         return;
     }
 
@@ -94,10 +89,10 @@ void trace_mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts)
     }
     if (isfinite(m->first_pulse_time_to_peak_s)) {
         add_mark(t, m->first_contact_s + m->first_pulse_time_to_peak_s,
-                 trace_keep(texts, peak_label(m->first_pulse_peak_N)));
+                 owned_figure_keep(&t->plot, peak_label(m->first_pulse_peak_N)));
         // at its point where the first panel shows forces
-        figure_mark *peak = &t->marks[t->figure.mark_count - 1];
-        peak->pointed = strcmp(t->panels[0].y.name, "force") == 0;
+        figure_mark *peak = &t->marks[t->plot.figure.mark_count - 1];
+        peak->pointed = strcmp(t->plot.panels[0].y.name, "force") == 0;
         peak->y = m->first_pulse_peak_N;
     }
     if (isfinite(m->first_pulse_s)) {
@@ -105,47 +100,55 @@ void trace_mark_events(trace_figure *t, const trace_run *run, GPtrArray *texts)
     }
 
     // what the script did
-    for (size_t i = 0; i < rows->event_count && t->figure.mark_count < TRACE_MARKS; i++) {
+    for (size_t i = 0; i < rows->event_count && t->plot.figure.mark_count < TRACE_MARKS; i++) {
         char *label = action_label(run->scenario, &rows->events[i]);
         if (label != NULL) {
-            add_mark(t, rows->events[i].time, trace_keep(texts, label));
+            add_mark(t, rows->events[i].time, owned_figure_keep(&t->plot, label));
         }
     }
 }
 
-bool trace_in_contact(const sample *row)
+static bool in_contact(const sample *row)
 {
     return row->contact > 0.5;
 }
 
-bool trace_in_second_mode(const sample *row)
+static bool in_second_mode(const sample *row)
 {
     return row->controller_mode == 1;
 }
 
-figure_interval *trace_intervals(const trace *rows, bool (*is_so)(const sample *row), int *count,
-                                 GPtrArray *owned)
+// Shades from each first row with the property to the next one without it.
+static void shade(owned_figure *o, const trace *rows, bool (*is_so)(const sample *row))
 {
     GArray *found = g_array_new(FALSE, FALSE, sizeof(figure_interval));
-    bool touching = false;
-
-    // opened by a row that is so, closed by the first that is not
+    bool open = false;
     for (size_t i = 0; i < rows->row_count; i++) {
         const double time = rows->rows[i].time;
         bool now = is_so(&rows->rows[i]);
-        if (now && !touching) {
+        if (now && !open) {
             const figure_interval begun = {time, time};
             g_array_append_val(found, begun);
-        } else if (touching) {
+        } else if (open) {
             g_array_index(found, figure_interval, found->len - 1).to = time;
         }
-        touching = now;
+        open = now;
     }
-    *count = (int)found->len;
-    return trace_keep(owned, g_array_free(found, FALSE));
+    o->figure.interval_count = (int)found->len;
+    o->figure.intervals = owned_figure_keep(o, g_array_free(found, FALSE));
 }
 
-figure_impulse *trace_impulses(const trace *rows, int *count, GPtrArray *owned)
+void trace_shade_contact(owned_figure *o, const trace *rows)
+{
+    shade(o, rows, in_contact);
+}
+
+void trace_shade_second_mode(owned_figure *o, const trace *rows)
+{
+    shade(o, rows, in_second_mode);
+}
+
+figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o)
 {
     GArray *found = g_array_new(FALSE, FALSE, sizeof(figure_impulse));
     for (size_t i = 0; i < rows->event_count; i++) {
@@ -155,7 +158,7 @@ figure_impulse *trace_impulses(const trace *rows, int *count, GPtrArray *owned)
         }
     }
     *count = (int)found->len;
-    return trace_keep(owned, g_array_free(found, FALSE));
+    return owned_figure_keep(o, g_array_free(found, FALSE));
 }
 
 // ==== series
@@ -204,12 +207,12 @@ static int located_peaks(const summary *m, located_point peaks[2])
 }
 
 // The force with its peaks among the rows, so that no mark stands above the curve.
-static void add_peaks(figure_series *s, const summary *m, GPtrArray *owned)
+static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
 {
     located_point peaks[2];
     int count = located_peaks(m, peaks), next = 0;
-    double *x = trace_keep(owned, g_new(double, s->count + 2));
-    double *y = trace_keep(owned, g_new(double, s->count + 2));
+    double *x = owned_figure_keep(o, g_new(double, s->count + 2));
+    double *y = owned_figure_keep(o, g_new(double, s->count + 2));
 
     // a peak goes between the rows that it lies between
     size_t out = 0;
@@ -232,18 +235,13 @@ static void add_peaks(figure_series *s, const summary *m, GPtrArray *owned)
     s->stride = 0;
 }
 
-figure_series trace_series(const trace_run *run, int index, GPtrArray *owned)
+figure_series trace_series(const trace_run *run, int index, owned_figure *o)
 {
     figure_series s = series_of(run, index);
     if (index == SIGNAL_INDEX(force) && !run->points && s.count > 0) {
-        add_peaks(&s, &run->result->summary, owned);
+        add_peaks(&s, &run->result->summary, o);
     }
     return s;
-}
-
-figure_interval *trace_contact(const trace *rows, int *count, GPtrArray *owned)
-{
-    return trace_intervals(rows, trace_in_contact, count, owned);
 }
 
 // The value of a signal at an instant of a run, interpolated linearly between rows; NaN outside the
@@ -275,10 +273,10 @@ static double value_at(const trace *t, int index, double time)
     return here + share * (signal_value(&t->rows[high], index) - here);
 }
 
-figure_series trace_difference(const trace *of, const trace *less, int index, GPtrArray *owned)
+figure_series trace_difference(const trace *of, const trace *less, int index, owned_figure *o)
 {
-    double *x = trace_keep(owned, g_new(double, of->row_count + 1));
-    double *y = trace_keep(owned, g_new(double, of->row_count + 1));
+    double *x = owned_figure_keep(o, g_new(double, of->row_count + 1));
+    double *y = owned_figure_keep(o, g_new(double, of->row_count + 1));
     for (size_t i = 0; i < of->row_count; i++) {
         x[i] = of->rows[i].time;
         y[i] = signal_value(&of->rows[i], index) - value_at(less, index, x[i]);

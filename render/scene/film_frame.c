@@ -213,19 +213,19 @@ static status paint_traces(film_plan *plan, fault *f)
     plan->trace_scale = TRACE_LETTERS * film_scale(plan);
 
     // the views have the titles
-    t.figure.title = t.figure.caption = NULL;
-    t.figure.theme = plan->options.view.theme;
-    t.figure.x.low = plan->clock.start;
-    t.figure.x.high = plan->clock.end;
-    t.figure.width = strip->width / plan->trace_scale * 25.4 / 72;
-    t.figure.height = strip->height / plan->trace_scale * 25.4 / 72;
+    t.plot.figure.title = t.plot.figure.caption = NULL;
+    t.plot.figure.theme = plan->options.view.theme;
+    t.plot.figure.x.low = plan->clock.start;
+    t.plot.figure.x.high = plan->clock.end;
+    t.plot.figure.width = strip->width / plan->trace_scale * 25.4 / 72;
+    t.plot.figure.height = strip->height / plan->trace_scale * 25.4 / 72;
 
     plan->traces = cairo_image_surface_create(CAIRO_FORMAT_RGB24, strip->width, strip->height);
     cairo_t *cr = cairo_create(plan->traces);
     set_colour(cr, page_of(plan));
     cairo_paint(cr);
     cairo_scale(cr, plan->trace_scale, plan->trace_scale);
-    code = picture_end_drawing(cr, figure_paint(cr, &t.figure, plan->report, f), f);
+    code = picture_end_drawing(cr, figure_paint(cr, &t.plot.figure, plan->report, f), f);
     trace_figure_finish(&t);
     return code;
 }

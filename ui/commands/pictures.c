@@ -108,7 +108,7 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs, i
         return complain_fault(&f);
     }
 
-    artwork drawn = artwork_of_figure(&r.traces.figure, NULL, NULL);
+    artwork drawn = artwork_of_figure(&r.traces.plot.figure, NULL, NULL);
     if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
         code = complain_fault(&f);
     }
