@@ -109,10 +109,10 @@ static void add_tenths(GString *out, long tenths)
     long size = labs(tenths);
     g_string_append(out, tenths < 0 ? "-" : g_ascii_isalpha(out->str[out->len - 1]) ? "" : " ");
     if (size >= 10 || size == 0) {
-        g_string_append_printf(out, "%ld", size / 10);
+        text_append(out, "%ld", size / 10);
     }
     if (size % 10 != 0) {
-        g_string_append_printf(out, ".%ld", size % 10);
+        text_append(out, ".%ld", size % 10);
     }
 }
 
@@ -170,8 +170,7 @@ static gboolean shorten(const GMatchInfo *match, GString *out, gpointer context)
         g_string_append_c(out, '#');
         for (int i = 1; i <= 3; i++) {
             g_autofree char *share = g_match_info_fetch(match, i);
-            g_string_append_printf(out, "%02x",
-                                   (unsigned)(2.55 * decimal_parse(share, NULL) + 0.5));
+            text_append(out, "%02x", (unsigned)(2.55 * decimal_parse(share, NULL) + 0.5));
         }
         return FALSE;
     }

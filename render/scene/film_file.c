@@ -1,68 +1,108 @@
 #include "render/scene/film_file.h"
 
 #include <assert.h>
-#include <dirent.h>
 #include <errno.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdlib.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <stdio.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
 
+#include "render/page/text.h"
 #include "src/base/whole_file.h"
 
-enum { FRAME_DPI = 144 };
+extern char **environ;
+
+enum {
+    FRAME_DPI = 144,
+    FILM_MARKS = 2, // most marks of a kind of film
+    PATIENCE = 200  // longest until a request to stop is seen [ms]
+};
+
+// A kind of film.
+typedef struct film_format {
+    const char *ending; // of its files' names
+    const char *codec;  // ffmpeg's arguments for it
+    bool palette;       // the first frame defines the colours of all others and is not shown
+    // bytes of a complete file at these offsets from its beginning or (negative) from its end
+    struct {
+        long offset;
+        const char *bytes; // NULL: end of the list
+    } marks[FILM_MARKS];
+} film_format;
+
+// Fixed numbers of threads and bitexact keep the bytes alike. Marks: ISO/IEC 14496-12, an ftyp box
+// first; RFC 8794, the EBML mark; GIF89a, a trailer last; RFC 9649, WEBP in a RIFF file.
+static const film_format formats[] = {
+    {.ending = ".mp4",
+     .codec = "-vf scale=out_color_matrix=bt709 -c:v libx264 -preset fast -crf 18 -threads 2 "
+              "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc bt709 "
+              "-movflags +faststart -f mp4",
+     .marks = {{4, "ftyp"}}},
+    {.ending = ".webm",
+     .codec = "-vf scale=out_color_matrix=bt709 -c:v libvpx-vp9 -b:v 0 -crf 24 -deadline "
+              "realtime -cpu-used 7 -row-mt 1 -threads 2 -pix_fmt yuv420p -colorspace bt709 "
+              "-color_primaries bt709 -color_trc bt709 -f webm",
+     .marks = {{0, "\x1a\x45\xdf\xa3"}}},
+    // the first frame only gives the palette: no later one has to wait for the film's end
+    {.ending = ".gif",
+     .codec = "-filter_complex split[a][b];"
+              "[a]trim=end_frame=1,palettegen[p];[b]trim=start_frame=1,"
+              "setpts=PTS-STARTPTS[c];[c][p]paletteuse=dither=none:diff_mode=rectangle "
+              "-loop 0 -f gif",
+     .palette = true,
+     .marks = {{0, "GIF8"}, {-1, ";"}}},
+    {.ending = ".webp",
+     .codec = "-c:v libwebp_anim -lossless 0 -q:v 82 -compression_level 4 -loop 0 -f webp",
+     .marks = {{0, "RIFF"}, {8, "WEBP"}}},
+};
 
 struct film_file {
     const film_format *format; // NULL: frames in a folder
     film_facts facts;
     char *path;
-    int frames;           // written so far
-    whole_file file;      // of a film
-    film_encoder encoder; // of a film
+    int frames;      // written so far
+    whole_file file; // of a film
+    pid_t encoder;   // 0: not running
+    int pipe;        // to it; -1 if closed
+    FILE *words;     // its messages
 };
 
 // ---- checks
 
-// A name without an ending means a folder, as does one that is there.
-static bool means_folder(const char *path)
+// The format that a path's ending names, or NULL.
+static const film_format *format_of(const char *path)
 {
-    struct stat found;
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    bool folder = stat(path, &found) == 0 && S_ISDIR(found.st_mode);
-    return folder || dot == NULL || dot[1] == '\0' || dot[1] == '/';
-}
-
-static bool is_empty_folder(const char *path)
-{
-    DIR *folder = opendir(path);
-    int entries = 0;
-    while (folder != NULL && readdir(folder) != NULL) {
-        entries++;
+    for (size_t i = 0; dot != NULL && i < G_N_ELEMENTS(formats); i++) {
+        if (strcasecmp(dot, formats[i].ending) == 0) {
+            return &formats[i];
+        }
     }
-    if (folder != NULL) {
-        closedir(folder);
-    }
-    return folder != NULL && entries <= 2;
+    return NULL;
 }
 
 static status check_folder(const char *path, fault *f)
 {
-    struct stat found;
-    if (stat(path, &found) != 0) {
+    if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
         // made later; its own folder must take it
         return whole_file_check(path, f);
     }
-
-    // a folder, and an empty one
-    if (!S_ISDIR(found.st_mode)) {
+    if (!g_file_test(path, G_FILE_TEST_IS_DIR)) {
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "%s is a file: expected the name of a folder, or one that ends in .mp4, "
                          ".webm, .gif or .webp",
                          path);
     }
     whole_file_clean_folder(path);
-    if (!is_empty_folder(path)) {
+    g_autoptr(GDir) folder = g_dir_open(path, 0, NULL);
+    if (folder == NULL || g_dir_read_name(folder) != NULL) {
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "the folder %s is not empty: frames of two films would mix, empty it or "
                          "name another",
@@ -74,20 +114,22 @@ static status check_folder(const char *path, fault *f)
 status film_file_check(const char *path, fault *f)
 {
     assert(path != NULL);
-    bool folder = film_format_of(path) == NULL && means_folder(path);
+    const bool film = format_of(path) != NULL;
 
-    if ((film_format_of(path) == NULL && !folder) || strcmp(path, "-") == 0) {
+    // a name without an ending means a folder, as does one that is there
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    bool folder = !film && (dot == NULL || dot[1] == '\0' || g_file_test(path, G_FILE_TEST_IS_DIR));
+    if ((!film && !folder) || strcmp(path, "-") == 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
                          "'%s' is no name for a film: expected one that ends in .mp4, .webm, "
                          ".gif or .webp, or a folder for PNG frames",
                          path);
     }
-
     if (folder) {
         return check_folder(path, f);
     }
-
-    if (!film_encoder_is_there()) {
+    g_autofree char *program = g_find_program_in_path("ffmpeg");
+    if (program == NULL) {
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "%s needs the program ffmpeg, which is not installed: install the package "
                          "ffmpeg, or give a folder to get PNG frames",
@@ -96,10 +138,182 @@ status film_file_check(const char *path, fault *f)
     return whole_file_check(path, f);
 }
 
+// ---- the encoder
+
+// Words separated by blanks.
+static void add_words(GPtrArray *list, const char *words)
+{
+    char **each = g_strsplit(words, " ", -1);
+    for (int i = 0; each[i] != NULL; i++) {
+        g_ptr_array_add(list, each[i]);
+    }
+    g_free(each);
+}
+
+// The containers know few keys; a comment takes the parameters.
+static const char *key_of(const char *keyword)
+{
+    return strcmp(keyword, "Title") == 0        ? "title"
+           : strcmp(keyword, "Parameters") == 0 ? "comment"
+           : strcmp(keyword, "Software") == 0   ? "artist"
+                                                : "description";
+}
+
+// To be freed with g_strfreev.
+static char **list_arguments(const film_file *film, const char *target)
+{
+    const film_facts *facts = &film->facts;
+    GPtrArray *list = g_ptr_array_new();
+
+    // raw frames from the pipe
+    add_words(list, "ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo -pix_fmt bgr0 -s");
+    g_ptr_array_add(list, text_printf("%dx%d", facts->width, facts->height));
+    g_ptr_array_add(list, g_strdup("-r"));
+    g_ptr_array_add(list, text_printf("%d", facts->frames_per_second));
+
+    add_words(list, "-i pipe:0 -an");
+    add_words(list, film->format->codec);
+    add_words(list, "-fflags +bitexact -flags:v +bitexact");
+    for (int i = 0; i < facts->note_count; i++) {
+        const png_note *note = &facts->notes[i];
+        if (note->text != NULL) {
+            g_ptr_array_add(list, g_strdup("-metadata"));
+            g_ptr_array_add(list, text_printf("%s=%s", key_of(note->keyword), note->text));
+        }
+    }
+
+    g_ptr_array_add(list, g_strconcat("file:", target, NULL));
+    g_ptr_array_add(list, NULL);
+    return (char **)g_ptr_array_free(list, FALSE);
+}
+
+// Where the film is written before it is whole.
+static const char *target_of(const film_file *film)
+{
+    return film->file.temporary != NULL ? film->file.temporary : film->file.path;
+}
+
+// Starts ffmpeg with its input from `input` and its words going to film->words.
+static status spawn(film_file *film, int input, fault *f)
+{
+    posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
+    sigset_t defaults;
+
+    // frames come in, complaints go to a file of ours
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, input, 0);
+    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, fileno(film->words), 2);
+
+    // a group of its own: an interrupt of the terminal reaches us, and we end it in order
+    posix_spawnattr_init(&attributes);
+    sigemptyset(&defaults);
+    sigaddset(&defaults, SIGPIPE);
+    posix_spawnattr_setsigdefault(&attributes, &defaults);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+
+    g_auto(GStrv) words = list_arguments(film, target_of(film));
+    int failed = posix_spawnp(&film->encoder, words[0], &actions, &attributes, words, environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed != 0) {
+        film->encoder = 0;
+        return fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
+                         strerror(failed));
+    }
+    whole_file_set_writer(film->encoder);
+    return STATUS_OK;
+}
+
+// Starts the encoder: raw frames (0xAARRGGBB without the alpha) become the film.
+static status start_encoder(film_file *film, fault *f)
+{
+    int ends[2];
+    film->words = tmpfile();
+    if (film->words == NULL || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+        return fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
+                         strerror(errno));
+    }
+    status code = spawn(film, ends[0], f);
+    close(ends[0]);
+    film->pipe = ends[1];
+    return code;
+}
+
+static bool is_asked_to_stop(const film_file *film)
+{
+    return film->facts.stop != NULL && *film->facts.stop != 0;
+}
+
+static void close_pipe(film_file *film)
+{
+    if (film->pipe >= 0) {
+        close(film->pipe);
+        film->pipe = -1;
+    }
+}
+
+// Waits for the encoder's end and returns its status. One that hangs is ended when we are asked to
+// stop.
+static int wait_for_encoder(film_file *film)
+{
+    const struct timespec moment = {.tv_nsec = 5000000};
+    int result = -1;
+    while (film->encoder > 0 && waitpid(film->encoder, &result, WNOHANG) == 0) {
+        if (is_asked_to_stop(film)) {
+            kill(film->encoder, SIGKILL);
+        }
+        nanosleep(&moment, NULL);
+    }
+    if (film->encoder > 0) {
+        whole_file_set_writer(0);
+        film->encoder = 0;
+    }
+    return result;
+}
+
+// Ends the frames, waits for the encoder and reads what it complained about first: that is the
+// cause, later complaints follow from it. True if it succeeded without any.
+static bool end_encoder(film_file *film, char *said, size_t size)
+{
+    close_pipe(film);
+    const int result = wait_for_encoder(film);
+    said[0] = '\0';
+    rewind(film->words);
+    while (said[0] == '\0' && fgets(said, (int)size, film->words) != NULL) {
+        said[strcspn(said, "\r\n")] = '\0';
+    }
+    return WIFEXITED(result) && WEXITSTATUS(result) == 0 && said[0] == '\0';
+}
+
+// Sends bytes of a frame. STATUS_CANNOT_WRITE if the program accepts no more, STATUS_STOPPED if
+// stop became true while it accepted nothing; no fault is set.
+static status send_bytes(const film_file *film, const unsigned char *bytes, size_t length)
+{
+    while (length > 0) {
+        // not longer than a moment, in case the encoder hangs
+        struct pollfd ready = {.fd = film->pipe, .events = POLLOUT};
+        poll(&ready, 1, PATIENCE);
+        if (is_asked_to_stop(film)) {
+            return STATUS_STOPPED;
+        }
+
+        // a reader that went away is an error, not a signal
+        ssize_t sent = send(film->pipe, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (sent < 0 && errno != EINTR && errno != EAGAIN) {
+            return STATUS_CANNOT_WRITE;
+        }
+        bytes += sent > 0 ? sent : 0;
+        length -= sent > 0 ? (size_t)sent : 0;
+    }
+    return STATUS_OK;
+}
+
 // Whether the finished file has the marks of its format.
 static bool looks_whole(const film_file *film)
 {
-    FILE *file = fopen(film->file.temporary ? film->file.temporary : film->file.path, "rb");
+    FILE *file = fopen(target_of(film), "rb");
     bool whole = file != NULL;
 
     for (int i = 0; i < FILM_MARKS && whole && film->format->marks[i].bytes != NULL; i++) {
@@ -119,20 +333,46 @@ static bool looks_whole(const film_file *film)
 
 // ---- the film
 
-static status make_folder(const film_file *film, fault *f)
+// Stops the encoder at once, if it is running.
+static void stop_encoder(film_file *film)
 {
+    if (film->encoder > 0) {
+        kill(film->encoder, SIGKILL);
+        wait_for_encoder(film);
+    }
+    close_pipe(film);
+}
+
+static void film_file_free(film_file *film)
+{
+    stop_encoder(film);
+    g_clear_pointer(&film->words, fclose);
+    g_free(film->path);
+    g_free(film);
+}
+
+void film_file_abandon(film_file *film)
+{
+    assert(film != NULL);
+    stop_encoder(film);
+    if (film->format != NULL) {
+        whole_file_abandon(&film->file);
+    }
+    film_file_free(film);
+}
+
+// Opens the folder of frames, or the encoder to what is renamed once it is whole.
+static status open_target(film_file *film, fault *f)
+{
+    if (film->format != NULL) {
+        status code = whole_file_open(&film->file, film->path, f);
+        return code == STATUS_OK ? start_encoder(film, f) : code;
+    }
     if (mkdir(film->path, 0777) != 0 && errno != EEXIST) {
         return fault_set(f, STATUS_CANNOT_WRITE, "the folder %s could not be made: %s", film->path,
                          strerror(errno));
     }
     return STATUS_OK;
-}
-
-static void film_file_free(film_file *film)
-{
-    film_encoder_finish(&film->encoder);
-    free(film->path);
-    free(film);
 }
 
 status film_file_open(film_file **out, const char *path, const film_facts *facts, fault *f)
@@ -143,35 +383,12 @@ status film_file_open(film_file **out, const char *path, const film_facts *facts
     if (code != STATUS_OK) {
         return code;
     }
-
-    film_file *film = calloc(1, sizeof *film);
-    if (film != NULL) {
-        film->path = strdup(path);
-    }
-    if (film == NULL || film->path == NULL) {
-        free(film);
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for a film");
-    }
-
-    // into a folder of frames, or through the encoder
-    film->format = film_format_of(path);
-    film->facts = *facts;
-    film->encoder.pipe = -1;
-    if (film->format == NULL) {
-        code = make_folder(film, f);
-    } else {
-        code = whole_file_open(&film->file, path, f);
-        if (code == STATUS_OK) {
-            // to the temporary, which is renamed once it is whole
-            const char *target = film->file.temporary ? film->file.temporary : film->file.path;
-            code = film_encoder_start(&film->encoder, film->format, facts, target, f);
-            if (code != STATUS_OK) {
-                whole_file_abandon(&film->file);
-            }
-        }
-    }
+    film_file *film = g_new0(film_file, 1);
+    *film =
+        (film_file){.format = format_of(path), .facts = *facts, .path = g_strdup(path), .pipe = -1};
+    code = open_target(film, f);
     if (code != STATUS_OK) {
-        film_file_free(film);
+        film_file_abandon(film);
         return code;
     }
     *out = film;
@@ -180,9 +397,8 @@ status film_file_open(film_file **out, const char *path, const film_facts *facts
 
 static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
 {
-    char path[4096];
     whole_file file;
-    snprintf(path, sizeof path, "%s/frame-%05d.png", film->path, film->frames + 1);
+    g_autofree char *path = text_printf("%s/frame-%05d.png", film->path, film->frames + 1);
     status code = whole_file_open(&file, path, f);
     if (code != STATUS_OK) {
         return code;
@@ -212,25 +428,19 @@ static status complain_encoder(const film_file *film, const char *said, fault *f
 // Row by row, as a surface's rows may be longer than the picture.
 static status send_frame(film_file *film, cairo_surface_t *frame, fault *f)
 {
+    char said[512];
     status code = STATUS_OK;
     cairo_surface_flush(frame);
     const unsigned char *data = cairo_image_surface_get_data(frame);
     ptrdiff_t stride = cairo_image_surface_get_stride(frame);
     for (int row = 0; row < film->facts.height && code == STATUS_OK; row++) {
-        code =
-            film_encoder_send(&film->encoder, data + row * stride, 4 * (size_t)film->facts.width);
+        code = send_bytes(film, data + row * stride, 4 * (size_t)film->facts.width);
     }
-
-    // the fault gets its sentence here, where the film is known
-    if (code == STATUS_STOPPED) {
-        return stopped(film, f);
+    if (code == STATUS_OK || code == STATUS_STOPPED) {
+        return code == STATUS_OK ? code : stopped(film, f);
     }
-    if (code != STATUS_OK) {
-        char said[512];
-        film_encoder_end(&film->encoder, said, sizeof said);
-        return complain_encoder(film, said, f);
-    }
-    return STATUS_OK;
+    end_encoder(film, said, sizeof said);
+    return complain_encoder(film, said, f);
 }
 
 status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
@@ -248,12 +458,11 @@ status film_file_commit(film_file *film, fault *f)
 
     // only an encoder can fail this late, frames are there already
     if (film->format != NULL) {
-        // its words, then its work
         char said[512];
-        bool content = film_encoder_end(&film->encoder, said, sizeof said);
+        bool content = end_encoder(film, said, sizeof said);
 
         // a stop also makes the encoder fail, so it is asked for first
-        if (film->facts.stop != NULL && *film->facts.stop != 0) {
+        if (is_asked_to_stop(film)) {
             code = stopped(film, f);
         } else if (!content) {
             code = complain_encoder(film, said, f);
@@ -268,14 +477,4 @@ status film_file_commit(film_file *film, fault *f)
     // of no more use, whatever came of it
     film_file_free(film);
     return code;
-}
-
-void film_file_abandon(film_file *film)
-{
-    assert(film != NULL);
-    if (film->format != NULL) {
-        film_encoder_finish(&film->encoder);
-        whole_file_abandon(&film->file);
-    }
-    film_file_free(film);
 }
