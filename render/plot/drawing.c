@@ -41,6 +41,11 @@ void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c
     report_add_text(d->report, t.markup, t.size, (figure_rect){x, y, width, height});
 }
 
+void draw_label(drawing *d, const char *markup, double size, double x, double y, anchor at)
+{
+    draw_text(d, figure_text_of(d, markup, size), x, y, at, d->style.colours->text);
+}
+
 void draw_rotated(drawing *d, text_block t, double x, double y, colour c)
 {
     double width, height;
@@ -138,33 +143,18 @@ void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y)
     }
 }
 
-static void draw_minor_ticks(const drawing *d, const plane *p, const axis *x, const axis *y)
+// Ticks of a length at values of both axes.
+static void draw_ticks(const drawing *d, const plane *p, const double *x, int x_count,
+                       const double *y, int y_count, double length)
 {
-    double at[AXIS_MINOR], bottom = p->box.y + p->box.height;
-    int count = axis_minor_ticks(x, p->box.width, at);
-    for (int i = 0; i < count; i++) {
-        double place = plane_x(p, at[i]);
-        draw_line(d->cr, place, bottom, place, bottom + MINOR_LENGTH);
+    double bottom = p->box.y + p->box.height;
+    for (int i = 0; i < x_count; i++) {
+        double at = plane_x(p, x[i]);
+        draw_line(d->cr, at, bottom, at, bottom + length);
     }
-
-    count = axis_minor_ticks(y, p->box.height, at);
-    for (int i = 0; i < count; i++) {
-        double place = plane_y(p, at[i]);
-        draw_line(d->cr, p->box.x, place, p->box.x - MINOR_LENGTH, place);
-    }
-}
-
-static void draw_major_ticks(const drawing *d, const plane *p, const axis *x, const axis *y)
-{
-    const figure_rect *box = &p->box;
-    double bottom = box->y + box->height;
-    for (int i = 0; i < x->count; i++) {
-        double at = plane_x(p, x->at[i]);
-        draw_line(d->cr, at, bottom, at, bottom + TICK_LENGTH);
-    }
-    for (int i = 0; i < y->count; i++) {
-        double at = plane_y(p, y->at[i]);
-        draw_line(d->cr, box->x, at, box->x - TICK_LENGTH, at);
+    for (int i = 0; i < y_count; i++) {
+        double at = plane_y(p, y[i]);
+        draw_line(d->cr, p->box.x, at, p->box.x - length, at);
     }
 }
 
@@ -190,9 +180,7 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
     for (int i = 0; look->x_labels && i < x->count; i++) {
         double at = plane_x(p, x->at[i]), half = width_of(d, x->text[i], look->size) / 2;
         if (x->even.count > 0 || at - half > taken + LABEL_GAP) {
-            draw_text(d, figure_text_of(d, x->text[i], look->size), at,
-                      bottom + TICK_LENGTH + TICK_SPACE - 1, (anchor){0.5, 0},
-                      d->style.colours->text);
+            draw_label(d, x->text[i], look->size, at, bottom + TICK_LENGTH + TICK_SPACE - 1, (anchor){0.5, 0});
             taken = at + half;
         }
     }
@@ -202,9 +190,7 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
     for (int i = 0; look->y_labels && i < y->count; i++) {
         double at = plane_y(p, y->at[i]);
         if (y->even.count > 0 || at < taken - look->size) {
-            draw_text(d, figure_text_of(d, y->text[i], look->size),
-                      p->box.x - TICK_LENGTH - TICK_SPACE, at, (anchor){1, 0.5},
-                      d->style.colours->text);
+            draw_label(d, y->text[i], look->size, p->box.x - TICK_LENGTH - TICK_SPACE, at, (anchor){1, 0.5});
             taken = at;
         }
     }
@@ -213,8 +199,11 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
 void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_look look)
 {
     set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
-    draw_minor_ticks(d, p, x, y);
-    draw_major_ticks(d, p, x, y);
+    double minor_x[AXIS_MINOR], minor_y[AXIS_MINOR];
+    int x_count = axis_minor_ticks(x, p->box.width, minor_x);
+    int y_count = axis_minor_ticks(y, p->box.height, minor_y);
+    draw_ticks(d, p, minor_x, x_count, minor_y, y_count, MINOR_LENGTH);
+    draw_ticks(d, p, x->at, x->count, y->at, y->count, TICK_LENGTH);
     draw_spines(d, &p->box, look.framed);
     draw_tick_labels(d, p, x, y, &look);
 }
@@ -242,8 +231,6 @@ void draw_x_titles(drawing *d)
     g_autofree char *title = axis_title(&d->x);
     // once below all columns
     if (d->fig->x.label != NULL) {
-        draw_text(d, figure_text_of(d, title, d->style.label),
-                  (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
-                  (anchor){0.5, 0}, d->style.colours->text);
+        draw_label(d, title, d->style.label, (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y, (anchor){0.5, 0});
     }
 }

@@ -140,8 +140,7 @@ static void draw_panel_texts(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
     if (l->panel->heading != NULL) {
-        draw_text(d, figure_text_of(d, l->panel->heading, d->style.label), box->x + box->width / 2,
-                  box->y - 2, (anchor){0.5, 1}, d->style.colours->text);
+        draw_label(d, l->panel->heading, d->style.label, box->x + box->width / 2, box->y - 2, (anchor){0.5, 1});
     }
     if (l->panel->remark != NULL) {
         draw_text(d, figure_text_of(d, l->panel->remark, d->style.label), box->x + box->width / 2,

@@ -112,6 +112,20 @@ static const char *entry(const drawing *d, const figure_series *s)
     return narrow && s->label != NULL && s->symbol != NULL ? s->symbol : s->label;
 }
 
+// The text of that as a block of its size, wrapped at a width (0: never); false if there is none.
+static bool entry_block(const drawing *d, const figure_series *s, double wrapped, text_block *t,
+                        double *width, double *height)
+{
+    const char *label = entry(d, s);
+    if (label == NULL) {
+        return false;
+    }
+    *t = figure_text_of(d, label, d->style.tick);
+    t->width = wrapped;
+    text_measure(d->context, t, width, height);
+    return true;
+}
+
 static int labelled_series(const figure_panel *panel)
 {
     int count = 0;

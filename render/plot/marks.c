@@ -365,8 +365,7 @@ static void draw_point(drawing *d, int index)
     cairo_fill(d->cr);
     if (at_point(d, index)) {
         const figure_rect *r = &d->point_label[index];
-        draw_text(d, figure_text_of(d, m->label, d->style.small), r->x, r->y, (anchor){0, 0},
-                  d->style.colours->text);
+        draw_label(d, m->label, d->style.small, r->x, r->y, (anchor){0, 0});
     }
 }
 
@@ -437,9 +436,7 @@ void draw_levels(drawing *d, const panel_layout *l)
         // its label, where the layout found room
         if (level->label != NULL && i < LEVELS_LABELLED && l->level_place[i].width > 0) {
             const figure_rect *r = &l->level_place[i];
-            draw_text(d, figure_text_of(d, level->label, d->style.small), r->x,
-                      r->y < y - 1 ? y : y + 0.5, (anchor){0, r->y < y - 1 ? 1 : 0},
-                      d->style.colours->text);
+            draw_label(d, level->label, d->style.small, r->x, r->y < y - 1 ? y : y + 0.5, (anchor){0, r->y < y - 1 ? 1 : 0});
         }
     }
 }
@@ -459,7 +456,6 @@ void draw_notes(drawing *d, const panel_layout *l)
         cairo_arc(d->cr, plane_x(&l->plane, n->x), plane_y(&l->plane, n->y), DOT_RADIUS, 0,
                   2 * G_PI);
         cairo_fill(d->cr);
-        draw_text(d, figure_text_of(d, n->text, d->style.tick), place.x, place.y, (anchor){0, 0},
-                  d->style.colours->text);
+        draw_label(d, n->text, d->style.tick, place.x, place.y, (anchor){0, 0});
     }
 }
