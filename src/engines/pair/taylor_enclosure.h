@@ -1,4 +1,4 @@
-// Bounds of the functions that are watched over a stride (taylor_kernel.h), from their series.
+// Bounds of the functions that are watched over a stride (taylor_kernel.c), from their series.
 #pragma once
 
 #include "src/engines/pair/taylor_products.h"

@@ -1,4 +1,4 @@
-// The two-link arm by power series (taylor_kernel.h): a dense engine.
+// The two-link arm by power series (taylor_kernel.c): a dense engine.
 //
 // The stride goes as far as the fastest mode and the rotation let a series of the highest order
 // reach, and is shortened until its last terms are small; where they are small before, as in one

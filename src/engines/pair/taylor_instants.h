@@ -3,14 +3,9 @@
 // its energies are those of chain_kinetic_energy and chain_strain_energy.
 //
 // With u = t^2 a polynomial is E(u) + t O(u), its even and its odd terms.
-#include "src/engines/pair/taylor_numbers.h"
-#include "src/engines/pair/taylor_series.h"
+#pragma once
 
-#ifndef INSTANTS
-#define INSTANTS GLUE(taylor_instants_, LANES)
-#endif
-#define ENDS   GLUE(taylor_ends_, LANES)
-#define PIECES GLUE(taylor_pieces_, LANES)
+#include "src/engines/pair/taylor_numbers.h"
 
 // A block of one arm, whose numbers all lanes share, or of an arm a lane.
 typedef struct coefficients {
@@ -280,23 +275,23 @@ KERNEL void evaluate(coefficients x, taylor_form form, taylor_instants *at)
     energies_of(x, form.hub_spring, s, c, q, w, at);
 }
 
-void INSTANTS(const double *block, taylor_form form, taylor_instants *at)
+static void instants(const double *block, taylor_form form, taylor_instants *at)
 {
     evaluate((coefficients){block, true}, form, at);
 }
 
-#ifndef ONE_ARM
-void ENDS(const double *block, taylor_form form, taylor_instants *at)
+#if LANES > 1
+static void ends(const double *block, taylor_form form, taylor_instants *at)
 {
     evaluate((coefficients){block, false}, form, at);
 }
 
-void PIECES(const double *block, int order, int count, taylor_pieces *pieces)
+static void pieces(const double *block, int order, int count, taylor_pieces *of)
 {
-    const real width = lanes_at(pieces->width);
+    const real width = lanes_at(of->width);
     const coefficients force = from((coefficients){block, false}, AT_FORCE);
     for (int i = 0; i < count; i++) {
-        value_slope_of(force, order, (i + 1) * width, pieces->force[i], pieces->slope[i]);
+        value_slope_of(force, order, (i + 1) * width, of->force[i], of->slope[i]);
     }
 }
 #endif

@@ -2,7 +2,6 @@
 #include <stdatomic.h>
 #include <string.h>
 
-#include "src/engines/by_width.h"
 #include "src/engines/pair/taylor_lanes.h"
 
 static atomic_int limit; // 0: none
@@ -33,21 +32,28 @@ int taylor_limit_width(int width)
     return taylor_width();
 }
 
+// The loops of so many lanes.
+static const taylor_loops *loops_of(int width)
+{
+#if defined __x86_64__
+    const taylor_loops *one = taylor_width() >= 4 ? &taylor_loops_1_avx2 : &taylor_loops_1;
+    return width == 8   ? &taylor_loops_8
+           : width == 4 ? &taylor_loops_4
+           : width == 2 ? &taylor_loops_2
+                        : one;
+#else
+    (void)width;
+    return &taylor_loops_1;
+#endif
+}
+
 void taylor_compute_one(taylor_lane *lane)
 {
     lane->group = NULL;
     lane->end = -1;
     lane->pieces = 0;
-#if defined __x86_64__
-    if (taylor_width() >= 4) {
-        lane->form.order = taylor_series_1_avx2(lane->block, lane->form);
-        return;
-    }
-#endif
-    lane->form.order = taylor_series_1(lane->block, lane->form);
+    lane->form.order = loops_of(1)->series(lane->block, lane->form);
 }
-
-// --- by width ---------------------------------------------------------------------------------
 
 void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
 {
@@ -65,8 +71,9 @@ void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
     for (int i = 0; i < group->width; i++) {
         own[i] = lanes[i < count ? i : 0]->block;
     }
-    BY_WIDTH(taylor_inputs_, group->width)(group->block, own);
-    group->form.order = BY_WIDTH(taylor_series_, group->width)(group->block, group->form);
+    const taylor_loops *loops = loops_of(group->width);
+    loops->gather(group->block, own);
+    group->form.order = loops->series(group->block, group->form);
 
     // each knows where its own are, and what its stride leaves
     for (int i = 0; i < count; i++) {
@@ -94,7 +101,7 @@ void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_
     for (int i = 0; i < group->width; i++) {
         group->ends.time[i] = ends[i < count ? i : 0].time;
     }
-    BY_WIDTH(taylor_ends_, group->width)(group->block, group->form, &group->ends);
+    loops_of(group->width)->ends(group->block, group->form, &group->ends);
 
     // the force on the way there
     int most = 0;
@@ -109,8 +116,7 @@ void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_
         }
     }
     if (group->form.contact && most > 1) {
-        BY_WIDTH(taylor_pieces_, group->width)
-        (group->block, group->form.order, most, &group->pieces);
+        loops_of(group->width)->pieces(group->block, group->form.order, most, &group->pieces);
     }
 }
 
@@ -170,11 +176,5 @@ void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at)
     if (lane->group != NULL) {
         fetch_motion(lane);
     }
-#if defined __x86_64__
-    if (width == 1 && taylor_width() >= 4) {
-        taylor_instants_1_avx2(lane->block, form, at);
-        return;
-    }
-#endif
-    BY_WIDTH(taylor_instants_, width)(lane->block, form, at);
+    loops_of(width)->instants(lane->block, form, at);
 }

@@ -1,4 +1,4 @@
-// Numbers in vectors of LANES (a power of two, given by whoever includes this): those of the
+// Numbers in vectors of LANES (a power of two, given by meson.build): those of the
 // compiler. Every operation is written out in its order, without a branch on what a lane holds but
 // where all take the same value from both ways, so that all widths give the same bits.
 #pragma once
@@ -11,7 +11,6 @@
 #endif
 
 #include "src/base/sincos.h"
-#include "src/engines/by_width.h"
 #include "src/engines/pair/taylor_series.h"
 
 #define KERNEL static inline __attribute__((always_inline))

@@ -1,5 +1,5 @@
 // The equations of two links by powers of the time, one order after the other: part of
-// taylor_kernel.h.
+// taylor_kernel.c.
 //
 // Let d = q2 - q1 be the bend, s and c its sine and cosine, and S, C those of an angle from the
 // wall times a length. The equations of chain.h for two links are those of the momenta

@@ -1,4 +1,4 @@
-// The products of which the series of two links are made (taylor_kernel.h), summed up by
+// The products of which the series of two links are made (taylor_kernel.c), summed up by
 // coefficient.
 //
 // The products of a coefficient are summed up in two turns, even and odd, and those of the newest

@@ -1,6 +1,6 @@
 // The motion of two links as power series of the time since a stride's start.
 //
-// One source, taylor_kernel.h, is compiled for every width of vectors the processor may have; an
+// One source, taylor_kernel.c, is compiled for every width of vectors the processor may have; an
 // arm gets the same bits whichever lane it is in.
 #pragma once
 
@@ -90,22 +90,6 @@ typedef struct taylor_form {
     int order;       // of the velocities' series, up to TAYLOR_MOST, once they are computed
 } taylor_form;
 
-// Computes the series of as many arms as the name says; block: TAYLOR_PLACES times so many, aligned
-// to their vectors. Returns their order, which is even: where an arm needs a lower order only, its
-// further terms are zero, which changes no bit of the results. The widest two are for processors
-// with AVX2 and AVX-512; that with a name of its own for one arm has AVX2's vectors, too.
-int taylor_series_1(double *block, taylor_form form);
-int taylor_series_1_avx2(double *block, taylor_form form);
-int taylor_series_2(double *block, taylor_form form);
-int taylor_series_4(double *block, taylor_form form);
-int taylor_series_8(double *block, taylor_form form);
-
-// Copies the first AT_INPUTS places of as many arms' own blocks into the lanes of one.
-void taylor_inputs_1(double *block, const double *const *own);
-void taylor_inputs_2(double *block, const double *const *own);
-void taylor_inputs_4(double *block, const double *const *own);
-void taylor_inputs_8(double *block, const double *const *own);
-
 // Values of the series at instants of their strides, side by side. Bodies are the hub (with a
 // spring), the first and the second link.
 typedef struct taylor_instants {
@@ -126,19 +110,6 @@ typedef struct taylor_instants {
     double strain[TAYLOR_WIDEST];           // and of bending [J]
 } taylor_instants;
 
-// Evaluates the series of the arm, a block of its own, at as many instants as the name says.
-void taylor_instants_1(const double *block, taylor_form form, taylor_instants *at);
-void taylor_instants_1_avx2(const double *block, taylor_form form, taylor_instants *at);
-void taylor_instants_2(const double *block, taylor_form form, taylor_instants *at);
-void taylor_instants_4(const double *block, taylor_form form, taylor_instants *at);
-void taylor_instants_8(const double *block, taylor_form form, taylor_instants *at);
-
-// Evaluates the series of as many arms, each in its lane of the block at its own instant.
-void taylor_ends_1(const double *block, taylor_form form, taylor_instants *at);
-void taylor_ends_2(const double *block, taylor_form form, taylor_instants *at);
-void taylor_ends_4(const double *block, taylor_form form, taylor_instants *at);
-void taylor_ends_8(const double *block, taylor_form form, taylor_instants *at);
-
 // The contact force at the ends of equal pieces of a stride, TAYLOR_PIECES at most: a lane has them
 // at `width`, 2 `width`, and so on.
 enum { TAYLOR_PIECES = 8 };
@@ -148,8 +119,22 @@ typedef struct taylor_pieces {
     double slope[TAYLOR_PIECES][TAYLOR_WIDEST]; // [N/s]
 } taylor_pieces;
 
-// Evaluates the first `count` of them for each arm of the block.
-void taylor_pieces_1(const double *block, int order, int count, taylor_pieces *pieces);
-void taylor_pieces_2(const double *block, int order, int count, taylor_pieces *pieces);
-void taylor_pieces_4(const double *block, int order, int count, taylor_pieces *pieces);
-void taylor_pieces_8(const double *block, int order, int count, taylor_pieces *pieces);
+// What is built for each width of the processor's vectors, with the same bits; of one arm also with
+// AVX2's. Blocks are aligned to their vectors. The last three are of several arms only.
+typedef struct taylor_loops {
+    // Computes the series of as many arms as there are lanes. Returns their order, which is even:
+    // where an arm needs a lower order only, its further terms are zero, which changes no bit of
+    // the results.
+    int (*series)(double *block, taylor_form form);
+    // Evaluates the series of an arm, a block of its own, at as many instants.
+    void (*instants)(const double *block, taylor_form form, taylor_instants *at);
+    // Copies the first AT_INPUTS places of the arms' own blocks into the lanes of one.
+    void (*gather)(double *block, const double *const *own);
+    // Evaluates the series of as many arms, each in its lane of the block at its own instant.
+    void (*ends)(const double *block, taylor_form form, taylor_instants *at);
+    // Evaluates the first `count` pieces for each arm of the block.
+    void (*pieces)(const double *block, int order, int count, taylor_pieces *pieces);
+} taylor_loops;
+
+extern const taylor_loops taylor_loops_1, taylor_loops_1_avx2;
+extern const taylor_loops taylor_loops_2, taylor_loops_4, taylor_loops_8; // SSE2, AVX2, AVX-512

@@ -1,4 +1,4 @@
-// Arithmetic in lanes, and the stages of a step of the stiff engine: part of stiff_kernel.h.
+// Arithmetic in lanes, and the stages of a step of the stiff engine: part of stiff_kernel.c.
 #pragma once
 
 #include <math.h>

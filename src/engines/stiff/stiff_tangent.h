@@ -1,4 +1,4 @@
-// The tangent of a step of the stiff engine, factored and solved: part of stiff_kernel.h.
+// The tangent of a step of the stiff engine, factored and solved: part of stiff_kernel.c.
 #pragma once
 
 #include "src/engines/stiff/stiff_sweeps.h"

@@ -1,10 +1,7 @@
-// The loops of a step of the stiff engine, built once for each width of the processor's vectors
-// (stiff_wide_1.c and its like). The derivation stands in stiff_step.h.
-#pragma once
-
+// The loops of a step of the stiff engine, built as LOOPS once for each width of the processor's
+// vectors (src/engines/meson.build). The derivation stands in stiff_step.h.
 #include <math.h>
 
-#include "src/engines/by_width.h"
 #include "src/engines/stiff/stiff_tangent.h"
 
 // Radau's embedded sums of the stages, x of velocities and v of accelerations.
@@ -65,4 +62,4 @@ static double correct(stiff_step *s)
     return sqrt(most);
 }
 
-const stiff_loops GLUE(stiff_loops_, WIDTH) = {predict, residual, factor, differences, correct};
+const stiff_loops LOOPS = {predict, residual, factor, differences, correct};

@@ -1,16 +1,11 @@
-// Series of the two-link arm's motion, for LANES arms at once (a power of two, given by whoever
-// includes this; vectors are those of the compiler). The equations stand in taylor_order.h.
+// Series of the two-link arm's motion, for LANES arms at once (a power of two; vectors are those of
+// the compiler), as LOOPS: both are given by src/engines/meson.build. The equations stand in
+// taylor_order.h.
 //
 // Every operation is written out in its order (taylor_numbers.h), so all widths give the same bits.
-#include "src/engines/pair/taylor_enclosure.h"
+#include "src/engines/pair/taylor_instants.h"
 #include "src/engines/pair/taylor_order.h"
 #include "src/engines/pair/taylor_roots.h"
-#include "src/engines/pair/taylor_series.h"
-
-#ifndef SERIES
-#define SERIES GLUE(taylor_series_, LANES)
-#endif
-#define INPUTS GLUE(taylor_inputs_, LANES)
 
 // The last terms of the velocities stay below this share of 1 rad/s or the largest velocity, and,
 // where the series end before the highest order, those of the losses below this share of 1 J times
@@ -321,7 +316,7 @@ FORM(spring_held_plane, 1, 0, 1)
 FORM(spring_held_point, 1, 1, 1)
 #undef FORM
 
-int SERIES(double *block, taylor_form form)
+static int compute(double *block, taylor_form form)
 {
     static int (*const forms[2][2][2])(real *, bool) = {
         {{free_plane, free_point}, {held_plane, held_point}},
@@ -329,20 +324,20 @@ int SERIES(double *block, taylor_form form)
     return forms[form.hub_spring][form.contact][form.point]((real *)block, form.damped);
 }
 
-#ifndef ONE_ARM
-void INPUTS(double *block, const double *const *own)
+#if LANES > 1
+static void gather(double *block, const double *const *own)
 {
     // whole vectors: loads that follow on stores of parts of theirs wait for them
     for (int place = 0; place < AT_INPUTS; place++) {
-#if LANES == 1
-        block[place] = own[0][place];
-#else
         real x = (real){0};
         for (int i = 0; i < LANES; i++) {
             x[i] = own[i][place];
         }
         ((real *)block)[place] = x;
-#endif
     }
 }
+
+const taylor_loops LOOPS = {compute, instants, gather, ends, pieces};
+#else
+const taylor_loops LOOPS = {compute, instants, NULL, NULL, NULL};
 #endif
