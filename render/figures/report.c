@@ -271,12 +271,8 @@ static status write_both(const report *r, const char *folder, fault *f)
 
     // after a fault nothing more is written
     status code = make_folder(folder, f);
-    if (code == STATUS_OK) {
-        code = report_write_html(r, html, f);
-    }
-    if (code == STATUS_OK) {
-        code = write_pdf(r, pdf, f);
-    }
+    code = code == STATUS_OK ? report_write_html(r, html, f) : code;
+    code = code == STATUS_OK ? write_pdf(r, pdf, f) : code;
     return code;
 }
 
@@ -372,9 +368,7 @@ status report_write(const char *folder, char *const *names, int count, run_monit
     if (code == STATUS_OK && count == 0) {
         add_parameters(&r);
     }
-    if (code == STATUS_OK) {
-        code = write_both(&r, folder, &why);
-    }
+    code = code == STATUS_OK ? write_both(&r, folder, &why) : code;
 
     g_array_free(r.items, TRUE);
     g_free(r.heading);

@@ -257,9 +257,7 @@ status report_write_html(const report *r, const char *path, fault *f)
     add_lines(html, script, G_N_ELEMENTS(script));
     g_string_append(html, "</script>\n</body>\n</html>\n");
 
-    if (code == STATUS_OK) {
-        code = whole_file_open(&file, path, f);
-    }
+    code = code == STATUS_OK ? whole_file_open(&file, path, f) : code;
 
     if (code == STATUS_OK) {
         fwrite(html->str, 1, html->len, file.stream);

@@ -430,9 +430,7 @@ status picture_write(const picture *p, const char *path, fault *f)
 
     // only a name that tells its format
     status code = check_extension(path, f);
-    if (code == STATUS_OK) {
-        code = whole_file_open(&file, path, f);
-    }
+    code = code == STATUS_OK ? whole_file_open(&file, path, f) : code;
     if (code == STATUS_OK) {
         code = writers[picture_format_of(path)](file.stream, p, f);
         code = whole_file_close(&file, code, f);

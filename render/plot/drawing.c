@@ -180,7 +180,8 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
     for (int i = 0; look->x_labels && i < x->count; i++) {
         double at = plane_x(p, x->at[i]), half = width_of(d, x->text[i], look->size) / 2;
         if (x->even.count > 0 || at - half > taken + LABEL_GAP) {
-            draw_label(d, x->text[i], look->size, at, bottom + TICK_LENGTH + TICK_SPACE - 1, (anchor){0.5, 0});
+            draw_label(d, x->text[i], look->size, at, bottom + TICK_LENGTH + TICK_SPACE - 1,
+                       (anchor){0.5, 0});
             taken = at + half;
         }
     }
@@ -190,7 +191,8 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
     for (int i = 0; look->y_labels && i < y->count; i++) {
         double at = plane_y(p, y->at[i]);
         if (y->even.count > 0 || at < taken - look->size) {
-            draw_label(d, y->text[i], look->size, p->box.x - TICK_LENGTH - TICK_SPACE, at, (anchor){1, 0.5});
+            draw_label(d, y->text[i], look->size, p->box.x - TICK_LENGTH - TICK_SPACE, at,
+                       (anchor){1, 0.5});
             taken = at;
         }
     }
@@ -231,6 +233,8 @@ void draw_x_titles(drawing *d)
     g_autofree char *title = axis_title(&d->x);
     // once below all columns
     if (d->fig->x.label != NULL) {
-        draw_label(d, title, d->style.label, (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y, (anchor){0.5, 0});
+        draw_label(d, title, d->style.label,
+                   (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
+                   (anchor){0.5, 0});
     }
 }

@@ -229,10 +229,10 @@ double widest_end_label(const drawing *d, const figure_panel *panel);
 void place_end_labels(const drawing *d, panel_layout *l);
 // Returns false if there is no room inside the panel.
 bool place_legend(const drawing *d, panel_layout *l, const placement *grid);
-// Height of the legend for all panels; 0: none.
-double common_legend_height(drawing *d);
 void draw_legend(drawing *d, const panel_layout *l);
-void draw_common_legend(drawing *d);
+// The legend for all panels, in rows that are wrapped where they are too long, drawn or only
+// measured. Returns its height; 0: none.
+double common_legend(drawing *d, bool draw);
 void draw_end_labels(drawing *d, const panel_layout *l);
 
 // --- the inset: legend.c

@@ -140,7 +140,8 @@ static void draw_panel_texts(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
     if (l->panel->heading != NULL) {
-        draw_label(d, l->panel->heading, d->style.label, box->x + box->width / 2, box->y - 2, (anchor){0.5, 1});
+        draw_label(d, l->panel->heading, d->style.label, box->x + box->width / 2, box->y - 2,
+                   (anchor){0.5, 1});
     }
     if (l->panel->remark != NULL) {
         draw_text(d, figure_text_of(d, l->panel->remark, d->style.label), box->x + box->width / 2,
@@ -230,7 +231,7 @@ static void draw_all(drawing *d)
 
     // texts of the whole, then the panels
     draw_frame_texts(d);
-    draw_common_legend(d);
+    common_legend(d, true);
     for (int i = 0; i < d->fig->panel_count; i++) {
         draw_panel(d, i);
     }
@@ -258,9 +259,7 @@ status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault
 {
     assert(cr != NULL && fig != NULL);
     status code = check_description(fig, f);
-    if (code == STATUS_OK) {
-        code = text_check_font(f);
-    }
+    code = code == STATUS_OK ? text_check_font(f) : code;
     if (code != STATUS_OK) {
         return code;
     }

@@ -241,7 +241,7 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
     }
 
     d->legend_y = y;
-    double legend = common_legend_height(d);
+    double legend = common_legend(d, false);
     y += legend > 0 ? legend + 2 : 0;
     d->marks_bottom = y += MARK_ROW * mark_rows + 2;
 

@@ -105,25 +105,32 @@ void draw_inset(drawing *d, const panel_layout *l)
 
 // ==== legends
 
-// What the legend says of a series: on a narrow page its symbol.
-static const char *entry(const drawing *d, const figure_series *s)
-{
-    bool narrow = d->page.width < NARROW_PAGE;
-    return narrow && s->label != NULL && s->symbol != NULL ? s->symbol : s->label;
-}
+// What the legend says of a series.
+typedef struct legend_entry {
+    text_block text;
+    double width, height;
+} legend_entry;
 
-// The text of that as a block of its size, wrapped at a width (0: never); false if there is none.
-static bool entry_block(const drawing *d, const figure_series *s, double wrapped, text_block *t,
-                        double *width, double *height)
+// An entry, on a narrow page its symbol, wrapped at a width (0: never); false of a series without a
+// label.
+static bool entry_of(const drawing *d, const figure_series *s, double wrapped, legend_entry *e)
 {
-    const char *label = entry(d, s);
-    if (label == NULL) {
+    const bool narrow = d->page.width < NARROW_PAGE && s->symbol != NULL;
+    if (s->label == NULL) {
         return false;
     }
-    *t = figure_text_of(d, label, d->style.tick);
-    t->width = wrapped;
-    text_measure(d->context, t, width, height);
+    e->text = figure_text_of(d, narrow ? s->symbol : s->label, d->style.tick);
+    e->text.width = wrapped;
+    text_measure(d->context, &e->text, &e->width, &e->height);
     return true;
+}
+
+// An entry with its swatch.
+static void draw_entry(drawing *d, const panel_layout *l, int index, const legend_entry *e,
+                       double x, double y)
+{
+    draw_swatch(d, l, index, x, y + 0.55 * e->height);
+    draw_text(d, e->text, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
 }
 
 static int labelled_series(const figure_panel *panel)
@@ -158,10 +165,9 @@ static bool series_end(const drawing *d, const figure_series *s, double *y)
 double widest_end_label(const drawing *d, const figure_panel *panel)
 {
     double widest = 0;
+    legend_entry e;
     for (int i = 0; i < panel->series_count; i++) {
-        if (panel->series[i].label != NULL) {
-            widest = fmax(widest, width_of(d, entry(d, &panel->series[i]), d->style.tick));
-        }
+        widest = entry_of(d, &panel->series[i], 0, &e) ? fmax(widest, e.width) : widest;
     }
     return widest;
 }
@@ -170,24 +176,21 @@ double widest_end_label(const drawing *d, const figure_panel *panel)
 static void legend_size(const drawing *d, const figure_panel *panel, bool row, double *width,
                         double *height)
 {
+    legend_entry e;
     *width = *height = 0;
     for (int i = 0; i < panel->series_count; i++) {
-        if (panel->series[i].label == NULL) {
+        if (!entry_of(d, &panel->series[i], 0, &e)) {
             continue;
         }
 
-        double w, h;
-        text_block t = figure_text_of(d, entry(d, &panel->series[i]), d->style.tick);
-        text_measure(d->context, &t, &w, &h);
-        w += SWATCH + SWATCH_SPACE;
-
         // entries add up along the row, or one above the other
+        double w = e.width + SWATCH + SWATCH_SPACE;
         if (row) {
             *width += w + (*width > 0 ? 2 * SWATCH_SPACE : 0);
-            *height = fmax(*height, h);
+            *height = fmax(*height, e.height);
         } else {
             *width = fmax(*width, w);
-            *height += h;
+            *height += e.height;
         }
     }
 }
@@ -302,22 +305,16 @@ void draw_legend(drawing *d, const panel_layout *l)
     }
 
     // entry by entry, downwards or to the right
+    legend_entry e;
     for (int i = 0; i < l->panel->series_count && l->legend.width > 0; i++) {
-        double width, height;
-        const char *label = entry(d, &l->panel->series[i]);
-        if (label == NULL) {
+        if (!entry_of(d, &l->panel->series[i], 0, &e)) {
             continue;
         }
-
-        text_block t = figure_text_of(d, label, d->style.tick);
-        text_measure(d->context, &t, &width, &height);
-        draw_swatch(d, l, i, x, y + 0.55 * height);
-        draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
-
+        draw_entry(d, l, i, &e, x, y);
         if (l->legend_inside || l->legend_column) {
-            y += height;
+            y += e.height;
         } else {
-            x += width + SWATCH + 3 * SWATCH_SPACE;
+            x += e.width + SWATCH + 3 * SWATCH_SPACE;
         }
     }
 }
@@ -326,68 +323,49 @@ void draw_end_labels(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
     for (int i = 0; i < l->panel->series_count; i++) {
-        double y, width, height;
-        if (isnan(l->end_label_y[i]) || !series_end(d, &l->panel->series[i], &y)) {
+        double y;
+        legend_entry e;
+        const figure_series *s = &l->panel->series[i];
+        if (isnan(l->end_label_y[i]) || !series_end(d, s, &y) || !entry_of(d, s, 0, &e)) {
             continue;
         }
 
-        text_block t = figure_text_of(d, entry(d, &l->panel->series[i]), d->style.tick);
-        text_measure(d->context, &t, &width, &height);
-
         // a thin line from the curve's end to its label
-        double end = box->x + box->width, middle = l->end_label_y[i] + 0.55 * height;
+        double end = box->x + box->width, middle = l->end_label_y[i] + 0.55 * e.height;
         set_series(d, l, i);
         cairo_set_line_width(d->cr, SECONDARY_WIDTH);
         cairo_set_dash(d->cr, NULL, 0, 0);
         draw_line(d->cr, end + 2, fmax(box->y, fmin(box->y + box->height, plane_y(&l->plane, y))),
                   end + 10, middle);
-
-        draw_text(d, t, end + 12, l->end_label_y[i], (anchor){0, 0}, d->style.colours->text);
+        draw_text(d, e.text, end + 12, l->end_label_y[i], (anchor){0, 0}, d->style.colours->text);
     }
 }
 
 // ---- one for all panels
 
-// Lines and labels of the key's series, in rows that are wrapped where they are too long. Returns
-// their height.
-static double common_legend(drawing *d, bool draw)
+double common_legend(drawing *d, bool draw)
 {
     panel_layout key = {.panel = d->fig->key}, *l = key.panel != NULL ? &key : &d->panels[0];
     double x = d->left, y = d->legend_y, line = 0;
+    legend_entry e;
     for (int i = 0; d->fig->common_legend && i < l->panel->series_count; i++) {
-        double width, height;
-        text_block t = figure_text_of(d, entry(d, &l->panel->series[i]), d->style.tick);
-        if (t.markup == NULL) {
+        if (!entry_of(d, &l->panel->series[i], d->right - d->left - SWATCH - SWATCH_SPACE, &e)) {
             continue;
         }
 
         // a new row where this one is full
-        t.width = d->right - d->left - SWATCH - SWATCH_SPACE;
-        text_measure(d->context, &t, &width, &height);
-        width += SWATCH + SWATCH_SPACE;
+        double width = e.width + SWATCH + SWATCH_SPACE;
         if (x > d->left && x + width > d->right) {
             x = d->left;
             y += line;
             line = 0;
         }
 
-        line = fmax(line, height);
+        line = fmax(line, e.height);
         if (draw) {
-            draw_swatch(d, l, i, x, y + 0.55 * height);
-            draw_text(d, t, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
+            draw_entry(d, l, i, &e, x, y);
         }
-
         x += width + 2 * SWATCH_SPACE;
     }
     return y + line - d->legend_y;
-}
-
-double common_legend_height(drawing *d)
-{
-    return common_legend(d, false);
-}
-
-void draw_common_legend(drawing *d)
-{
-    common_legend(d, true);
 }

@@ -283,7 +283,8 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
 
         set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
         draw_line(d->cr, right, y, right + TICK_LENGTH, y);
-        draw_label(d, l->colours.text[i], d->style.tick, right + TICK_LENGTH + TICK_SPACE, y, (anchor){0, 0.5});
+        draw_label(d, l->colours.text[i], d->style.tick, right + TICK_LENGTH + TICK_SPACE, y,
+                   (anchor){0, 0.5});
     }
     set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
     cairo_rectangle(d->cr, bar.x, bar.y, bar.width, bar.height);

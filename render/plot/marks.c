@@ -436,7 +436,8 @@ void draw_levels(drawing *d, const panel_layout *l)
         // its label, where the layout found room
         if (level->label != NULL && i < LEVELS_LABELLED && l->level_place[i].width > 0) {
             const figure_rect *r = &l->level_place[i];
-            draw_label(d, level->label, d->style.small, r->x, r->y < y - 1 ? y : y + 0.5, (anchor){0, r->y < y - 1 ? 1 : 0});
+            draw_label(d, level->label, d->style.small, r->x, r->y < y - 1 ? y : y + 0.5,
+                       (anchor){0, r->y < y - 1 ? 1 : 0});
         }
     }
 }

@@ -128,9 +128,7 @@ status overlay_read(trace *t, const char *text, const trace_panel *panels, int p
     trace_init(t, 0);
     *name = NULL;
     status code = read_spec(text, &spec, f);
-    if (code == STATUS_OK) {
-        code = read_file(t, &spec, panels, panel_count, name, f);
-    }
+    code = code == STATUS_OK ? read_file(t, &spec, panels, panel_count, name, f) : code;
     spec_finish(&spec);
     return code;
 }

@@ -255,9 +255,7 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
     film_plan plan;
     film_making m = {.plan = &plan};
     code = film_plan_init(&plan, runs, run_count, &o, f);
-    if (code == STATUS_OK) {
-        code = film_painter_create(&m.painter, &plan, f);
-    }
+    code = code == STATUS_OK ? film_painter_create(&m.painter, &plan, f) : code;
     if (code == STATUS_OK) {
         m.frame = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o.width, o.height);
         code = record(&m, path, f);

@@ -293,12 +293,8 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
 
     // the trail hovers and throws no shadow
     scene_build_trail(sc, sc->result->trace.rows[0].time, now);
-    if (code == STATUS_OK) {
-        code = scene_painter_paint(sc->painter, &full, onto, f);
-    }
-    if (code == STATUS_OK) {
-        code = draw_labels(sc, times, inks, count, onto, f);
-    }
+    code = code == STATUS_OK ? scene_painter_paint(sc->painter, &full, onto, f) : code;
+    code = code == STATUS_OK ? draw_labels(sc, times, inks, count, onto, f) : code;
     return code == STATUS_OK && sc->tip != NULL ? paint_inset(sc, times, count, onto, f) : code;
 }
 
@@ -361,12 +357,8 @@ status scene_write(const scene_picture *p, const char *path, fault *f)
     scene *sc;
 
     status code = scene_check_path(path, f);
-    if (code == STATUS_OK) {
-        code = check_instants(p, f);
-    }
-    if (code == STATUS_OK) {
-        code = scene_create(&sc, p->scenario, p->result, &p->options, f);
-    }
+    code = code == STATUS_OK ? check_instants(p, f) : code;
+    code = code == STATUS_OK ? scene_create(&sc, p->scenario, p->result, &p->options, f) : code;
     if (code != STATUS_OK) {
         return code;
     }
@@ -375,9 +367,7 @@ status scene_write(const scene_picture *p, const char *path, fault *f)
         p->options.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, sc->options.width,
         sc->options.height);
     code = scene_paint(sc, p->times, p->count, surface, f);
-    if (code == STATUS_OK) {
-        code = write_surface(sc, surface, path, f);
-    }
+    code = code == STATUS_OK ? write_surface(sc, surface, path, f) : code;
     cairo_surface_destroy(surface);
     scene_destroy(sc);
     return code;
