@@ -118,12 +118,13 @@ static void release_signals(void *owner)
 }
 
 // Runs the scenario, and again with the change of the second run.
-static status run_scenarios(signal_figure *s, const thesis_figure *which, fault *f)
+static status run_scenarios(signal_figure *s, const figure_order *order, fault *f)
 {
-    const char *const changes[] = {NULL, which->beside};
-    status code = STATUS_OK;
-    for (int i = 0; i < (which->beside == NULL ? 1 : 2) && code == STATUS_OK; i++) {
-        code = run_begin(&s->runs[i], which->scenario, changes[i], f);
+    const thesis_figure *which = order->which;
+    status code = run_begin_changed(&s->runs[0], which->scenario, NULL, 0, order->monitor, f);
+    s->run_count = code == STATUS_OK;
+    if (code == STATUS_OK && which->beside != NULL) {
+        code = run_begin(&s->runs[1], which->scenario, which->beside, f);
         s->run_count += code == STATUS_OK;
     }
     return code;
@@ -193,7 +194,7 @@ static status open_signals(const figure_order *order, artwork *out, fault *f)
     signal_figure *s = g_new0(signal_figure, 1);
 
     // the same panels for each model
-    status code = run_scenarios(s, which, f);
+    status code = run_scenarios(s, order, f);
     for (int i = 0; i < s->run_count; i++) {
         runs[i] = (trace_run){&s->runs[i].scenario, &s->runs[i].result, which->names[i],
                               .steps = which->steps && i == 0, .brief = i == 1};
@@ -202,8 +203,8 @@ static status open_signals(const figure_order *order, artwork *out, fault *f)
     panels[0].modes = which->modes;
 
     if (code == STATUS_OK) {
-        code = run_figure_init(&s->figure, order->title, panels, which->panel_count, runs,
-                               s->run_count, o, f);
+        code = run_figure_init(&s->figure, order->title, which->panel_count > 0 ? panels : NULL,
+                               which->panel_count, runs, s->run_count, o, f);
     }
 
     if (code != STATUS_OK) {
@@ -214,6 +215,17 @@ static status open_signals(const figure_order *order, artwork *out, fault *f)
     add_facts(s, which, o);
     *out = artwork_of_figure(&s->figure.traces.plot.figure, s, release_signals);
     return STATUS_OK;
+}
+
+status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out,
+                            const scenario **s, fault *f)
+{
+    assert(name != NULL && out != NULL && s != NULL);
+    const thesis_figure run = {.scenario = name};
+    const figure_options options = {0};
+    status code = open_signals(&(figure_order){&run, NULL, &options, monitor}, out, f);
+    *s = code == STATUS_OK ? &((const signal_figure *)out->owner)->runs[0].scenario : NULL;
+    return code;
 }
 
 // ---- any figure
@@ -239,7 +251,7 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
                          o->overlay != NULL ? o->overlay : o->signals);
     }
     g_autofree char *title = title_of(which);
-    const figure_order order = {which, title, o};
+    const figure_order order = {which, title, o, NULL};
     return which->open != NULL ? which->open(&order, out, f) : open_signals(&order, out, f);
 }
 

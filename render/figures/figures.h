@@ -36,6 +36,7 @@ struct figure_order {
     const thesis_figure *which;
     const char *title;
     const figure_options *options;
+    run_monitor *monitor; // of recorded signals: of the first run; NULL: nobody looks on
 };
 
 // The functions that open drawn figures: each makes the runs it needs and fails as they do; the
@@ -57,6 +58,11 @@ const thesis_figure *thesis_figure_find(const char *id);
 // twice unless they stand alone, with the corrected model as a thin dashed line. To be ended with
 // artwork_finish. Returns the status of the runs.
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f);
+
+// Opens the usual panels of a scenario's run, whose name and arm stay valid as long as the artwork.
+// Returns the status of the run, STATUS_STOPPED if `monitor` (may be NULL) requested it.
+status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out,
+                            const scenario **s, fault *f);
 
 // Draws a figure to FOLDER/fig-3-4.png and so on for every format in the list ("png,pdf,svg") and
 // writes FOLDER/fig-3-4.csv; with `tex` (may be NULL) it prints the figure environment of the first

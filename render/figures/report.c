@@ -278,45 +278,16 @@ static status write_both(const report *r, const char *folder, fault *f)
 
 // ---- scenarios and recipes of one's own
 
-// A run with its figure.
-typedef struct own_run {
-    opened_run run;
-    run_figure figure;
-} own_run;
-
-static void release_run(void *owner)
-{
-    own_run *own = owner;
-    run_figure_finish(&own->figure);
-    run_end(&own->run);
-    g_free(own);
-}
-
 static status open_scenario(report_item *item, const char *name, run_monitor *monitor, fault *f)
 {
-    const figure_options options = {0};
-    own_run *own = g_new0(own_run, 1);
-    status code = run_begin_changed(&own->run, name, NULL, 0, monitor, f);
-    if (code != STATUS_OK) {
-        g_free(own);
-        return code;
+    const scenario *s;
+    status code = scenario_figure_open(name, monitor, &item->drawn, &s, f);
+    if (code == STATUS_OK) {
+        item->scenario = s->name;
+        item->model = s->parameters.arm.model == ARM_PRINTED ? "printed" : "corrected";
+        item->command = text_printf("impactlab run %s --plot FILE.pdf", name);
     }
-
-    // the usual panels of a run
-    const trace_run run = {.scenario = &own->run.scenario, .result = &own->run.result};
-    code = run_figure_init(&own->figure, NULL, NULL, 0, &run, 1, &options, f);
-    if (code != STATUS_OK) {
-        run_end(&own->run);
-        g_free(own);
-        return code;
-    }
-
-    bool printed = own->run.scenario.parameters.arm.model == ARM_PRINTED;
-    item->scenario = own->run.scenario.name;
-    item->model = printed ? "printed" : "corrected";
-    item->command = text_printf("impactlab run %s --plot FILE.pdf", name);
-    item->drawn = artwork_of_figure(&own->figure.traces.plot.figure, own, release_run);
-    return STATUS_OK;
+    return code;
 }
 
 static status open_recipe(report_item *item, const char *path, fault *f)

@@ -83,87 +83,60 @@ static void complete_panel(trace_panel *p, bool first)
 }
 
 // One panel, "hub_angle+last_angle".
-static status read_panel(const char *text, trace_panel *p, GPtrArray *names, fault *f)
+static status read_panel(const char *text, trace_panel *p, fault *f)
 {
-    status code = STATUS_OK;
-
-    char **words = g_strsplit(text, "+", -1);
-
-    for (int i = 0; words[i] != NULL && code == STATUS_OK; i++) {
+    g_auto(GStrv) words = g_strsplit(text, "+", -1);
+    for (int i = 0; words[i] != NULL; i++) {
         const char *name = g_strstrip(words[i]);
         int index = signal_find(name);
 
         // known, with room, and of the panel's one unit
         if (index <= 0) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?",
+            return fault_set(f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?",
                              name, nearest_signal(name));
-        } else if (i == TRACE_SIGNALS) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a panel shows at most %d signals", text,
+        }
+        if (i == TRACE_SIGNALS) {
+            return fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a panel shows at most %d signals", text,
                              TRACE_SIGNALS);
-        } else if (i > 0 && strcmp(signal_table[index].unit,
-                                   signal_table[signal_index(p->signals[0])].unit) != 0) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT,
+        }
+        p->signals[i] = signal_table[index].name;
+        if (strcmp(signal_table[index].unit, signal_table[signal_index(p->signals[0])].unit) != 0) {
+            return fault_set(f, STATUS_BAD_ARGUMENT,
                              "'%s': the signals of a panel have one unit, expected a comma between "
                              "%s and %s",
                              text, p->signals[0], name);
-        } else {
-            g_ptr_array_add(names, g_strdup(name));
-            p->signals[i] = g_ptr_array_index(names, names->len - 1);
         }
     }
-
-    g_strfreev(words);
-    return code;
+    return STATUS_OK;
 }
 
 // All panels, "force,hub_angle+last_angle".
-static status read_signals(run_figure *r, const char *text, fault *f)
+static status read_signals(const char *text, trace_panel *panels, int *count, fault *f)
 {
     status code = STATUS_OK;
-    GPtrArray *names = g_ptr_array_new();
-
-    char **words = g_strsplit(text, ",", -1);
-    for (int i = 0; words[i] != NULL && code == STATUS_OK; i++) {
-        if (i == FIGURE_PANELS - 1) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a figure has at most %d panels", text,
+    g_auto(GStrv) words = g_strsplit(text, ",", -1);
+    for (*count = 0; words[*count] != NULL && code == STATUS_OK; ++*count) {
+        if (*count == FIGURE_PANELS - 1) {
+            return fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a figure has at most %d panels", text,
                              FIGURE_PANELS - 1);
-            break;
         }
-
-        r->panels[i] = (trace_panel){.weight = 1};
-        code = read_panel(words[i], &r->panels[i], names, f);
+        trace_panel *p = &panels[*count];
+        *p = (trace_panel){.weight = 1};
+        code = read_panel(words[*count], p, f);
         if (code == STATUS_OK) {
-            complete_panel(&r->panels[i], i == 0);
-            r->panel_count = i + 1;
+            complete_panel(p, *count == 0);
         }
     }
-
-    g_strfreev(words);
-    g_ptr_array_add(names, NULL);
-    r->names = (char **)g_ptr_array_free(names, FALSE);
     return code;
 }
 
 // ---- the figure
-
-static status choose_panels(run_figure *r, const trace_panel *panels, int count,
-                            const figure_options *o, fault *f)
-{
-    if (o->signals != NULL) {
-        return read_signals(r, o->signals, f);
-    }
-    r->panel_count = panels != NULL ? count : USUAL_PANELS;
-    memcpy(r->panels, panels != NULL ? panels : usual_panels,
-           (size_t)r->panel_count * sizeof *panels);
-    return STATUS_OK;
-}
 
 void run_figure_finish(run_figure *r)
 {
     trace_figure_finish(&r->traces);
     trace_finish(&r->overlay.trace);
     g_free(r->overlay_name);
-    g_strfreev(r->names);
     memset(r, 0, sizeof *r);
 }
 
@@ -172,8 +145,15 @@ status run_figure_init(run_figure *r, const char *title, const trace_panel *pane
 {
     assert(r != NULL && runs != NULL && run_count >= 1 && o != NULL);
     trace_run all[TRACE_RUNS];
+    trace_panel asked[FIGURE_PANELS];
+    status code = STATUS_OK;
     memset(r, 0, sizeof *r);
-    status code = choose_panels(r, panels, panel_count, o, f);
+    panel_count = panels != NULL ? panel_count : USUAL_PANELS;
+    panels = panels != NULL ? panels : usual_panels;
+    if (o->signals != NULL) {
+        code = read_signals(o->signals, asked, &panel_count, f);
+        panels = asked;
+    }
     if (code == STATUS_OK && run_count + (o->overlay != NULL) > TRACE_RUNS) {
         code = fault_set(f, STATUS_BAD_ARGUMENT, "a figure shows at most %d runs and data",
                          TRACE_RUNS);
@@ -184,13 +164,13 @@ status run_figure_init(run_figure *r, const char *title, const trace_panel *pane
         memcpy(all, runs, (size_t)run_count * sizeof *runs);
     }
     if (code == STATUS_OK && o->overlay != NULL) {
-        code = overlay_read(&r->overlay.trace, o->overlay, r->panels, r->panel_count,
-                            &r->overlay_name, f);
+        code =
+            overlay_read(&r->overlay.trace, o->overlay, panels, panel_count, &r->overlay_name, f);
         all[run_count++] =
             (trace_run){runs[0].scenario, &r->overlay, r->overlay_name, .points = true};
     }
     if (code == STATUS_OK) {
-        code = trace_figure_init(&r->traces, title, r->panels, r->panel_count, all, run_count, f);
+        code = trace_figure_init(&r->traces, title, panels, panel_count, all, run_count, f);
     }
     if (code != STATUS_OK) {
         run_figure_finish(r);

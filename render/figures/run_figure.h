@@ -36,9 +36,6 @@ typedef struct run_figure {
     trace_figure traces;
     run_result overlay; // its trace alone
     char *overlay_name;
-    trace_panel panels[FIGURE_PANELS];
-    int panel_count;
-    char **names; // of the requested signals
 } run_figure;
 
 // Describes a figure of the runs: o->signals in place of `panels` (NULL: the usual ones of a run),
