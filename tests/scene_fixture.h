@@ -5,7 +5,7 @@
 
 #include <dirent.h>
 
-#include "render/scene/scene.h"
+#include "render/scene/scene_parts.h"
 #include "render/page/text.h"
 
 enum { WIDTH = 320, HEIGHT = 180 };

@@ -1,4 +1,4 @@
-#include "render/scene/samples.h"
+#include "render/scene/scene_parts.h"
 
 #include <assert.h>
 #include <dlfcn.h>

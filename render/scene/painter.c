@@ -1,12 +1,10 @@
-#include "render/scene/painter.h"
+#include "render/scene/scene_parts.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "render/scene/samples.h"
 
 struct scene_painter {
     gl_offscreen *gl; // NULL: samples are filled by hand

@@ -1,4 +1,4 @@
-#include "render/scene/samples.h"
+#include "render/scene/scene_parts.h"
 
 #include <assert.h>
 #include <math.h>
@@ -197,11 +197,11 @@ static void fill_columns(uint32_t *pixels, float *depths, const triangle_ramps *
                          (four_at(r->share[1], x, y) >= 0) & (four_at(r->share[2], x, y) >= 0) &
                          (z < there);
 
-        four_bits colour = opaque | channels(four_at(r->tint[0], x, y)) << 16 |
-                           channels(four_at(r->tint[1], x, y)) << 8 |
-                           channels(four_at(r->tint[2], x, y));
+        four_bits rgb = opaque | channels(four_at(r->tint[0], x, y)) << 16 |
+                        channels(four_at(r->tint[1], x, y)) << 8 |
+                        channels(four_at(r->tint[2], x, y));
         there = (four)chosen(seen, (four_bits)z, (four_bits)there);
-        before = chosen(seen, colour, before);
+        before = chosen(seen, rgb, before);
         memcpy(depths + column, &there, sizeof there);
         memcpy(pixels + column, &before, sizeof before);
     }

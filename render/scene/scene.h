@@ -7,8 +7,16 @@
 #pragma once
 
 #include "render/scene/geometry.h"
-#include "render/scene/painter.h"
 #include "src/run/run.h"
+
+// The requested renderer.
+typedef enum scene_renderer { RENDER_AUTO, RENDER_OSMESA, RENDER_EGL, RENDER_CAIRO } scene_renderer;
+
+// "auto", "osmesa", "egl" or "cairo"; false for any other word.
+bool scene_renderer_find(const char *name, scene_renderer *which);
+
+// Samples of a pixel along each of its edges.
+enum { SAMPLES_QUICK = 2, SAMPLES_FINE = 4 };
 
 enum { SCENE_INSTANTS = 32 }; // most instants in one picture
 

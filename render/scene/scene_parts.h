@@ -1,11 +1,15 @@
-// The floor of a scene: a pale plane with a grid that fades into the page, and soft shadows on it.
+// Internal to scenes: floor, labels, triangles and their samples, and the scene itself.
 #pragma once
 
+#include <cairo.h>
 #include <pango/pangocairo.h>
+#include <stdint.h>
 
 #include "render/scene/geometry.h"
 #include "render/scene/scene.h"
 #include "src/base/fault.h"
+
+// --- the floor: a pale plane with a grid that fades into the page, and soft shadows on it
 
 typedef struct scene_floor {
     double level;                     // height of the floor [m]
@@ -60,6 +64,98 @@ void labels_inset(const labels *l, double left, double bottom, double larger);
 
 // A legend of instants [s] with their colours at the lower right corner.
 void labels_instants(const labels *l, const double *times, const colour *inks, int count);
+
+// --- lit triangles, painted by OpenGL without a screen, or with a depth buffer of our own
+
+typedef struct scene_painter scene_painter;
+
+// A painter of pictures of width by height pixels, each made of samples x samples. RENDER_AUTO
+// takes the first of OSMesa, EGL and cairo that is available. STATUS_CANNOT_WRITE if a named one is
+// not.
+status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
+                            int samples, fault *f);
+void scene_painter_destroy(scene_painter *p);
+
+// Name of the renderer, for the picture's metadata.
+const char *scene_painter_name(const scene_painter *p);
+
+// The mesh to be painted, with camera and light.
+typedef struct painting {
+    const mesh *mesh;
+    const camera *camera;
+    vector light;   // unit vector towards the lamp
+    double opacity; // of the whole mesh, 0 to 1
+} painting;
+
+// Paints the mesh over the contents of the image surface (RGB24 or ARGB32, of the painter's size).
+// STATUS_NO_MEMORY or STATUS_CANNOT_WRITE on failure.
+status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto, fault *f);
+
+// --- triangles as samples of a picture, filled by OpenGL or without it
+
+typedef enum gl_library { GL_OSMESA, GL_EGL } gl_library;
+
+typedef struct gl_offscreen gl_offscreen;
+
+// A vertex of a triangle for OpenGL.
+typedef struct gl_vertex {
+    float place[4];  // clip coordinates, y down
+    float colour[4]; // red, green, blue, opacity
+} gl_vertex;
+
+// A renderer of pictures of up to width by height pixels. STATUS_CANNOT_WRITE if the library is
+// missing or has no OpenGL 3.3, with what to install in f.
+status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, int height, fault *f);
+void gl_offscreen_destroy(gl_offscreen *g);
+
+// Library, renderer and version, "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), ...".
+const char *gl_offscreen_renderer(const gl_offscreen *g);
+
+// Triangles, three corners each, as numbers of vertices.
+typedef struct gl_triangles {
+    const gl_vertex *vertices;
+    size_t vertex_count;
+    const unsigned *corners;
+    size_t corner_count;
+} gl_triangles;
+
+// A rectangle of pixels.
+typedef struct gl_region {
+    int x, y, width, height;
+} gl_region;
+
+// Draws triangles on a transparent background with a depth test and stores the region as rows of
+// 0xAARRGGBB with premultiplied opacity.
+status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region region, uint32_t *pixels,
+                         fault *f);
+
+enum { SAMPLE_TILE = 16 }; // edge of a tile [pixels]
+
+// The samples of a picture of width by height pixels. Tiles that nothing touched are skipped.
+typedef struct sample_buffer {
+    int width, height; // of the picture [pixels]
+    int samples;       // of a pixel along each edge
+    // 0xAARRGGBB; if triangles are filled without OpenGL, 0 and empty depths between pictures
+    uint32_t *pixels;
+    float *depths; // NULL: OpenGL fills the pixels
+    unsigned char *touched;
+    int tiles_across, tiles_down;
+} sample_buffer;
+
+// Empty samples, with depths if triangles are filled without OpenGL. False without memory;
+// samples_finish must be called in either case.
+bool samples_init(sample_buffer *b, int width, int height, int samples);
+bool samples_add_depths(sample_buffer *b);
+void samples_finish(sample_buffer *b);
+
+// Adds a new set of triangles, of closed solids: records the tiles that they touch and, if there
+// are depths, fills them. Back faces are omitted.
+void samples_take(sample_buffer *b, const gl_triangles *t);
+
+// Paints the means of the samples over the image surface (RGB24 or ARGB32, of the picture's size)
+// with the given opacity (0 to 1). `region` is the part of the picture in `pixels`, with contiguous
+// rows. Samples filled without OpenGL are empty afterwards.
+void samples_lay_over(sample_buffer *b, gl_region region, double opacity, cairo_surface_t *onto);
 
 // --- the scene
 
