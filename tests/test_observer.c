@@ -189,7 +189,7 @@ TEST(two_links_reduce_to_themselves)
 {
     controller_setup s = two_links();
     reduced_arm reduced;
-    assert_null(reduced_arm_init(&reduced, &s, 0));
+    assert_null(reduced_arm_init(&reduced, &s, 0, HUGE_VAL));
     double quarter = s.link_mass * 0.25 / 4, inertia = s.hub_inertia + 2 * s.link_inertia;
     double mass = inertia + 2 * quarter, mu = (quarter - s.link_inertia) / 0.5;
     assert_int_equal(reduced.contact.count, 1);
@@ -214,7 +214,7 @@ TEST(a_touch_loses_energy)
     s.links = 8;
     s.period = 1e-3;
     reduced_arm reduced;
-    assert_null(reduced_arm_init(&reduced, &s, 0));
+    assert_null(reduced_arm_init(&reduced, &s, 0, HUGE_VAL));
     assert_true(reduced.contact.count >= 3);
     double before = 0, after = 0;
     for (int i = 0; i < reduced.contact.count; i++) {
@@ -412,7 +412,35 @@ TEST(readings_tell_which_arm_it_is)
     observer_arms gives = arms_after(
         given("control.law=observer arm.hub_joint=spring arm.k1=90 belief.hub_spring_factor=100"));
     assert_int_equal(gives.on, 3);
-    assert_int_equal(gives.count, 6);
+    assert_int_equal(gives.count, 10);
+}
+
+// On a wall that gives, the arm at one that gives about as much, 1.5 k^(2/3) f^(1/3) of Hertz's
+// law; the force then settles as on a rigid one.
+TEST(a_wall_that_gives_is_found)
+{
+    static const double stiffness[] = {400, 1600, 6000};
+    for (int i = 0; i < 3; i++) {
+        const observer_arms soft = arms_after(given(
+            "control.law=observer wall.contact=hunt-crossley wall.stiffness=%g", stiffness[i]));
+        const double tangent = 1.5 * pow(stiffness[i], 2.0 / 3);
+        static const double walls[] = {60, 150, 375, 940};
+        assert_in_range(soft.on, soft.giving, soft.loaded - 1);
+        assert_in_range(100 * walls[soft.on - soft.giving] / tangent, 50, 250);
+
+        scenario s = {.parameters = rig_parameters(
+                          given("control.law=observer wall.contact=hunt-crossley "
+                                "wall.stiffness=%g wall.angle=0 initial.angle=-0.1 run.duration=2",
+                                stiffness[i]))};
+        SCOPED(run_finish) run_result r;
+        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        check_below(r.summary.settling_time_s, 0.3);
+        check_below(r.summary.smoothed_over_command_N, 0.15);
+    }
+
+    // a rigid one that throws the tip back is none
+    const observer_arms rigid = arms_after(given("control.law=observer wall.restitution=0.3"));
+    assert_int_equal(rigid.on, 0);
 }
 
 // A stiffness believed wrongly is learned from the readings: half the way to it counts as much as
@@ -426,7 +454,7 @@ TEST(it_learns_how_stiff_the_arm_is)
         p.belief.k2_factor = *c;
         controller_setup setup = setup_of(&p);
         arm_observer o;
-        assert_null(arm_observer_init(&o, &setup, 1, 0));
+        assert_null(arm_observer_init(&o, &setup, 1, 0, HUGE_VAL));
 
         // the hub bends the arm against the wall, the readings are those of the true stiffness
         const double stiffness = 4 * setup.k2 / *c;

@@ -11,6 +11,7 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 
 // What readings and models are worth: standard deviations.
 #define ANGLE_NOISE  4.5e-4 // of the encoder, and of angles that no mode shows [rad]
+#define COUNT_SHARE  0.29   // of the encoder: a count over the square root of 12
 #define RATE_NOISE   0.014  // of the tachometer [rad/s]
 #define RATE_RIPPLE  0.01   // of the tachometer, as a share of the reading
 #define FORCE_NOISE  0.02   // of the force sensor [N]
@@ -88,11 +89,11 @@ static void sample_model(const arm_observer *o, const mode_set *set, int torque,
 }
 
 const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force,
-                              double tip_mass)
+                              double tip_mass, double wall_stiffness)
 {
     assert(o != NULL && setup != NULL);
     memset(o, 0, sizeof *o);
-    const char *refusal = reduced_arm_init(&o->arm, setup, tip_mass);
+    const char *refusal = reduced_arm_init(&o->arm, setup, tip_mass, wall_stiffness);
     if (refusal != NULL) {
         return refusal;
     }
@@ -134,7 +135,8 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
     o->stiff_force = o->stiff_bend = 0;
     o->last_voltage = in->voltage;
     o->tip_before = o->tip_now = in->encoder;
-    o->turned = in->encoder;
+    o->count = HUGE_VAL;
+    o->turned = o->angle_before = in->encoder;
     o->rate_before = in->tachometer;
     o->observed = 0;
 }
@@ -331,6 +333,20 @@ static double take_reading(arm_observer *o, const double *row, double offset, do
     return 1 / doubt;
 }
 
+// The smallest step that an encoder has shown is its count, a uniform error of which has the
+// standard deviation count/sqrt(12).
+static void follow_counts(arm_observer *o, double encoder)
+{
+    const double step = fabs(encoder - o->angle_before);
+    o->count = step > 0 ? fmin(step, o->count) : o->count;
+    o->angle_before = encoder;
+}
+
+static double angle_noise(const arm_observer *o)
+{
+    return isfinite(o->count) ? fmax(ANGLE_NOISE, COUNT_SHARE * o->count) : ANGLE_NOISE;
+}
+
 // Hub and beam: encoder, tachometer, and film and accelerometer where they are fitted.
 static void take_motion(arm_observer *o, const controller_input *in)
 {
@@ -343,7 +359,7 @@ static void take_motion(arm_observer *o, const controller_input *in)
     }
     angle[wall_index(o)] += o->touches;
     double ripple = RATE_RIPPLE * in->tachometer;
-    take_reading(o, angle, 0, in->encoder, ANGLE_NOISE);
+    take_reading(o, angle, 0, in->encoder, angle_noise(o));
     take_reading(o, rate, 0, in->tachometer, sqrt(RATE_NOISE * RATE_NOISE + ripple * ripple));
 
     if (!isnan(in->film)) {
@@ -475,6 +491,7 @@ void arm_observer_sample(arm_observer *o, const controller_input *in, int felt)
     controller_input read = *in;
     read.tachometer -= tachometer_offset(o, in);
     o->moves = fabs(in->tachometer) > MOVES;
+    follow_counts(o, in->encoder);
     if (o->touches && o->young) {
         follow_flight(o, &read, felt);
     }

@@ -21,6 +21,7 @@ typedef struct arm_observer {
     sampled_model free_model[2], contact_model[2];
     bool touches, young; // young: a contact that may have ended in a bounce
     estimator e, flown;  // flown: while a contact is young, as if the tip had been thrown back
+    double count, angle_before; // smallest step of the encoder so far, its last reading [rad]
     double turned, rate_before; // angle by the tachometer, its last reading [rad], [rad/s]
     double observed;            // for how long [s]
     double last_voltage;        // in effect at the sample before [V]
@@ -39,10 +40,11 @@ typedef struct arm_observer {
 } arm_observer;
 
 // Models the arm that the setup describes, at rest at an angle still to be read, which is to press
-// with about `force` [N] and carries tip_mass [kg] at its tip. NULL, or a sentence that says why it
+// with about `force` [N] and carries tip_mass [kg] at its tip, at a
+// wall of a stiffness [N/m], HUGE_VAL a rigid one. NULL, or a sentence that says why it
 // cannot.
 const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force,
-                              double tip_mass);
+                              double tip_mass, double wall_stiffness);
 
 // Starts at rest where the encoder is.
 void arm_observer_start(arm_observer *o, const controller_input *in);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/arm/modes.h"
+#include "src/base/dense.h"
 
 #define PI 3.14159265358979323846
 
@@ -74,6 +75,7 @@ static void take_modes(mode_set *set, const arm *a, const double *mass, double h
 // Matrices and shapes of the whole chain, while it is reduced.
 typedef struct chain_modes {
     double *mass, *stiffness, *frequencies, *free, *contact;
+    double *copy, *scratch; // of mass; 2 dof
 } chain_modes;
 
 const char reduced_arm_no_memory[] = "there is no memory for its model";
@@ -85,8 +87,32 @@ static const char *refusal_of(status code)
                                     : "the modes of the arm it believes in cannot be computed";
 }
 
+// The modes in contact with a wall of a stiffness, HUGE_VAL: a rigid one [N/m].
+static status contact_modes(const arm *a, double wall_stiffness, const chain_modes *work,
+                            int *count)
+{
+    const int n = a->dof;
+    if (!isfinite(wall_stiffness)) {
+        return modes_compute(a, HUB_FREE, TIP_PINNED, count, work->frequencies, work->contact);
+    }
+    for (int i = 0; i < n * n; i++) {
+        const bool moves_tip = i / n >= a->first && i % n >= a->first;
+        const double l = a->link_length;
+        work->contact[i] = work->stiffness[i] + (moves_tip ? wall_stiffness * l * l : 0);
+        work->copy[i] = work->mass[i];
+    }
+    *count = n;
+    if (!symmetric_eigen_pair(n, work->contact, work->copy, work->frequencies, work->scratch)) {
+        return STATUS_SINGULAR;
+    }
+    for (int i = 0; i < n; i++) {
+        work->frequencies[i] = sqrt(fmax(work->frequencies[i], 0));
+    }
+    return STATUS_OK;
+}
+
 static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *setup,
-                          const chain_modes *work)
+                          double wall_stiffness, const chain_modes *work)
 {
     const int n = a->dof;
     const double highest = MODES_BELOW * PI / setup->period;
@@ -99,7 +125,7 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
         return refusal_of(code);
     }
     take_modes(&r->free, a, work->mass, highest, free_count, work->frequencies, work->free);
-    code = modes_compute(a, HUB_FREE, TIP_PINNED, &contact_count, work->frequencies, work->contact);
+    code = contact_modes(a, wall_stiffness, work, &contact_count);
     if (code != STATUS_OK) {
         return refusal_of(code);
     }
@@ -128,7 +154,8 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
     return NULL;
 }
 
-const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, double tip_mass)
+const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, double tip_mass,
+                             double wall_stiffness)
 {
     assert(r != NULL && setup != NULL);
     arm a;
@@ -138,13 +165,18 @@ const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, doub
 
     // one block for the matrices and shapes of the whole chain
     size_t square = (size_t)a.dof * (size_t)a.dof;
-    double *block = calloc(4 * square + (size_t)a.dof, sizeof *block);
+    double *block = calloc(5 * square + 3 * (size_t)a.dof, sizeof *block);
     if (block == NULL) {
         return reduced_arm_no_memory;
     }
-    chain_modes work = {block, block + square, block + 4 * square, block + 2 * square,
-                        block + 3 * square};
-    const char *refusal = reduce(r, &a, setup, &work);
+    chain_modes work = {.mass = block,
+                        .stiffness = block + square,
+                        .free = block + 2 * square,
+                        .contact = block + 3 * square,
+                        .copy = block + 4 * square,
+                        .frequencies = block + 5 * square,
+                        .scratch = block + 5 * square + a.dof};
+    const char *refusal = reduce(r, &a, setup, wall_stiffness, &work);
     free(block);
     return refusal;
 }

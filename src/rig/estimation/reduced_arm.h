@@ -21,6 +21,9 @@
 
 enum { REDUCED_MODES = 5 }; // at most
 
+// At a wall that gives the modes in contact are those with a spring J'k J at the tip, its wall at
+// rest at theta_wall; a touch then keeps all of the motion.
+
 // The modes of one of both states.
 typedef struct mode_set {
     int count;
@@ -39,11 +42,12 @@ typedef struct reduced_arm {
     double touch[REDUCED_MODES][REDUCED_MODES]; // X: contact by free
 } reduced_arm;
 
-// Reduces the arm of a setup, a mass [kg] at its tip, to the modes below half the Nyquist frequency
-// of its samples, at least one that bends and at most REDUCED_MODES. NULL, or a sentence that says
-// why that cannot be: reduced_arm_no_memory itself where there was no memory, which says nothing of
-// the arm.
-const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, double tip_mass);
+// Reduces the arm of a setup, a mass [kg] at its tip and at a wall of a stiffness [N/m] (HUGE_VAL:
+// a rigid one), to the modes below half the Nyquist frequency of its samples, at least one that
+// bends and at most REDUCED_MODES. NULL, or a sentence that says why that cannot be:
+// reduced_arm_no_memory itself where there was no memory, which says nothing of the arm.
+const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, double tip_mass,
+                             double wall_stiffness);
 extern const char reduced_arm_no_memory[];
 
 // Static compliance: rotation of the hub per torque with the tip at the wall [rad/(N m)].

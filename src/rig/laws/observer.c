@@ -34,7 +34,7 @@ static const controller_parameter table[PARAMETERS] = {
 };
 
 // The numbers of the law, derived in docs/explanation/control-design.md.
-#define GUARD_TIME      0.05  // in which a wall that is nearer than believed is looked for [s]
+#define GUARD_TIME      0.08  // in which a wall that is nearer than believed is looked for [s]
 #define BIAS_TIME       0.1   // over which the error of the estimated force is averaged [s]
 #define MOST_CORRECTION 0.3   // that it may add to the force aimed at, a share
 #define LOST_AFTER      4e-3  // without a reading that shows force contact is lost [s]
@@ -72,6 +72,7 @@ typedef struct observer_memory {
     bool started;
     int felt;            // readings in a row that showed contact
     double moved;        // change of the set-point since the sample before [N]
+    double ahead;        // of a set-point that goes on moving is aimed at [N]
     double force_rate;   // of a set-point that moves from sample to sample [N/s]
     double correction;   // of the force aimed at: what the estimated force is above the reading [N]
     double held_force;   // mean of the reading while it holds [N]
@@ -308,7 +309,7 @@ static void begin_rise(observer_memory *m, double time)
 
 // Follows a set-point that changes in contact. The way goes on from where it is to the new force;
 // of a plan made anew at every sample the force is 2 r/s behind a set-point with the rate r, which
-// is aimed at in advance.
+// is aimed at in advance, with a lag of half that time lest quick waves be amplified without bound.
 static void follow_setpoint(observer_memory *m, double time)
 {
     const double before = m->p[FORCE_WANTED] - m->moved, period = m->rig.period;
@@ -323,8 +324,9 @@ static void follow_setpoint(observer_memory *m, double time)
         force_rise_at(&m->rise, time, way);
     }
     m->force_rate = m->moved / period;
-    const double ahead = goes_on ? 2 * m->force_rate / divergence(m) : 0;
-    plan_rise(m, time, way[0], way[1], fmax(0, m->p[FORCE_WANTED] + ahead));
+    const double lead = 2 / divergence(m), share = fmin(1, 2 * period / lead);
+    m->ahead = goes_on ? m->ahead + share * (lead * m->force_rate - m->ahead) : 0;
+    plan_rise(m, time, way[0], way[1], fmax(0, m->p[FORCE_WANTED] + m->ahead));
     m->mode = PRESS;
     m->moved = 0;
 }
@@ -516,11 +518,12 @@ static bool holds_right(observer_memory *m, double reading)
     return fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST;
 }
 
-// Whether friction holds the hub at rest where the force is right, and the beam has come to rest.
+// Whether friction holds the hub at rest where the force is right, that one stays, and the beam has
+// come to rest.
 static bool rests_right(const observer_memory *m, const estimator *e, double rate)
 {
     double force = m->p[FORCE_WANTED];
-    return m->rig.stiction > 0 && rate < REST &&
+    return m->rig.stiction > 0 && m->force_rate == 0 && rate < REST &&
            fabs(m->mean_force - force) < HOLD_WITHIN * force + HOLD_LEAST &&
            fabs(resting_force(m, e) - force) < HOLD_WITHIN * force + HOLD_LEAST &&
            sqrt(m->swing) < HOLD_SWING * force + HOLD_LEAST;

@@ -10,12 +10,14 @@
 #define PI 3.14159265358979323846
 
 // The numbers of the design, derived in docs/explanation/control-design.md.
-#define TRAVEL_TIME  0.05 // in which the arm takes up a wanted speed [s],
-#define LAND_TIME    0.02 // and after a bounce [s]
-#define SOFT_SPEED   0.2  // of a soft touch, for every newton wanted [rad/s/N],
-#define MOST_SPEED   0.45 // at most [rad/s],
-#define LEAST_SPEED  0.12 // and no less, so as to come in time [rad/s],
-#define LEAST_LINKS  0.33 // nor than this with more than two links [rad/s]
+#define TRAVEL_TIME 0.05 // in which the arm takes up a wanted speed [s],
+#define LAND_TIME   0.02 // and after a bounce [s]
+#define SOFT_SPEED  0.2  // of a soft touch, for every newton wanted [rad/s/N],
+#define MOST_SPEED  0.45 // at most [rad/s],
+#define LEAST_SPEED 0.12 // and no less, so as to come in time [rad/s],
+#define LEAST_LINKS 0.33 // nor than this with more than two links [rad/s]
+#define GIVING_EFFORT                                                                              \
+    0.25 // share of the effort that it may cost to damp the tip on a wall that gives
 #define LEAST_MARGIN 0.05 // of p h over 1, below which the force does not run away with the motion
 
 // Modal coordinates and rates of one state over a period, under a command that gives so much torque
@@ -91,8 +93,8 @@ static bool find_flight_gain(const observer_design *d, const controller_setup *s
 
 // In contact: the energy of the motion relative to the rest, and the effort with which the first
 // mode alone is critically damped: a'' = -w^2 a + h K u with u = -a'/sqrt(effort) has 2 w for h K /
-// sqrt(effort).
-static bool find_press_gain(observer_design *d, const controller_setup *setup)
+// sqrt(effort). At a wall that gives the tip's swinging is to be damped, too.
+static bool find_press_gain(observer_design *d, const controller_setup *setup, bool gives)
 {
     const mode_set *set = &d->observer.arm.contact;
     const int n = set->count;
@@ -107,7 +109,7 @@ static bool find_press_gain(observer_design *d, const controller_setup *setup)
         quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
     }
     double drive = set->hub[0] * setup->torque_per_volt;
-    cost.effort = drive * drive / (4 * set->square[0]);
+    cost.effort = (gives ? GIVING_EFFORT : 1) * drive * drive / (4 * set->square[0]);
     return quadratic_gain(&model, &cost, d->press_gain);
 }
 
@@ -151,12 +153,15 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
                                  const observer_task *task)
 {
     assert(d != NULL && setup != NULL && task != NULL && setup->torque_per_volt > 0);
-    const char *refusal = arm_observer_init(&d->observer, setup, task->force, task->tip_mass);
+    const char *refusal =
+        arm_observer_init(&d->observer, setup, task->force, task->tip_mass,
+                          task->wall_stiffness > 0 ? task->wall_stiffness : HUGE_VAL);
     if (refusal != NULL) {
         return refusal;
     }
     if (!find_flight_gain(d, setup, TRAVEL_TIME, d->travel_gain) ||
-        !find_flight_gain(d, setup, LAND_TIME, d->land_gain) || !find_press_gain(d, setup)) {
+        !find_flight_gain(d, setup, LAND_TIME, d->land_gain) ||
+        !find_press_gain(d, setup, task->wall_stiffness > 0)) {
         return "the Riccati equation of its gains has no stabilising solution";
     }
     command_plan(d, setup);
@@ -170,7 +175,8 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
 #define AS_STIFF  1.25      // ratio of stiffnesses up to which an arm is one with that told of
 #define HUB_GIVES (1.0 / 6) // of the beam's compliance at the wall, that of a hub on a spring
 #define NO_DOUBT  28        // of -2 log likelihood, 2 log(1e6),
-#define NO_MASS   30        // more of it for a mass at the tip, as a wrong inertia looks like one
+#define NO_SPRING 100 // more of it for a wall that gives, as a tip that bounces looks like one,
+#define NO_MASS   30  // and for a mass at the tip, as a wrong inertia does
 
 const observer_design *observer_arms_design(const observer_arms *a)
 {
@@ -187,8 +193,10 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
 {
     assert(a != NULL && setup != NULL && task != NULL);
     static const int links[] = {2, 3, 6};
-    static const double masses[] = {0.04, 0.08}; // [kg]
+    static const double masses[] = {0.04, 0.08};       // [kg]
+    static const double walls[] = {60, 150, 375, 940}; // a frequency within a quarter [N/m]
     a->count = a->on = 0;
+    a->thrown = false;
     const char *refusal = observer_design_init(&a->arms[a->count++], setup, task);
     if (refusal != NULL) {
         return refusal;
@@ -210,6 +218,14 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
     other.hub_spring = 4 * setup->k2 / HUB_GIVES;
     if (refusal == NULL && setup->hub_spring > 2 * other.hub_spring) {
         refusal = observer_design_init(&a->arms[a->count++], &other, task);
+    }
+
+    // walls that give, on which the tip swings
+    a->giving = a->count;
+    for (size_t i = 0; i < sizeof walls / sizeof walls[0] && refusal == NULL; i++) {
+        observer_task gives = *task;
+        gives.wall_stiffness = walls[i];
+        refusal = observer_design_init(&a->arms[a->count++], setup, &gives);
     }
 
     // masses at the tip, which only a flight shows
@@ -252,6 +268,7 @@ void observer_arms_touch(observer_arms *a, double time)
 
 void observer_arms_leave(observer_arms *a, double time)
 {
+    a->thrown = true;
     for (int i = 0; i < a->count; i++) {
         arm_observer_leave(&a->arms[i].observer, time);
     }
@@ -259,12 +276,15 @@ void observer_arms_leave(observer_arms *a, double time)
 
 bool observer_arms_choose(observer_arms *a)
 {
-    const int count = observer_arms_observer(a)->touches ? a->loaded : a->count;
+    const bool touches = observer_arms_observer(a)->touches;
+    const int count = touches ? a->loaded : a->count;
     int best = a->on;
     double least = observer_arms_observer(a)->missed - NO_DOUBT;
     for (int i = 0; i < count; i++) {
-        const double missed = a->arms[i].observer.missed + (i >= a->loaded ? NO_MASS : 0);
-        if (missed < least) {
+        const bool gives = i >= a->giving && i < a->loaded;
+        const double more = gives ? NO_SPRING : i >= a->loaded ? NO_MASS : 0;
+        const double missed = a->arms[i].observer.missed + more;
+        if (missed < least && !(gives && a->thrown)) {
             best = i;
             least = missed;
         }

@@ -28,6 +28,7 @@ typedef struct observer_task {
     double stopping_force;   // that may be used to stop the tip [N]
     double approach_voltage; // of the fastest approach [V]
     double tip_mass;         // that the tip carries [kg]
+    double wall_stiffness;   // of a wall that gives, 0: a rigid one [N/m]
 } observer_task;
 
 // Designs for the arm that the setup describes, of setup->links links. NULL, or a sentence that
@@ -38,21 +39,25 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
 // --- the arms that the law holds possible -----------------------------------------------------
 
 // The arms that the law `observer` holds possible: the one that it is told of, beams of other
-// numbers of links, and a hub that gives. Each has an observer and gains of its own; all observers
-// follow the same readings, and the law goes on with the arm that foretells them best.
+// numbers of links, a hub that gives, and the arm told of at walls that give. Each has an observer
+// and gains of its own; all observers follow the same readings, and the law goes on with the arm
+// that foretells them best.
 
-enum { OBSERVER_MOST_ARMS = 7 };
+enum { OBSERVER_MOST_ARMS = 11 };
 
 typedef struct observer_arms {
     observer_design arms[OBSERVER_MOST_ARMS]; // the first is the one told of
     int count, on;                            // on: the one that the law goes by
-    int loaded; // the first of those with a mass at the tip, which no contact shows
+    bool thrown; // the tip has left the wall, which one that gives so much would not have let it
+    int giving;  // the first of those at a wall that gives
+    int loaded;  // the first of those with a mass at the tip, which no contact shows
 } observer_arms;
 
 // Designs for the arm that the setup describes and for those that it may be instead: two, three and
 // six links and a hub that gives a sixth of what the beam does, but for those that are as stiff at
-// the wall as the one told, within a quarter, and so are one with it. The law begins with the arm
-// told of. NULL, or a sentence that says why that cannot be.
+// the wall as the one told, within a quarter, and so are one with it; and at walls of 60 to 940
+// N/m, on which the tip swings slowly enough to be followed. The law begins with the arm told of.
+// NULL, or a sentence that says why that cannot be.
 const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
                                const observer_task *task);
 
