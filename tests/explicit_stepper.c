@@ -13,7 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/arm/chain_kernel.h"
 #include "src/contact/motion.h"
 #include "tests/explicit_stepper.h"
 
@@ -86,12 +85,12 @@ static double current_rate(const motor_model *m, double state, double w)
     return fabs(state) >= m->current_limit && rate * state > 0 ? 0 : rate;
 }
 
-// One step of the method with the given weights, whose number and `loaded` are constants.
-KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *weights, int stages,
-                          bool loaded)
+// One step of the method.
+static void explicit_step(const arm *a, motion *m, double h)
 {
+    // whether more than velocities and the plain arm's quadratures have rates
+    const bool loaded = !arm_is_plain(a) || wall_gives(&a->wall);
     const int n = a->dof, length = 2 * n + QUADRATURE_COUNT;
-    const bool contact = m->state[SLOT_CONTACT] != 0;
     const int wanted = loaded ? length : length - (QUADRATURE_COUNT - QUADRATURE_WALL);
     const int current = 2 * n + QUADRATURE_CURRENT; // the one that enters the accelerations
     const int moving = loaded && m->electric ? length : 2 * n;
@@ -119,34 +118,29 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
     quadrature[QUADRATURE_PUSHED] = m->state[SLOT_WALL_WORK];
 
 #pragma GCC unroll 12
-    for (int stage = 1; stage <= stages; stage++) {
+    for (int stage = 1; stage <= LONG_STAGES; stage++) {
         // the quadratures do not enter the accelerations: only their result is wanted
-        for (int i = 0; i < (stage < stages ? moving : wanted); i++) {
-            double sum = weights[stage][0] * rate[i];
+        for (int i = 0; i < (stage < LONG_STAGES ? moving : wanted); i++) {
+            double sum = long_weights[stage][0] * rate[i];
 #pragma GCC unroll 12
             for (int j = 1; j < stage; j++) {
-                if (weights[stage][j] != 0) {
-                    sum += weights[stage][j] * rate[j * length + i];
+                if (long_weights[stage][j] != 0) {
+                    sum += long_weights[stage][j] * rate[j * length + i];
                 }
             }
             y[i] = y0[i] + h * sum;
         }
-        if (stage == stages) {
+        if (stage == LONG_STAGES) {
             break;
         }
         double *k = rate + stage * length;
         mode.current = loaded && m->electric ? y[current] : 0;
-        if (loaded) { // general, and seldom worth its place between the stages
-            double node = 0;
-            for (int j = 0; j < stage; j++) {
-                node += weights[stage][j];
-            }
-            const arm *now = motion_arm_at(a, m, m->state[SLOT_TIME] + node * h);
-            chain_accelerations(now, m->links, y, y + n, mode, k + n, &reaction);
-        } else {
-            chain_sweep(a, a->links, a->hub_spring, contact, false, m->links, y, y + n, mode, k + n,
-                        &reaction);
+        double node = 0;
+        for (int j = 0; j < stage; j++) {
+            node += long_weights[stage][j];
         }
+        const arm *now = motion_arm_at(a, m, m->state[SLOT_TIME] + node * h);
+        chain_accelerations(now, m->links, y, y + n, mode, k + n, &reaction);
         for (int i = 0; i < n; i++) {
             k[i] = y[n + i];
         }
@@ -165,11 +159,7 @@ KERNEL void explicit_step(const arm *a, motion *m, double h, const weight_row *w
 static status step(const arm *a, motion *m, double h, state_extent extent)
 {
     (void)extent;
-    if (chain_is_loaded(a)) {
-        explicit_step(a, m, h, long_weights, LONG_STAGES, true);
-    } else {
-        explicit_step(a, m, h, long_weights, LONG_STAGES, false);
-    }
+    explicit_step(a, m, h);
     if (m->electric) { // what a step that ends at the limit goes beyond it
         double *current = &state_quadratures(m, m->trial)[QUADRATURE_CURRENT];
         *current = fmax(-a->motor.current_limit, fmin(*current, a->motor.current_limit));

@@ -4,22 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "src/arm/chain_kernel.h"
 #include "src/arm/chain_pair.h"
-
-void chain_accelerations(const arm *a, chain_link *work, const double *q, const double *w,
-                         contact_state mode, double *alpha, chain_reaction *reaction)
-{
-    if (chain_is_loaded(a)) {
-        chain_sweep_loaded(a, a->links, a->hub_spring, mode.contact, true, true, work, q, w, mode,
-                           alpha, reaction);
-    } else if (pair_suits(a)) {
-        pair_accelerations(a, q, w, mode, alpha, reaction);
-    } else {
-        chain_sweep(a, a->links, a->hub_spring, mode.contact, true, work, q, w, mode, alpha,
-                    reaction);
-    }
-}
+#include "src/base/sincos.h"
 
 void chain_node(const arm *a, const double *q, int k, double *x, double *y)
 {
@@ -130,7 +116,7 @@ bool chain_is_folded(const arm *a, const double *q)
 }
 
 // response = M^-1 of the generalised force of a force -(ex, ey) at the tip and a moment -lever on
-// the last link. The same two sweeps as chain_sweep, without velocities and springs.
+// the last link. The same two sweeps as chain_accelerations', without velocities and springs.
 static void unit_response(const arm *a, chain_link *link, const double *q, double ex, double ey,
                           double lever, bool hub_locked, double *response)
 {

@@ -21,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/arm/chain_kernel.h"
+#include "src/arm/chain.h"
 #include "src/arm/impact.h"
 #include "src/base/sincos.h"
 #include "src/predict/pulse.h"
@@ -134,7 +134,7 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
     w[1] = -turn * v;
 
     // the equations of motion there
-    chain_sweep(a, 2, false, true, false, p->links, q, w, p->mode, alpha, &r);
+    chain_accelerations(a, p->links, q, w, p->mode, alpha, &r);
     p->force = r.force;
     p->acceleration = alpha[0];
     p->bend = q[1] - q[0];
@@ -326,8 +326,8 @@ status predict_linearised(const arm *a, const method_parameters *method, const d
 {
     assert(a != NULL && method != NULL && q != NULL && w != NULL && out != NULL);
     assert(a->motor.inductance == 0);
-    const bool plain = a->dof == 2 && a->links == 2 && !chain_is_loaded(a) &&
-                       !wall_gives(&a->wall) && wall_stands(&a->wall);
+    const bool plain = a->dof == 2 && a->links == 2 && arm_is_plain(a) && !wall_gives(&a->wall) &&
+                       wall_stands(&a->wall);
     if (plain) {
         // two links on a rigid hub that goes on towards the wall: the closed form
         const arm touched = touching_now(a, q);
