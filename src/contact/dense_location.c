@@ -109,7 +109,7 @@ void dense_search_event(const arm *a, motion *m, double *h, event_function *firs
 
     // each function that is watched, as far as the first fall so far
     for (event_function w = EVENT_OF_GAP; w < EVENT_FUNCTION_COUNT; w++) {
-        if (!event_function_active(a, m, w) || m->engine->excludes_event(a, m, w, *h)) {
+        if (!event_function_active(a, m, w) || m->engine->excludes_event(m, w)) {
             continue;
         }
         point start = {0, m->engine->event_function(a, m, w, 0)},

@@ -119,8 +119,8 @@ typedef struct engine {
                                 double to);
 
     // Dense engines: a cheap test after which most strides need no search: the event function
-    // certainly stays above zero up to h. False means that the test cannot tell.
-    bool (*excludes_event)(const arm *a, motion *m, event_function w, double h);
+    // certainly stays above zero to the stride's end. False means that the test cannot tell.
+    bool (*excludes_event)(const motion *m, event_function w);
 
     // Dense engines: the first event, as dense_search_event (dense_location.h) has it.
     void (*first_event)(const arm *a, motion *m, double *h, event_function *first, bool *any);

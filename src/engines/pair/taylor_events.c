@@ -98,10 +98,9 @@ double taylor_second_derivative(const arm *a, const motion *m, event_function w,
     return near; // that of both limits of stiction
 }
 
-// Whether the watched function is above zero from the start, or rises from it, and stays above zero
-// over the whole stride.
-static bool clear_throughout(const motion *m, event_function w)
+bool taylor_excludes_event(const motion *m, event_function w)
 {
+    // it is above zero from the start, or rises from it, and stays above zero over the whole stride
     const taylor_stride *s = m->memory;
     const bool wall = w == EVENT_OF_GAP || w == EVENT_OF_FORCE;
     return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > 0;
@@ -123,8 +122,9 @@ void taylor_first_event(const arm *a, motion *m, double *h, event_function *firs
     const bool stuck = now.friction == HUB_STICK;
     const event_function wall = now.contact ? EVENT_OF_FORCE : EVENT_OF_GAP;
     const event_function hub = stuck ? EVENT_OF_STICTION : EVENT_OF_HUB;
-    const bool wall_clear = clear_throughout(m, wall) || (!now.contact && !wall_stands(&a->wall));
-    const bool hub_clear = clear_throughout(m, hub) || (!stuck && a->motor.stiction == 0);
+    const bool wall_clear =
+        taylor_excludes_event(m, wall) || (!now.contact && !wall_stands(&a->wall));
+    const bool hub_clear = taylor_excludes_event(m, hub) || (!stuck && a->motor.stiction == 0);
 
     *first = EVENT_OF_GAP;
     *any = false;
@@ -145,21 +145,4 @@ void taylor_first_event(const arm *a, motion *m, double *h, event_function *firs
         *first = at_hub < at_wall ? hub : wall;
         *any = true;
     }
-}
-
-bool taylor_excludes_event(const arm *a, motion *m, event_function w, double h)
-{
-    const taylor_stride *s = m->memory;
-    const double t = s->used + h;
-    if (clear_throughout(m, w)) {
-        return true;
-    }
-    if (s->kept[KEPT_JUMPED] == 0 && t >= s->kept[KEPT_LENGTH]) {
-        return false; // the bounds of the whole stride leave it to the search
-    }
-
-    // what begins on the edge, or is not asked for as far as the stride goes
-    const polynomial *p = watched(a, m, w);
-    double low = low_of(p, t);
-    return w == EVENT_OF_STICTION ? fmin(low, low_of(&s->far_limit, t)) > 0 : low > 0;
 }

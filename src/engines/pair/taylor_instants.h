@@ -159,69 +159,18 @@ KERNEL void energies_of(coefficients x, const bool hub_spring, const real s[2], 
     put(at->strain, strain / 2);
 }
 
-#if LANES == 1
-// What is made of two series at a time fills a vector: the even and the odd terms of both.
-typedef double two __attribute__((vector_size(16)));
-typedef double four __attribute__((vector_size(32)));
-
-#define BOTH(x, y, n) ((four){(x)[n], (x)[(n) + 1], (y)[n], (y)[(n) + 1]})
-
-// derivatives_of for two.
-KERNEL void derivatives_of_both(const double *x, const double *y, int count, double t, double u,
-                                double dx[3], double dy[3])
-{
-    four value = BOTH(x, y, count - 2), first = {0}, second = {0};
-    for (int n = count - 4; n >= 0; n -= 2) {
-        second = second * u + first;
-        first = first * u + value;
-        value = value * u + BOTH(x, y, n);
-    }
-    for (int i = 0; i < 2; i++) {
-        double *d = i == 0 ? dx : dy;
-        const int even = 2 * i, odd = even + 1;
-        d[0] = value[even] + t * value[odd];
-        d[1] = value[odd] + 2 * t * (first[even] + t * first[odd]);
-        d[2] = 2 * first[even] + 6 * t * first[odd] + 8 * u * (second[even] + t * second[odd]);
-    }
-}
-
-// integral_of for two, and value_of for the second.
-KERNEL void integrals_of_both(const double *x, const double *y, int count, double t, double u,
-                              double *of_x, double *of_y, double *y_value)
-{
-    four sum = BOTH(x, y, count - 2) * BOTH(inverse, inverse, count - 1);
-    two value = {y[count - 2], y[count - 1]};
-    for (int n = count - 4; n >= 0; n -= 2) {
-        sum = sum * u + BOTH(x, y, n) * BOTH(inverse, inverse, n + 1);
-        value = value * u + (two){y[n], y[n + 1]};
-    }
-    *of_x = t * (sum[0] + t * sum[1]);
-    *of_y = t * (sum[2] + t * sum[3]);
-    *y_value = value[0] + t * value[1];
-}
-#endif
-
 // Angles, velocities and accelerations; a stuck hub has no motion.
 KERNEL void motion_of(coefficients x, taylor_form form, real t, real u, mask stuck, real q[3],
                       real w[3], real al[3])
 {
     const int hub = form.hub_spring ? 0 : 1, count = form.order + 2;
     const real zero = (real){0};
-    real d[3][3];
-#if LANES == 1
-    derivatives_of_both(x.first + AT_ANGLE_1, x.first + AT_ANGLE_2, count, t, u, d[1], d[2]);
-    if (form.hub_spring) {
-        derivatives_of(from(x, AT_ANGLE_0), count, t, u, d[0]);
-    }
-#else
     for (int i = hub; i < 3; i++) {
-        derivatives_of(from(x, AT_ANGLE_0 + i * (TAYLOR_MOST + 2)), count, t, u, d[i]);
-    }
-#endif
-    for (int i = hub; i < 3; i++) {
-        q[i] = d[i][0];
-        w[i] = i == hub ? choose(stuck, zero, d[i][1]) : d[i][1];
-        al[i] = i == hub ? choose(stuck, zero, d[i][2]) : d[i][2];
+        real d[3];
+        derivatives_of(from(x, AT_ANGLE_0 + i * (TAYLOR_MOST + 2)), count, t, u, d);
+        q[i] = d[0];
+        w[i] = i == hub ? choose(stuck, zero, d[1]) : d[1];
+        al[i] = i == hub ? choose(stuck, zero, d[2]) : d[2];
     }
 }
 
@@ -230,20 +179,11 @@ KERNEL void losses_of(coefficients x, taylor_form form, real t, real u, mask stu
                       taylor_instants *at)
 {
     const int order = form.order;
-#if LANES == 1
-    if (form.contact) {
-        integrals_of_both(x.first + AT_HUB_SQUARE, x.first + AT_FORCE, order, t, u, at->hub_square,
-                          at->pressed, at->force);
-    } else {
-        put(at->hub_square, integral_of(from(x, AT_HUB_SQUARE), order, t, u));
-    }
-#else
     put(at->hub_square, integral_of(from(x, AT_HUB_SQUARE), order, t, u));
     if (form.contact) {
         put(at->force, value_of(from(x, AT_FORCE), order, t, u));
         put(at->pressed, integral_of(from(x, AT_FORCE), order, t, u));
     }
-#endif
     if (form.damped) {
         put(at->dissipated, integral_of(from(x, AT_DISSIPATION), order, t, u));
         put(at->dissipation, value_of(from(x, AT_DISSIPATION), order, t, u));

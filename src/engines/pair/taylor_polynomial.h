@@ -100,27 +100,6 @@ static inline double curvature_bound(const polynomial *p, double t)
     return all[0] + t * all[1];
 }
 
-// Lower bound of the function for times from 0 to t: its linear part is least at an end, and the
-// higher terms subtract at most the sum of their magnitudes, with a margin for rounding.
-static inline double low_of(const polynomial *p, double t)
-{
-    const double u = t * t, v = u * u, *terms = p->terms;
-    turns sum = {{0, 0}, {0, 0}};
-    int n = p->count - 2;
-    if (n % 4 == 2) {
-        sum.even = magnitudes(terms_at(terms, n));
-        n -= 2;
-    }
-    for (; n >= 4; n -= 4) {
-        sum.odd = sum.odd * v + magnitudes(terms_at(terms, n));
-        sum.even = sum.even * v + magnitudes(terms_at(terms, n - 2));
-    }
-    const pair all = u * (sum.even + u * sum.odd);
-    const double bent = all[0] + t * all[1];
-    const double straight = terms[0] + t * terms[1];
-    return fmin(terms[0], straight) - ((bent + fabs(terms[0]) + fabs(terms[1]) * t) * 1e-12 + bent);
-}
-
 // Divides the function by the time once for each of its first coefficients that is only rounding.
 static inline void deflate_root(polynomial *p, const double limits[3])
 {

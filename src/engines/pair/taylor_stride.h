@@ -32,5 +32,5 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
 value_and_slope taylor_event_function(const arm *a, const motion *m, event_function w, double h);
 double taylor_second_derivative(const arm *a, const motion *m, event_function w, double from,
                                 double to);
-bool taylor_excludes_event(const arm *a, motion *m, event_function w, double h);
+bool taylor_excludes_event(const motion *m, event_function w);
 void taylor_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);

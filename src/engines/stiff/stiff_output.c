@@ -181,11 +181,10 @@ double stiff_second_derivative(const arm *a, const motion *m, event_function w, 
     return most / (length * length);
 }
 
-bool stiff_excludes_event(const arm *a, motion *m, event_function w, double h)
+bool stiff_excludes_event(const motion *m, event_function w)
 {
     const stiff_stride *s = m->memory;
     const stiff_function *far = w == EVENT_OF_CURRENT ? &s->far_current : &s->far_limit;
-    (void)a, (void)h;
     return s->passed == 1 + (int)w || (function_least(&s->watched[w]) > 0 &&
                                        (w < EVENT_OF_STICTION || function_least(far) > 0));
 }

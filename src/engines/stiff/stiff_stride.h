@@ -126,5 +126,5 @@ void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from
 value_and_slope stiff_event_function(const arm *a, const motion *m, event_function w, double h);
 double stiff_second_derivative(const arm *a, const motion *m, event_function w, double from,
                                double to);
-bool stiff_excludes_event(const arm *a, motion *m, event_function w, double h);
+bool stiff_excludes_event(const motion *m, event_function w);
 void stiff_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
