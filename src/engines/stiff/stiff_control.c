@@ -50,7 +50,7 @@ static double miss_of(const stiff_stride *s, const arm *a, const motion *m, even
         slope = end[SLOT_FRICTION] * state_accelerations(m, s->end)[0];
     } else if (w == EVENT_OF_STICTION) {
         value = a->motor.stiction - fabs(end[SLOT_FRICTION_TORQUE]) + s->holds_more;
-        const value_and_slope far = function_at(&s->far_limit, 1);
+        const value_and_slope far = function_at(&s->far[w], 1);
         slope = (far.value < g.value ? far.slope : g.slope) / h;
     }
     return slope < 0 ? value / -slope : 0;

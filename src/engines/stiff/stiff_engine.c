@@ -80,7 +80,7 @@ static void take_up(stiff_stride *s, const arm *a, motion *m)
         s->step.first = a->first;
         s->step.length = kept[STIFF_LENGTH];
         s->ended = false;
-        function_through(&s->force, s->kept + STIFF_FORCE);
+        function_through(&s->force, stiff_force(s));
         s->gap.degree = FUNCTION_MOST - 1;
         memcpy(s->gap.b, s->kept + STIFF_GAPS, sizeof s->gap.b);
         s->known = true;

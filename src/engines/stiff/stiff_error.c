@@ -17,6 +17,16 @@ double stiff_momentum(const stiff_stride *stride, const double *w)
     return sqrt(sum);
 }
 
+// Sum of a row's numbers times y.
+static inline double along(const stiff_step *s, const double *row, const double *y)
+{
+    double sum = 0;
+    for (int k = 0; k < s->dof; k++) {
+        sum += row[k] * y[k];
+    }
+    return sum;
+}
+
 // (M + ...) v + gamma D x, gamma being 1/g of the real system, into `out`.
 static void inertia_and_damping(stiff_step *s, double gamma, const double *v, const double *x,
                                 double *out, double *fx, double *fy)
@@ -55,11 +65,7 @@ static void inertia_and_damping(stiff_step *s, double gamma, const double *v, co
     }
     out[0] += s->hub_inertia * v[0] + gamma * damping * x[0];
     for (int i = 0; i < s->modes; i++) {
-        const double *g = s->mode + i * s->dof;
-        double sum = 0;
-        for (int k = 0; k < s->dof; k++) {
-            sum += g[k] * x[k];
-        }
+        const double *g = stiff_border_row(s, i), sum = along(s, g, x);
         for (int k = 0; k < s->dof; k++) {
             out[k] += gamma * sum * g[k];
         }
@@ -103,14 +109,10 @@ static void solve_bare(const stiff_step *s, double *y)
 static void solve(const stiff_step *s, double target, double *y)
 {
     solve_bare(s, y);
-    const int count = s->modes + (s->contact != STIFF_FREE ? 1 : 0);
+    const int count = stiff_borders(s);
     double z[STIFF_BORDERS];
     for (int i = 0; i < count; i++) {
-        const double *row = i < s->modes ? s->mode + i * s->dof : s->jacobian;
-        double sum = 0;
-        for (int k = 0; k < s->dof; k++) {
-            sum += row[k] * y[k];
-        }
+        const double sum = along(s, stiff_border_row(s, i), y);
         z[i] = i < s->modes                ? s->g.r[0] * sum
                : s->contact == STIFF_GIVES ? target + s->press.r[0] * sum
                                            : target - sum;
@@ -131,38 +133,48 @@ static void solve(const stiff_step *s, double target, double *y)
     }
 }
 
-// The same of a current that flows through an inductance, as the momentum that its torque gives the
-// arm while an angle's error counts as one of velocity.
+// What the embedded formula adds to a course, `start` being its own part, over the whole step.
+static double course_error(const stiff_step *s, double start, const stiff_nodes *course)
+{
+    double sum = start;
+    for (int i = 0; i < RADAU_STAGES; i++) {
+        sum += radau_difference[i] * course->at[i];
+    }
+    return s->length * sum;
+}
+
+// Moment of inertia of the arm stretched out, and its length.
+static double stretched_inertia(const stiff_step *s, double *reach)
+{
+    double inertia = s->hub_inertia;
+    *reach = 0;
+    for (int k = 0; k < s->links; k++) {
+        *reach += s->link[k].length;
+        inertia += s->link[k].mass * *reach * *reach;
+    }
+    return inertia;
+}
+
+// The error of a current that flows through an inductance, as the momentum that its torque gives
+// the arm while an angle's error counts as one of velocity.
 static double current_error(const stiff_step *s, double gamma, bool twice)
 {
     const motor_model *m = s->motor;
     const double volts = m->gain * m->voltage - m->back_emf * s->w0[0];
-    double sum = radau_start * (volts - m->resistance * s->current0) / m->inductance;
-    double inertia = s->hub_inertia, reach = 0;
-    for (int i = 0; i < RADAU_STAGES; i++) {
-        sum += radau_difference[i] * s->current_rate.at[i];
-    }
-    for (int k = 0; k < s->links; k++) {
-        reach += s->link[k].length;
-        inertia += s->link[k].mass * reach * reach;
-    }
+    const double start = radau_start * (volts - m->resistance * s->current0) / m->inductance;
     const double filter = 1 + m->resistance / (m->inductance * gamma);
-    const double filtered = s->length * sum / (twice ? filter * filter : filter);
-    return m->torque_constant * filtered / (ANGLE_RATE * sqrt(inertia));
+    double reach;
+    const double filtered =
+        course_error(s, start, &s->current_rate) / (twice ? filter * filter : filter);
+    return m->torque_constant * filtered / (ANGLE_RATE * sqrt(stretched_inertia(s, &reach)));
 }
 
-// The same of what the wall gives the arm, as the force's polynomial has it.
+// That of what the wall gives the arm, as the force's polynomial has it.
 static double impulse_error(const stiff_step *s)
 {
-    double sum = radau_start * s->force0, inertia = s->hub_inertia, reach = 0;
-    for (int i = 0; i < RADAU_STAGES; i++) {
-        sum += radau_difference[i] * s->force.at[i];
-    }
-    for (int k = 0; k < s->links; k++) {
-        reach += s->link[k].length;
-        inertia += s->link[k].mass * reach * reach;
-    }
-    return s->length * sum * reach / sqrt(inertia);
+    double reach;
+    const double inertia = stretched_inertia(s, &reach);
+    return course_error(s, radau_start * s->force0, &s->force) * reach / sqrt(inertia);
 }
 
 // Filters errors of angles and velocities by the real system, in place: e - g J e is what they are.
@@ -178,11 +190,7 @@ static void filter(stiff_stride *stride, double gamma, double *x, double *w)
     // with the wall
     double target = 0;
     if (s->contact != STIFF_FREE) {
-        double along_x = 0, along_w = 0;
-        for (int k = 0; k < s->dof; k++) {
-            along_x += s->jacobian[k] * x[k];
-            along_w += s->jacobian[k] * w[k];
-        }
+        const double along_x = along(s, s->jacobian, x), along_w = along(s, s->jacobian, w);
         target = s->contact == STIFF_RIGID
                      ? gamma * gamma * along_x
                      : -gamma * s->wall_damping * along_x - s->wall->face_mass * along_w;

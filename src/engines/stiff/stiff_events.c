@@ -41,16 +41,6 @@ static void deflate_root(stiff_stride *s, event_function w, const double limits[
     }
 }
 
-// The contact force between the state's own at both ends.
-static void set_force(stiff_stride *s)
-{
-    double nodes[RADAU_LANES];
-    for (int i = 0; i < RADAU_LANES; i++) {
-        nodes[i] = s->kept[STIFF_FORCE + i];
-    }
-    function_through(&s->force, nodes);
-}
-
 // Of an arm in contact with a wall that gives: its depth, and of Hunt and Crossley's law, for the
 // force itself, the factor k + c v of the power. Of Kelvin and Voigt's the force with its own slope
 // at the start, which decides whether the arm stays.
@@ -62,7 +52,7 @@ static void watch_within(stiff_stride *s, const arm *a, const motion *m)
     if (a->wall.law == WALL_KELVIN_VOIGT) {
         const double grows = -a->wall.stiffness * m->state[SLOT_GAP_VELOCITY] -
                              a->wall.damping * m->state[SLOT_GAP_ACCELERATION];
-        function_through_rising(&s->watched[EVENT_OF_FORCE], s->kept + STIFF_FORCE,
+        function_through_rising(&s->watched[EVENT_OF_FORCE], stiff_force(s),
                                 s->step.length * grows);
         return;
     }
@@ -82,7 +72,7 @@ static void set_gap(stiff_stride *s, const arm *a, const motion *m)
         start = m->state[SLOT_JUMPED] != 0 ? 0 : s->kept[STIFF_GAP];
     }
     for (int i = 0; i < RADAU_LANES; i++) {
-        rates[i] = s->kept[STIFF_RATES + i];
+        rates[i] = s->step.rate.at[i];
         if (state_face_swings(m, m->state)) {
             const wall_face face = state_face(m->state);
             rates[i] += wall_face_after(&wall, face, radau_node[i] * h).velocity;
@@ -106,7 +96,7 @@ static void ignore_rounding(stiff_function *f)
 static void watch_wall(stiff_stride *s, const arm *a, const motion *m, contact_state now)
 {
     bool at_edge = m->state[SLOT_JUMPED] != 0;
-    set_force(s);
+    function_through(&s->force, stiff_force(s)); // the state's own at both ends
     set_gap(s, a, m);
     s->watched[EVENT_OF_FORCE] = s->force;
     if (m->wall_gives && now.contact) {
@@ -157,11 +147,12 @@ static void watch_hub(stiff_stride *s, const arm *a, const motion *m, contact_st
 
     // the nearer limit of what friction holds, and the farther one
     stiff_function *near = &s->watched[EVENT_OF_STICTION];
-    function_through(near, s->kept + STIFF_HOLD);
+    function_through(near, s->step.hold.at);
     const double sign = near->b[0] < 0 ? 1 : -1;
-    s->far_limit = *near;
+    stiff_function *far = &s->far[EVENT_OF_STICTION];
+    *far = *near;
     function_scale(near, sign, a->motor.stiction);
-    function_scale(&s->far_limit, -sign, a->motor.stiction);
+    function_scale(far, -sign, a->motor.stiction);
     s->holds_more = jumped && fabs(near->b[0]) <= EDGE_VALUE ? EDGE_VALUE - near->b[0] : 0;
     function_scale(near, 1, s->holds_more);
 }
@@ -172,12 +163,12 @@ static void watch_current(stiff_stride *s, const arm *a, const motion *m)
     const double most = motor->current_limit, side = s->step.limited < 0 ? -1 : 1;
     double current[RADAU_LANES];
     for (int i = 0; i < RADAU_LANES; i++) {
-        current[i] = side * s->kept[STIFF_CURRENT + i];
+        current[i] = side * s->step.current.at[i];
     }
     stiff_function *near = &s->watched[EVENT_OF_CURRENT];
     function_through(near, current);
-    s->far_current = *near;
-    function_scale(&s->far_current, 1, most);
+    s->far[EVENT_OF_CURRENT] = *near;
+    function_scale(&s->far[EVENT_OF_CURRENT], 1, most);
     function_scale(near, -1, most);
     if (s->step.drive == STIFF_LIMITED) {
         for (int i = 0; i < RADAU_LANES; i++) {

@@ -126,7 +126,7 @@ bool stiff_solve_stages(stiff_stride *stride, bool fresh, double offset, double 
         s->shift[0].at[i] = at.place;
         s->shift[1].at[i] = at.velocity;
     }
-    stride->loops->predict(s, stiff_accelerations(stride), stride->kept + STIFF_FORCE, weight[0]);
+    stride->loops->predict(s, stiff_accelerations(stride), stiff_force(stride), weight[0]);
 
     // with the tangent at the first iterate
     const double wanted = tolerance * scale;
@@ -164,16 +164,7 @@ void stiff_keep_stages(stiff_stride *stride)
 {
     const stiff_step *s = &stride->step;
     double *kept = stride->kept;
-    memcpy(kept + STIFF_FORCE, s->force.at, sizeof s->force.at);
-    memcpy(kept + STIFF_RATES, s->rate.at, sizeof s->rate.at);
-    memcpy(kept + STIFF_HOLD, s->hold.at, sizeof s->hold.at);
-    memcpy(kept + STIFF_VISCOUS, s->viscous.at, sizeof s->viscous.at);
-    memcpy(kept + STIFF_LOST, s->lost.at, sizeof s->lost.at);
-    memcpy(kept + STIFF_WALL_LOST, s->wall_lost.at, sizeof s->wall_lost.at);
-    memcpy(kept + STIFF_ELECTRIC, s->electric.at, sizeof s->electric.at);
-    memcpy(kept + STIFF_PUSHED, s->pushed.at, sizeof s->pushed.at);
-    memcpy(kept + STIFF_CURRENT, s->current.at, sizeof s->current.at);
-    memcpy(kept + STIFF_CURRENT_RATE, s->current_rate.at, sizeof s->current_rate.at);
+    memcpy(kept + STIFF_COURSE, s->course, sizeof s->course);
     memcpy(stiff_angles(stride), s->q0, (size_t)s->dof * sizeof(double));
     memcpy(stiff_velocities(stride), s->w0, (size_t)s->dof * sizeof(double));
     double *a = stiff_accelerations(stride);
@@ -188,7 +179,7 @@ void stiff_keep_stages(stiff_stride *stride)
         memset(a, 0, (size_t)s->dof * RADAU_LANES * sizeof *a);
     }
     for (int i = 0; i < RADAU_LANES && both && s->contact == STIFF_RIGID; i++) {
-        kept[STIFF_FORCE + i] = s->force.at[RADAU_LANES - 1];
+        stiff_force(stride)[i] = s->force.at[RADAU_LANES - 1];
     }
     kept[STIFF_LENGTH] = s->length;
 }

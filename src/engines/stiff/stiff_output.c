@@ -9,44 +9,58 @@
 
 // --- states --------------------------------------------------------------------------------------
 
-// The quadratures' integrals from the step's start, with these weights.
-static void add_quadratures(const stiff_stride *s, const motion *m, const double *weight,
-                            double *state)
+// What numbers at the stages add up to with such weights.
+static double weighted(const double *weight, const double *stages)
 {
-    static const int of[][2] = {
-        {QUADRATURE_VISCOUS, STIFF_VISCOUS},      {QUADRATURE_DAMPING, STIFF_LOST},
-        {QUADRATURE_FORCE, STIFF_FORCE},          {QUADRATURE_WALL, STIFF_WALL_LOST},
-        {QUADRATURE_CURRENT, STIFF_CURRENT_RATE}, {QUADRATURE_MOTOR, STIFF_ELECTRIC},
-        {QUADRATURE_PUSHED, STIFF_PUSHED}};
-    double *after = state_quadratures(m, state);
-    for (int i = 0; i < (int)(sizeof of / sizeof *of); i++) {
-        double sum = 0;
-        for (int j = 0; j < RADAU_STAGES; j++) {
-            sum += weight[j] * s->kept[of[i][1] + j];
-        }
-        after[of[i][0]] = s->kept[STIFF_QUADRATURES + of[i][0]] + s->kept[STIFF_LENGTH] * sum;
+    double sum = 0;
+    for (int j = 0; j < RADAU_STAGES; j++) {
+        sum += weight[j] * stages[j];
     }
+    return sum;
+}
+
+// Angle, velocity and acceleration of body k at x of the step, which the weights are for.
+typedef struct body_motion {
+    double q, w, a;
+} body_motion;
+
+static inline body_motion body_at(const stiff_stride *s, int k, double x,
+                                  const radau_weights *weight)
+{
+    const double h = s->kept[STIFF_LENGTH], w0 = stiff_velocities(s)[k];
+    const double *stages = stiff_accelerations(s) + RADAU_LANES * k;
+    double value = 0, once = 0, twice = 0;
+    for (int j = 0; j < RADAU_STAGES; j++) {
+        value += weight->value[j] * stages[j];
+        once += weight->integral[j] * stages[j];
+        twice += weight->twice[j] * stages[j];
+    }
+    return (body_motion){stiff_angles(s)[k] + h * (x * w0 + h * twice), w0 + h * once, value};
+}
+
+// A quadrature there.
+static double quadrature_at(const stiff_stride *s, int of, const radau_weights *weight)
+{
+    return s->kept[STIFF_QUADRATURES + of] +
+           s->kept[STIFF_LENGTH] *
+               weighted(weight->integral, s->kept + STIFF_COURSE + of * RADAU_LANES);
 }
 
 // Angles, velocities and what has added up at `time` after the step's start, evaluated.
 void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double time, double *state)
 {
-    const double h = s->kept[STIFF_LENGTH], x = time / h;
-    const double *q0 = stiff_angles(s), *w0 = stiff_velocities(s);
-    const double *acceleration = stiff_accelerations(s);
+    const double x = time / s->kept[STIFF_LENGTH];
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     radau_weights weight;
     radau_weights_at(x, &weight);
     for (int k = 0; k < s->step.dof; k++) {
-        double once = 0, twice = 0;
-        for (int j = 0; j < RADAU_STAGES; j++) {
-            once += weight.integral[j] * acceleration[RADAU_LANES * k + j];
-            twice += weight.twice[j] * acceleration[RADAU_LANES * k + j];
-        }
-        q[k] = q0[k] + h * (x * w0[k] + h * twice);
-        w[k] = w0[k] + h * once;
+        const body_motion at = body_at(s, k, x, &weight);
+        q[k] = at.q;
+        w[k] = at.w;
     }
-    add_quadratures(s, m, weight.integral, state);
+    for (int i = 0; i < QUADRATURE_COUNT; i++) {
+        state_quadratures(m, state)[i] = quadrature_at(s, i, &weight);
+    }
     if (a->motor.electric) {
         double *current = state_quadratures(m, state) + QUADRATURE_CURRENT;
         const double most = a->motor.current_limit;
@@ -75,9 +89,10 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
         state_quadratures(m, state)[QUADRATURE_WALL] +=
             wall_face_energy(&wall, start) + work - motion_wall_energy(a, m, state);
     }
-    state[SLOT_MOTOR_WORK] = s->kept[STIFF_WORK] + a->motor.torque * (q[0] - q0[0]);
+    const double turned = q[0] - stiff_angles(s)[0];
+    state[SLOT_MOTOR_WORK] = s->kept[STIFF_WORK] + a->motor.torque * turned;
     state[SLOT_FRICTION_LOSS] =
-        s->kept[STIFF_RUBBED] + state[SLOT_FRICTION] * a->motor.stiction * (q[0] - q0[0]);
+        s->kept[STIFF_RUBBED] + state[SLOT_FRICTION] * a->motor.stiction * turned;
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
            (size_t)m->dof * sizeof(double));
 }
@@ -87,32 +102,18 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
 static void sense_within(const stiff_stride *s, const arm *a, const motion *m, double time,
                          double *state)
 {
-    const double h = s->kept[STIFF_LENGTH], x = time / h;
+    const double x = time / s->kept[STIFF_LENGTH];
     const int seen[] = {0, a->first, a->dof - 1};
     radau_weights weight;
     radau_weights_at(x, &weight);
     for (int i = 0; i < (int)(sizeof seen / sizeof *seen); i++) {
-        const int k = seen[i];
-        const double *of_body = stiff_accelerations(s) + RADAU_LANES * k;
-        const double w0 = stiff_velocities(s)[k];
-        double value = 0, once = 0, twice = 0;
-        for (int j = 0; j < RADAU_STAGES; j++) {
-            value += weight.value[j] * of_body[j];
-            once += weight.integral[j] * of_body[j];
-            twice += weight.twice[j] * of_body[j];
-        }
-        state_angles(m, state)[k] = stiff_angles(s)[k] + h * (x * w0 + h * twice);
-        state_velocities(m, state)[k] = w0 + h * once;
-        state_accelerations(m, state)[k] = value;
-    }
-    const double *force = s->kept + STIFF_FORCE;
-    double pressed = 0;
-    for (int j = 0; j < RADAU_STAGES; j++) {
-        pressed += weight.integral[j] * force[j];
+        const body_motion at = body_at(s, seen[i], x, &weight);
+        state_angles(m, state)[seen[i]] = at.q;
+        state_velocities(m, state)[seen[i]] = at.w;
+        state_accelerations(m, state)[seen[i]] = at.a;
     }
     state[SLOT_FORCE] = function_at(&s->force, x).value;
-    state_quadratures(m, state)[QUADRATURE_FORCE] =
-        s->kept[STIFF_QUADRATURES + QUADRATURE_FORCE] + h * pressed;
+    state_quadratures(m, state)[QUADRATURE_FORCE] = quadrature_at(s, QUADRATURE_FORCE, &weight);
 }
 
 status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
@@ -155,8 +156,7 @@ value_and_slope stiff_event_function(const arm *a, const motion *m, event_functi
     const double x = (s->used + h) / s->step.length;
     value_and_slope near = function_at(&s->watched[w], x);
     if (w >= EVENT_OF_STICTION) {
-        const value_and_slope far =
-            function_at(w == EVENT_OF_CURRENT ? &s->far_current : &s->far_limit, x);
+        const value_and_slope far = function_at(&s->far[w], x);
         near = near.value < far.value ? near : far;
     }
     (void)a;
@@ -172,8 +172,7 @@ double stiff_second_derivative(const arm *a, const motion *m, event_function w, 
     const stiff_function *f = s->used > 0 && w == EVENT_OF_FORCE ? &s->force : &s->watched[w];
     double most = function_curvature(f, x0, x1);
     if (w >= EVENT_OF_STICTION) {
-        const stiff_function *far = w == EVENT_OF_CURRENT ? &s->far_current : &s->far_limit;
-        most = larger(most, function_curvature(far, x0, x1));
+        most = larger(most, function_curvature(&s->far[w], x0, x1));
     } else if (w == EVENT_OF_FORCE) {
         most = larger(most, function_curvature(&s->force, x0, x1));
     }
@@ -184,25 +183,17 @@ double stiff_second_derivative(const arm *a, const motion *m, event_function w, 
 bool stiff_excludes_event(const motion *m, event_function w)
 {
     const stiff_stride *s = m->memory;
-    const stiff_function *far = w == EVENT_OF_CURRENT ? &s->far_current : &s->far_limit;
     return s->passed == 1 + (int)w || (function_least(&s->watched[w]) > 0 &&
-                                       (w < EVENT_OF_STICTION || function_least(far) > 0));
+                                       (w < EVENT_OF_STICTION || function_least(&s->far[w]) > 0));
 }
 
 // The hub's angle and velocity at x of the step.
 static value_and_slope hub_at(const stiff_stride *s, double x)
 {
-    const double length = s->step.length, *of_hub = stiff_accelerations(s);
-    radau_weights w;
-    radau_weights_at(x, &w);
-    double once = 0, twice = 0;
-    for (int j = 0; j < RADAU_STAGES; j++) {
-        once += w.integral[j] * of_hub[j];
-        twice += w.twice[j] * of_hub[j];
-    }
-    const double velocity = stiff_velocities(s)[0];
-    return (value_and_slope){stiff_angles(s)[0] + length * (x * velocity + length * twice),
-                             velocity + length * once};
+    radau_weights weight;
+    radau_weights_at(x, &weight);
+    const body_motion hub = body_at(s, 0, x, &weight);
+    return (value_and_slope){hub.q, hub.w};
 }
 
 void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,

@@ -50,6 +50,9 @@ typedef struct stiff_complex {
 typedef enum stiff_wall { STIFF_FREE, STIFF_RIGID, STIFF_GIVES } stiff_wall;
 typedef enum stiff_drive { STIFF_DIRECT, STIFF_FOLLOWS, STIFF_FLOWS, STIFF_LIMITED } stiff_drive;
 
+// Courses of a step that a state keeps.
+enum { STIFF_COURSES = QUADRATURE_COUNT + 3 };
+
 // A link and the joint before it, and the link's direction at the step's start.
 typedef struct stiff_link {
     double length, mass, inertia;          // [m], [kg], about the centre of mass [kg m2]
@@ -100,9 +103,15 @@ typedef struct stiff_step {
     double current0, force0;
     stiff_stage *stage; // [dof]
     stiff_body *body;   // [links]
-    stiff_nodes force, gap, rate, current, current_rate;
-    stiff_nodes hold, viscous, lost, wall_lost, electric, pushed; // [N m], powers [W]
-    double time;                                                  // of its start [s]
+    stiff_nodes gap;
+    union { // courses that a state keeps: first the quadratures' rates, in their order
+        struct {
+            stiff_nodes viscous, lost, force, wall_lost, current_rate, electric, pushed;
+            stiff_nodes rate, hold, current;
+        };
+        stiff_nodes course[STIFF_COURSES];
+    };
+    double time; // of its start [s]
     // of a wall that moves, else zeros: place and velocity [m], [m/s]
     stiff_nodes shift[2];
 
@@ -116,6 +125,16 @@ typedef struct stiff_step {
     stiff_complex *border[STIFF_BORDERS]; // the contact's last [dof]
     stiff_complex corner[STIFF_BORDERS][STIFF_BORDERS], unknown[STIFF_BORDERS];
 } stiff_step;
+
+// How many borders there are, and the row of one: the damped modes', then the contact's.
+static inline int stiff_borders(const stiff_step *s)
+{
+    return s->modes + (s->contact != STIFF_FREE ? 1 : 0);
+}
+static inline const double *stiff_border_row(const stiff_step *s, int i)
+{
+    return i < s->modes ? s->mode + i * s->dof : s->jacobian;
+}
 
 // What is built for each width of the processor's vectors, with the same bits.
 typedef struct stiff_loops {

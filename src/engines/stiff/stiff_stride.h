@@ -20,18 +20,9 @@ enum stiff_kept {
     STIFF_WORK,                // SLOT_MOTOR_WORK there [J]
     STIFF_RUBBED,              // SLOT_FRICTION_LOSS there [J]
     STIFF_FACE,                // place and velocity of a wall's face there [m], [m/s]
-    STIFF_QUADRATURES = STIFF_FACE + 2,                 // at the step's start
-    STIFF_FORCE = STIFF_QUADRATURES + QUADRATURE_COUNT, // contact force at the stages [N]
-    STIFF_RATES = STIFF_FORCE + RADAU_LANES,            // of the gap [m/s]
-    STIFF_HOLD = STIFF_RATES + RADAU_LANES,             // [N m]
-    STIFF_VISCOUS = STIFF_HOLD + RADAU_LANES,           // [W]
-    STIFF_LOST = STIFF_VISCOUS + RADAU_LANES,           // [W]
-    STIFF_WALL_LOST = STIFF_LOST + RADAU_LANES,         // [W]
-    STIFF_ELECTRIC = STIFF_WALL_LOST + RADAU_LANES,     // [W]
-    STIFF_PUSHED = STIFF_ELECTRIC + RADAU_LANES,        // [W]
-    STIFF_CURRENT = STIFF_PUSHED + RADAU_LANES,         // [A]
-    STIFF_CURRENT_RATE = STIFF_CURRENT + RADAU_LANES,   // [A/s]
-    STIFF_GAPS = STIFF_CURRENT_RATE + RADAU_LANES,      // the gap's Bernstein coefficients [m]
+    STIFF_QUADRATURES = STIFF_FACE + 2,                      // at the step's start
+    STIFF_COURSE = STIFF_QUADRATURES + QUADRATURE_COUNT,     // those of stiff_step
+    STIFF_GAPS = STIFF_COURSE + STIFF_COURSES * RADAU_LANES, // the gap's Bernstein coefficients [m]
     STIFF_HEAD = STIFF_GAPS + FUNCTION_MOST
     // then angles and velocities at the start [dof], accelerations at the stages [dof][RADAU_LANES]
 };
@@ -45,7 +36,8 @@ typedef struct stiff_stride {
     double used;      // of it before m->state [s]
 
     // what the contact machine watches
-    stiff_function watched[EVENT_FUNCTION_COUNT], far_limit, far_current, force, gap;
+    stiff_function watched[EVENT_FUNCTION_COUNT], force, gap;
+    stiff_function far[EVENT_FUNCTION_COUNT]; // the farther limit of stiction or current
     bool divided[EVENT_FUNCTION_COUNT];
     double holds_more; // than stiction, just after an event [N m]
     double *end;       // state at the step's end, without what it keeps
@@ -56,6 +48,10 @@ typedef struct stiff_stride {
     double *scratch[4]; // [dof]
 } stiff_stride;
 
+static inline double *stiff_force(const stiff_stride *s) // contact force at the stages [N]
+{
+    return s->kept + STIFF_COURSE + QUADRATURE_FORCE * RADAU_LANES;
+}
 static inline double *stiff_angles(const stiff_stride *s)
 {
     return s->kept + STIFF_HEAD;

@@ -45,16 +45,6 @@ KERNEL complex_lanes along(const stiff_step *s, const double *row, const complex
     return sum;
 }
 
-// How many borders there are, and the row of one: the damped modes', then the contact's.
-KERNEL int borders(const stiff_step *s)
-{
-    return s->modes + (s->contact != STIFF_FREE ? 1 : 0);
-}
-KERNEL const double *border_row(const stiff_step *s, int i)
-{
-    return i < s->modes ? s->mode + i * s->dof : s->jacobian;
-}
-
 // J at the middle stage, of whose lanes that is one.
 KERNEL void find_jacobian(stiff_step *s, int half, int lane)
 {
@@ -151,12 +141,12 @@ static void factor(stiff_step *s)
     }
 
     // the borders' answers
-    const int count = borders(s);
+    const int count = stiff_borders(s);
     if (s->contact != STIFF_FREE) {
         find_jacobian(s, HALF, LANE);
     }
     for (int b = 0; b < count; b++) {
-        const double *row = border_row(s, b);
+        const double *row = stiff_border_row(s, b);
         for (int k = 0; k < s->dof; k++) {
             s->border[b][k] = number(-row[k]);
         }
@@ -180,7 +170,7 @@ static void factor(stiff_step *s)
     for (int i = 0; i < count; i++) {
         const bool wall = i == s->modes;
         for (int j = 0; j < count; j++) {
-            const complex_lanes sum = along(s, border_row(s, i), s->border[j]);
+            const complex_lanes sum = along(s, stiff_border_row(s, i), s->border[j]);
             const complex_lanes by = !wall ? g : s->contact == STIFF_GIVES ? s->press : number(-1);
             const bool one = i == j && !(wall && s->contact == STIFF_RIGID);
             s->corner[i][j] = minus(number(one ? 1 : 0), times(by, sum));
@@ -199,14 +189,14 @@ static void factor(stiff_step *s)
 
 static void solve(stiff_step *s, const complex_lanes *target)
 {
-    const int count = borders(s);
+    const int count = stiff_borders(s);
     complex_lanes *x = s->unknown;
     for (int k = 0; k < s->dof; k++) {
         s->y[k] = s->rhs[k];
     }
     solve_bare(s, s->y);
     for (int i = 0; i < count; i++) {
-        const complex_lanes sum = along(s, border_row(s, i), s->y);
+        const complex_lanes sum = along(s, stiff_border_row(s, i), s->y);
         x[i] = i < s->modes                ? times(s->g, sum)
                : s->contact == STIFF_GIVES ? plus(*target, times(s->press, sum))
                                            : minus(*target, sum);
