@@ -3,7 +3,7 @@
 // Between events motion_step() moves the arm in one contact state; it ends a step at the first
 // event, just beyond it. motion_apply() then takes the transition:
 //
-//                   gap closes:  impact() at a speed,  touch() without
+//                   gap closes:  impact() at a speed, touch without
 //     motion_start  +--------+ --------------------------> +---------+
 //     ------------> |  FREE  |                             | CONTACT | --+  impact():
 //               +-> |        | <-------------------------- |         | <-+  motion_push() into
@@ -31,7 +31,7 @@
 // A wall that gives has a face, which goes with the arm in contact and moves on its own while the
 // arm is free (motion_try_step); gap and speed are those to the face. One with a mass is met as a
 // rigid wall is, by impact() and release(). One without imposes no constraint and causes no impact:
-// there touch() begins the contact at any speed, and release() ends it where the law's force falls
+// there a touch begins the contact at any speed, and release() ends it where the law's force falls
 // to zero. Behind its place at rest a damped face cannot follow then, and returns at its own rate
 // (wall.h).
 //
@@ -291,13 +291,6 @@ static void impact(const arm *a, motion *m, motion_report *report)
     resolve(a, m, e == 0, MOTION_IMPACT);
 }
 
-// The arm comes to the wall without an approach velocity, as at a bounce's end; to a wall that
-// gives at any speed.
-static void touch(const arm *a, motion *m)
-{
-    resolve(a, m, true, MOTION_TOUCH);
-}
-
 // The wall would have to pull: the arm leaves it.
 static void release(const arm *a, motion *m)
 {
@@ -353,7 +346,7 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
         impact(a, m, report);
         break;
     case MOTION_TOUCH:
-        touch(a, m);
+        resolve(a, m, true, MOTION_TOUCH); // at no speed, or on a wall that gives at any
         break;
     case MOTION_RELEASE:
         release(a, m);

@@ -9,15 +9,9 @@
 
 enum { MOST_CUTS = 40, MOST_ITERATIONS = 100 };
 
-// A function at one instant of the stride.
-typedef struct point {
-    double time; // since the stride's start [s]
-    value_and_slope at;
-} point;
-
 // Where the cubic through both ends' values and slopes, the time over the value, is zero: for a
 // function that falls all the way; else the root of the chord.
-static double guess_root(point lo, point hi)
+static double guess_root(step_point lo, step_point hi)
 {
     const double fall = lo.at.value - hi.at.value, length = hi.time - lo.time;
     const double s = lo.at.value / fall, chord = lo.time + length * s;
@@ -31,8 +25,8 @@ static double guess_root(point lo, point hi)
 
 // The root of an event function that falls from `lo` to `hi`, `second` a bound on its second
 // derivative: Newton's method within the bracket, halved where that leaves it or gains too little.
-static double root_between(const arm *a, const motion *m, event_function w, point lo, point hi,
-                           double second)
+static double root_between(const arm *a, const motion *m, event_function w, step_point lo,
+                           step_point hi, double second)
 {
     double from = lo.time, to = hi.time;
     double t = guess_root(lo, hi);
@@ -73,8 +67,8 @@ static double root_between(const arm *a, const motion *m, event_function w, poin
 // the bound on the second derivative excludes a fall are skipped; those in which it excludes a
 // rising slope have exactly one root; all others are bisected. Where the function is not finite
 // nothing is found: the state at the step's end reports that.
-static double first_zero_crossing(const arm *a, const motion *m, event_function w, point lo,
-                                  point hi, int cuts, double known)
+static double first_zero_crossing(const arm *a, const motion *m, event_function w, step_point lo,
+                                  step_point hi, int cuts, double known)
 {
     const double length = hi.time - lo.time;
     const double second =
@@ -94,7 +88,7 @@ static double first_zero_crossing(const arm *a, const motion *m, event_function 
 
     // each half by itself, the earlier one first
     double time = 0.5 * (lo.time + hi.time);
-    point middle = {time, m->engine->event_function(a, m, w, time)};
+    step_point middle = {time, m->engine->event_function(a, m, w, time)};
     if (middle.at.value < 0) {
         return first_zero_crossing(a, m, w, lo, middle, cuts - 1, second);
     }
@@ -112,8 +106,8 @@ void dense_search_event(const arm *a, motion *m, double *h, event_function *firs
         if (!event_function_active(a, m, w) || m->engine->excludes_event(m, w)) {
             continue;
         }
-        point start = {0, m->engine->event_function(a, m, w, 0)},
-              end = {*h, m->engine->event_function(a, m, w, *h)};
+        step_point start = {0, m->engine->event_function(a, m, w, 0)},
+                   end = {*h, m->engine->event_function(a, m, w, *h)};
         double fall =
             start.at.value < 0 ? 0 : first_zero_crossing(a, m, w, start, end, MOST_CUTS, HUGE_VAL);
         if (fall >= 0) {
@@ -126,16 +120,16 @@ void dense_search_event(const arm *a, motion *m, double *h, event_function *firs
 
 // --- the largest force -------------------------------------------------------------------------
 
-static void note_force(motion *m, point p)
+static void note_force(motion *m, step_point p)
 {
     motion_note_force(m, m->state[SLOT_TIME] + p.time, p.at.value);
 }
 
 // Where the force stops growing between `lo`, where it grows, and `hi`, where it falls: secants of
 // the slope within the bracket, halved where they gain too little.
-static point summit(const arm *a, motion *m, point lo, point hi)
+static step_point summit(const arm *a, motion *m, step_point lo, step_point hi)
 {
-    point top = lo.at.value > hi.at.value ? lo : hi;
+    step_point top = lo.at.value > hi.at.value ? lo : hi;
 
     double resolution = 1e-9 * (hi.time - lo.time);
 
@@ -146,7 +140,7 @@ static point summit(const arm *a, motion *m, point lo, point hi)
         // which side of the summit it is on
         double time = lo.time + share * (hi.time - lo.time);
         double last = top.time;
-        top = (point){time, motion_output(a, m, OUTPUT_FORCE, time)};
+        top = (step_point){time, motion_output(a, m, OUTPUT_FORCE, time)};
         if (fabs(time - last) <= resolution) {
             break;
         }
@@ -159,7 +153,8 @@ static point summit(const arm *a, motion *m, point lo, point hi)
     return top;
 }
 
-static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, double known)
+static void raise_peak(const arm *a, motion *m, step_point lo, step_point hi, int cuts,
+                       double known)
 {
     // no larger force is possible here, or the slope keeps its sign
     const double length = hi.time - lo.time;
@@ -182,7 +177,7 @@ static void raise_peak(const arm *a, motion *m, point lo, point hi, int cuts, do
 
     // each half by itself
     double time = 0.5 * (lo.time + hi.time);
-    point middle = {time, motion_output(a, m, OUTPUT_FORCE, time)};
+    step_point middle = {time, motion_output(a, m, OUTPUT_FORCE, time)};
     note_force(m, middle);
     raise_peak(a, m, lo, middle, cuts - 1, second);
     raise_peak(a, m, middle, hi, cuts - 1, second);
@@ -204,23 +199,11 @@ static value_and_slope rest_gap_at(const arm *a, motion *m, double h)
 void dense_deepest(const arm *a, motion *m, double h)
 {
     enum { PIECES = 8 };
-    point lo = {0, rest_gap_at(a, m, 0)};
+    step_point lo = {0, rest_gap_at(a, m, 0)};
     for (int i = 1; i <= PIECES; i++) {
         const double time = i * h / PIECES;
-        const point hi = {time, rest_gap_at(a, m, time)};
-
-        // it turns back within: false position on the rate, the end that stays halved
-        double from = lo.time, to = hi.time, v0 = lo.at.slope, v1 = hi.at.slope;
-        for (int k = 0; k < MOST_CUTS && v0 < 0 && v1 > 0 && to - from > 1e-9 * h; k++) {
-            const double t = from + (to - from) * v0 / (v0 - v1);
-            const value_and_slope g = rest_gap_at(a, m, t);
-            m->record.largest_penetration = fmax(m->record.largest_penetration, -g.value);
-            if (g.slope < 0) {
-                from = t, v0 = g.slope, v1 /= 2;
-            } else {
-                to = t, v1 = g.slope, v0 /= 2;
-            }
-        }
+        const step_point hi = {time, rest_gap_at(a, m, time)};
+        locate_deepest(a, m, lo, hi, 1e-9 * h, rest_gap_at);
         lo = hi;
     }
 }
@@ -233,8 +216,8 @@ void dense_peak(const arm *a, motion *m, double h)
     }
 
     // both ends, and what may rise between them
-    point start = {0, motion_output(a, m, OUTPUT_FORCE, 0)},
-          end = {h, motion_output(a, m, OUTPUT_FORCE, h)};
+    step_point start = {0, motion_output(a, m, OUTPUT_FORCE, 0)},
+               end = {h, motion_output(a, m, OUTPUT_FORCE, h)};
     note_force(m, start);
     note_force(m, end);
     raise_peak(a, m, start, end, CUTS, HUGE_VAL);

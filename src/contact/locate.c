@@ -9,20 +9,8 @@
 #define UNRESOLVED_IMPACT 0.1 // share of a step that an impact takes where steps do not resolve it
 #define LOCATION_TIME     1e-15 // width to which the bracket of an event is narrowed [s]
 
-// What the law of a wall that gives says of an arm in contact.
-static double law_at(const arm *a, const double *state)
-{
-    return wall_force(&a->wall, -state[SLOT_GAP], -state[SLOT_GAP_VELOCITY]);
-}
-
-static double law_slope_at(const arm *a, const double *state)
-{
-    return wall_force_slope(&a->wall, -state[SLOT_GAP], -state[SLOT_GAP_VELOCITY],
-                            -state[SLOT_GAP_ACCELERATION]);
-}
-
 // Whether the arm is in contact with a wall that gives, and no constraint holds it: the watched gap
-// is then the depth, and the watched force that of the law, negative where it would pull.
+// is then the depth.
 static bool within_wall(const motion *m, const double *state)
 {
     return m->wall_gives && state[SLOT_CONTACT] != 0;
@@ -35,7 +23,7 @@ static double watch_value(const arm *a, const motion *m, const double *state, ev
     case EVENT_OF_GAP:
         return within_wall(m, state) ? -state[SLOT_GAP] : state[SLOT_GAP];
     case EVENT_OF_FORCE:
-        return within_wall(m, state) ? law_at(a, state) : state[SLOT_FORCE];
+        return state[SLOT_FORCE];
     case EVENT_OF_HUB:
         return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
     case EVENT_OF_STICTION:
@@ -71,22 +59,15 @@ static double cubic_dip(double v0, double v1, double d0, double d1)
 
 // Slopes of a watched function at both ends of the step from m->state to m->trial, per step. False
 // where they are not known.
-static bool watch_slopes(const arm *a, const motion *m, double h, event_function w, double *d0,
-                         double *d1)
+static bool watch_slopes(const motion *m, double h, event_function w, double *d0, double *d1)
 {
     const double *state = m->state, *trial = m->trial;
 
-    const bool within = within_wall(m, state);
-
-    // states contain the slopes of gap and hub velocity; the law of a wall that gives has its own
-    // slope
+    // states contain the slopes of gap and hub velocity
     if (w == EVENT_OF_GAP) {
-        double sign = within ? -1 : 1;
+        double sign = within_wall(m, state) ? -1 : 1;
         *d0 = sign * state[SLOT_GAP_VELOCITY] * h;
         *d1 = sign * trial[SLOT_GAP_VELOCITY] * h;
-    } else if (w == EVENT_OF_FORCE && within) {
-        *d0 = law_slope_at(a, state) * h;
-        *d1 = law_slope_at(a, trial) * h;
     } else if (w == EVENT_OF_HUB) {
         *d0 = state[SLOT_FRICTION] * state_accelerations(m, m->state)[0] * h;
         *d1 = state[SLOT_FRICTION] * state_accelerations(m, m->trial)[0] * h;
@@ -117,7 +98,7 @@ static double suspected_dip(const arm *a, const motion *m, double h, event_funct
 {
     double d0, d1;
 
-    if (!watch_slopes(a, m, h, w, &d0, &d1)) {
+    if (!watch_slopes(m, h, w, &d0, &d1)) {
         // near the limit of friction the middle of the step is checked
         return fmin(v0, v1) < 0.2 * a->motor.stiction ? 0.5 : -1;
     }
@@ -132,12 +113,11 @@ static double suspected_dip(const arm *a, const motion *m, double h, event_funct
 
 // A first guess of where the function crosses zero between v0 > 0 and v1 < 0: the root of Hermite's
 // cubic by a few steps of false position, or of the straight line.
-static double guess_crossing(const arm *a, const motion *m, double h, event_function w, double v0,
-                             double v1)
+static double guess_crossing(const motion *m, double h, event_function w, double v0, double v1)
 {
     double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
 
-    if (!watch_slopes(a, m, h, w, &d0, &d1)) {
+    if (!watch_slopes(m, h, w, &d0, &d1)) {
         return s;
     }
 
@@ -207,7 +187,7 @@ static status narrow(const arm *a, motion *m, event_function w, double s, bracke
 static status search(const arm *a, motion *m, event_function w, double *h, bool *found)
 {
     double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
-    double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(a, m, *h, w, v0, v1) : 0.5 * *h;
+    double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(m, *h, w, v0, v1) : 0.5 * *h;
     double lo = 0, hi = *h, tolerance = event_tolerance(w);
 
     // admissible at the end: only a dip in between can matter
@@ -298,46 +278,42 @@ status locate_first_event(const arm *a, motion *m, double *h, event_function *fi
 
 // --- the largest depth and force ---------------------------------------------------------------
 
-// Records the deepest point of a step within which the arm turns back, m->trial being its end.
-static status locate_depth(const arm *a, motion *m, double h)
+void locate_deepest(const arm *a, motion *m, step_point lo, step_point hi, double resolution,
+                    rest_gap_function at)
 {
-    enum { MOST_ITERATIONS = 40 };
-    double v0 = -m->state[SLOT_GAP_VELOCITY], v1 = -m->trial[SLOT_GAP_VELOCITY], lo = 0, hi = h;
-    if (motion_wall_is_rigid(m) || !(v0 > 0 && v1 < 0)) {
-        return STATUS_OK;
-    }
-
     // false position on the rate, the end that stays halved
-    memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
-    for (int i = 0; i < MOST_ITERATIONS && hi - lo > 1e-9 * h; i++) {
-        double s = lo + (hi - lo) * v0 / (v0 - v1); // false position, the end that stays halved
-        status failed = motion_try_step(a, m, s);
-        if (failed != STATUS_OK) {
-            return failed;
-        }
-        double v = -m->trial[SLOT_GAP_VELOCITY];
-        m->record.largest_penetration =
-            fmax(m->record.largest_penetration, -state_rest_gap(m->trial));
-        if (v > 0) {
-            lo = s, v0 = v, v1 /= 2;
+    double from = lo.time, to = hi.time, v0 = lo.at.slope, v1 = hi.at.slope;
+    for (int i = 0; i < 40 && v0 < 0 && v1 > 0 && to - from > resolution; i++) {
+        const double t = from + (to - from) * v0 / (v0 - v1);
+        const value_and_slope g = at(a, m, t);
+        m->record.largest_penetration = fmax(m->record.largest_penetration, -g.value);
+        if (g.slope < 0) {
+            from = t, v0 = g.slope, v1 /= 2;
         } else {
-            hi = s, v1 = v, v0 /= 2;
-        }
-        if (v == 0) {
-            break;
+            to = t, v1 = g.slope, v0 /= 2;
         }
     }
+}
 
-    // the step's end, as it was
-    memcpy(m->trial, m->between, (size_t)m->size * sizeof(double));
-    return STATUS_OK;
+static value_and_slope rest_gap_of(const double *state)
+{
+    return (value_and_slope){state_rest_gap(state), state_rest_gap_velocity(state)};
+}
+
+// The gap to the wall at rest and its rate after a step h; NaN where that fails.
+static value_and_slope stepped_gap(const arm *a, motion *m, double h)
+{
+    const bool fails = motion_try_step(a, m, h) != STATUS_OK;
+    return fails ? (value_and_slope){NAN, NAN} : rest_gap_of(m->trial);
 }
 
 status locate_peak(const arm *a, motion *m, double h)
 {
-    status located = locate_depth(a, m, h);
-    if (located != STATUS_OK) {
-        return located;
+    memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
+    if (!motion_wall_is_rigid(m)) {
+        const step_point lo = {0, rest_gap_of(m->state)}, hi = {h, rest_gap_of(m->trial)};
+        locate_deepest(a, m, lo, hi, 1e-9 * h, stepped_gap);
+        memcpy(m->trial, m->between, (size_t)m->size * sizeof(double));
     }
 
     // the ends
@@ -359,7 +335,6 @@ status locate_peak(const arm *a, motion *m, double h)
     }
 
     // closer and closer around it, the parabola through three steps
-    memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
     for (double width = h / 8; width > h / 1000; width /= 16) {
         double f[3];
         s = fmin(fmax(s, width), h - width);

@@ -40,6 +40,20 @@ double event_tolerance(event_function w);
 // to the far side of that instant. Returns why, if a step fails.
 status locate_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
 
+// A function at one instant of a step.
+typedef struct step_point {
+    double time; // since the step's start [s]
+    value_and_slope at;
+} step_point;
+
+// The gap to the wall at rest and its rate at an instant of the step [s].
+typedef value_and_slope (*rest_gap_function)(const arm *a, motion *m, double h);
+
+// Raises m->record.largest_penetration to the deepest point between two of that function, if it
+// falls at the first and rises at the second; the instant is exact to `resolution` [s].
+void locate_deepest(const arm *a, motion *m, step_point lo, step_point hi, double resolution,
+                    rest_gap_function at);
+
 // Records the largest force within the step from m->state to m->trial, located between its ends by
 // refining a parabola, and the deepest point of an arm that turns back within a wall that gives.
 // m->trial is left as it was.

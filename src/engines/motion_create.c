@@ -4,6 +4,7 @@
 #include "src/contact/motion.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -181,22 +182,11 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
     }
 
     // storage of the same sizes can be reused as it is
-    motion next = {.state = m->state,
-                   .size = m->size,
-                   .head_size = m->head_size,
-                   .dof = m->dof,
-                   .link_count = m->link_count,
-                   .nominal_step = method->step,
-                   .record.tstop = HUGE_VAL,
-                   .trial = m->trial,
-                   .between = m->between,
-                   .scratch = m->scratch,
-                   .links = m->links,
-                   .moved = m->moved,
-                   .memory = m->memory,
-                   .step.history_invalid = true,
-                   .block = m->block,
-                   .engine_block = m->engine_block};
+    motion next = *m;
+    next.nominal_step = method->step;
+    next.chosen = false;
+    next.record = (motion_record){.tstop = HUGE_VAL};
+    next.step = (motion_steps){.history_invalid = true};
     choose_engine(a, &next, method, NULL);
     next.most_size = most_size(a, &next);
     if (next.engine != m->engine || next.engine->kept > 0 || next.most_size > m->most_size ||
