@@ -282,40 +282,6 @@ TEST(rates_follow_from_the_penetration)
     }
 }
 
-// A turn that can be seen changes the penetration by the difference, one far below the last digit
-// of the angles by what its rate says, to all digits.
-TEST(a_turn_changes_the_penetration)
-{
-    for (int links = 1; links <= 5; links++) {
-        for (int kind = 0; kind < (links > 1 ? 8 : 4); kind++) {
-            const char *const wall = kind & 2 ? "plane" : "point";
-            const arm a = kind < 4 ? make_arm(links, kind & 1 ? "spring" : "rigid", wall)
-                                   : make_uneven_arm(links, wall, kind & 1);
-            const size_t size = (size_t)a.dof * sizeof(double);
-            SCOPED(free_kept)
-            double *q = malloc(size), *turn = malloc(size), *turned = malloc(size);
-            double before, after;
-            assert_true(q != NULL && turn != NULL && turned != NULL);
-            for (int power = 0; power <= 24; power += 6) {
-                some_state(&a, 7 * links + kind, q, turn);
-                for (int i = 0; i < a.dof; i++) {
-                    turn[i] *= pow(10, -power);
-                    turned[i] = q[i] + turn[i];
-                }
-                const double change = chain_penetration_change(&a, q, turn);
-                if (power == 0) {
-                    chain_penetration(&a, q, turn, &before, NULL);
-                    chain_penetration(&a, turned, turn, &after, NULL);
-                    check_close(change, after - before, 1e-13);
-                } else {
-                    const double rate = chain_penetration_rate(&a, q, turn);
-                    check_close(change, rate, 1e-12 * fabs(rate) + 20 * pow(10, -2 * power));
-                }
-            }
-        }
-    }
-}
-
 TEST(penetration_of_two_links_is_equation_3_9)
 {
     arm a = make_arm(2, "spring", "point");

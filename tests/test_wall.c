@@ -99,20 +99,14 @@ TEST(slow_impacts_are_plastic)
     check_close(wall_restitution(&w, 3e-9), 0, 0);
 }
 
-// Force, its rate and what the spring stores, against differences and the integral.
-TEST(a_soft_walls_force_has_its_slope_and_energy)
+// What the spring stores, against the integral.
+TEST(a_soft_walls_force_has_its_energy)
 {
     static const char *const laws[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
     for (int k = 0; k < 2; k++) {
         const wall_model w = wall_of(
             SETTINGS(laws[k], "wall.stiffness=2e4", "wall.damping=30", "wall.exponent=1.7"));
-        const double depth = 2e-3, rate = 0.4, acceleration = -35, h = 1e-6;
-        const double ahead = depth + h * rate + h * h * acceleration / 2;
-        const double behind = depth - h * rate + h * h * acceleration / 2;
-        const double slope = (wall_force(&w, ahead, rate + h * acceleration) -
-                              wall_force(&w, behind, rate - h * acceleration)) /
-                             (2 * h);
-        check_relative(wall_force_slope(&w, depth, rate, acceleration), slope, 1e-6);
+        const double depth = 2e-3;
 
         // the midpoint rule over the depth, without the damper
         double stored = 0;
@@ -124,10 +118,6 @@ TEST(a_soft_walls_force_has_its_slope_and_energy)
         check_close(wall_stored_energy(&w, -depth), 0, 0);
         check_close(wall_stored_energy(&w, 0), 0, 0);
     }
-
-    // a sphere that only touches presses with nothing, and with nothing more at first
-    const wall_model sphere = wall_of(SETTINGS("wall.contact=hunt-crossley"));
-    check_close(wall_force_slope(&sphere, 0, 0.4, -35), 0, 0);
 }
 
 // A face swings back at its own rate; one that rests in its place does nothing.

@@ -76,35 +76,6 @@ void chain_penetration(const arm *a, const double *q, const double *w, double *g
     }
 }
 
-double chain_penetration_change(const arm *a, const double *q, const double *turn)
-{
-    // where the last link begins, and what sines and cosines change by
-    const double *theta = q + a->first, *by = turn + a->first;
-    double x = 0, y = 0, s = 0, c = 1, moved_x = 0, moved_y = 0, of_s = 0, of_c = 0;
-    for (int k = 0; k < a->links; k++) {
-        const double l = k > 0 ? arm_link_length(a, k - 1) : 0;
-        x += l * c;
-        y += l * s;
-        moved_x += l * of_c;
-        moved_y += l * of_s;
-        const double half = inline_sin(by[k] / 2), middle = theta[k] + by[k] / 2;
-        s = inline_sin(theta[k]);
-        c = inline_cos(theta[k]);
-        of_s = 2 * inline_cos(middle) * half;
-        of_c = -2 * inline_sin(middle) * half;
-    }
-
-    assert(!wall_moves(&a->wall));
-
-    // of the point's distance from the last link's line, or the tip's from the plane
-    if (a->wall.kind == WALL_POINT) {
-        return of_s * (a->wall.x - x) - (s + of_s) * moved_x - of_c * (a->wall.y - y) +
-               (c + of_c) * moved_y;
-    }
-    const double l = arm_link_length(a, a->links - 1);
-    return a->wall.cosine * (moved_y + l * of_s) - a->wall.sine * (moved_x + l * of_c);
-}
-
 bool chain_is_folded(const arm *a, const double *q)
 {
     bool folded = a->wall.kind == WALL_PLANE && a->links > 1;

@@ -40,9 +40,6 @@ bool chain_is_folded(const arm *a, const double *q);
 // Penetration g [m], its rate [m/s], seen from a wall that moves (either may be NULL).
 void chain_penetration(const arm *a, const double *q, const double *w, double *g, double *rate);
 
-// How much larger g is at angles q + turn than at q [m], to all digits of turn[dof].
-double chain_penetration_change(const arm *a, const double *q, const double *turn);
-
 // Response to a unit contact force: response[dof] = -M^-1 J^T, and compliance J M^-1 J^T > 0
 // [1/kg]. hub_locked keeps the hub where it is.
 void chain_contact_response(const arm *a, chain_link *work, const double *q, bool hub_locked,

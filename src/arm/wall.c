@@ -41,20 +41,6 @@ double wall_restitution(const wall_model *w, double approach_speed)
     return rests || w->restitution * approach_speed < LEAST_REBOUND ? 0 : w->restitution;
 }
 
-double wall_force_slope(const wall_model *w, double depth, double rate, double acceleration)
-{
-    assert(w != NULL);
-    if (w->law == WALL_KELVIN_VOIGT) {
-        return w->stiffness * rate + w->damping * acceleration;
-    }
-    if (depth <= 0) {
-        return 0;
-    }
-    double power = wall_power(w, depth);
-    return power * (w->exponent / depth * rate * (w->stiffness + w->damping * rate) +
-                    w->damping * acceleration);
-}
-
 double wall_stored_energy(const wall_model *w, double depth)
 {
     assert(w != NULL);

@@ -159,9 +159,6 @@ static inline double wall_force(const wall_model *w, double depth, double rate)
     return wall_power(w, depth) * (w->stiffness + w->damping * rate);
 }
 
-// Derivative of that force by time [N/s], the rate growing by `acceleration` [m/s2].
-double wall_force_slope(const wall_model *w, double depth, double rate, double acceleration);
-
 // Energy that the wall's spring holds at a depth [J].
 double wall_stored_energy(const wall_model *w, double depth);
 

@@ -1,4 +1,5 @@
 // What another torque of the motor does at once to a two-link arm whose hub slides.
+#include "src/arm/chain_pair.h"
 #include "src/base/sincos.h"
 #include "src/engines/pair/taylor_lanes.h"
 
@@ -27,21 +28,18 @@ void taylor_retorque(const arm *a, motion *m, double change)
     }
 
     // M^-1 of a unit torque on the first link
-    const double *q = state_angles(m, state), l = a->link_length;
-    const double m22 = a->link_inertia + a->link_mass * l * l / 4;
-    const double m11 = m22 + a->link_mass * l * l + a->hub_inertia;
-    const double c = inline_cos(q[1] - q[0]), m12 = a->link_mass * l * l / 2 * c;
-    const double per_det = 1 / (m11 * m22 - m12 * m12);
-    double first = m22 * per_det, second = -m12 * per_det;
+    const double *q = state_angles(m, state), c = inline_cos(q[1] - q[0]);
+    const pair_mass mass = pair_mass_of(a);
+    double first, second;
+    pair_solve(&mass, mass.m12 * c, false, 1, 0, &first, &second);
 
     // and what the wall makes of it: in contact its force keeps the gap's rate from changing
     if (wall_stands(&a->wall)) {
-        double j[2];
+        double j[2], y1, y2;
         levers(a, q, c, j);
         const double closing = j[0] * first + j[1] * second;
         if (state[SLOT_CONTACT] != 0) {
-            const double y1 = (m22 * j[0] - m12 * j[1]) * per_det;
-            const double y2 = (m11 * j[1] - m12 * j[0]) * per_det;
+            pair_solve(&mass, mass.m12 * c, false, j[0], j[1], &y1, &y2);
             const double force = closing / (j[0] * y1 + j[1] * y2);
             first -= y1 * force;
             second -= y2 * force;
