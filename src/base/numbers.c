@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/double_bits.h"
+
 // Gives the calling thread the "C" locale; returns the one to go back to. The C library keeps the
 // "C" locale for good: it is neither allocated here nor freed.
 static locale_t enter_plain(void)
@@ -48,6 +50,164 @@ double decimal_parse(const char *text, char **end)
     uselocale(before);
     return value;
 }
+
+// --- the shortest decimal number ---------------------------------------------------------------
+
+__extension__ typedef unsigned __int128 wide;
+
+// The bits of 10^k, k = -308, -280, ... 308, from the highest one that is set.
+enum { POWERS_FROM = -308, POWERS_APART = 28 };
+static const uint64_t powers_of_ten[][3] = {
+    {0xe61acf033d1a45df, 0x6fb92487298e33bd, 0xadd7728c20b99bd1},
+    {0xe858ad248f5c22c9, 0xd1b3400f8f9cff68, 0xf910f9f648232f14},
+    {0xea9c227723ee8bcb, 0x465e15a979c1cadc, 0x0a0ce827eac11f2d},
+    {0xece53cec4a314ebd, 0xa4f8bf5635246428, 0x4609ac5c7899ca36},
+    {0xef340a98172aace4, 0x86fb897116c87c34, 0x9c39c1da4c49278d},
+    {0xf18899b1bc3f8ca1, 0xdc44e6c3cb279ac1, 0xf80f36174730ca34},
+    {0xf3e2f893dec3f126, 0x5a89dba3c3efccfa, 0xd8ecb58659be9c90},
+    {0xf64335bcf065d37d, 0x4d4617b5ff4a16d5, 0xaa09501d5954a559},
+    {0xf8a95fcf88747d94, 0x75a44c6397ce912a, 0x33cca6c06b07b74d},
+    {0xfb158592be068d2e, 0xeed6e2f0f0d56712, 0xac2e4f162cfad40a},
+    {0xfd87b5f28300ca0d, 0x8bca9d6e188853fc, 0x76dcb60081ce0fa5},
+    {0x8000000000000000, 0x0000000000000000, 0x0000000000000000},
+    {0x813f3978f8940984, 0x4000000000000000, 0x0000000000000000},
+    {0x82818f1281ed449f, 0xbff8f10e7a8921a4, 0x2000000000000000},
+    {0x83c7088e1aab65db, 0x792667c6da79e0fa, 0x0861d3ee22d1cc53},
+    {0x850fadc09923329e, 0x03e2cf6bc604ddb0, 0x74a7ef0198791097},
+    {0x865b86925b9bc5c2, 0x0b8a2392ba45a9b2, 0x5c6658d409fb8bf7},
+    {0x87aa9aff79042286, 0x90fb44d2f05d0842, 0xfb118fc9c217a1d2},
+    {0x88fcf317f22241e2, 0x441fece3bdf81f03, 0x12f274928400100d},
+    {0x8a5296ffe33cc92f, 0x82bd6b70d99aaa6f, 0xbc10c5c5cda97c8d},
+    {0x8bab8eefb6409c1a, 0x1ad089b6c2f7548e, 0x25c7b885ba466e37},
+    {0x8d07e33455637eb2, 0xdb0b487b6423e1e8, 0x7ec63730f500b406},
+    {0x8e679c2f5e44ff8f, 0x570f09eaa7ea7648, 0x5961db50c6d2b886},
+};
+
+// The same of 5^r, r = 0, 1, ... 27, which are exact.
+static const uint64_t powers_of_five[POWERS_APART] = {
+    0x8000000000000000, 0xa000000000000000, 0xc800000000000000, 0xfa00000000000000,
+    0x9c40000000000000, 0xc350000000000000, 0xf424000000000000, 0x9896800000000000,
+    0xbebc200000000000, 0xee6b280000000000, 0x9502f90000000000, 0xba43b74000000000,
+    0xe8d4a51000000000, 0x9184e72a00000000, 0xb5e620f480000000, 0xe35fa931a0000000,
+    0x8e1bc9bf04000000, 0xb1a2bc2ec5000000, 0xde0b6b3a76400000, 0x8ac7230489e80000,
+    0xad78ebc5ac620000, 0xd8d726b7177a8000, 0x878678326eac9000, 0xa968163f0a57b400,
+    0xd3c21bcecceda100, 0x84595161401484a0, 0xa56fa5b99019a5c8, 0xcecb8f27f4200f3a};
+
+// g = 10^k / 2^(floor(log2(10^k)) - 127) for -292 <= k <= 324, rounded up: high and low half. All
+// of them were compared with exact ones.
+static void power_of_ten(int k, uint64_t g[2])
+{
+    // 10^k is 5^r times a stored power, but for its exponent
+    const uint64_t *ten = powers_of_ten[(k - POWERS_FROM) / POWERS_APART];
+    const uint64_t five = powers_of_five[(k - POWERS_FROM) % POWERS_APART];
+    const wide low = (wide)ten[2] * five;
+    const wide middle = (wide)ten[1] * five + (uint64_t)(low >> 64);
+    wide high = (wide)ten[0] * five + (uint64_t)(middle >> 64);
+    uint64_t rest = (uint64_t)middle;
+
+    // the highest bit is set, and what is left over rounds up
+    if (high >> 127 == 0) {
+        high = high << 1 | rest >> 63;
+        rest <<= 1;
+    }
+    high += (rest | (uint64_t)low) != 0;
+    g[0] = (uint64_t)(high >> 64);
+    g[1] = (uint64_t)high;
+}
+
+// value = c 2^q: bits of c that are stored, and the exponent that the stored one is counted from.
+enum { STORED_BITS = 52, EXPONENT_OFFSET = 1075 };
+
+// floor(log2(10^e)), and floor(log10(2^q)) or, a quarter being gone below, floor(log10(3/4 2^q)):
+// products with the logarithms in fixed point, exact over the range of doubles.
+static int floor_log2_power(int e)
+{
+    return (e * 1741647) >> 19;
+}
+
+static int floor_log10_power(int q, bool closer_below)
+{
+    return (q * 1262611 - (closer_below ? 524031 : 0)) >> 22;
+}
+
+// g c / 2^128 rounded to odd: its last bit says that something was left over. With that every
+// comparison with a multiple of four of such numbers comes out right.
+static uint64_t round_to_odd(const uint64_t g[2], uint64_t c)
+{
+    const wide low = (wide)g[1] * c;
+    const wide high = (wide)g[0] * c + (uint64_t)(low >> 64);
+    return (uint64_t)(high >> 64) | ((uint64_t)high > 1);
+}
+
+// value = digits * 10^exponent; digits does not end in a zero.
+typedef struct decimal {
+    uint64_t digits;
+    int exponent;
+} decimal;
+
+static decimal without_zeros(decimal d)
+{
+    while (d.digits % 100 == 0) {
+        d.digits /= 100;
+        d.exponent += 2;
+    }
+    if (d.digits % 10 == 0) {
+        d.digits /= 10;
+        d.exponent++;
+    }
+    return d;
+}
+
+// The nearest multiple of 10^k, of 10^(k+1) if one of those reads back: value and the ends of its
+// interval are given as quarters of 10^k, rounded to odd.
+static decimal nearest_within(uint64_t lower, uint64_t value, uint64_t upper, int k)
+{
+    // a digit less
+    const uint64_t s = value / 4, tens = s / 10;
+    if (s >= 10) {
+        const bool down = lower <= 40 * tens, up = 40 * tens + 40 <= upper;
+        if (down != up) {
+            return (decimal){tens + up, k + 1};
+        }
+    }
+
+    // the one of both neighbours that reads back, or the nearer one, at the same distance the even
+    const bool down = lower <= 4 * s, up = 4 * s + 4 <= upper;
+    const uint64_t middle = 4 * s + 2;
+    const bool nearer_above = value > middle || (value == middle && s % 2 == 1);
+    return (decimal){s + (down != up ? up : nearer_above), k};
+}
+
+// The shortest decimal number that reads back as a finite value above zero, of those the nearest
+// to it: the algorithm Schubfach of R. Giulietti, The Schubfach way to render doubles, 2020.
+static decimal shortest_decimal(double value)
+{
+    assert(value > 0 && isfinite(value));
+    const uint64_t bits = double_bits(value);
+
+    // value = c 2^q; whole numbers are their own digits
+    const uint64_t stored = bits & ((UINT64_C(1) << STORED_BITS) - 1);
+    const int exponent = (int)(bits >> STORED_BITS);
+    const uint64_t c = exponent != 0 ? stored | UINT64_C(1) << STORED_BITS : stored;
+    const int q = (exponent != 0 ? exponent : 1) - EXPONENT_OFFSET;
+    if (q <= 0 && q > -STORED_BITS - 1 && (c & ((UINT64_C(1) << -q) - 1)) == 0) {
+        return without_zeros((decimal){c >> -q, 0});
+    }
+
+    // the ends of the interval that reads back as value, in quarters of 2^q: half way to its
+    // neighbours, the one below being nearer at a power of two; ends belong to even numbers
+    const bool closer_below = stored == 0 && exponent > 1, odd = c % 2 == 1;
+    const int k = floor_log10_power(q, closer_below);
+    const int shift = q + floor_log2_power(-k) + 1;
+    uint64_t power[2];
+    power_of_ten(-k, power);
+    const uint64_t lower = round_to_odd(power, (4 * c - 2 + closer_below) << shift);
+    const uint64_t middle = round_to_odd(power, (4 * c) << shift);
+    const uint64_t upper = round_to_odd(power, (4 * c + 2) << shift);
+    return without_zeros(nearest_within(lower + odd, middle, upper - odd, k));
+}
+
+// --- writing -----------------------------------------------------------------------------------
 
 // The decimal digits of a number above zero, two at a time from the last; returns how many.
 static int write_whole(char *text, uint64_t number)

@@ -13,7 +13,7 @@
 
 enum { NUMBER_TEXT = 32 }; // room for any number written below
 
-// Writes value with as few digits as read back as the same number (shortest_digits.h): "0.1",
+// Writes value with as few digits as read back as the same number: "0.1",
 // "1e-05", "1000000"; -0 is written "0", a number that is not finite "nan", "inf" or "-inf". text
 // has NUMBER_TEXT bytes.
 void number_format(char *text, double value);
@@ -48,20 +48,3 @@ char *decimal_vtext(const char *format, va_list list) __attribute__((format(prin
 
 // As strtod.
 double decimal_parse(const char *text, char **end);
-
-// The shortest decimal number that reads back as a given double, of those the nearest to it: the
-// algorithm Schubfach of R. Giulietti, The Schubfach way to render doubles, 2020.
-
-// value = digits * 10^exponent; digits does not end in a zero.
-typedef struct decimal {
-    uint64_t digits;
-    int exponent;
-} decimal;
-
-// That number for a finite value above zero.
-decimal shortest_decimal(double value);
-
-// 10^k / 2^(floor(log2(10^k)) - 127) for k from POWERS_FROM to POWERS_TO, rounded up: high and low
-// half, the highest bit set.
-enum { POWERS_FROM = -292, POWERS_TO = 324 };
-extern const uint64_t powers_of_ten[POWERS_TO - POWERS_FROM + 1][2];
