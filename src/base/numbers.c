@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <locale.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,7 +57,7 @@ double decimal_parse(const char *text, char **end)
 __extension__ typedef unsigned __int128 wide;
 
 // The bits of 10^k, k = -308, -280, ... 308, from the highest one that is set.
-enum { POWERS_FROM = -308, POWERS_APART = 28 };
+enum { POWERS_FROM = -308, POWERS_TO = 335, POWERS_APART = 28 };
 static const uint64_t powers_of_ten[][3] = {
     {0xe61acf033d1a45df, 0x6fb92487298e33bd, 0xadd7728c20b99bd1},
     {0xe858ad248f5c22c9, 0xd1b3400f8f9cff68, 0xf910f9f648232f14},
@@ -93,9 +94,9 @@ static const uint64_t powers_of_five[POWERS_APART] = {
     0xad78ebc5ac620000, 0xd8d726b7177a8000, 0x878678326eac9000, 0xa968163f0a57b400,
     0xd3c21bcecceda100, 0x84595161401484a0, 0xa56fa5b99019a5c8, 0xcecb8f27f4200f3a};
 
-// g = 10^k / 2^(floor(log2(10^k)) - 127) for -292 <= k <= 324, rounded up: high and low half. All
-// of them were compared with exact ones.
-static void power_of_ten(int k, uint64_t g[2])
+// 10^k / 2^(floor(log2(10^k)) - 127) for -292 <= k <= 324, rounded up. All were compared with exact
+// ones.
+static wide make_power_of_ten(int k)
 {
     // 10^k is 5^r times a stored power, but for its exponent
     const uint64_t *ten = powers_of_ten[(k - POWERS_FROM) / POWERS_APART];
@@ -110,9 +111,23 @@ static void power_of_ten(int k, uint64_t g[2])
         high = high << 1 | rest >> 63;
         rest <<= 1;
     }
-    high += (rest | (uint64_t)low) != 0;
-    g[0] = (uint64_t)(high >> 64);
-    g[1] = (uint64_t)high;
+    return high + ((rest | (uint64_t)low) != 0);
+}
+
+// The same as high and low half g, made once: threads that make one at a time make the same.
+static void power_of_ten(int k, uint64_t g[2])
+{
+    static _Atomic uint64_t made[POWERS_TO - POWERS_FROM + 1][2];
+    _Atomic uint64_t *known = made[k - POWERS_FROM];
+    g[0] = atomic_load_explicit(&known[0], memory_order_acquire);
+    g[1] = atomic_load_explicit(&known[1], memory_order_relaxed);
+    if (g[0] == 0) {
+        const wide power = make_power_of_ten(k);
+        g[0] = (uint64_t)(power >> 64);
+        g[1] = (uint64_t)power;
+        atomic_store_explicit(&known[1], g[1], memory_order_relaxed);
+        atomic_store_explicit(&known[0], g[0], memory_order_release);
+    }
 }
 
 // value = c 2^q: bits of c that are stored, and the exponent that the stored one is counted from.
