@@ -278,7 +278,6 @@ TEST(whole_files)
     try_all(write_whole_file, "file");
     try_all(write_whole_file, "link");
     try_all(write_in_place, "/dev/null");
-    try_all(write_in_place, "-");
 }
 
 TEST(programs_as_controllers)

@@ -15,11 +15,13 @@
 
 #include "src/base/fault.h"
 
+// Stays where it is while it is open.
 typedef struct whole_file {
     FILE *stream;    // write here
-    char *path;      // of the target, links resolved; "-" for the standard output
+    char *path;      // of the target, links resolved; NULL for the standard output
     char *temporary; // renamed to path in the end; NULL if the target is written in place
-    struct whole_file_sink *sink; // what stream writes to; NULL for the standard output
+    int descriptor;  // that stream writes to; not of the standard output
+    int reason;      // errno of the first write that failed, 0 if none did
 } whole_file;
 
 // Tells early, before long work, whether path could be written. Creates nothing.
