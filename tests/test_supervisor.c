@@ -137,8 +137,8 @@ TEST(where_none_can_be_started_nothing_stays_open)
     struct rlimit was, few;
     getrlimit(RLIMIT_NOFILE, &was);
     few = was;
-    for (int spare = 0; spare < 8; spare++) {
-        // two are wanted for each of three streams and the death pipe
+    for (int spare = 0; spare < 7; spare++) {
+        // two are wanted for input, output and death pipe each, one for the errors
         supervised_program p;
         few.rlim_cur = (rlim_t)(before + spare);
         setrlimit(RLIMIT_NOFILE, &few);

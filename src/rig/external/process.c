@@ -2,12 +2,14 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <poll.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -15,28 +17,26 @@
 #include "src/base/numbers.h"
 #include "src/base/words.h"
 #include "src/rig/external/supervisor.h"
-#include "src/rig/external/process_lines.h"
 
 enum {
-    MOST_LINE = 65536,  // of an answer [bytes]
-    LAST_ERRORS = 160,  // of what the program wrote to its standard error last [bytes]
-    SHOWN_OF_LINE = 60, // of a line that is no answer [bytes]
-    READ_AT_ONCE = 4096,
-    LOOK_UP = 100 // from waiting for an answer, whether the run is to end [ms]
+    MOST_LINE = 65536,     // of an answer [bytes]
+    LAST_ERRORS = 160,     // of what the program wrote to its standard error last [bytes]
+    MOST_ERRORS = 1 << 20, // of it that are kept meanwhile [bytes]
+    SHOWN_OF_LINE = 60,    // of a line that is no answer [bytes]
+    LOOK_UP = 100          // from waiting for an answer, whether the run is to end [ms]
 };
 
 struct process {
     supervised_program program;
     process_transcript *transcript; // of the questions, NULL for none; somebody else's
-    process_ends ends;              // of the run
+    process_ends run;               // when it is to end
     const transcript_node *at;      // the place that the running program has come to
     long asked;                     // questions it has been asked
     int started;                    // how many times it was started
     control_parameters begun;       // with, as the run does
     double answer_time;             // [s]
     char line[MOST_LINE + 1];
-    size_t length; // of what has been read of the answer
-    char errors[LAST_ERRORS + 1];
+    size_t length;      // of what has been read of the answer
     status code;        // STATUS_OK as long as it can be asked
     char failure[1024]; // a sentence, where it cannot
 };
@@ -60,7 +60,7 @@ process *process_create(const control_parameters *control, process_transcript *t
     process *p = calloc(1, sizeof *p);
     if (p != NULL) {
         p->transcript = transcript;
-        p->ends = ends;
+        p->run = ends;
         p->begun = *control;
     }
     return p;
@@ -89,26 +89,27 @@ status process_failure(const process *p, const char **why)
 
 // --- what goes wrong --------------------------------------------------------------------------
 
-// Takes in what is waiting on the standard error, of which the end is kept. True unless the
-// stream's own end was seen.
-static bool drain_errors(process *p)
+// What the program wrote to its standard error last, as it may be shown on a terminal.
+static void read_last_errors(const process *p, char text[LAST_ERRORS + 1])
 {
-    char text[LAST_ERRORS + READ_AT_ONCE];
-    const size_t kept = strlen(p->errors);
-    const ssize_t count = read(p->program.errors, text + kept, READ_AT_ONCE);
-    if (count <= 0) {
-        return count < 0 && (errno == EAGAIN || errno == EINTR);
+    struct stat about;
+    const bool known = p->program.supervisor != 0 && fstat(p->program.errors, &about) == 0;
+    const off_t from = known && about.st_size > LAST_ERRORS ? about.st_size - LAST_ERRORS : 0;
+    const ssize_t length = known ? pread(p->program.errors, text, LAST_ERRORS, from) : 0;
+    text[length > 0 ? length : 0] = '\0';
+    for (char *c = text; *c != '\0'; c++) {
+        *c = is_control(*c) ? ' ' : *c;
     }
-    memcpy(text, p->errors, kept);
+}
 
-    // they may be shown on a terminal
-    const size_t length = kept + (size_t)count;
-    const size_t dropped = length > LAST_ERRORS ? length - LAST_ERRORS : 0;
-    for (size_t i = dropped; i < length; i++) {
-        p->errors[i - dropped] = is_control(text[i]) ? ' ' : text[i];
+// Gives the memory of all but the last of it back where that has become much.
+static void forget_old_errors(const process *p)
+{
+    struct stat about;
+    if (fstat(p->program.errors, &about) == 0 && about.st_blocks > MOST_ERRORS / 512) {
+        fallocate(p->program.errors, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
+                  about.st_size - LAST_ERRORS);
     }
-    p->errors[length - dropped] = '\0';
-    return true;
 }
 
 // Ends the program and says why. Always false.
@@ -123,15 +124,13 @@ static bool fail(process *p, status code, const char *format, ...)
     va_end(values);
 
     // what the program said last is what helps
-    if (p->program.supervisor != 0) {
-        drain_errors(p);
-    }
-    int exit_status = supervised_program_end(&p->program);
-    char ended[48] = "";
+    char said[LAST_ERRORS + 1], ended[48] = "";
+    read_last_errors(p, said);
+    const int exit_status = supervised_program_end(&p->program);
     if (exit_status >= 0) {
         snprintf(ended, sizeof ended, " (exit status %d)", exit_status);
     }
-    const char *errors = p->errors + strspn(p->errors, " ");
+    const char *errors = said + strspn(said, " ");
     snprintf(p->failure, sizeof p->failure, "the process '%.200s' %s%s%s%s", p->begun.command, why,
              ended, errors[0] != '\0' ? "; it said last: " : "", errors);
     make_printable(p->failure);
@@ -150,7 +149,7 @@ static bool fail_without_memory(process *p)
 // Whether the run was asked to end: the program, too, is ended then.
 static bool run_ends(process *p)
 {
-    const process_ends *e = &p->ends;
+    const process_ends *e = &p->run;
     const bool ends =
         (e->stop != NULL && atomic_load_explicit(e->stop, memory_order_relaxed)) ||
         (e->abandon != NULL && atomic_load_explicit(e->abandon, memory_order_relaxed));
@@ -163,18 +162,6 @@ static bool run_ends(process *p)
 }
 
 // --- an answer --------------------------------------------------------------------------------
-
-static double now(void)
-{
-    return clock_seconds(CLOCK_MONOTONIC);
-}
-
-// What is left until a deadline, or until the run is to be looked at, for poll [ms].
-static int left_until(double deadline)
-{
-    double left = deadline - now();
-    return left > 0 ? (int)ceil(fmin(left * 1e3, LOOK_UP)) : 0;
-}
 
 // Reads what has come of the answer. False, with a failure, if there will be none.
 static bool take_in(process *p)
@@ -205,43 +192,35 @@ static bool take_in(process *p)
 // the run is to end.
 static bool exchange(process *p, const char *text)
 {
-    const double deadline = now() + p->answer_time;
+    const double deadline = clock_seconds(CLOCK_MONOTONIC) + p->answer_time;
     const size_t length = strlen(text);
     size_t sent = 0;
-    bool errors_open = true;
 
-    // all ends at once, as the program may wait at any of them
+    // both ways at once, as the program may wait at any of them
     while (memchr(p->line, '\n', p->length) == NULL || sent < length) {
         struct pollfd ends[] = {
             {.fd = p->program.output, .events = POLLIN},
-            {.fd = errors_open ? p->program.errors : -1, .events = POLLIN},
             {.fd = sent < length ? p->program.input : -1, .events = POLLOUT},
         };
 
-        // a stream may be ready, but after the deadline
-        int ready = poll(ends, 3, left_until(deadline));
-        if (now() >= deadline) {
+        // an end may be ready, but after the deadline
+        const double left = 1e3 * (deadline - clock_seconds(CLOCK_MONOTONIC));
+        const int ready = poll(ends, 2, (int)ceil(fmin(fmax(left, 0), LOOK_UP)));
+        if (clock_seconds(CLOCK_MONOTONIC) >= deadline) {
             return FAIL(p, "gave no answer within control.answer_time = %g s", p->answer_time);
         }
         if (run_ends(p)) {
             return false;
         }
-        if (ready <= 0) {
-            continue;
-        }
-
-        // errors are taken before the answer, so that a failure can tell them
-        if (ends[2].revents != 0) {
+        forget_old_errors(p);
+        if (ready > 0 && ends[1].revents != 0) {
             ssize_t count =
                 send(p->program.input, text + sent, length - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
             // one that listens no more may have answered before; its answer, or its end, tells
             const bool deaf = count < 0 && errno != EAGAIN && errno != EINTR;
             sent = deaf ? length : sent + (count > 0 ? (size_t)count : 0);
         }
-        if (ends[1].revents != 0) {
-            errors_open = drain_errors(p);
-        }
-        if (ends[0].revents != 0 && !take_in(p)) {
+        if (ready > 0 && ends[0].revents != 0 && !take_in(p)) {
             return false;
         }
     }
@@ -284,7 +263,6 @@ static bool start_program(process *p)
     p->asked = 0;
     p->started++;
     p->length = 0;
-    p->errors[0] = '\0';
     int reason = supervised_program_start(&p->program, p->begun.command);
     if (reason != 0) {
         p->code = STATUS_CONTROLLER_FAILED;
@@ -299,8 +277,7 @@ static bool start_program(process *p)
 // answers otherwise than then, or the way there is not known.
 static bool catch_up(process *p, const process_memory *m, double time)
 {
-    const bool runs = p->program.supervisor != 0;
-    const bool unrecorded = m->at == NULL && m->asked > 0;
+    const bool runs = p->program.supervisor != 0, unrecorded = m->at == NULL && m->asked > 0;
     if (runs && p->at == m->at && p->asked == m->asked &&
         !(unrecorded && p->started != m->started)) {
         return true;
@@ -309,39 +286,33 @@ static bool catch_up(process *p, const process_memory *m, double time)
         return FAIL(p, "would have to go on from the past, which is not recorded any more");
     }
 
-    // the way back to the beginning, or to where the program is
-    const transcript_node **way = calloc((size_t)m->asked + 1, sizeof(transcript_node *));
-    const transcript_node *node = m->at;
+    // the way back to where the program is, or to the beginning
+    transcript_node *node = m->at;
     int length = 0;
-    for (; way != NULL && node != NULL && node->before != NULL && !(runs && node == p->at);
-         length++) {
-        way[length] = node;
+    for (; node != NULL && node->before != NULL && !(runs && node == p->at); length++) {
+        node->before->towards = node;
         node = node->before;
-    }
-    if (way == NULL) {
-        return fail_without_memory(p);
     }
 
     // and forth again
     const bool anew = !runs || node != p->at;
     bool same = !anew || start_program(p);
-    for (int i = length - 1; same && i >= 0; i--) {
+    for (int i = 1; same && i <= length; i++) {
         controller_output answer = {.mode = 0};
-        const controller_output *then = &way[i]->answer;
-        same = ask(p, way[i]->question, &answer);
-        if (same && !process_same_answer(&answer, then)) {
+        node = node->towards;
+        same = ask(p, node->question, &answer);
+        if (same && !process_same_answer(&answer, &node->answer)) {
             same = FAIL(p,
                         "would have to go on from the past: asked once more, it answered "
                         "sample %d of %d with %.9g V, not %.9g V as before",
-                        length - i, length, answer.command, then->command);
+                        i, length, answer.command, node->answer.command);
         }
-        p->at = way[i];
+        p->at = node;
     }
     if (same && anew && length > 0) {
         p->transcript->replay =
             (process_replay){.restarted = true, .samples = length, .time = time};
     }
-    free(way);
     return same;
 }
 

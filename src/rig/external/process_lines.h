@@ -31,6 +31,7 @@ bool process_same_answer(const controller_output *a, const controller_output *b)
 
 typedef struct transcript_node {
     struct transcript_node *before, *first_after, *next_beside; // NULL where there is none
+    struct transcript_node *towards;     // the child on the way that is gone once more
     struct transcript_node *made_before; // of all nodes the one that was added before this one
     controller_output answer;
     char question[];

@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <stdbool.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -34,8 +35,21 @@ static _Noreturn void run_program(const char *command)
     _exit(127);
 }
 
-static _Noreturn void supervise(const char *command)
+static _Noreturn void supervise(const int theirs[ENDS], const char *command)
 {
+    // the program's ends are the first descriptors; they go by way of higher ones, so that none is
+    // lost, and other programs' ends are above all
+    int moved[ENDS];
+    for (int i = 0; i < ENDS; i++) {
+        moved[i] = fcntl(theirs[i], F_DUPFD, ENDS);
+    }
+    for (int i = 0; i < ENDS; i++) {
+        if (moved[i] < 0 || dup2(moved[i], i) < 0) {
+            _exit(127);
+        }
+    }
+    closefrom(ENDS);
+
     // what ends the lab or its terminal must not end the supervisor before its work is done; the
     // program's orphans become its children, so that it can wait for them
     sigset_t all;
@@ -61,39 +75,20 @@ static _Noreturn void supervise(const char *command)
     }
 
     // how the program ended, if it did by itself
-    int status = 0;
-    pid_t ended = waitpid(program, &status, WNOHANG);
+    int how = 0;
+    pid_t ended = waitpid(program, &how, WNOHANG);
     if (ended == 0) {
         poll(NULL, 0, LAST_WORDS_MS);
-        ended = waitpid(program, &status, WNOHANG);
+        ended = waitpid(program, &how, WNOHANG);
     }
     kill(-program, SIGKILL);
     while (waitpid(-program, NULL, 0) > 0) {
     }
-    const int told = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    const int told = WIFSIGNALED(how) ? 128 + WTERMSIG(how) : WEXITSTATUS(how);
     _exit(ended == program ? told : KILLED);
 }
 
 // --- the lab's side ---------------------------------------------------------------------------
-
-// Becomes the supervisor, with its ends of the streams as the first descriptors.
-static _Noreturn void become_supervisor(const int theirs[ENDS], const char *command)
-{
-    // above all of 0 ... 3, so that none is lost while they are put in place
-    int moved[ENDS];
-    for (int i = 0; i < ENDS; i++) {
-        moved[i] = fcntl(theirs[i], F_DUPFD, ENDS);
-    }
-    for (int i = 0; i < ENDS; i++) {
-        if (moved[i] < 0 || dup2(moved[i], i) < 0) {
-            _exit(127);
-        }
-    }
-
-    // other programs' death pipes above all
-    closefrom(ENDS);
-    supervise(command);
-}
 
 static void close_ends(const int ends[ENDS])
 {
@@ -106,36 +101,27 @@ static void close_ends(const int ends[ENDS])
 
 int supervised_program_start(supervised_program *program, const char *command)
 {
+    // a socket is written to without a signal; errors go to a file in memory, which never blocks
     assert(program != NULL && command != NULL);
-    int ours[ENDS] = {-1, -1, -1, -1}, theirs[ENDS] = {-1, -1, -1, -1}, reason = 0;
-    *program = (supervised_program){0};
-
-    // sockets are what we write to or close, pipes what the program writes to
-    for (int i = 0; i < ENDS && reason == 0; i++) {
-        int pair[2];
-        const bool reads = i == STDOUT_FILENO || i == STDERR_FILENO;
-        if ((reads ? pipe2(pair, O_CLOEXEC)
-                   : socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair)) != 0) {
-            reason = errno;
-            break;
-        }
-        ours[i] = pair[0];
-        theirs[i] = pair[1];
-        fcntl(ours[i], F_SETFL, O_NONBLOCK);
-    }
+    int input[2] = {-1, -1}, output[2] = {-1, -1}, death[2] = {-1, -1}, errors = -1;
+    const bool made = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input) == 0 &&
+                      pipe2(output, O_CLOEXEC) == 0 && pipe2(death, O_CLOEXEC) == 0 &&
+                      (errors = memfd_create("errors", MFD_CLOEXEC)) >= 0;
 
     // the supervisor gets one end of each
-    const pid_t supervisor = reason == 0 ? fork() : -1;
+    const pid_t supervisor = made ? fork() : -1;
+    const int reason = supervisor < 0 ? errno : 0;
     if (supervisor == 0) {
-        become_supervisor(theirs, command);
+        supervise((const int[]){input[1], output[1], errors, death[0]}, command);
     }
-    reason = reason == 0 && supervisor < 0 ? errno : reason;
-    close_ends(theirs);
+    close_ends((const int[]){input[1], output[1], death[0], -1});
+    *program = (supervised_program){.supervisor = 0};
     if (reason != 0) {
-        close_ends(ours);
+        close_ends((const int[]){input[0], output[0], errors, death[1]});
         return reason;
     }
-    *program = (supervised_program){supervisor, ours[0], ours[1], ours[2], ours[3]};
+    fcntl(output[0], F_SETFL, O_NONBLOCK);
+    *program = (supervised_program){supervisor, input[0], output[0], errors, death[1]};
     return 0;
 }
 
@@ -145,8 +131,8 @@ int supervised_program_end(supervised_program *program)
     if (program->supervisor == 0) {
         return -1;
     }
-    const int ours[ENDS] = {program->input, program->output, program->errors, program->death_pipe};
-    close_ends(ours);
+    close_ends(
+        (const int[]){program->input, program->output, program->errors, program->death_pipe});
 
     int status = 0;
     pid_t ended;

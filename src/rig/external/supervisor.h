@@ -9,9 +9,9 @@
 
 typedef struct supervised_program {
     pid_t supervisor; // 0: nothing runs
-    int input;        // a socket to its standard input; this and the next two never block
-    int output;       // its standard output
-    int errors;       // its standard error
+    int input;        // a socket to its standard input
+    int output;       // its standard output, whose reading does not block
+    int errors;       // its standard error, a file in memory that grows with it
     int death_pipe;   // closing it ends the program
 } supervised_program;
 
