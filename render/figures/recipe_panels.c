@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "render/page/text.h"
+#include "src/base/numbers.h"
 #include "src/tables/summary.h"
 
 // The legend text of a source, markup.
@@ -63,12 +64,6 @@ static void add_curve(recipe_figure *fig, int panel, int source)
     p->series_count++;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // The different values of a column, ascending. Returns their number.
 static size_t different_values(const double *column, size_t count, double *out)
 {
@@ -76,7 +71,7 @@ static size_t different_values(const double *column, size_t count, double *out)
     for (size_t i = 0; i < count; i++) {
         out[i] = column[i];
     }
-    qsort(out, count, sizeof *out, ascending);
+    qsort(out, count, sizeof *out, compare_numbers);
     for (size_t i = 0; i < count; i++) {
         if (kept == 0 || out[i] != out[kept - 1]) {
             out[kept++] = out[i];
@@ -87,7 +82,7 @@ static size_t different_values(const double *column, size_t count, double *out)
 
 static size_t place_among(const double *values, size_t count, double value)
 {
-    const double *found = bsearch(&value, values, count, sizeof *values, ascending);
+    const double *found = bsearch(&value, values, count, sizeof *values, compare_numbers);
     return (size_t)(found - values);
 }
 

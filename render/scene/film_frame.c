@@ -60,12 +60,6 @@ static void set_windows(film_clock *c)
     c->taper = TAPER * span;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 film_clock film_clock_of(const run_result *const *results, int count, double seconds, double slow)
 {
     assert(results != NULL && count > 0 && seconds > 0 && slow >= 1);
@@ -79,7 +73,7 @@ film_clock film_clock_of(const run_result *const *results, int count, double sec
         c.end = fmin(c.end, t->rows[t->row_count - 1].time);
         add_impacts(&c, t);
     }
-    qsort(c.impacts, (size_t)c.impact_count, sizeof c.impacts[0], ascending);
+    qsort(c.impacts, (size_t)c.impact_count, sizeof c.impacts[0], compare_numbers);
 
     set_windows(&c);
     return c;

@@ -336,3 +336,9 @@ bool decimal_read(const char *text, double *value, const char **rest)
     *rest = end;
     return true;
 }
+
+int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return isnan(x) || isnan(y) ? isnan(x) - isnan(y) : (x > y) - (x < y);
+}

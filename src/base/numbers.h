@@ -48,3 +48,6 @@ char *decimal_vtext(const char *format, va_list list) __attribute__((format(prin
 
 // As strtod.
 double decimal_parse(const char *text, char **end);
+
+// For qsort and bsearch of doubles: ascending, with NaN behind all numbers.
+int compare_numbers(const void *a, const void *b);

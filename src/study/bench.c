@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "src/base/numbers.h"
 #include "src/base/clock.h"
 #include "src/base/json.h"
 
@@ -44,12 +45,6 @@ double bench_seconds_per_call(status (*work)(void *context), void *context, doub
     return elapsed / (double)calls;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 status bench_run(const benchmark *b, bench_result *result, fault *f)
 {
     assert(b != NULL && result != NULL);
@@ -75,7 +70,7 @@ status bench_run(const benchmark *b, bench_result *result, fault *f)
     }
 
     // median and extremes
-    qsort(values, (size_t)count, sizeof values[0], compare);
+    qsort(values, (size_t)count, sizeof values[0], compare_numbers);
     snprintf(result->name, sizeof result->name, "%s", b->name);
     snprintf(result->unit, sizeof result->unit, "%s", b->unit);
     result->median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);

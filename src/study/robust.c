@@ -259,16 +259,6 @@ static const double robust_levels[ROBUST_QUANTILES] = {
 
 // --- a law ------------------------------------------------------------------------------------
 
-// Ascending, with NaN behind all numbers.
-static int compare_numbers(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    if (isnan(x) || isnan(y)) {
-        return isnan(x) - isnan(y);
-    }
-    return (x > y) - (x < y);
-}
-
 // Sorts the values; between two of them a quantile lies on a straight line.
 static void find_quantiles(double *values, size_t count, double *quantiles)
 {

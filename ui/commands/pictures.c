@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "render/page/text.h"
+#include "src/base/numbers.h"
 #include "src/base/shipped.h"
 
 #define SERIF "DejaVu Serif"
@@ -122,12 +123,6 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs, i
 
 enum { DEFAULT_INSTANTS = 5 };
 
-static int ascending(const void *a, const void *b)
-{
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 scene_options read_view(const arguments *a)
 {
     scene_options o = {.width = a->size.width,
@@ -187,7 +182,7 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
     // the instants asked for in their order, or some that show the approach
     if (count > 0) {
         memcpy(times, a->instants.items, (size_t)count * sizeof *times);
-        qsort(times, (size_t)count, sizeof *times, ascending);
+        qsort(times, (size_t)count, sizeof *times, compare_numbers);
     } else if (result->trace.row_count > 0) {
         count = DEFAULT_INSTANTS;
         scene_instants(result, times, count);

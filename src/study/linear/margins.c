@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/numbers.h"
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
 #include "src/run/run.h"
@@ -15,14 +16,6 @@ enum { EVEN = 1500, ABOUT = 40, MOST_FREQUENCIES = 20000, BISECTIONS = 40, RUN_B
 #define DECADES 1e4
 
 static const double pi = 3.14159265358979323846;
-
-static int rising(const void *a, const void *b)
-{
-    double one, other;
-    memcpy(&one, a, sizeof one);
-    memcpy(&other, b, sizeof other);
-    return (one > other) - (one < other);
-}
 
 // Puts frequencies for a system with the given poles in order; returns how many.
 static int choose_frequencies(const double complex *poles, int states, double period, double *w)
@@ -51,7 +44,7 @@ static int choose_frequencies(const double complex *poles, int states, double pe
             }
         }
     }
-    qsort(w, (size_t)count, sizeof *w, rising);
+    qsort(w, (size_t)count, sizeof *w, compare_numbers);
     return count;
 }
 

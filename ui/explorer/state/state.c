@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/numbers.h"
 #include "src/base/text_stream.h"
 #include "src/rig/controller.h"
 #include "src/rig/rig.h"
@@ -407,12 +408,6 @@ static value_range range_of_rows(const trace *t, int signal, const double *pairs
     return found;
 }
 
-static int compare_values(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // The same without the share of rows that sticks out at either end, so that a spike does not
 // flatten all else; of many rows some, evenly spread.
 static value_range calm_range(const trace *t, int signal, size_t first, size_t last)
@@ -431,7 +426,7 @@ static value_range calm_range(const trace *t, int signal, size_t first, size_t l
     if (count == 0) {
         return value_range_empty;
     }
-    qsort(values, count, sizeof *values, compare_values);
+    qsort(values, count, sizeof *values, compare_numbers);
     const double low = values[count / STICKS_OUT], high = values[count - 1 - count / STICKS_OUT];
     const double margin = 0.05 * (high - low);
     return (value_range){low - margin, high + margin};
