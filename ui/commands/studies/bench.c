@@ -6,38 +6,30 @@
 #include "src/study/bench.h"
 #include "src/base/words.h"
 
-typedef struct baseline {
-    bench_result *results;
-    int count;
-} baseline;
+enum { MOST = 32 };
 
-static const bench_result *find_result(const baseline *before, const char *name)
-{
-    for (int i = 0; i < before->count; i++) {
-        if (strcmp(before->results[i].name, name) == 0) {
-            return &before->results[i];
-        }
-    }
-    return NULL;
-}
-
-static void print_head(const baseline *before)
+static void print_head(bool compared)
 {
     printf("%-28s %10s %10s %10s  %-8s %8s", "", "median", "min", "max", "unit", "wall/cpu");
-    if (before->results != NULL) {
+    if (compared) {
         printf(" %10s %8s", "baseline", "times");
     }
     printf("\n");
 }
 
-static void print_result(const benchmark *b, const bench_result *r, const baseline *before)
+// A line of the table, beside what was measured before if that is known.
+static void print_result(const benchmark *b, const bench_result *r, const bench_result *before,
+                         int count)
 {
     printf("%-28s %10.4g %10.4g %10.4g  %-8s %8.2f", r->name, r->median, r->min, r->max, r->unit,
            r->wall);
-    const bench_result *then = find_result(before, r->name);
-    if (then != NULL) {
-        printf(" %10.4g %8.2f%s", then->median, bench_slowdown(b, r, then),
-               bench_is_slower(b, r, then) ? "  slower" : "");
+    int i = 0;
+    while (i < count && strcmp(before[i].name, r->name) != 0) {
+        i++;
+    }
+    if (i < count) {
+        printf(" %10.4g %8.2f%s", before[i].median, bench_slowdown(b, r, &before[i]),
+               bench_is_slower(b, r, &before[i]) ? "  slower" : "");
     }
     printf("\n");
     fflush(stdout); // the next one takes a while
@@ -55,57 +47,33 @@ static int complain_only(const char *name)
     return complain("there is no benchmark '%s' (see impactlab bench --help)", name);
 }
 
-enum { MOST = 32 };
-
 // Measures all benchmarks, or the one asked for.
-static int measure_all(const arguments *a, const baseline *before)
+static int bench(const arguments *a)
 {
-    bench_result results[MOST];
-    int count = 0;
-    bool aloud = summary_wanted(a);
-
-    for (int i = 0; i < bench_count && count < MOST; i++) {
+    bench_result results[MOST], *before = NULL;
+    int count = 0, before_count = 0;
+    fault f = {0};
+    status code =
+        a->baseline != NULL ? bench_read(a->baseline, &before, &before_count, &f) : STATUS_OK;
+    for (int i = 0; i < bench_count && count < MOST && code == STATUS_OK; i++) {
         const benchmark *b = &bench_table[i];
-        fault f = {0};
         if (a->only != NULL && strcmp(a->only, b->name) != 0) {
             continue;
         }
-
-        if (bench_run(b, &results[count], &f) != STATUS_OK) {
-            return complain_fault(&f);
+        code = bench_run(b, &results[count], &f);
+        if (code == STATUS_OK && summary_wanted(a)) {
+            if (count == 0) {
+                print_head(before != NULL);
+            }
+            print_result(b, &results[count], before, before_count);
         }
-
-        if (aloud && count == 0) {
-            print_head(before);
-        }
-        if (aloud) {
-            print_result(b, &results[count], before);
-        }
-        count++;
+        count += code == STATUS_OK;
     }
-
-    if (count == 0) {
-        return complain_only(a->only);
-    }
-    return a->json != NULL ? write_json(a->json, bench_export(results, count)) : EXIT_DONE;
-}
-
-static int bench(const arguments *a)
-{
-    baseline before = {NULL, 0};
-    fault f = {0};
-    int result = EXIT_DONE;
-
-    if (a->baseline != NULL &&
-        bench_read(a->baseline, &before.results, &before.count, &f) != STATUS_OK) {
-        result = complain_fault(&f);
-    }
-
-    if (result == EXIT_DONE) {
-        result = measure_all(a, &before);
-    }
-    free(before.results);
-    return result;
+    free(before);
+    return code != STATUS_OK ? complain_fault(&f)
+           : count == 0      ? complain_only(a->only)
+           : a->json != NULL ? write_json(a->json, bench_export(results, count))
+                             : EXIT_DONE;
 }
 
 static const option_row rows[] = {
