@@ -51,3 +51,13 @@ status fault_set_place(fault *f, status code, int line, int column, const char *
 
 // Fills f (may be NULL) with STATUS_NO_MEMORY and its general sentence. Returns it.
 status fault_no_memory(fault *f);
+
+// Ends the calling function with what a call came to, unless that is STATUS_OK: for a function that
+// holds nothing to be given back.
+#define TRY(call)                                                                                  \
+    do {                                                                                           \
+        const status tried_ = (call);                                                              \
+        if (tried_ != STATUS_OK) {                                                                 \
+            return tried_;                                                                         \
+        }                                                                                          \
+    } while (0)

@@ -21,10 +21,7 @@ status predict_velocity_jump(const parameters *p, const three_body_state *s, dou
 {
     assert(p != NULL && s != NULL && after != NULL && impulse != NULL);
     two_link t;
-    status result = three_body_state_check(s, f);
-    if (result != STATUS_OK) {
-        return result;
-    }
+    TRY(three_body_state_check(s, f));
     two_link_at(&t, p, form_of(p), s->angle[1], s->angle[2]);
     return two_link_velocity_jump(&t, s, after, impulse, f);
 }
@@ -305,14 +302,11 @@ static status start(const parameters *p, const three_body_state *s, two_link *t,
     *out = prediction_none();
 
     // a bad state ends here, with nothing predicted
-    status result = three_body_state_check(s, f);
-    if (result != STATUS_OK) {
-        return result;
-    }
+    TRY(three_body_state_check(s, f));
 
     // the jump, and the motion that begins with it
     two_link_at(t, p, form_of(p), s->angle[1], s->angle[2]);
-    result = two_link_velocity_jump(t, s, after, &out->impulse, f);
+    status result = two_link_velocity_jump(t, s, after, &out->impulse, f);
     if (result == STATUS_OK) {
         integrate_motion(g, p, t, s, after);
     }

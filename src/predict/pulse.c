@@ -74,10 +74,7 @@ static status follow(arm *a, motion *m, const pulse_question *question, seen_ene
         // a step, and the event at its end; a command may end the contact, too
         motion_report report;
         if (m->state[SLOT_CONTACT] != 0) {
-            const status s = motion_step(a, m, until, m->nominal_step, &report);
-            if (s != STATUS_OK) {
-                return s;
-            }
+            TRY(motion_step(a, m, until, m->nominal_step, &report));
             motion_apply(a, m, &report);
         }
         if (m->state[SLOT_CONTACT] == 0) {

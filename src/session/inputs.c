@@ -96,10 +96,7 @@ status session_change(session *s, int parameter, const char *text, fault *f)
     in.before = parameter_is_text(info) ? (double)NAN : parameter_get(&scratch, parameter);
     const bool timed = rig_can_change(&s->effective.parameters, parameter) && s->now > 0;
     status code = timed ? parameter_may_change(&scratch, parameter, f) : STATUS_OK;
-    code = code == STATUS_OK ? parameter_set_text(&scratch, parameter, text, f) : code;
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code == STATUS_OK ? parameter_set_text(&scratch, parameter, text, f) : code);
 
     in.value = parameter_get(&scratch, parameter);
     if (timed) {
@@ -285,14 +282,11 @@ status session_change_input(session *s, int index, const char *text, fault *f)
     remember_cursor(s, &in);
     snprintf(in.text, sizeof in.text, "%s", text);
     parameters scratch = session_parameters_at(s, in.time);
-    status code = parameter_set_text(&scratch, in.parameter, text, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(parameter_set_text(&scratch, in.parameter, text, f));
     in.value = parameter_get(&scratch, in.parameter);
 
     // of two values given for the same instant the later one counts; the cursor stays
-    code = add_input(s, &in, f);
+    status code = add_input(s, &in, f);
     session_seek(s, in.seen_at);
     return code;
 }

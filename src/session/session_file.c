@@ -131,10 +131,7 @@ static status end_base(session_reader *r)
 static status begin_run(session_reader *r, const char *name)
 {
     session_file *file = r->file;
-    const status code = end_base(r);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(end_base(r));
     if (file->run_count == SESSION_FILE_RUNS) {
         return refuse(r, "one run more than a session holds");
     }

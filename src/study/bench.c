@@ -62,10 +62,7 @@ status bench_run(const benchmark *b, bench_result *result, fault *f)
 
     // as many times as patience allows
     for (int i = 0; count < BENCH_REPETITIONS; i++) {
-        status code = b->measure(b, &value, f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(b->measure(b, &value, f));
         elapsed = bench_computing_time() - start;
 
         // the first one only warms the caches, but where it is long that makes no difference

@@ -114,13 +114,10 @@ static status press(const scenario *s, double command, int number, run_monitor *
     const run_options options = {.keep_trace = true, .monitor = monitor};
     run_result result;
     scenario under;
-    status code = pressing(s, command, number, &under, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(pressing(s, command, number, &under, f));
 
     // a run that presses with it, and what the sensors read at its end
-    code = run_scenario_with(&under, &options, &result);
+    status code = run_scenario_with(&under, &options, &result);
     if (code != STATUS_OK) {
         fault_set_at(f, code, result.summary.path, "pressing with %g V failed: %.700s", command,
                      result.summary.message);

@@ -66,10 +66,7 @@ static status part_in_run(const scenario *s, const char *law, double frequency, 
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers && code == STATUS_OK; i++) {
         code = parameter_set_number(&p, numbers[i].index, numbers[i].value, f);
     }
-    code = code == STATUS_OK ? scenario_take_parameters(&changed, &p, f) : code;
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code == STATUS_OK ? scenario_take_parameters(&changed, &p, f) : code);
 
     // a law that fails here says nothing of the others
     run_result result;
@@ -135,11 +132,7 @@ status follow_study_compute(const scenario *s, run_monitor *monitor, follow_stud
         const int law = i / 2 / FOLLOW_FREQUENCIES, k = i / 2 % FOLLOW_FREQUENCIES;
         const bool wall = i % 2 != 0;
         double complex part;
-        const status code =
-            part_in_run(s, follow_laws[law], follow_frequencies[k], wall, monitor, &part, f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(part_in_run(s, follow_laws[law], follow_frequencies[k], wall, monitor, &part, f));
         if (wall) {
             study->points[law][k].shaken = cabs(part) / FOLLOW_WALL;
         } else {

@@ -200,13 +200,10 @@ status identify_add_trace(identification *id, const char *file, char *const *col
     recorded_trace *t = &id->traces[id->trace_count++];
     csv_table table;
     *t = (recorded_trace){.file = strdup(file)};
-    status code = t->file != NULL ? csv_table_read(&table, file, 2, f) : fault_no_memory(f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(t->file != NULL ? csv_table_read(&table, file, 2, f) : fault_no_memory(f));
 
     t->rows = table.rows;
-    code = read_column(&table, "time", "s", true, columns, count, &t->time, f);
+    status code = read_column(&table, "time", "s", true, columns, count, &t->time, f);
     if (code == STATUS_OK) {
         code = read_column(&table, "command", "V", true, columns, count, &t->command, f);
     }

@@ -174,15 +174,12 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor, lin
 {
     links_row *rows = study->rows;
     scenario changed;
-    status code = with_links(s, links_numbers[i], &changed, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(with_links(s, links_numbers[i], &changed, f));
 
     // the whole run; one that failed has what it has until then, which is not its end
     run_result result;
     const run_options options = {.monitor = monitor, .keep_forces = true};
-    code = run_scenario_with(&changed, &options, &result);
+    status code = run_scenario_with(&changed, &options, &result);
     if (code != STATUS_OK) {
         fault_set_at(f, code, result.summary.path, "with %d links: %.700s", links_numbers[i],
                      result.summary.message);
@@ -318,10 +315,7 @@ status links_study_compute(const scenario *s, run_monitor *monitor, links_study 
 
     for (int i = 0; i < LINKS_LENGTHS; i++) {
         study->links[i] = links_numbers[i];
-        status code = compute_column(s, i, monitor, study, &speed, f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(compute_column(s, i, monitor, study, &speed, f));
         study->count++;
         run_monitor_count(monitor);
     }

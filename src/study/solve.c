@@ -284,10 +284,7 @@ static status locate_limits(search *s, fault *f)
 
         // where the quantity ceases to be there between them, that is no limit of its value
         trial *in = first ? &a : &b, *out = first ? &b : &a;
-        status code = locate(s, in, out, f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(locate(s, in, out, f));
         if (isnan(out->quantity)) {
             found->ends++;
         } else if (found->count == SOLVE_MOST_LIMITS) {

@@ -211,10 +211,7 @@ status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f)
     *derived = *s->base;
     parameters p = s->base->parameters;
     for (int i = 0; i < s->axis_count; i++) {
-        status code = sweep_axis_apply(&s->axes[i], sweep_value(s, run, i), &p, f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(sweep_axis_apply(&s->axes[i], sweep_value(s, run, i), &p, f));
     }
     return scenario_take_parameters(derived, &p, f);
 }
@@ -285,14 +282,11 @@ status sweep_plan(sweep *s, const sweep_request *request, fault *f)
 status sweep_init(sweep *s, const scenario *base, const sweep_request *request, fault *f)
 {
     assert(s != NULL && base != NULL && request != NULL);
-    status code = sweep_plan(s, request, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(sweep_plan(s, request, f));
 
     // whether each run can be begun
     s->base = base;
-    code = check_combinations(s, f);
+    status code = check_combinations(s, f);
     if (code != STATUS_OK) {
         sweep_finish(s);
     }

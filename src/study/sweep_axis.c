@@ -211,10 +211,7 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
     // a range may leave what the parameter allows at either end
     for (size_t i = 0; i < n; i++) {
         axis->values[i] = range_point(axis, i, n);
-        status code = check_value(axis, axis->values[i], f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(check_value(axis, axis->values[i], f));
 
         // whole numbers too close together
         if (i > 0 && axis->values[i] == axis->values[i - 1]) {
@@ -293,10 +290,7 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
     // the ends, and the number of values
     status code = read_value(axis, pieces[0], &axis->low, f);
     code = code == STATUS_OK ? read_value(axis, pieces[1], &axis->high, f) : code;
-    code = code == STATUS_OK && count == 3 ? read_count(pieces[2], &n, f) : code;
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code == STATUS_OK && count == 3 ? read_count(pieces[2], &n, f) : code);
 
     if (axis->low == axis->high) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "a range needs two different ends");

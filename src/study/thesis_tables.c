@@ -133,10 +133,7 @@ static status compute_cell(const parameters *p, double value[QUANTITIES], fault 
     if (p->arm.model == ARM_PRINTED) {
         simulate_printed(p, &c);
     } else {
-        const status simulated = simulate_corrected(p, &c, f);
-        if (simulated != STATUS_OK) {
-            return simulated;
-        }
+        TRY(simulate_corrected(p, &c, f));
     }
     assert(c.touched);
     value[FORCE_SIMULATION] = c.peak;
@@ -211,11 +208,7 @@ status tables_compute(thesis_tables *t, fault *f)
         for (int m = 0; m < MODELS; m++) {
             parameters p;
             take_defaults(&p, models[m].kind);
-            status result =
-                compute_table(&p, &thesis[k], models[m].name, t->rows + t->row_count, f);
-            if (result != STATUS_OK) {
-                return result;
-            }
+            TRY(compute_table(&p, &thesis[k], models[m].name, t->rows + t->row_count, f));
             t->row_count += QUANTITIES;
         }
     }

@@ -254,10 +254,7 @@ status tune_init(tuning *t, const tune_request *asked, fault *f)
     assert(asked->runs >= 1 && asked->runs <= TUNE_MOST_RUNS);
     int version[3] = {0};
     *t = (tuning){.asked = *asked, .best.rank = (double)INFINITY};
-    status code = check(asked, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(check(asked, f));
 #ifdef WITH_NLOPT
     nlopt_version(&version[0], &version[1], &version[2]);
 #endif
@@ -272,8 +269,8 @@ status tune_init(tuning *t, const tune_request *asked, fault *f)
                  version[1], version[2]) < 0) {
         t->chosen_by = NULL;
     }
-    code = t->ranks != NULL && t->chosen_by != NULL ? make_plan(t, asked->seed, f)
-                                                    : fault_no_memory(f);
+    status code = t->ranks != NULL && t->chosen_by != NULL ? make_plan(t, asked->seed, f)
+                                                           : fault_no_memory(f);
     if (code != STATUS_OK) {
         tune_finish(t);
     }

@@ -176,10 +176,7 @@ status linear_loop(linear_system *loop, const linear_arm *arm, const parameters 
     linear_law law = {.order = 0};
     *loop = (linear_system){0};
     status code = learn(&law, arm, p, f);
-    code = code == STATUS_OK ? linear_sample(&plant, arm, p, f) : code;
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code == STATUS_OK ? linear_sample(&plant, arm, p, f) : code);
     const int n = plant.states, states = n + law.order;
     code = linear_system_init(loop, states, 1, f);
     if (code != STATUS_OK) {

@@ -172,10 +172,7 @@ static status linearise(workshop *w, linear_system *s, fault *f)
     const motor_model *m = &w->arm.motor;
     const bool flows = m->electric && m->inductance > 0;
     const int angles = end > first ? end - first : 0, states = 2 * angles + flows;
-    const status code = linear_system_init(s, states, LINEAR_OUTPUTS, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(linear_system_init(s, states, LINEAR_OUTPUTS, f));
 
     // one column of (A, B; C, D) after the other, the command's last: a vector of its own
     double slopes[MOST_BODIES + 2], j[MOST_BODIES];

@@ -124,10 +124,7 @@ status linear_sample(linear_system *sampled, const linear_arm *arm, const parame
     assert(sampled != NULL && arm != NULL && p != NULL && p->control.rate > 0);
     lagged_arm l = {.arm = &arm->system, .states = arm->system.states};
     *sampled = (linear_system){0};
-    status code = linear_system_init(&l.system, l.states + MOST_LAGS, LINEAR_READINGS, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(linear_system_init(&l.system, l.states + MOST_LAGS, LINEAR_READINGS, f));
     see_all(&l, p);
 
     // the delay: whole periods, and the rest, in which the command before is still in effect; a
@@ -136,7 +133,7 @@ status linear_sample(linear_system *sampled, const linear_arm *arm, const parame
                  delay = p->control.delay / period + p->control.delay_periods;
     const double whole = floor(delay + 1e-12), part = fmax(0, delay - whole);
     const int held = (int)whole + 1;
-    code = linear_system_init(sampled, l.states + held, LINEAR_READINGS, f);
+    status code = linear_system_init(sampled, l.states + held, LINEAR_READINGS, f);
     code = code == STATUS_OK ? fill(sampled, &l.system, l.states, held, period, part * period, f)
                              : code;
     linear_system_finish(&l.system);

@@ -69,14 +69,11 @@ static status add_rows(merging *m, sweep_database *part, fault *f)
 {
     sqlite3_stmt *rows;
     part->sweep = &m->plan;
-    status code = database_check_runs(part, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(database_check_runs(part, f));
 
     // row by row; only the last step may find nothing more
     int step = SQLITE_DONE;
-    code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
+    status code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
     while (code == STATUS_OK && (step = sqlite3_step(rows)) == SQLITE_ROW) {
         code = add_row(m, part->path, rows, f);
     }
@@ -109,10 +106,7 @@ static status add_part(merging *m, char *path, bool first, fault *f)
 // The database as it would stand in a file, written whole or not at all.
 static status write_database(merging *m, const char *output, fault *f)
 {
-    status code = database_execute(&m->store, "COMMIT", f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(database_execute(&m->store, "COMMIT", f));
 
     // its bytes, as a file would have them
     sqlite3_int64 size = 0;
@@ -123,7 +117,7 @@ static status write_database(merging *m, const char *output, fault *f)
 
     // into the file
     whole_file file;
-    code = whole_file_open(&file, output, f);
+    status code = whole_file_open(&file, output, f);
     if (code == STATUS_OK) {
         fwrite(bytes, 1, (size_t)size, file.stream); // errors stay in the stream
         code = whole_file_commit(&file, f);

@@ -171,10 +171,7 @@ status sweep_store_csv(sweep_store *of, FILE *stream, fault *f)
     sweep_database *store = database_of(of);
     sqlite3_stmt *rows;
     int first_quantity = RUN_FIRST_VALUE + store->sweep->axis_count + RUN_OUTCOME_COLUMNS;
-    status code = database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f));
 
     csv_writer csv = csv_begin(stream);
     write_headings(&csv, store->sweep);
@@ -227,10 +224,7 @@ status sweep_store_json(sweep_store *of, FILE *stream, fault *f)
     sweep_database *store = database_of(of);
     const sweep *s = store->sweep;
     sqlite3_stmt *rows;
-    status code = database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f));
 
     // the head
     json_t *name = json_text(s->base->name);

@@ -41,14 +41,11 @@ static status adopt(sweep_database *store, fault *f)
 {
     definition now;
     bool empty;
-    status code = database_recognise(store, &empty, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(database_recognise(store, &empty, f));
 
     // what lies outside is looked at before it is read: later it can only be newer
     definition_stamp(store->sweep, store->stamp);
-    code = definition_init(&now, store->sweep, f);
+    status code = definition_init(&now, store->sweep, f);
 
     // a new file is given the definition, another one must have the same
     if (code == STATUS_OK && empty) {
@@ -111,14 +108,11 @@ static status open_database(sweep_database *store, fault *f)
         }
     }
 
-    status code = database_open(store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(database_open(store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f));
 
     // what is kept in memory nobody goes on with; somebody may be reading the results in a file
     sqlite3_busy_timeout(store->database, 10000);
-    code = store->path == NULL ? database_create_tables(store, f) : adopt(store, f);
+    status code = store->path == NULL ? database_create_tables(store, f) : adopt(store, f);
     return code == STATUS_OK ? database_prepare_insert(store, &store->insert, f) : code;
 }
 
