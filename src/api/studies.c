@@ -23,13 +23,8 @@ typedef struct varied {
 // The scenario of a run; `f` says what is wrong with it.
 static status vary(const varied *v, size_t run, scenario *made, fault *f)
 {
-    *made = *v->base;
-    parameters p = v->base->parameters;
-    status code = STATUS_OK;
-    for (size_t k = 0; k < v->axis_count && code == STATUS_OK; k++) {
-        code = sweep_axis_apply(&v->axes[k], v->values[run * v->axis_count + k], &p, f);
-    }
-    return code == STATUS_OK ? scenario_take_parameters(made, &p, f) : code;
+    return sweep_axes_scenario(v->axes, (int)v->axis_count, v->values + run * v->axis_count,
+                               v->base, made, f);
 }
 
 // Values were looked at before.

@@ -18,7 +18,7 @@
 #define OUTSIDE    1e4  // residual of a parameter that leaves its range by all its width
 #define TOLERANCE  1e-9 // of the sum of squares, and of the unknowns
 
-enum { MOST_STEPS = 60, REFINED = 2, UNKNOWNS = IDENTIFY_PATHS + IDENTIFY_TRACES * OWNS };
+enum { MOST_STEPS = 60, REFINED = 2 };
 
 // The unknowns of what a trace has of its own, in which one is about 1.
 static const double own_scale[OWNS] = {
@@ -38,6 +38,11 @@ status identify_available(fault *f)
 
 // --- what is fitted ---------------------------------------------------------------------------
 
+static double within_range(const fitted_parameter *fit, double value)
+{
+    return fmin(fmax(value, fit->low_most), fit->high_most);
+}
+
 status identify_add_path(identification *id, const char *text, fault *f)
 {
     assert(id != NULL && text != NULL);
@@ -48,57 +53,39 @@ status identify_add_path(identification *id, const char *text, fault *f)
     *p = (fitted_parameter){.value = (double)NAN};
     sweep_axis *axis = &p->axis;
     const char *range = strchr(text, '=');
-    char name[SWEEP_VALUE_TEXT];
-    snprintf(name, sizeof name, "%.*s", range != NULL ? (int)(range - text) : (int)strlen(text),
-             text);
-    status code = sweep_axis_find(axis, name, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(sweep_axis_find(axis, text, f));
     const parameter_info *info = sweep_axis_parameter(axis);
     if (info->type != PARAMETER_REAL && axis->element == 0) {
         return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
-                            "%s has no real value that could be fitted", name);
+                            "%s has no real value that could be fitted", axis->name);
     }
-    for (int i = 0; i + 1 < id->count; i++) {
-        if (strcmp(id->fit[i].axis.name, axis->name) == 0) {
-            return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path, "%s is fitted twice", name);
+    for (const fitted_parameter *other = id->fit; other < p; other++) {
+        if (strcmp(other->axis.name, axis->name) == 0) {
+            return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path, "%s is fitted twice",
+                                axis->name);
         }
     }
 
     // the scenario's value and the range to search
-    double numbers[PARAMETER_LIST_MOST];
-    p->start = parameter_get(&id->base->parameters, axis->parameter);
-    if (axis->element > 0) {
-        char list[PARAMETER_TEXT_SIZE];
-        parameter_format(&id->base->parameters, axis->parameter, list, sizeof list);
-        if (axis->element > parameter_list_numbers(list, numbers)) {
-            return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
-                                "%s: the scenario's list is shorter", name);
-        }
-        p->start = numbers[axis->element - 1];
+    p->start = sweep_axis_get(axis, &id->base->parameters);
+    if (isnan(p->start) && axis->element > 0) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
+                            "%s: the scenario's list is shorter", axis->name);
     }
     p->low_most = info->minimum;
     p->high_most = info->maximum;
     if (range != NULL) {
-        char *values = strdup(range + 1);
-        code = values != NULL ? sweep_axis_parse(axis, values, true, f) : fault_no_memory(f);
-        free(values);
-        if (code == STATUS_OK && (!axis->is_range || axis->low == axis->high)) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT, "expected a range, %s=a:b", name);
-        }
+        TRY(sweep_axis_parse_range(axis, range + 1, f));
         p->low_most = fmin(axis->low, axis->high);
         p->high_most = fmax(axis->low, axis->high);
+    } else if (!(fabs(p->start) > 0)) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
+                            "%s is 0 in the scenario, expected a range to search: %s=a:b",
+                            axis->name, axis->name);
     }
-    if (code == STATUS_OK && range == NULL && !(fabs(p->start) > 0)) {
-        code =
-            fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
-                         "%s is 0 in the scenario, expected a range to search: %s=a:b", name, name);
-    }
-    p->value = fmin(fmax(p->start, p->low_most), p->high_most);
-    id->scale[id->count - 1] =
-        fabs(p->value) > 0 ? fabs(p->value) : fabs(p->high_most - p->low_most);
-    return code;
+    p->value = within_range(p, p->start);
+    p->scale = fabs(p->value) > 0 ? fabs(p->value) : fabs(p->high_most - p->low_most);
+    return STATUS_OK;
 }
 
 void identify_finish(identification *id)
@@ -136,177 +123,147 @@ status identify_parameters(const identification *id, bool determined, parameters
 
 // --- unknowns ---------------------------------------------------------------------------------
 
-// Which of a trace's own are fitted.
-static bool is_fitted(const recorded_trace *t, int own)
+// Lists them: the parameters, then what each trace has of its own and is fitted.
+static void list_unknowns(identification *id)
 {
-    return own == OWN_VELOCITY ? t->fits_velocity
-                               : own == OWN_SHIFT || t->reading[CHANNEL_ENCODER] != NULL;
-}
-
-// Where one trace takes its unknowns from: x[], first the parameters.
-static void take_unknowns(const identification *id, const double *x, int which, parameters *p,
-                          double own[OWNS])
-{
-    fault ignored;
-    *p = id->base->parameters;
-    for (int i = 0; i < id->count; i++) {
-        const fitted_parameter *fit = &id->fit[i];
-        const double value = fmin(fmax(x[i] * id->scale[i], fit->low_most), fit->high_most);
-        (void)sweep_axis_apply(&fit->axis, value, p, &ignored);
-    }
-    for (int k = 0, n = id->count; k <= which; k++) {
-        for (int o = 0; o < OWNS; o++) {
-            const bool fits = is_fitted(&id->traces[k], o);
-            if (k == which) {
-                own[o] = fits ? x[n] * own_scale[o] : id->traces[k].own[o];
-            }
-            n += fits;
-        }
-    }
-}
-
-// The trace that unknown number n belongs to, -1 for a parameter.
-static int trace_of(const identification *id, int n)
-{
-    int at = id->count;
-    for (int k = 0; k < id->trace_count && n >= id->count; k++) {
-        for (int o = 0; o < OWNS; o++) {
-            at += is_fitted(&id->traces[k], o);
-        }
-        if (n < at) {
-            return k;
-        }
-    }
-    return -1;
-}
-
-// The present values as unknowns; returns how many.
-static int to_unknowns(const identification *id, double *x)
-{
-    int n = 0;
-    for (; n < id->count; n++) {
-        x[n] = id->fit[n].value / id->scale[n];
-    }
+    id->unknowns = id->count;
     for (int k = 0; k < id->trace_count; k++) {
-        for (int o = 0; o < OWNS; o++) {
-            if (is_fitted(&id->traces[k], o)) {
-                x[n++] = id->traces[k].own[o] / own_scale[o];
+        const recorded_trace *t = &id->traces[k];
+        const bool turns = t->reading[CHANNEL_ENCODER] != NULL;
+        const bool fitted[OWNS] = {true, turns, turns, t->fits_velocity};
+        for (int own = 0; own < OWNS; own++) {
+            if (fitted[own]) {
+                id->own[id->unknowns++ - id->count] = (own_unknown){k, own};
             }
         }
     }
-    return n;
+}
+
+// The present values as unknowns, each in its scale.
+static void to_unknowns(const identification *id, double *x)
+{
+    for (int n = 0; n < id->unknowns; n++) {
+        const own_unknown *u = &id->own[n - id->count];
+        x[n] = n < id->count ? id->fit[n].value / id->fit[n].scale
+                             : id->traces[u->trace].own[u->own] / own_scale[u->own];
+    }
 }
 
 static void from_unknowns(identification *id, const double *x)
 {
-    double own[IDENTIFY_TRACES][OWNS];
-    parameters p;
-    for (int k = 0; k < id->trace_count; k++) {
-        take_unknowns(id, x, k, &p, own[k]);
-    }
-    for (int k = 0; k < id->trace_count; k++) {
-        memcpy(id->traces[k].own, own[k], sizeof own[k]);
-    }
-    for (int i = 0; i < id->count; i++) {
-        fitted_parameter *fit = &id->fit[i];
-        fit->value = fmin(fmax(x[i] * id->scale[i], fit->low_most), fit->high_most);
+    for (int n = 0; n < id->unknowns; n++) {
+        const own_unknown *u = &id->own[n - id->count];
+        if (n < id->count) {
+            id->fit[n].value = within_range(&id->fit[n], x[n] * id->fit[n].scale);
+        } else {
+            id->traces[u->trace].own[u->own] = x[n] * own_scale[u->own];
+        }
     }
 }
 
 // --- batches of runs --------------------------------------------------------------------------
 
-// A piece: trace `trace` under unknowns x, to `out`.
+// A piece: a trace under unknowns of which one is moved, to `out`.
 typedef struct piece {
     int trace;
-    double x[UNKNOWNS];
+    const double *x;
+    int moved;
+    double by;
     double *out;
     bool judge;
+    fault why; // the run failed
 } piece;
 
 typedef struct batch_of_runs {
     identification *id;
     piece *pieces;
-    fault first; // of the runs that failed
+    size_t count;
 } batch_of_runs;
-
-typedef struct piece_result {
-    fault fault;
-} piece_result;
 
 static void compute_piece(void *context, size_t i, void *scratch, void *result)
 {
     const batch_of_runs *b = context;
-    const piece *here = &b->pieces[i];
-    piece_result *r = result;
-    parameters p;
+    const identification *id = b->id;
+    piece *here = &b->pieces[i];
+    recorded_trace *t = &b->id->traces[here->trace];
+    parameters p = id->base->parameters;
     double own[OWNS];
+    fault ignored;
     (void)scratch;
-    r->fault = (fault){.code = STATUS_OK, .path = ""};
-    take_unknowns(b->id, here->x, here->trace, &p, own);
-    identify_residuals(b->id, &b->id->traces[here->trace], &p, own, here->judge, here->out,
-                       &r->fault);
+    memcpy(own, t->own, sizeof own);
+    for (int n = 0; n < id->unknowns; n++) {
+        const double x = here->x[n] + (n == here->moved ? here->by : 0);
+        const own_unknown *u = &id->own[n - id->count];
+        if (n < id->count) {
+            const fitted_parameter *fit = &id->fit[n];
+            (void)sweep_axis_apply(&fit->axis, within_range(fit, x * fit->scale), &p, &ignored);
+        } else if (u->trace == here->trace) {
+            own[u->own] = x * own_scale[u->own];
+        }
+    }
+    here->why = (fault){.code = STATUS_OK, .path = ""};
+    identify_residuals(id, t, &p, own, here->judge, here->out, &here->why);
+    *(status *)result = here->why.code;
 }
 
 static status collect_piece(void *context, size_t i, const void *result, fault *f)
 {
-    batch_of_runs *b = context;
-    const piece_result *r = result;
+    const batch_of_runs *b = context;
     (void)i;
-    if (r->fault.code == STATUS_NO_MEMORY) {
+    if (*(const status *)result == STATUS_NO_MEMORY) {
         return fault_no_memory(f);
     }
     if (run_monitor_stops(b->id->monitor)) {
         return fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
     }
-    if (r->fault.code != STATUS_OK && b->first.code == STATUS_OK) {
-        b->first = r->fault;
-    }
     run_monitor_count(b->id->monitor);
     return STATUS_OK;
 }
 
-static status run_pieces(batch_of_runs *b, size_t count, fault *f)
+static status run_pieces(batch_of_runs *b, fault *f)
 {
     const pool_work work = {.context = b,
-                            .count = count,
-                            .result_size = sizeof(piece_result),
+                            .count = b->count,
+                            .result_size = sizeof(status),
                             .compute = compute_piece,
                             .collect = collect_piece};
     return pool_run(&work, b->id->jobs < 1 ? 1 : b->id->jobs, f);
 }
 
-// Residuals of `sets` sets of unknowns, x[set * n], one behind the other.
-static status residuals_of(identification *id, const double *x, int n, int sets, bool judge,
-                           double *out, fault *why, fault *f)
+// What draws a parameter back that leaves its range; *slope: by its unknown.
+static double draw_back(const fitted_parameter *fit, double x, double *slope)
 {
-    batch_of_runs b = {.id = id};
-    const size_t count = (size_t)sets * (size_t)id->trace_count;
-    b.pieces = calloc(count, sizeof *b.pieces);
+    const double value = x * fit->scale, width = fit->high_most - fit->low_most;
+    const double beyond = fmax(value - fit->high_most, 0) + fmin(value - fit->low_most, 0);
+    *slope = beyond != 0 ? OUTSIDE * fit->scale / fmin(width, fit->scale) : 0;
+    return beyond / fmin(width, fit->scale) * OUTSIDE;
+}
+
+// Residuals of `sets` sets of unknowns, one behind the other: of each trace, then what draws
+// parameters back. `why` (may be NULL) receives what stopped the first run that failed.
+static status residuals_of(identification *id, const double *x, int sets, bool judge, double *out,
+                           fault *why, fault *f)
+{
+    batch_of_runs b = {.id = id, .count = (size_t)(sets * id->trace_count)};
+    b.pieces = calloc(b.count, sizeof *b.pieces);
     if (b.pieces == NULL) {
         return fault_no_memory(f);
     }
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < b.count; i++) {
         const int k = (int)(i % (size_t)id->trace_count);
-        piece *p = &b.pieces[i];
-        memcpy(p->x, x + i / (size_t)id->trace_count * (size_t)n, (size_t)n * sizeof *x);
-        p->trace = k;
-        p->judge = judge;
-        p->out = out;
+        b.pieces[i] = (piece){.trace = k, .x = x, .out = out, .judge = judge};
         out += id->traces[k].residuals;
         if (k == id->trace_count - 1) {
-            // a parameter that leaves its range is drawn back
             for (int j = 0; j < id->count; j++) {
-                const fitted_parameter *fit = &id->fit[j];
-                const double value = p->x[j] * id->scale[j], width = fit->high_most - fit->low_most;
-                const double beyond =
-                    fmax(value - fit->high_most, 0) + fmin(value - fit->low_most, 0);
-                *out++ = beyond / fmin(width, id->scale[j]) * OUTSIDE;
+                double slope;
+                *out++ = draw_back(&id->fit[j], x[j], &slope);
             }
+            x += id->unknowns;
         }
     }
-    status code = run_pieces(&b, count, f);
-    if (why != NULL) {
-        *why = b.first;
+    const status code = run_pieces(&b, f);
+    for (size_t i = b.count; why != NULL && i-- > 0;) {
+        *why = b.pieces[i].why.code != STATUS_OK ? b.pieces[i].why : *why;
     }
     free(b.pieces);
     return code;
@@ -314,39 +271,35 @@ static status residuals_of(identification *id, const double *x, int n, int sets,
 
 // The Jacobian, column by column, by central differences: two runs of each trace that an unknown
 // has a say in, all in one batch.
-static status jacobian_of(identification *id, const double *x, int n, double *jacobian, fault *f)
+static status jacobian_of(identification *id, const double *x, double *jacobian, fault *f)
 {
+    const int n = id->unknowns;
     const size_t m = id->residuals;
-    const size_t most = 2 * (size_t)n * (size_t)id->trace_count;
-    batch_of_runs b = {.id = id, .pieces = calloc(most, sizeof *b.pieces)};
+    batch_of_runs b = {.id = id};
     double *other = calloc(m * (size_t)n, sizeof *other);
-    size_t count = 0;
+    b.pieces = calloc(2 * (size_t)n * (size_t)id->trace_count, sizeof *b.pieces);
     status code = b.pieces != NULL && other != NULL ? STATUS_OK : fault_no_memory(f);
     memset(jacobian, 0, m * (size_t)n * sizeof *jacobian);
     for (int j = 0; j < n && code == STATUS_OK; j++) {
-        const int only = trace_of(id, j);
-        size_t from = 0;
+        const int only = j < id->count ? -1 : id->own[j - id->count].trace;
+        size_t from = (size_t)j * m;
         for (int k = 0; k < id->trace_count; k++) {
             for (int side = -1; side <= 1 && (only < 0 || only == k); side += 2) {
-                piece *p = &b.pieces[count++];
-                memcpy(p->x, x, (size_t)n * sizeof *x);
-                p->x[j] += side * DIFFERENCE;
-                p->trace = k;
-                p->out = (side < 0 ? other : jacobian) + (size_t)j * m + from;
+                b.pieces[b.count++] = (piece){.trace = k,
+                                              .x = x,
+                                              .moved = j,
+                                              .by = side * DIFFERENCE,
+                                              .out = (side < 0 ? other : jacobian) + from};
             }
             from += id->traces[k].residuals;
         }
     }
-    code = code == STATUS_OK ? run_pieces(&b, count, f) : code;
+    code = code == STATUS_OK ? run_pieces(&b, f) : code;
     for (size_t i = 0; i < m * (size_t)n && code == STATUS_OK; i++) {
         jacobian[i] = (jacobian[i] - other[i]) / (2 * DIFFERENCE);
     }
     for (int j = 0; j < id->count && code == STATUS_OK; j++) {
-        const fitted_parameter *fit = &id->fit[j];
-        const double value = x[j] * id->scale[j], width = fit->high_most - fit->low_most;
-        const bool outside = value > fit->high_most || value < fit->low_most;
-        jacobian[(size_t)j * m + m - (size_t)id->count + (size_t)j] =
-            outside ? OUTSIDE * id->scale[j] / fmin(width, id->scale[j]) : 0;
+        draw_back(&id->fit[j], x[j], &jacobian[(size_t)(j + 1) * m - (size_t)(id->count - j)]);
     }
     free(b.pieces);
     free(other);
@@ -366,21 +319,20 @@ static int evaluate(void *context, int m, int n, const double *x, double *residu
                     double *jacobian, int rows, int asked)
 {
     least_squares *l = context;
-    (void)m;
-    (void)rows;
-    l->code = asked == 1 ? residuals_of(l->id, x, n, 1, false, residual, NULL, l->f)
-                         : jacobian_of(l->id, x, n, jacobian, l->f);
+    (void)m, (void)n, (void)rows;
+    l->code = asked == 1 ? residuals_of(l->id, x, 1, false, residual, NULL, l->f)
+                         : jacobian_of(l->id, x, jacobian, l->f);
     return l->code == STATUS_OK ? 0 : -1;
 }
 
 // Levenberg and Marquardt's method from x on.
-static status minimise(identification *id, double *x, int n, double *residual, double *jacobian,
-                       fault *f)
+static status minimise(identification *id, double *x, double *residual, double *jacobian, fault *f)
 {
-    const int m = (int)id->residuals;
+    const int m = (int)id->residuals, n = id->unknowns;
     least_squares l = {.id = id, .f = f};
-    double diagonal[UNKNOWNS], work[4][UNKNOWNS], *more = calloc((size_t)m, sizeof *more);
-    int pivots[UNKNOWNS], evaluations, jacobians;
+    double diagonal[IDENTIFY_UNKNOWNS], work[4][IDENTIFY_UNKNOWNS],
+        *more = calloc((size_t)m, sizeof *more);
+    int pivots[IDENTIFY_UNKNOWNS], evaluations, jacobians;
     if (more == NULL) {
         return fault_no_memory(f);
     }
@@ -391,10 +343,9 @@ static status minimise(identification *id, double *x, int n, double *residual, d
     return l.code;
 }
 #else
-static status minimise(identification *id, double *x, int n, double *residual, double *jacobian,
-                       fault *f)
+static status minimise(identification *id, double *x, double *residual, double *jacobian, fault *f)
 {
-    (void)id, (void)x, (void)n, (void)residual, (void)jacobian;
+    (void)id, (void)x, (void)residual, (void)jacobian;
     return identify_available(f);
 }
 #endif
@@ -408,113 +359,106 @@ static double sum_of_squares(const double *residual, size_t count)
     return sum;
 }
 
-// The values to begin with: the scenario's, and those drawn from the ranges or from half to twice
-// the scenario's, sorted by what they leave.
-typedef struct beginning {
-    double x[UNKNOWNS];
-    double rest;
-} beginning;
-
-static int compare_beginnings(const void *a, const void *b)
-{
-    const double x = ((const beginning *)a)->rest, y = ((const beginning *)b)->rest;
-    return (x > y) - (x < y);
-}
-
 // The scenario's values; where a trace starts is what its encoder says, or, with an encoder that
 // counts from anywhere, what the scenario says.
 static void begin_with(const identification *id, bool counted, double *x)
 {
-    identification other = *id;
-    for (int k = 0; k < id->trace_count && counted; k++) {
-        recorded_trace *t = &other.traces[k];
-        const double angle = id->base->parameters.initial.angle;
-        t->own[OWN_OFFSET] += t->own[OWN_ANGLE] - angle;
-        t->own[OWN_ANGLE] = angle;
+    const double angle = id->base->parameters.initial.angle;
+    to_unknowns(id, x);
+    for (int n = id->count; n < id->unknowns && counted; n++) {
+        const own_unknown *u = &id->own[n - id->count];
+        const double *own = id->traces[u->trace].own;
+        const double offset = own[OWN_OFFSET] + (own[OWN_ANGLE] - angle);
+        x[n] = u->own == OWN_ANGLE    ? angle / own_scale[OWN_ANGLE]
+               : u->own == OWN_OFFSET ? offset / own_scale[OWN_OFFSET]
+                                      : x[n];
     }
-    to_unknowns(&other, x);
 }
 
-static status draw_beginnings(identification *id, beginning *all, int n, fault *f)
+// The sets of unknowns to begin with, x[starts * unknowns], and what each leaves, rest[starts]: the
+// scenario's, and those drawn from the ranges or from half to twice the scenario's.
+static status draw_beginnings(identification *id, double *x, double *rest, fault *f)
 {
     const size_t m = id->residuals;
     random_generator random;
-    double *x = calloc((size_t)id->starts * (size_t)n + 1, sizeof *x);
     double *out = calloc((size_t)id->starts * m, sizeof *out);
-    status code = x != NULL && out != NULL ? STATUS_OK : fault_no_memory(f);
+    if (out == NULL) {
+        return fault_no_memory(f);
+    }
     random_seed(&random, id->seed);
-    for (int s = 0; s < id->starts && code == STATUS_OK; s++) {
-        double *here = x + (size_t)s * (size_t)n;
+    for (int s = 0; s < id->starts; s++) {
+        double *here = x + s * id->unknowns;
         begin_with(id, s % 2 != 0, here);
         for (int i = 0; i < id->count && s > 1; i++) {
             const fitted_parameter *fit = &id->fit[i];
             const double u = random_uniform(&random);
-            here[i] = fit->axis.is_range ? sweep_axis_value_at(&fit->axis, u) / id->scale[i]
+            here[i] = fit->axis.is_range ? sweep_axis_value_at(&fit->axis, u) / fit->scale
                                          : here[i] * (u < 0.5 ? 0.5 + u : 2 * u);
         }
     }
-    code = code == STATUS_OK ? residuals_of(id, x, n, id->starts, false, out, NULL, f) : code;
-    for (int s = 0; s < id->starts && code == STATUS_OK; s++) {
-        memcpy(all[s].x, x + (size_t)s * (size_t)n, (size_t)n * sizeof *x);
-        all[s].rest = sum_of_squares(out + (size_t)s * m, m);
+    const status code = residuals_of(id, x, id->starts, false, out, NULL, f);
+    for (int s = 0; s < id->starts; s++) {
+        rest[s] = sum_of_squares(out + (size_t)s * m, m);
     }
-    if (code == STATUS_OK) {
-        qsort(all, (size_t)id->starts, sizeof *all, compare_beginnings);
-    }
-    free(x);
     free(out);
     return code;
+}
+
+// Fits with room for the beginnings and what they leave, a set of residuals and the Jacobian.
+static status fit_with(identification *id, double *x, double *rest, double *residual,
+                       double *jacobian, fault *f)
+{
+    const double *best = x;
+    double least = HUGE_VAL;
+    TRY(draw_beginnings(id, x, rest, f));
+
+    // those that leave the least to the end
+    for (int tried = 0; tried < REFINED; tried++) {
+        int s = 0;
+        for (int i = 1; i < id->starts; i++) {
+            s = rest[i] < rest[s] ? i : s;
+        }
+        rest[s] = HUGE_VAL;
+        TRY(minimise(id, x + s * id->unknowns, residual, jacobian, f));
+        const double left = sum_of_squares(residual, id->residuals);
+        best = left < least ? x + s * id->unknowns : best;
+        least = fmin(left, least);
+    }
+
+    // the best of them, judged
+    fault why = {.code = STATUS_OK};
+    TRY(residuals_of(id, best, 1, true, id->residual, &why, f));
+    if (why.code != STATUS_OK) {
+        *f = why;
+        return why.code;
+    }
+    TRY(jacobian_of(id, best, jacobian, f));
+    from_unknowns(id, best);
+    return identify_judge(id, jacobian, f);
 }
 
 status identify_fit(identification *id, fault *f)
 {
     assert(id != NULL && id->trace_count > 0);
-    double x[UNKNOWNS];
-    const int n = to_unknowns(id, x);
-    id->unknowns = n;
+    list_unknowns(id);
     id->residuals = (size_t)id->count;
     for (int k = 0; k < id->trace_count; k++) {
         id->residuals += id->traces[k].residuals;
     }
     id->starts = id->count == 0 || id->starts < 2 ? 2 : id->starts;
-    const size_t m = id->residuals;
-    if (m <= (size_t)(n + id->count) || m > 10000000) {
+    const size_t m = id->residuals, n = (size_t)id->unknowns, starts = (size_t)id->starts;
+    if (m <= n + (size_t)id->count || m > 10000000) {
         return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%zu readings can be compared for %d unknowns, expected more", m, n);
+                         "%zu readings can be compared for %zu unknowns, expected more", m, n);
     }
 
     free(id->residual);
     id->residual = calloc(m, sizeof *id->residual);
-    double *residual = calloc(m, sizeof *residual);
-    double *jacobian = calloc(m * (size_t)n, sizeof *jacobian);
-    beginning *all = calloc((size_t)id->starts, sizeof *all);
-    status code = id->residual != NULL && residual != NULL && jacobian != NULL && all != NULL
-                      ? draw_beginnings(id, all, n, f)
-                      : fault_no_memory(f);
-
-    // the best of them to the end
-    double least = HUGE_VAL;
-    for (int s = 0; s < id->starts && s < REFINED && code == STATUS_OK; s++) {
-        code = minimise(id, all[s].x, n, residual, jacobian, f);
-        const double rest = sum_of_squares(residual, m);
-        if (code == STATUS_OK && rest < least) {
-            least = rest;
-            memcpy(x, all[s].x, sizeof x);
-        }
-    }
-    fault why = {0};
-    code = code == STATUS_OK ? residuals_of(id, x, n, 1, true, id->residual, &why, f) : code;
-    if (code == STATUS_OK && why.code != STATUS_OK) {
-        *f = why;
-        code = why.code;
-    }
-    code = code == STATUS_OK ? jacobian_of(id, x, n, jacobian, f) : code;
-    if (code == STATUS_OK) {
-        from_unknowns(id, x);
-        code = identify_judge(id, jacobian, f);
-    }
-    free(residual);
-    free(jacobian);
-    free(all);
+    double *room = calloc(starts * (n + 1) + m + m * n, sizeof *room), *rest = room + starts * n,
+           *residual = rest + starts;
+    const status code = id->residual != NULL && room != NULL
+                            ? fit_with(id, room, rest, residual, residual + m, f)
+                            : fault_no_memory(f);
+    free(room);
     return code;
 }

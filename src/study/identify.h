@@ -41,6 +41,8 @@ extern const int identify_signals[CHANNELS]; // indices in signal_table
 // What a trace has of its own, besides the parameters.
 enum { OWN_SHIFT, OWN_OFFSET, OWN_ANGLE, OWN_VELOCITY, OWNS };
 
+enum { IDENTIFY_UNKNOWNS = IDENTIFY_PATHS + IDENTIFY_TRACES * OWNS };
+
 typedef struct recorded_trace {
     char *file;
     size_t rows;                 // one for each sample of the rig
@@ -63,9 +65,15 @@ typedef struct fitted_parameter {
     sweep_axis axis;                         // its path, and the range if one was given
     double start;                            // of the scenario
     double low_most, high_most;              // between which it is searched
+    double scale;                            // in which it is about 1
     double value, standard_error, low, high; // 95 % interval; NaN if it is not determined
     bool determined;
 } fitted_parameter;
+
+// An unknown that a trace has of its own.
+typedef struct own_unknown {
+    int trace, own;
+} own_unknown;
 
 typedef struct identification {
     const scenario *base; // borrowed
@@ -78,17 +86,17 @@ typedef struct identification {
     run_monitor *monitor; // NULL: nobody looks on
 
     // what comes out
-    double *residual;             // of all traces one behind the other, in standard deviations
-    size_t residuals;             //
-    int unknowns;                 // parameters, and what the traces have of their own
-    double chi_square;            // their sum of squares
-    double aic;                   // Akaike's criterion, chi_square + 2 unknowns
-    bool white;                   // no channel's residuals are correlated
-    double scale[IDENTIFY_PATHS]; // of the parameters, in which what follows is given
-    double covariance[IDENTIFY_PATHS * IDENTIFY_PATHS];
-    double singular[IDENTIFY_PATHS];                   // values of the Jacobian, rising
-    double direction[IDENTIFY_PATHS * IDENTIFY_PATHS]; // row k belongs to singular[k]
-    int undetermined;                                  // the first so many directions are
+    double *residual; // of all traces one behind the other, in standard deviations
+    size_t residuals; //
+    int unknowns;     // the parameters, and behind them these
+    own_unknown own[IDENTIFY_TRACES * OWNS];
+    double chi_square; // their sum of squares
+    double aic;        // Akaike's criterion, chi_square + 2 unknowns
+    bool white;        // no channel's residuals are correlated
+    double covariance[IDENTIFY_PATHS * IDENTIFY_PATHS]; // this and what follows in their scales
+    double singular[IDENTIFY_PATHS];                    // values of the Jacobian, rising
+    double direction[IDENTIFY_PATHS * IDENTIFY_PATHS];  // row k belongs to singular[k]
+    int undetermined;                                   // the first so many directions are
 } identification;
 
 // Whether this program was built with MINPACK; else a sentence in f.

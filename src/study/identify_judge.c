@@ -18,8 +18,6 @@
 #define NO_SAY      1e-12 // share of the largest eigenvalue below which there is none
 #define WHITE       3.5   // standard normal deviate that white residuals exceed once in 4000
 
-enum { MOST = IDENTIFY_PATHS + IDENTIFY_TRACES * OWNS };
-
 // --- whiteness --------------------------------------------------------------------------------
 
 // Ljung and Box's statistic of a series in which 0 deviations are gaps, as a number that is
@@ -104,7 +102,8 @@ static bool project(const identification *id, const double *jacobian, double *al
 {
     const size_t m = id->residuals;
     const int p = id->count, q = id->unknowns - p;
-    double size[MOST], own[MOST * MOST], values[MOST], scratch[2 * MOST];
+    double size[IDENTIFY_UNKNOWNS], own[IDENTIFY_UNKNOWNS * IDENTIFY_UNKNOWNS],
+        values[IDENTIFY_UNKNOWNS], scratch[2 * IDENTIFY_UNKNOWNS];
     memcpy(alone, jacobian, (size_t)p * m * sizeof *alone);
     for (int i = 0; i < q; i++) {
         const double square =
@@ -293,7 +292,7 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
         }
         fit->determined = part < HAS_A_PART;
         fit->standard_error =
-            fit->determined ? id->scale[i] * sqrt(id->covariance[i * p + i]) : (double)NAN;
+            fit->determined ? id->fit[i].scale * sqrt(id->covariance[i * p + i]) : (double)NAN;
         fit->low = fit->value - QUANTILE * fit->standard_error;
         fit->high = fit->value + QUANTILE * fit->standard_error;
     }
@@ -424,7 +423,7 @@ static void draw_arm(const identification *id, const double *directions, const d
             sum += random_uniform(random);
         }
         for (int i = 0; i < p; i++) {
-            drawn[i] += sum * sqrt(fmax(values[k], 0)) * directions[k * p + i] * id->scale[i];
+            drawn[i] += sum * sqrt(fmax(values[k], 0)) * directions[k * p + i] * id->fit[i].scale;
         }
     }
     for (int i = 0; i < p; i++) {

@@ -89,25 +89,10 @@ status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f)
 status solve_axis_read(sweep_axis *axis, const char *text, const scenario *s, fault *f)
 {
     assert(axis != NULL && text != NULL && s != NULL);
-    char name[SWEEP_VALUE_TEXT];
     const char *range = strchr(text, '=');
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
-    status code = sweep_axis_find(axis, name, f);
-    if (code != STATUS_OK || range == NULL) {
-        return code == STATUS_OK ? solve_usual_range(axis, s, f) : code;
-    }
-
-    // a range of its own; the axis' parser takes the text apart
-    char *copy = strdup(range + 1);
-    if (copy == NULL) {
-        return fault_no_memory(f);
-    }
-    code = sweep_axis_parse(axis, copy, true, f);
-    free(copy);
-    if (code == STATUS_OK && !axis->is_range) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT, "expected a range, %s=a:b", name);
-    }
-    return code;
+    TRY(sweep_axis_find(axis, text, f));
+    return range != NULL ? sweep_axis_parse_range(axis, range + 1, f)
+                         : solve_usual_range(axis, s, f);
 }
 
 // --- one run --------------------------------------------------------------------------------
@@ -137,14 +122,12 @@ typedef struct trial_result {
 // Runs the scenario with one value of the parameter.
 static void run_trial(const search *s, double value, trial_result *r)
 {
-    scenario derived = *s->base;
-    parameters p = s->base->parameters;
+    scenario derived;
     fault f = {0};
     *r = (trial_result){.trial = {.value = value, .quantity = (double)NAN}};
 
     // values that do not go with the others of the scenario are as good as a run that fails
-    status code = sweep_axis_apply(s->axis, value, &p, &f);
-    code = code == STATUS_OK ? scenario_take_parameters(&derived, &p, &f) : code;
+    status code = sweep_axes_scenario(s->axis, 1, &value, s->base, &derived, &f);
     if (code != STATUS_OK) {
         r->status = code == STATUS_NO_MEMORY ? code : STATUS_OK;
         snprintf(r->reason, sizeof r->reason, "%.500s", f.text);

@@ -17,18 +17,6 @@ const char *sweep_sampling_name(sweep_sampling sampling)
 
 // --- what is varied -------------------------------------------------------------------------
 
-// Looks up what an axis varies: a number or a word, once.
-static status find_parameter(const sweep *s, sweep_axis *axis, const char *path, fault *f)
-{
-    status code = sweep_axis_find(axis, path, f);
-    for (int i = 0; i < s->axis_count && code == STATUS_OK; i++) {
-        if (strcmp(s->axes[i].name, axis->name) == 0) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT, "%s is varied twice", axis->name);
-        }
-    }
-    return code;
-}
-
 // An axis whose values go with those of the axis before it, one each.
 static status check_together(const sweep *s, const sweep_axis *axis, fault *f)
 {
@@ -54,32 +42,24 @@ static status read_axis(sweep *s, const char *given, fault *f)
                          SWEEP_MOST_AXES);
     }
     const bool together = strncmp(given, with, strlen(with)) == 0;
-    char *text = strdup(together ? given + strlen(with) : given);
-    if (text == NULL) {
-        return fault_no_memory(f);
-    }
+    given += together ? strlen(with) : 0;
 
     // the parameter before the equals sign, the values behind it
     sweep_axis *axis = &s->axes[s->axis_count];
-    char *values = strchr(text, '=');
-    status code;
+    const char *values = strchr(given, '=');
     if (values == NULL) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT, "expected PATH=a:b:n or PATH=v1,v2,v3");
-    } else {
-        *values++ = '\0';
-        code = find_parameter(s, axis, text, f);
-        s->axis_count++;
+        return fault_set(f, STATUS_BAD_ARGUMENT, "expected PATH=a:b:n or PATH=v1,v2,v3");
     }
-
-    if (code == STATUS_OK) {
-        code = sweep_axis_parse(axis, values, s->sampling != SWEEP_GRID, f);
+    s->axis_count++;
+    TRY(sweep_axis_find(axis, given, f));
+    for (const sweep_axis *other = s->axes; other < axis; other++) {
+        if (strcmp(other->name, axis->name) == 0) {
+            return fault_set(f, STATUS_BAD_ARGUMENT, "%s is varied twice", axis->name);
+        }
     }
-    if (code == STATUS_OK && together) {
-        axis->together = true;
-        code = check_together(s, axis, f);
-    }
-    free(text);
-    return code;
+    TRY(sweep_axis_parse(axis, values + 1, s->sampling != SWEEP_GRID, f));
+    axis->together = together;
+    return together ? check_together(s, axis, f) : STATUS_OK;
 }
 
 // --- which values a run has -----------------------------------------------------------------
@@ -208,12 +188,11 @@ void sweep_value_text(const sweep *s, size_t run, int axis, char *text, size_t s
 status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f)
 {
     assert(s != NULL && s->base != NULL && derived != NULL);
-    *derived = *s->base;
-    parameters p = s->base->parameters;
+    double values[SWEEP_MOST_AXES];
     for (int i = 0; i < s->axis_count; i++) {
-        TRY(sweep_axis_apply(&s->axes[i], sweep_value(s, run, i), &p, f));
+        values[i] = sweep_value(s, run, i);
     }
-    return scenario_take_parameters(derived, &p, f);
+    return sweep_axes_scenario(s->axes, s->axis_count, values, s->base, derived, f);
 }
 
 // Tells before anything is computed if values do not go together (links and the printed model).

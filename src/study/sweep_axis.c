@@ -17,11 +17,12 @@ const parameter_info *sweep_axis_parameter(const sweep_axis *axis)
     return settings_name(axis->name) ? &setting_info : &parameter_table[axis->parameter];
 }
 
-status sweep_axis_find(sweep_axis *axis, const char *name, fault *f)
+status sweep_axis_find(sweep_axis *axis, const char *text, fault *f)
 {
-    assert(axis != NULL && name != NULL);
-    char path[SWEEP_NAME];
+    assert(axis != NULL && text != NULL);
+    char name[SWEEP_VALUE_TEXT], path[SWEEP_NAME];
     const char *own;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
     if (settings_name(name) != NULL) {
         axis->parameter = settings_look_up(name, &own, f);
         snprintf(axis->name, sizeof axis->name, "%.*s", SWEEP_NAME - 1, name);
@@ -88,6 +89,18 @@ status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fau
         number_format(i > 0 ? end + 1 : end, numbers[i]);
     }
     return parameter_set_text(p, axis->parameter, changed, f);
+}
+
+status sweep_axes_scenario(const sweep_axis *axes, int count, const double *values,
+                           const scenario *base, scenario *derived, fault *f)
+{
+    assert((count == 0 || (axes != NULL && values != NULL)) && base != NULL && derived != NULL);
+    parameters p = base->parameters;
+    *derived = *base;
+    for (int i = 0; i < count; i++) {
+        TRY(sweep_axis_apply(&axes[i], values[i], &p, f));
+    }
+    return scenario_take_parameters(derived, &p, f);
 }
 
 double sweep_axis_get(const sweep_axis *axis, const parameters *p)
@@ -343,13 +356,29 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
     return code;
 }
 
-status sweep_axis_parse(sweep_axis *axis, char *text, bool drawn, fault *f)
+status sweep_axis_parse(sweep_axis *axis, const char *values, bool drawn, fault *f)
 {
-    assert(axis != NULL && text != NULL);
+    assert(axis != NULL && values != NULL);
+    char *text = strdup(values);
+    if (text == NULL) {
+        return fault_no_memory(f);
+    }
+
     // a list cannot hold ranges: with a comma it is read as a list, and a value with a colon is
     // refused
-    bool range = strchr(text, ':') != NULL && strchr(text, ',') == NULL;
-    return range ? read_range(axis, text, drawn, f) : read_list(axis, text, drawn, f);
+    const bool range = strchr(text, ':') != NULL && strchr(text, ',') == NULL;
+    const status code = (range ? read_range : read_list)(axis, text, drawn, f);
+    free(text);
+    return code;
+}
+
+status sweep_axis_parse_range(sweep_axis *axis, const char *text, fault *f)
+{
+    assert(axis != NULL && text != NULL);
+    TRY(sweep_axis_parse(axis, text, true, f));
+    return axis->is_range
+               ? STATUS_OK
+               : fault_set(f, STATUS_BAD_ARGUMENT, "expected a range, %s=a:b", axis->name);
 }
 
 void sweep_axis_finish(sweep_axis *axis)

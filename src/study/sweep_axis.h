@@ -1,7 +1,7 @@
 // One parameter that a sweep varies, and the grammar of --vary that says over which values.
 #pragma once
 
-#include "src/tables/parameters.h"
+#include "src/scenario/scenario.h"
 
 enum { SWEEP_MOST_RUNS = 10000000, SWEEP_VALUE_TEXT = 128, SWEEP_NAME = 64 };
 
@@ -20,17 +20,25 @@ typedef struct sweep_axis {
     char *text;       // what is varied, in one way of writing: "1:10:5", "0.1:10:3:log", "a,b"
 } sweep_axis;
 
-// Finds what is varied by its name, PATH, LIST[k] or control.settings.NAME, and writes it into an
-// axis of zeroes. On failure f says what was expected.
+// Finds what is varied by its name, PATH, LIST[k] or control.settings.NAME, up to an equals sign,
+// and writes it into an axis of zeroes. On failure f says what was expected.
 status sweep_axis_find(sweep_axis *axis, const char *name, fault *f);
 
 // Gives the parameters a value of the axis; f says what does not fit, such as a list too short.
 status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fault *f);
 
+// The scenario with a value for each of `count` axes; it borrows everything but its parameters from
+// the base. Fails, with the reason in f, if the values do not go together.
+status sweep_axes_scenario(const sweep_axis *axes, int count, const double *values,
+                           const scenario *base, scenario *derived, fault *f);
+
 // Reads the values "a:b:n", "a:b:n:log" or "v1,v2,v3" of the axis, whose parameter is set; n may be
 // left out if values are drawn from a range, and a list to draw from may have a value several
-// times. Changes the text. On failure f says what was expected; sweep_axis_finish in either case.
-status sweep_axis_parse(sweep_axis *axis, char *text, bool drawn, fault *f);
+// times. On failure f says what was expected; sweep_axis_finish in either case.
+status sweep_axis_parse(sweep_axis *axis, const char *text, bool drawn, fault *f);
+
+// The same of a range to draw from, "a:b" or "a:b:log", and nothing else.
+status sweep_axis_parse_range(sweep_axis *axis, const char *text, fault *f);
 
 void sweep_axis_finish(sweep_axis *axis);
 

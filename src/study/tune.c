@@ -100,13 +100,7 @@ static status judge(const tune_request *asked, judged *of, tune_result *out, fau
 
 status tune_apply(const tuning *t, const double *values, scenario *s, fault *f)
 {
-    parameters p = t->asked.base->parameters;
-    status code = STATUS_OK;
-    *s = *t->asked.base;
-    for (int k = 0; k < t->asked.vary_count && code == STATUS_OK; k++) {
-        code = sweep_axis_apply(&t->plan.axes[k], values[k], &p, f);
-    }
-    return code == STATUS_OK ? scenario_take_parameters(s, &p, f) : code;
+    return sweep_axes_scenario(t->plan.axes, t->asked.vary_count, values, t->asked.base, s, f);
 }
 
 // Finds the growth where an expression asks for it; of the scenario, nothing drawn.

@@ -186,11 +186,9 @@ status linear_limit(const sweep *s, linear_place place, bool by_runs, double fro
     status code = STATUS_OK;
     for (int i = -1; i < (by_runs ? RUN_BISECTIONS : BISECTIONS) && code == STATUS_OK; i++) {
         const double value = i < 0 ? from : (from + to) / 2;
-        parameters p = s->base->parameters;
-        scenario derived = *s->base; // borrows all but its parameters
+        scenario derived;
         double number;
-        code = sweep_axis_apply(&s->axes[0], value, &p, f);
-        code = code == STATUS_OK ? scenario_take_parameters(&derived, &p, f) : code;
+        code = sweep_axes_scenario(s->axes, 1, &value, s->base, &derived, f);
         code = code == STATUS_OK ? linear_stability(&derived, place, by_runs, &number, &here, f)
                                  : code;
         at_start = i < 0 && code == STATUS_OK ? here : at_start;
