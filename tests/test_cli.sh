@@ -558,6 +558,9 @@ expect 2 identify hit.yaml $rig --data recorded.csv --fit sensor.fsr_offset
 says err "expected a range to search"
 expect 2 identify hit.yaml $rig --fit arm.k2
 says err "needs a recorded trace"
+expect 1 identify hit.yaml $rig --data recorded.csv --fit arm.hub_inertia=0.004:0.005
+says err "arm.hub_inertia = 0.005 is an end of its range"
+says err "per reading, expected about 1"
 
 # --- the limit of a parameter for a condition
 expect 0 solve hit.yaml motor.voltage=0.5:5 'peak_force_N<2' --json solved.json

@@ -386,6 +386,9 @@ TEST(another_trace_is_foretold)
     DONE(scenario_take_parameters(&fitted, &p, &f));
     set_up(&judged, &fitted, &other, 1, 0);
     fit(&judged);
+    double most;
+    check_below(identify_misfit(&id, &most), 1.2);
+    check_below(identify_misfit(&judged, &most), 1.2);
     assert_true(judged.traces[0].contact_count > 0);
     check_close(judged.traces[0].contact_error, 0, 2e-3);
     check_close(judged.traces[0].peak_error, 0, 0.05);
@@ -395,6 +398,28 @@ TEST(another_trace_is_foretold)
         unlink(made[r].file);
     }
     unlink(other.file);
+}
+
+// A value that the search would have further away, and a motor whose back EMF is another one.
+TEST(a_bad_fit_is_known_as_one)
+{
+    recording_made made = three[0];
+    scenario base = rig_scenario(&made, truth, 1);
+    record(&made, truth, 1, 2);
+    for (int slow = 0; slow <= 1; slow++) {
+        DONE(parameter_set_number(&base.parameters, PARAMETER_INDEX(motor.back_emf),
+                                  (slow ? 1.5 : 1) * base.parameters.motor.back_emf, &f));
+        SCOPED(identify_finish) identification id = {.base = &base, .jobs = 2, .starts = 1};
+        DONE(identify_add_path(&id, slow ? "arm.k2" : "arm.hub_inertia=0.004:0.005", &f));
+        DONE(identify_add_trace(&id, made.file, NULL, 0, &f));
+        fit(&id);
+        double most;
+        const double misfit = identify_misfit(&id, &most);
+
+        assert_true(identify_at_end(&id.fit[0]) == !slow);
+        assert_true(misfit > most && most > 4 && most < 5);
+    }
+    unlink(made.file);
 }
 
 int main(int argc, char **argv)

@@ -128,6 +128,11 @@ const char *identify_words(const identification *id, int k, char *text, size_t s
 // Whether the search ended at an end of its range: then the value is a limit, no estimate.
 bool identify_at_end(const fitted_parameter *fit);
 
+// Chi square per degree of freedom: about 1 where what the model leaves is the noise of its
+// channels. Above *most it leaves more than noise twice as large as it is said to be: five standard
+// deviations above the mean of that.
+double identify_misfit(const identification *id, double *most);
+
 // {"scenario", "fit": [{"path", "value", "standard_error", "low", "high", "determined",
 // "at_end_of_range"}],
 // "correlation", "singular_values", "undetermined", "chi_square", "residuals", "aic", "white",

@@ -17,6 +17,8 @@
 #define HAS_A_PART  1e-6  // of a direction: smaller ones do not make a parameter undetermined
 #define NO_SAY      1e-12 // share of the largest eigenvalue below which there is none
 #define WHITE       3.5   // standard normal deviate that white residuals exceed once in 4000
+#define NOISE_KNOWN 2.0   // factor within which a bench knows its noise
+#define CHANCE      5.0   // standard deviations that chi square is not above its mean by chance
 
 // --- whiteness --------------------------------------------------------------------------------
 
@@ -276,8 +278,8 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     }
 
     // what the model does not explain makes errors larger, by as much
-    const double misfit =
-        fmax(1, id->chi_square / (double)(id->residuals - (size_t)(id->unknowns + p)));
+    double most;
+    const double misfit = fmax(1, identify_misfit(id, &most));
     id->undetermined = 0;
     for (int k = 0; k < p; k++) {
         id->singular[k] = sqrt(fmax(values[k] / misfit, 0));
@@ -297,6 +299,16 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
         fit->high = fit->value + QUANTILE * fit->standard_error;
     }
     return STATUS_OK;
+}
+
+// Chi square has as many degrees of freedom n as there are readings more than unknowns; noise alone
+// gives it the mean n and the standard deviation sqrt(2 n).
+double identify_misfit(const identification *id, double *most)
+{
+    assert(id != NULL && most != NULL);
+    const double freedoms = (double)(id->residuals - (size_t)(id->unknowns + id->count));
+    *most = NOISE_KNOWN * NOISE_KNOWN * (1 + CHANCE * sqrt(2 / freedoms));
+    return id->chi_square / freedoms;
 }
 
 // --- words and files --------------------------------------------------------------------------

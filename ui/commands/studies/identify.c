@@ -164,9 +164,31 @@ static void write_cases(FILE *stream, const void *what)
     identify_write_set(stream, what);
 }
 
+// Whether the values can be relied on; says where they are none.
+static bool is_reliable(const identification *id)
+{
+    bool reliable = id->undetermined == 0;
+    double most;
+    for (int i = 0; i < id->count; i++) {
+        const fitted_parameter *fit = &id->fit[i];
+        if (identify_at_end(fit)) {
+            complain("%s = %g is an end of its range, no estimate: expected a wider --fit %s=a:b",
+                     fit->axis.name, fit->value, fit->axis.name);
+            reliable = false;
+        }
+    }
+    const double misfit = identify_misfit(id, &most);
+    if (misfit > most) {
+        complain("chi square is %.3g per reading, expected about 1 and at most %.3g: the scenario "
+                 "is not of the arm or the runs that were recorded, whatever values are fitted",
+                 misfit, most);
+    }
+    return reliable && misfit <= most;
+}
+
 static int report(const arguments *a, const scenario *s, outcome *o)
 {
-    int result = o->fit.undetermined == 0 ? EXIT_DONE : EXIT_FAILED;
+    int result = is_reliable(&o->fit) ? EXIT_DONE : EXIT_FAILED;
     if (a->json != NULL) {
         result = worse(result, write_json(a->json, answer(o)));
     }
@@ -246,7 +268,9 @@ const command identify_command = {
         "them: time[s], command[V] and any of encoder, tachometer, force_reading, piezo_force,\n"
         "film, accelerometer. Each trace has a time shift, an encoder offset and an initial\n"
         "state of its own. A combination that the data do not determine is named and not\n"
-        "written, and the exit status is 1.\n",
+        "written. The exit status is 1 then, where a value ends at an end of its range, and\n"
+        "where chi square per reading is above 4, as of noise twice as large as it is said\n"
+        "to be.\n",
     .least = 1,
     .most = 1,
     .takes_scenarios = true,

@@ -98,17 +98,22 @@ enum { FIT_STARTS = 4, FIT_THREADS = 4, FIT_RUNS = 400 };
 static bool tell_fit(explorer_state *st, const identification *id)
 {
     char text[MESSAGE_TEXT / 2] = "";
+    double most;
+    const bool misfits = identify_misfit(id, &most) > most;
     for (int i = 0; i < id->count; i++) {
         const fitted_parameter *fit = &id->fit[i];
         const char *unit = sweep_axis_parameter(&fit->axis)->unit;
         const size_t used = strlen(text);
         snprintf(text + used, sizeof text - used,
-                 fit->determined ? "%s%s %.5g +- %.2g%s%s" : "%s%s is not determined",
+                 !fit->determined       ? "%s%s is not determined"
+                 : identify_at_end(fit) ? "%s%s %.5g, at the end of its range"
+                                        : "%s%s %.5g +- %.2g%s%s",
                  i > 0 ? "; " : "", strchr(fit->axis.name, '.') + 1, fit->value,
                  fit->standard_error, unit[0] ? " " : "", unit);
     }
     return act_tell(st, "%s%s", text,
                     id->undetermined > 0 ? ": fit fewer, or record more"
+                    : misfits            ? "; pinned, but far off the data"
                     : id->white          ? "; that run is pinned"
                                          : "; pinned, but the data show more than the model has");
 }
