@@ -560,6 +560,7 @@ expect 2 identify hit.yaml $rig --fit arm.k2
 says err "needs a recorded trace"
 expect 1 identify hit.yaml $rig --data recorded.csv --fit arm.hub_inertia=0.004:0.005
 says err "arm.hub_inertia = 0.005 is an end of its range"
+expect 1 identify hit.yaml $rig --set arm.mass=1 --data recorded.csv --fit arm.k2
 says err "per reading, expected about 1"
 
 # --- the limit of a parameter for a condition
@@ -583,6 +584,6 @@ expect 0 study follow --json follow.json --plot follow.svg
 says out "bound"
 grep -q '"follow"' follow.json && [ -s follow.svg ] || fail "study follow writes no answers or draws nothing"
 expect 2 study sense
-says err "expected methods, sensor, links or follow"
+says err "expected methods, links or follow"
 
 nothing_failed

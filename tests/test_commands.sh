@@ -221,10 +221,13 @@ expect 0 figures 3.4 3.5 -o pictures --format svg --latex all.tex
 
 # --- whatever draws or heads a run says what was changed of the scenario: what --help lists with
 # --set, each with what it needs besides; a command that is new has to be added here
+recorded='--set control.law=open-loop --set control.rate=1000 --set method.step=0.0005'
+# shellcheck disable=SC2086
+expect 0 run hit.yaml $recorded --set run.duration=0.3 --set arm.tip_mass=0.004 --quiet --csv fits.csv
 declare -A besides=([run]='' [predict]='' [modes]='' [converge]='' [compare]='hit.yaml' [show]=''
     [sweep]='--vary motor.voltage=1:2:2' [study]='' [robust]='--set control.force=1 --laws hybrid,force-pd --runs 3'
     [tune]='--set control.force=1 --set control.law=hybrid --vary control.kv=0.5:1 --minimise peak_force_N --runs 6'
-    [calibrate]='' [linear]='' [identify]='--data recorded.csv --fit motor.resistance' [solve]='' [animate]='' [lab]='' [lesson]='')
+    [calibrate]='' [linear]='' [identify]="$recorded --data fits.csv --fit arm.hub_inertia" [solve]='' [animate]='' [lab]='' [lesson]='')
 title_of() { sed -n 's/.*<title>\(.*\)<\/title>.*/\1/p' "$1" | head -1; }
 expect 0 help
 for command in $(awk '/^  [a-z]/ { print $1 }' out); do

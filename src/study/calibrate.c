@@ -7,7 +7,7 @@
 #include "src/arm/arm.h"
 #include "src/run/run.h"
 #include "src/base/json.h"
-#include "src/base/csv.h"
+#include "src/study/result_rows.h"
 
 #define SHORTEST_PRESS 5.0 // [s]
 #define WINDOW_SHARE   0.4 // of it, its last part, over which the readings are averaged
@@ -206,9 +206,7 @@ status calibration_table(const calibration *c, k2_table *t, fault *f)
 }
 
 enum { COLUMNS = 8 };
-static const struct {
-    const char *key, *name, *unit; // in JSON; in CSV
-} columns[COLUMNS] = {
+static const result_column columns[COLUMNS] = {
     {"command_V", "command", "V"},
     {"force_N", "force", "N"},
     {"hub_angle_rad", "hub_angle", "rad"},
@@ -219,31 +217,29 @@ static const struct {
     {"drift_percent", "drift", "%"},
 };
 
-static void fill_columns(const calibration_point *p, const scenario *s, double values[COLUMNS])
+static void fill_cells(const calibration_point *p, const scenario *s, result_cell cells[COLUMNS])
 {
     const double row[COLUMNS] = {
         p->command,      p->force,        p->angle,      p->k2, p->k2 / s->parameters.arm.k2,
         p->force_spread, p->angle_spread, 100 * p->drift};
-    memcpy(values, row, sizeof row);
+    for (int k = 0; k < COLUMNS; k++) {
+        cells[k] = (result_cell){.number = row[k]};
+    }
 }
 
 json_t *calibration_json(const calibration *c, const scenario *s, const char *table)
 {
     assert(c != NULL && s != NULL && table != NULL);
     json_t *object = json_object(), *points = json_array();
-    json_put(object, "scenario", json_text(s->name));
-    json_put(object, "k2_table", json_text(table));
-
+    result_cell cells[COLUMNS];
     for (int i = 0; i < c->count; i++) {
         json_t *point = json_object();
-        double values[COLUMNS];
-        fill_columns(&c->points[i], s, values);
-        for (int k = 0; k < COLUMNS; k++) {
-            json_put(point, columns[k].key, json_number(values[k]));
-        }
+        fill_cells(&c->points[i], s, cells);
+        result_put(point, columns, cells, COLUMNS);
         json_add(points, point);
     }
-
+    json_put(object, "scenario", json_text(s->name));
+    json_put(object, "k2_table", json_text(table));
     json_put(object, "points", points);
     return object;
 }
@@ -252,17 +248,10 @@ void calibration_csv(FILE *stream, const calibration *c, const scenario *s)
 {
     assert(stream != NULL && c != NULL && s != NULL);
     csv_writer csv = csv_begin(stream);
-    for (int k = 0; k < COLUMNS; k++) {
-        csv_heading(&csv, columns[k].name, columns[k].unit);
-    }
-    csv_end_row(&csv);
-
+    result_cell cells[COLUMNS];
+    result_headings(&csv, columns, COLUMNS);
     for (int i = 0; i < c->count; i++) {
-        double values[COLUMNS];
-        fill_columns(&c->points[i], s, values);
-        for (int k = 0; k < COLUMNS; k++) {
-            csv_number(&csv, values[k]);
-        }
-        csv_end_row(&csv);
+        fill_cells(&c->points[i], s, cells);
+        result_row(&csv, cells, COLUMNS);
     }
 }

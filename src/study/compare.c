@@ -8,6 +8,7 @@
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/base/words.h"
+#include "src/study/result_rows.h"
 #include "src/predict/best_stop.h"
 #include "src/predict/least_time.h"
 #include "src/tables/settings.h"
@@ -222,43 +223,40 @@ static void format_result(double value, bool page, char *text, size_t size)
 static void write_table(FILE *stream, const compare_table *t, bool page)
 {
     assert(stream != NULL && t != NULL);
-    const int width = page ? 0 : longest(t, false), law = page ? 0 : longest(t, true);
-    const char *names = page ? "| %-*s | %-*s |" : "%-*s  %-*s";
+    const int width = -longest(t, false), law = -longest(t, true);
     char text[PARAMETER_TEXT_SIZE];
-    int columns = 2;
 
-    // the first line, and on a page what makes it a table; then a line each: names, what was
-    // varied, results
+    // the headings, then a line each: names, what was varied, results
     for (int i = -1; i < t->count; i++) {
         const compare_row *row = i < 0 ? NULL : &t->rows[i];
-        print_printable(stream, names, width, row != NULL ? row->scenario : "scenario", law,
-                        row != NULL ? row->law : "law");
+        int column = 0;
+        result_print(stream, page, column++, width, row != NULL ? row->scenario : "scenario");
+        result_print(stream, page, column++, law, row != NULL ? row->law : "law");
         for (int v = 0; v < t->varied_count; v++) {
             if (row != NULL) {
                 format_varied(t, i, v, text, sizeof text);
             } else {
                 format_varied_heading(t, v, page, text, sizeof text);
             }
-            fprintf(stream, page ? " %*s |" : "  %*s", page ? 0 : varied_width(t, v), text);
+            result_print(stream, page, column++, varied_width(t, v), text);
         }
 
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             const compare_quantity *quantity = &compare_quantities[k];
+            if (t->hidden[k]) {
+                continue;
+            }
             if (row != NULL) {
-                format_result(row->values[k], page, text, sizeof text);
+                format_result(row->values[k], page, text, sizeof text - 1);
             } else {
-                format_heading(quantity->heading, quantity->unit, page, text, sizeof text);
+                format_heading(quantity->heading, quantity->unit, page, text, sizeof text - 1);
             }
-            const char *mark = page ? " |" : row != NULL && marked(t, i, k) ? "*" : " ";
-            if (!t->hidden[k]) {
-                fprintf(stream, page ? " %*s%s" : "  %*s%s", page ? 0 : 11, text, mark);
-                columns += row == NULL;
-            }
+            strcat(text, page ? "" : row != NULL && marked(t, i, k) ? "*" : " ");
+            result_print(stream, page, column++, 12, text);
         }
         fprintf(stream, "%s\n", page || row == NULL || row->ok ? "" : " failed");
-        for (int k = 0; page && row == NULL && k < columns + t->varied_count; k++) {
-            fprintf(stream, "%s---|%s", k == 0 ? "|" : "",
-                    k == columns + t->varied_count - 1 ? "\n" : "");
+        if (page && row == NULL) {
+            result_page_rule(stream, column);
         }
     }
 }

@@ -3,13 +3,17 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/base/csv.h"
 #include "src/base/json.h"
 #include "src/base/numbers.h"
-#include "src/base/words.h"
+#include "src/study/result_rows.h"
 #include "src/study/robust.h"
 
 enum {
+    CASE, // of a set with cases
+    LAW,
+    RUNS,
+    FAILED,
+    OVER_OF, // a word: which overshoot it is
     SETTLED,
     SEPARATED,
     EXCEEDED,
@@ -21,15 +25,8 @@ enum {
     AGAINST = BACK + ROBUST_QUANTILES,
     RAW,
     SMOOTHED = RAW + ROBUST_QUANTILES,
-    COLUMNS = SMOOTHED + ROBUST_QUANTILES,
-    OVER_OF // a word: which overshoot it is
+    COLUMNS = SMOOTHED + ROBUST_QUANTILES
 };
-
-typedef struct column {
-    const char *key;  // in JSON, its unit at the end
-    const char *name; // in CSV
-    const char *unit; // in CSV
-} column;
 
 // The three quantiles of a quantity, in the order of their enumeration.
 #define QUANTILES(name, key_unit, unit)                                                            \
@@ -39,7 +36,12 @@ typedef struct column {
         name "_worst" key_unit, name "_worst", unit                                                \
     }
 
-static const column columns[COLUMNS] = {
+static const result_column columns[COLUMNS] = {
+    {"case", "case", ""},
+    {"law", "law", ""},
+    {"runs", "runs", ""},
+    {"failed", "failed", ""},
+    {"overshoot_of", "overshoot_of", ""},
     {"settled_percent", "settled", "%"},
     {"separated_percent", "separated", "%"},
     {"exceeded_percent", "exceeded", "%"},
@@ -53,8 +55,6 @@ static const column columns[COLUMNS] = {
     QUANTILES("smoothed_overshoot", "_percent", "%"),
 };
 #undef QUANTILES
-static const char over_of[] = "overshoot_of"; // in JSON and CSV
-
 // What people see, of the laws and of cases.
 typedef struct shown_column {
     int column;
@@ -62,6 +62,8 @@ typedef struct shown_column {
 } shown_column;
 
 static const shown_column of_laws[] = {
+    {LAW, "law"},
+    {RUNS, "runs"},
     {SETTLED, "settled/%"},
     {SEPARATED, "separated/%"},
     {EXCEEDED, "exceeded/%"},
@@ -78,6 +80,9 @@ static const shown_column of_laws[] = {
     {BACK + ROBUST_WORST, "back/there"},
 };
 static const shown_column of_cases[] = {
+    {CASE, "case"},
+    {LAW, "law"},
+    {RUNS, "runs"},
     {SEPARATED, "separated/%"},
     {OVER_OF, "over of"},
     {OVER + ROBUST_WORST, "over/%"},
@@ -88,73 +93,57 @@ static const shown_column of_cases[] = {
     {AGAINST, ""}, // headed by the law
 };
 
-// The columns that a table shows, and how many.
-static int shown_columns(const robust_table *t, const shown_column **shown)
+// The first column of a table, which has cases or not.
+static int first_column(const robust_table *t)
 {
-    bool cases = t->laws[0].case_title != NULL;
-    *shown = cases ? of_cases : of_laws;
-    return cases ? (int)(sizeof of_cases / sizeof of_cases[0]) - (t->against == NULL)
-                 : (int)(sizeof of_laws / sizeof of_laws[0]);
+    return t->laws[0].case_title != NULL ? CASE : LAW;
 }
 
-static void format_heading(char *text, size_t size, const robust_table *t, const shown_column *c)
+// A law's cells, all of them.
+static void fill_cells(const robust_law *law, result_cell *cells)
 {
-    if (c->column == AGAINST) {
-        snprintf(text, size, "/%s", t->against);
-    } else {
-        snprintf(text, size, "%s", c->heading);
+    for (int k = 0; k < COLUMNS; k++) {
+        cells[k].text = NULL;
     }
-}
-
-// A law's numbers in the order of the columns.
-static void values_of(const robust_law *law, double *values)
-{
-    values[SETTLED] = 100 * law->settled;
-    values[SEPARATED] = 100 * law->separated;
-    values[EXCEEDED] = 100 * law->exceeded;
-    values[AGAINST] = law->against;
+    cells[CASE].text = law->case_title;
+    cells[LAW].text = law->law;
+    cells[RUNS].number = (double)law->runs;
+    cells[FAILED].number = (double)law->failed;
+    cells[OVER_OF].text = robust_overshoot_of(law);
+    cells[SETTLED].number = 100 * law->settled;
+    cells[SEPARATED].number = 100 * law->separated;
+    cells[EXCEEDED].number = 100 * law->exceeded;
+    cells[AGAINST].number = law->against;
     for (int i = 0; i < ROBUST_QUANTILES; i++) {
-        values[OVER + i] = law->overshoot[i];
-        values[SETTLING + i] = law->settling[i];
-        values[ERROR + i] = law->error[i];
-        values[FROM_START + i] = law->from_start[i];
-        values[BACK + i] = law->back[i];
-        values[RAW + i] = law->raw[i];
-        values[SMOOTHED + i] = law->smoothed[i];
+        cells[OVER + i].number = law->overshoot[i];
+        cells[SETTLING + i].number = law->settling[i];
+        cells[ERROR + i].number = law->error[i];
+        cells[FROM_START + i].number = law->from_start[i];
+        cells[BACK + i].number = law->back[i];
+        cells[RAW + i].number = law->raw[i];
+        cells[SMOOTHED + i].number = law->smoothed[i];
     }
 }
 
-// Two counts, then the columns but the one that another law is needed for.
+// Two counts, then the numbers but the one that another law is needed for.
 static int column_of(int i)
 {
-    return i - 2 + (i - 2 >= AGAINST);
+    const int column = i < 2 ? RUNS + i : SETTLED + i - 2;
+    return column + (column >= AGAINST);
 }
 
 const char *robust_key(int i)
 {
     assert(i >= 0);
-    return i == 0 ? "runs" : i == 1 ? "failed" : i <= COLUMNS ? columns[column_of(i)].key : NULL;
+    return column_of(i) < COLUMNS ? columns[column_of(i)].key : NULL;
 }
 
 double robust_value(const robust_law *law, int i)
 {
-    double values[COLUMNS];
-    assert(law != NULL && i >= 0 && i <= COLUMNS);
-    values_of(law, values);
-    return i == 0 ? (double)law->runs : i == 1 ? (double)law->failed : values[column_of(i)];
-}
-
-// A law's cell in a column that people see; its values are values_of it.
-static void format_cell(char *text, size_t size, const robust_law *law, const double *values,
-                        int which)
-{
-    if (which == OVER_OF) {
-        snprintf(text, size, "%s", robust_overshoot_of(law));
-    } else if (isnan(values[which])) {
-        snprintf(text, size, "-");
-    } else {
-        decimal_print(text, size, fabs(values[which]) >= 1000 ? "%.0f" : "%.3g", values[which]);
-    }
+    result_cell cells[COLUMNS];
+    assert(law != NULL && i >= 0 && column_of(i) < COLUMNS);
+    fill_cells(law, cells);
+    return cells[column_of(i)].number;
 }
 
 // The widest title of a case, 0 without cases.
@@ -172,43 +161,46 @@ static int case_width(const robust_table *t)
 static void write_table(FILE *stream, const robust_table *t, bool page)
 {
     assert(stream != NULL && t != NULL && t->count > 0);
-    const shown_column *shown;
-    const int count = shown_columns(t, &shown), width = case_width(t);
-    const bool cases = t->laws[0].case_title != NULL;
-    const char *cell = page ? " %s |" : "  %12s";
+    const bool cases = first_column(t) == CASE;
+    const shown_column *shown = cases ? of_cases : of_laws;
+    const int count = cases ? (int)(sizeof of_cases / sizeof of_cases[0]) - (t->against == NULL)
+                            : (int)(sizeof of_laws / sizeof of_laws[0]);
     char text[64];
 
-    // headings
-    if (cases) {
-        fprintf(stream, page ? "| %-*s " : "%-*s  ", page ? 0 : width, "case");
-    }
-    fprintf(stream, page ? "| %s | %s |" : "%-16s  %5s", "law", "runs");
-    for (int k = 0; k < count; k++) {
-        format_heading(text, sizeof text, t, &shown[k]);
-        fprintf(stream, cell, text);
-    }
-    fputc('\n', stream);
-    for (int k = 0; page && k < count + 2 + cases; k++) {
-        fprintf(stream, "%s---|%s", k == 0 ? "|" : "", k == count + 1 + cases ? "\n" : "");
-    }
-
-    // a line a law
-    for (int i = 0; i < t->count; i++) {
-        const robust_law *law = &t->laws[i];
-        double values[COLUMNS];
-        values_of(law, values);
-        if (cases) {
-            print_printable(stream, page ? "| %-*s " : "%-*s  ", page ? 0 : width, law->case_title);
+    // headings, then a line a law
+    for (int i = -1; i < t->count; i++) {
+        result_cell cells[COLUMNS] = {{0}};
+        if (i >= 0) {
+            fill_cells(&t->laws[i], cells);
         }
-        fprintf(stream, page ? "| %s | %zu |" : "%-16s  %5zu", law->law, law->runs);
         for (int k = 0; k < count; k++) {
-            format_cell(text, sizeof text, law, values, shown[k].column);
-            fprintf(stream, cell, text);
+            const int column = shown[k].column;
+            const double number = cells[column].number;
+            const char *told = i < 0 ? shown[k].heading : cells[column].text;
+            if (i < 0 && column == AGAINST) {
+                snprintf(text, sizeof text, "/%s", t->against);
+                told = text;
+            } else if (told == NULL) {
+                decimal_print(text, sizeof text,
+                              isnan(number)          ? "-"
+                              : fabs(number) >= 1000 ? "%.0f"
+                                                     : "%.3g",
+                              number);
+                told = text;
+            }
+            const int width = column == CASE   ? -case_width(t)
+                              : column == LAW  ? -16
+                              : column == RUNS ? 5
+                                               : 12;
+            result_print(stream, page, k, width, told);
         }
-        if (law->failed > 0 && !page) {
-            fprintf(stream, "  %zu failed", law->failed);
+        if (i >= 0 && t->laws[i].failed > 0 && !page) {
+            fprintf(stream, "  %zu failed", t->laws[i].failed);
         }
         fputc('\n', stream);
+        if (i < 0 && page) {
+            result_page_rule(stream, count);
+        }
     }
 }
 
@@ -225,38 +217,13 @@ void robust_markdown(FILE *stream, const robust_table *t)
 void robust_csv(FILE *stream, const robust_table *t)
 {
     assert(stream != NULL && t != NULL && t->count > 0);
-    const bool cases = t->laws[0].case_title != NULL;
-
-    // headings
+    const int first = first_column(t);
     csv_writer csv = csv_begin(stream);
-    if (cases) {
-        csv_heading(&csv, "case", "");
-    }
-    csv_heading(&csv, "law", "");
-    csv_heading(&csv, "runs", "");
-    csv_heading(&csv, "failed", "");
-    csv_heading(&csv, over_of, "");
-    for (int k = 0; k < COLUMNS; k++) {
-        csv_heading(&csv, columns[k].name, columns[k].unit);
-    }
-    csv_end_row(&csv);
-
-    // a row a law
+    result_headings(&csv, columns + first, COLUMNS - first);
     for (int i = 0; i < t->count; i++) {
-        const robust_law *law = &t->laws[i];
-        double values[COLUMNS];
-        values_of(law, values);
-        if (cases) {
-            csv_text(&csv, law->case_title);
-        }
-        csv_text(&csv, law->law);
-        csv_number(&csv, (double)law->runs);
-        csv_number(&csv, (double)law->failed);
-        csv_text(&csv, robust_overshoot_of(law));
-        for (int k = 0; k < COLUMNS; k++) {
-            csv_number(&csv, values[k]);
-        }
-        csv_end_row(&csv);
+        result_cell cells[COLUMNS];
+        fill_cells(&t->laws[i], cells);
+        result_row(&csv, cells + first, COLUMNS - first);
     }
 }
 
@@ -265,22 +232,11 @@ json_t *robust_json(const robust_table *t)
     assert(t != NULL);
     json_t *whole = json_object(), *laws = json_array();
     for (int i = 0; i < t->count; i++) {
-        const robust_law *found = &t->laws[i];
+        result_cell cells[COLUMNS];
+        const int first = first_column(t);
         json_t *law = json_object();
-        double values[COLUMNS];
-        values_of(found, values);
-
-        // which, then its numbers
-        if (found->case_title != NULL) {
-            json_put(law, "case", json_text(found->case_title));
-        }
-        json_put(law, "law", json_text(found->law));
-        json_put(law, "runs", json_integer((json_int_t)found->runs));
-        json_put(law, "failed", json_integer((json_int_t)found->failed));
-        json_put(law, over_of, json_text(robust_overshoot_of(found)));
-        for (int k = 0; k < COLUMNS; k++) {
-            json_put(law, columns[k].key, json_number(values[k]));
-        }
+        fill_cells(&t->laws[i], cells);
+        result_put(law, columns + first, cells + first, COLUMNS - first);
         json_add(laws, law);
     }
 
