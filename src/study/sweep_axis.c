@@ -17,6 +17,12 @@ const parameter_info *sweep_axis_parameter(const sweep_axis *axis)
     return settings_name(axis->name) ? &setting_info : &parameter_table[axis->parameter];
 }
 
+bool sweep_axis_has_words(const sweep_axis *axis)
+{
+    const parameter_type type = sweep_axis_parameter(axis)->type;
+    return type == PARAMETER_CHOICE || type == PARAMETER_BOOLEAN;
+}
+
 status sweep_axis_find(sweep_axis *axis, const char *text, fault *f)
 {
     assert(axis != NULL && text != NULL);
@@ -276,12 +282,10 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
     axis->is_range = true;
 
     // only numbers have a range
-    if (sweep_axis_parameter(axis)->choices != NULL ||
-        sweep_axis_parameter(axis)->type == PARAMETER_BOOLEAN) {
+    const char *choices = sweep_axis_parameter(axis)->choices;
+    if (sweep_axis_has_words(axis)) {
         char words[128];
-        snprintf(words, sizeof words, "%s",
-                 sweep_axis_parameter(axis)->choices ? sweep_axis_parameter(axis)->choices
-                                                     : "true|false");
+        snprintf(words, sizeof words, "%s", choices != NULL ? choices : "true|false");
         for (char *c = words; *c != '\0'; c++) {
             *c = *c == '|' ? ',' : *c;
         }

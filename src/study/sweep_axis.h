@@ -45,6 +45,9 @@ void sweep_axis_finish(sweep_axis *axis);
 // The varied parameter; setting_info for control.settings.NAME.
 const parameter_info *sweep_axis_parameter(const sweep_axis *axis);
 
+// Whether its values are written as words.
+bool sweep_axis_has_words(const sweep_axis *axis);
+
 // The value that the parameters have; NaN if they have none, as of a setting that is not given.
 double sweep_axis_get(const sweep_axis *axis, const parameters *p);
 

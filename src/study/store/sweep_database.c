@@ -67,18 +67,26 @@ status database_prepare(sweep_database *store, sqlite3_stmt **statement, const c
                : database_fault(store, f);
 }
 
-// The first number that a query gives, 0 if it gives none.
+bool database_next(sweep_database *store, sqlite3_stmt *rows, status *code, fault *f)
+{
+    if (*code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
+        return true;
+    }
+    if (sqlite3_finalize(rows) != SQLITE_OK && *code == STATUS_OK) {
+        *code = database_fault(store, f);
+    }
+    return false;
+}
+
+// The last number that a query gives, 0 if it gives none.
 static status database_query_number(sweep_database *store, const char *sql, long long *number,
                                     fault *f)
 {
     sqlite3_stmt *statement;
     *number = 0;
     status code = database_prepare(store, &statement, sql, f);
-    if (code == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW) {
+    while (database_next(store, statement, &code, f)) {
         *number = sqlite3_column_int64(statement, 0);
-    }
-    if (sqlite3_finalize(statement) != SQLITE_OK && code == STATUS_OK) {
-        code = database_fault(store, f);
     }
     return code;
 }
@@ -87,26 +95,16 @@ status database_recognise(sweep_database *store, bool *empty, fault *f)
 {
     assert(store != NULL && empty != NULL);
     long long tables, mark = 0, layout = 0;
-    status code = database_query_number(store, "SELECT count(*) FROM sqlite_master", &tables, f);
+    TRY(database_query_number(store, "SELECT count(*) FROM sqlite_master", &tables, f));
     *empty = tables == 0;
 
     // one that holds something must hold a sweep
-    if (code == STATUS_OK && !*empty) {
-        code = database_query_number(store, "PRAGMA application_id", &mark, f);
-        code = code == STATUS_OK ? database_query_number(store, "PRAGMA user_version", &layout, f)
-                                 : code;
-        if (code == STATUS_OK && (mark != atoll(APPLICATION_ID) || layout != atoll(LAYOUT))) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "'%s' is a database that holds no sweep of this program", store->path);
-        }
-    }
-    return code;
-}
-
-// Whether values of the parameter are written as words.
-static bool has_words(const parameter_info *info)
-{
-    return info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN;
+    TRY(database_query_number(store, "PRAGMA application_id", &mark, f));
+    TRY(database_query_number(store, "PRAGMA user_version", &layout, f));
+    return *empty || (mark == atoll(APPLICATION_ID) && layout == atoll(LAYOUT))
+               ? STATUS_OK
+               : fault_set(f, STATUS_BAD_ARGUMENT,
+                           "'%s' is a database that holds no sweep of this program", store->path);
 }
 
 // A row a run: its number, the values of the axes, how it ended, the summary.
@@ -118,11 +116,11 @@ static status create_run_table(sweep_database *store, fault *f)
 
     // what is varied
     for (int i = 0; i < s->axis_count; i++) {
-        const parameter_info *info = sweep_axis_parameter(&s->axes[i]);
-        sqlite3_str_appendf(sql, ", \"%w\" %s NOT NULL", s->axes[i].name,
-                            has_words(info)                   ? "TEXT"
-                            : info->type == PARAMETER_INTEGER ? "INTEGER"
-                                                              : "REAL");
+        const sweep_axis *axis = &s->axes[i];
+        sqlite3_str_appendf(sql, ", \"%w\" %s NOT NULL", axis->name,
+                            sweep_axis_has_words(axis)                              ? "TEXT"
+                            : sweep_axis_parameter(axis)->type == PARAMETER_INTEGER ? "INTEGER"
+                                                                                    : "REAL");
     }
 
     // how it ended, and with what numbers
@@ -142,13 +140,12 @@ static status create_run_table(sweep_database *store, fault *f)
 status database_create_tables(sweep_database *store, fault *f)
 {
     assert(store != NULL && store->sweep != NULL);
-    status code =
-        database_execute(store,
+    TRY(database_execute(store,
                          "PRAGMA application_id = " APPLICATION_ID ";"
                          "PRAGMA user_version = " LAYOUT ";"
                          "CREATE TABLE sweep (key TEXT UNIQUE NOT NULL, value TEXT NOT NULL)",
-                         f);
-    return code == STATUS_OK ? create_run_table(store, f) : code;
+                         f));
+    return create_run_table(store, f);
 }
 
 status database_prepare_insert(sweep_database *store, sqlite3_stmt **insert, fault *f)
@@ -201,7 +198,7 @@ static bool is_number(sqlite3_stmt *row, int column)
 // Whether the row that a statement stands on has in that column what the sweep gives run `run`.
 static bool is_value(const sweep *s, size_t run, int axis, sqlite3_stmt *row, int column)
 {
-    if (has_words(sweep_axis_parameter(&s->axes[axis]))) {
+    if (sweep_axis_has_words(&s->axes[axis])) {
         char text[SWEEP_VALUE_TEXT];
         const char *found = text_at(row, column);
         sweep_value_text(s, run, axis, text, sizeof text);
@@ -280,14 +277,11 @@ static status check_rows(sweep_database *store, fault *f)
     unsigned char *seen = calloc(store->sweep->run_count, 1);
     status code =
         seen != NULL ? database_prepare(store, &rows, "SELECT * FROM run", f) : fault_no_memory(f);
-    while (code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
+    while (database_next(store, rows, &code, f)) {
         code = check_row(store, rows, seen, f);
         if (code != STATUS_OK && sqlite3_errcode(store->database) == SQLITE_NOMEM) {
             code = fault_no_memory(f);
         }
-    }
-    if (sqlite3_finalize(rows) != SQLITE_OK && code == STATUS_OK) {
-        code = database_fault(store, f);
     }
     free(seen);
     return code;
@@ -307,9 +301,8 @@ status database_check_runs(sweep_database *store, fault *f)
         const char *name = i < found ? sqlite3_column_name(rows, i) : NULL;
         if (name == NULL || strcmp(name, column_name(s, i)) != 0) {
             code = fault_set(f, STATUS_BAD_ARGUMENT,
-                             "'%s' has %s%.60s in column %d of its runs, expected %s", store->path,
-                             name != NULL ? "" : "nothing", name != NULL ? name : "", i + 1,
-                             column_name(s, i));
+                             "'%s' has %.60s in column %d of its runs, expected %s", store->path,
+                             name != NULL ? name : "nothing", i + 1, column_name(s, i));
         }
     }
 
@@ -353,15 +346,10 @@ status definition_read(sweep_database *store, definition *d, fault *f)
     sqlite3_stmt *rows;
     memset(d, 0, sizeof *d);
 
-    // as it was written, line by line
+    // as it was written, line by line; a damaged file shows at the end
     d->code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
-    while (d->code == STATUS_OK && sqlite3_step(rows) == SQLITE_ROW) {
+    while (database_next(store, rows, &d->code, f)) {
         d->code = read_line(d, store->path, rows, f);
-    }
-
-    // a damaged file shows at the end
-    if (sqlite3_finalize(rows) != SQLITE_OK && d->code == STATUS_OK) {
-        d->code = database_fault(store, f);
     }
     return d->code;
 }

@@ -65,3 +65,7 @@ status database_execute(sweep_database *store, const char *sql, fault *f);
 
 // Prepares a statement; the caller finalizes it, also on failure.
 status database_prepare(sweep_database *store, sqlite3_stmt **statement, const char *sql, fault *f);
+
+// Steps to the next row of a prepared statement, as long as *code is STATUS_OK. At the end, which a
+// fault of the database in *code may be, false: then the statement is finalized.
+bool database_next(sweep_database *store, sqlite3_stmt *rows, status *code, fault *f);

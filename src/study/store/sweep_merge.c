@@ -21,13 +21,12 @@ static status open_part(sweep_database *part, char *path, definition *d, fault *
 {
     bool empty;
     *part = (sweep_database){.path = path, .lock = -1};
-    status code = database_open(part, SQLITE_OPEN_READONLY, f);
-    code = code == STATUS_OK ? database_execute(part, "BEGIN", f) : code; // as it is now
-    code = code == STATUS_OK ? database_recognise(part, &empty, f) : code;
-    if (code == STATUS_OK && empty) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is empty, expected a part of a sweep", path);
-    }
-    return code == STATUS_OK ? definition_read(part, d, f) : code;
+    TRY(database_open(part, SQLITE_OPEN_READONLY, f));
+    TRY(database_execute(part, "BEGIN", f)); // as it is now
+    TRY(database_recognise(part, &empty, f));
+    return empty ? fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is empty, expected a part of a sweep",
+                             path)
+                 : definition_read(part, d, f);
 }
 
 // Begins the merged sweep with the definition of its first part, which it takes over.
@@ -36,13 +35,12 @@ static status begin(merging *m, const char *path, fault *f)
     status code = definition_plan(&m->definition, path, &m->plan, f);
     m->merged->total = m->plan.run_count;
     m->store = (sweep_database){.sweep = &m->plan, .lock = -1};
-    code = code == STATUS_OK
-               ? database_open(&m->store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f)
-               : code;
-    code = code == STATUS_OK ? database_execute(&m->store, "BEGIN", f) : code;
-    code = code == STATUS_OK ? database_create_tables(&m->store, f) : code;
-    code = code == STATUS_OK ? definition_write(&m->store, &m->definition, f) : code;
-    return code == STATUS_OK ? database_prepare_insert(&m->store, &m->store.insert, f) : code;
+    TRY(code);
+    TRY(database_open(&m->store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f));
+    TRY(database_execute(&m->store, "BEGIN", f));
+    TRY(database_create_tables(&m->store, f));
+    TRY(definition_write(&m->store, &m->definition, f));
+    return database_prepare_insert(&m->store, &m->store.insert, f);
 }
 
 // Adds the row that a statement stands on.
@@ -71,16 +69,10 @@ static status add_rows(merging *m, sweep_database *part, fault *f)
     part->sweep = &m->plan;
     TRY(database_check_runs(part, f));
 
-    // row by row; only the last step may find nothing more
-    int step = SQLITE_DONE;
     status code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
-    while (code == STATUS_OK && (step = sqlite3_step(rows)) == SQLITE_ROW) {
+    while (database_next(part, rows, &code, f)) {
         code = add_row(m, part->path, rows, f);
     }
-    if (code == STATUS_OK && step != SQLITE_DONE) {
-        code = database_fault(part, f);
-    }
-    sqlite3_finalize(rows);
     return code;
 }
 

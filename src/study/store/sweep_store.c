@@ -102,18 +102,14 @@ static status lock_file(sweep_database *store, fault *f)
 static status open_database(sweep_database *store, fault *f)
 {
     if (store->path != NULL) {
-        status code = lock_file(store, f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(lock_file(store, f));
     }
-
     TRY(database_open(store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f));
 
     // what is kept in memory nobody goes on with; somebody may be reading the results in a file
     sqlite3_busy_timeout(store->database, 10000);
-    status code = store->path == NULL ? database_create_tables(store, f) : adopt(store, f);
-    return code == STATUS_OK ? database_prepare_insert(store, &store->insert, f) : code;
+    TRY(store->path == NULL ? database_create_tables(store, f) : adopt(store, f));
+    return database_prepare_insert(store, &store->insert, f);
 }
 
 status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, fault *f)
