@@ -289,10 +289,7 @@ static bool may_have_ink(const figure *fig, const figure_report *r, double x, do
             room = fmax(room, s->marker == MARKER_NONE ? 0 : 1.3 * fmax(s->radius, 1.6) + 0.5);
         }
         figure_rect spot = {x, y, 0, 0};
-        bool ends = fig->panels[i].legend == LEGEND_ENDS &&
-                    x > r->panels[i].x + r->panels[i].width && y > r->panels[i].y - 8 &&
-                    y < r->panels[i].y + r->panels[i].height + 8;
-        if (ends || rect_is_within(&spot, &r->panels[i], room) ||
+        if (rect_is_within(&spot, &r->panels[i], room) ||
             rect_is_within(&spot, &r->legends[i], 1)) {
             return true;
         }

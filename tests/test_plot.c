@@ -113,10 +113,6 @@ TEST(nothing_is_clipped_or_covered)
             s.figure.plot.figure.width = widths[i];
             s.figure.plot.figure.theme = theme;
             expect_tidy(&s.figure.plot.figure);
-            for (int p = 0; p < RUN_PANELS; p++) {
-                s.figure.plot.panels[p].legend = LEGEND_ENDS;
-            }
-            expect_tidy(&s.figure.plot.figure);
         }
     }
 }
@@ -316,7 +312,7 @@ TEST(empty_and_hopeless_series_are_drawn_without_fuss)
         figure fig = {.panels = &panel, .panel_count = 1};
         expect_tidy(&fig);
     }
-    figure_panel panels[] = {{.series = series, .series_count = 3, .legend = LEGEND_ENDS}, {0}};
+    figure_panel panels[] = {{.series = series, .series_count = 3}, {0}};
     figure fig = {.panels = panels, .panel_count = 2};
     expect_tidy(&fig);
 }
@@ -348,7 +344,7 @@ TEST(legend_and_inset_keep_off_the_data)
     figure *fig = &s.figure.plot.figure;
     record(fig, &with);
     for (int i = 0; i < RUN_PANELS; i++) {
-        s.figure.plot.panels[i].legend = LEGEND_NONE;
+        s.figure.plot.panels[i].keyless = true;
         s.figure.plot.panels[i].zoom_to = s.figure.plot.panels[i].zoom_from;
     }
     cairo_surface_t *image = paint_pixels(fig, 3, &without);
@@ -381,7 +377,7 @@ TEST(legend_goes_to_a_free_corner)
         figure fig = {.panels = &panel, .panel_count = 1};
         static figure_report r, none;
         record(&fig, &r);
-        panel.legend = LEGEND_NONE;
+        panel.keyless = true;
         cairo_surface_t *image = paint_pixels(&fig, 3, &none);
         assert_true(r.legends[0].width > 0);
         expect_inside(&r.legends[0], &r.panels[0], "the legend");

@@ -110,13 +110,13 @@ static void add_table(printed_values *v, const printed_kind *kind, int t,
     *shown = (figure_panel){
         owned_figure_printf(plot, "Table %s: <i>k</i><sub>2</sub> × %g", rows[0]->table, factor),
         .weight = VALUES_WEIGHT,
-        .legend = LEGEND_NONE,
+        .keyless = true,
         .y = {.name = name, .label = kind->axis, .unit = kind->unit, .with_zero = true},
         .series = lines,
         .series_count = 2 * kind->count};
     *distances = (figure_panel){
         .weight = RESIDUALS_WEIGHT,
-        .legend = LEGEND_NONE,
+        .keyless = true,
         .levels = &v->zero,
         .level_count = 1,
         .y = {.name = residual, .label = "Residual", .unit = "%", .with_zero = true, .room = 0.12},

@@ -260,7 +260,7 @@ static void share_legend(recipe_figure *fig, int panel)
                p->series[i].colour == first->series[i].colour;
     }
     if (same) {
-        fig->plot.panels[panel].legend = LEGEND_NONE;
+        fig->plot.panels[panel].keyless = true;
     }
 }
 

@@ -93,8 +93,7 @@ typedef struct panel_layout {
     figure_rect inset;                        // with its labels; width 0: none
     plane inset_plane;
     axis inset_x, inset_y;
-    bool busy[PANEL_SERIES];          // lines that turn too often for dashes
-    double end_label_y[PANEL_SERIES]; // top of the labels at the curves' ends; NaN: none
+    bool busy[PANEL_SERIES]; // lines that turn too often for dashes
 } panel_layout;
 
 typedef struct column_layout {
@@ -224,16 +223,12 @@ char *impulse_strip_label(const figure_panel *panel);
 
 // --- legends: legend.c
 
-bool has_end_labels(const figure_panel *panel);
-double widest_end_label(const drawing *d, const figure_panel *panel);
-void place_end_labels(const drawing *d, panel_layout *l);
 // Returns false if there is no room inside the panel.
 bool place_legend(const drawing *d, panel_layout *l, const placement *grid);
 void draw_legend(drawing *d, const panel_layout *l);
 // The legend for all panels, in rows that are wrapped where they are too long, drawn or only
 // measured. Returns its height; 0: none.
 double common_legend(drawing *d, bool draw);
-void draw_end_labels(drawing *d, const panel_layout *l);
 
 // --- the inset: legend.c
 

@@ -16,8 +16,7 @@ void owned_figure_init(owned_figure *o, const char *title, int panels)
     *o = (owned_figure){.kept = g_ptr_array_new_with_free_func(g_free)};
     o->figure = (figure){.title = title != NULL ? owned_figure_keep(o, g_strdup(title)) : NULL,
                          .panels = o->panels,
-                         .panel_count = panels,
-                         .software = picture_software()};
+                         .panel_count = panels};
     for (int i = 0; i < panels; i++) {
         o->panels[i].series = o->series[i];
     }
@@ -174,9 +173,6 @@ static void draw_panel(drawing *d, int index)
     draw_notes(d, l);
     draw_inset(d, l);
     draw_legend(d, l);
-    if (has_end_labels(l->panel)) {
-        draw_end_labels(d, l);
-    }
 
     // where they went
     if (d->report != NULL) {
@@ -307,9 +303,12 @@ static status paint(cairo_t *cr, const void *what, fault *f)
 status figure_write(const figure *fig, const char *path, fault *f)
 {
     assert(fig != NULL && path != NULL);
-    picture p = {
-        fig->title,     .dpi = fig->dpi, .software = fig->software, .parameters = fig->parameters,
-        .paint = paint, .what = fig};
+    picture p = {fig->title,
+                 .dpi = fig->dpi,
+                 .software = picture_software(),
+                 .parameters = fig->parameters,
+                 .paint = paint,
+                 .what = fig};
     figure_size(fig, &p.width, &p.height);
     return picture_write(&p, path, f);
 }

@@ -6,16 +6,15 @@
 
 #include "render/plot/drawing.h"
 
-#define LEAST_WIDTH    50.0 // of a panel [pt]
-#define LEAST_HEIGHT   16.0
-#define POINT_ROOM     0.14 // of the data's range, above the point of a mark
-#define RANGE_SPACE    0.06 // of the data's range, kept free above and below them
-#define END_LABEL_LEAD 12.0 // from the axis' end to the labels at the curves' ends
-#define RIGHT_SPACE    10.0 // of a panel without labels next to it
-#define SHARED_SPACE   6.0  // of a panel whose vertical axis is labelled in the first column
-#define BAR_TICK       16.0 // of a colour bar to a tick
-#define COLUMN_WIDTH   42.0 // least width of a column of panels [mm]
-#define FIRST_LEFT     40.0 // where the panels begin before anything is known
+#define LEAST_WIDTH  50.0 // of a panel [pt]
+#define LEAST_HEIGHT 16.0
+#define POINT_ROOM   0.14 // of the data's range, above the point of a mark
+#define RANGE_SPACE  0.06 // of the data's range, kept free above and below them
+#define RIGHT_SPACE  10.0 // of a panel without labels next to it
+#define SHARED_SPACE 6.0  // of a panel whose vertical axis is labelled in the first column
+#define BAR_TICK     16.0 // of a colour bar to a tick
+#define COLUMN_WIDTH 42.0 // least width of a column of panels [mm]
+#define FIRST_LEFT   40.0 // where the panels begin before anything is known
 
 // ---- ranges
 
@@ -141,15 +140,6 @@ static double left_space(const drawing *d, const panel_layout *l)
     return left;
 }
 
-static double right_space(const drawing *d, const panel_layout *l)
-{
-    double right = colour_bar_width(d, l);
-    if (has_end_labels(l->panel)) {
-        right = fmax(right, widest_end_label(d, l->panel) + END_LABEL_LEAD + SWATCH_SPACE);
-    }
-    return right;
-}
-
 // Left and right ends of the panels, from the labels next to them: all panels have the same width.
 static void place_columns(drawing *d)
 {
@@ -164,7 +154,7 @@ static void place_columns(drawing *d)
     for (int i = 0; i < d->fig->panel_count; i++) {
         const panel_layout *l = &d->panels[i];
         left[l->column] = fmax(left[l->column], left_space(d, l));
-        right[l->column] = fmax(right[l->column], right_space(d, l));
+        right[l->column] = fmax(right[l->column], colour_bar_width(d, l));
     }
 
     for (int c = 0; c + 1 < d->columns; c++) {
@@ -348,10 +338,6 @@ static bool fill_panels(drawing *d, placement *grid)
             l->legend_row = moved = true;
         }
         moved = moved || l->legend_column != column;
-
-        if (has_end_labels(l->panel)) {
-            place_end_labels(d, l);
-        }
     }
     return moved;
 }

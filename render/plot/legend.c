@@ -1,5 +1,5 @@
-// What takes a free place in a panel: legends (also in a row or column above it, at the ends of its
-// curves, or one for all panels), and the inset, a short stretch of the panel once more, larger.
+// What takes a free place in a panel: legends (also in a row or column above it, or one for all
+// panels), and the inset, a short stretch of the panel once more, larger.
 #include <math.h>
 
 #include "render/page/picture_file.h"
@@ -142,35 +142,7 @@ static int labelled_series(const figure_panel *panel)
     return count;
 }
 
-bool has_end_labels(const figure_panel *panel)
-{
-    return panel->legend == LEGEND_ENDS && labelled_series(panel) > 0;
-}
-
-// y of a series' last finite point inside the horizontal axis; false if there is none.
-static bool series_end(const drawing *d, const figure_series *s, double *y)
-{
-    for (size_t i = s->count; i > 0; i--) {
-        double x = series_x(s, i - 1);
-        *y = series_y(s, i - 1);
-        if (scale_holds(&d->x.scale, x) && isfinite(*y)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 // ---- where they go
-
-double widest_end_label(const drawing *d, const figure_panel *panel)
-{
-    double widest = 0;
-    legend_entry e;
-    for (int i = 0; i < panel->series_count; i++) {
-        widest = entry_of(d, &panel->series[i], 0, &e) ? fmax(widest, e.width) : widest;
-    }
-    return widest;
-}
 
 // Size of a legend with entries in a row or one above the other.
 static void legend_size(const drawing *d, const figure_panel *panel, bool row, double *width,
@@ -203,7 +175,7 @@ bool place_legend(const drawing *d, panel_layout *l, const placement *grid)
     l->legend_inside = false;
 
     // nothing to tell apart
-    if (d->fig->common_legend || l->panel->legend != LEGEND_AUTO || labelled_series(l->panel) < 2) {
+    if (d->fig->common_legend || l->panel->keyless || labelled_series(l->panel) < 2) {
         l->legend_row = l->legend_column = false;
         return true;
     }
@@ -233,67 +205,6 @@ bool place_legend(const drawing *d, panel_layout *l, const placement *grid)
     return placement_find(grid, width, height, LEGEND_MARGIN, &l->legend) < INK_CURVE;
 }
 
-// Moves `count` ascending tops of labels apart by `height` each, as little as possible in the mean
-// square: what is left of each after its rank's share must not descend, so descending neighbours
-// are pooled at their mean.
-static void spread(double *top, int count, double height, double highest, double lowest)
-{
-    double mean[PANEL_SERIES];
-    int size[PANEL_SERIES], blocks = 0;
-
-    // pool neighbours that descend
-    for (int k = 0; k < count; k++) {
-        mean[blocks] = top[k] - k * height;
-        size[blocks++] = 1;
-        for (; blocks > 1 && mean[blocks - 1] < mean[blocks - 2]; blocks--) {
-            int both = size[blocks - 2] + size[blocks - 1];
-            mean[blocks - 2] =
-                (mean[blocks - 2] * size[blocks - 2] + mean[blocks - 1] * size[blocks - 1]) / both;
-            size[blocks - 2] = both;
-        }
-    }
-
-    // each block at its mean, within the limits
-    for (int b = 0, k = 0; b < blocks; b++) {
-        for (int i = 0; i < size[b]; i++, k++) {
-            double limited = fmin(mean[b], lowest - (count - 1) * height);
-            top[k] = fmax(limited, highest) + k * height;
-        }
-    }
-}
-
-// Spreads labels at the curves' ends so that none covers another.
-void place_end_labels(const drawing *d, panel_layout *l)
-{
-    int order[PANEL_SERIES], count = 0;
-    double height = height_of(d, figure_text_of(d, "X<sub>1</sub>", d->style.tick)), y,
-           top[PANEL_SERIES];
-    const figure_rect *box = &l->plane.box;
-
-    for (int i = 0; i < l->panel->series_count; i++) {
-        l->end_label_y[i] = (double)NAN;
-        if (l->panel->series[i].label == NULL || !series_end(d, &l->panel->series[i], &y)) {
-            continue;
-        }
-        l->end_label_y[i] = plane_y(&l->plane, y) - height / 2;
-        // sorted from top to bottom, equal ones in their own order
-        int k = count++;
-        for (; k > 0 && l->end_label_y[order[k - 1]] > l->end_label_y[i]; k--) {
-            order[k] = order[k - 1];
-        }
-        order[k] = i;
-    }
-
-    // moved apart
-    for (int k = 0; k < count; k++) {
-        top[k] = l->end_label_y[order[k]];
-    }
-    spread(top, count, height, box->y - 3, box->y + box->height - height + 3);
-    for (int k = 0; k < count; k++) {
-        l->end_label_y[order[k]] = top[k];
-    }
-}
-
 // ---- strokes
 
 void draw_legend(drawing *d, const panel_layout *l)
@@ -316,28 +227,6 @@ void draw_legend(drawing *d, const panel_layout *l)
         } else {
             x += e.width + SWATCH + 3 * SWATCH_SPACE;
         }
-    }
-}
-
-void draw_end_labels(drawing *d, const panel_layout *l)
-{
-    const figure_rect *box = &l->plane.box;
-    for (int i = 0; i < l->panel->series_count; i++) {
-        double y;
-        legend_entry e;
-        const figure_series *s = &l->panel->series[i];
-        if (isnan(l->end_label_y[i]) || !series_end(d, s, &y) || !entry_of(d, s, 0, &e)) {
-            continue;
-        }
-
-        // a thin line from the curve's end to its label
-        double end = box->x + box->width, middle = l->end_label_y[i] + 0.55 * e.height;
-        set_series(d, l, i);
-        cairo_set_line_width(d->cr, SECONDARY_WIDTH);
-        cairo_set_dash(d->cr, NULL, 0, 0);
-        draw_line(d->cr, end + 2, fmax(box->y, fmin(box->y + box->height, plane_y(&l->plane, y))),
-                  end + 10, middle);
-        draw_text(d, e.text, end + 12, l->end_label_y[i], (anchor){0, 0}, d->style.colours->text);
     }
 }
 

@@ -61,7 +61,7 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
     }
     o->panels[0].y = (figure_axis){.name = "gain", .label = "Gain", .unit = "dB"};
     o->panels[1].y = (figure_axis){.name = "phase", .label = "Phase", .unit = "°"};
-    o->panels[1].legend = LEGEND_NONE;
+    o->panels[1].keyless = true;
     o->figure.x = (figure_axis){"frequency", "Frequency", .unit = "Hz", .scale = SCALE_LOGARITHMIC};
     return o;
 }

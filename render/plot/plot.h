@@ -27,13 +27,6 @@ typedef enum marker_kind {
     MARKER_CROSS
 } marker_kind;
 
-typedef enum legend_kind {
-    LEGEND_AUTO, // for two or more curves: inside the panel where there are no data, otherwise in a
-                 // row above
-    LEGEND_ENDS, // each label at the right end of its curve
-    LEGEND_NONE
-} legend_kind;
-
 // A tick given explicitly.
 typedef struct figure_tick {
     double value;
@@ -139,7 +132,9 @@ typedef struct figure_panel {
     const char *impulse_unit;
     double weight;             // share of the height, 0 counts as 1
     double zoom_from, zoom_to; // range of x shown once more in an inset; from >= to: no inset
-    legend_kind legend;
+    // without the legend that two or more curves have: inside the panel where there are no data,
+    // otherwise in a row above
+    bool keyless;
 } figure_panel;
 
 typedef struct figure {
@@ -164,7 +159,6 @@ typedef struct figure {
     bool bare;              // without title and caption
     bool transparent;       // without a background
     bool shared_y;          // all panels have one vertical axis, labelled in the first column
-    const char *software;   // plain, for the file's metadata, "impactlab 0.1.0"
     const char *parameters; // plain, for the file's metadata
 } figure;
 
@@ -176,8 +170,7 @@ typedef struct owned_figure {
     GPtrArray *kept;                                   // blocks
 } owned_figure;
 
-// A figure of empty panels with the program's name and version and a copy of the plain title (may
-// be NULL).
+// A figure of empty panels with a copy of the plain title (may be NULL).
 void owned_figure_init(owned_figure *o, const char *title, int panels);
 void owned_figure_finish(owned_figure *o);
 
@@ -203,7 +196,7 @@ status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault
 
 // --- files
 
-// Draws the figure into a file as picture_write does. Title, software and parameters go into the
+// Draws the figure into a file as picture_write does. Title and parameters go into the
 // file's metadata.
 status figure_write(const figure *fig, const char *path, fault *f);
 

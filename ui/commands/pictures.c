@@ -83,13 +83,10 @@ int publish_figure(const arguments *a, const figure *fig)
 int publish_study(const arguments *a, figure *fig)
 {
     assert(a != NULL && fig != NULL);
-    char software[64];
-    snprintf(software, sizeof software, "impactlab %s", lab_version());
     fig->x.scale = SCALE_LOGARITHMIC;
     fig->x.room = 0.04;
     fig->columns = fig->panel_count;
     fig->common_legend = true;
-    fig->software = software;
     return publish_figure(a, fig);
 }
 

@@ -5,7 +5,6 @@
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
-#include "src/base/shipped.h"
 #include "src/study/convergence.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
@@ -103,8 +102,7 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
     static const int colours[PANEL_STEPS] = {5, 0, 6};
     static const char *const names[PANEL_STEPS] = {"h", "h/2", "h/4"};
     const trace *finest = &r->result[PANEL_STEPS - 1].trace;
-    char label[PANEL_STEPS][48], software[64], title[256 + SCENARIO_CHANGES],
-        changes[SCENARIO_CHANGES];
+    char label[PANEL_STEPS][48], title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
     figure_series force[PANEL_STEPS], less[PANEL_STEPS - 1];
 
     // each run's force, and what it lacks of the finest
@@ -140,14 +138,12 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
          .series_count = PANEL_STEPS - 1},
     };
 
-    snprintf(software, sizeof software, "impactlab %s", lab_version());
     snprintf(title, sizeof title, "%s: the same run at three steps%s", r->scenario[0].name,
              scenario_changes(&r->scenario[0], changes));
     const figure fig = {.title = title,
                         .x = {.name = "time", .label = "Time <i>t</i>", .unit = "s"},
                         .panels = panels,
-                        .panel_count = 2,
-                        .software = software};
+                        .panel_count = 2};
     return publish_figure(a, &fig);
 }
 
