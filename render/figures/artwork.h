@@ -25,7 +25,6 @@ typedef struct artwork {
     char *alternative;       // plain: alternative text; owned
     const table_page *table; // of a table, else NULL
     const figure *plotted;   // of a plotted figure, else NULL
-    bool cells;              // a picture with very many cells
     const void *what;        // for the functions below
     // draws it with the page's top left corner at the origin of cr, in points; *report (may be
     // NULL) is filled

@@ -1,12 +1,13 @@
 // The report as a web page that needs no other file and no network.
 #include <cairo.h>
+#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "render/figures/report_parts.h"
 #include "render/page/palette.h"
 #include "render/page/svg.h"
 #include "render/page/text.h"
+#include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 
 // Style and script, line by line; the build makes these of report.css and report.js.
@@ -75,23 +76,19 @@ static void add_contents(const report *r, GString *html)
 // A picture with many cells, which would be many thousand paths: as a PNG in the page.
 static status add_png(GString *html, const picture *p, const char *alternative, fault *f)
 {
-    g_autofree char *name = NULL, *bytes = NULL;
-    gsize length = 0;
-    GError *error = NULL;
-    int file = g_file_open_tmp("impactlab-XXXXXX.png", &name, &error);
-    if (file < 0) {
-        fault_set(f, STATUS_CANNOT_WRITE, "%s", error->message);
-        g_error_free(error);
-        return STATUS_CANNOT_WRITE;
+    text_stream stream;
+    size_t length = 0;
+    if (!text_stream_open(&stream)) {
+        return fault_no_memory(f);
     }
-    close(file);
-
-    status code = picture_write(p, name, f);
-    if (code == STATUS_OK && g_file_get_contents(name, &bytes, &length, NULL)) {
+    status code = picture_write_png(p, stream.stream, f);
+    char *bytes = text_stream_close(&stream, &length);
+    code = code == STATUS_OK && bytes == NULL ? fault_no_memory(f) : code;
+    if (code == STATUS_OK) {
         g_autofree char *text = g_base64_encode((const guchar *)bytes, length);
         text_append(html, "<img alt=\"%s\" src=\"data:image/png;base64,%s\">\n", alternative, text);
     }
-    unlink(name);
+    free(bytes);
     return code;
 }
 
@@ -207,9 +204,8 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
     }
 
     g_string_append(html, ">\n");
-    bool heavy = map || drawn->cells;
     if (code == STATUS_OK) {
-        code = heavy ? add_png(html, &p, alternative, f) : add_svg(html, &p, index, letters, f);
+        code = map ? add_png(html, &p, alternative, f) : add_svg(html, &p, index, letters, f);
     }
     g_string_append(html, "</figure>\n");
     return code;

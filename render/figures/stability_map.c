@@ -191,9 +191,7 @@ static artwork open_map(newmark_map *m, const figure_options *o)
     fig->common_legend = fig->shared_y = true;
     figure_take_look(fig, &o->look);
 
-    artwork drawn = artwork_of_figure(fig, m, newmark_map_destroy);
-    drawn.cells = true;
-    return drawn;
+    return artwork_of_figure(fig, m, newmark_map_destroy);
 }
 
 // ==== the figures

@@ -40,11 +40,6 @@ static void write_bytes(png_structp png, png_bytep bytes, png_size_t length)
     fwrite(bytes, 1, length, png_get_io_ptr(png));
 }
 
-static void flush_nothing(png_structp png)
-{
-    (void)png;
-}
-
 static void set_notes(png_structp png, png_infop info, const png_note *notes, int count)
 {
     png_text texts[NOTES_MOST];
@@ -124,7 +119,7 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const 
     // one row at a time
     if (setjmp(png_jmpbuf(png)) == 0) {
         png_uint_32 per_metre = (png_uint_32)lround(dpi / 0.0254);
-        png_set_write_fn(png, stream, write_bytes, flush_nothing);
+        png_set_write_fn(png, stream, write_bytes, NULL);
         png_set_IHDR(png, info, (png_uint_32)width,
                      (png_uint_32)cairo_image_surface_get_height(surface), 8,
                      has_alpha(surface) ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
@@ -267,8 +262,9 @@ static status paint_surface(cairo_surface_t *surface, const picture *p, bool fin
     return drawn(code, state, f);
 }
 
-static status write_png(FILE *stream, const picture *p, fault *f)
+status picture_write_png(const picture *p, FILE *stream, fault *f)
 {
+    assert(p != NULL && p->paint != NULL && stream != NULL);
     double dpi = p->dpi != 0 ? p->dpi : DEFAULT_DPI;
     if (!(dpi >= LEAST_DPI && dpi <= MOST_DPI)) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "a PNG of %g dpi, expected %g to %g", dpi,
@@ -333,11 +329,6 @@ static status write_pages(FILE *stream, const picture *p, int count, fault *f)
     return code;
 }
 
-static status write_pdf(FILE *stream, const picture *p, fault *f)
-{
-    return write_pages(stream, p, 1, f);
-}
-
 static cairo_status_t to_string(void *string, const unsigned char *bytes, unsigned length)
 {
     g_string_append_len(string, (const char *)bytes, (gssize)length);
@@ -398,17 +389,6 @@ char *picture_svg(const picture *p, fault *f)
     return numbered;
 }
 
-static status write_svg(FILE *stream, const picture *p, fault *f)
-{
-    fault why = {0};
-    g_autofree char *svg = picture_svg(p, &why);
-    if (svg == NULL) {
-        return fault_set(f, why.code, "%s", why.text);
-    }
-    fputs(svg, stream);
-    return STATUS_OK;
-}
-
 status picture_write_pages(const picture *pages, int count, const char *path, fault *f)
 {
     assert(pages != NULL && count > 0 && path != NULL);
@@ -420,19 +400,30 @@ status picture_write_pages(const picture *pages, int count, const char *path, fa
     return whole_file_close(&file, write_pages(file.stream, pages, count, f), f);
 }
 
+static status write_svg(const picture *p, FILE *stream, fault *f)
+{
+    fault why = {0};
+    g_autofree char *svg = picture_svg(p, &why);
+    if (svg == NULL) {
+        return fault_set(f, why.code, "%s", why.text);
+    }
+    fputs(svg, stream);
+    return STATUS_OK;
+}
+
 status picture_write(const picture *p, const char *path, fault *f)
 {
     assert(p != NULL && p->paint != NULL && path != NULL);
-    typedef status (*writer)(FILE *, const picture *, fault *);
-    static const writer writers[] = {
-        [FORMAT_PNG] = write_png, [FORMAT_PDF] = write_pdf, [FORMAT_SVG] = write_svg};
     whole_file file;
 
     // only a name that tells its format
     status code = check_extension(path, f);
     code = code == STATUS_OK ? whole_file_open(&file, path, f) : code;
     if (code == STATUS_OK) {
-        code = writers[picture_format_of(path)](file.stream, p, f);
+        const picture_format format = picture_format_of(path);
+        code = format == FORMAT_PNG   ? picture_write_png(p, file.stream, f)
+               : format == FORMAT_SVG ? write_svg(p, file.stream, f)
+                                      : write_pages(file.stream, p, 1, f);
         code = whole_file_close(&file, code, f);
     }
     return code;

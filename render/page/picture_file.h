@@ -51,6 +51,9 @@ status picture_check_path(const char *path, fault *f);
 // with path and reason.
 status picture_write(const picture *p, const char *path, fault *f);
 
+// Draws the picture as a PNG into a stream, which keeps its own errors.
+status picture_write_png(const picture *p, FILE *stream, fault *f);
+
 // The picture as the text of an SVG file, to be freed with g_free; NULL if it cannot be drawn.
 char *picture_svg(const picture *p, fault *f);
 
