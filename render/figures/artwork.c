@@ -2,12 +2,9 @@
 
 #include <assert.h>
 #include <errno.h>
-#include <glib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#include "render/page/text.h"
-#include "render/plot/plot.h"
 #include "src/base/whole_file.h"
 
 status make_folder(const char *folder, fault *f)

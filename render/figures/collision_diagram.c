@@ -3,8 +3,6 @@
 #include <math.h>
 
 #include "render/figures/diagram.h"
-#include "render/page/text.h"
-#include "src/base/numbers.h"
 
 #define ACROSS         8.0   // enlargement across the line to the contact point
 #define SPEED_LENGTH   70.0  // page points to 1 m/s

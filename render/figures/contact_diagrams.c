@@ -3,8 +3,6 @@
 
 #include "render/figures/diagram.h"
 #include "render/figures/run_figure.h"
-#include "render/page/text.h"
-#include "src/base/numbers.h"
 
 #define CONTACT_ACROSS 6.0  // enlargement of what lies across the reference line, 3.1
 #define PEAK_ACROSS    9.0  // across the line to the contact point, 4.6

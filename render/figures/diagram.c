@@ -1,7 +1,6 @@
 #include "render/figures/diagram.h"
 
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
 
 #include "render/figures/run_figure.h"

@@ -1,13 +1,9 @@
 // The thesis's diagrams of the arm, drawn from the model's own geometry and numbers.
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
 
 #include "render/figures/diagram.h"
-#include "render/page/picture_file.h"
-#include "render/page/text.h"
 #include "src/base/text_stream.h"
-#include "src/base/numbers.h"
 #include "src/rig/sensors.h"
 
 #define DEGREE     (G_PI / 180)

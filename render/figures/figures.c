@@ -1,14 +1,10 @@
 #include "render/figures/figures.h"
 
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
 #include <string.h>
 
-#include "render/figures/artwork.h"
 #include "render/figures/run_figure.h"
-#include "render/page/text.h"
-#include "src/study/thesis_tables.h"
 
 // Panels that several figures have.
 #define FORCE                                                                                      \

@@ -1,15 +1,10 @@
 // Figures of one impact: the force pulse, and what the thesis's predictors assume of the motion.
 #include "render/figures/figures.h"
 
-#include <glib.h>
 #include <math.h>
 
-#include "render/page/sketch.h"
-#include "render/page/text.h"
 #include "render/plot/curve.h"
-#include "render/plot/plot.h"
 #include "render/figures/run_figure.h"
-#include "src/base/numbers.h"
 
 enum { PANELS = 2, ASSUMED_POINTS = 101, MARKS = 2 };
 

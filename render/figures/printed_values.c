@@ -2,10 +2,8 @@
 // how far each point is from its line.
 #include "render/figures/figures.h"
 
-#include <glib.h>
 #include <string.h>
 
-#include "render/page/text.h"
 #include "render/plot/drawing.h"
 
 enum { TABLES = 3, QUANTITIES = 3, PANELS = 2 * TABLES, SERIES = 2 * QUANTITIES };

@@ -3,11 +3,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
-#include "render/figures/artwork.h"
 #include "render/figures/recipe_parts.h"
-#include "render/figures/run_figure.h"
-#include "render/page/text.h"
-#include "render/plot/trace_plot.h"
 
 static void release(void *owner)
 {

@@ -4,10 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "render/page/text.h"
-#include "src/base/numbers.h"
-#include "src/tables/summary.h"
-
 // The legend text of a source, markup.
 static const char *label_of(recipe_figure *fig, const recipe_source *s)
 {

@@ -1,10 +1,8 @@
 // Recipes: from YAML to what a figure shows.
 #include <assert.h>
-#include <stddef.h>
 #include <string.h>
 
 #include "render/figures/recipe_parts.h"
-#include "render/page/text.h"
 
 // ==== small multiples: runs and panels once for each value of a parameter
 //

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "render/figures/recipe_parts.h"
-#include "render/page/text.h"
 #include "src/base/words.h"
 
 // ==== values, with faults that name their place

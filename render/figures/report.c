@@ -3,7 +3,6 @@
 
 #include <assert.h>
 #include <cairo-pdf.h>
-#include <glib.h>
 #include <math.h>
 #include <string.h>
 
@@ -11,9 +10,6 @@
 #include "render/figures/recipe.h"
 #include "render/figures/report_parts.h"
 #include "render/figures/run_figure.h"
-#include "render/page/palette.h"
-#include "render/page/sketch.h"
-#include "render/page/text.h"
 #include "src/base/shipped.h"
 
 // A4 [pt].

@@ -4,9 +4,7 @@
 #include <string.h>
 
 #include "render/figures/report_parts.h"
-#include "render/page/palette.h"
 #include "render/page/svg.h"
-#include "render/page/text.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 

@@ -3,8 +3,6 @@
 #include <assert.h>
 #include <string.h>
 
-#include "render/figures/artwork.h"
-#include "render/plot/trace_plot.h"
 #include "src/base/words.h"
 
 // ---- scenarios run for figures

@@ -1,13 +1,10 @@
 // Maps over Newmark's two parameters: one number of a run for every pair, at three settings side by
 // side.
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
 
-#include "render/figures/artwork.h"
 #include "render/figures/figures.h"
 #include "render/figures/run_figure.h"
-#include "render/page/text.h"
 
 enum {
     MAP_PANELS = 3,

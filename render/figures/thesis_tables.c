@@ -1,12 +1,9 @@
 // The thesis's tables as pages.
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
 #include "render/figures/figures.h"
-#include "render/page/text.h"
 #include "src/arm/modes.h"
 
 G_LOCK_DEFINE_STATIC(tables);

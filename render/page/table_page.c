@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/page/text.h"
 #include "src/base/csv.h"
 #include "src/base/whole_file.h"
 

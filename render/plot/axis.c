@@ -1,10 +1,7 @@
 #include "render/plot/axis.h"
 
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
-#include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

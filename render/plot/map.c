@@ -2,8 +2,6 @@
 // mean.
 #include <assert.h>
 #include <math.h>
-#include <stdbool.h>
-#include <stddef.h>
 
 #include "render/page/picture_file.h"
 #include "render/plot/drawing.h"

@@ -4,9 +4,7 @@
 #include "src/run/measured.h"
 
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 // The first signal of the panels that has a unit, -1 if none has.

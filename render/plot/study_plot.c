@@ -2,7 +2,6 @@
 #include "render/plot/study_plot.h"
 
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
 
 #include "render/page/palette.h"
@@ -11,7 +10,6 @@
 #include "src/base/numbers.h"
 #include "src/base/shipped.h"
 #include "src/tables/settings.h"
-#include "src/tables/summary.h"
 
 // ==== robust: the distribution of the overshoot
 

@@ -2,14 +2,11 @@
 #include "render/plot/trace_plot.h"
 
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
 #include <string.h>
 
 #include "render/page/palette.h"
-#include "render/page/picture_file.h"
 #include "render/page/text.h"
-#include "render/plot/plot.h"
 #include "render/plot/trace_parts.h"
 
 // Whether a run has a signal of a panel to show: not the first link's where it equals the hub's,

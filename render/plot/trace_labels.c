@@ -2,7 +2,6 @@
 #include "render/plot/trace_parts.h"
 
 #include <assert.h>
-#include <glib.h>
 #include <string.h>
 
 #include "render/page/text.h"

@@ -1,6 +1,5 @@
 // Recorded runs as the layers of a figure: series with located peaks, marks, stretches, impulses.
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
 #include <string.h>
 

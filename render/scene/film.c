@@ -1,7 +1,6 @@
 #include "render/scene/film.h"
 
 #include <assert.h>
-#include <glib.h>
 #include <math.h>
 
 #include "render/plot/trace_plot.h"

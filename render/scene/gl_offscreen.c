@@ -2,8 +2,6 @@
 
 #include <assert.h>
 #include <dlfcn.h>
-#include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

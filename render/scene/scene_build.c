@@ -2,7 +2,6 @@
 #include <assert.h>
 #include <math.h>
 
-#include "render/scene/scene.h"
 #include "render/scene/scene_parts.h"
 
 enum { CURVE_PIECES = 96 }; // of a beam with few links

@@ -6,7 +6,6 @@
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "render/plot/trace_plot.h"
-#include "render/scene/scene.h"
 #include "render/scene/scene_parts.h"
 #include "src/base/instant.h"
 #include "src/base/numbers.h"
