@@ -369,8 +369,7 @@ static void draw_sensor(sketch *s, const diagram *d)
     draw_divider(s, &d->p.sensor, s->left + 74, s->top);
     draw_stages(s, s->left + 74, s->top + 62);
 
-    const figure_series curve = {
-        .name = "output", .x = d->curve_x, .y = d->curve_y, .count = CURVE_POINTS, .colour = 5};
+    const figure_series curve = {"output", NULL, d->curve_x, d->curve_y, CURVE_POINTS, .colour = 5};
     const figure_panel panel = {.y = {.name = "output",
                                       .label = "Output <i>V</i><sub>out</sub>",
                                       .unit = "V",

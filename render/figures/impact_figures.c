@@ -88,12 +88,8 @@ static status paint_profile(cairo_t *cr, const void *what, figure_report *report
         plane p = {seen->panels[0],
                    {SCALE_LINEAR, shown->x.low, shown->x.high},
                    {SCALE_LINEAR, fig->plot.panels[0].y.low, fig->plot.panels[0].y.high}};
-        sketch s = {.cr = cr,
-                    .context = text_context_create(),
-                    .colours = palette_of(shown->theme),
-                    .theme = shown->theme,
-                    .report = report,
-                    .scale = 1};
+        sketch s = {cr,           text_context_create(), palette_of(shown->theme),
+                    shown->theme, .report = report,      .scale = 1};
         double y = plane_y(&p, 1.13 * fig->peak), x0 = plane_x(&p, fig->contact);
         double x1 = plane_x(&p, fig->peak_time);
         cairo_save(cr);

@@ -156,12 +156,9 @@ static status write_pdf(const report *r, const char *path, fault *f)
     picture *pictures = g_new0(picture, pages->len);
 
     for (guint i = 0; i < pages->len; i++) {
-        pictures[i] = (picture){.width = PAGE_WIDTH,
-                                .height = PAGE_HEIGHT,
-                                .title = r->heading,
-                                .software = r->heading,
-                                .paint = paint_page,
-                                .what = &g_array_index(pages, report_page, i)};
+        pictures[i] = (picture){r->heading,          PAGE_WIDTH,
+                                PAGE_HEIGHT,         .software = r->heading,
+                                .paint = paint_page, .what = &g_array_index(pages, report_page, i)};
     }
 
     status code = picture_write_pages(pictures, (int)pages->len, path, f);

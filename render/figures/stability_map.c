@@ -263,11 +263,10 @@ static void add_rings(newmark_map *m)
         }
     }
 
-    add_layer(m, (figure_series){"generalized-alpha",
-                                 "generalised-alpha, <i>ρ</i> = 1, 0.8, 0.5 from below",
-                                 .x = m->ring_beta, .y = m->ring_gamma, .shade = m->ring_value[0],
-                                 .count = MAP_RINGS, .marker = MARKER_CIRCLE, .radius = 3.6,
-                                 .no_line = true, .rim = true});
+    add_layer(m, (figure_series){
+                     "generalized-alpha", "generalised-alpha, <i>ρ</i> = 1, 0.8, 0.5 from below",
+                     m->ring_beta, m->ring_gamma, MAP_RINGS, .shade = m->ring_value[0],
+                     .marker = MARKER_CIRCLE, .radius = 3.6, .no_line = true, .rim = true});
 }
 
 status stability_map(const figure_order *order, artwork *out, fault *f)

@@ -51,9 +51,8 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
             y[1][i] = r->gain[i] != 0 ? at * 180 / PI + 360 * turns : (double)NAN;
         }
         for (int panel = 0; panel < 2; panel++) {
-            o->series[panel][k] =
-                (figure_series){curves[k].name, curves[k].name, .x = x,
-                                .y = y[panel],  .count = n,     .colour = palette_slot(k)};
+            o->series[panel][k] = (figure_series){
+                curves[k].name, curves[k].name, x, y[panel], n, .colour = palette_slot(k)};
             o->panels[panel].series_count = count;
             o->panels[panel].weight = 1.2;
         }

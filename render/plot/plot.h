@@ -37,8 +37,8 @@ typedef struct figure_tick {
 typedef struct figure_axis {
     const char *name;   // plain, for the CSV, "force"
     const char *label;  // without its unit
-    const char *symbol; // markup, replaces the label if that does not fit; NULL: none
     const char *unit;   // plain, as in the signal table: "rad/s2"; "" or NULL for a pure number
+    const char *symbol; // markup, replaces the label if that does not fit; NULL: none
     scale_kind scale;
     double low, high;         // its ends; low >= high: from the data
     double room;              // share of the data's range kept free at both ends
@@ -51,20 +51,20 @@ typedef struct figure_axis {
 typedef struct figure_series {
     const char *name;    // plain, for the CSV, "force"
     const char *label;   // for the legend
-    const char *symbol;  // for the legend of a narrow page; NULL: the label
     const double *x, *y; // count values each
-    const double *shade; // values on the panel's colour scale for the markers; NULL: in `colour`
     size_t count;
-    size_t stride;      // bytes from one value to the next, in x, y and shade; 0: sizeof(double)
-    int colour;         // slot in the palette, 0-7
-    line_style style;   // changed if an earlier series of the panel has the same
-    int run;            // 1 to 8: of one of several runs. It keeps its style, which tells the
-                        // signal, and has a grey and a width of its own where there are no colours
-    marker_kind marker; // at every point
-    double radius;      // of markers [pt]; 0: the style's
-    bool secondary;     // thinner and dashed, for a second run of the same quantity
-    bool no_line;       // markers only
-    bool rim;           // with a rim of the page's colour, so that it is visible on a map
+    const char *symbol;  // for the legend of a narrow page; NULL: the label
+    const double *shade; // values on the panel's colour scale for the markers; NULL: in `colour`
+    size_t stride;       // bytes from one value to the next, in x, y and shade; 0: sizeof(double)
+    int colour;          // slot in the palette, 0-7
+    line_style style;    // changed if an earlier series of the panel has the same
+    int run;             // 1 to 8: of one of several runs. It keeps its style, which tells the
+                         // signal, and has a grey and a width of its own where there are no colours
+    marker_kind marker;  // at every point
+    double radius;       // of markers [pt]; 0: the style's
+    bool secondary;      // thinner and dashed, for a second run of the same quantity
+    bool no_line;        // markers only
+    bool rim;            // with a rim of the page's colour, so that it is visible on a map
 } figure_series;
 
 // A layer of coloured cells over a grid of points: z[column * rows + row].

@@ -20,12 +20,9 @@ static figure_series describe_law(owned_figure *o, const robust_law *law, int sl
     for (size_t i = 0; i < law->runs; i++) {
         share[i] = 100 * (double)(i + 1) / (double)law->runs;
     }
-    return (figure_series){.name = law->law,
-                           .label = owned_figure_keep(o, text_escape(law->law)),
-                           .x = law->overshoots,
-                           .y = share,
-                           .count = law->runs,
-                           .colour = slot};
+    return (figure_series){law->law,        owned_figure_keep(o, text_escape(law->law)),
+                           law->overshoots, share,
+                           law->runs,       .colour = slot};
 }
 
 owned_figure *robust_figure_create(const robust_table *t, const char *changes)
@@ -160,8 +157,7 @@ static figure_axis describe_axis(sweep_drawing *s, varied *v, const sweep_axis *
     figure_axis out = {own(s, g_strdup(axis->name)),
                        axis->element > 0 || info == &setting_info ? own(s, text_escape(axis->name))
                                                                   : label_of(s, info->description),
-                       .unit = info->unit,
-                       .scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR,
+                       info->unit, .scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR,
                        .room = DOTS_ROOM};
 
     // words are counted
