@@ -144,35 +144,34 @@ void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c)
     picture_stroke(cr);
 }
 
+// A straight line a pixel wide, of dots or not.
+static void hairline(cairo_t *cr, double x0, double y0, double x1, double y1, bool dotted,
+                     colour in)
+{
+    static const double dots[] = {1, 3};
+    cairo_new_path(cr);
+    cairo_set_dash(cr, dots, dotted ? 2 : 0, 0);
+    cairo_set_line_width(cr, 1);
+    set_colour(cr, in);
+    cairo_move_to(cr, x0, y0);
+    cairo_line_to(cr, x1, y1);
+    picture_stroke(cr);
+}
+
 void pane_level_paint(cairo_t *cr, const pane_frame *f, double value, colour in)
 {
     assert(cr != NULL && f != NULL);
-    static const double dots[] = {1, 3};
-    if (!(value >= f->low && value <= f->high)) {
-        return;
-    }
     const double y = floor(pixel_y(f, value)) + 0.5;
-    cairo_new_path(cr);
-    cairo_set_dash(cr, dots, 2, 0);
-    cairo_set_line_width(cr, 1);
-    set_colour(cr, in);
-    cairo_move_to(cr, 0, y);
-    cairo_line_to(cr, f->width, y);
-    picture_stroke(cr);
+    if (value >= f->low && value <= f->high) {
+        hairline(cr, 0, y, f->width, y, true, in);
+    }
 }
 
 void pane_instant_paint(cairo_t *cr, const pane_frame *f, double time, colour in)
 {
     assert(cr != NULL && f != NULL);
-    if (!(time >= f->from && time <= f->to)) {
-        return;
-    }
     const double x = floor(fmin(pixel_x(f, time), f->width - 1)) + 0.5;
-    cairo_new_path(cr);
-    cairo_set_dash(cr, NULL, 0, 0);
-    cairo_set_line_width(cr, 1);
-    set_colour(cr, in);
-    cairo_move_to(cr, x, 0);
-    cairo_line_to(cr, x, f->height);
-    picture_stroke(cr);
+    if (time >= f->from && time <= f->to) {
+        hairline(cr, x, 0, x, f->height, false, in);
+    }
 }

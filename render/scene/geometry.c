@@ -55,20 +55,24 @@ void mesh_clear(mesh *m)
     m->vertex_count = m->corner_count = 0;
 }
 
+// Room for `more` items of a size after `count`, by doubling. Returns the items.
+static void *grown(mesh *m, void *items, size_t count, size_t more, size_t *capacity, size_t size)
+{
+    if (count + more <= *capacity || m->out_of_memory) {
+        return items;
+    }
+    const size_t wanted = *capacity > 0 ? 2 * *capacity : 4096 * more;
+    void *moved = realloc(items, wanted * size);
+    m->out_of_memory = moved == NULL;
+    *capacity = moved != NULL ? wanted : *capacity;
+    return moved != NULL ? moved : items;
+}
+
 // Adds a vertex and returns its number.
 static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
 {
-    // grow by doubling
-    if (m->vertex_count == m->vertex_capacity && !m->out_of_memory) {
-        size_t capacity = m->vertex_capacity ? 2 * m->vertex_capacity : 4096;
-        mesh_vertex *vertices = realloc(m->vertices, capacity * sizeof *vertices);
-        m->out_of_memory = vertices == NULL;
-        if (vertices != NULL) {
-            m->vertices = vertices;
-            m->vertex_capacity = capacity;
-        }
-    }
-
+    m->vertices =
+        grown(m, m->vertices, m->vertex_count, 1, &m->vertex_capacity, sizeof *m->vertices);
     if (m->out_of_memory) {
         return 0;
     }
@@ -78,17 +82,7 @@ static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
 
 static void add_triangle(mesh *m, unsigned a, unsigned b, unsigned c)
 {
-    // grow by doubling
-    if (m->corner_count + 3 > m->corner_capacity && !m->out_of_memory) {
-        size_t capacity = m->corner_capacity ? 2 * m->corner_capacity : 12288;
-        unsigned *corners = realloc(m->corners, capacity * sizeof *corners);
-        m->out_of_memory = corners == NULL;
-        if (corners != NULL) {
-            m->corners = corners;
-            m->corner_capacity = capacity;
-        }
-    }
-
+    m->corners = grown(m, m->corners, m->corner_count, 3, &m->corner_capacity, sizeof *m->corners);
     if (m->out_of_memory) {
         return;
     }

@@ -71,6 +71,24 @@ static colour paler(const painter *g, colour c, double share)
                     c.blue + share * (ground.blue - c.blue)};
 }
 
+static void stroke_line(const painter *g, double x0, double y0, double x1, double y1)
+{
+    cairo_move_to(g->cr, x0, y0);
+    cairo_line_to(g->cr, x1, y1);
+    picture_stroke(g->cr);
+}
+
+// A disc with a rim of the present colour, paler inside.
+static void disc(const painter *g, double x, double y, double radius, colour c, double share)
+{
+    cairo_new_path(g->cr);
+    cairo_arc(g->cr, x, y, radius, 0, 2 * M_PI);
+    set_colour(g->cr, paler(g, c, share));
+    cairo_fill_preserve(g->cr);
+    set_colour(g->cr, c);
+    picture_stroke(g->cr);
+}
+
 // --- what stands still ------------------------------------------------------------------------
 
 // Short strokes behind a line, from (x, y) on along (dx, dy) [pixels].
@@ -113,20 +131,14 @@ static void paint_wall(const painter *g)
         pen(g, wall, 1);
         hatch(g, from_x, from_y, dx, dy);
         pen(g, wall, 2);
-        cairo_move_to(g->cr, from_x, from_y);
-        cairo_line_to(g->cr, from_x + dx, from_y + dy);
-        picture_stroke(g->cr);
+        stroke_line(g, from_x, from_y, from_x + dx, from_y + dy);
         return;
     }
 
     // a point: a pin that the beam's edge meets
     const double radius = size_of(g, PIN_RADIUS, 4);
     pen(g, wall, 1.5);
-    cairo_arc(g->cr, tip_x + (off + radius) * nx, tip_y + (off + radius) * ny, radius, 0, 2 * M_PI);
-    set_colour(g->cr, paler(g, wall, 0.5));
-    cairo_fill_preserve(g->cr);
-    set_colour(g->cr, wall);
-    picture_stroke(g->cr);
+    disc(g, tip_x + (off + radius) * nx, tip_y + (off + radius) * ny, radius, wall, 0.5);
 }
 
 // --- the arm ----------------------------------------------------------------------------------
@@ -150,17 +162,10 @@ static void paint_hub(const painter *g, double angle)
     const double x = plan_x(g->view, 0), y = plan_y(g->view, 0);
     const double radius = fmin(size_of(g, HUB_RADIUS, 6), 0.3 * g->view->height);
     pen(g, g->plan->colours.hub, 2);
-    cairo_new_path(g->cr);
-    cairo_arc(g->cr, x, y, radius, 0, 2 * M_PI);
-    set_colour(g->cr, paler(g, g->plan->colours.hub, 0.75));
-    cairo_fill_preserve(g->cr);
-    set_colour(g->cr, g->plan->colours.hub);
-    picture_stroke(g->cr);
+    disc(g, x, y, radius, g->plan->colours.hub, 0.75);
 
     // a spoke tells its angle
-    cairo_move_to(g->cr, x, y);
-    cairo_line_to(g->cr, x + radius * cos(angle), y - radius * sin(angle));
-    picture_stroke(g->cr);
+    stroke_line(g, x, y, x + radius * cos(angle), y - radius * sin(angle));
 }
 
 // The wall's force on the tip: an arrow that points at it, as long as its share of the peak.
@@ -174,9 +179,7 @@ static void paint_force(const painter *g, double x, double y, const sample *row)
     }
     pen(g, g->plan->colours.force, 3);
     cairo_set_line_cap(g->cr, CAIRO_LINE_CAP_BUTT);
-    cairo_move_to(g->cr, x, y - off - length);
-    cairo_line_to(g->cr, x, y - off - 0.8 * head);
-    picture_stroke(g->cr);
+    stroke_line(g, x, y - off - length, x, y - off - 0.8 * head);
     cairo_move_to(g->cr, x, y - off);
     cairo_line_to(g->cr, x - 0.45 * head, y - off - head);
     cairo_line_to(g->cr, x + 0.45 * head, y - off - head);
