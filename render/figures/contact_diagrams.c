@@ -77,13 +77,6 @@ static void draw_wall(sketch *s, point at, double direction, const char *force)
     sketch_label(s, (point){start.x + 4 * nx, start.y + 4 * ny}, (anchor){0.5, 1}, force);
 }
 
-// An angle with the dashed line that it is measured from.
-static void draw_angle(sketch *s, point at, double radius, double to, const char *markup)
-{
-    sketch_dashed(s, at, (point){at.x + radius + 14, at.y}, SKETCH_FAINT);
-    diagram_angle(s, at, (angle_arc){radius, 0, to, markup});
-}
-
 static char *force_text(const char *symbol, double force)
 {
     g_autofree char *quantity = text_quantity(force, 3, "N");
@@ -115,8 +108,8 @@ static void draw_contact(sketch *s, const diagram *d)
     // both configurations, and the angles of the first
     draw_full_arm(s, one);
     draw_dashed_arm(s, other, 0);
-    draw_angle(s, one.hub, 84, direction_of(one.hub, one.joint), "<i>θ</i><sub>2</sub>");
-    draw_angle(s, one.joint, 62, direction_of(one.joint, one.end), "<i>θ</i><sub>3</sub>");
+    diagram_link_angle(s, one.hub, 84, direction_of(one.hub, one.joint), "<i>θ</i><sub>2</sub>");
+    diagram_link_angle(s, one.joint, 62, direction_of(one.joint, one.end), "<i>θ</i><sub>3</sub>");
     sketch_label(s, (point){(one.hub.x + one.joint.x) / 2 - 10, (one.hub.y + one.joint.y) / 2 - 6},
                  (anchor){1, 1}, "<i>l</i>");
     sketch_label(s, (point){(one.joint.x + one.end.x) / 2 - 8, (one.joint.y + one.end.y) / 2 - 8},
@@ -223,8 +216,8 @@ static void draw_deformation(sketch *s, const diagram *d)
     diagram_angle(s, peak.hub,
                   (angle_arc){92, 0, direction_of(peak.hub, peak.joint),
                               "<i>θ</i><sub>2</sub> − <i>θ</i><sub>0</sub>"});
-    draw_angle(s, peak.joint, 66, direction_of(peak.joint, peak.end),
-               "<i>θ</i><sub>3</sub> − <i>θ</i><sub>0</sub>");
+    diagram_link_angle(s, peak.joint, 66, direction_of(peak.joint, peak.end),
+                       "<i>θ</i><sub>3</sub> − <i>θ</i><sub>0</sub>");
 
     g_autofree char *force = force_text("<i>f</i><sub>max</sub>", of->one.force);
     draw_wall(s, contact, direction_of(peak.joint, contact), force);

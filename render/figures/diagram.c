@@ -134,6 +134,12 @@ void diagram_angle(sketch *s, point at, angle_arc a)
                  a.markup);
 }
 
+void diagram_link_angle(sketch *s, point at, double radius, double to, const char *markup)
+{
+    sketch_dashed(s, at, (point){at.x + radius + 14, at.y}, SKETCH_FAINT);
+    diagram_angle(s, at, (angle_arc){radius, 0, to, markup});
+}
+
 status diagram_open(diagram *d, artwork *out, const char *caption, ...)
 {
     va_list list;

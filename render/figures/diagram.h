@@ -47,6 +47,9 @@ typedef struct angle_arc {
 } angle_arc;
 void diagram_angle(sketch *s, point at, angle_arc a);
 
+// An angle from a dashed line to the right.
+void diagram_link_angle(sketch *s, point at, double radius, double to, const char *markup);
+
 // The first impact of the figure's scenario: d takes its parameters, its impulse and the arm the
 // instant before, *speed that of the contact point [m/s]. Returns the status of the run,
 // STATUS_BAD_SCENARIO if there is no impact; on failure d is released.

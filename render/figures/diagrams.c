@@ -11,16 +11,6 @@
 
 // ---- 2.2: hub and links
 
-// An angle from the dashed reference line at a joint to a link.
-static void draw_angle(sketch *s, point at, double radius, double angle, const char *markup)
-{
-    sketch_dashed(s, at, (point){at.x + radius + 14, at.y}, SKETCH_FAINT);
-    sketch_arc(s, (arc){at, radius, 0, angle, true}, SKETCH_INK);
-    sketch_label(
-        s, (point){at.x + (radius + 3) * cos(angle / 2), at.y - (radius + 3) * sin(angle / 2)},
-        (anchor){0, 0.5}, markup);
-}
-
 // A dimension line parallel to a link, `away` points from it.
 static void draw_length(sketch *s, point from, point to, double away, anchor part,
                         const char *markup)
@@ -48,8 +38,8 @@ static void draw_links(sketch *s, const diagram *d)
     point c1_page = view_place(&v, c1), c2_page = view_place(&v, c2);
 
     sketch_disc(s, hub_page, v.metre * radius, SKETCH_INK, false);
-    draw_angle(s, hub_page, 104, first, "<i>θ</i><sub>2</sub>");
-    draw_angle(s, joint_page, 74, second, "<i>θ</i><sub>3</sub>");
+    diagram_link_angle(s, hub_page, 104, first, "<i>θ</i><sub>2</sub>");
+    diagram_link_angle(s, joint_page, 74, second, "<i>θ</i><sub>3</sub>");
     sketch_bar(s, hub_page, joint_page, 7);
     sketch_bar(s, joint_page, tip_page, 7);
     sketch_mass_point(s, c1_page);

@@ -123,8 +123,10 @@ typedef struct drawing {
     panel_layout panels[FIGURE_PANELS];
 } drawing;
 
-// Width and left end of title and caption: those of the panels, on a narrow page its edges.
-double frame_text_width(const drawing *d, double *left);
+// Title and caption as wide as the panels, on a narrow page as the page; *left is their left end.
+// The title's markup is freed by the caller. Without markup there is none.
+text_block frame_title(const drawing *d, double *left);
+text_block frame_caption(const drawing *d, double *left);
 
 // The number of columns of panels that fit the page.
 int figure_columns(const figure *fig);

@@ -189,25 +189,15 @@ static void draw_panel(drawing *d, int index)
 
 static void draw_frame_texts(drawing *d)
 {
-    const figure *fig = d->fig;
-    double left, width = frame_text_width(d, &left);
-
-    // the title above
-    if (fig->title != NULL && !fig->bare) {
-        g_autofree char *title = text_escape(fig->title);
-        text_block t = figure_text_of(d, title, d->style.title);
-        t.bold = t.balanced = true;
-        t.width = width;
-        draw_text(d, t, left, d->title_y, (anchor){0, 0}, d->style.colours->text);
+    double left;
+    const text_block title = frame_title(d, &left), caption = frame_caption(d, &left);
+    if (title.markup != NULL) {
+        draw_text(d, title, left, d->title_y, (anchor){0, 0}, d->style.colours->text);
     }
-
-    // the caption below
-    if (fig->caption != NULL && !fig->bare) {
-        text_block t = figure_text_of(d, fig->caption, d->style.small);
-        t.width = width;
-        draw_text(d, t, left, d->caption_y, (anchor){0, 0}, d->style.colours->faint_text);
+    if (caption.markup != NULL) {
+        draw_text(d, caption, left, d->caption_y, (anchor){0, 0}, d->style.colours->faint_text);
     }
-
+    g_free((char *)title.markup);
     draw_x_titles(d);
 }
 

@@ -207,43 +207,49 @@ static void row_needs(const drawing *d, int row, double *above, double *weight)
     }
 }
 
-double frame_text_width(const drawing *d, double *left)
+static text_block frame_text(const drawing *d, const char *markup, double size, double *left)
 {
-    bool narrow = d->page.width < NARROW_PAGE;
+    const bool narrow = d->page.width < NARROW_PAGE;
+    text_block t = figure_text_of(d, markup, size);
     *left = narrow ? PAGE_MARGIN : d->left;
-    return (narrow ? d->page.width - PAGE_MARGIN : d->right) - *left;
+    t.width = (narrow ? d->page.width - PAGE_MARGIN : d->right) - *left;
+    return t;
+}
+
+text_block frame_title(const drawing *d, double *left)
+{
+    const figure *fig = d->fig;
+    char *title = fig->title != NULL && !fig->bare ? text_escape(fig->title) : NULL;
+    text_block t = frame_text(d, title, d->style.title, left);
+    t.bold = t.balanced = true;
+    return t;
+}
+
+text_block frame_caption(const drawing *d, double *left)
+{
+    return frame_text(d, d->fig->bare ? NULL : d->fig->caption, d->style.small, left);
 }
 
 // Places what stands above and below the panels; gives the ends of what is left.
 static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
 {
-    const figure *fig = d->fig;
     double left, y = PAGE_MARGIN, end = d->page.height - PAGE_MARGIN;
+    text_block title = frame_title(d, &left), caption = frame_caption(d, &left);
 
     // from the top: title, legend, labels of marks
     d->title_y = y;
-    if (fig->title != NULL && !fig->bare) {
-        g_autofree char *title = text_escape(fig->title);
-        text_block t = figure_text_of(d, title, d->style.title);
-        t.bold = t.balanced = true;
-        t.width = frame_text_width(d, &left);
-        y += height_of(d, t) + 3;
-    }
-
+    y += title.markup != NULL ? height_of(d, title) + 3 : 0;
+    g_free((char *)title.markup);
     d->legend_y = y;
     double legend = common_legend(d, false);
     y += legend > 0 ? legend + 2 : 0;
     d->marks_bottom = y += MARK_ROW * mark_rows + 2;
 
     // from the bottom: caption, title of the axis, labels of its ticks
-    if (fig->caption != NULL && !fig->bare) {
-        text_block t = figure_text_of(d, fig->caption, d->style.small);
-        t.width = frame_text_width(d, &left);
-        end -= height_of(d, t);
-        d->caption_y = end;
+    if (caption.markup != NULL) {
+        d->caption_y = end -= height_of(d, caption);
         end -= 3;
     }
-
     double line = height_of(d, figure_text_of(d, "0", d->style.tick));
     end -= height_of(d, figure_text_of(d, "X", d->style.label));
     d->x_label_y = end;

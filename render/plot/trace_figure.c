@@ -242,16 +242,15 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
     const signal_info *first = &signal_table[signal_index(from->signals[0])];
     const wall_parameters *wall = &runs[0].scenario->parameters.wall;
 
-    // the axis
+    // the axis, whose symbol names the body
+    const char *symbol =
+        owned_figure_keep(&t->plot, trace_symbol(runs[0].scenario, signal_index(first->name)));
     panel->y.name = first->name;
     panel->y.unit = first->unit;
-    panel->y.label = from->label
+    panel->y.label = from->label != NULL
                          ? from->label
-                         : owned_figure_keep(&t->plot, trace_axis_label(runs[0].scenario, first));
-    if (from->signals[1] == NULL) {
-        panel->y.symbol =
-            owned_figure_keep(&t->plot, trace_symbol(runs[0].scenario, signal_index(first->name)));
-    }
+                         : owned_figure_printf(&t->plot, "%s %s", first->quantity, symbol);
+    panel->y.symbol = from->signals[1] == NULL ? symbol : NULL;
     panel->weight = from->weight;
     panel->y.with_zero = from->with_zero;
 

@@ -10,13 +10,14 @@
 
 // A quantity's symbol is set italic, its index upright, and so is a word. The index of the last
 // link is that of the body: 3 of two links, 21 of twenty.
-static char *symbol_markup(const scenario *s, const signal_info *signal)
+char *trace_symbol(const scenario *s, int index)
 {
-    const char *symbol = signal->symbol, *index = strstr(symbol, "<sub>");
-    size_t letters = index ? (size_t)(index - symbol) : strlen(symbol);
+    const signal_info *signal = &signal_table[index];
+    const char *symbol = signal->symbol, *body = strstr(symbol, "<sub>");
+    size_t letters = body ? (size_t)(body - symbol) : strlen(symbol);
 
     // words stand upright, the last link bears the number of its body
-    if (index == NULL && g_utf8_strlen(symbol, -1) > 2) {
+    if (body == NULL && g_utf8_strlen(symbol, -1) > 2) {
         return g_strdup(symbol);
     }
     if (signal->body == BODY_LAST_LINK) {
@@ -29,11 +30,6 @@ static char *symbol_markup(const scenario *s, const signal_info *signal)
 bool trace_hub_is_first_link(const scenario *s)
 {
     return s->parameters.arm.model == ARM_CORRECTED && s->parameters.arm.hub_joint == HUB_RIGID;
-}
-
-char *trace_symbol(const scenario *s, int index)
-{
-    return symbol_markup(s, &signal_table[index]);
 }
 
 // The first link's signal of the same quantity as the hub's, or -1.
@@ -49,43 +45,25 @@ static int first_link_twin(int index)
     return -1;
 }
 
-char *trace_series_label(const scenario *s, int index, bool joined)
-{
-    const signal_info *signal = &signal_table[index];
-    int twin = joined && trace_hub_is_first_link(s) ? first_link_twin(index) : -1;
-
-    char *symbol = symbol_markup(s, signal), *label;
-
-    if (twin >= 0) {
-        g_autofree char *other = symbol_markup(s, &signal_table[twin]);
-        label = text_printf("%s = %s  hub and first link", symbol, other);
-    } else {
-        // what belongs to no body is described as a whole
-        label = text_printf("%s  %s", symbol,
-                            signal->body != BODY_NONE ? signal_body_name(signal->body)
-                                                      : signal->description);
-    }
-
-    g_free(symbol);
-    return label;
-}
-
 char *trace_series_symbol(const scenario *s, int index)
 {
     int twin = trace_hub_is_first_link(s) ? first_link_twin(index) : -1;
-    char *symbol = symbol_markup(s, &signal_table[index]);
-    if (twin >= 0) {
-        g_autofree char *other = symbol_markup(s, &signal_table[twin]), *own = symbol;
-        symbol = text_printf("%s = %s", own, other);
-    }
-    return symbol;
+    g_autofree char *symbol = trace_symbol(s, index);
+    g_autofree char *other = twin >= 0 ? trace_symbol(s, twin) : NULL;
+    return twin >= 0 ? text_printf("%s = %s", symbol, other) : g_steal_pointer(&symbol);
 }
 
-char *trace_axis_label(const scenario *s, const signal_info *signal)
+char *trace_series_label(const scenario *s, int index, bool joined)
 {
-    g_autofree char *symbol = symbol_markup(s, signal);
-    char *label = text_printf("%s %s", signal->quantity, symbol);
-    return label;
+    const signal_info *signal = &signal_table[index];
+    bool both = joined && trace_hub_is_first_link(s) && first_link_twin(index) >= 0;
+    g_autofree char *symbol = both ? trace_series_symbol(s, index) : trace_symbol(s, index);
+
+    // what belongs to no body is described as a whole
+    return text_printf("%s  %s", symbol,
+                       both                        ? "hub and first link"
+                       : signal->body != BODY_NONE ? signal_body_name(signal->body)
+                                                   : signal->description);
 }
 
 static char *duration_text(double seconds)

@@ -20,9 +20,6 @@ char *trace_series_label(const scenario *s, int index, bool joined);
 // The same without words.
 char *trace_series_symbol(const scenario *s, int index);
 
-// "Contact force f", without the body, which the symbol names.
-char *trace_axis_label(const scenario *s, const signal_info *signal);
-
 // Model, links, drive, method and what is shaded in one line; of several runs, which of them the
 // shading and the marks belong to.
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
