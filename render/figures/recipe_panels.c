@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "src/base/numbers.h"
+
 // The legend text of a source, markup.
 static const char *label_of(recipe_figure *fig, const recipe_source *s)
 {

@@ -167,8 +167,10 @@ status calibrate(const scenario *s, const double *commands, int count, run_monit
     status code = STATUS_OK;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         code = press(s, commands[i], i, monitor, &c->points[i], f);
-        c->count += code == STATUS_OK;
-        run_monitor_count(monitor);
+        if (code == STATUS_OK) {
+            c->count++;
+            run_monitor_count(monitor);
+        }
     }
     return code;
 }

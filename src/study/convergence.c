@@ -58,8 +58,10 @@ status convergence_compute(const scenario *s, run_monitor *monitor, convergence_
         parameters p = s->parameters;
         p.method.step = panel->step[i] = ldexp(s->parameters.method.step, -i);
         code = code == STATUS_OK ? run_with(s, &p, monitor, &results[i], f) : code;
-        panel->done += code == STATUS_OK;
-        run_monitor_count(monitor);
+        if (code == STATUS_OK) {
+            panel->done++;
+            run_monitor_count(monitor);
+        }
     }
 
     // and the orders that their results show

@@ -181,7 +181,6 @@ static const option_row rows[] = {
     OPTION(NUMBER, "slow", "N", "how much impacts are slowed down (8)", PLACE(slow), .low = 1,
            .high = 1000),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command animate_command = {
     .name = "animate",
@@ -196,6 +195,6 @@ const command animate_command = {
     .least = 1,
     .most = FILM_RUNS,
     .takes_scenarios = true,
-    .options = {&set_options, &options, &quiet_options, &view_options},
+    .options = {&set_options, OWN_OPTIONS(rows), &quiet_options, &view_options},
     .run = animate,
 };

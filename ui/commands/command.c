@@ -301,20 +301,45 @@ int write_json(const char *path, json_t *value)
     return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
-int write_file(const char *path, void (*write)(FILE *stream, const void *what), const void *what)
+int write_file(const char *path, result_writer *write, const scenario *s, const void *found)
 {
     whole_file file;
     fault f = {0};
-    assert(write != NULL);
-    if (path == NULL) {
+    if (path == NULL || write == NULL) {
         return EXIT_DONE;
     }
     status code = whole_file_open(&file, path, &f);
     if (code == STATUS_OK) {
-        write(file.stream, what);
+        write(file.stream, s, found);
         code = whole_file_commit(&file, &f);
     }
     return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+}
+
+int write_results(const arguments *a, const command_results *r, const scenario *s,
+                  const void *found, bool whole)
+{
+    assert(a != NULL && r != NULL);
+    const struct {
+        const char *path;
+        result_writer *write;
+    } files[] = {{a->csv, r->csv},
+                 {a->markdown, r->markdown},
+                 {a->mat, r->mat},
+                 {a->cases, r->cases},
+                 {whole ? a->output : NULL, r->output}};
+    const bool has_json = a->json != NULL && r->json != NULL;
+    int result = has_json ? write_json(a->json, r->json(s, found)) : EXIT_DONE;
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        result = worse(result, write_file(files[i].path, files[i].write, s, found));
+    }
+    if (a->plot != NULL && r->plot != NULL && whole) {
+        result = worse(result, r->plot(a, s, found));
+    }
+    if (r->text != NULL && summary_wanted(a)) {
+        r->text(s, found);
+    }
+    return result;
 }
 
 int worse(int a, int b)

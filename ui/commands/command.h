@@ -80,7 +80,9 @@ typedef struct option_table {
     {                                                                                              \
         title, rows, (int)(sizeof rows / sizeof rows[0])                                           \
     }
-#define PLACE(field) .place = offsetof(arguments, field)
+// The same in place, of the rows that a command has for itself.
+#define OWN_OPTIONS(rows) &(const option_table)OPTION_TABLE("Options", rows)
+#define PLACE(field)      .place = offsetof(arguments, field)
 // A row: type, name, name of the value (NULL: none), help, place, and what else there is to say.
 #define OPTION(kind, option, of, text, ...)                                                        \
     {                                                                                              \
@@ -200,10 +202,13 @@ struct command {
     int (*use)(const arguments *a, scenario *s);
 };
 
-// All commands, by group.
+// What a command that takes a scenario says of its operands.
+#define ONE_SCENARIO .operands = "SCENARIO", .least = 1, .most = 1, .takes_scenarios = true
+
 // The study of laws over frequency, which stands in a file of its own.
 int study_of_follow(const arguments *a, scenario *s);
 
+// All commands, by group.
 extern const command *const command_table[];
 extern const int command_count;
 extern const command lab_command; // the command of impactlab if none is named
@@ -319,10 +324,30 @@ int command_run(const arguments *a);
 // may be NULL (no memory). Returns the exit status.
 int write_json(const char *path, json_t *value) __attribute__((warn_unused_result));
 
+// How a command writes one of its results: what it found of a scenario.
+typedef void result_writer(FILE *stream, const scenario *s, const void *found);
+
 // Writes a file whole or not at all ("-": standard output, NULL: none was asked for): calls `write`
-// with the stream and `what`; errors stay in the stream. Returns the exit status.
-int write_file(const char *path, void (*write)(FILE *stream, const void *what), const void *what)
+// with the stream, `s` and `found`; errors stay in the stream. Returns the exit status.
+int write_file(const char *path, result_writer *write, const scenario *s, const void *found)
     __attribute__((warn_unused_result));
+
+// The results of a command, each with its option; NULL where it has no such option.
+typedef struct command_results {
+    json_t *(*json)(const scenario *s, const void *found);
+    result_writer *csv, *markdown, *output, *mat, *cases;
+    int (*plot)(const arguments *a, const scenario *s, const void *found); // gives the exit status
+    void (*text)(const scenario *s, const void *found); // for people, on the standard output
+    // said after an interrupt: what became of the pieces that were done; the same where none were
+    // and nothing is written, NULL: as of some
+    const char *kept, *none;
+} command_results;
+
+// Writes every result that was asked for, of one that is not `whole` neither --output nor --plot,
+// and then the text: what is printed may be cut off. One that fails does not keep the others from
+// being written. Returns the exit status.
+int write_results(const arguments *a, const command_results *r, const scenario *s,
+                  const void *found, bool whole) __attribute__((warn_unused_result));
 
 // The larger of two exit statuses, so that a failure is kept.
 int worse(int a, int b);

@@ -215,7 +215,6 @@ static const option_row rows[] = {
     OPTION(PLACE, "output", "FOLDER", "folder to write to (figures)", PLACE(output), .letter = 'o'),
     OPTION(TEXT, "format", "png,pdf,svg", "which kinds of files to write", PLACE(format)),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command figures_command = {
     .name = "figures",
@@ -230,7 +229,7 @@ const command figures_command = {
             "parameters.\n",
     .most = 1 << 20,
     .operand_word = figure_word,
-    .options = {&json_options, &options, &quiet_options, &page_options},
+    .options = {&json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .run = figures,
 };
 
@@ -291,7 +290,6 @@ static const option_row plot_rows[] = {
     OPTION(PICTURE, "output", "FILE.{png,pdf,svg}", "where to draw it (the recipe's name, as PNG)",
            PLACE(plot), .letter = 'o'),
 };
-static const option_table plot_options = OPTION_TABLE("Options", plot_rows);
 
 const command plot_command = {
     .name = "plot",
@@ -303,7 +301,7 @@ const command plot_command = {
             "picture. Examples are in\nscenarios/recipes, all keys in docs/reference/recipes.md.\n",
     .least = 1,
     .most = 1,
-    .options = {&plot_options, &quiet_options, &page_options},
+    .options = {OWN_OPTIONS(plot_rows), &quiet_options, &page_options},
     .run = plot,
 };
 
@@ -337,7 +335,6 @@ static int report(const arguments *a)
 static const option_row report_rows[] = {
     OPTION(PLACE, "output", "FOLDER", "folder to write to (report)", PLACE(output), .letter = 'o'),
 };
-static const option_table report_options = OPTION_TABLE("Options", report_rows);
 
 const command report_command = {
     .name = "report",
@@ -350,6 +347,6 @@ const command report_command = {
             "makes it again.\n^C ends it and leaves the report of before (exit status 130).\n",
     .most = 64,
     .takes_scenarios = true,
-    .options = {&report_options, &quiet_options},
+    .options = {OWN_OPTIONS(report_rows), &quiet_options},
     .run = report,
 };

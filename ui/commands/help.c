@@ -134,9 +134,10 @@ static int write_completion(const char *shell)
     return EXIT_DONE;
 }
 
-static void write_page(FILE *stream, const void *what)
+static void write_page(FILE *stream, const scenario *s, const void *about)
 {
-    write_man_page(stream, what);
+    (void)s;
+    write_man_page(stream, about);
 }
 
 // Writes the page of a command, of impactlab itself if c is NULL, as FOLDER/impactlab-COMMAND.1.
@@ -148,7 +149,7 @@ static int write_page_into(const char *folder, const command *c)
     if (length >= (int)sizeof path) {
         return complain("--man-pages %s: the name is too long", folder);
     }
-    return write_file(path, write_page, c);
+    return write_file(path, write_page, NULL, c);
 }
 
 // All man pages. The folder is made if it is not there.
@@ -228,7 +229,6 @@ static const option_row rows[] = {
            "write a chapter of the manual from the program's tables, the last as a man page",
            PLACE(reference)),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command help_command = {
     .name = "help",
@@ -241,6 +241,6 @@ const command help_command = {
     .operands = "[COMMAND|QUESTION...]",
     .most = 32,
     .operand_word = command_word,
-    .options = {&options},
+    .options = {OWN_OPTIONS(rows)},
     .run = help,
 };

@@ -30,6 +30,11 @@ typedef struct mode_set {
     double *shapes;      // [count * dof], largest angle 1
 } mode_set;
 
+typedef struct arm_modes {
+    arm arm;
+    mode_set sets[HOLDS];
+} arm_modes;
+
 static json_t *array_of(const double *values, int count, double scale)
 {
     json_t *array = json_array();
@@ -39,8 +44,10 @@ static json_t *array_of(const double *values, int count, double scale)
     return array;
 }
 
-static json_t *modes_object(const scenario *s, const arm *a, const mode_set *sets)
+static json_t *modes_object(const scenario *s, const void *found)
 {
+    const arm *a = &((const arm_modes *)found)->arm;
+    const mode_set *sets = ((const arm_modes *)found)->sets;
     json_t *object = json_object(), *array = json_array();
     json_put(object, "scenario", json_text(s->name));
 
@@ -112,13 +119,14 @@ static void deflections(const arm *a, const double *shape, double *x, double *y)
     }
 }
 
-static int plot_modes(const arguments *args, const scenario *s, const arm *a, const mode_set *sets)
+static int plot_modes(const arguments *args, const scenario *s, const void *found)
 {
+    const arm *a = &((const arm_modes *)found)->arm;
+    const mode_set *sets = ((const arm_modes *)found)->sets;
     static const int colours[MODES_DRAWN] = {0, 5, 2};
     figure_series series[HOLDS][MODES_DRAWN] = {{{0}}};
     figure_panel panels[HOLDS] = {{0}};
-    char headings[HOLDS][64], labels[HOLDS][MODES_DRAWN][48], title[256 + SCENARIO_CHANGES],
-        changes[SCENARIO_CHANGES];
+    char headings[HOLDS][64], labels[HOLDS][MODES_DRAWN][48];
     size_t points = (size_t)a->links + 1;
     double *numbers = calloc((size_t)HOLDS * MODES_DRAWN * 2 * points, sizeof *numbers);
     if (numbers == NULL) {
@@ -153,42 +161,26 @@ static int plot_modes(const arguments *args, const scenario *s, const arm *a, co
                                    .series = series[i],
                                    .series_count = shown};
     }
-    snprintf(title, sizeof title, "%s: first modes of the arm%s", s->name,
-             scenario_changes(s, changes));
     const figure fig = {
-        .title = title,
         .x = {.name = "position", .label = "Position along the arm", .unit = "m", .room = 0.02},
         .panels = panels,
         .panel_count = HOLDS,
         .columns = 2,
         .shared_y = true};
-    int code = publish_figure(args, &fig);
+    int code = publish_titled(args, s, "first modes of the arm", &fig);
     free(numbers);
     return code;
 }
 
-static int report(const arguments *args, const scenario *s, const arm *a, const mode_set *sets)
+static void print_modes(const scenario *s, const void *found)
 {
-    int result = EXIT_DONE;
-
-    // a fault in one result does not keep back the others
-    if (args->json != NULL) {
-        result = write_json(args->json, modes_object(s, a, sets));
+    const arm_modes *m = found;
+    say_title(s);
+    printf("small vibrations of the straight arm, %d link%s, without damping\n", m->arm.links,
+           m->arm.links == 1 ? "" : "s");
+    for (int i = 0; i < HOLDS; i++) {
+        print_set(&m->arm, &m->sets[i], holds[i].hub_name, holds[i].tip_name);
     }
-    if (args->plot != NULL) {
-        result = worse(result, plot_modes(args, s, a, sets));
-    }
-
-    // what is meant to be read at once
-    if (summary_wanted(args)) {
-        say_title(s);
-        printf("small vibrations of the straight arm, %d link%s, without damping\n", a->links,
-               a->links == 1 ? "" : "s");
-        for (int i = 0; i < HOLDS; i++) {
-            print_set(a, &sets[i], holds[i].hub_name, holds[i].tip_name);
-        }
-    }
-    return result;
 }
 
 static status compute_set(const arm *a, mode_set *set, int hold)
@@ -203,49 +195,41 @@ static status compute_set(const arm *a, mode_set *set, int hold)
                          set->shapes);
 }
 
-static int compute_and_report(const arguments *args, const scenario *s)
+static int modes(const arguments *args, scenario *s)
 {
-    arm a;
-    mode_set sets[HOLDS] = {{0}};
+    static const command_results r = {
+        .json = modes_object, .plot = plot_modes, .text = print_modes};
+    arm_modes m = {0};
     fault f = {.code = STATUS_OK};
-
-    arm_init(&a, &s->parameters);
-    for (int i = 0; i < HOLDS && f.code == STATUS_OK; i++) {
-        f.code = compute_set(&a, &sets[i], i);
-    }
-
-    int result = f.code == STATUS_OK ? report(args, s, &a, sets) : complain_fault(&f);
-    for (int i = 0; i < HOLDS; i++) {
-        free(sets[i].frequencies);
-        free(sets[i].shapes);
-    }
-    return result;
-}
-
-static int check_and_compute(const arguments *args, scenario *s)
-{
     if (s->parameters.arm.model == ARM_PRINTED) {
         // errata B1: no natural frequencies without a symmetric stiffness
         return complain("the printed equations have no symmetric stiffness and so no natural "
                         "frequencies, try --set arm.model=corrected");
     }
-    return compute_and_report(args, s);
+
+    arm_init(&m.arm, &s->parameters);
+    for (int i = 0; i < HOLDS && f.code == STATUS_OK; i++) {
+        f.code = compute_set(&m.arm, &m.sets[i], i);
+    }
+
+    int result = f.code == STATUS_OK ? write_results(args, &r, s, &m, true) : complain_fault(&f);
+    for (int i = 0; i < HOLDS; i++) {
+        free(m.sets[i].frequencies);
+        free(m.sets[i].shapes);
+    }
+    return result;
 }
 
 static const option_row rows[] = {PLOT_OPTION("draw the first modes' shapes")};
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command modes_command = {
     .name = "modes",
     .group = GROUP_ONE_RUN,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "Natural frequencies and shapes of the arm",
     .help = "Small vibrations about the straight arm without damping and friction, for a hub that "
             "is locked (held by\nthe controller) or free, and a tip that is free or pinned to the "
             "wall.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
-    .use = check_and_compute,
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
+    .use = modes,
 };

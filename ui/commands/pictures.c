@@ -6,6 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 #include "src/base/shipped.h"
@@ -80,14 +81,32 @@ int publish_figure(const arguments *a, const figure *fig)
     return code;
 }
 
-int publish_study(const arguments *a, figure *fig)
+int publish_titled(const arguments *a, const scenario *s, const char *shows, const figure *fig)
 {
-    assert(a != NULL && fig != NULL);
-    fig->x.scale = SCALE_LOGARITHMIC;
-    fig->x.room = 0.04;
-    fig->columns = fig->panel_count;
-    fig->common_legend = true;
-    return publish_figure(a, fig);
+    assert(s != NULL && shows != NULL && fig != NULL);
+    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
+    snprintf(title, sizeof title, "%s: %s%s", s->name, shows, scenario_changes(s, changes));
+    figure titled = *fig;
+    titled.title = title;
+    return publish_figure(a, &titled);
+}
+
+int publish_study(const arguments *a, const scenario *s, const char *shows, const figure *fig)
+{
+    assert(fig != NULL);
+    figure drawn = *fig;
+    drawn.x.scale = SCALE_LOGARITHMIC;
+    drawn.x.room = 0.04;
+    drawn.columns = fig->panel_count;
+    drawn.common_legend = true;
+    return publish_titled(a, s, shows, &drawn);
+}
+
+int publish_owned(const arguments *a, owned_figure *o)
+{
+    const int code = publish_figure(a, &o->figure);
+    owned_figure_destroy(o);
+    return code;
 }
 
 int publish_runs(const arguments *a, const char *title, const trace_run *runs, int run_count)

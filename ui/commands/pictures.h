@@ -14,9 +14,14 @@ int read_picture_options(const arguments *a, figure_options *o);
 // the exit status.
 int publish_figure(const arguments *a, const figure *fig);
 
-// Draws a study's figure to --plot, panels side by side over one logarithmic axis, and its data
-// beside it. Returns the exit status.
-int publish_study(const arguments *a, figure *fig);
+// The same with the title "SCENARIO: what it shows", and what was changed of the scenario.
+int publish_titled(const arguments *a, const scenario *s, const char *shows, const figure *fig);
+
+// The same for a study's figure: panels side by side over one logarithmic axis.
+int publish_study(const arguments *a, const scenario *s, const char *shows, const figure *fig);
+
+// The same as publish_figure for a figure that is destroyed then.
+int publish_owned(const arguments *a, owned_figure *o);
 
 // The same for a figure of runs: with the requested signals, measured data and range of time.
 // `title` NULL: the first scenario's.

@@ -57,16 +57,24 @@ static json_t *prediction_object(const prediction_answer *answer)
     return object;
 }
 
-static json_t *predict_object(const scenario *s, const sample *row,
-                              const prediction_answer *answers, const landing *came)
+// What the predictors say of a run.
+typedef struct predicted {
+    const run_result *result;
+    const sample *row; // the last one before the contact
+    prediction_answer answers[PREDICTOR_COUNT];
+} predicted;
+
+static json_t *predict_object(const scenario *s, const void *found)
 {
+    const predicted *p = found;
+    const landing *came = &p->result->landing;
     json_t *object = json_object(), *array = json_array(), *simulation = json_object();
     json_put(object, "scenario", json_text(s->name));
-    json_put(object, "t_s", json_number(row->time));
+    json_put(object, "t_s", json_number(p->row->time));
 
     // one entry each, even where a predictor has no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        json_add(array, prediction_object(&answers[i]));
+        json_add(array, prediction_object(&p->answers[i]));
     }
     json_put(object, "predictions", array);
 
@@ -99,9 +107,11 @@ static void print_inductance(const scenario *s, const prediction *linearised)
     printf(";\n  only the linearised arm follows it, to the others it follows at once.\n");
 }
 
-static void print_predictions(const scenario *s, const sample *row,
-                              const prediction_answer *answers, const run_result *result)
+static void print_predictions(const scenario *s, const void *found)
 {
+    const run_result *result = ((const predicted *)found)->result;
+    const sample *row = ((const predicted *)found)->row;
+    const prediction_answer *answers = ((const predicted *)found)->answers;
     const landing *came = &result->landing;
     const bool first = came->time == result->summary.first_contact_s;
     say_title(s);
@@ -143,12 +153,11 @@ static void print_predictions(const scenario *s, const sample *row,
 }
 
 // The peak that each predictor says, one below the other, with that of the simulation as a line.
-static int plot_predictions(const arguments *a, const scenario *s, const prediction_answer *answers,
-                            const landing *came)
+static int plot_predictions(const arguments *a, const scenario *s, const void *found)
 {
+    const prediction_answer *answers = ((const predicted *)found)->answers;
     double peak[PREDICTOR_COUNT], place[PREDICTOR_COUNT], line_y[2], line_x[2];
     figure_tick ticks[PREDICTOR_COUNT];
-    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
 
     // a tick for each, but no point where a predictor does not hold
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
@@ -159,7 +168,7 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
     }
 
     // the simulation as an upright line past all of them
-    line_x[0] = line_x[1] = came->peak;
+    line_x[0] = line_x[1] = ((const predicted *)found)->result->landing.peak;
     line_y[0] = 0.4;
     line_y[1] = PREDICTOR_COUNT + 0.6;
     const figure_series series[] = {{.name = "predicted",
@@ -190,29 +199,27 @@ static int plot_predictions(const arguments *a, const scenario *s, const predict
                                 .weight = 1.6};
 
     // zero is on the axis, so that peaks compare by their distance from it
-    snprintf(title, sizeof title, "%s: peak of the first pulse, predicted and simulated%s", s->name,
-             scenario_changes(s, changes));
     const figure fig = {
-        .title = title,
         .x = {.name = "peak", .label = "Peak force", .unit = "N", .room = 0.06, .with_zero = true},
         .panels = &panel,
         .panel_count = 1,
         .common_legend = true};
-    return publish_figure(a, &fig);
+    return publish_titled(a, s, "peak of the first pulse, predicted and simulated", &fig);
 }
 
 static int report(const arguments *a, const scenario *s, const run_result *result)
 {
-    prediction_answer answers[PREDICTOR_COUNT];
-    const sample *row;
+    static const command_results r = {
+        .json = predict_object, .plot = plot_predictions, .text = print_predictions};
+    predicted p = {.result = result};
     command_list then;
     if (!read_commands(a->then, &then)) {
         return EXIT_BAD_ARGUMENTS;
     }
 
-    row = predict_first_contact(s, result, &(voltage_profile){then.count, then.times, then.volts},
-                                answers);
-    if (row == NULL) {
+    p.row = predict_first_contact(s, result, &(voltage_profile){then.count, then.times, then.volts},
+                                  p.answers);
+    if (p.row == NULL) {
         complain("%s has no free flight that ends in a contact, there is nothing to predict",
                  s->name);
         return EXIT_FAILED;
@@ -220,22 +227,11 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
 
     // what there was no memory for is no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        if (answers[i].fault.code == STATUS_NO_MEMORY) {
-            return complain_fault(&answers[i].fault);
+        if (p.answers[i].fault.code == STATUS_NO_MEMORY) {
+            return complain_fault(&p.answers[i].fault);
         }
     }
-
-    int code = EXIT_DONE;
-    if (a->json != NULL) {
-        code = write_json(a->json, predict_object(s, row, answers, &result->landing));
-    }
-    if (a->plot != NULL) {
-        code = worse(code, plot_predictions(a, s, answers, &result->landing));
-    }
-    if (summary_wanted(a)) {
-        print_predictions(s, row, answers, result);
-    }
-    return code;
+    return write_results(a, &r, s, &p, true);
 }
 
 static int predict_and_report(const arguments *a, scenario *s)
@@ -261,19 +257,15 @@ static const option_row rows[] = {
     OPTION(TEXT, "then", "TIME:VOLTS,...",
            "what if the motor got these commands from the touch on (s, V)", PLACE(then)),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command predict_command = {
     .name = "predict",
     .group = GROUP_ONE_RUN,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "Predict the peak force from the instant before contact, beside what then happens",
     .help =
         "On a terminal a run of more than a second tells how far it is; ^C ends it (exit status "
         "130), and nothing\nis predicted.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .use = predict_and_report,
 };

@@ -132,6 +132,24 @@ void work_end(void)
     pthread_cond_destroy(&ticker.ended);
 }
 
+int work_finish(const arguments *a, status code, const fault *f, const command_results *r,
+                const scenario *s, const void *found)
+{
+    work_end();
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
+        return complain_fault(f);
+    }
+
+    // what there is, and then the end if that is not all
+    const bool whole = code == STATUS_OK,
+               nothing = !whole && watched.pieces == 0 && r->none != NULL;
+    const int result = nothing ? EXIT_DONE : write_results(a, r, s, found, whole);
+    if (!whole) {
+        work_leave(watched.pieces, ticker.total, ticker.pieces, nothing ? r->none : r->kept);
+    }
+    return result;
+}
+
 status run_with_progress(const arguments *a, const scenario *s, bool keep_trace, run_result *result)
 {
     assert(a != NULL && s != NULL && result != NULL);
@@ -188,22 +206,6 @@ static void catch_signal(int number)
     }
 }
 
-void many_runs_catch_signals(sweep_options *o)
-{
-    assert(o != NULL);
-    struct sigaction caught = {.sa_handler = catch_signal};
-    sigemptyset(&caught.sa_mask);
-    sigaction(SIGINT, &caught, NULL);
-    sigaction(SIGTERM, &caught, NULL);
-
-    // the alarm is handled here, so that writing is not interrupted
-    caught.sa_flags = SA_RESTART;
-    sigaction(SIGALRM, &caught, NULL);
-
-    o->stop = &signal_caught;
-    o->abandon = &abandoned;
-}
-
 int many_runs_jobs(const arguments *a)
 {
     assert(a != NULL);
@@ -225,13 +227,8 @@ static void format_duration(char *text, size_t size, double seconds)
     }
 }
 
-bool many_runs_shows_progress(const arguments *a)
-{
-    assert(a != NULL);
-    return isatty(STDERR_FILENO) && !a->quiet;
-}
-
-void many_runs_progress(void *context, const sweep_progress *p)
+// The progress bar, a line that is overwritten.
+static void show_progress(void *context, const sweep_progress *p)
 {
     assert(p != NULL);
     const char *word = context;
@@ -262,9 +259,30 @@ void many_runs_progress(void *context, const sweep_progress *p)
     fprintf(stderr, "\r%-78.78s", line);
 }
 
-void many_runs_clear_progress(void)
+sweep_options many_runs_begin(const arguments *a, const char *word)
 {
-    fprintf(stderr, "\r%78s\r", "");
+    assert(a != NULL);
+    struct sigaction caught = {.sa_handler = catch_signal};
+    sigemptyset(&caught.sa_mask);
+    sigaction(SIGINT, &caught, NULL);
+    sigaction(SIGTERM, &caught, NULL);
+
+    // the alarm is handled here, so that writing is not interrupted
+    caught.sa_flags = SA_RESTART;
+    sigaction(SIGALRM, &caught, NULL);
+    return (sweep_options){.jobs = many_runs_jobs(a),
+                           .stop = &signal_caught,
+                           .abandon = &abandoned,
+                           .report = isatty(STDERR_FILENO) && !a->quiet ? show_progress : NULL,
+                           .context = (void *)word};
+}
+
+void many_runs_end(const sweep_options *o)
+{
+    assert(o != NULL);
+    if (o->report != NULL) {
+        fprintf(stderr, "\r%78s\r", "");
+    }
 }
 
 void many_runs_tell_failure(const sweep_progress *p)

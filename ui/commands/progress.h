@@ -15,9 +15,16 @@
 // Work of `total` pieces ("runs", "presses") begins. The returned monitor is passed to the runs and
 // counts the pieces that are done (run_monitor_count). If standard error is a terminal and --quiet
 // was not given, work of more than a second shows its progress there. An interrupt (^C) sets
-// `stop`; a second one ends the program. To be ended with work_end; only one work at a time.
+// `stop`; a second one ends the program. To be ended with work_end or work_finish; only one work at
+// a time.
 run_monitor *work_begin(const arguments *a, const char *pieces, int total);
 void work_end(void);
+
+// Ends the work that came to `code`, with f if it failed, and writes the results of what it found:
+// those of a whole one, or, after an interrupt, those of what was done, and then ends the program
+// as work_leave does. Returns the exit status.
+int work_finish(const arguments *a, status code, const fault *f, const command_results *r,
+                const scenario *s, const void *found);
 
 // As run_scenario_with, with progress shown. An interrupt ends the run: STATUS_STOPPED, with what
 // was computed until then.
@@ -38,17 +45,12 @@ _Noreturn void leave_interrupted(void);
 // The number of threads: --jobs, or the number of processors.
 int many_runs_jobs(const arguments *a);
 
-// From now on SIGINT and SIGTERM stop the sweeps of these options: the runs under way are finished,
-// or abandoned after five seconds. A second signal, a second or more later, ends the program.
-void many_runs_catch_signals(sweep_options *o);
-
-// Whether to show progress: on a terminal, without --quiet.
-bool many_runs_shows_progress(const arguments *a);
-
-// A sweep_options.report: the progress bar, a line on the terminal that is overwritten. `context`
-// is a word printed before it (const char *), or NULL.
-void many_runs_progress(void *context, const sweep_progress *p);
-void many_runs_clear_progress(void);
+// The options of many runs that begin: --jobs of them at a time; SIGINT and SIGTERM stop them: the
+// runs under way are finished, or abandoned after five seconds, and a second signal, a second or
+// more later, ends the program. On a terminal, without --quiet, a bar shows their progress, behind
+// `word` (may be NULL). To be ended with many_runs_end.
+sweep_options many_runs_begin(const arguments *a, const char *word);
+void many_runs_end(const sweep_options *o);
 
 // Prints how many of the newly computed runs failed, and why the first one did.
 void many_runs_tell_failure(const sweep_progress *p);

@@ -110,39 +110,29 @@ static void print_expectations(const scenario *s, const summary *m)
     }
 }
 
-// What export_csv writes.
-typedef struct recorded {
-    const trace *trace;
-    int links;
-} recorded;
-
-static void write_signals(FILE *stream, const void *what)
+static json_t *run_json(const scenario *s, const void *found)
 {
-    const recorded *r = what;
-    export_csv(stream, r->trace, r->links);
+    return export_run(s, found);
 }
 
-// Writes every file that was asked for. One that fails does not keep the others from being written.
-static int write_results(const arguments *a, const scenario *s, const run_result *result)
+static void write_signals(FILE *stream, const scenario *s, const void *found)
 {
-    const recorded signals = {&result->trace, s->parameters.arm.links};
-    int code = EXIT_DONE;
+    export_csv(stream, &((const run_result *)found)->trace, s->parameters.arm.links);
+}
 
-    if (a->json != NULL) {
-        code = worse(code, write_json(a->json, export_run(s, result)));
-    }
+static int plot_signals(const arguments *a, const scenario *s, const void *found)
+{
+    const trace_run shown = {.scenario = s, .result = found, .name = s->name};
+    return publish_runs(a, NULL, &shown, 1);
+}
 
-    code = worse(code, write_file(a->csv, write_signals, &signals));
-
-    if (a->plot != NULL) {
-        const trace_run shown = {.scenario = s, .result = result, .name = s->name};
-        code = worse(code, publish_runs(a, NULL, &shown, 1));
-    }
-
-    if (a->scene != NULL) {
-        code = worse(code, write_scene(a, s, result));
-    }
-    return code;
+static void print_run(const scenario *s, const void *found)
+{
+    const run_result *result = found;
+    print_heading(s);
+    print_quantities(&result->summary);
+    print_events(s, &result->trace);
+    print_expectations(s, &result->summary);
 }
 
 // What the amplifier makes of a voltage beyond its limit changes the run: say so.
@@ -163,14 +153,10 @@ static int run_and_report(const arguments *a, scenario *s)
     status code = run_with_progress(a, s, keep_trace, &result);
 
     // results are written of a run that failed, too
-    int exit_status = write_results(a, s, &result);
-
-    if (summary_wanted(a)) {
-        print_heading(s);
-        print_quantities(&result.summary);
-        print_events(s, &result.trace);
-        print_expectations(s, &result.summary);
-    }
+    static const command_results r = {
+        .json = run_json, .csv = write_signals, .plot = plot_signals, .text = print_run};
+    int exit_status = a->scene != NULL ? write_scene(a, s, &result) : EXIT_DONE;
+    exit_status = worse(exit_status, write_results(a, &r, s, &result, true));
 
     if (code != STATUS_OK) {
         complain("%s failed: %s", s->name,
@@ -220,12 +206,11 @@ static const option_row rows[] = {
     OPTION(NUMBERS, "at", "T", "draw the arm at this instant [s] (may be repeated)",
            PLACE(instants), .high = 1e5),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command run_command = {
     .name = "run",
     .group = GROUP_ONE_RUN,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "Simulate a scenario and sum it up",
     .help = "SCENARIO is a name from impactlab list, or a file. What a scenario file expects is "
             "checked unless\n--set changed something. A run that fails still writes what it has "
@@ -233,10 +218,7 @@ const command run_command = {
             "more than a second\ntells how far it is.\nThe scene shows "
             "the arm at every --at, or from the start to the peak "
             "force of the first pulse.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &json_options, &options, &quiet_options, &page_options,
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options,
                 &view_options},
     .run = run,
 };

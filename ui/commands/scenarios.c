@@ -353,14 +353,11 @@ static int show(const arguments *a)
 const command show_command = {
     .name = "show",
     .group = GROUP_ONE_RUN,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "The resolved parameters of a scenario, with units and ranges",
     .help =
         "A parameter marked with = was given by the scenario or by --set, the others have their "
         "defaults.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
     .options = {&set_options, &json_options},
     .run = show,
 };

@@ -6,8 +6,10 @@
 #include "src/study/thesis_tables.h"
 #include "src/base/json.h"
 
-static json_t *tables_object(const thesis_tables *t)
+static json_t *tables_object(const scenario *s, const void *found)
 {
+    const thesis_tables *t = found;
+    (void)s;
     json_t *object = json_object(), *rows = json_array();
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
@@ -86,8 +88,10 @@ static const char *const inferred[] = {
 enum { INFERRED = sizeof inferred / sizeof inferred[0] };
 
 // Rows that a fit has, what it was, and its mean errors.
-static void print_fitted(const thesis_tables *t)
+static void print_fitted(const scenario *s, const void *found)
 {
+    const thesis_tables *t = found;
+    (void)s;
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
         if (i == 0 || strcmp(t->rows[i - 1].table, row->table) != 0) {
@@ -106,8 +110,10 @@ static void print_fitted(const thesis_tables *t)
     }
 }
 
-static void print_tables(const thesis_tables *t)
+static void print_tables(const scenario *s, const void *found)
 {
+    const thesis_tables *t = found;
+    (void)s;
     const char *table = "", *model = "";
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
@@ -138,32 +144,21 @@ static void print_tables(const thesis_tables *t)
 
 static int tables(const arguments *a)
 {
+    const command_results r = {.json = tables_object,
+                               .text = a->fitted ? print_fitted : print_tables};
     thesis_tables t;
     fault f = {0};
-    int result = EXIT_DONE;
-
     if (a->fitted) {
         tables_compute_fitted(&t);
     } else if (tables_compute(&t, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-
-    if (a->json != NULL) {
-        result = write_json(a->json, tables_object(&t));
-    }
-
-    if (summary_wanted(a) && a->fitted) {
-        print_fitted(&t);
-    } else if (summary_wanted(a)) {
-        print_tables(&t);
-    }
-    return result;
+    return write_results(a, &r, NULL, &t, true);
 }
 
 static const option_row rows[] = {
     OPTION(FLAG, "fitted", NULL, "what comes nearest to the printed delays instead", PLACE(fitted)),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command tables_command = {
     .name = "tables",
@@ -174,6 +169,6 @@ const command tables_command = {
             "corrected ones. --fitted shows the delays of the simulation with seven numbers and "
             "switches of the printed\nmodel fitted to them, and those of the impact dynamics by "
             "the integral that belongs to (4.19)\n(docs/explanation/thesis.md).\n",
-    .options = {&json_options, &options, &quiet_options},
+    .options = {&json_options, OWN_OPTIONS(rows), &quiet_options},
     .run = tables,
 };

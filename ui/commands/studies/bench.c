@@ -80,7 +80,6 @@ static const option_row rows[] = {
     OPTION(TEXT, "only", "NAME", "measure this one alone", PLACE(only)),
     OPTION(FILE, "baseline", "FILE", "compare with what --json wrote before", PLACE(baseline)),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command bench_command = {
     .name = "bench",
@@ -105,6 +104,6 @@ const command bench_command = {
         "  figures_s                   the figures of the thesis as PNG\n\n"
         "us_per_ms is microseconds of computing per simulated millisecond. --baseline marks as "
         "slower\nwhat takes 15 % longer than before and did so in every measurement.\n",
-    .options = {&json_options, &options, &quiet_options},
+    .options = {&json_options, OWN_OPTIONS(rows), &quiet_options},
     .run = bench,
 };

@@ -51,8 +51,17 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
     return EXIT_DONE;
 }
 
-static void print_points(const calibration *c, const scenario *s, const char *table)
+// A calibration, its table as text, and the scenario with it.
+typedef struct calibrated {
+    calibration points;
+    char table[PARAMETER_TEXT_SIZE];
+    scenario with_table;
+} calibrated;
+
+static void print_points(const scenario *s, const void *found)
 {
+    const calibrated *done = found;
+    const calibration *c = &done->points;
     say_title(s);
     printf("\n  %9s  %9s  %11s  %11s  %9s  %9s  %9s\n", "command/V", "force/N", "hub/rad",
            "K2/(Nm/rad)", "K2/arm.k2", "+-force/N", "+-hub/rad");
@@ -72,84 +81,67 @@ static void print_points(const calibration *c, const scenario *s, const char *ta
                100 * DRIFT_WORTH_A_WORD);
     }
 
-    printf("\n  --set \"control.k2_table=%s\"\n", table);
+    printf("\n  --set \"control.k2_table=%s\"\n", done->table);
 }
 
-// A calibration and its scenario, which has the table in it.
-typedef struct calibrated {
-    const calibration *calibration;
-    const scenario *scenario;
-} calibrated;
-
-static void write_points(FILE *stream, const void *what)
+static json_t *points_json(const scenario *s, const void *found)
 {
-    const calibrated *c = what;
-    calibration_csv(stream, c->calibration, c->scenario);
+    const calibrated *done = found;
+    return calibration_json(&done->points, s, done->table);
 }
 
-static void write_scenario(FILE *stream, const void *what)
+static void write_points(FILE *stream, const scenario *s, const void *found)
 {
-    scenario_write(stream, ((const calibrated *)what)->scenario);
+    calibration_csv(stream, &((const calibrated *)found)->points, s);
 }
 
-static int report(const arguments *a, const scenario *s, const calibration *c, bool whole)
+static void write_scenario(FILE *stream, const scenario *s, const void *found)
 {
-    char table[PARAMETER_TEXT_SIZE];
-    fault f = {0};
+    (void)s;
+    scenario_write(stream, &((const calibrated *)found)->with_table);
+}
+
+// The table of the presses, as text and in the scenario.
+static status make_table(calibrated *done, const scenario *s, fault *f)
+{
     k2_table by_force;
-    int result = EXIT_DONE;
-
-    if (calibration_table(c, &by_force, &f) != STATUS_OK) {
-        return complain_fault(&f);
+    done->with_table = *s;
+    if (calibration_table(&done->points, &by_force, f) != STATUS_OK) {
+        return f->code;
     }
-    if (!k2_table_write(&by_force, table, sizeof table)) {
-        return complain("%d commands make a table of more than %d characters, expected fewer",
-                        c->count, PARAMETER_TEXT_SIZE - 1);
+    if (!k2_table_write(&by_force, done->table, sizeof done->table)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "%d commands make a table of more than %d characters, expected fewer",
+                         done->points.count, PARAMETER_TEXT_SIZE - 1);
     }
-
-    // every result is tried even if another one fails; the scenario needs the whole table
-    if (a->json != NULL && write_json(a->json, calibration_json(c, s, table)) != EXIT_DONE) {
-        result = EXIT_FAILED;
-    }
-    scenario with_table = *s;
-    const calibrated done = {c, &with_table};
-    if (write_file(a->csv, write_points, &done) != EXIT_DONE) {
-        result = EXIT_FAILED;
-    }
-    if (a->output != NULL && whole &&
-        parameter_set_text(&with_table.parameters, PARAMETER_INDEX(control.k2_table), table, &f) !=
-            STATUS_OK) {
-        return complain_fault(&f);
-    }
-    if (whole && write_file(a->output, write_scenario, &done) != EXIT_DONE) {
-        result = EXIT_FAILED;
-    }
-
-    if (summary_wanted(a)) {
-        print_points(c, s, table);
-    }
-    return result;
+    return parameter_set_text(&done->with_table.parameters, PARAMETER_INDEX(control.k2_table),
+                              done->table, f);
 }
 
 static int press_and_report(const arguments *a, scenario *s)
 {
+    static const char kept[] = "their table is that of these commands only";
+    static const command_results r = {.json = points_json,
+                                      .csv = write_points,
+                                      .output = write_scenario,
+                                      .text = print_points,
+                                      .kept = kept,
+                                      .none = kept};
     fault f = {0};
-    calibration c;
+    calibrated done;
     double commands[K2_TABLE_MOST];
     int count = 0, result = choose_commands(a, s, commands, &count);
     if (result != EXIT_DONE) {
         return result;
     }
 
-    status code = calibrate(s, commands, count, work_begin(a, "presses", count), &c, &f);
-    work_end();
-    if (code == STATUS_STOPPED) {
-        if (c.count > 0) {
-            report(a, s, &c, false);
-        }
-        work_leave(c.count, count, "presses", "their table is that of these commands only");
+    run_monitor *monitor = work_begin(a, "presses", count);
+    status code = calibrate(s, commands, count, monitor, &done.points, &f);
+    if (code == STATUS_OK || (code == STATUS_STOPPED && done.points.count > 0)) {
+        const status made = make_table(&done, s, &f);
+        code = made == STATUS_OK ? code : made;
     }
-    return code == STATUS_OK ? report(a, s, &c, true) : complain_fault(&f);
+    return work_finish(a, code, &f, &r, s, &done);
 }
 
 static const option_row rows[] = {
@@ -157,12 +149,11 @@ static const option_row rows[] = {
     OPTION(RESULT, "output", "FILE|-", "write the scenario with the table in it", PLACE(output),
            .letter = 'o'),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command calibrate_command = {
     .name = "calibrate",
     .group = GROUP_CONTROL,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "Measure the stiffness that a controller has to believe in, (5.26)",
     .help =
         "Presses the arm against the wall with constant commands, eight of them or those of\n"
@@ -171,9 +162,6 @@ const command calibrate_command = {
         "table in\ncontrol.k2_table, which every law then goes by. ^C ends it with what was "
         "measured "
         "until then (exit\nstatus 130); -o writes only the whole table.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options},
+    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
     .use = press_and_report,
 };

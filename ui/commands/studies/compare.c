@@ -11,7 +11,6 @@
 #include "src/study/sweep.h"
 #include "ui/commands/progress.h"
 
-#define PIECES "runs"
 enum { MOST_SCENARIOS = 1000, MOST_ROWS = 100000 };
 _Static_assert((int)SWEEP_MOST_AXES <= (int)COMPARE_MOST_VARIED, "a row has room for every axis");
 
@@ -147,45 +146,48 @@ static bool run_all(comparison *c, run_monitor *monitor)
     return true;
 }
 
-static void write_csv(FILE *stream, const void *table)
+static void write_csv(FILE *stream, const scenario *s, const void *table)
 {
+    (void)s;
     compare_csv(stream, table);
 }
 
-static void write_markdown(FILE *stream, const void *table)
+static void write_markdown(FILE *stream, const scenario *s, const void *table)
 {
+    (void)s;
     compare_markdown(stream, table);
 }
 
-static int write_results(const arguments *a, const comparison *c, compare_table *t)
+static json_t *table_json(const scenario *s, const void *table)
 {
-    int result = c->failed ? EXIT_FAILED : EXIT_DONE;
+    (void)s;
+    return compare_json(table);
+}
 
-    // what there is as one table
+static void print_table(const scenario *s, const void *table)
+{
+    const compare_table *t = table;
+    (void)s;
+    if (t->count > 0) {
+        compare_text(stdout, t);
+    }
+    if (t->count > 0 && t->against != NULL) {
+        say("\n* differs from %s by more than %g %%\n", t->against->scenario, 100 * t->tolerance);
+    }
+}
+
+// Writes what there is as one table.
+static int report(const arguments *a, const comparison *c, compare_table *t)
+{
+    static const command_results r = {
+        .json = table_json, .csv = write_csv, .markdown = write_markdown, .text = print_table};
     t->rows = c->rows;
     t->count = c->done;
     t->group = c->operands;
     t->varied = c->swept > 0 ? c->sweeps[0].axes : NULL;
     t->varied_count = a->varies.count;
     t->against = a->against != NULL ? c->against : NULL;
-
-    // to files
-    if (a->json != NULL && write_json(a->json, compare_json(t)) != EXIT_DONE) {
-        result = EXIT_FAILED;
-    }
-    const int csv = write_file(a->csv, write_csv, t);
-    const int markdown = write_file(a->markdown, write_markdown, t);
-    result = csv != EXIT_DONE || markdown != EXIT_DONE ? EXIT_FAILED : result;
-
-    // and for people
-    if (summary_wanted(a) && t->count > 0) {
-        compare_text(stdout, t);
-        if (t->against != NULL) {
-            say("\n* differs from %s by more than %g %%\n", t->against->scenario,
-                100 * t->tolerance);
-        }
-    }
-    return result;
+    return worse(c->failed ? EXIT_FAILED : EXIT_DONE, write_results(a, &r, NULL, t, true));
 }
 
 // What the runs are called: changes that all have stand in the title, else beside the scenario's
@@ -228,7 +230,7 @@ static int plot_runs(const arguments *a, const comparison *c)
 
     // each runs once more, this time recorded
     const bool named = name_runs(c, names, title, sizeof title);
-    run_monitor *monitor = work_begin(a, PIECES, c->opened);
+    run_monitor *monitor = work_begin(a, "runs", c->opened);
     const run_options options = {.keep_trace = true, .monitor = monitor};
     for (; count < c->opened; count++) {
         // one that fails shows what it has, unless that is less than was compared
@@ -275,14 +277,14 @@ static int compare(const arguments *a)
     int result = open_all(&c, a);
     if (result == EXIT_DONE) {
         const int runs = c.combinations * c.opened;
-        run_monitor *monitor = work_begin(a, PIECES, runs);
+        run_monitor *monitor = work_begin(a, "runs", runs);
         const bool whole = run_all(&c, monitor);
         work_end();
 
         // what there is, and then the end if that is not all
-        result = write_results(a, &c, &table);
+        result = report(a, &c, &table);
         if (!whole) {
-            work_leave(monitor->pieces, runs, PIECES, "the table is that of these");
+            work_leave(monitor->pieces, runs, "runs", "the table is that of these");
         }
         result = a->plot != NULL ? worse(result, plot_runs(a, &c)) : result;
     }
@@ -301,7 +303,6 @@ static const option_row rows[] = {
     OPTION(TEXT, "columns", "KEY,KEY...", "show only these quantities, by their keys of --json",
            PLACE(columns)),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command compare_command = {
     .name = "compare",
@@ -319,7 +320,7 @@ const command compare_command = {
     .least = 1,
     .most = MOST_SCENARIOS,
     .takes_scenarios = true,
-    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options,
+    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .run = compare,
 };

@@ -9,10 +9,9 @@
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
 
-#define PIECES "runs"
-
-static json_t *panel_object(const scenario *s, const convergence_panel *panel)
+static json_t *panel_object(const scenario *s, const void *found)
 {
+    const convergence_panel *panel = found;
     json_t *object = json_object(), *rows = json_array();
     json_put(object, "scenario", json_text(s->name));
     json_put(object, "step_s", json_numbers(panel->step, PANEL_STEPS));
@@ -37,8 +36,12 @@ static bool all_digits_agree(const convergence_row *row)
     return spread <= 1e-9 * fabs(row->value[2]);
 }
 
-static void print_panel(const scenario *s, const convergence_panel *panel)
+static void print_panel(const scenario *s, const void *found)
 {
+    const convergence_panel *panel = found;
+    if (panel->done == 0) {
+        return;
+    }
     char step[PANEL_STEPS][32], method[32];
 
     // head: scenario, method and the three steps
@@ -102,7 +105,7 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
     static const int colours[PANEL_STEPS] = {5, 0, 6};
     static const char *const names[PANEL_STEPS] = {"h", "h/2", "h/4"};
     const trace *finest = &r->result[PANEL_STEPS - 1].trace;
-    char label[PANEL_STEPS][48], title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
+    char label[PANEL_STEPS][48];
     figure_series force[PANEL_STEPS], less[PANEL_STEPS - 1];
 
     // each run's force, and what it lacks of the finest
@@ -138,13 +141,10 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
          .series_count = PANEL_STEPS - 1},
     };
 
-    snprintf(title, sizeof title, "%s: the same run at three steps%s", r->scenario[0].name,
-             scenario_changes(&r->scenario[0], changes));
-    const figure fig = {.title = title,
-                        .x = {.name = "time", .label = "Time <i>t</i>", .unit = "s"},
+    const figure fig = {.x = {.name = "time", .label = "Time <i>t</i>", .unit = "s"},
                         .panels = panels,
                         .panel_count = 2};
-    return publish_figure(a, &fig);
+    return publish_titled(a, &r->scenario[0], "the same run at three steps", &fig);
 }
 
 // The same with the memory it takes.
@@ -163,7 +163,7 @@ static int draw_runs(const arguments *a, const three_runs *r)
     return code;
 }
 
-static int plot(const arguments *a, const scenario *s, const convergence_panel *panel)
+static int plot(const arguments *a, const scenario *s, const void *panel)
 {
     fault f = {0};
     three_runs *r = calloc(1, sizeof *r);
@@ -172,7 +172,7 @@ static int plot(const arguments *a, const scenario *s, const convergence_panel *
         return complain_fault(&f);
     }
 
-    run_monitor *monitor = work_begin(a, PIECES, PANEL_STEPS);
+    run_monitor *monitor = work_begin(a, "runs", PANEL_STEPS);
     status ran = run_all(s, panel, monitor, r, &f);
     work_end();
 
@@ -188,53 +188,32 @@ static int plot(const arguments *a, const scenario *s, const convergence_panel *
     return code;
 }
 
-static int compute_and_report(const arguments *a, scenario *s)
+static int converge(const arguments *a, scenario *s)
 {
+    static const command_results r = {.json = panel_object,
+                                      .plot = plot,
+                                      .text = print_panel,
+                                      .kept = "the table is that of these steps"};
     convergence_panel panel;
     fault f = {0};
-    int result = EXIT_DONE;
-
-    run_monitor *monitor = work_begin(a, PIECES, PANEL_STEPS);
-    status code = convergence_compute(s, monitor, &panel, &f);
-    work_end();
-    if (code != STATUS_OK && code != STATUS_STOPPED) {
-        return complain_fault(&f);
-    }
-
-    if (a->json != NULL) {
-        result = write_json(a->json, panel_object(s, &panel));
-    }
-
-    if (summary_wanted(a) && panel.done > 0) {
-        print_panel(s, &panel);
-    }
-
-    if (code == STATUS_STOPPED) {
-        work_leave(panel.done, PANEL_STEPS, PIECES, "the table is that of these steps");
-    }
-    if (result == EXIT_DONE && a->plot != NULL) {
-        result = plot(a, s, &panel);
-    }
-    return result;
+    run_monitor *monitor = work_begin(a, "runs", PANEL_STEPS);
+    const status code = convergence_compute(s, monitor, &panel, &f);
+    return work_finish(a, code, &f, &r, s, &panel);
 }
 
 static const option_row rows[] = {
     OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", "draw the contact force at the three steps",
            PLACE(plot)),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command converge_command = {
     .name = "converge",
     .group = GROUP_MANY_RUNS,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "Run at the steps h, h/2, h/4 and tell the observed orders",
     .help =
         "h is the scenario's method.step. --plot draws the contact force at the three steps. ^C "
         "ends it with the\nsteps that are done (exit status 130).\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
-    .use = compute_and_report,
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
+    .use = converge,
 };

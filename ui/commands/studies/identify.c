@@ -88,8 +88,10 @@ static status compare_links(const arguments *a, outcome *o, fault *f)
 
 // --- results ----------------------------------------------------------------------------------
 
-static json_t *answer(const outcome *o)
+static json_t *answer(const scenario *s, const void *found)
 {
+    const outcome *o = found;
+    (void)s;
     json_t *object = identify_json(&o->fit), *links = json_array();
     for (int i = 0; i < o->link_count; i++) {
         json_t *line = json_object();
@@ -123,8 +125,9 @@ static void print_traces(const identification *id, const char *what)
     }
 }
 
-static void print_answer(const scenario *s, const outcome *o)
+static void print_answer(const scenario *s, const void *found)
 {
+    const outcome *o = found;
     const identification *id = &o->fit;
     say_title(s);
     say("\n  %-26s %12s %12s   %s\n", "parameter", "value", "error", "95 % interval");
@@ -154,14 +157,16 @@ static void print_answer(const scenario *s, const outcome *o)
     }
 }
 
-static void write_fitted(FILE *stream, const void *what)
+static void write_fitted(FILE *stream, const scenario *s, const void *found)
 {
-    scenario_write(stream, what);
+    (void)s;
+    scenario_write(stream, &((const outcome *)found)->written);
 }
 
-static void write_cases(FILE *stream, const void *what)
+static void write_cases(FILE *stream, const scenario *s, const void *found)
 {
-    identify_write_set(stream, what);
+    (void)s;
+    identify_write_set(stream, &((const outcome *)found)->fit);
 }
 
 // Whether the values can be relied on; says where they are none.
@@ -186,27 +191,19 @@ static bool is_reliable(const identification *id)
     return reliable && misfit <= most;
 }
 
-static int report(const arguments *a, const scenario *s, outcome *o)
+static int plot(const arguments *a, const scenario *s, const void *found)
 {
-    int result = is_reliable(&o->fit) ? EXIT_DONE : EXIT_FAILED;
-    if (a->json != NULL) {
-        result = worse(result, write_json(a->json, answer(o)));
-    }
-    result = worse(result, write_file(a->output, write_fitted, &o->written));
-    result = worse(result, write_file(a->cases, write_cases, &o->fit));
-    if (a->plot != NULL) {
-        owned_figure *drawn = identify_figure_create(&o->fit);
-        result = worse(result, publish_figure(a, &drawn->figure));
-        owned_figure_destroy(drawn);
-    }
-    if (summary_wanted(a)) {
-        print_answer(s, o);
-    }
-    return result;
+    (void)s;
+    return publish_owned(a, identify_figure_create(&((const outcome *)found)->fit));
 }
 
 static int identify_and_report(const arguments *a, scenario *s)
 {
+    static const command_results r = {.json = answer,
+                                      .output = write_fitted,
+                                      .cases = write_cases,
+                                      .plot = plot,
+                                      .text = print_answer};
     fault f = {0};
     outcome o = {0};
     if (a->data.count == 0 || a->fits.count == 0) {
@@ -230,7 +227,9 @@ static int identify_and_report(const arguments *a, scenario *s)
     if (code == STATUS_STOPPED) {
         leave_interrupted();
     }
-    const int result = code == STATUS_OK ? report(a, s, &o) : complain_fault(&f);
+    const bool reliable = code != STATUS_OK || is_reliable(&o.fit);
+    const int written = code == STATUS_OK ? write_results(a, &r, s, &o, true) : complain_fault(&f);
+    const int result = reliable ? written : worse(written, EXIT_FAILED);
     identify_finish(&o.fit);
     identify_finish(&o.validation);
     return result;
@@ -254,12 +253,11 @@ static const option_row rows[] = {
     SEED_OPTION,
     JOBS_OPTION,
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command identify_command = {
     .name = "identify",
     .group = GROUP_CONTROL,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "Find parameters of an arm, and their errors, from recorded traces",
     .help =
         "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit motor.stiction\n"
@@ -271,10 +269,7 @@ const command identify_command = {
         "written. The exit status is 1 then, where a value ends at an end of its range, and\n"
         "where chi square per reading is above 4, as of noise twice as large as it is said\n"
         "to be.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &json_options, &options, &drawn_options, &quiet_options,
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &drawn_options, &quiet_options,
                 &page_options},
     .use = identify_and_report,
 };

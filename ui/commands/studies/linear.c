@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/page/text.h"
 #include "render/plot/study_plot.h"
 #include "src/base/csv.h"
 #include "src/base/json.h"
@@ -142,8 +141,9 @@ static void put_numbers(json_t *object, const char *const *keys, const double *n
     }
 }
 
-static json_t *as_json(const analysis *x)
+static json_t *as_json(const scenario *base, const void *found)
 {
+    const analysis *x = found;
     static const char *const rest_keys[] = {"force_N", "command_V", "hub_angle_rad",
                                             "contact_margin_Ns"};
     static const char *const root_keys[] = {"real_per_s", "imaginary_rad_per_s", "damping",
@@ -153,7 +153,7 @@ static json_t *as_json(const analysis *x)
                                               "disk"};
     json_t *object = json_object(), *roots[2] = {json_array(), json_array()};
     const double rest[] = {x->arm.force, x->arm.voltage, x->arm.hub_angle, x->least_push};
-    json_put(object, "scenario", json_text(x->scenario->name));
+    json_put(object, "scenario", json_text(base->name));
     json_put(object, "at", json_string(x->word));
     put_numbers(object, rest_keys, rest, 4);
     for (int set = 0; set < SETS; set++) {
@@ -212,12 +212,13 @@ static json_t *as_json(const analysis *x)
     return object;
 }
 
-static void write_csv(FILE *stream, const void *what)
+static void write_csv(FILE *stream, const scenario *base, const void *found)
 {
     static const char *const headings[][2] = {
         {"kind", ""}, {"output", ""}, {"real", "1/s"}, {"imaginary", "rad/s"}, {"damping", ""}};
-    const analysis *x = what;
+    const analysis *x = found;
     csv_writer w = csv_begin(stream);
+    (void)base;
     for (int i = 0; i < 5; i++) {
         csv_heading(&w, headings[i][0], headings[i][1]);
     }
@@ -235,10 +236,11 @@ static void write_csv(FILE *stream, const void *what)
     }
 }
 
-static void write_mat(FILE *stream, const void *what)
+static void write_mat(FILE *stream, const scenario *base, const void *found)
 {
-    const analysis *x = what;
+    const analysis *x = found;
     matrix list[MATRICES];
+    (void)base;
     list_matrices(&x->arm.system, list);
     mat_file_begin(stream);
     for (int i = 0; i < MATRICES; i++) {
@@ -253,10 +255,11 @@ static void write_mat(FILE *stream, const void *what)
     }
 }
 
-static void print_analysis(const analysis *x)
+static void print_analysis(const scenario *s, const void *found)
 {
+    const analysis *x = found;
     const linear_margins *m = &x->margins;
-    say_title(x->scenario);
+    say_title(s);
     printf("linear arm, %s, %d states", x->word, x->arm.system.states);
     if (x->place != LINEAR_FREE) {
         printf(", pressing with %.4g N under %.4g V", x->arm.force, x->arm.voltage);
@@ -294,31 +297,21 @@ static void print_analysis(const analysis *x)
     }
 }
 
-static int publish(const arguments *a, const char *path, owned_figure *o)
-{
-    arguments there = *a;
-    there.plot = path;
-    const int code = publish_figure(&there, &o->figure);
-    owned_figure_destroy(o);
-    return code;
-}
-
 // The loop gain, or the arm from the command to the hub's velocity, and to force or tip.
 static int plot(const arguments *a, const analysis *x)
 {
     const int outputs[] = {LINEAR_HUB_VELOCITY, x->arm.force > 0 ? LINEAR_FORCE : LINEAR_TIP};
     linear_curve curves[2] = {{"loop gain", x->response}};
     if (x->response.count > 0) {
-        return publish(a, a->plot, bode_figure_create(x->scenario, curves, 1));
+        return publish_owned(a, bode_figure_create(x->scenario, curves, 1));
     }
     fault f = {.code = STATUS_OK};
-    status code = STATUS_OK;
-    for (int i = 0; i < 2 && code == STATUS_OK; i++) {
+    for (int i = 0; i < 2 && f.code == STATUS_OK; i++) {
         curves[i].name = linear_output_names[outputs[i]];
-        code = linear_respond(&x->arm.system, outputs[i], 0, &curves[i].response, &f);
+        f.code = linear_respond(&x->arm.system, outputs[i], 0, &curves[i].response, &f);
     }
-    const int result = code == STATUS_OK
-                           ? publish(a, a->plot, bode_figure_create(x->scenario, curves, 2))
+    const int result = f.code == STATUS_OK
+                           ? publish_owned(a, bode_figure_create(x->scenario, curves, 2))
                            : complain_fault(&f);
     free(curves[0].response.frequency);
     free(curves[1].response.frequency);
@@ -327,18 +320,16 @@ static int plot(const arguments *a, const analysis *x)
 
 static int report(const arguments *a, const analysis *x)
 {
-    int result = a->json != NULL ? write_json(a->json, as_json(x)) : EXIT_DONE;
-    result = worse(result, a->plot != NULL ? plot(a, x) : EXIT_DONE);
+    static const command_results r = {
+        .json = as_json, .csv = write_csv, .mat = write_mat, .text = print_analysis};
+    int result = a->plot != NULL ? plot(a, x) : EXIT_DONE;
     if (a->nyquist != NULL) {
+        arguments there = *a;
+        there.plot = a->nyquist;
         result =
-            worse(result, publish(a, a->nyquist, nyquist_figure_create(x->scenario, &x->response)));
+            worse(result, publish_owned(&there, nyquist_figure_create(x->scenario, &x->response)));
     }
-    result = worse(result, write_file(a->csv, write_csv, x));
-    result = worse(result, write_file(a->mat, write_mat, x));
-    if (summary_wanted(a)) {
-        print_analysis(x);
-    }
-    return result;
+    return worse(result, write_results(a, &r, x->scenario, x, true));
 }
 
 // --- many -------------------------------------------------------------------------------------
@@ -371,11 +362,12 @@ static status survey(analysis *x, fault *f)
     return code;
 }
 
-static json_t *survey_json(const analysis *x)
+static json_t *survey_json(const scenario *base, const void *found)
 {
+    const analysis *x = found;
     const sweep *s = &x->sweep;
     json_t *object = json_object(), *points = json_array(), *limits = json_array();
-    json_put(object, "scenario", json_text(s->base->name));
+    json_put(object, "scenario", json_text(base->name));
     json_put(object, "at", json_string(x->word));
     for (size_t i = 0; i < s->run_count; i++) {
         json_t *entry = json_object(), *values = json_object();
@@ -400,9 +392,10 @@ static json_t *survey_json(const analysis *x)
     return object;
 }
 
-static void write_survey(FILE *stream, const void *what)
+static void write_survey(FILE *stream, const scenario *base, const void *found)
 {
-    const analysis *x = what;
+    const analysis *x = found;
+    (void)base;
     const sweep *s = &x->sweep;
     csv_writer w = csv_begin(stream);
     for (int axis = 0; axis < s->axis_count; axis++) {
@@ -422,8 +415,9 @@ static void write_survey(FILE *stream, const void *what)
 }
 
 // Growth and settling time, one picture above the other.
-static int plot_survey(const arguments *a, const analysis *x)
+static int plot_survey(const arguments *a, const scenario *base, const void *found)
 {
+    const analysis *x = found;
     owned_figure *both[2];
     for (int k = 0; k < 2; k++) {
         const sweep_picture shown = {&x->sweep, told[k].key, &told[k], x->numbers[k]};
@@ -434,41 +428,35 @@ static int plot_survey(const arguments *a, const analysis *x)
     both[0]->panels[0].heading = "linear, without friction: unstable above zero";
     both[0]->panels[1].heading = "runs, with friction: where one has a value it settles";
     both[0]->figure.panel_count = 2;
-    char changes[SCENARIO_CHANGES];
-    both[0]->figure.title =
-        owned_figure_keep(both[0], text_printf("%s: stability of the loop%s", x->sweep.base->name,
-                                               scenario_changes(x->sweep.base, changes)));
-    const int code = publish(a, a->plot, both[0]);
+    const int code = publish_titled(a, base, "stability of the loop", &both[0]->figure);
+    owned_figure_destroy(both[0]);
     owned_figure_destroy(both[1]);
     return code;
 }
 
-static int report_survey(const arguments *a, const analysis *x)
+static void print_survey(const scenario *base, const void *found)
 {
+    const analysis *x = found;
     const sweep *s = &x->sweep;
     size_t stable = 0, settle = 0;
-    int result = a->json != NULL ? write_json(a->json, survey_json(x)) : EXIT_DONE;
-    result = worse(result, write_file(a->csv, write_survey, x));
-    result = worse(result, a->plot != NULL ? plot_survey(a, x) : EXIT_DONE);
     for (size_t i = 0; i < s->run_count; i++) {
         stable += x->holds[0][i];
         settle += x->holds[1][i];
     }
-    if (summary_wanted(a)) {
-        say_title(s->base);
-        printf("%zu of %zu loops are stable without friction, %zu of the runs settle\n", stable,
-               s->run_count, settle);
-        for (int i = 0; i < x->limit_count; i++) {
-            say("  limit %s = %.6g %s, %s\n", s->axes[0].name, x->limits[i].value,
-                sweep_axis_parameter(&s->axes[0])->unit,
-                x->limits[i].by_runs ? "of runs, with friction" : "of poles, without friction");
-        }
+    say_title(base);
+    printf("%zu of %zu loops are stable without friction, %zu of the runs settle\n", stable,
+           s->run_count, settle);
+    for (int i = 0; i < x->limit_count; i++) {
+        say("  limit %s = %.6g %s, %s\n", s->axes[0].name, x->limits[i].value,
+            sweep_axis_parameter(&s->axes[0])->unit,
+            x->limits[i].by_runs ? "of runs, with friction" : "of poles, without friction");
     }
-    return result;
 }
 
 static int look_around(const arguments *a, analysis *x)
 {
+    static const command_results r = {
+        .json = survey_json, .csv = write_survey, .plot = plot_survey, .text = print_survey};
     const sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
     fault f = {.code = STATUS_OK};
     status code = a->plot != NULL && a->varies.count > 2
@@ -484,7 +472,8 @@ static int look_around(const arguments *a, analysis *x)
         x->holds[1] = x->holds[0] + count;
         code = x->numbers[0] != NULL ? survey(x, &f) : fault_no_memory(&f);
     }
-    const int result = code == STATUS_OK ? report_survey(a, x) : complain_fault(&f);
+    const int result =
+        code == STATUS_OK ? write_results(a, &r, x->scenario, x, true) : complain_fault(&f);
     free(x->numbers[0]);
     sweep_finish(&x->sweep);
     return result;
@@ -539,12 +528,11 @@ static const option_row rows[] = {
     OPTION(RESULT, "mat", "FILE.mat", "write A, B, C, D, poles and zeros for MATLAB or Octave",
            PLACE(mat)),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command linear_command = {
     .name = "linear",
     .group = GROUP_CONTROL,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "Poles, zeros and margins of the arm near rest",
     .help =
         "Linearises the arm at rest, x' = A x + B u from the command u, with back EMF, "
@@ -553,10 +541,7 @@ const command linear_command = {
         "--law closes the sampled loop of its law; one that does not answer linearly is "
         "measured by small sines.\n--vary tells where the loop is stable, by its poles and, with "
         "friction, by runs that settle.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options,
+    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = linear,
 };

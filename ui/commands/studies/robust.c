@@ -175,19 +175,14 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
     char word[64], *db = a->db != NULL ? place_of(a->db, law, k) : NULL;
     sweep_store *store = NULL;
     sweep_progress progress = {0};
-    bool bar = many_runs_shows_progress(a);
     snprintf(word, sizeof word, "%-16.40s", law);
-    sweep_options options = {
-        .jobs = many_runs_jobs(a), .report = bar ? many_runs_progress : NULL, .context = word};
-    many_runs_catch_signals(&options);
+    const sweep_options options = many_runs_begin(a, word);
 
     // the runs
     status code =
         a->db != NULL && db == NULL ? fault_no_memory(&f) : sweep_store_open(&store, db, s, &f);
     code = code == STATUS_OK ? sweep_run(s, store, &options, &progress, &f) : code;
-    if (bar) {
-        many_runs_clear_progress();
-    }
+    many_runs_end(&options);
 
     // all of them are there, or what there is stays in the store
     bool stopped = code == STATUS_OK && progress.done < progress.total;
@@ -331,39 +326,45 @@ static int run_case(robustness *r, int k)
     return code;
 }
 
-static void write_markdown(FILE *stream, const void *table)
+static json_t *table_json(const scenario *s, const void *table)
 {
+    (void)s;
+    return robust_json(table);
+}
+
+static void write_markdown(FILE *stream, const scenario *s, const void *table)
+{
+    (void)s;
     robust_markdown(stream, table);
 }
 
-static void write_csv(FILE *stream, const void *table)
+static void write_csv(FILE *stream, const scenario *s, const void *table)
 {
+    (void)s;
     robust_csv(stream, table);
 }
 
-static int write_results(const robustness *r)
+static int plot(const arguments *a, const scenario *s, const void *table)
 {
-    const arguments *a = r->arguments;
-    robust_table table = {r->scenario.name, r->found, r->judged, r->arguments->against};
-    int code = EXIT_DONE;
+    char changes[SCENARIO_CHANGES];
+    return publish_owned(a, robust_figure_create(table, scenario_changes(s, changes)));
+}
 
-    // to files
-    if (a->json != NULL) {
-        code = worse(code, write_json(a->json, robust_json(&table)));
-    }
-    code = worse(code, write_file(a->csv, write_csv, &table));
-    code = worse(code, write_file(a->markdown, write_markdown, &table));
-    if (a->plot != NULL) {
-        char changes[SCENARIO_CHANGES];
-        owned_figure *drawn = robust_figure_create(&table, scenario_changes(&r->scenario, changes));
-        code = worse(code, publish_figure(a, &drawn->figure));
-        owned_figure_destroy(drawn);
-    }
+static void print_table(const scenario *s, const void *table)
+{
+    (void)s;
+    robust_text(stdout, table);
+}
 
-    // and for people
-    if (summary_wanted(a)) {
-        robust_text(stdout, &table);
-    }
+static int report(const robustness *r)
+{
+    static const command_results written = {.json = table_json,
+                                            .csv = write_csv,
+                                            .markdown = write_markdown,
+                                            .plot = plot,
+                                            .text = print_table};
+    const robust_table table = {r->scenario.name, r->found, r->judged, r->arguments->against};
+    const int code = write_results(r->arguments, &written, &r->scenario, &table, true);
 
     // nothing to judge is a failure
     bool any = false;
@@ -394,7 +395,7 @@ static int robust(const arguments *a)
     for (int k = begin; k <= last && code == EXIT_DONE; k++) {
         code = run_case(&r, k);
     }
-    code = code == EXIT_DONE ? write_results(&r) : code;
+    code = code == EXIT_DONE ? report(&r) : code;
     finish(&r);
     return code;
 }
@@ -414,12 +415,11 @@ static const option_row rows[] = {
            PLACE(markdown)),
     PLOT_OPTION("draw the distribution of the overshoot, a curve for each law"),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command robust_command = {
     .name = "robust",
     .group = GROUP_CONTROL,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "How control laws stand what they were not told",
     .help =
         "Runs each law many times on the scenario, with beliefs, sensors, wall and start drawn "
@@ -434,9 +434,6 @@ const command robust_command = {
         "worst of the\nruns of each. Of control.settings each law gets those that it has.\n\n"
         "Ctrl-C finishes the runs in hand, within five seconds (exit status 130); with --db they "
         "are kept.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &json_options, &options, &quiet_options, &page_options},
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .run = robust,
 };

@@ -6,13 +6,12 @@
 #include "src/study/solve.h"
 #include "ui/commands/progress.h"
 
-#define PIECES "runs"
-
-// What is asked for: SCENARIO, PATH[=a:b], 'KEY<VALUE'.
+// What is asked for, and the answer: SCENARIO, PATH[=a:b], 'KEY<VALUE'.
 typedef struct question {
     sweep_axis axis;
     solve_condition condition;
     int points;
+    solution found;
 } question;
 
 static const char *sign_of(const solve_condition *c)
@@ -20,8 +19,10 @@ static const char *sign_of(const solve_condition *c)
     return c->below ? c->equal ? "<=" : "<" : c->equal ? ">=" : ">";
 }
 
-static json_t *answer(const scenario *s, const question *q, const solution *found)
+static json_t *answer(const scenario *s, const void *asked)
 {
+    const question *q = asked;
+    const solution *found = &q->found;
     json_t *object = json_object(), *limits = json_array();
     json_put(object, "scenario", json_text(s->name));
     for (int i = 0; i < found->count; i++) {
@@ -55,8 +56,10 @@ static void say_what_is_unknown(const question *q, const solution *found)
     }
 }
 
-static void print_answer(const scenario *s, const question *q, const solution *found)
+static void print_answer(const scenario *s, const void *asked)
 {
+    const question *q = asked;
+    const solution *found = &q->found;
     const solve_condition *c = &q->condition;
     const summary_info *quantity = &summary_table[c->quantity];
     const parameter_info *parameter = sweep_axis_parameter(&q->axis);
@@ -89,40 +92,25 @@ static void print_answer(const scenario *s, const question *q, const solution *f
     say_what_is_unknown(q, found);
 }
 
-static int find_and_report(const arguments *a, const scenario *s, const question *q)
+static int find_and_report(const arguments *a, scenario *s)
 {
-    fault f = {0};
-    solution found;
-    run_monitor *monitor = work_begin(a, PIECES, q->points);
-    status code =
-        solve(s, &q->axis, &q->condition, q->points, many_runs_jobs(a), monitor, &found, &f);
-    work_end();
-    if (code == STATUS_STOPPED) {
-        leave_interrupted();
-    }
-    if (code != STATUS_OK) {
-        return complain_fault(&f);
-    }
-
-    int result = found.count > 0 ? EXIT_DONE : EXIT_FAILED;
-    if (a->json != NULL) {
-        result = worse(result, write_json(a->json, answer(s, q, &found)));
-    }
-    if (summary_wanted(a)) {
-        print_answer(s, q, &found);
-    }
-    return result;
-}
-
-static int read_and_find(const arguments *a, scenario *s)
-{
+    static const command_results r = {.json = answer, .text = print_answer};
     question q = {.points = a->runs > 0 ? (int)a->runs : SOLVE_POINTS};
     fault f = {0};
     status code = solve_condition_read(a->operands[2], &q.condition, &f);
     code = code == STATUS_OK ? solve_axis_read(&q.axis, a->operands[1], s, &f) : code;
-    int result = code == STATUS_OK ? find_and_report(a, s, &q) : complain_fault(&f);
+    if (code == STATUS_OK) {
+        run_monitor *monitor = work_begin(a, "runs", q.points);
+        code = solve(s, &q.axis, &q.condition, q.points, many_runs_jobs(a), monitor, &q.found, &f);
+        work_end();
+    }
+    if (code == STATUS_STOPPED) {
+        leave_interrupted();
+    }
+
+    const int written = code == STATUS_OK ? write_results(a, &r, s, &q, true) : complain_fault(&f);
     sweep_axis_finish(&q.axis);
-    return result;
+    return code == STATUS_OK && q.found.count == 0 ? worse(written, EXIT_FAILED) : written;
 }
 
 static const option_row rows[] = {
@@ -130,7 +118,6 @@ static const option_row rows[] = {
            PLACE(runs), .low = 2, .high = SOLVE_MOST_POINTS),
     JOBS_OPTION,
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command solve_command = {
     .name = "solve",
@@ -146,6 +133,6 @@ const command solve_command = {
     .least = 3,
     .most = 3,
     .takes_scenarios = true,
-    .options = {&set_options, &json_options, &options, &quiet_options},
-    .use = read_and_find,
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
+    .use = find_and_report,
 };

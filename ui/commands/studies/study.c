@@ -16,8 +16,9 @@
 
 // --- methods ----------------------------------------------------------------------------------
 
-static json_t *methods_object(const scenario *s, const method_study *study)
+static json_t *methods_object(const scenario *s, const void *found)
 {
+    const method_study *study = found;
     json_t *object = json_object(), *reference = json_object(), *points = json_array();
     json_put(object, "scenario", json_text(s->name));
 
@@ -51,8 +52,9 @@ static json_t *methods_object(const scenario *s, const method_study *study)
     return object;
 }
 
-static void print_methods(const scenario *s, const method_study *study)
+static void print_methods(const scenario *s, const void *found)
 {
+    const method_study *study = found;
     char changes[SCENARIO_CHANGES];
     say("%s%s: error against cost\nreference: event method at %g s; first contact %.12g s, first "
         "pulse peak %.12g N,\nsteady force %.12g N\n",
@@ -106,7 +108,7 @@ static void raise_zeros(method_study *study)
     }
 }
 
-static int plot_methods(const arguments *a, const scenario *s, const method_study *drawn)
+static int plot_methods(const arguments *a, const scenario *s, const void *found)
 {
     static const char *const labels[STUDY_METHODS] = {"Newmark", "generalised α", "event method"};
     static const marker_kind markers[STUDY_METHODS] = {MARKER_SQUARE, MARKER_TRIANGLE,
@@ -119,14 +121,15 @@ static int plot_methods(const arguments *a, const scenario *s, const method_stud
     static const char *const units[STUDY_QUANTITIES] = {"s", "N", "N"};
     figure_series series[STUDY_QUANTITIES][STUDY_METHODS];
     figure_panel panels[STUDY_QUANTITIES];
-    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
+    method_study drawn = *(const method_study *)found;
 
+    raise_zeros(&drawn);
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         for (int m = 0; m < STUDY_METHODS; m++) {
             series[k][m] = (figure_series){.name = study_methods[m],
                                            .label = labels[m],
-                                           .x = &drawn->points[m][0].cost,
-                                           .y = &drawn->points[m][0].error[k],
+                                           .x = &drawn.points[m][0].cost,
+                                           .y = &drawn.points[m][0].error[k],
                                            .count = STUDY_STEPS,
                                            .stride = sizeof(study_point),
                                            .colour = colours[m],
@@ -142,11 +145,7 @@ static int plot_methods(const arguments *a, const scenario *s, const method_stud
                                    .weight = 1.8};
     }
 
-    snprintf(title, sizeof title, "%s: error against cost%s", s->name,
-             scenario_changes(s, changes));
-
-    figure fig = {
-        .title = title,
+    const figure fig = {
         .caption =
             "Steps 10\u2009ms, 5\u2009ms, 2\u2009ms ... 1\u2009µs from left to right; the event "
             "method needs none of them and costs about the same whichever is asked for. Left and "
@@ -155,45 +154,28 @@ static int plot_methods(const arguments *a, const scenario *s, const method_stud
         .x = {.name = "computing time", .label = "Computing time", .unit = "s"},
         .panels = panels,
         .panel_count = STUDY_QUANTITIES};
-    return publish_study(a, &fig);
+    return publish_study(a, s, "error against cost", &fig);
 }
 
 static int study_of_methods(const arguments *a, scenario *s)
 {
+    static const command_results r = {.json = methods_object,
+                                      .plot = plot_methods,
+                                      .text = print_methods,
+                                      .kept = "the tables hold these",
+                                      .none = "there is nothing to show"}; // without the reference
     method_study study;
     fault f = {0};
     run_monitor *monitor = work_begin(a, "runs", STUDY_RUNS);
-    status code = method_study_compute(s, monitor, &study, &f);
-    work_end();
-
-    // without the reference there is nothing to show
-    const int done = monitor->pieces;
-    if (code == STATUS_STOPPED && done == 0) {
-        work_leave(0, STUDY_RUNS, "runs", "there is nothing to show");
-    }
-    if (code != STATUS_OK && code != STATUS_STOPPED) {
-        return complain_fault(&f);
-    }
-
-    if (summary_wanted(a)) {
-        print_methods(s, &study);
-    }
-
-    int result = a->json != NULL ? write_json(a->json, methods_object(s, &study)) : EXIT_DONE;
-    if (code == STATUS_STOPPED) {
-        work_leave(done, STUDY_RUNS, "runs", "the tables hold these");
-    }
-    if (result == EXIT_DONE && a->plot != NULL) {
-        raise_zeros(&study);
-        result = plot_methods(a, s, &study);
-    }
-    return result;
+    const status code = method_study_compute(s, monitor, &study, &f);
+    return work_finish(a, code, &f, &r, s, &study);
 }
 
 // --- links ------------------------------------------------------------------------------------
 
-static json_t *links_object(const scenario *s, const links_study *study)
+static json_t *links_object(const scenario *s, const void *found)
 {
+    const links_study *study = found;
     json_t *object = json_object(), *rows = json_array(), *quantities = json_array();
     json_put(object, "scenario", json_text(s->name));
     for (int i = 0; i < study->count; i++) {
@@ -222,8 +204,12 @@ static json_t *links_object(const scenario *s, const links_study *study)
     return object;
 }
 
-static void print_links(const scenario *s, const links_study *study)
+static void print_links(const scenario *s, const void *found)
 {
+    const links_study *study = found;
+    if (study->count == 0) {
+        return;
+    }
     char changes[SCENARIO_CHANGES];
     say("%s%s: from links to a beam\n\n%-26s", s->name, scenario_changes(s, changes), "links");
     for (int i = 0; i < study->count; i++) {
@@ -265,8 +251,9 @@ static void print_links(const scenario *s, const links_study *study)
 }
 
 // What each quantity lacks of the beam's, or of its limit, over the number of links.
-static int plot_links(const arguments *a, const scenario *s, const links_study *study)
+static int plot_links(const arguments *a, const scenario *s, const void *found)
 {
+    const links_study *study = found;
     static const int colours[LINKS_QUANTITIES] = {4, 4, 0, 3, 3, 3, 5, 2, 1, 6, 7};
     static const marker_kind markers[LINKS_QUANTITIES] = {
         MARKER_CIRCLE,   MARKER_SQUARE,  MARKER_CIRCLE,   MARKER_TRIANGLE,
@@ -301,44 +288,29 @@ static int plot_links(const arguments *a, const scenario *s, const links_study *
         .series = series,
         .series_count = drawn,
         .weight = 1.8};
-    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
-    snprintf(title, sizeof title, "%s: from links to a beam%s", s->name,
-             scenario_changes(s, changes));
-    figure fig = {.title = title,
-                  .caption = "From the Euler-Bernoulli beam where it has a closed form, else from "
-                             "Richardson\u2019s limit; what has neither is left out.",
-                  .x = {.name = "links",
-                        .label = "Number of links <i>N</i>",
-                        .ticks = ticks,
-                        .tick_count = LINKS_LENGTHS},
-                  .panels = &panel,
-                  .panel_count = 1};
-    return publish_study(a, &fig);
+    const figure fig = {.caption =
+                            "From the Euler-Bernoulli beam where it has a closed form, else from "
+                            "Richardson\u2019s limit; what has neither is left out.",
+                        .x = {.name = "links",
+                              .label = "Number of links <i>N</i>",
+                              .ticks = ticks,
+                              .tick_count = LINKS_LENGTHS},
+                        .panels = &panel,
+                        .panel_count = 1};
+    return publish_study(a, s, "from links to a beam", &fig);
 }
 
 static int study_of_links(const arguments *a, scenario *s)
 {
+    static const command_results r = {.json = links_object,
+                                      .plot = plot_links,
+                                      .text = print_links,
+                                      .kept = "the table is that of these"};
     links_study study;
     fault f = {0};
     run_monitor *monitor = work_begin(a, "numbers of links", LINKS_LENGTHS);
-    status code = links_study_compute(s, monitor, &study, &f);
-    work_end();
-    if (code != STATUS_OK && code != STATUS_STOPPED) {
-        return complain_fault(&f);
-    }
-
-    if (summary_wanted(a) && study.count > 0) {
-        print_links(s, &study);
-    }
-
-    int result = a->json != NULL ? write_json(a->json, links_object(s, &study)) : EXIT_DONE;
-    if (code == STATUS_STOPPED) {
-        work_leave(study.count, LINKS_LENGTHS, "numbers of links", "the table is that of these");
-    }
-    if (result == EXIT_DONE && a->plot != NULL) {
-        result = plot_links(a, s, &study);
-    }
-    return result;
+    const status code = links_study_compute(s, monitor, &study, &f);
+    return work_finish(a, code, &f, &r, s, &study);
 }
 
 // --- the command ------------------------------------------------------------------------------
@@ -355,16 +327,6 @@ static const topic topics[] = {
 };
 enum { TOPICS = sizeof topics / sizeof topics[0] };
 
-static const topic *find_topic(const char *name)
-{
-    for (int i = 0; i < TOPICS; i++) {
-        if (strcmp(topics[i].name, name) == 0) {
-            return &topics[i];
-        }
-    }
-    return NULL;
-}
-
 static const char *topic_word(int i)
 {
     return i < TOPICS ? topics[i].name : NULL;
@@ -372,12 +334,12 @@ static const char *topic_word(int i)
 
 static int study(const arguments *a)
 {
-    const topic *t = find_topic(a->operands[0]);
-    if (t == NULL) {
-        return complain("there is no study '%s', expected methods, links or follow",
-                        a->operands[0]);
+    for (const topic *t = topics; t < topics + TOPICS; t++) {
+        if (strcmp(t->name, a->operands[0]) == 0) {
+            return with_scenario(a->operand_count > 1 ? a->operands[1] : t->scenario, a, t->study);
+        }
     }
-    return with_scenario(a->operand_count > 1 ? a->operands[1] : t->scenario, a, t->study);
+    return complain("there is no study '%s', expected methods, links or follow", a->operands[0]);
 }
 
 const command study_command = {

@@ -1,6 +1,5 @@
 // impactlab study follow: force error and phase of control laws over frequency, beside what delay
 // and arm allow.
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -25,8 +24,9 @@ static json_t *points_array(const follow_point *points)
     return array;
 }
 
-static json_t *follow_object(const scenario *s, const follow_study *study)
+static json_t *follow_object(const scenario *s, const void *found)
 {
+    const follow_study *study = found;
     json_t *object = json_object(), *laws = json_object();
     json_put(object, "scenario", json_text(s->name));
     for (int k = 0; k < FOLLOW_LAWS; k++) {
@@ -56,8 +56,9 @@ static void print_table(const char *what, const follow_study *study, size_t offs
     printf("\n");
 }
 
-static void print_follow(const scenario *s, const follow_study *study)
+static void print_follow(const scenario *s, const void *found)
 {
+    const follow_study *study = found;
     char changes[SCENARIO_CHANGES];
     say("%s%s: a set-point and a wall that move\ncommands act %g ms late, the force's zero is at "
         "%.3g 1/s\n",
@@ -67,8 +68,9 @@ static void print_follow(const scenario *s, const follow_study *study)
     print_table("wall that moves [N/mm]", study, offsetof(follow_point, shaken), 1e-3);
 }
 
-static int plot_follow(const arguments *a, const scenario *s, const follow_study *study)
+static int plot_follow(const arguments *a, const scenario *s, const void *found)
 {
+    const follow_study *study = found;
     static const int colours[FOLLOW_LAWS] = {0, 3, 2, 1, 6, 5};
     static const marker_kind markers[FOLLOW_LAWS] = {MARKER_CIRCLE,   MARKER_SQUARE, MARKER_DIAMOND,
                                                      MARKER_TRIANGLE, MARKER_CROSS,  MARKER_CIRCLE};
@@ -108,9 +110,7 @@ static int plot_follow(const arguments *a, const scenario *s, const follow_study
                                    .weight = 1.8};
     }
 
-    char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES], caption[400];
-    snprintf(title, sizeof title, "%s: a set-point and a wall that move%s", s->name,
-             scenario_changes(s, changes));
+    char caption[400];
     snprintf(
         caption, sizeof caption,
         "Set-point: %g %% of the commanded force; wall: %g mm, against which friction holds the "
@@ -119,32 +119,22 @@ static int plot_follow(const arguments *a, const scenario *s, const follow_study
         "go on with a rate are better while it lasts.",
         100 * FOLLOW_WAVE, 1e3 * FOLLOW_WALL,
         s->parameters.motor.stiction / s->parameters.arm.length, 1e3 * study->later, study->zero);
-    figure fig = {.title = title,
-                  .caption = caption,
-                  .x = {.name = "frequency", .label = "Frequency", .unit = "Hz"},
-                  .panels = panels,
-                  .panel_count = PANELS};
-    return publish_study(a, &fig);
+    const figure fig = {.caption = caption,
+                        .x = {.name = "frequency", .label = "Frequency", .unit = "Hz"},
+                        .panels = panels,
+                        .panel_count = PANELS};
+    return publish_study(a, s, "a set-point and a wall that move", &fig);
 }
 
 int study_of_follow(const arguments *a, scenario *s)
 {
-    assert(a != NULL && s != NULL);
+    static const command_results r = {.json = follow_object,
+                                      .plot = plot_follow,
+                                      .text = print_follow,
+                                      .kept = "the tables hold these"};
     follow_study study;
     fault f = {0};
     run_monitor *monitor = work_begin(a, "runs", FOLLOW_RUNS);
     const status code = follow_study_compute(s, monitor, &study, &f);
-    work_end();
-    if (code != STATUS_OK && code != STATUS_STOPPED) {
-        return complain_fault(&f);
-    }
-
-    if (summary_wanted(a)) {
-        print_follow(s, &study);
-    }
-    int result = a->json != NULL ? write_json(a->json, follow_object(s, &study)) : EXIT_DONE;
-    if (code == STATUS_STOPPED) {
-        work_leave(study.done, FOLLOW_RUNS, "runs", "the tables hold these");
-    }
-    return result == EXIT_DONE && a->plot != NULL ? plot_follow(a, s, &study) : result;
+    return work_finish(a, code, &f, &r, s, &study);
 }

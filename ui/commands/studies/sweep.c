@@ -17,7 +17,6 @@
 typedef struct sweep_order {
     const arguments *arguments;
     const char *quantity; // key of the quantity that is drawn and summarised
-    int jobs;             // runs at a time
     sweep_share share;    // of all runs
     sweep_request request;
     scenario scenario;
@@ -42,15 +41,6 @@ static int write_rows(sweep_store *store, const char *path,
     }
     const status code = whole_file_close(&file, write(store, file.stream, &f), &f);
     return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
-}
-
-static int write_plot(const sweep_order *o, const double *values)
-{
-    sweep_picture shown = {.sweep = &o->sweep, .key = o->quantity, .values = values};
-    owned_figure *drawn = sweep_figure_create(&shown);
-    int code = publish_figure(o->arguments, &drawn->figure);
-    owned_figure_destroy(drawn);
-    return code;
 }
 
 // "motor.voltage = 2 V, method.name = event" of a run.
@@ -132,7 +122,6 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     const arguments *a = o->arguments;
     fault f = {0};
     size_t failed = 0;
-    int code = EXIT_DONE, plotted = EXIT_DONE;
     double *values = malloc(o->sweep.run_count * sizeof *values);
     if (values == NULL) {
         fault_set(&f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
@@ -144,10 +133,12 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     }
 
     // files first: what is printed may be cut off
-    code = worse(write_rows(store, a->csv, sweep_store_csv),
-                 write_rows(store, a->json, sweep_store_json));
-    plotted = a->plot != NULL ? write_plot(o, values) : EXIT_DONE;
-    code = plotted > code ? plotted : code;
+    int code = worse(write_rows(store, a->csv, sweep_store_csv),
+                     write_rows(store, a->json, sweep_store_json));
+    if (a->plot != NULL) {
+        const sweep_picture shown = {.sweep = &o->sweep, .key = o->quantity, .values = values};
+        code = worse(code, publish_owned(a, sweep_figure_create(&shown)));
+    }
     if (summary_wanted(a)) {
         print_summary(o, values, failed, p);
     }
@@ -157,8 +148,7 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     } else if (failed == o->sweep.run_count) {
         complain("all %zu runs failed; the message of each is in its row", failed);
     }
-    code = failed == o->sweep.run_count ? worse(code, EXIT_FAILED) : code;
-    return code;
+    return failed == o->sweep.run_count ? worse(code, EXIT_FAILED) : code;
 }
 
 // --- the sweep --------------------------------------------------------------------------------
@@ -179,7 +169,6 @@ static sweep_order order_of(const arguments *a)
 {
     return (sweep_order){.arguments = a,
                          .quantity = a->quantity != NULL ? a->quantity : "peak_force_N",
-                         .jobs = many_runs_jobs(a),
                          .request = {.vary = a->varies.items,
                                      .vary_count = a->varies.count,
                                      .sampling = sampling_of(a->sampling),
@@ -249,15 +238,10 @@ static int compute(const sweep_order *o, sweep_store *store)
 {
     fault f = {0};
     sweep_progress progress;
-    bool bar = many_runs_shows_progress(o->arguments);
-    sweep_options options = {
-        .share = o->share, .jobs = o->jobs, .report = bar ? many_runs_progress : NULL};
-    many_runs_catch_signals(&options);
+    sweep_options options = many_runs_begin(o->arguments, NULL);
+    options.share = o->share;
     status code = sweep_run(&o->sweep, store, &options, &progress, &f);
-
-    if (bar) {
-        many_runs_clear_progress();
-    }
+    many_runs_end(&options);
 
     // what it came to: an error, a stop, the whole sweep or a part of it
     if (code != STATUS_OK) {
@@ -314,12 +298,11 @@ static const option_row rows[] = {
     OPTION(QUANTITY, "quantity", "KEY", "what to draw and to sum up (peak_force_N)",
            PLACE(quantity)),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command sweep_command = {
     .name = "sweep",
     .group = GROUP_MANY_RUNS,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "A run for each of many parameter values",
     .help =
         "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them evenly in the "
@@ -331,10 +314,7 @@ const command sweep_command = {
         "is given again.\nCtrl-C finishes the runs in hand, within five seconds, and keeps them "
         "(exit status 130). "
         "Runs that fail are rows too; the\nexit status is 1 if all of them failed.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options,
+    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .run = sweep_command_run,
 };
@@ -372,7 +352,6 @@ static int merge(const arguments *a)
 static const option_row merge_rows[] = {
     OPTION(PLACE, "output", "FILE.sqlite", "the database to write", PLACE(output), .letter = 'o'),
 };
-static const option_table merge_options = OPTION_TABLE("Options", merge_rows);
 
 const command merge_command = {
     .name = "merge",
@@ -385,6 +364,6 @@ const command merge_command = {
             "computes what may be missing and writes CSV and pictures.\n",
     .least = 1,
     .most = 1 << 20,
-    .options = {&json_options, &merge_options, &quiet_options},
+    .options = {&json_options, OWN_OPTIONS(merge_rows), &quiet_options},
     .run = merge,
 };

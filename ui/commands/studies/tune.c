@@ -25,24 +25,27 @@ typedef struct tuner {
     int count; // of rows
 } tuner;
 
-static void write_best(FILE *stream, const void *what)
+static void write_best(FILE *stream, const scenario *s, const void *found)
 {
-    const tuning *t = what;
+    const tuning *t = &((const tuner *)found)->tuning;
     scenario best;
+    (void)s;
     if (tune_apply(t, t->found, &best, NULL) == STATUS_OK) {
         scenario_write(stream, &best);
     }
 }
 
 // Writes the best so far; the standard output gets it once, at the end.
-static status keep_best(void *context, const tuning *t, fault *f)
+static status keep_best(void *context, const tuning *best, fault *f)
 {
-    const char *path = context;
+    const tuner *t = context;
+    const char *path = t->arguments->output;
     whole_file file;
     status code = STATUS_OK;
+    (void)best;
     if (path != NULL && strcmp(path, "-") != 0 &&
         (code = whole_file_open(&file, path, f)) == STATUS_OK) {
-        write_best(file.stream, t);
+        write_best(file.stream, t->scenario, t);
         code = whole_file_commit(&file, f);
     }
     return code;
@@ -85,8 +88,9 @@ static robust_table compared(const tuner *t, robust_law *laws)
     return (robust_table){.scenario = t->scenario->name, .laws = laws, .count = CHANGED};
 }
 
-static json_t *answer(const tuner *t)
+static json_t *answer(const scenario *s, const void *found_by)
 {
+    const tuner *t = found_by;
     const tuning *found = &t->tuning;
     robust_law laws[CHANGED];
     const robust_table table = compared(t, laws);
@@ -102,7 +106,7 @@ static json_t *answer(const tuner *t)
         json_put(number, "tenth_higher", json_number(changed[1].value));
         json_add(numbers, number);
     }
-    json_put(object, "scenario", json_text(t->scenario->name));
+    json_put(object, "scenario", json_text(s->name));
     json_put(object, "minimise", json_text(found->asked.minimise));
     json_put(object, "evaluations", json_integer((json_int_t)found->done));
     json_put(object, "runs_each", json_integer((json_int_t)found->each));
@@ -113,11 +117,12 @@ static json_t *answer(const tuner *t)
     return object;
 }
 
-static void print_answer(const tuner *t)
+static void print_answer(const scenario *s, const void *found_by)
 {
+    const tuner *t = found_by;
     const tuning *found = &t->tuning;
     robust_law laws[CHANGED];
-    say_title(t->scenario);
+    say_title(s);
     say("%s\n%.6g in %zu evaluations of %zu run%s\n\n  %-34s%13s%13s%13s%13s\n",
         found->asked.minimise, found->best.value, found->done, found->each,
         found->each == 1 ? "" : "s", "", "given", "tuned", "-10 % gives", "+10 % gives");
@@ -140,30 +145,26 @@ static void print_answer(const tuner *t)
     }
 }
 
-static int write_results(const tuner *t)
+static int plot(const arguments *a, const scenario *s, const void *found)
 {
-    const arguments *a = t->arguments;
+    char changes[SCENARIO_CHANGES];
+    return publish_owned(
+        a, tune_figure_create(&((const tuner *)found)->tuning, scenario_changes(s, changes)));
+}
+
+static int report(const tuner *t)
+{
+    static const command_results r = {
+        .output = write_best, .json = answer, .plot = plot, .text = print_answer};
     const tuning *found = &t->tuning;
-    int code = write_file(a->output, write_best, found);
-    if (a->json != NULL) {
-        code = worse(code, write_json(a->json, answer(t)));
+    const int code = write_results(t->arguments, &r, t->scenario, t, true);
+    if (found->best.rank < TUNE_REFUSED) {
+        return code;
     }
-    if (a->plot != NULL) {
-        char changes[SCENARIO_CHANGES];
-        owned_figure *drawn = tune_figure_create(found, scenario_changes(t->scenario, changes));
-        code = worse(code, publish_figure(a, &drawn->figure));
-        owned_figure_destroy(drawn);
-    }
-    if (summary_wanted(a)) {
-        print_answer(t);
-    }
-    if (found->best.rank >= TUNE_REFUSED) {
-        complain("none of the %zu evaluations %s", found->done,
-                 isfinite(found->best.value) ? "meets --subject"
-                                             : "can be judged: in each, runs fail or never settle");
-        code = worse(code, EXIT_FAILED);
-    }
-    return code;
+    complain("none of the %zu evaluations %s", found->done,
+             isfinite(found->best.value) ? "meets --subject"
+                                         : "can be judged: in each, runs fail or never settle");
+    return worse(code, EXIT_FAILED);
 }
 
 static int search(tuner *t)
@@ -171,19 +172,15 @@ static int search(tuner *t)
     const arguments *a = t->arguments;
     fault f = {0};
     sweep_store *store = NULL;
-    const bool bar = many_runs_shows_progress(a);
-    sweep_options options = {.jobs = many_runs_jobs(a), .report = bar ? many_runs_progress : NULL};
-    many_runs_catch_signals(&options);
+    const sweep_options options = many_runs_begin(a, NULL);
     t->tuning.improved = keep_best;
-    t->tuning.context = (void *)a->output;
+    t->tuning.context = t;
 
     status code = sweep_store_open(&store, a->db, &t->tuning.plan, &f);
     code = code == STATUS_OK ? tune_run(&t->tuning, store, &options, &f) : code;
     sweep_store_close(store);
     code = code == STATUS_OK ? judge_rows(t, &options, &f) : code;
-    if (bar) {
-        many_runs_clear_progress();
-    }
+    many_runs_end(&options);
     if (code == STATUS_STOPPED) {
         if (a->output != NULL && strcmp(a->output, "-") != 0 &&
             t->tuning.best.rank < TUNE_REFUSED) {
@@ -191,7 +188,7 @@ static int search(tuner *t)
         }
         return many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count);
     }
-    return code == STATUS_OK ? write_results(t) : complain_fault(&f);
+    return code == STATUS_OK ? report(t) : complain_fault(&f);
 }
 
 static int tune(const arguments *a, scenario *s)
@@ -237,12 +234,11 @@ static const option_row rows[] = {
            PLACE(output), .letter = 'o'),
     PLOT_OPTION("draw what each evaluation came to, and the least so far"),
 };
-static const option_table options = OPTION_TABLE("Options", rows);
 
 const command tune_command = {
     .name = "tune",
     .group = GROUP_CONTROL,
-    .operands = "SCENARIO",
+    ONE_SCENARIO,
     .summary = "Values of parameters that make an expression of results smallest",
     .help =
         "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over those of robust "
@@ -254,10 +250,7 @@ const command tune_command = {
         "each number a tenth lower and\nhigher. The file of -o is whole at every instant; with "
         "--db the same command goes on where a search\nwas stopped. The exit status is 1 if no "
         "values meet --subject.\n",
-    .least = 1,
-    .most = 1,
-    .takes_scenarios = true,
-    .options = {&set_options, &vary_options, &json_options, &options, &quiet_options,
+    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = tune,
 };
