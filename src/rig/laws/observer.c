@@ -34,7 +34,8 @@ static const controller_parameter table[PARAMETERS] = {
 };
 
 // The numbers of the law, derived in docs/explanation/control-design.md.
-#define GUARD_TIME      0.08  // in which a wall that is nearer than believed is looked for [s]
+#define GUARD_BEFORE    0.08  // in which a wall that is nearer than believed is looked for [s],
+#define GUARD_AFTER     0.03  // and one that is further
 #define BIAS_TIME       0.1   // over which the error of the estimated force is averaged [s]
 #define MOST_CORRECTION 0.3   // that it may add to the force aimed at, a share
 #define LOST_AFTER      4e-3  // without a reading that shows force contact is lost [s]
@@ -555,10 +556,10 @@ static void sample(void *memory, const controller_input *in, controller_output *
         if (m->hurries) {
             observer_arms_know_wall(&m->arms, m->rig.wall_angle);
         }
-        const double doubt = fmin(m->p[WALL_DOUBT], GUARD_TIME * design_of(m)->arrival_speed);
+        const double soft = design_of(m)->arrival_speed, doubt = m->p[WALL_DOUBT];
         m->plan = (smooth_approach){.period = m->rig.period,
-                                    .guarded = m->rig.wall_angle - doubt,
-                                    .passed = m->rig.wall_angle + doubt};
+                                    .guarded = m->rig.wall_angle - fmin(doubt, GUARD_BEFORE * soft),
+                                    .passed = m->rig.wall_angle + fmin(doubt, GUARD_AFTER * soft)};
         smooth_approach_begin(&m->plan, design_of(m), in->encoder);
     } else {
         m->felt = in->force > m->p[THRESHOLD] ? m->felt + 1 : 0;

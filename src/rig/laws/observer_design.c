@@ -175,8 +175,9 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
 #define AS_STIFF  1.25      // ratio of stiffnesses up to which an arm is one with that told of
 #define HUB_GIVES (1.0 / 6) // of the beam's compliance at the wall, that of a hub on a spring
 #define NO_DOUBT  28        // of -2 log likelihood, 2 log(1e6),
-#define NO_SPRING 100 // more of it for a wall that gives, as a tip that bounces looks like one,
-#define NO_MASS   30  // and for a mass at the tip, as a wrong inertia does
+#define NO_MORE                                                                                    \
+    30 // more of it for a wall that gives, which a tip that bounces looks like,
+       // and for a mass at the tip, which a wrong inertia looks like
 
 const observer_design *observer_arms_design(const observer_arms *a)
 {
@@ -282,8 +283,7 @@ bool observer_arms_choose(observer_arms *a)
     double least = observer_arms_observer(a)->missed - NO_DOUBT;
     for (int i = 0; i < count; i++) {
         const bool gives = i >= a->giving && i < a->loaded;
-        const double more = gives ? NO_SPRING : i >= a->loaded ? NO_MASS : 0;
-        const double missed = a->arms[i].observer.missed + more;
+        const double missed = a->arms[i].observer.missed + (i >= a->giving ? NO_MORE : 0);
         if (missed < least && !(gives && a->thrown)) {
             best = i;
             least = missed;
