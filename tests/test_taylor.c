@@ -89,7 +89,7 @@ TEST(the_series_solve_the_equations_all_over_the_stride)
         // strides that something cuts short take lower orders
         for (double remaining = 0.1; remaining > 1e-4; remaining /= 3) {
             motion_end_stride(moving.motion);
-            double h = motion_begin_stride(&moving.arm, moving.motion, remaining, 1e-3);
+            double h = moving.motion->engine->advance(&moving.arm, moving.motion, remaining, 1e-3);
             assert_true(h > 0 && h <= remaining);
             for (int k = 0; k <= PLACES; k++) {
                 check_place(&moving, h * k / PLACES);
@@ -109,7 +109,7 @@ TEST(instants_together_are_those_one_by_one)
         const arm *a = &moving.arm;
         SCOPED(motion_destroy_kept) motion *m = moving.motion;
         taylor_limit_width(1 << i % 4);
-        double h = motion_begin_stride(a, m, 0.1, 1e-3), times[PLACES], *now = m->state;
+        double h = m->engine->advance(a, m, 0.1, 1e-3), times[PLACES], *now = m->state;
         state_energy energies[PLACES];
         for (int k = 0; k < PLACES; k++) {
             times[k] = h * (k + 1) / PLACES;
@@ -149,7 +149,7 @@ TEST(orders_agree_and_the_ledger_closes)
         m->record.start_energy =
             chain_kinetic_energy(&moving.arm, q, state_velocities(m, m->state)) +
             chain_strain_energy(&moving.arm, q);
-        double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3),
+        double h = m->engine->advance(&moving.arm, m, 0.1, 1e-3),
                whole[SLOT_COUNT + 4 * 3 + QUADRATURE_COUNT + KEPT_COUNT];
         assert_int_equal(motion_try_step(&moving.arm, m, h), STATUS_OK);
         check_below(fabs(motion_energy_residual(&moving.arm, m, m->trial)), 1e-12);
@@ -160,7 +160,7 @@ TEST(orders_agree_and_the_ledger_closes)
             while (m->state[SLOT_TIME] < h * k / 8 - 1e-15) {
                 double left = h * k / 8 - m->state[SLOT_TIME];
                 motion_end_stride(m);
-                double step = motion_begin_stride(&moving.arm, m, left, 1e-3);
+                double step = m->engine->advance(&moving.arm, m, left, 1e-3);
                 assert_int_equal(motion_try_step(&moving.arm, m, step), STATUS_OK);
                 memcpy(m->state, m->trial, (size_t)m->size * sizeof(double));
                 strides++;
@@ -248,7 +248,7 @@ TEST(the_bounds_hold)
         if (motion_held_still(m)) {
             continue;
         }
-        double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3);
+        double h = m->engine->advance(&moving.arm, m, 0.1, 1e-3);
         looked_at++;
         bool contact = m->state[SLOT_CONTACT] != 0, stuck = m->state[SLOT_FRICTION] == HUB_STICK;
         const event_function watched[] = {contact ? EVENT_OF_FORCE : EVENT_OF_GAP,
@@ -298,7 +298,7 @@ TEST(known_roots_are_the_first)
         if (motion_held_still(m)) {
             continue;
         }
-        const double h = motion_begin_stride(&moving.arm, m, 0.1, 1e-3);
+        const double h = m->engine->advance(&moving.arm, m, 0.1, 1e-3);
         const taylor_stride *s = m->memory;
         const bool contact = m->state[SLOT_CONTACT] != 0;
         const event_function watched[] = {contact ? EVENT_OF_FORCE : EVENT_OF_GAP, EVENT_OF_HUB};

@@ -16,63 +16,61 @@ void chain_node(const arm *a, const double *q, int k, double *x, double *y)
     }
 }
 
-// Geometry of contact at q, w.
-static wall_contact contact_of(const arm *a, const double *q, const double *w, double *vx,
-                               double *vy)
-{
-    int last = a->first + a->links - 1;
+// Geometry of contact at q, w: how the wall meets the last link, the link's entry of dg/dq, and the
+// velocity of its base.
+typedef struct tip_contact {
+    wall_contact wall;
+    double lever, vx, vy;
+} tip_contact;
 
-    // the last link's base
-    double x = 0, y = 0;
-    *vx = *vy = 0;
+static tip_contact contact_of(const arm *a, const double *q, const double *w)
+{
+    const int last = a->dof - 1;
+    tip_contact at = {.vx = 0, .vy = 0};
+    double x = 0, y = 0, c, s;
     for (int k = a->first; k < last; k++) {
-        const double c = inline_cos(q[k]), s = inline_sin(q[k]);
         const double l = arm_link_length(a, k - a->first);
+        inline_sincos(q[k], &s, &c);
         x += l * c;
         y += l * s;
-        *vx -= l * s * w[k];
-        *vy += l * c * w[k];
+        at.vx -= l * s * w[k];
+        at.vy += l * c * w[k];
     }
-
-    return wall_contact_at(&a->wall, arm_link_length(a, a->links - 1), x, y, *vx, *vy,
-                           inline_cos(q[last]), inline_sin(q[last]), w[last]);
+    const double l = arm_link_length(a, a->links - 1);
+    inline_sincos(q[last], &s, &c);
+    at.wall = wall_contact_at(&a->wall, l, x, y, at.vx, at.vy, c, s, w[last]);
+    at.lever = wall_last_lever(&at.wall, l, c, s);
+    return at;
 }
 
 double chain_penetration_rate(const arm *a, const double *q, const double *v)
 {
     if (pair_suits(a)) {
-        return pair_penetration_rate(a, q, v);
+        const pair_contact at = pair_contact_at(a, q);
+        return at.j1 * v[0] + at.j2 * v[1];
     }
-    double vx, vy;
-    int last = a->first + a->links - 1;
-    wall_contact wall = contact_of(a, q, v, &vx, &vy);
-    const double l = arm_link_length(a, a->links - 1);
-    double lever = wall_last_lever(&wall, l, inline_cos(q[last]), inline_sin(q[last]));
-    return wall_penetration_rate(&wall, vx, vy, lever, v[last]);
+    const tip_contact at = contact_of(a, q, v);
+    return wall_penetration_rate(&at.wall, at.vx, at.vy, at.lever, v[a->dof - 1]);
 }
 
 void chain_penetration(const arm *a, const double *q, const double *w, double *g, double *rate)
 {
-    if (!wall_stands(&a->wall)) {
-        if (g != NULL) {
-            *g = -HUGE_VAL;
-        }
-        if (rate != NULL) {
-            *rate = 0;
-        }
-        return;
+    double depth = -HUGE_VAL, comes = 0;
+    if (pair_suits(a)) {
+        const pair_contact at = pair_contact_at(a, q);
+        depth = -at.gap;
+        comes = at.j1 * w[0] + at.j2 * w[1];
+    } else if (wall_stands(&a->wall)) {
+        const tip_contact at = contact_of(a, q, w);
+        depth = at.wall.penetration;
+        comes = wall_penetration_rate(&at.wall, at.vx, at.vy, at.lever, w[a->dof - 1]) +
+                wall_comes(&a->wall, at.wall.ex, at.wall.ey);
     }
-
-    double vx, vy;
     if (g != NULL) {
-        *g = pair_suits(a) ? pair_penetration(a, q) : contact_of(a, q, w, &vx, &vy).penetration;
+        *g = depth;
     }
     if (rate != NULL) {
-        *rate = chain_penetration_rate(a, q, w);
-        if (wall_moves(&a->wall)) {
-            const wall_contact at = contact_of(a, q, w, &vx, &vy);
-            *rate += wall_comes(&a->wall, at.ex, at.ey);
-        }
+        *rate = comes;
     }
 }
 
@@ -95,7 +93,8 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
     double pxx = a->tip_mass, pxy = 0, pyy = a->tip_mass, fx = ex, fy = ey;
     for (int k = a->links - 1; k >= 0; k--) {
         const double l = arm_link_length(a, k), m = arm_link_mass(a, k), half = 0.5 * l;
-        double c = inline_cos(q[a->first + k]), s = inline_sin(q[a->first + k]);
+        double c, s;
+        inline_sincos(q[a->first + k], &s, &c);
         double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c;
         double ux = l * ptx - m * half * s, uy = l * pty + m * half * c;
         double d = arm_link_inertia(a, k) + m * half * half + l * l * (c * pty - s * ptx);
@@ -133,8 +132,7 @@ void chain_contact_response(const arm *a, chain_link *work, const double *q, boo
         pair_contact_response(a, q, hub_locked, response, compliance);
         return;
     }
-    double vx, vy;
-    wall_contact wall = contact_of(a, q, q, &vx, &vy); // velocities play no part here
+    const wall_contact wall = contact_of(a, q, q).wall; // velocities play no part here
     unit_response(a, work, q, wall.ex, wall.ey, wall.lever, hub_locked, response);
     *compliance = -chain_penetration_rate(a, q, response);
 }

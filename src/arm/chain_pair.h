@@ -122,18 +122,6 @@ static inline void pair_accelerations(const arm *a, const double *q, const doubl
     };
 }
 
-// chain_penetration_rate of a pair [m/s], and the penetration itself [m].
-static inline double pair_penetration_rate(const arm *a, const double *q, const double *w)
-{
-    const pair_contact at = pair_contact_at(a, q);
-    return at.j1 * w[0] + at.j2 * w[1];
-}
-
-static inline double pair_penetration(const arm *a, const double *q)
-{
-    return -pair_contact_at(a, q).gap;
-}
-
 // chain_contact_response of a pair: [1/(kg m)], and the compliance J M^-1 J^T [1/kg].
 static inline void pair_contact_response(const arm *a, const double *q, bool hub_locked,
                                          double *response, double *compliance)

@@ -103,8 +103,7 @@ double wall_face_energy(const wall_model *w, wall_face face)
     return 0.5 * w->face_mass * moves * moves + wall_stored_energy(w, fabs(face.position));
 }
 
-// --- one that its foundation shakes
-// ---------------------------------------------------------------
+// --- one that its foundation shakes -------------------------------------------------------------
 
 // The series of wall_motion.h and of what follows from it are this long; at a phase of one their
 // rest is less than a last bit.
@@ -218,8 +217,7 @@ double wall_face_work(const wall_model *w, wall_face face, double h)
     return work;
 }
 
-// --- its motion
-// -----------------------------------------------------------------------------------
+// --- its motion ---------------------------------------------------------------------------------
 
 // Without a mass as wall.h has it. x'' + 2 d x' + w0^2 x = 0 has x(h) = x0 C + (x0' + d x0) S and
 // x'(h) = x0' C - (d x0' + w0^2 x0) S with C = e^-dh cos(sh), S = e^-dh sin(sh)/s, s^2 = w0^2 -

@@ -178,7 +178,7 @@ static double left_of_stride(motion *m)
 static void examine(const arm *a, motion *m, double until, double far, double step)
 {
     const double now = m->state[SLOT_TIME];
-    double h = motion_begin_stride(a, m, until - now, step);
+    double h = m->engine->advance(a, m, until - now, step);
     const bool begun = h > 0;
     if (begun && far > until) {
         h = larger(smaller(left_of_stride(m), far - now), h);
@@ -290,7 +290,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     if (engine_is_dense(m->engine)) {
         s = dense_stride(a, m, until, step, &h, &first, &any);
     } else {
-        double wanted = motion_begin_stride(a, m, until - m->state[SLOT_TIME], step);
+        double wanted = m->engine->advance(a, m, until - m->state[SLOT_TIME], step);
         h = wanted;
         s = tried_step(a, m, step, wanted, &h, &first, &any);
     }

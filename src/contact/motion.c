@@ -10,6 +10,10 @@
 // The remainders of decays change little within this share of the time since the event.
 #define GRADING 0.2
 
+// Drift from the contact constraint beyond which a state is projected back onto it.
+#define PROJECTION_GAP  1e-14 // [m]
+#define PROJECTION_RATE 1e-13 // [m/s]
+
 // A link that friction holds so near the wall rests on it [m].
 #define RESTING_GAP 1e-12
 
@@ -176,8 +180,9 @@ double motion_energy_residual(const arm *a, const motion *m, double *state)
 bool motion_project(const arm *a, motion *m, double *state)
 {
     const bool locked = contact_state_of(state).friction == HUB_STICK && m->dof > 1;
-    if ((m->dof == 1 && !m->wall_moves) ||
-        !motion_drifted(state[SLOT_GAP], state[SLOT_GAP_VELOCITY])) {
+    const bool drifted = !(fabs(state[SLOT_GAP]) <= PROJECTION_GAP &&
+                           fabs(state[SLOT_GAP_VELOCITY]) <= PROJECTION_RATE);
+    if ((m->dof == 1 && !m->wall_moves) || !drifted) {
         return false;
     }
     a = motion_arm_at(a, m, state[SLOT_TIME]);
@@ -198,11 +203,6 @@ bool motion_project(const arm *a, motion *m, double *state)
     }
     motion_evaluate(a, m, state);
     return true;
-}
-
-double motion_begin_stride(const arm *a, motion *m, double remaining, double step)
-{
-    return motion_held_still(m) ? remaining : m->engine->advance(a, m, remaining, step);
 }
 
 // A step of an arm that is held still: only time passes.

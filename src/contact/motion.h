@@ -12,10 +12,6 @@
 #include "src/base/fault.h"
 #include "src/contact/engine.h"
 
-// Drift from the contact constraint beyond which a state is projected back onto it.
-#define PROJECTION_GAP  1e-14 // [m]
-#define PROJECTION_RATE 1e-13 // [m/s]
-
 // The most states within a step that are evaluated together.
 enum { MOTION_TOGETHER = 8 };
 
@@ -315,10 +311,6 @@ static inline bool motion_held_still(const motion *m)
     return state_is_held_still(m, m->state);
 }
 
-// Begins a stride from m->state that is not to go beyond `remaining` [s]; `step` as
-// engine.advance has it. Returns its length [s]: all that remains for an arm that is held still.
-double motion_begin_stride(const arm *a, motion *m, double remaining, double step);
-
 // Computes the state at h in the stride in hand into m->trial, updates its energy ledger and checks
 // that it is finite. Stepping engines need no stride: they step from m->state.
 status motion_try_step(const arm *a, motion *m, double h);
@@ -339,13 +331,6 @@ static inline value_and_slope motion_output(const arm *a, motion *m, output_quan
 // False if the engine cannot; then motion_between of contact_machine.h gives them one by one.
 bool motion_between_all(const arm *a, motion *m, const double *times, int count,
                         state_energy *energies);
-
-// Whether a state in contact has drifted by rounding so far from its constraint, by a gap [m] and
-// its rate [m/s], that it must be projected back.
-static inline bool motion_drifted(double gap, double rate)
-{
-    return !(fabs(gap) <= PROJECTION_GAP && fabs(rate) <= PROJECTION_RATE);
-}
 
 // Puts an evaluated state in contact back onto the constraint, position and velocity, along
 // M^-1 J^T: the nearest admissible state in the metric of the kinetic energy. Evaluates it again if

@@ -35,7 +35,6 @@ static size_t lay_out(stiff_stride *s, const arm *a, char *base)
     p->stage = room(&base, &used, n * sizeof *p->stage);
     p->body = room(&base, &used, links * sizeof *p->body);
     p->pivot = room(&base, &used, links * sizeof *p->pivot);
-    p->rhs = room(&base, &used, n * sizeof *p->rhs);
     p->y = room(&base, &used, n * sizeof *p->y);
     for (size_t i = 0; i <= modes; i++) {
         p->border[i] = room(&base, &used, n * sizeof *p->y);

@@ -19,7 +19,7 @@ static void differences(const stiff_step *s, double *x, double *v)
 static double correct(stiff_step *s)
 {
     for (int k = 0; k < s->dof; k++) {
-        s->rhs[k] = scaled(-1, to_systems(s->stage[k].r));
+        s->y[k] = scaled(-1, to_systems(s->stage[k].r));
     }
     complex_lanes target = number(0);
     if (s->contact == STIFF_RIGID) {

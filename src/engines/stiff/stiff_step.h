@@ -121,7 +121,7 @@ typedef struct stiff_step {
     stiff_complex hub_inverse, press;     // press: of a wall that gives, f/(J y)
     double wall_damping;                  // of a wall that gives, there [N s/m]
     double *jacobian;                     // J [dof]
-    stiff_complex *rhs, *y;               // [dof]
+    stiff_complex *y;                     // right side, then solution [dof]
     stiff_complex *border[STIFF_BORDERS]; // the contact's last [dof]
     stiff_complex corner[STIFF_BORDERS][STIFF_BORDERS], unknown[STIFF_BORDERS];
 } stiff_step;

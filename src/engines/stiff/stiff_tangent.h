@@ -187,13 +187,11 @@ static void factor(stiff_step *s)
     }
 }
 
+// y of the right side that stands there, with its borders.
 static void solve(stiff_step *s, const complex_lanes *target)
 {
     const int count = stiff_borders(s);
     complex_lanes *x = s->unknown;
-    for (int k = 0; k < s->dof; k++) {
-        s->y[k] = s->rhs[k];
-    }
     solve_bare(s, s->y);
     for (int i = 0; i < count; i++) {
         const complex_lanes sum = along(s, stiff_border_row(s, i), s->y);
