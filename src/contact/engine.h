@@ -41,6 +41,21 @@
 
 typedef struct motion motion;
 
+// Divides one block of memory into parts, each on cache lines of its own. Adding parts without a
+// block first gives the size that the block needs.
+enum { CACHE_LINE = 64 }; // [bytes]
+typedef struct layout {
+    char *block;   // NULL: there is none yet
+    size_t length; // [bytes]
+} layout;
+
+static inline void *layout_add(layout *l, size_t size)
+{
+    void *part = l->block != NULL ? l->block + l->length : NULL;
+    l->length += (size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    return part;
+}
+
 // Event functions: each is positive as long as the present contact state can
 // last, and falls below zero where it ends.
 typedef enum event_function {

@@ -13,8 +13,6 @@
 // take a third of a second.
 #define FASTEST_OF_PAIR 2e6
 
-#define CACHE_LINE      64 // [bytes]
-
 // The engine asked for by name, NULL where the arm is to decide.
 static const engine *named_engine(engine_kind name)
 {
@@ -62,66 +60,52 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
     }
 }
 
-// Divides one block of memory into parts, each on cache lines of its own. Adding parts without a
-// block first gives the size that the block needs.
-typedef struct layout {
-    char *block;   // NULL: there is none yet
-    size_t length; // [bytes]
-} layout;
-
-static void *add_part(layout *l, size_t size)
-{
-    void *part = l->block != NULL ? l->block + l->length : NULL;
-    l->length += (size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
-    return part;
-}
-
-// A block that has room for so many bytes from its first whole cache line on, zeroed; NULL if out
-// of memory. Pages of a large one are the system's until they are touched: of many links most never
-// are.
-static void *zeroed_block(size_t length)
-{
-    return calloc(1, length + CACHE_LINE - 1);
-}
-static char *first_line(void *block)
-{
-    const size_t beyond = (uintptr_t)block % CACHE_LINE;
-    return (char *)block + (CACHE_LINE - beyond) % CACHE_LINE;
-}
-
 // Lays out what belongs to the engine.
 static void lay_out_engine(const arm *a, motion *m, layout *l)
 {
     const engine *e = m->engine;
     const size_t state = (size_t)m->size * sizeof(double);
-    m->memory = add_part(l, e->init(a, NULL));
-    m->between = add_part(l, e->states_at != NULL ? MOTION_TOGETHER * state : state);
+    m->memory = layout_add(l, e->init(a, NULL));
+    m->between = layout_add(l, e->states_at != NULL ? MOTION_TOGETHER * state : state);
 }
 
 // Lays out everything else.
 static void lay_out_motion(const arm *a, motion *m, layout *l)
 {
     const size_t state = (size_t)m->most_size * sizeof(double);
-    m->state = add_part(l, state);
-    m->trial = add_part(l, state);
-    m->scratch = add_part(l, 4 * (size_t)a->dof * sizeof(double));
-    m->links = add_part(l, (size_t)a->links * sizeof(chain_link));
-    m->moved = m->wall_moves ? add_part(l, sizeof *m->moved) : NULL;
+    m->state = layout_add(l, state);
+    m->trial = layout_add(l, state);
+    m->scratch = layout_add(l, 4 * (size_t)a->dof * sizeof(double));
+    m->links = layout_add(l, (size_t)a->links * sizeof(chain_link));
+    m->moved = m->wall_moves ? layout_add(l, sizeof *m->moved) : NULL;
 }
 
-// Allocates the engine's storage; false, with nothing allocated, if out of memory.
-static bool open_engine(const arm *a, motion *m)
+// A zeroed block, in *block, for what a function lays out, from its first whole cache line on;
+// false if out of memory. Pages of a large one are the system's until they are touched: of many
+// links most never are.
+static bool open_block(const arm *a, motion *m, void (*lay_out)(const arm *a, motion *m, layout *l),
+                       void **block)
 {
     layout l = {0};
-    lay_out_engine(a, m, &l);
-    m->engine_block = zeroed_block(l.length);
-    if (m->engine_block == NULL) {
+    lay_out(a, m, &l);
+    *block = calloc(1, l.length + CACHE_LINE - 1);
+    if (*block == NULL) {
         return false;
     }
-    l = (layout){.block = first_line(m->engine_block)};
-    lay_out_engine(a, m, &l);
-    m->engine->init(a, m->memory);
+    const size_t beyond = (uintptr_t)*block % CACHE_LINE;
+    l = (layout){.block = (char *)*block + (CACHE_LINE - beyond) % CACHE_LINE};
+    lay_out(a, m, &l);
     return true;
+}
+
+// The engine's storage, ready; false, with nothing allocated, if out of memory.
+static bool open_engine(const arm *a, motion *m)
+{
+    const bool opened = open_block(a, m, lay_out_engine, &m->engine_block);
+    if (opened) {
+        m->engine->init(a, m->memory);
+    }
+    return opened;
 }
 
 // Numbers in a state of an engine.
@@ -159,14 +143,7 @@ motion *motion_create_by(const arm *a, const method_parameters *method, const en
     m->most_size = most_size(a, m);
 
     // its storage: all of it or none
-    layout l = {0};
-    lay_out_motion(a, m, &l);
-    m->block = zeroed_block(l.length);
-    if (m->block != NULL) {
-        l = (layout){.block = first_line(m->block)};
-        lay_out_motion(a, m, &l);
-    }
-    if (m->block == NULL || !open_engine(a, m)) {
+    if (!open_block(a, m, lay_out_motion, &m->block) || !open_engine(a, m)) {
         motion_destroy(m);
         return NULL;
     }

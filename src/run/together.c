@@ -14,7 +14,7 @@
 // lanes to 96 %, few enough to stay in the second cache.
 enum { IN_HAND = 24 };
 
-enum { CACHE_LINE = 64, SUMMARY_SHARE = 128 }; // [bytes]; of the summary, what strides add to
+enum { SUMMARY_SHARE = 128 }; // of the summary, what strides add to [bytes]
 
 // One of the runs that go side by side.
 typedef struct side_run {

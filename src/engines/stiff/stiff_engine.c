@@ -16,55 +16,38 @@
 
 #define LEAST_LEFT 1e-13 // share of a step that is gone on with
 
-// --- storage -------------------------------------------------------------------------------------
-
-// Hands out room after room; without a place to begin it only adds up what they need.
-static void *room(char **at, size_t *used, size_t size)
-{
-    void *here = *at != NULL ? *at + *used : NULL;
-    *used += (size + 63) / 64 * 64;
-    return here;
-}
-
-// Lays out the memory that begins at `base`; returns its size.
-static size_t lay_out(stiff_stride *s, const arm *a, char *base)
-{
-    const size_t n = (size_t)a->dof, links = (size_t)a->links, modes = (size_t)a->damped_modes;
-    stiff_step *p = &s->step;
-    size_t used = (sizeof *s + 63) / 64 * 64;
-    p->stage = room(&base, &used, n * sizeof *p->stage);
-    p->body = room(&base, &used, links * sizeof *p->body);
-    p->pivot = room(&base, &used, links * sizeof *p->pivot);
-    p->y = room(&base, &used, n * sizeof *p->y);
-    for (size_t i = 0; i <= modes; i++) {
-        p->border[i] = room(&base, &used, n * sizeof *p->y);
-    }
-    p->link = room(&base, &used, links * sizeof *p->link);
-    p->mode = room(&base, &used, (modes * n + 1) * sizeof(double));
-    p->jacobian = room(&base, &used, n * sizeof(double));
-    p->q0 = room(&base, &used, n * sizeof(double));
-    p->w0 = room(&base, &used, n * sizeof(double));
-    p->a0 = room(&base, &used, n * sizeof(double));
-    for (int i = 0; i < 4; i++) {
-        s->scratch[i] = room(&base, &used, 2 * n * sizeof(double));
-    }
-    s->kept = room(&base, &used, (KEPT_COUNT + stiff_kept_size(a)) * sizeof(double));
-    s->end = room(&base, &used, (SLOT_COUNT + 4 * n + QUADRATURE_COUNT) * sizeof(double));
-    return used;
-}
-
 static size_t init(const arm *a, void *memory)
 {
+    const size_t n = (size_t)a->dof, links = (size_t)a->links, modes = (size_t)a->damped_modes;
     stiff_stride none, *s = memory != NULL ? memory : &none;
+    stiff_step *p = &s->step;
+    layout l = {.block = memory};
     memset(s, 0, sizeof *s);
     s->loops = &stiff_loops_1;
 #if defined __x86_64__
     s->loops = taylor_width() >= 4 ? &stiff_loops_4 : s->loops;
 #endif
-    return lay_out(s, a, memory);
+    layout_add(&l, sizeof *s);
+    p->stage = layout_add(&l, n * sizeof *p->stage);
+    p->body = layout_add(&l, links * sizeof *p->body);
+    p->pivot = layout_add(&l, links * sizeof *p->pivot);
+    p->y = layout_add(&l, n * sizeof *p->y);
+    for (size_t i = 0; i <= modes; i++) {
+        p->border[i] = layout_add(&l, n * sizeof *p->y);
+    }
+    p->link = layout_add(&l, links * sizeof *p->link);
+    p->mode = layout_add(&l, (modes * n + 1) * sizeof(double));
+    p->jacobian = layout_add(&l, n * sizeof(double));
+    p->q0 = layout_add(&l, n * sizeof(double));
+    p->w0 = layout_add(&l, n * sizeof(double));
+    p->a0 = layout_add(&l, n * sizeof(double));
+    for (int i = 0; i < 4; i++) {
+        s->scratch[i] = layout_add(&l, 2 * n * sizeof(double));
+    }
+    s->kept = layout_add(&l, (KEPT_COUNT + stiff_kept_size(a)) * sizeof(double));
+    s->end = layout_add(&l, (SLOT_COUNT + 4 * n + QUADRATURE_COUNT) * sizeof(double));
+    return l.length;
 }
-
-// --- a step in hand ------------------------------------------------------------------------------
 
 // Goes on in the step that the state keeps.
 static void take_up(stiff_stride *s, const arm *a, motion *m)
