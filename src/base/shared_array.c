@@ -1,132 +1,28 @@
 #include "src/base/shared_array.h"
 
 #include <assert.h>
-#include <fcntl.h>
-#include <linux/falloc.h>
-#include <pthread.h>
+#include <errno.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 enum { LEAST_ELEMENTS = 64 };
 
-// All chunks of the program lie in one file without a name. An array maps those that it has side by
-// side, so that its elements are an ordinary array.
-static struct {
-    pthread_mutex_t lock;
-    int file;         // -1: not made yet
-    uint32_t *users;  // of each chunk; 0: it has no memory
-    uint32_t *unused; // chunks without users, a stack
-    size_t count, capacity, unused_count;
-} pool = {.lock = PTHREAD_MUTEX_INITIALIZER, .file = -1};
+// Memory that arrays map side by side, so that their elements are an ordinary array. It goes back
+// when the last mapping of it does.
+struct array_chunk {
+    atomic_size_t users; // arrays that have it
+};
 
-// --- chunks -----------------------------------------------------------------------------------
-
-static off_t place_of(uint32_t chunk)
-{
-    return (off_t)chunk * ARRAY_CHUNK;
-}
-
-// Finds a chunk that nobody uses, or adds a new one to the file; the caller holds the lock.
-static bool unused_chunk(uint32_t *chunk)
-{
-    if (pool.unused_count > 0) {
-        *chunk = pool.unused[--pool.unused_count];
-        return true;
-    }
-
-    // tables for its number
-    if (pool.file < 0) {
-        pool.file = memfd_create("impactlab rows", MFD_CLOEXEC);
-    }
-    if (pool.count == pool.capacity) {
-        size_t capacity = pool.capacity ? 2 * pool.capacity : 64;
-        uint32_t *users = realloc(pool.users, capacity * sizeof *users);
-        pool.users = users ? users : pool.users;
-        uint32_t *unused = realloc(pool.unused, capacity * sizeof *unused);
-        pool.unused = unused ? unused : pool.unused;
-        if (users == NULL || unused == NULL) {
-            return false;
-        }
-        pool.capacity = capacity;
-    }
-
-    // its place in the file
-    off_t size = place_of((uint32_t)pool.count + 1);
-    if (pool.file < 0 || pool.count >= UINT32_MAX - 1 || ftruncate(pool.file, size) != 0) {
-        return false;
-    }
-    *chunk = (uint32_t)pool.count++;
-    return true;
-}
-
-// A chunk with memory behind it and one user; false if there is none to be had.
-static bool acquire_chunk(uint32_t *chunk)
-{
-    pthread_mutex_lock(&pool.lock);
-    bool got = unused_chunk(chunk);
-
-    // memory is asked for here, where its want is an error and not a signal
-    if (got && fallocate(pool.file, 0, place_of(*chunk), ARRAY_CHUNK) != 0) {
-        pool.unused[pool.unused_count++] = *chunk;
-        got = false;
-    }
-    if (got) {
-        pool.users[*chunk] = 1;
-    }
-    pthread_mutex_unlock(&pool.lock);
-    return got;
-}
-
-static void share_chunk(uint32_t chunk)
-{
-    pthread_mutex_lock(&pool.lock);
-    pool.users[chunk]++;
-    pthread_mutex_unlock(&pool.lock);
-}
-
-// Ends one use of a chunk. After the last its memory goes back and its number can be used again.
-static void release_chunk(uint32_t chunk)
-{
-    pthread_mutex_lock(&pool.lock);
-    if (--pool.users[chunk] == 0) {
-        fallocate(pool.file, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, place_of(chunk),
-                  ARRAY_CHUNK);
-        pool.unused[pool.unused_count++] = chunk;
-    }
-    pthread_mutex_unlock(&pool.lock);
-}
+static atomic_size_t memory; // of all chunks [bytes]
 
 size_t shared_array_memory(void)
 {
-    pthread_mutex_lock(&pool.lock);
-    size_t used = pool.count - pool.unused_count;
-    pthread_mutex_unlock(&pool.lock);
-    return used * ARRAY_CHUNK;
+    return atomic_load(&memory);
 }
 
-// Puts a chunk's memory where the i-th chunk of an array stands.
-static bool map_chunk(const shared_array *a, size_t i, uint32_t chunk)
-{
-    char *at = (char *)a->base + i * ARRAY_CHUNK;
-    return (i + 1) * ARRAY_CHUNK <= a->reserved &&
-           mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, pool.file,
-                place_of(chunk)) != MAP_FAILED;
-}
-
-// Puts a chunk behind the end of an array, which has room for its number. On failure it is
-// released.
-static bool append_chunk(shared_array *a, uint32_t chunk)
-{
-    if (!map_chunk(a, a->chunk_count, chunk)) {
-        release_chunk(chunk);
-        return false;
-    }
-    a->chunks[a->chunk_count++] = chunk;
-    a->capacity = a->chunk_count * ARRAY_CHUNK / a->size;
-    return true;
-}
+// --- chunks -----------------------------------------------------------------------------------
 
 // Makes room for the number of one more chunk.
 static bool reserve_number(shared_array *a)
@@ -135,12 +31,61 @@ static bool reserve_number(shared_array *a)
         return true;
     }
     size_t capacity = a->chunk_capacity ? 2 * a->chunk_capacity : 16;
-    uint32_t *chunks = realloc(a->chunks, capacity * sizeof *chunks);
+    array_chunk **chunks = realloc(a->chunks, capacity * sizeof *chunks);
     if (chunks == NULL) {
         return false;
     }
     a->chunks = chunks;
     a->chunk_capacity = capacity;
+    return true;
+}
+
+// Maps memory of its own at a place; NULL if there is none to be had.
+static array_chunk *map_chunk(void *at)
+{
+    array_chunk *chunk = malloc(sizeof *chunk);
+    bool mapped = chunk != NULL && mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE,
+                                        MAP_SHARED | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == at;
+
+    // memory is asked for here, where its want is an error and not a signal; an old kernel cannot
+    mapped = mapped && (madvise(at, ARRAY_CHUNK, MADV_POPULATE_WRITE) == 0 || errno == EINVAL);
+    if (!mapped) {
+        free(chunk);
+        return NULL;
+    }
+    atomic_init(&chunk->users, 0);
+    atomic_fetch_add(&memory, ARRAY_CHUNK);
+    return chunk;
+}
+
+// Puts a chunk behind the end of an array: memory of its own, or that of the same chunk of `from`.
+static bool append_chunk(shared_array *a, const shared_array *from)
+{
+    const size_t place = a->chunk_count * ARRAY_CHUNK;
+    char *at = (char *)a->base + place, *there = from != NULL ? (char *)from->base + place : NULL;
+    if (place + ARRAY_CHUNK > a->reserved || !reserve_number(a)) {
+        return false;
+    }
+
+    // memory of the size 0 that becomes larger is mapped a second time; valgrind knows no such call
+    // and gets a copy
+    array_chunk *chunk = NULL;
+    if (from != NULL &&
+        mremap(there, 0, ARRAY_CHUNK, MREMAP_MAYMOVE | MREMAP_FIXED, at) != MAP_FAILED) {
+        chunk = from->chunks[a->chunk_count];
+    } else if (from == NULL || errno == EINVAL) {
+        chunk = map_chunk(at);
+        if (chunk != NULL && from != NULL) {
+            memcpy(at, there, ARRAY_CHUNK);
+        }
+    }
+    if (chunk == NULL) {
+        return false;
+    }
+
+    atomic_fetch_add(&chunk->users, 1);
+    a->chunks[a->chunk_count++] = chunk;
+    a->capacity = a->chunk_count * ARRAY_CHUNK / a->size;
     return true;
 }
 
@@ -196,8 +141,7 @@ bool shared_array_grow(shared_array *a, size_t count)
         return count <= a->capacity || grow_plain(a, count);
     }
     while (count > a->capacity) {
-        uint32_t chunk;
-        if (!reserve_number(a) || !acquire_chunk(&chunk) || !append_chunk(a, chunk)) {
+        if (!append_chunk(a, NULL)) {
             return false;
         }
     }
@@ -212,11 +156,7 @@ bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 
     // chunks that are full will not change any more
     for (size_t i = 0; i < shared; i++) {
-        if (!reserve_number(a)) {
-            return false;
-        }
-        share_chunk(from->chunks[i]);
-        if (!append_chunk(a, from->chunks[i])) {
+        if (!append_chunk(a, from)) {
             return false;
         }
     }
@@ -238,7 +178,10 @@ void shared_array_finish(shared_array *a)
     if (a->reserved > 0) {
         munmap(a->base, a->reserved);
         for (size_t i = 0; i < a->chunk_count; i++) {
-            release_chunk(a->chunks[i]);
+            if (atomic_fetch_sub(&a->chunks[i]->users, 1) == 1) {
+                free(a->chunks[i]);
+                atomic_fetch_sub(&memory, ARRAY_CHUNK);
+            }
         }
     } else {
         free(a->base);

@@ -9,16 +9,17 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
 enum { ARRAY_CHUNK = 128 * 1024 }; // [bytes]
+
+typedef struct array_chunk array_chunk;
 
 typedef struct shared_array {
     void *base;      // of the elements
     size_t size;     // of one element [bytes]
     size_t capacity; // elements that there is memory for
     size_t reserved; // address space of a shared array [bytes]; 0: a plain one
-    uint32_t *chunks;
+    array_chunk **chunks;
     size_t chunk_count, chunk_capacity;
 } shared_array;
 
