@@ -20,6 +20,39 @@ static void remove_file(char *const *path)
 #define FILE_FOR_A_WHILE(name, text)                                                               \
     char name##_text[] = text, *name __attribute__((cleanup(remove_file))) = name##_text
 
+// A pane whose line can be typed is kept whole; a line that cannot be is refused with a sentence.
+TEST(long_lines_of_a_view_are_kept_whole_or_refused)
+{
+    FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_long.session");
+    char keys[3 * LINE_TEXT], sum[128] = "force", line[LINE_TEXT], save[LINE_TEXT];
+    while (strlen(sum) < 55) {
+        strcat(sum, "+force");
+    }
+    snprintf(save, sizeof save, ":session save %s<Enter>", path);
+    snprintf(line, sizeof line, "trace %s,20*%s,30*%s,40*%s", sum, sum, sum, sum);
+    const size_t length = strlen(line);
+    assert_in_range(length, LINE_TEXT - 3, LINE_TEXT - 1);
+    {
+        OPEN_EXPLORER(ex, "corrected/first-impact");
+        snprintf(keys, sizeof keys, ":%s<Enter>%s", line, save);
+        press(&ex, keys);
+        assert_false(ex.state.message.warning);
+    }
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    snprintf(keys, sizeof keys, ":session open %s<Enter>", path);
+    press(&ex, keys);
+    assert_false(ex.state.message.warning);
+    const pane *p = &ex.state.panes.pane[PANES_OF_TABLE];
+    assert_int_equal(p->count, 4);
+    assert_int_equal(strlen(signal_table[p->signals[3]].name), strlen(sum) + 3);
+
+    // the same beside others takes more than a line can
+    char longer[LINE_TEXT + 64];
+    snprintf(longer, sizeof longer, "%s+force+force+force+force", line);
+    assert_false(explorer_execute(&ex.state, longer));
+    assert_non_null(strstr(ex.state.message.text, "too long"));
+}
+
 TEST(notes_are_kept_in_time_and_in_sessions)
 {
     FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_notes.session");

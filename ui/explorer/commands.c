@@ -45,7 +45,9 @@ bool explorer_execute(explorer_state *st, const char *line)
     }
 
     // without the blanks at its end
-    snprintf(text, sizeof text, "%s", line);
+    if (snprintf(text, sizeof text, "%s", line) >= LINE_TEXT) {
+        return act_refuse(st, "the line is too long");
+    }
     for (size_t n = strlen(text); n > 0 && isspace((unsigned char)text[n - 1]); n--) {
         text[n - 1] = '\0';
     }
@@ -206,9 +208,8 @@ static bool execute_line(explorer_state *st, const char *path, int number, const
 
     // only what :remember writes is taken from a file
     st->message.at = begin;
-    const bool done = !is_remembered(line + begin) ? act_refuse(st, "this is no setting")
-                      : strlen(line) >= LINE_TEXT  ? act_refuse(st, "the line is too long")
-                                                   : explorer_execute(st, line);
+    const bool done = is_remembered(line + begin) ? explorer_execute(st, line)
+                                                  : act_refuse(st, "this is no setting");
 
     // the place in the file comes before what is wrong
     return done || act_refuse(st, "%s:%d:%d is ignored: %.200s", path, number, st->message.at + 1,

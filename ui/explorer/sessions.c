@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "src/base/numbers.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/session/session_file.h"
@@ -18,15 +19,13 @@ static void add_line(session_file *file, const char *format, ...)
 
 static void add_line(session_file *file, const char *format, ...)
 {
-    char line[LINE_TEXT];
     va_list list;
     va_start(list, format);
-    vsnprintf(line, sizeof line, format, list);
+    char *line = file->line_count < SESSION_FILE_LINES ? decimal_vtext(format, list) : NULL;
     va_end(list);
-    if (file->line_count < SESSION_FILE_LINES) {
-        file->lines[file->line_count] = strdup(line);
-        loss_unless(file->lines[file->line_count] != NULL);
-        file->line_count += file->lines[file->line_count] != NULL;
+    loss_unless(line != NULL || file->line_count == SESSION_FILE_LINES);
+    if (line != NULL) {
+        file->lines[file->line_count++] = line;
     }
 }
 
@@ -35,10 +34,10 @@ static void add_pane(const explorer_state *st, session_file *file, int index, in
 {
     static const char *const views[] = {"trace", "phase", "residual", "spectrum"};
     const pane *p = &st->panes.pane[index];
-    char signals[LINE_TEXT] = "";
+    char signals[PANE_SIGNALS * (LINE_TEXT + 1)] = "";
     for (int k = 0; k < p->count; k++) {
         const size_t used = strlen(signals);
-        snprintf(signals + used, sizeof signals - used, "%s%s", k > 0 ? ", " : " ",
+        snprintf(signals + used, sizeof signals - used, "%s%s", k > 0 ? "," : " ",
                  signal_table[p->signals[k]].name);
     }
     if (index >= PANES_OF_TABLE && p->shown) {
@@ -102,6 +101,21 @@ static void add_looks(const explorer_state *st, session_file *file)
     }
 }
 
+// A line that could not be typed could not be carried out again.
+static status check_lines(const session_file *file, fault *f)
+{
+    for (int i = 0; i < file->line_count; i++) {
+        const size_t length = strlen(file->lines[i]);
+        if (length >= LINE_TEXT) {
+            return fault_set(f, STATUS_CANNOT_WRITE,
+                             "'%.40s...' takes %zu bytes in a session, expected at most %d: show "
+                             "fewer signals in a pane",
+                             file->lines[i], length, LINE_TEXT - 1);
+        }
+    }
+    return STATUS_OK;
+}
+
 static status write_session(explorer_state *st, const char *path, fault *f)
 {
     static session_file file;
@@ -120,7 +134,8 @@ static status write_session(explorer_state *st, const char *path, fault *f)
         snprintf(k->name, sizeof k->name, "%s", pins->runs[i].name);
     }
     add_looks(st, &file);
-    code = whole_file_open(&whole, path, f);
+    code = check_lines(&file, f);
+    code = code == STATUS_OK ? whole_file_open(&whole, path, f) : code;
     if (code == STATUS_OK) {
         session_file_write(whole.stream, &file);
         code = whole_file_commit(&whole, f);
