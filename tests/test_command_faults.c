@@ -175,7 +175,7 @@ static const struct {
     {"compare", "hit.yaml touch.yaml --against hit.yaml", USUAL},
     {"compare", "touch.yaml --vary motor.voltage=1,2 --columns peak_force_N --csv -", ALONE},
     {"solve", "touch.yaml motor.voltage=1:2 peak_force_N<1 --runs 3 --jobs 1", USUAL},
-    {"study", "sensor touch.yaml", USUAL},
+    {"study", "links touch.yaml", USUAL},
     {"study", "methods hit.yaml", TIMED},
     {"calibrate", "touch.yaml --vary control.approach_voltage=1:2:2", USUAL},
     {"robust", "law.yaml --over over.set --runs 2 --jobs 1", USUAL},

@@ -154,14 +154,14 @@ static line make(source *s, const command *c)
     line l = {.words = {strdup(c->name)}, .count = 1};
     const bool study = strcmp(c->name, "study") == 0;
     if (next(s) % 8 > 0 && c->most > 0) {
-        add(&l, strdup(study ? "sensor" : "small.yaml"));
+        add(&l, strdup(study ? "links" : "small.yaml"));
     }
     for (int left = next(s) % 5; left > 0; left--) {
         if (next(s) % 8 == 0) {
             add(&l, next(s) % 6 == 0
                         ? raw_word(s, &l)
                         : strdup(ONE_OF(s, "small.yaml", "small.yaml", "printed.yaml",
-                                        "recipe.yaml", "methods", "sensor", "part.sqlite",
+                                        "recipe.yaml", "methods", "links", "part.sqlite",
                                         "none.yaml", "--", "run", "bash", "4.1")));
         } else {
             add_option(s, &l, c);
