@@ -1,7 +1,6 @@
 // The project's own predictor against the corrected simulation, on the cases of Tables 4.1-4.3.
 #include "src/run/run.h"
 #include "src/predict/linearised.h"
-#include "src/predict/pulse.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

@@ -5,7 +5,6 @@
 // test_predictor_claims [CASES [SEED]]
 #include "src/base/random.h"
 #include "src/predict/linearised.h"
-#include "src/predict/pulse.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 

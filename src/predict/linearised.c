@@ -13,7 +13,7 @@
 // at four instants before the arm stops, and a cubic through them gives peak and delay.
 //
 // The pulse of any other arm, of one that bends far, and of one damped so strongly that the force
-// peaks early, is followed by its engine (pulse.h).
+// peaks early, is followed by its engine (pulse.c).
 #include "src/predict/linearised.h"
 
 #include <assert.h>
@@ -24,7 +24,6 @@
 #include "src/arm/chain.h"
 #include "src/arm/impact.h"
 #include "src/base/sincos.h"
-#include "src/predict/pulse.h"
 #include "src/base/plain_math.h"
 
 enum { PIECES = 3 };
@@ -36,8 +35,7 @@ enum { PIECES = 3 };
 // far from where they are fitted.
 #define MOST_DAMPED 0.5
 
-// The arm with the wall moved to where the arm touches it now.
-static arm touching_now(const arm *a, const double *q)
+arm arm_touching_now(const arm *a, const double *q)
 {
     arm touched = *a;
     double x, y;
@@ -303,24 +301,6 @@ static bool predict_closed_form(const arm *touched, const double *q, const doubl
            fabs(p.bend) < CLOSED_FORM_BEND;
 }
 
-status predict_pulse(const arm *a, const method_parameters *method, const double *q,
-                     const double *w, const voltage_profile *command, bool energies,
-                     prediction *out)
-{
-    assert(a != NULL && method != NULL && q != NULL && w != NULL && out != NULL);
-    assert(command == NULL || command->count == 0 || (command->times && command->volts));
-    *out = prediction_none();
-    if (!wall_stands(&a->wall)) {
-        return STATUS_OK;
-    }
-    const arm touched = touching_now(a, q);
-    const pulse_question question = {.q = q,
-                                     .w = w,
-                                     .command = command != NULL ? *command : (voltage_profile){0},
-                                     .energies = energies};
-    return pulse_follow(&touched, method, &question, out);
-}
-
 status predict_linearised(const arm *a, const method_parameters *method, const double *q,
                           const double *w, prediction *out)
 {
@@ -330,7 +310,7 @@ status predict_linearised(const arm *a, const method_parameters *method, const d
                        wall_stands(&a->wall);
     if (plain) {
         // two links on a rigid hub that goes on towards the wall: the closed form
-        const arm touched = touching_now(a, q);
+        const arm touched = arm_touching_now(a, q);
         double after[2];
         contact_state mode = {.current = 0};
         *out = prediction_none();

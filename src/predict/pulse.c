@@ -1,4 +1,5 @@
-#include "src/predict/pulse.h"
+// The first pulse of a touch, followed by the arm's own engine from the touch on.
+#include "src/predict/linearised.h"
 
 #include <assert.h>
 #include <math.h>
@@ -41,12 +42,13 @@ static double give_commands(arm *a, motion *m, const voltage_profile *command, i
 }
 
 // Puts the arm where it is touched, through the impact. Whether the touch holds.
-static bool touch(const arm *a, motion *m, const pulse_question *question, prediction *out)
+static bool touch(const arm *a, motion *m, const double *q, const double *w, double flows,
+                  prediction *out)
 {
     const double limit = a->motor.current_limit > 0 ? a->motor.current_limit : HUGE_VAL;
-    const double current = a->motor.inductance > 0 ? question->command.current : 0;
+    const double current = a->motor.inductance > 0 ? flows : 0;
     motion_report report = {.event = m->wall_gives ? MOTION_TOUCH : MOTION_IMPACT};
-    motion_start_at(a, m, question->q, question->w, fmax(-limit, fmin(current, limit)));
+    motion_start_at(a, m, q, w, fmax(-limit, fmin(current, limit)));
     if (m->state[SLOT_CONTACT] == 0) {
         motion_apply(a, m, &report);
     }
@@ -56,14 +58,14 @@ static bool touch(const arm *a, motion *m, const pulse_question *question, predi
 }
 
 // Follows the arm in contact to where that ends, to the horizon, or as far as it can be followed.
-static status follow(arm *a, motion *m, const pulse_question *question, seen_energies *seen,
+static status follow(arm *a, motion *m, const voltage_profile *command, seen_energies *seen,
                      prediction *out)
 {
     double before = 0; // the peak some time before the horizon [N]
     int next = 0, steps = 0;
     while (m->state[SLOT_TIME] < PULSE_HORIZON) {
-        double until = fmin(give_commands(a, m, &question->command, &next), PULSE_HORIZON);
-        if (question->energies) {
+        double until = fmin(give_commands(a, m, command, &next), PULSE_HORIZON);
+        if (seen != NULL) {
             see_energies(a, m, seen);
             until = fmin(until, m->state[SLOT_TIME] + ENERGY_ROW);
         }
@@ -91,14 +93,20 @@ static status follow(arm *a, motion *m, const pulse_question *question, seen_ene
     return STATUS_OK;
 }
 
-status pulse_follow(const arm *source, const method_parameters *method,
-                    const pulse_question *question, prediction *out)
+status predict_pulse(const arm *source, const method_parameters *method, const double *q,
+                     const double *w, const voltage_profile *command, bool energies,
+                     prediction *out)
 {
-    assert(source != NULL && method != NULL && question != NULL && out != NULL);
-    arm a = *source;
+    assert(source != NULL && method != NULL && q != NULL && w != NULL && out != NULL);
+    assert(command == NULL || command->count == 0 || (command->times && command->volts));
+    *out = prediction_none();
+    if (!wall_stands(&source->wall)) {
+        return STATUS_OK;
+    }
+    const voltage_profile given = command != NULL ? *command : (voltage_profile){0};
+    arm a = arm_touching_now(source, q);
     method_parameters event = *method;
     event.name = METHOD_EVENT;
-    *out = prediction_none();
     motion *m = motion_create(&a, &event);
     if (m == NULL) {
         return STATUS_NO_MEMORY;
@@ -106,14 +114,14 @@ status pulse_follow(const arm *source, const method_parameters *method,
 
     // numbers only where they are to be relied on
     seen_energies seen = {0};
-    const bool held = touch(&a, m, question, out);
-    const status s = held ? follow(&a, m, question, &seen, out) : STATUS_OK;
+    const bool held = touch(&a, m, q, w, given.current, out);
+    const status s = held ? follow(&a, m, &given, energies ? &seen : NULL, out) : STATUS_OK;
     out->holds = held && s == STATUS_OK && out->doubt == DOUBT_NONE;
     if (out->holds) {
         out->force = m->record.pulse_peak;
         out->delay = m->record.pulse_peak_time;
     }
-    if (out->holds && question->energies && m->state[SLOT_CONTACT] == 0) {
+    if (out->holds && energies && m->state[SLOT_CONTACT] == 0) {
         see_energies(&a, m, &seen);
         const double left = motion_energy(&a, m, m->state).kinetic;
         out->restitution = seen.most_strain > 0 ? (left - seen.kinetic_there) / seen.most_strain

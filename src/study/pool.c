@@ -191,19 +191,14 @@ static bool allocate(pool *p, pool_thread *threads, int count)
     return allocated;
 }
 
-void pool_release_scratch(const pool_work *work, void *scratch)
-{
-    if (work->release != NULL && scratch != NULL) {
-        work->release(scratch);
-    }
-    free(scratch);
-}
-
 // Frees what `allocate` gave.
 static void release(pool *p, pool_thread *threads, int count)
 {
     for (int i = 0; i < count; i++) {
-        pool_release_scratch(p->work, threads[i].scratch);
+        if (p->work->release != NULL && threads[i].scratch != NULL) {
+            p->work->release(threads[i].scratch);
+        }
+        free(threads[i].scratch);
         free(threads[i].result);
     }
     free(p->finished.pieces);

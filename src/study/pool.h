@@ -40,6 +40,3 @@ typedef struct pool_work {
 // Returns when all threads have ended: what collect or tick returned, STATUS_OK also when stopped,
 // or STATUS_NO_MEMORY.
 status pool_run(const pool_work *work, int threads, fault *f);
-
-// Frees a thread's scratch (may be NULL) and what it keeps.
-void pool_release_scratch(const pool_work *work, void *scratch);

@@ -327,15 +327,3 @@ status definition_compare(const char *path, const definition *was, const definit
     return fault_set(f, STATUS_BAD_ARGUMENT, "'%.200s' holds another sweep: %s%s", path, text,
                      count > 4 ? "; and more" : "");
 }
-
-void definition_digest(const definition *d, char digest[SHA256_TEXT])
-{
-    assert(d != NULL && digest != NULL);
-    sha256 h;
-    sha256_init(&h);
-    for (int i = 0; i < d->count; i++) {
-        sha256_add_text(&h, d->lines[i].key);
-        sha256_add_text(&h, d->lines[i].value);
-    }
-    sha256_finish(&h, digest);
-}

@@ -27,9 +27,6 @@ void definition_finish(definition *d);
 // outside_stamp of all that the sweep's runs read.
 void definition_stamp(const sweep *s, char stamp[SHA256_TEXT]);
 
-// A text that two definitions share only if they are equal (SHA-256 of their lines).
-void definition_digest(const definition *d, char digest[SHA256_TEXT]);
-
 // Adds a line with a copy of the value; without memory d->code says so.
 void definition_add(definition *d, const char *key, const char *value);
 
