@@ -72,10 +72,18 @@ int api_done(impactlab_error *error)
     return IMPACTLAB_OK;
 }
 
-int api_missing(impactlab_error *error, const char *argument)
+int api_missing(impactlab_error *error, const char *names, size_t i)
 {
+    for (; i > 0; i--) {
+        names = strchr(names, ',') + 2;
+    }
+    int length = (int)strcspn(names, ",");
+    if (strncmp(names, "handle", (size_t)length) == 0) {
+        names = "scenario";
+        length = (int)strlen(names);
+    }
     return api_fail(error, STATUS_BAD_ARGUMENT,
-                    "the argument %s is NULL, expected what it points to", argument);
+                    "the argument %.*s is NULL, expected what it points to", length, names);
 }
 
 void api_keep_first(void *context, const char *sentence)

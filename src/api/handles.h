@@ -31,13 +31,16 @@ int api_fail(impactlab_error *error, status code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 int api_done(impactlab_error *error);
 
-// A call without something that it cannot do without.
-int api_missing(impactlab_error *error, const char *argument);
-#define API_NEEDS(error, argument) API_NEEDS_CALLED(error, argument, #argument)
-#define API_NEEDS_CALLED(error, argument, name)                                                    \
+// A call without something that it cannot do without: `argument`, the i-th of these names. A handle
+// of a scenario is called that.
+int api_missing(impactlab_error *error, const char *names, size_t i);
+#define API_NEEDS(error, ...)                                                                      \
     do {                                                                                           \
-        if ((argument) == NULL) {                                                                  \
-            return api_missing(error, name);                                                       \
+        const void *const given_[] = {__VA_ARGS__};                                                \
+        for (size_t i_ = 0; i_ < sizeof given_ / sizeof *given_; i_++) {                           \
+            if (given_[i_] == NULL) {                                                              \
+                return api_missing(error, #__VA_ARGS__, i_);                                       \
+            }                                                                                      \
         }                                                                                          \
     } while (0)
 

@@ -11,7 +11,7 @@ int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handl
 {
     API_NEEDS(error, loop);
     *loop = NULL;
-    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, handle);
     if ((flags & ~(IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND)) != 0) {
         return api_fail(error, STATUS_BAD_ARGUMENT,
                         "a loop knows no other flags than KEEP_ROWS and COMMAND");
@@ -103,8 +103,7 @@ int impactlab_loop_command(impactlab_loop *loop, double volts, impactlab_error *
 int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double value,
                              impactlab_error *error)
 {
-    API_NEEDS(error, loop);
-    API_NEEDS(error, path);
+    API_NEEDS(error, loop, path);
     fault f;
     char number[NUMBER_TEXT], room[PARAMETER_TEXT_SIZE];
     const char *text = number;
@@ -121,9 +120,7 @@ int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double valu
 int impactlab_loop_set_text(impactlab_loop *loop, const char *path, const char *text,
                             impactlab_error *error)
 {
-    API_NEEDS(error, loop);
-    API_NEEDS(error, path);
-    API_NEEDS(error, text);
+    API_NEEDS(error, loop, path, text);
     fault f;
     char room[PARAMETER_TEXT_SIZE];
     const int index = api_parameter(path, &text, room, error);
@@ -148,8 +145,7 @@ int impactlab_loop_push(impactlab_loop *loop, double impulse, impactlab_error *e
 int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading,
                                 impactlab_error *error)
 {
-    API_NEEDS(error, loop);
-    API_NEEDS(error, reading);
+    API_NEEDS(error, loop, reading);
 
     // the bare arm has no rig around it
     sensor_reading read;
@@ -172,9 +168,7 @@ int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading
 int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
                           impactlab_error *error)
 {
-    API_NEEDS(error, loop);
-    API_NEEDS(error, name);
-    API_NEEDS(error, value);
+    API_NEEDS(error, loop, name, value);
     int index = api_signal(name, error);
     if (index < 0) {
         return IMPACTLAB_BAD_ARGUMENT;
@@ -186,8 +180,7 @@ int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
 
 int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table, impactlab_error *error)
 {
-    API_NEEDS(error, loop);
-    API_NEEDS(error, table);
+    API_NEEDS(error, loop, table);
     int freedoms;
     const double *angles = loop_state(loop->loop, &freedoms);
     *table = (impactlab_table){angles, 2, (size_t)freedoms};
@@ -227,8 +220,7 @@ size_t impactlab_loop_state_size(const impactlab_loop *loop)
 int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t size,
                               impactlab_error *error)
 {
-    API_NEEDS(error, loop);
-    API_NEEDS(error, bytes);
+    API_NEEDS(error, loop, bytes);
     if (size < loop_saved_size(loop->loop)) {
         return api_fail(error, STATUS_BAD_ARGUMENT,
                         "a state of this loop has %zu bytes, but there is room for %zu",
@@ -241,8 +233,7 @@ int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t si
 int impactlab_loop_restore_state(impactlab_loop *loop, const void *bytes, size_t size,
                                  impactlab_error *error)
 {
-    API_NEEDS(error, loop);
-    API_NEEDS(error, bytes);
+    API_NEEDS(error, loop, bytes);
     fault f;
     return came_to(loop_restore(loop->loop, bytes, size, &f), &f, error);
 }

@@ -39,7 +39,7 @@ int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *han
 {
     API_NEEDS(error, run);
     *run = NULL;
-    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, handle);
     if ((flags & ~IMPACTLAB_KEEP_ROWS) != 0) {
         return api_fail(error, STATUS_BAD_ARGUMENT, "a run knows no other flag than KEEP_ROWS");
     }
@@ -90,9 +90,7 @@ const char *impactlab_run_message(const impactlab_run *run)
 int impactlab_run_quantity(const impactlab_run *run, const char *key, double *value,
                            impactlab_error *error)
 {
-    API_NEEDS(error, run);
-    API_NEEDS(error, key);
-    API_NEEDS(error, value);
+    API_NEEDS(error, run, key, value);
     int index = summary_find(key);
     if (index < 0) {
         const char *near = summary_suggest(key);
@@ -115,9 +113,7 @@ size_t impactlab_run_quantities(const impactlab_run *run, double *values, size_t
 int impactlab_run_signal(const impactlab_run *run, const char *name, impactlab_series *series,
                          impactlab_error *error)
 {
-    API_NEEDS(error, run);
-    API_NEEDS(error, name);
-    API_NEEDS(error, series);
+    API_NEEDS(error, run, name, series);
     int index = api_signal(name, error);
     if (index < 0) {
         return IMPACTLAB_BAD_ARGUMENT;
@@ -135,8 +131,7 @@ int impactlab_run_signal(const impactlab_run *run, const char *name, impactlab_s
 
 int impactlab_run_angles(const impactlab_run *run, impactlab_table *table, impactlab_error *error)
 {
-    API_NEEDS(error, run);
-    API_NEEDS(error, table);
+    API_NEEDS(error, run, table);
     const trace *t = &run->result.trace;
     *table = (impactlab_table){t->angles, t->row_count, (size_t)t->angle_count};
     return api_done(error);
@@ -145,8 +140,7 @@ int impactlab_run_angles(const impactlab_run *run, impactlab_table *table, impac
 int impactlab_run_velocities(const impactlab_run *run, impactlab_table *table,
                              impactlab_error *error)
 {
-    API_NEEDS(error, run);
-    API_NEEDS(error, table);
+    API_NEEDS(error, run, table);
     const trace *t = &run->result.trace;
     *table = (impactlab_table){t->velocities, t->row_count, (size_t)t->angle_count};
     return api_done(error);
@@ -171,8 +165,7 @@ int impactlab_run_event(const impactlab_run *run, size_t index, impactlab_event 
 
 int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *error)
 {
-    API_NEEDS(error, run);
-    API_NEEDS(error, json);
+    API_NEEDS(error, run, json);
 
     text_stream stream;
     if (api_open_text(&stream, json, error) != IMPACTLAB_OK) {
@@ -187,8 +180,7 @@ int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *e
 
 int impactlab_run_csv(const impactlab_run *run, char **csv, impactlab_error *error)
 {
-    API_NEEDS(error, run);
-    API_NEEDS(error, csv);
+    API_NEEDS(error, run, csv);
     text_stream stream;
     if (api_open_text(&stream, csv, error) != IMPACTLAB_OK) {
         return IMPACTLAB_NO_MEMORY;
@@ -202,9 +194,7 @@ int impactlab_run_csv(const impactlab_run *run, char **csv, impactlab_error *err
 int impactlab_run_predictions(const impactlab_run *run, impactlab_prediction *predictions,
                               size_t count, size_t *written, impactlab_error *error)
 {
-    API_NEEDS(error, run);
-    API_NEEDS(error, predictions);
-    API_NEEDS(error, written);
+    API_NEEDS(error, run, predictions, written);
     prediction_answer answers[PREDICTOR_COUNT];
     *written = 0;
     if (run->result.trace.row_count == 0) {

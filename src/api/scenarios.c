@@ -11,8 +11,7 @@
 
 int impactlab_scenario_names(char ***names, size_t *count, impactlab_error *error)
 {
-    API_NEEDS(error, names);
-    API_NEEDS(error, count);
+    API_NEEDS(error, names, count);
     fault f = {.text = "", .path = ""};
     int found = 0;
     *count = 0;
@@ -63,7 +62,7 @@ static int finish_reading(impactlab_scenario **handle, status code, impactlab_er
 int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_file,
                             impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, handle);
     *handle = NULL;
     API_NEEDS(error, name_or_file);
     if (new_handle(handle, error) == NULL) {
@@ -83,10 +82,9 @@ int impactlab_scenario_parse(impactlab_scenario **handle, const char *text, size
 int impactlab_scenario_parse_named(impactlab_scenario **handle, const char *text, size_t length,
                                    const char *name, impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, handle);
     *handle = NULL;
-    API_NEEDS(error, text);
-    API_NEEDS(error, name);
+    API_NEEDS(error, text, name);
     if (new_handle(handle, error) == NULL) {
         return IMPACTLAB_NO_MEMORY;
     }
@@ -105,7 +103,7 @@ int impactlab_scenario_create(impactlab_scenario **handle, impactlab_error *erro
 int impactlab_scenario_copy(impactlab_scenario **handle, const impactlab_scenario *from,
                             impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, handle);
     *handle = NULL;
     API_NEEDS(error, from);
 
@@ -156,9 +154,7 @@ const char *impactlab_scenario_description(const impactlab_scenario *handle)
 int impactlab_scenario_number(const impactlab_scenario *handle, const char *path, double *value,
                               impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
-    API_NEEDS(error, path);
-    API_NEEDS(error, value);
+    API_NEEDS(error, handle, path, value);
     sweep_axis axis;
     const int code = api_axis(path, &axis, error);
     if (code != IMPACTLAB_OK) {
@@ -171,9 +167,7 @@ int impactlab_scenario_number(const impactlab_scenario *handle, const char *path
 int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, char *text,
                             size_t size, impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
-    API_NEEDS(error, path);
-    API_NEEDS(error, text);
+    API_NEEDS(error, handle, path, text);
     sweep_axis axis;
     const int code = api_axis(path, &axis, error);
     if (code != IMPACTLAB_OK) {
@@ -213,8 +207,7 @@ int impactlab_scenario_is_set(const impactlab_scenario *handle, const char *path
 
 int impactlab_scenario_yaml(const impactlab_scenario *handle, char **yaml, impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
-    API_NEEDS(error, yaml);
+    API_NEEDS(error, handle, yaml);
     text_stream stream;
     if (api_open_text(&stream, yaml, error) != IMPACTLAB_OK) {
         return IMPACTLAB_NO_MEMORY;
@@ -228,7 +221,7 @@ int impactlab_scenario_yaml(const impactlab_scenario *handle, char **yaml, impac
 int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *assignments,
                                size_t count, impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, handle);
     if (count == 0) {
         return api_done(error);
     }
@@ -255,7 +248,7 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     }
     handle->scenario.parameters = before;
     if (!whole) {
-        return api_missing(error, "assignments[i]");
+        return api_missing(error, "assignments[i]", 0);
     }
     return api_finish_first(error, &handle->scenario.refused, code);
 }
@@ -273,9 +266,7 @@ static int take(impactlab_scenario *handle, const parameters *p, status code, fa
 int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const char *text,
                            impactlab_error *error)
 {
-    API_NEEDS(error, text);
-    API_NEEDS_CALLED(error, handle, "scenario");
-    API_NEEDS(error, path);
+    API_NEEDS(error, text, handle, path);
     char room[PARAMETER_TEXT_SIZE];
     const int index = api_parameter(path, &text, room, error);
     if (index < 0) {
@@ -291,8 +282,7 @@ int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const c
 int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path, double value,
                                   impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
-    API_NEEDS(error, path);
+    API_NEEDS(error, handle, path);
     sweep_axis axis;
     const int code = api_axis(path, &axis, error);
     if (code != IMPACTLAB_OK) {
@@ -326,9 +316,7 @@ static int check_instant(const scenario *s, double time, impactlab_error *error)
 int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const char *path,
                                   const char *text, impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
-    API_NEEDS(error, path);
-    API_NEEDS(error, text);
+    API_NEEDS(error, handle, path, text);
     scenario *s = &handle->scenario;
     char room[PARAMETER_TEXT_SIZE];
     const int index = api_parameter(path, &text, room, error);
@@ -360,7 +348,7 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
 int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double impulse,
                                 impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, handle);
     scenario *s = &handle->scenario;
     if (check_instant(s, time, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;

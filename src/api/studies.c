@@ -83,9 +83,9 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
                     const double *values, size_t count, int jobs, impactlab_outcome_taker take,
                     void *context, impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
+    API_NEEDS(error, handle);
     if (take == NULL) {
-        return api_missing(error, "take");
+        return api_missing(error, "take", 0);
     }
     if (path_count > 0) {
         API_NEEDS(error, paths);
@@ -101,8 +101,8 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
         return api_fail(error, STATUS_NO_MEMORY, "no memory for a batch");
     }
     for (size_t k = 0; k < path_count; k++) {
-        const int code =
-            paths[k] != NULL ? api_axis(paths[k], &axes[k], error) : api_missing(error, "paths[i]");
+        const int code = paths[k] != NULL ? api_axis(paths[k], &axes[k], error)
+                                          : api_missing(error, "paths[i]", 0);
         if (code != IMPACTLAB_OK) {
             free(axes);
             return code;
@@ -142,9 +142,7 @@ int impactlab_modes(const impactlab_scenario *handle, int hub_locked, int tip_pi
                     double *frequencies, double *shapes, size_t most, size_t *count,
                     impactlab_error *error)
 {
-    API_NEEDS_CALLED(error, handle, "scenario");
-    API_NEEDS(error, frequencies);
-    API_NEEDS(error, count);
+    API_NEEDS(error, handle, frequencies, count);
     const size_t n = impactlab_freedoms(handle);
     *count = 0;
     if (n == 0) {
