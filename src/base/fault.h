@@ -61,3 +61,6 @@ status fault_no_memory(fault *f);
             return tried_;                                                                         \
         }                                                                                          \
     } while (0)
+
+// The same with STATUS_NO_MEMORY where there is not what memory was asked for.
+#define TRY_MEMORY(given, f) TRY((given) ? STATUS_OK : fault_no_memory(f))

@@ -58,9 +58,7 @@ static status add_input(session *s, const session_input *in, fault *f)
     if (s->input_count == s->input_capacity) {
         int capacity = s->input_capacity ? 2 * s->input_capacity : 16;
         session_input *inputs = realloc(s->inputs, (size_t)capacity * sizeof *inputs);
-        if (inputs == NULL) {
-            return fault_no_memory(f);
-        }
+        TRY_MEMORY(inputs != NULL, f);
         s->inputs = inputs;
         s->input_capacity = capacity;
     }
@@ -315,9 +313,7 @@ status session_take_inputs(session *s, const session_input *inputs, int count, f
 {
     assert(s != NULL && count >= 0 && (inputs != NULL || count == 0));
     session_input *taken = calloc((size_t)count + 1, sizeof *taken);
-    if (taken == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(taken != NULL, f);
     if (count > 0) {
         memcpy(taken, inputs, (size_t)count * sizeof *taken);
     }

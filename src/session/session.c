@@ -96,9 +96,7 @@ static status build_effective(const session *s, scenario *to, fault *f)
     to->expectation_count = 0;
     to->action_count = 0;
     to->actions = calloc((size_t)count_actions(s) + 1, sizeof *to->actions);
-    if (to->actions == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(to->actions != NULL, f);
 
     // the script's actions, then the inputs among them: an input comes after what is due with it
     status code = STATUS_OK;

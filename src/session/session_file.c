@@ -210,9 +210,7 @@ static status add_input(session_reader *r, session_input_kind kind, const char *
     in.seen_at = in.time;
     session_input *more =
         realloc(from->inputs, ((size_t)from->input_count + 1) * sizeof *from->inputs);
-    if (more == NULL) {
-        return fault_no_memory(r->fault);
-    }
+    TRY_MEMORY(more != NULL, r->fault);
     from->inputs = more;
     from->inputs[from->input_count++] = in;
     return STATUS_OK;

@@ -246,9 +246,7 @@ static status residuals_of(identification *id, const double *x, int sets, bool j
 {
     batch_of_runs b = {.id = id, .count = (size_t)(sets * id->trace_count)};
     b.pieces = calloc(b.count, sizeof *b.pieces);
-    if (b.pieces == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(b.pieces != NULL, f);
     for (size_t i = 0; i < b.count; i++) {
         const int k = (int)(i % (size_t)id->trace_count);
         b.pieces[i] = (piece){.trace = k, .x = x, .out = out, .judge = judge};
@@ -333,9 +331,7 @@ static status minimise(identification *id, double *x, double *residual, double *
     double diagonal[IDENTIFY_UNKNOWNS], work[4][IDENTIFY_UNKNOWNS],
         *more = calloc((size_t)m, sizeof *more);
     int pivots[IDENTIFY_UNKNOWNS], evaluations, jacobians;
-    if (more == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(more != NULL, f);
     lmder(evaluate, &l, m, n, x, residual, jacobian, m, TOLERANCE, TOLERANCE, 0, MOST_STEPS,
           diagonal, 1, 1, 0, &evaluations, &jacobians, pivots, work[0], work[1], work[2], work[3],
           more);
@@ -382,9 +378,7 @@ static status draw_beginnings(identification *id, double *x, double *rest, fault
     const size_t m = id->residuals;
     random_generator random;
     double *out = calloc((size_t)id->starts * m, sizeof *out);
-    if (out == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(out != NULL, f);
     random_seed(&random, id->seed);
     for (int s = 0; s < id->starts; s++) {
         double *here = x + s * id->unknowns;

@@ -56,9 +56,7 @@ static status judge_whiteness(identification *id, fault *f)
     for (int k = 0; k < id->trace_count; k++) {
         recorded_trace *t = &id->traces[k];
         double *series = calloc(t->rows, sizeof *series);
-        if (series == NULL) {
-            return fault_no_memory(f);
-        }
+        TRY_MEMORY(series != NULL, f);
         const bool alone = t->reading[CHANNEL_TACHOMETER] == NULL;
         for (int c = 0; c < CHANNELS; c++) {
             t->rms[c] = t->whiteness[c] = (double)NAN;
@@ -261,9 +259,7 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
 
     // what each channel says of the parameters, and how far it scatters
     double *alone = calloc((size_t)p * id->residuals, sizeof *alone);
-    if (alone == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(alone != NULL, f);
     bool done = project(id, jacobian, alone);
     memset(id->direction, 0, sizeof id->direction);
     for (int c = 0; c < CHANNELS && done; c++) {

@@ -135,9 +135,7 @@ static status first_frequency(const arm *a, tip_end tip, double *frequency, faul
     const size_t dof = (size_t)a->dof;
     double *work = malloc((dof + dof * dof) * sizeof *work);
     int count = 0;
-    if (work == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(work != NULL, f);
     status code = modes_compute(a, HUB_LOCKED, tip, &count, work, work + dof);
     *frequency = code == STATUS_OK && count > 0 ? work[0] / (2 * M_PI) : (double)NAN;
     free(work);

@@ -230,9 +230,7 @@ status robust_case_scenario(scenario *derived, const scenario *base, const robus
     *derived = *base;
     int pushes = c != NULL ? c->push_count : 0;
     derived->actions = calloc((size_t)(base->action_count + pushes + 1), sizeof(action));
-    if (derived->actions == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(derived->actions != NULL, f);
     if (base->action_count > 0) {
         memcpy(derived->actions, base->actions, (size_t)base->action_count * sizeof(action));
     }

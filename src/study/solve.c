@@ -314,9 +314,7 @@ status solve(const scenario *s, const sweep_axis *axis, const solve_condition *c
         found->points = (int)fmin(points, fabs(axis->high - axis->low) + 1);
     }
     here.trials = calloc((size_t)found->points, sizeof *here.trials);
-    if (here.trials == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(here.trials != NULL, f);
 
     const pool_work work = {.context = &here,
                             .count = (size_t)found->points,

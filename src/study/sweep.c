@@ -151,9 +151,7 @@ static status draw_values(sweep *s, fault *f)
         return STATUS_OK;
     }
     s->drawn = malloc(s->run_count * (size_t)s->axis_count * sizeof *s->drawn);
-    if (s->drawn == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(s->drawn != NULL, f);
 
     // the same seed gives the same values
     random_seed(&g, s->seed);

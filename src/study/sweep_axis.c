@@ -222,9 +222,7 @@ static double range_point(const sweep_axis *axis, size_t i, size_t n)
 static status fill_range(sweep_axis *axis, size_t n, fault *f)
 {
     axis->values = malloc(n * sizeof *axis->values);
-    if (axis->values == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(axis->values != NULL, f);
     axis->count = n;
 
     // a range may leave what the parameter allows at either end
@@ -364,9 +362,7 @@ status sweep_axis_parse(sweep_axis *axis, const char *values, bool drawn, fault 
 {
     assert(axis != NULL && values != NULL);
     char *text = strdup(values);
-    if (text == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(text != NULL, f);
 
     // a list cannot hold ranges: with a comma it is read as a list, and a value with a colon is
     // refused

@@ -211,9 +211,7 @@ static size_t choose_together(const sweep_execution *e, int jobs)
 static status run_missing(sweep_execution *e, const unsigned char *present, fault *f)
 {
     e->wanted = malloc((e->sweep->run_count + 1) * sizeof *e->wanted);
-    if (e->wanted == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(e->wanted != NULL, f);
     for (size_t run = 0; run < e->sweep->run_count; run++) {
         if (!present[run]) {
             e->wanted[e->count++] = run;
@@ -258,9 +256,7 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
 
     // what an earlier call has computed is not computed again
     unsigned char *present = malloc(s->run_count);
-    if (present == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(present != NULL, f);
 
     // the rest is computed
     size_t stored;

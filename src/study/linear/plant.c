@@ -26,9 +26,7 @@ status linear_system_init(linear_system *s, int states, int outputs, fault *f)
 {
     const size_t n = (size_t)states, m = (size_t)outputs;
     s->a = calloc(n * n + n + m * n + m + 1, sizeof *s->a);
-    if (s->a == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(s->a != NULL, f);
     s->states = states;
     s->outputs = outputs;
     s->b = s->a + n * n;
@@ -268,9 +266,7 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
         return fault_set(f, STATUS_BAD_ARGUMENT, "%s", why);
     }
     workshop *w = calloc(1, sizeof *w);
-    if (w == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(w != NULL, f);
 
     // without Coulomb friction and limits, which are no part of small motions
     parameters smooth = *p;

@@ -67,9 +67,7 @@ static status eigenvalues(int n, const double *matrix, double complex *values, f
     const size_t square = (size_t)n * (size_t)n;
     const int size = 8 * n, one = 1;
     double *work = calloc(square + (size_t)(size + 2 * n) + 1, sizeof *work), unused[1];
-    if (work == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(work != NULL, f);
 
     // those of the transpose, which Fortran sees, are the same
     double *copy = work + size, *real = copy + square, *imaginary = real + n;
@@ -101,9 +99,7 @@ status linear_zeros(const linear_system *s, int output, int *count, double compl
     const int n = s->states;
     double *row = calloc((size_t)(n * n + 2 * n) + 1, sizeof *row), *next = row + n,
            *matrix = next + n;
-    if (row == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(row != NULL, f);
 
     // the output's derivative, row x + direct u, that sees the input first
     double direct = s->d[output];

@@ -88,9 +88,7 @@ static status fill(linear_system *out, const linear_system *s, int n, int held, 
     const size_t square = (size_t)size * (size_t)size;
     double *both = calloc(5 * square, sizeof *both), *before = both + square,
            *after = before + square, *power = after + square, *product = power + square;
-    if (both == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(both != NULL, f);
     for (int i = 0; i < n; i++) {
         memcpy(both + i * size, s->a + i * s->states, (size_t)n * sizeof *both);
         both[i * size + n] = s->b[i];

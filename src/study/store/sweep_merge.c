@@ -103,9 +103,7 @@ static status write_database(merging *m, const char *output, fault *f)
     // its bytes, as a file would have them
     sqlite3_int64 size = 0;
     unsigned char *bytes = sqlite3_serialize(m->store.database, "main", &size, 0);
-    if (bytes == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(bytes != NULL, f);
 
     // into the file
     whole_file file;

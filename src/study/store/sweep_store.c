@@ -117,9 +117,7 @@ status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, 
     assert(opened != NULL && s != NULL);
     sweep_database *store = calloc(1, sizeof *store);
     *opened = NULL;
-    if (store == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(store != NULL, f);
 
     store->store = (sweep_store){.present = sweep_store_present,
                                  .put = sweep_store_put,

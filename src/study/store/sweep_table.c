@@ -18,9 +18,7 @@ static status read_rows(const sweep_database *store, sqlite3_stmt *rows, int key
             room = room > 0 ? 2 * room : 64;
             for (int k = 0; k < key_count; k++) {
                 double *more = realloc(columns[k], room * sizeof *more);
-                if (more == NULL) {
-                    return fault_no_memory(f);
-                }
+                TRY_MEMORY(more != NULL, f);
                 columns[k] = more;
             }
         }
