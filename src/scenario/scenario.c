@@ -121,6 +121,19 @@ status scenario_take_parameters(scenario *s, const parameters *changed, fault *f
     return result;
 }
 
+status scenario_with(const scenario *base, const parameter_change *changes, size_t count,
+                     scenario *changed, fault *f)
+{
+    assert(base != NULL && (changes != NULL || count == 0) && changed != NULL);
+    parameters p = base->parameters;
+    *changed = *base;
+    for (const parameter_change *c = changes; c < changes + count; c++) {
+        TRY(c->text != NULL ? parameter_set_text(&p, c->parameter, c->text, f)
+                            : parameter_set_number(&p, c->parameter, c->number, f));
+    }
+    return scenario_take_parameters(changed, &p, f);
+}
+
 status scenario_override(scenario *s, const char *assignment, fault *f)
 {
     assert(s != NULL && assignment != NULL);

@@ -172,6 +172,18 @@ void scenario_write(FILE *stream, const scenario *s);
 // its script goes with them. If that fails nothing changes and f says why.
 status scenario_take_parameters(scenario *s, const parameters *changed, fault *f);
 
+// One parameter that changes: to a text, or to a number where that is NULL.
+typedef struct parameter_change {
+    int parameter; // index in parameter_table
+    double number;
+    const char *text;
+} parameter_change;
+
+// A scenario with such changes; it borrows everything but its parameters from the base. Fails, with
+// the reason in f, if a value does not go or they do not go together.
+status scenario_with(const scenario *base, const parameter_change *changes, size_t count,
+                     scenario *changed, fault *f);
+
 // Applies "PATH=VALUE" (--set) and resolves the parameters anew. If that fails nothing changes and
 // f says why, beginning with "--set PATH=VALUE: ". A run.duration that ends before an action of the
 // script is allowed; the action then does not happen.

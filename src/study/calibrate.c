@@ -18,30 +18,22 @@
 // leave a beam without damping ringing, and the rig off scale.
 static status pressing(const scenario *s, double command, int number, scenario *under, fault *f)
 {
-    *under = *s;
-    parameters *p = &under->parameters;
-    const struct {
-        const char *path;
-        double value;
-    } changes[] = {
-        {"control.law", LAW_OPEN_LOOP},
-        {"control.approach_voltage", command},
-        {"control.seed", (double)(((long)p->control.seed + number) % 2147483648L)},
-        {"initial.angle", p->wall.angle},
-        {"initial.velocity", 0},
-        {"run.duration", fmax(p->run.duration, SHORTEST_PRESS)},
+    const parameters *p = &s->parameters;
+    const parameter_change changes[] = {
+        {PARAMETER_INDEX(control.settings), .text = ""},
+        {PARAMETER_INDEX(control.lock), .text = "none"},
+        {PARAMETER_INDEX(control.law), LAW_OPEN_LOOP},
+        {PARAMETER_INDEX(control.approach_voltage), command},
+        {PARAMETER_INDEX(control.seed), (double)(((long)p->control.seed + number) % 2147483648L)},
+        {PARAMETER_INDEX(initial.angle), p->wall.angle},
+        {PARAMETER_INDEX(initial.velocity), 0},
+        {PARAMETER_INDEX(run.duration), fmax(p->run.duration, SHORTEST_PRESS)},
     };
 
     // no script, nothing that another law is told, and a seed of its own for each press
-    under->action_count = 0;
-    status code = parameter_set_text(p, PARAMETER_INDEX(control.settings), "", f);
-    if (code == STATUS_OK) {
-        code = parameter_set_text(p, PARAMETER_INDEX(control.lock), "none", f);
-    }
-    for (size_t i = 0; i < sizeof changes / sizeof changes[0] && code == STATUS_OK; i++) {
-        code = parameter_set_number(p, parameter_index(changes[i].path), changes[i].value, f);
-    }
-    return code == STATUS_OK ? parameters_resolve(p, f) : code;
+    scenario bare = *s;
+    bare.action_count = 0;
+    return scenario_with(&bare, changes, sizeof changes / sizeof *changes, under, f);
 }
 
 // Mean and standard deviation of readings, each weighed with the time for which it stood.

@@ -48,14 +48,10 @@ static status part_in_run(const scenario *s, const char *law, double frequency, 
 {
     const double until = SETTLED + ceil(WATCHED * frequency) / frequency;
     const double force = s->parameters.control.force;
-    parameters p = s->parameters;
-    scenario changed = *s;
+    scenario changed;
     *part = (double)NAN;
-    status code = parameter_set_text(&p, PARAMETER_INDEX(control.law), law, f);
-    const struct {
-        int index;
-        double value;
-    } numbers[] = {
+    const parameter_change changes[] = {
+        {PARAMETER_INDEX(control.law), .text = law},
         {PARAMETER_INDEX(run.duration), until},
         {PARAMETER_INDEX(control.force_amplitude), wall ? 0 : FOLLOW_WAVE * force},
         {PARAMETER_INDEX(control.force_frequency), frequency},
@@ -63,15 +59,12 @@ static status part_in_run(const scenario *s, const char *law, double frequency, 
         {PARAMETER_INDEX(wall.motion_amplitude), FOLLOW_WALL},
         {PARAMETER_INDEX(wall.motion_frequency), frequency},
     };
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers && code == STATUS_OK; i++) {
-        code = parameter_set_number(&p, numbers[i].index, numbers[i].value, f);
-    }
-    TRY(code == STATUS_OK ? scenario_take_parameters(&changed, &p, f) : code);
+    TRY(scenario_with(s, changes, sizeof changes / sizeof *changes, &changed, f));
 
     // a law that fails here says nothing of the others
     run_result result;
     const run_options options = {.keep_trace = true, .monitor = monitor};
-    code = run_scenario_with(&changed, &options, &result);
+    const status code = run_scenario_with(&changed, &options, &result);
     if (code == STATUS_OK) {
         *part = part_of(&result.trace, frequency, until);
     }

@@ -257,10 +257,9 @@ static status make_run(const identification *id, const recorded_trace *t, const 
                        const double own[OWNS], scenario *made, fault *f)
 {
     const sensor_parameters *sensor = &p->sensor;
-    const struct {
-        int parameter;
-        double value;
-    } changes[] = {
+    const parameter_change changes[] = {
+        {PARAMETER_INDEX(control.settings), .text = ""},
+        {PARAMETER_INDEX(control.lock), .text = "none"},
         {PARAMETER_INDEX(sensor.encoder_counts), 0},
         {PARAMETER_INDEX(sensor.adc_bits), 0},
         {PARAMETER_INDEX(sensor.tachometer_noise), 0},
@@ -280,16 +279,10 @@ static status make_run(const identification *id, const recorded_trace *t, const 
         {PARAMETER_INDEX(initial.velocity), own[OWN_VELOCITY]},
         {PARAMETER_INDEX(run.duration), t->time[t->rows - 1] + 3 / p->control.rate},
     };
-    parameters m = *p;
-    *made = *id->base;
-    made->action_count = 0;
-    status code = parameter_set_text(&m, PARAMETER_INDEX(control.settings), "", f);
-    code =
-        code == STATUS_OK ? parameter_set_text(&m, PARAMETER_INDEX(control.lock), "none", f) : code;
-    for (size_t i = 0; i < sizeof changes / sizeof *changes && code == STATUS_OK; i++) {
-        code = parameter_set_number(&m, changes[i].parameter, changes[i].value, f);
-    }
-    return code == STATUS_OK ? scenario_take_parameters(made, &m, f) : code;
+    scenario from = *id->base;
+    from.parameters = *p;
+    from.action_count = 0;
+    return scenario_with(&from, changes, sizeof changes / sizeof *changes, made, f);
 }
 
 // Between two rows a quantity is the cubic through its values and rates.

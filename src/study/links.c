@@ -157,22 +157,14 @@ static double tip_compliance(const parameters *p)
     return sum;
 }
 
-// The scenario with a number of links.
-static status with_links(const scenario *s, int links, scenario *changed, fault *f)
-{
-    parameters p = s->parameters;
-    *changed = *s;
-    status code = parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, f);
-    return code == STATUS_OK ? scenario_take_parameters(changed, &p, f) : code;
-}
-
 // Column i of the study; *speed is that of the blow [m/s].
 static status compute_column(const scenario *s, int i, run_monitor *monitor, links_study *study,
                              double *speed, fault *f)
 {
     links_row *rows = study->rows;
     scenario changed;
-    TRY(with_links(s, links_numbers[i], &changed, f));
+    const parameter_change links = {PARAMETER_INDEX(arm.links), links_numbers[i]};
+    TRY(scenario_with(s, &links, 1, &changed, f));
 
     // the whole run; one that failed has what it has until then, which is not its end
     run_result result;
