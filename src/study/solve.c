@@ -11,6 +11,8 @@
 #include "src/study/pool.h"
 #include "src/tables/settings.h"
 
+enum { REASON = sizeof((solution *)0)->reason };
+
 // --- the condition --------------------------------------------------------------------------
 
 // The part of a text between two places without blanks at its ends, as a text of its own.
@@ -113,43 +115,35 @@ typedef struct search {
     trial *trials; // of the range
 } search;
 
-typedef struct trial_result {
-    trial trial;
-    status status;
-    char reason[512];
-} trial_result;
-
-// Runs the scenario with one value of the parameter.
-static void run_trial(const search *s, double value, trial_result *r)
+// Runs the scenario with one value of the parameter; `reason` (may be NULL): why it is not known.
+// STATUS_STOPPED, STATUS_NO_MEMORY.
+static status run_trial(const search *s, double value, trial *t, char reason[REASON])
 {
     scenario derived;
     fault f = {0};
-    *r = (trial_result){.trial = {.value = value, .quantity = (double)NAN}};
+    *t = (trial){.value = value, .quantity = (double)NAN};
 
     // values that do not go with the others of the scenario are as good as a run that fails
     status code = sweep_axes_scenario(s->axis, 1, &value, s->base, &derived, &f);
-    if (code != STATUS_OK) {
-        r->status = code == STATUS_NO_MEMORY ? code : STATUS_OK;
-        snprintf(r->reason, sizeof r->reason, "%.500s", f.text);
-        return;
+    if (code == STATUS_OK) {
+        run_result result;
+        const run_options options = {.monitor = s->monitor};
+        code = run_scenario_with(&derived, &options, &result);
+        t->known = code == STATUS_OK && !result.summary.inaccurate;
+        t->quantity =
+            t->known ? summary_value(&result.summary, s->condition->quantity) : (double)NAN;
+        snprintf(f.text, sizeof f.text, "%s", result.summary.message);
+        run_finish(&result);
     }
-
-    run_result result;
-    const run_options options = {.monitor = s->monitor};
-    code = run_scenario_with(&derived, &options, &result);
-    if (code == STATUS_OK && !result.summary.inaccurate) {
-        r->trial.known = true;
-        r->trial.quantity = summary_value(&result.summary, s->condition->quantity);
-    } else {
-        snprintf(r->reason, sizeof r->reason, "%.500s", result.summary.message);
+    if (reason != NULL) {
+        snprintf(reason, REASON, "%.500s", f.text);
     }
-    r->status = code == STATUS_STOPPED || code == STATUS_NO_MEMORY ? code : STATUS_OK;
-    run_finish(&result);
+    return code == STATUS_STOPPED || code == STATUS_NO_MEMORY ? code : STATUS_OK;
 }
 
 static bool holds(const search *s, const trial *t)
 {
-    return solve_condition_holds(s->condition, t->quantity);
+    return !isnan(t->quantity) && solve_condition_holds(s->condition, t->quantity);
 }
 
 // --- the range ------------------------------------------------------------------------------
@@ -177,22 +171,16 @@ static void compute_point(void *context, size_t i, void *scratch, void *result)
 {
     const search *s = context;
     (void)scratch;
-    run_trial(s, point_of(s, i), result);
+    *(status *)result = run_trial(s, point_of(s, i), &s->trials[i], NULL);
 }
 
 static status collect_point(void *context, size_t i, const void *result, fault *f)
 {
-    search *s = context;
-    const trial_result *r = result;
-    if (r->status != STATUS_OK) {
-        return r->status == STATUS_NO_MEMORY
-                   ? fault_no_memory(f)
-                   : fault_set(f, r->status, "%s", status_text(r->status));
-    }
-
-    s->trials[i] = r->trial;
+    const search *s = context;
+    const status code = *(const status *)result;
+    (void)i;
     run_monitor_count(s->monitor);
-    return STATUS_OK;
+    return code == STATUS_OK ? code : fault_set(f, code, "%s", status_text(code));
 }
 
 // --- between two values ---------------------------------------------------------------------
@@ -230,17 +218,13 @@ static status locate(const search *s, trial *in, trial *out, fault *f)
     enum { MOST_RUNS = 200 };
     bool secant = true;
     for (int i = 0; i < MOST_RUNS && !neighbours(s, in->value, out->value); i++) {
-        trial_result r;
+        trial t;
         const double width = fabs(in->value - out->value);
-        run_trial(s, next_value(s, in, out, secant), &r);
-        if (r.status != STATUS_OK) {
-            return fault_set(f, r.status, "%s", status_text(r.status));
+        const status code = run_trial(s, next_value(s, in, out, secant), &t, NULL);
+        if (code != STATUS_OK) {
+            return fault_set(f, code, "%s", status_text(code));
         }
-        if (!isnan(r.trial.quantity) && holds(s, &r.trial)) {
-            *in = r.trial;
-        } else {
-            *out = r.trial;
-        }
+        *(holds(s, &t) ? in : out) = t;
         secant = fabs(in->value - out->value) <= width / 2 || !secant;
     }
     return STATUS_OK;
@@ -258,8 +242,7 @@ static status locate_limits(search *s, fault *f)
     solution *found = s->found;
     for (int i = 0; i + 1 < found->points; i++) {
         trial a = s->trials[i], b = s->trials[i + 1];
-        const bool first = !isnan(a.quantity) && holds(s, &a),
-                   second = !isnan(b.quantity) && holds(s, &b);
+        const bool first = holds(s, &a), second = holds(s, &b);
         if (first == second) {
             found->ends += isnan(a.quantity) != isnan(b.quantity);
             continue;
@@ -286,17 +269,14 @@ static status locate_limits(search *s, fault *f)
 static void count_points(search *s)
 {
     solution *found = s->found;
-    for (int i = 0; i < found->points; i++) {
-        const trial *t = &s->trials[i];
+    for (const trial *t = s->trials; t < s->trials + found->points; t++) {
         if (!t->known && found->unknown++ == 0) {
-            trial_result r;
-            run_trial(s, t->value, &r);
-            snprintf(found->reason, sizeof found->reason, "%s", r.reason);
-        } else if (t->known) {
-            found->missing += isnan(t->quantity);
-            found->holding += !isnan(t->quantity) && holds(s, t);
-            found->failing += !isnan(t->quantity) && !holds(s, t);
+            trial again;
+            run_trial(s, t->value, &again, found->reason);
         }
+        found->missing += t->known && isnan(t->quantity);
+        found->holding += holds(s, t);
+        found->failing += !isnan(t->quantity) && !holds(s, t);
     }
 }
 
@@ -318,7 +298,7 @@ status solve(const scenario *s, const sweep_axis *axis, const solve_condition *c
 
     const pool_work work = {.context = &here,
                             .count = (size_t)found->points,
-                            .result_size = sizeof(trial_result),
+                            .result_size = sizeof(status),
                             .compute = compute_point,
                             .collect = collect_point};
     status code = pool_run(&work, jobs < 1 ? 1 : fmin(jobs, POOL_MOST_THREADS), f);

@@ -16,12 +16,10 @@
 static const char content_of[] = "content of ";
 static const char untold[] = "cannot be told"; // in place of a digest
 
-// Adds a line; printf-like.
-__attribute__((format(printf, 3, 4))) static void define(definition *d, const char *key,
-                                                         const char *format, ...)
+void definition_add(definition *d, const char *key, const char *format, ...)
 {
     va_list list;
-    assert(d->count < DEFINITION_LINES);
+    assert(d != NULL && key != NULL && d->count < DEFINITION_LINES);
     definition_line *line = &d->lines[d->count];
 
     // a value may be long: it has memory of its own
@@ -34,12 +32,6 @@ __attribute__((format(printf, 3, 4))) static void define(definition *d, const ch
         d->count++;
     }
     va_end(list);
-}
-
-void definition_add(definition *d, const char *key, const char *value)
-{
-    assert(d != NULL && key != NULL && value != NULL);
-    define(d, key, "%s", value);
 }
 
 static bool is_varied(const sweep *s, int parameter)
@@ -66,14 +58,14 @@ static void define_parameters(definition *d, const sweep *s)
 
         // its value, and that it was given
         parameter_format(p, i, text, sizeof text);
-        define(d, parameter_table[i].path, "%s", text);
+        definition_add(d, parameter_table[i].path, "%s", text);
         if (p->set[i]) {
             size_t length = strlen(given);
             snprintf(given + length, sizeof given - length, "%s%s", length > 0 ? " " : "",
                      parameter_table[i].path);
         }
     }
-    define(d, "given", "%s", given);
+    definition_add(d, "given", "%s", given);
 }
 
 // The script in one line.
@@ -101,7 +93,7 @@ static void define_script(definition *d, const scenario *s)
     // closing it shows whether there was memory
     char *text = text_stream_close(&line, NULL);
     if (text != NULL) {
-        define(d, "script", "%s", text);
+        definition_add(d, "script", "%s", text);
     } else {
         d->code = STATUS_NO_MEMORY;
     }
@@ -142,7 +134,7 @@ static void define_outside(definition *d, const sweep *s, fault *f)
         const bool told = outside_is_told(source, p);
         d->code = told ? outside_digest(source, p, digest, f) : STATUS_OK;
         if (d->code == STATUS_OK) {
-            define(d, key, "%s", told ? digest : untold);
+            definition_add(d, key, "%s", told ? digest : untold);
         }
     }
 }
@@ -159,22 +151,22 @@ status definition_init(definition *d, const sweep *s, fault *f)
     memset(d, 0, sizeof *d);
 
     // what is varied, and how
-    define(d, "version", "%s", lab_version());
-    define(d, "scenario", "%s", s->base->name);
-    define(d, "sample", "%s", sweep_sampling_name(s->sampling));
-    define(d, "runs", "%zu", s->run_count);
+    definition_add(d, "version", "%s", lab_version());
+    definition_add(d, "scenario", "%s", s->base->name);
+    definition_add(d, "sample", "%s", sweep_sampling_name(s->sampling));
+    definition_add(d, "runs", "%zu", s->run_count);
     if (s->sampling != SWEEP_GRID) {
-        define(d, "seed", "%llu", (unsigned long long)s->seed);
+        definition_add(d, "seed", "%llu", (unsigned long long)s->seed);
     }
     for (int i = 0; i < s->axis_count; i++) {
         char key[16];
         snprintf(key, sizeof key, "vary %d", i + 1);
-        define(d, key, "%s%s=%s", s->axes[i].together ? "with " : "", s->axes[i].name,
-               s->axes[i].text);
+        definition_add(d, key, "%s%s=%s", s->axes[i].together ? "with " : "", s->axes[i].name,
+                       s->axes[i].text);
     }
 
     if (s->chosen_by != NULL) {
-        define(d, "chosen by", "%s", s->chosen_by);
+        definition_add(d, "chosen by", "%s", s->chosen_by);
     }
 
     // what stays
@@ -290,13 +282,6 @@ static void add_difference(char *text, size_t size, int *count, const char *key,
     }
 }
 
-// The same scenario may be called by another name (a file seen from another folder): what it says
-// is compared, not its name.
-static bool is_compared(const char *key)
-{
-    return strcmp(key, "scenario") != 0;
-}
-
 status definition_compare(const char *path, const definition *was, const definition *now, fault *f)
 {
     assert(path != NULL && was != NULL && now != NULL);
@@ -306,8 +291,9 @@ status definition_compare(const char *path, const definition *was, const definit
     // what is new or another value
     for (int i = 0; i < now->count; i++) {
         const char *key = now->lines[i].key, *before = definition_value(was, key);
-        // which parameters were given is worth saying only if all values are the same
-        bool aside = !is_compared(key) || (count > 0 && strcmp(key, "given") == 0);
+        // the same scenario may have another name (a file seen from another folder), and which
+        // parameters were given is worth saying only if all values are the same
+        const bool aside = strcmp(key, "scenario") == 0 || (count > 0 && strcmp(key, "given") == 0);
         const bool same = before != NULL && strcmp(before, now->lines[i].value) == 0;
         if (!aside && (!same || strcmp(before, untold) == 0)) {
             add_difference(text, sizeof text, &count, key, before, now->lines[i].value);

@@ -27,8 +27,9 @@ void definition_finish(definition *d);
 // outside_stamp of all that the sweep's runs read.
 void definition_stamp(const sweep *s, char stamp[SHA256_TEXT]);
 
-// Adds a line with a copy of the value; without memory d->code says so.
-void definition_add(definition *d, const char *key, const char *value);
+// Adds a line, its value printf-like; without memory d->code says so.
+void definition_add(definition *d, const char *key, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 // The plan of the sweep that the definition in the database at `path` is of: which values each run
 // has. STATUS_BAD_ARGUMENT if it is of none; else sweep_finish.

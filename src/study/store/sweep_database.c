@@ -336,7 +336,7 @@ static status read_line(definition *d, const char *path, sqlite3_stmt *row, faul
                          "'%s' has more lines in what defines its sweep than this program writes",
                          path);
     }
-    definition_add(d, key, value);
+    definition_add(d, key, "%s", value);
     return d->code == STATUS_OK ? STATUS_OK : fault_no_memory(f);
 }
 
