@@ -404,10 +404,7 @@ status layout_figure(drawing *d, fault *f)
     const figure *fig = d->fig;
     int mark_rows = 0;
 
-    placement *grid = malloc(sizeof *grid);
-    if (grid == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for the layout of a figure");
-    }
+    g_autofree placement *grid = g_new(placement, 1);
 
     // rows and columns, and what the axes show
     d->columns = figure_columns(fig);
@@ -442,6 +439,5 @@ status layout_figure(drawing *d, fault *f)
         code = check_room(d, f);
         again = code == STATUS_OK && fill_panels(d, grid);
     }
-    free(grid);
     return code;
 }

@@ -239,15 +239,14 @@ status film_plan_init(film_plan *plan, const film_run *runs, int run_count,
     plan->clock = film_clock_of(results, run_count, options->seconds, options->slow);
     place_views(plan);
 
-    plan->report = calloc(1, sizeof *plan->report);
-    return plan->report != NULL ? paint_traces(plan, f)
-                                : fault_set(f, STATUS_NO_MEMORY, "no memory for a film");
+    plan->report = g_new0(figure_report, 1);
+    return paint_traces(plan, f);
 }
 
 void film_plan_finish(film_plan *plan)
 {
     cairo_surface_destroy(plan->traces);
-    free(plan->report);
+    g_free(plan->report);
     *plan = (film_plan){0};
 }
 
@@ -256,11 +255,8 @@ void film_plan_finish(film_plan *plan)
 status film_painter_create(film_painter **out, const film_plan *plan, fault *f)
 {
     assert(out != NULL && plan != NULL);
-    film_painter *p = calloc(1, sizeof *p);
+    film_painter *p = g_new0(film_painter, 1);
     *out = NULL;
-    if (p == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for a film");
-    }
     p->plan = plan;
     p->context = text_context_create();
 
@@ -298,7 +294,7 @@ void film_painter_destroy(film_painter *p)
         cairo_surface_destroy(p->views[i]);
     }
     g_clear_object(&p->context);
-    free(p);
+    g_free(p);
 }
 
 const char *film_painter_name(const film_painter *p)

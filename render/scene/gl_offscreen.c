@@ -140,16 +140,12 @@ static bool make_current(gl_offscreen *g)
 
 static status open_osmesa(gl_offscreen *g, fault *f)
 {
-    static const int wanted[] = {OSMESA_FORMAT,
-                                 GL_RGBA,
-                                 OSMESA_PROFILE,
-                                 OSMESA_CORE_PROFILE,
-                                 OSMESA_CONTEXT_MAJOR_VERSION,
-                                 3,
-                                 OSMESA_CONTEXT_MINOR_VERSION,
-                                 3,
-                                 0,
-                                 0};
+    // names with their values
+    static const int wanted[][2] = {{OSMESA_FORMAT, GL_RGBA},
+                                    {OSMESA_PROFILE, OSMESA_CORE_PROFILE},
+                                    {OSMESA_CONTEXT_MAJOR_VERSION, 3},
+                                    {OSMESA_CONTEXT_MINOR_VERSION, 3},
+                                    {0, 0}};
 
     // the library, where it is installed
     void *(*create)(const int *, void *);
@@ -166,8 +162,8 @@ static status open_osmesa(gl_offscreen *g, fault *f)
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "libOSMesa.so.8 is too old: expected one of Mesa 17 or later");
     }
-    g->small = calloc(SMALL * SMALL, 4);
-    g->context = g->small ? create(wanted, NULL) : NULL;
+    g->small = g_malloc0_n(SMALL * SMALL, 4);
+    g->context = create(wanted[0], NULL);
     if (g->context == NULL || !make_current(g)) {
         return fault_set(f, STATUS_CANNOT_WRITE, "OSMesa gives no context of OpenGL 3.3");
     }
@@ -180,7 +176,7 @@ static void close_osmesa(gl_offscreen *g)
     if (g->context != NULL && load(g->handle, "OSMesaDestroyContext", &destroy)) {
         destroy(g->context);
     }
-    free(g->small);
+    g_free(g->small);
 }
 
 // ---- EGL
@@ -393,11 +389,8 @@ static status set_up(gl_offscreen *g, fault *f)
 status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, int height, fault *f)
 {
     assert(out != NULL && width > 0 && height > 0);
-    gl_offscreen *g = calloc(1, sizeof *g);
+    gl_offscreen *g = g_new0(gl_offscreen, 1);
     *out = NULL;
-    if (g == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for OpenGL");
-    }
     g->library = library;
     g->width = width;
     g->height = height;
@@ -426,7 +419,7 @@ void gl_offscreen_destroy(gl_offscreen *g)
     }
 
     // the library stays: its threads may still be ending
-    free(g);
+    g_free(g);
 }
 
 const char *gl_offscreen_renderer(const gl_offscreen *g)

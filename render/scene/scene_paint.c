@@ -79,12 +79,8 @@ static status prepare(scene *sc, fault *f)
     }
 
     // room for one shape
-    sc->joints = malloc(((size_t)sc->links + 1) * sizeof *sc->joints);
-    sc->curve = malloc((size_t)scene_curve_length(sc->links) * sizeof *sc->curve);
-    if (sc->joints == NULL || sc->curve == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d links", sc->links);
-    }
-
+    sc->joints = g_new(vector, sc->links + 1);
+    sc->curve = g_new(vector, scene_curve_length(sc->links));
     scene_options_scale(&sc->options, &sc->result->trace);
     sc->context = text_context_create();
     code = scene_set_view(sc, f);
@@ -100,12 +96,8 @@ status scene_create(scene **out, const scenario *s, const run_result *result,
                     const scene_options *options, fault *f)
 {
     assert(out != NULL && s != NULL && result != NULL);
-    scene *sc = calloc(1, sizeof *sc);
+    scene *sc = g_new0(scene, 1);
     *out = NULL;
-    if (sc == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene");
-    }
-
     sc->scenario = s;
     sc->result = result;
     sc->options = *options;
@@ -138,9 +130,9 @@ void scene_destroy(scene *sc)
         mesh_finish(&sc->mesh);
         mesh_finish(&sc->ghost);
         g_clear_object(&sc->context);
-        free(sc->joints);
-        free(sc->curve);
-        free(sc);
+        g_free(sc->joints);
+        g_free(sc->curve);
+        g_free(sc);
     }
 }
 
