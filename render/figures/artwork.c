@@ -273,46 +273,28 @@ static char *latex_escape(const char *plain)
     return g_string_free(out, FALSE);
 }
 
-// The file's name without folder and ending.
-static char *stem_of(const char *path)
-{
-    char *name = g_path_get_basename(path), *dot = strrchr(name, '.');
-    if (dot != NULL && dot != name) {
-        *dot = '\0';
-    }
-    return name;
-}
-
-// A picture's path as the .tex file would name it: alone if both stand in one folder.
-static char *path_from(const char *tex, const char *file)
-{
-    g_autofree char *tex_folder = g_path_get_dirname(tex), *folder = g_path_get_dirname(file);
-    bool same = strcmp(tex_folder, folder) == 0;
-    return same ? g_path_get_basename(file) : g_strdup(file);
-}
-
 void latex_print(FILE *stream, const artwork *a, const char *tex, const char *file)
 {
     assert(stream != NULL && a != NULL && tex != NULL && file != NULL);
-    g_autofree char *path = path_from(tex, file), *stem = stem_of(file);
+    g_autofree char *tex_folder = g_path_get_dirname(tex), *folder = g_path_get_dirname(file);
+    g_autofree char *name = g_path_get_basename(file);
+    const char *dot = strrchr(name, '.');
+    const int stem = dot != NULL && dot != name ? (int)(dot - name) : (int)strlen(name);
     g_autofree char *title = text_escape(a->title != NULL ? a->title : ""),
                     *heading = latex_of_markup(title);
     g_autofree char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
     g_autofree char *alt = latex_escape(a->alternative != NULL ? a->alternative : a->title);
 
-    GString *out = g_string_new(NULL);
-    text_append(out,
-                "\\begin{figure}\n"
-                "  \\centering\n"
-                "  \\includegraphics[width=%.4gmm,alt={%s}]{%s}\n"
-                "  \\caption{%s%s%s}\n"
-                "  \\label{fig:%s}\n"
-                "\\end{figure}\n",
-                a->width * 25.4 / 72, alt, path, heading, caption[0] != '\0' ? ". " : "", caption,
-                stem);
-    fputs(out->str, stream);
-
-    g_string_free(out, TRUE);
+    g_autofree char *text =
+        text_printf("\\begin{figure}\n"
+                    "  \\centering\n"
+                    "  \\includegraphics[width=%.4gmm,alt={%s}]{%s}\n"
+                    "  \\caption{%s%s%s}\n"
+                    "  \\label{fig:%.*s}\n"
+                    "\\end{figure}\n",
+                    a->width * 25.4 / 72, alt, strcmp(tex_folder, folder) == 0 ? name : file,
+                    heading, caption[0] != '\0' ? ". " : "", caption, stem, name);
+    fputs(text, stream);
 }
 
 // ---- what stands beside a picture

@@ -35,24 +35,6 @@ static char *path_of(const recipe_figure *fig, const char *name)
     return path;
 }
 
-// Puts the place in the recipe before what went wrong.
-static status at_source(const recipe_figure *fig, const recipe_source *s, status code,
-                        const fault *why, fault *f)
-{
-    return fault_set(f, code, "%s:%d:%d: %s", fig->path, s->at.line, s->at.column, why->text);
-}
-
-static status open_run(recipe_figure *fig, const recipe_source *s, opened_source *out, fault *f)
-{
-    g_autofree char *beside = path_of(fig, s->scenario);
-    bool file = g_file_test(beside, G_FILE_TEST_IS_REGULAR);
-
-    status code = run_begin_changed(&out->run, file ? beside : s->scenario, s->change,
-                                    s->change_count, NULL, f);
-    out->ran = code == STATUS_OK;
-    return code;
-}
-
 static status open_data(recipe_figure *fig, const recipe_source *s, opened_source *out, fault *f)
 {
     trace_panel shown[FIGURE_PANELS];
@@ -77,7 +59,11 @@ static status open_source(recipe_figure *fig, int index, fault *f)
     status code = STATUS_OK;
 
     if (s->kind == SOURCE_RUN) {
-        code = open_run(fig, s, out, &why);
+        g_autofree char *beside = path_of(fig, s->scenario);
+        bool own = g_file_test(beside, G_FILE_TEST_IS_REGULAR);
+        code = run_begin_changed(&out->run, own ? beside : s->scenario, s->change, s->change_count,
+                                 NULL, &why);
+        out->ran = code == STATUS_OK;
     } else if (s->kind == SOURCE_DATA) {
         code = open_data(fig, s, out, &why);
     } else {
@@ -86,7 +72,10 @@ static status open_source(recipe_figure *fig, int index, fault *f)
         code = sweep_table_read(path, keys, s->z != NULL ? 3 : 2, out->columns, &out->count, &why);
     }
 
-    return code == STATUS_OK ? code : at_source(fig, s, code, &why, f);
+    // the place in the recipe stands before what went wrong
+    return code == STATUS_OK
+               ? code
+               : fault_set(f, code, "%s:%d:%d: %s", fig->path, s->at.line, s->at.column, why.text);
 }
 
 // ---- the page

@@ -22,15 +22,6 @@ const char *recipe_text(recipe_context *c, const tree_node *node, const char *wh
     return recipe_keep(c, g_strdup(node->text));
 }
 
-static bool read_truth(recipe_context *c, const tree_node *node, const char *what)
-{
-    bool yes = node_is_scalar(node) && strcmp(node->text, "true") == 0;
-    if (!yes && !(node_is_scalar(node) && strcmp(node->text, "false") == 0)) {
-        report_node(&c->reader, node, "%s is not true or false", what);
-    }
-    return yes;
-}
-
 void recipe_number(recipe_context *c, const tree_node *node, const char *what, double *value)
 {
     reader_quantity(&c->reader, node, what, "", value);
@@ -76,7 +67,10 @@ static void take_value(recipe_context *c, const tree_node *node, const recipe_ke
         *(const char **)field = recipe_text(c, node, key->key);
         break;
     case VALUE_TRUTH:
-        *(bool *)field = read_truth(c, node, key->key);
+        *(bool *)field = node_is_scalar(node) && strcmp(node->text, "true") == 0;
+        if (!*(bool *)field && !(node_is_scalar(node) && strcmp(node->text, "false") == 0)) {
+            report_node(&c->reader, node, "%s is not true or false", key->key);
+        }
         break;
     case VALUE_NUMBER:
         recipe_number(c, node, key->key, field);

@@ -48,13 +48,6 @@ static void put_text(cairo_t *cr, PangoContext *context, const char *markup, dou
     text_draw(cr, context, &t);
 }
 
-static void put_facts(cairo_t *cr, PangoContext *context, const report_item *item, double y)
-{
-    g_autoptr(GString) facts = g_string_new(NULL);
-    report_add_facts(facts, item, "  ", "b");
-    put_text(cr, context, facts->str, 7, false, PAGE_MARGIN + SKETCH_MARGIN, y);
-}
-
 static void put_title_page(cairo_t *cr, PangoContext *context, const report *r)
 {
     double y = 120;
@@ -114,7 +107,10 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
         cairo_scale(cr, scale, scale);
         code = item->drawn.paint(cr, item->drawn.what, NULL, f);
         cairo_restore(cr);
-        put_facts(cr, context, item, y + item->drawn.height * scale + 2);
+        g_autoptr(GString) facts = g_string_new(NULL);
+        report_add_facts(facts, item, "  ", "b");
+        put_text(cr, context, facts->str, 7, false, PAGE_MARGIN + SKETCH_MARGIN,
+                 y + item->drawn.height * scale + 2);
         y += item_height(item) + ITEM_SPACE;
     }
 
@@ -257,18 +253,6 @@ static void clear_item(gpointer data)
 
 // ---- the whole
 
-static status write_both(const report *r, const char *folder, fault *f)
-{
-    g_autofree char *html = g_strconcat(folder, "/report.html", NULL);
-    g_autofree char *pdf = g_strconcat(folder, "/report.pdf", NULL);
-
-    // after a fault nothing more is written
-    status code = make_folder(folder, f);
-    code = code == STATUS_OK ? report_write_html(r, html, f) : code;
-    code = code == STATUS_OK ? write_pdf(r, pdf, f) : code;
-    return code;
-}
-
 // ---- scenarios and recipes of one's own
 
 static status open_scenario(report_item *item, const char *name, run_monitor *monitor, fault *f)
@@ -332,7 +316,11 @@ status report_write(const char *folder, char *const *names, int count, run_monit
     if (code == STATUS_OK && count == 0) {
         add_parameters(&r);
     }
-    code = code == STATUS_OK ? write_both(&r, folder, &why) : code;
+    g_autofree char *html = g_strconcat(folder, "/report.html", NULL);
+    g_autofree char *pdf = g_strconcat(folder, "/report.pdf", NULL);
+    code = code == STATUS_OK ? make_folder(folder, &why) : code;
+    code = code == STATUS_OK ? report_write_html(&r, html, &why) : code;
+    code = code == STATUS_OK ? write_pdf(&r, pdf, &why) : code;
 
     g_array_free(r.items, TRUE);
     g_free(r.heading);

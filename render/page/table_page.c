@@ -73,16 +73,6 @@ typedef struct table_layout {
     double widths[TABLE_COLUMNS]; // [pt]
 } table_layout;
 
-// The frame of a table is laid out at its own width: nothing is scaled.
-static sketch_frame bare_frame(const table_page *t)
-{
-    return (sketch_frame){.title = t->title,
-                          .caption = t->caption,
-                          .design_width =
-                              t->look.width > 0 ? t->look.width * 72 / 25.4 : SKETCH_WIDTH,
-                          .look = t->look};
-}
-
 static text_block cell_block(const sketch_frame *frame, const char *markup, bool bold)
 {
     return (text_block){markup, sketch_letters(frame, CELL_SIZE), .family = frame->look.font,
@@ -174,7 +164,9 @@ static double row_height(const table_layout *l, const table_page *t, guint row)
 // Lays the table out; give l->context to g_object_unref.
 static void lay_out(table_layout *l, const table_page *t)
 {
-    *l = (table_layout){.context = text_context_create(), .frame = bare_frame(t)};
+    // the frame is laid out at its own width: nothing is scaled
+    *l = (table_layout){text_context_create(), {t->title, t->caption, .look = t->look}};
+    l->frame.design_width = t->look.width > 0 ? t->look.width * 72 / 25.4 : SKETCH_WIDTH;
     choose_columns(l->context, t, &l->frame, l->widths);
     double body = heading_height(l, t) + CELL_SPACE;
     for (guint row = 0; row < t->rows->len; row++) {

@@ -104,11 +104,6 @@ PangoContext *text_context_create(void)
     return context;
 }
 
-static char *translated(const text_block *t, const char *markup)
-{
-    return text_translate(markup, t->size, t->scale > 0 ? t->scale : 1);
-}
-
 // Narrows a layout of several lines as far as their number allows.
 static void balance(PangoLayout *layout, double width)
 {
@@ -142,7 +137,8 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     pango_font_description_free(font);
 
     // text that is no markup is shown as it is
-    g_autofree char *valid = text_printable(t->markup), *markup = translated(t, valid);
+    g_autofree char *valid = text_printable(t->markup);
+    g_autofree char *markup = text_translate(valid, t->size, t->scale > 0 ? t->scale : 1);
     if (pango_parse_markup(markup, -1, 0, NULL, NULL, NULL, NULL)) {
         pango_layout_set_markup(layout, markup, -1);
     } else {

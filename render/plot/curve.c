@@ -143,11 +143,6 @@ typedef struct column {
     point first, low, high, last;
 } column;
 
-static void column_begin(column *c, double index, point q, size_t at)
-{
-    *c = (column){index, 1, at, at, at, at, q, q, q, q};
-}
-
 static void column_add(column *c, point q, size_t at)
 {
     c->count++;
@@ -235,7 +230,7 @@ void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void 
         }
         column_flush(&c, &tip);
         if (columns) {
-            column_begin(&c, index, q, i);
+            c = (column){index, 1, i, i, i, i, q, q, q, q};
         } else {
             pen_to(&tip, q);
         }

@@ -87,23 +87,19 @@ static double wrapped_height(const figure *fig, const char *markup, double size,
     return height + 4;
 }
 
-// A page that is half as wide has panels that are a fifth lower.
-static double panel_height(const figure *fig)
-{
-    double width = fig->width > 0 ? fig->width : DEFAULT_WIDTH;
-    return PANEL_HEIGHT * pow(fmin(1, width / DEFAULT_WIDTH), 0.32) * POINTS_PER_MM;
-}
-
 void figure_size(const figure *fig, double *width, double *height)
 {
     assert(fig != NULL && width != NULL && height != NULL);
-    double points = 0;
     int columns = figure_columns(fig);
+
+    // a page that is half as wide has panels that are a fifth lower
+    double points = 0, share = fig->width > 0 ? fmin(1, fig->width / DEFAULT_WIDTH) : 1;
+    double panel = PANEL_HEIGHT * pow(share, 0.32) * POINTS_PER_MM;
 
     // rows of panels
     for (int i = 0; i < fig->panel_count; i += columns) {
         const figure_panel *p = &fig->panels[i];
-        points += (p->weight > 0 ? p->weight : 1) * panel_height(fig) + PANEL_SPACE;
+        points += (p->weight > 0 ? p->weight : 1) * panel + PANEL_SPACE;
         points += p->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0;
         points += p->heading != NULL ? HEADING_ROW : 0;
     }

@@ -192,18 +192,14 @@ static double space_above(const panel_layout *l)
            (l->panel->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0);
 }
 
-static double weight_of(const figure_panel *panel)
-{
-    return panel->weight > 0 ? panel->weight : 1;
-}
-
 // Space above a row of panels and its share of the height: the largest of its panels.
 static void row_needs(const drawing *d, int row, double *above, double *weight)
 {
     *above = *weight = 0;
     for (int i = row * d->columns; i < d->fig->panel_count && i < (row + 1) * d->columns; i++) {
         *above = fmax(*above, space_above(&d->panels[i]));
-        *weight = fmax(*weight, weight_of(&d->fig->panels[i]));
+        double own = d->fig->panels[i].weight;
+        *weight = fmax(*weight, own > 0 ? own : 1);
     }
 }
 

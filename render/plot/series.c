@@ -40,16 +40,6 @@ static line_style free_style(const figure_series *series, int index)
     return series[index].secondary ? LINE_DASHED : style;
 }
 
-// Whether an earlier series of the panel is busy, too.
-static bool busy_before(const panel_layout *l, int index)
-{
-    bool found = false;
-    for (int i = 0; i < index; i++) {
-        found = found || l->busy[i];
-    }
-    return found;
-}
-
 double set_series(const drawing *d, const panel_layout *l, int index)
 {
     const figure_series *s = &l->panel->series[index];
@@ -66,7 +56,10 @@ double set_series(const drawing *d, const panel_layout *l, int index)
     if (l->busy[index]) {
         // no pattern shows in it; without colours a lighter and wider line does
         bool wide = d->style.theme == THEME_MONO && !s->secondary;
-        bool second = busy_before(l, index);
+        bool second = false;
+        for (int i = 0; i < index; i++) {
+            second = second || l->busy[i];
+        }
         width *= wide && !second ? 1.7 : 1;
         set_colour(d->cr, wide ? palette_grey(second ? 0 : 2)
                                : palette_series(d->style.theme, s->colour, index));
@@ -156,17 +149,12 @@ static void add_marker(cairo_t *cr, marker_kind kind, double x, double y, double
     cairo_close_path(cr);
 }
 
-static double radius_of(const figure_series *s)
-{
-    return s->radius > 0 ? s->radius : MARKER_RADIUS;
-}
-
 // A marker in the series' colour; one with a shade has that inside and an outline.
 static void draw_marker(const drawing *d, const panel_layout *l, const figure_series *s, double x,
                         double y, double shade)
 {
     bool open = s->shade != NULL || s->marker == MARKER_CROSS;
-    add_marker(d->cr, s->marker, x, y, radius_of(s));
+    add_marker(d->cr, s->marker, x, y, s->radius > 0 ? s->radius : MARKER_RADIUS);
     if (!open) {
         cairo_fill(d->cr);
         return;

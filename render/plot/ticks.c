@@ -137,13 +137,6 @@ static labelling best_labelling(const wish *w)
     }
 }
 
-// Minor ticks fall on rounder numbers than the step itself.
-static int minor_parts(const labelling *l)
-{
-    static const int parts[NICE] = {5, 5, 4, 5, 4, 3};
-    return l->j == 1 ? parts[l->nice] : 1;
-}
-
 // Digits after the point that tick values in units of 10^exponent need.
 static int decimals_needed(const ticks *t)
 {
@@ -210,7 +203,9 @@ static void fill(ticks *t, const labelling *l, double first, int count)
     }
 
     t->step = t->count > 1 ? tick_value(l, l->j) : 0;
-    t->minor = minor_parts(l);
+    // minor ticks fall on rounder numbers than the step itself
+    static const int parts[NICE] = {5, 5, 4, 5, 4, 3};
+    t->minor = l->j == 1 ? parts[l->nice] : 1;
     choose_format(t);
 }
 

@@ -38,13 +38,6 @@ static int find_entry(const trace_figure *t, int meaning)
     return -1;
 }
 
-// The line of a signal by the key, solid of one that it does not have.
-static line_style line_of(const trace_figure *t, int index)
-{
-    int i = find_entry(t, meaning_of(index));
-    return i >= 0 ? t->key_series[i].style : LINE_SOLID;
-}
-
 // The plainest line that no signal has with which this one shares a panel.
 static line_style free_line(const trace_figure *t, const trace_panel *panels, int meaning)
 {
@@ -197,7 +190,8 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->secondary = false;
             out->run = runs[run].rank;
             out->colour = palette_slot(runs[run].rank - 1);
-            out->style = line_of(t, index);
+            const int entry = find_entry(t, meaning_of(index));
+            out->style = entry >= 0 ? t->key_series[entry].style : LINE_SOLID;
             continue;
         }
 

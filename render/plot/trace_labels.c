@@ -113,17 +113,6 @@ static void add_drive(GString *out, const parameters *p)
     }
 }
 
-// The constants in which the printed model of chapter 3 departs from the thesis's own numbers or
-// from the beam's: they were found from its tables.
-static void add_printed_constants(GString *out, const parameters *p)
-{
-    if (p->arm.model == ARM_PRINTED) {
-        g_autofree char *inertia = text_number(p->arm.link_inertia, 3);
-        text_append(out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = ", p->arm.k1);
-        text_append(out, "%s\u2009kg·m²", inertia);
-    }
-}
-
 // The meaning of the shading and, of several runs, the run it belongs to; points of data have no
 // contact.
 static void add_shading(GString *out, const trace_run *runs, int run_count, const char *shaded)
@@ -154,7 +143,12 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     g_autofree char *step = duration_text(p->method.step);
     text_append(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
                 hub_texts[p->arm.hub_joint]);
-    add_printed_constants(out, p);
+    if (p->arm.model == ARM_PRINTED) {
+        // the constants in which it departs from the thesis's own numbers or from the beam's
+        g_autofree char *inertia = text_number(p->arm.link_inertia, 3);
+        text_append(out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = %s\u2009kg·m²",
+                    p->arm.k1, inertia);
+    }
     add_drive(out, p);
 
     // the method and its step, which for the event method is but the spacing of rows

@@ -65,13 +65,6 @@ static bool mark_modes(trace_figure *t, const trace_run *run)
     return marked;
 }
 
-static char *peak_label(double force)
-{
-    char *quantity = text_quantity(force, 3, "N"), *label = g_strconcat("peak ", quantity, NULL);
-    g_free(quantity);
-    return label;
-}
-
 void trace_mark_events(trace_figure *t, const trace_run *run)
 {
     const summary *m = &run->result->summary;
@@ -87,8 +80,9 @@ void trace_mark_events(trace_figure *t, const trace_run *run)
         add_mark(t, m->first_contact_s, "contact");
     }
     if (isfinite(m->first_pulse_time_to_peak_s)) {
+        g_autofree char *force = text_quantity(m->first_pulse_peak_N, 3, "N");
         add_mark(t, m->first_contact_s + m->first_pulse_time_to_peak_s,
-                 owned_figure_keep(&t->plot, peak_label(m->first_pulse_peak_N)));
+                 owned_figure_printf(&t->plot, "peak %s", force));
         // at its point where the first panel shows forces
         figure_mark *peak = &t->marks[t->plot.figure.mark_count - 1];
         peak->pointed = strcmp(t->plot.panels[0].y.name, "force") == 0;

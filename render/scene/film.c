@@ -129,18 +129,17 @@ static status next_frame(film_making *m, int frame, int total, fault *f)
     return film_file_add(m->file, done->onto, f);
 }
 
-// A frame with every colour of the film, for formats that have a palette.
-static status add_palette(film_making *m, fault *f)
-{
-    status code = film_painter_palette(m->painter, m->frame, f);
-    return code == STATUS_OK ? film_file_add(m->file, m->frame, f) : code;
-}
-
 static status add_frames(film_making *m, fault *f)
 {
     const film_options *o = &m->plan->options;
     int total = (int)fmax(2, round(o->seconds * o->frames_per_second));
-    status code = film_file_wants_palette(m->file) ? add_palette(m, f) : STATUS_OK;
+    status code = STATUS_OK;
+
+    // a frame with every colour of the film, for formats that have a palette
+    if (film_file_wants_palette(m->file)) {
+        code = film_painter_palette(m->painter, m->frame, f);
+        code = code == STATUS_OK ? film_file_add(m->file, m->frame, f) : code;
+    }
 
     if (o->threads > 1 && code == STATUS_OK) {
         helper_begin(&m->helper, m->plan, total);

@@ -170,15 +170,6 @@ static status open_osmesa(gl_offscreen *g, fault *f)
     return STATUS_OK;
 }
 
-static void close_osmesa(gl_offscreen *g)
-{
-    void (*destroy)(void *);
-    if (g->context != NULL && load(g->handle, "OSMesaDestroyContext", &destroy)) {
-        destroy(g->context);
-    }
-    g_free(g->small);
-}
-
 // ---- EGL
 
 static status complain_egl(fault *f, const char *what)
@@ -413,7 +404,11 @@ void gl_offscreen_destroy(gl_offscreen *g)
 
     // the context takes OpenGL's objects with it
     if (g->library == GL_OSMESA) {
-        close_osmesa(g);
+        void (*destroy)(void *);
+        if (g->context != NULL && load(g->handle, "OSMesaDestroyContext", &destroy)) {
+            destroy(g->context);
+        }
+        g_free(g->small);
     } else {
         close_egl(g);
     }

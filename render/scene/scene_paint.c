@@ -159,18 +159,14 @@ static void draw_flashes(scene *sc, const labels *l, double time)
     }
 }
 
-// Of letters and lines: 1 for a picture 720 pixels high.
-static double letter_scale(const scene *sc)
-{
-    return sc->options.letters > 0 ? sc->options.letters
-                                   : fmin(sc->camera.height / 720, sc->camera.width / 800);
-}
-
 static labels labels_of(const scene *sc, cairo_surface_t *onto)
 {
     const surroundings *around = sc->around;
-    return (labels){cairo_create(onto), sc->context,   &sc->camera,
-                    around->strong,     around->faint, letter_scale(sc)};
+    const double own = sc->options.letters; // 1 for a picture 720 pixels high
+    return (labels){
+        cairo_create(onto), sc->context,
+        &sc->camera,        around->strong,
+        around->faint,      own > 0 ? own : fmin(sc->camera.height / 720, sc->camera.width / 800)};
 }
 
 static status draw_labels(scene *sc, const double *times, const colour *inks, int count,
