@@ -226,18 +226,6 @@ status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out
 
 // ---- any figure
 
-// "Fig. 3.4  ...", "Table 4.1  ...", or the caption alone.
-static char *title_of(const thesis_figure *which)
-{
-    if (g_ascii_isdigit(which->id[0])) {
-        return text_printf("Fig. %s  %s", which->id, which->caption);
-    }
-    if (which->id[0] == 'T') {
-        return text_printf("Table %s  %s", which->id + 1, which->caption);
-    }
-    return g_strdup(which->caption);
-}
-
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f)
 {
     assert(which != NULL && o != NULL && out != NULL);
@@ -246,7 +234,11 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
                          "%s shows no recorded signals that %s could choose or lie over", which->id,
                          o->overlay != NULL ? o->overlay : o->signals);
     }
-    g_autofree char *title = title_of(which);
+    // "Fig. 3.4  ...", "Table 4.1  ...", or the caption alone
+    const bool table = which->id[0] == 'T', numbered = table || g_ascii_isdigit(which->id[0]);
+    g_autofree char *title = numbered ? text_printf("%s %s  %s", table ? "Table" : "Fig.",
+                                                    which->id + table, which->caption)
+                                      : g_strdup(which->caption);
     const figure_order order = {which, title, o, NULL};
     return which->open != NULL ? which->open(&order, out, f) : open_signals(&order, out, f);
 }

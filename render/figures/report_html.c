@@ -61,16 +61,6 @@ static void add_head(const report *r, GString *html)
         r->heading, r->preface);
 }
 
-static void add_contents(const report *r, GString *html)
-{
-    g_string_append(html, "<nav><ol>\n");
-    for (guint i = 0; i < r->items->len; i++) {
-        g_autofree char *title = text_escape(report_item_at(r, i)->drawn.title);
-        text_append(html, "<li><a href=\"#item-%u\">%s</a></li>\n", i, title);
-    }
-    g_string_append(html, "</ol></nav>\n");
-}
-
 // A picture with many cells, which would be many thousand paths: as a PNG in the page.
 static status add_png(GString *html, const picture *p, const char *alternative, fault *f)
 {
@@ -240,7 +230,12 @@ status report_write_html(const report *r, const char *path, fault *f)
 
     // the whole page first: nothing is written of one that fails
     add_head(r, html);
-    add_contents(r, html);
+    g_string_append(html, "<nav><ol>\n");
+    for (guint i = 0; i < r->items->len; i++) {
+        g_autofree char *title = text_escape(report_item_at(r, i)->drawn.title);
+        text_append(html, "<li><a href=\"#item-%u\">%s</a></li>\n", i, title);
+    }
+    g_string_append(html, "</ol></nav>\n");
     for (guint i = 0; i < r->items->len && code == STATUS_OK; i++) {
         code = add_section(r, i, html, letters, f);
         if (code == STATUS_OK && report_item_at(r, i)->command != NULL) {

@@ -70,16 +70,6 @@ const char *nearest_signal(const char *name)
     return near.best != NULL ? near.best : "force";
 }
 
-// What goes without saying for a panel of its first signal.
-static void complete_panel(trace_panel *p, bool first)
-{
-    const signal_info *signal = &signal_table[signal_index(p->signals[0])];
-    p->with_zero = strcmp(signal->unit, "N") == 0 || strcmp(signal->unit, "V") == 0;
-    p->wall = strcmp(signal->unit, "rad") == 0;
-    p->impulses = first && strcmp(signal->name, "force") == 0;
-    p->label = p->signals[1] != NULL ? signal->quantity : NULL;
-}
-
 // One panel, "hub_angle+last_angle".
 static status read_panel(const char *text, trace_panel *p, fault *f)
 {
@@ -122,7 +112,12 @@ static status read_signals(const char *text, trace_panel *panels, int *count, fa
         *p = (trace_panel){.weight = 1};
         code = read_panel(words[*count], p, f);
         if (code == STATUS_OK) {
-            complete_panel(p, *count == 0);
+            // what goes without saying for a panel of its first signal
+            const signal_info *signal = &signal_table[signal_index(p->signals[0])];
+            p->with_zero = strcmp(signal->unit, "N") == 0 || strcmp(signal->unit, "V") == 0;
+            p->wall = strcmp(signal->unit, "rad") == 0;
+            p->impulses = *count == 0 && strcmp(signal->name, "force") == 0;
+            p->label = p->signals[1] != NULL ? signal->quantity : NULL;
         }
     }
     return code;

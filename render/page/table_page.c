@@ -200,16 +200,6 @@ static void draw_cells(sketch *s, const table_layout *l, const table_page *t, ch
     }
 }
 
-static void draw_group(sketch *s, const char *heading, double y, double height)
-{
-    set_colour(s->cr, s->colours->shade);
-    cairo_rectangle(s->cr, s->left, y, s->right - s->left, height);
-    cairo_fill(s->cr);
-    sketch_wrapped(s, (point){s->left + CELL_SPACE, y + CELL_SPACE},
-                   &(text_block){heading, CELL_SIZE, .bold = true,
-                                 .width = s->right - s->left - 2 * CELL_SPACE});
-}
-
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f)
 {
     assert(cr != NULL && t != NULL);
@@ -231,7 +221,12 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
     for (guint row = 0; row < t->rows->len; row++) {
         double height = row_height(&l, t, row);
         if (table_row_is_group(t, row)) {
-            draw_group(&s, row_cells(t, row)[0], y, height);
+            set_colour(s.cr, s.colours->shade);
+            cairo_rectangle(s.cr, s.left, y, s.right - s.left, height);
+            cairo_fill(s.cr);
+            sketch_wrapped(&s, (point){s.left + CELL_SPACE, y + CELL_SPACE},
+                           &(text_block){row_cells(t, row)[0], CELL_SIZE, .bold = true,
+                                         .width = s.right - s.left - 2 * CELL_SPACE});
         } else {
             draw_cells(&s, &l, t, row_cells(t, row), y + CELL_SPACE / 2, false);
         }

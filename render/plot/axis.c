@@ -81,15 +81,6 @@ void scale_widen(axis_scale *s, double share)
 
 // ---- ticks
 
-// Ticks set by hand.
-static void use_given_ticks(axis *a)
-{
-    for (int i = 0; i < a->from->tick_count && i < TICKS_MOST; i++) {
-        a->at[a->count] = a->from->ticks[i].value;
-        a->text[a->count++] = a->from->ticks[i].label;
-    }
-}
-
 static void choose_even_ticks(axis *a, int wanted)
 {
     ticks_between(&a->even, a->scale.low, a->scale.high, wanted);
@@ -151,7 +142,10 @@ void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
     a->count = 0;
     a->even = (ticks){.minor = 1};
     if (from->ticks != NULL) {
-        use_given_ticks(a);
+        for (int i = 0; i < a->from->tick_count && i < TICKS_MOST; i++) {
+            a->at[a->count] = a->from->ticks[i].value;
+            a->text[a->count++] = a->from->ticks[i].label;
+        }
     } else if (a->scale.kind == SCALE_LOGARITHMIC) {
         choose_decades(a, wanted);
     } else {

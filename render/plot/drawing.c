@@ -158,18 +158,6 @@ static void draw_ticks(const drawing *d, const plane *p, const double *x, int x_
     }
 }
 
-static void draw_spines(const drawing *d, const figure_rect *box, bool framed)
-{
-    double bottom = box->y + box->height, right = box->x + box->width;
-    cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_SQUARE);
-    draw_line(d->cr, box->x, box->y, box->x, bottom);
-    draw_line(d->cr, box->x, bottom, right, bottom);
-    if (framed) {
-        draw_line(d->cr, box->x, box->y, right, box->y);
-        draw_line(d->cr, right, box->y, right, bottom);
-    }
-}
-
 // A label that would touch the one before it is left out, unless ticks are even.
 static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const axis *y,
                              const axes_look *look)
@@ -206,7 +194,14 @@ void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_lo
     int y_count = axis_minor_ticks(y, p->box.height, minor_y);
     draw_ticks(d, p, minor_x, x_count, minor_y, y_count, MINOR_LENGTH);
     draw_ticks(d, p, x->at, x->count, y->at, y->count, TICK_LENGTH);
-    draw_spines(d, &p->box, look.framed);
+    double bottom = p->box.y + p->box.height, right = p->box.x + p->box.width;
+    cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_SQUARE);
+    draw_line(d->cr, p->box.x, p->box.y, p->box.x, bottom);
+    draw_line(d->cr, p->box.x, bottom, right, bottom);
+    if (look.framed) {
+        draw_line(d->cr, p->box.x, p->box.y, right, p->box.y);
+        draw_line(d->cr, right, p->box.y, right, bottom);
+    }
     draw_tick_labels(d, p, x, y, &look);
 }
 

@@ -63,24 +63,18 @@ void figure_take_look(figure *fig, const page_look *look)
     fig->transparent = fig->transparent || look->transparent;
 }
 
-static double sides_of(const figure *fig)
-{
-    return fig->width > 0 && fig->width * POINTS_PER_MM < NARROW_PAGE ? 2 * PAGE_MARGIN : SIDES;
-}
-
 // Height of a wrapped text above or below the panels, with its distance from them [pt].
 static double wrapped_height(const figure *fig, const char *markup, double size, bool bold)
 {
-    double width, height;
-
+    double width, height, page = fig->width > 0 ? fig->width : DEFAULT_WIDTH;
+    page *= POINTS_PER_MM;
     PangoContext *context = text_context_create();
     text_block t = {.markup = markup,
                     .size = page_letters(fig->letters, size),
                     .family = fig->font,
                     .bold = bold,
                     .balanced = bold,
-                    .width = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM -
-                             sides_of(fig)};
+                    .width = page - (page < NARROW_PAGE ? 2 * PAGE_MARGIN : SIDES)};
 
     text_measure(context, &t, &width, &height);
     g_object_unref(context);
@@ -116,17 +110,6 @@ void figure_size(const figure *fig, double *width, double *height)
 
     *width = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM;
     *height = fig->height > 0 ? fig->height * POINTS_PER_MM : points;
-}
-
-static plot_style style_of(const figure *fig)
-{
-    return (plot_style){.theme = fig->theme,
-                        .colours = palette_of(fig->theme),
-                        .font = fig->font != NULL ? fig->font : TEXT_FAMILY,
-                        .title = page_letters(fig->letters, TITLE_LETTERS),
-                        .label = page_letters(fig->letters, LETTERS_NORMAL),
-                        .tick = page_letters(fig->letters, TICK_LETTERS),
-                        .small = page_letters(fig->letters, SMALL_LETTERS)};
 }
 
 // ---- the whole
@@ -250,7 +233,13 @@ status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault
     drawing *d = g_new0(drawing, 1);
     d->cr = cr;
     d->fig = fig;
-    d->style = style_of(fig);
+    d->style = (plot_style){.theme = fig->theme,
+                            .colours = palette_of(fig->theme),
+                            .font = fig->font != NULL ? fig->font : TEXT_FAMILY,
+                            .title = page_letters(fig->letters, TITLE_LETTERS),
+                            .label = page_letters(fig->letters, LETTERS_NORMAL),
+                            .tick = page_letters(fig->letters, TICK_LETTERS),
+                            .small = page_letters(fig->letters, SMALL_LETTERS)};
     d->report = report;
     figure_size(fig, &d->page.width, &d->page.height);
     if (report != NULL) {

@@ -302,16 +302,6 @@ static void mark_ink(void *context, stroke_kind kind, double x, double y)
     s->y = y;
 }
 
-static void collect_ink(const drawing *d, panel_layout *l, placement *grid)
-{
-    ink_sink sink = {.grid = grid};
-    placement_init(grid, l->plane.box);
-    for (int i = 0; i < l->panel->series_count; i++) {
-        curve_trace(&l->plane, &l->panel->series[i], mark_ink, &sink);
-    }
-    ink_of_marks(d, l, grid);
-}
-
 // Fills every panel; returns whether a legend had to go out of its panel.
 static bool fill_panels(drawing *d, placement *grid)
 {
@@ -320,7 +310,12 @@ static bool fill_panels(drawing *d, placement *grid)
         panel_layout *l = &d->panels[i];
 
         // where curves run
-        collect_ink(d, l, grid);
+        ink_sink sink = {.grid = grid};
+        placement_init(grid, l->plane.box);
+        for (int k = 0; k < l->panel->series_count; k++) {
+            curve_trace(&l->plane, &l->panel->series[k], mark_ink, &sink);
+        }
+        ink_of_marks(d, l, grid);
 
         for (int s = 0; s < l->panel->series_count; s++) {
             l->busy[s] = series_is_busy(&l->plane, &l->panel->series[s]);
@@ -346,17 +341,6 @@ static bool fill_panels(drawing *d, placement *grid)
 
 // ---- the whole
 
-static void choose_panel_ticks(panel_layout *l)
-{
-    double height = l->plane.box.height;
-    bool decades = l->plane.y.kind == SCALE_LOGARITHMIC;
-    l->y.scale = l->plane.y;
-    axis_choose_ticks(&l->y, &l->panel->y, axis_wish(height, decades ? 14 : 20, 2, 8));
-    if (l->panel->colours != NULL) {
-        axis_choose_ticks(&l->colours, &l->panel->colours->axis, axis_wish(height, BAR_TICK, 2, 8));
-    }
-}
-
 static void place_all(drawing *d, int *mark_rows)
 {
     // sides depend on heights through the ticks, and heights on sides through wrapped texts
@@ -365,7 +349,16 @@ static void place_all(drawing *d, int *mark_rows)
 
         // ticks of all axes
         for (int i = 0; i < d->fig->panel_count; i++) {
-            choose_panel_ticks(&d->panels[i]);
+            panel_layout *l = &d->panels[i];
+            double height = l->plane.box.height;
+            l->y.scale = l->plane.y;
+            axis_choose_ticks(
+                &l->y, &l->panel->y,
+                axis_wish(height, l->plane.y.kind == SCALE_LOGARITHMIC ? 14 : 20, 2, 8));
+            if (l->panel->colours != NULL) {
+                axis_choose_ticks(&l->colours, &l->panel->colours->axis,
+                                  axis_wish(height, BAR_TICK, 2, 8));
+            }
         }
         place_columns(d);
         double width = d->column[0].right - d->column[0].left;

@@ -7,18 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-// The first signal of the panels that has a unit, -1 if none has.
-static int signal_of_unit(const char *unit, const trace_panel *panels, int count)
-{
-    for (int i = 0; i < count; i++) {
-        int index = signal_find(panels[i].signals[0]);
-        if (index > 0 && strcmp(signal_table[index].unit, unit) == 0) {
-            return index;
-        }
-    }
-    return -1;
-}
-
 // The signal that the spec's column stands for: the one of its name, or of its unit; -1 for none.
 static int signal_of(const csv_table *table, const char *column, const trace_panel *panels,
                      int count)
@@ -31,7 +19,13 @@ static int signal_of(const csv_table *table, const char *column, const trace_pan
     const char *bracket = strrchr(table->headings[at], '[');
     snprintf(unit, sizeof unit, "%s", bracket != NULL ? bracket + 1 : "");
     unit[strcspn(unit, "]")] = '\0';
-    return signal_of_unit(unit, panels, count);
+    for (int i = 0; i < count; i++) {
+        int index = signal_find(panels[i].signals[0]);
+        if (index > 0 && strcmp(signal_table[index].unit, unit) == 0) {
+            return index;
+        }
+    }
+    return -1;
 }
 
 status overlay_read_column(trace *t, const char *path, const char *column, double shift,

@@ -63,16 +63,6 @@ double placement_ink(const placement *g, figure_rect r)
     return sum;
 }
 
-// Turns cells into sums over everything above and left of them.
-static void sum_up(placement *g)
-{
-    for (int r = 1; r <= PLACEMENT_ROWS; r++) {
-        for (int c = 1; c <= PLACEMENT_COLUMNS; c++) {
-            g->ink[r][c] += g->ink[r - 1][c] + g->ink[r][c - 1] - g->ink[r - 1][c - 1];
-        }
-    }
-}
-
 // The small cost of being away from the corners, below one unit of ink.
 static double corner_cost(const placement *g, const figure_rect *r, double margin)
 {
@@ -89,7 +79,12 @@ double placement_find(const placement *g, double width, double height, double ma
 {
     assert(g != NULL && found != NULL);
     placement sums = *g;
-    sum_up(&sums);
+    // sums over everything above and left of each cell
+    for (int r = 1; r <= PLACEMENT_ROWS; r++) {
+        for (int c = 1; c <= PLACEMENT_COLUMNS; c++) {
+            sums.ink[r][c] += sums.ink[r - 1][c] + sums.ink[r][c - 1] - sums.ink[r - 1][c - 1];
+        }
+    }
 
     // its size in whole cells, with the margin on both sides
     double cell_width = g->box.width / PLACEMENT_COLUMNS;

@@ -13,27 +13,23 @@
 
 // ==== robust: the distribution of the overshoot
 
-// The curve of a law: run i of n, in the order of their overshoots, is at (i + 1)/n.
-static figure_series describe_law(owned_figure *o, const robust_law *law, int slot)
-{
-    double *share = owned_figure_keep(o, g_new(double, law->runs));
-    for (size_t i = 0; i < law->runs; i++) {
-        share[i] = 100 * (double)(i + 1) / (double)law->runs;
-    }
-    return (figure_series){law->law,        owned_figure_keep(o, text_escape(law->law)),
-                           law->overshoots, share,
-                           law->runs,       .colour = slot};
-}
-
 owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 {
     assert(t != NULL && t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
     owned_figure *o = g_new(owned_figure, 1);
     owned_figure_init(o, NULL, 1);
 
-    // a curve for each law: the same runs, and so the same kind of overshoot
+    // a curve for each law: of the same runs, run i of n, in the order of their overshoots, is at
+    // (i + 1)/n
     for (int i = 0; i < t->count; i++) {
-        o->series[0][i] = describe_law(o, &t->laws[i], palette_slot(i));
+        const robust_law *law = &t->laws[i];
+        double *share = owned_figure_keep(o, g_new(double, law->runs));
+        for (size_t k = 0; k < law->runs; k++) {
+            share[k] = 100 * (double)(k + 1) / (double)law->runs;
+        }
+        const char *label = owned_figure_keep(o, text_escape(law->law));
+        o->series[0][i] = (figure_series){law->law, label,     law->overshoots,
+                                          share,    law->runs, .colour = palette_slot(i)};
     }
     o->panels[0].series_count = t->count;
     o->panels[0].weight = 2.4;
@@ -355,29 +351,10 @@ static char *caption_of(const sweep_picture *p, size_t missing)
     return g_string_free(out, FALSE);
 }
 
-static char *title_of(const sweep_picture *p, const char *quantity)
+static void describe(sweep_drawing *s, const sweep_picture *p)
 {
     static const char *const how[] = {
         [SWEEP_GRID] = "", [SWEEP_RANDOM] = " at random", [SWEEP_LATIN] = " of a Latin hypercube"};
-    char changes[SCENARIO_CHANGES];
-    return text_printf("%s: %s of %zu runs%s%s", p->sweep->base->name, quantity,
-                       p->sweep->run_count, how[p->sweep->sampling],
-                       scenario_changes(p->sweep->base, changes));
-}
-
-// What was varied, as on the command line.
-static char *command_of(const sweep *s)
-{
-    GString *out = g_string_new(NULL);
-    for (int i = 0; i < s->axis_count; i++) {
-        text_append(out, "%s--vary %s%s=%s", i > 0 ? " " : "", s->axes[i].together ? "with " : "",
-                    s->axes[i].name, s->axes[i].text);
-    }
-    return g_string_free(out, FALSE);
-}
-
-static void describe(sweep_drawing *s, const sweep_picture *p)
-{
     const sweep *from = p->sweep;
     size_t missing = 0;
     for (size_t i = 0; i < from->run_count; i++) {
@@ -405,10 +382,21 @@ static void describe(sweep_drawing *s, const sweep_picture *p)
 
     // the page
     figure *fig = &s->drawn->figure;
-    fig->title = own(s, title_of(p, info_of(p)->label));
+    char changes[SCENARIO_CHANGES];
+    fig->title = owned_figure_printf(s->drawn, "%s: %s of %zu runs%s%s", from->base->name,
+                                     info_of(p)->label, from->run_count, how[from->sampling],
+                                     scenario_changes(from->base, changes));
     fig->caption = own(s, caption_of(p, missing));
     s->drawn->panels[0].weight = PANEL_WEIGHT;
-    fig->parameters = own(s, command_of(from));
+
+    // what was varied, as on the command line
+    GString *command = g_string_new(NULL);
+    for (int i = 0; i < from->axis_count; i++) {
+        const sweep_axis *axis = &from->axes[i];
+        text_append(command, "%s--vary %s%s=%s", i > 0 ? " " : "", axis->together ? "with " : "",
+                    axis->name, axis->text);
+    }
+    fig->parameters = own(s, g_string_free(command, FALSE));
 }
 
 status sweep_plot_check(const sweep *s, const char *path, fault *f)

@@ -156,20 +156,6 @@ static int decimals_needed(const ticks *t)
     return 15;
 }
 
-// Long rows of zeros go into a factor.
-static void choose_format(ticks *t)
-{
-    double largest = 0;
-    for (int i = 0; i < t->count; i++) {
-        largest = fmax(largest, fabs(t->value[i]));
-    }
-    t->exponent = 0;
-    if (largest > 0 && (largest >= 1e5 || largest < 1e-2)) {
-        t->exponent = 3 * (int)floor(log10(largest) / 3);
-    }
-    t->decimals = decimals_needed(t);
-}
-
 // Puts the limits in order and apart; false if they are no numbers.
 static bool straighten(wish *w)
 {
@@ -206,7 +192,16 @@ static void fill(ticks *t, const labelling *l, double first, int count)
     // minor ticks fall on rounder numbers than the step itself
     static const int parts[NICE] = {5, 5, 4, 5, 4, 3};
     t->minor = l->j == 1 ? parts[l->nice] : 1;
-    choose_format(t);
+    // long rows of zeros go into a factor
+    double largest = 0;
+    for (int i = 0; i < t->count; i++) {
+        largest = fmax(largest, fabs(t->value[i]));
+    }
+    t->exponent = 0;
+    if (largest > 0 && (largest >= 1e5 || largest < 1e-2)) {
+        t->exponent = 3 * (int)floor(log10(largest) / 3);
+    }
+    t->decimals = decimals_needed(t);
 }
 
 void ticks_between(ticks *t, double low, double high, int wanted)

@@ -219,16 +219,6 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
     }
 }
 
-static void set_zoom(figure_panel *panel, const trace_run *run)
-{
-    const summary *m = &run->result->summary;
-    double pulse = m->first_pulse_s, duration = run->scenario->parameters.run.duration;
-    if (pulse > 0 && pulse < SHORT_PULSE * duration) {
-        panel->zoom_from = fmax(0, m->first_contact_s - INSET_SPACE * pulse);
-        panel->zoom_to = fmin(duration, m->first_contact_s + (1 + INSET_SPACE) * pulse);
-    }
-}
-
 static void describe_panel(trace_figure *t, int index, const trace_panel *from,
                            const trace_run *runs, int run_count)
 {
@@ -265,7 +255,12 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
         panel->level_count = 1;
     }
     if (from->inset) {
-        set_zoom(panel, &runs[0]);
+        const summary *m = &runs[0].result->summary;
+        double pulse = m->first_pulse_s, duration = runs[0].scenario->parameters.run.duration;
+        if (pulse > 0 && pulse < SHORT_PULSE * duration) {
+            panel->zoom_from = fmax(0, m->first_contact_s - INSET_SPACE * pulse);
+            panel->zoom_to = fmin(duration, m->first_contact_s + (1 + INSET_SPACE) * pulse);
+        }
     }
 }
 

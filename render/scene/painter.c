@@ -142,19 +142,6 @@ static void light_vertex(const mesh_vertex *v, const camera *c, vector light, fl
 
 // ---- pictures
 
-static status make_room(scene_painter *p, const mesh *m, fault *f)
-{
-    if (m->vertex_count > p->vertex_capacity) {
-        free(p->vertices);
-        p->vertices = malloc(m->vertex_count * sizeof *p->vertices);
-        p->vertex_capacity = p->vertices ? m->vertex_count : 0;
-    }
-    if (m->out_of_memory || p->vertex_capacity < m->vertex_count) {
-        return complain_memory(p, f);
-    }
-    return STATUS_OK;
-}
-
 // Lights the vertices and finds their places: clip coordinates whose w is the depth. Returns the
 // pixels that they cover.
 static gl_region project(scene_painter *p, const mesh *m, const camera *c, vector light)
@@ -193,9 +180,14 @@ status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface
     assert(p != NULL && what != NULL && onto != NULL);
     assert(what->opacity >= 0 && what->opacity <= 1);
     const mesh *m = what->mesh;
-    status code = make_room(p, m, f);
-    if (code != STATUS_OK) {
-        return code;
+    status code = STATUS_OK;
+    if (m->vertex_count > p->vertex_capacity) {
+        free(p->vertices);
+        p->vertices = malloc(m->vertex_count * sizeof *p->vertices);
+        p->vertex_capacity = p->vertices ? m->vertex_count : 0;
+    }
+    if (m->out_of_memory || p->vertex_capacity < m->vertex_count) {
+        return complain_memory(p, f);
     }
 
     // only the part of the picture that holds something

@@ -48,18 +48,6 @@ static status check_options(const scene *sc, fault *f)
     return text_check_font(f);
 }
 
-// The inset: a scene of its own, from near by.
-static status open_inset(scene *sc, fault *f)
-{
-    scene_options o = sc->options;
-    o.camera = (camera_view){.kind = CAMERA_TIP};
-    o.width = (int)(INSET_SHARE * o.width) / 2 * 2;
-    o.height = (int)(0.72 * o.width) / 2 * 2;
-    o.plain = true;
-    o.inset = o.transparent = false;
-    return scene_create(&sc->tip, sc->scenario, sc->result, &o, f);
-}
-
 void scene_options_scale(scene_options *o, const trace *t)
 {
     assert(o != NULL && t != NULL);
@@ -89,7 +77,18 @@ static status prepare(scene *sc, fault *f)
         code = scene_painter_create(&sc->painter, sc->options.renderer, sc->options.width,
                                     sc->options.height, samples, f);
     }
-    return code == STATUS_OK && sc->options.inset ? open_inset(sc, f) : code;
+    if (code != STATUS_OK || !sc->options.inset) {
+        return code;
+    }
+
+    // the inset: a scene of its own, from near by
+    scene_options o = sc->options;
+    o.camera = (camera_view){.kind = CAMERA_TIP};
+    o.width = (int)(INSET_SHARE * o.width) / 2 * 2;
+    o.height = (int)(0.72 * o.width) / 2 * 2;
+    o.plain = true;
+    o.inset = o.transparent = false;
+    return scene_create(&sc->tip, sc->scenario, sc->result, &o, f);
 }
 
 status scene_create(scene **out, const scenario *s, const run_result *result,
