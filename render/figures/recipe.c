@@ -134,7 +134,7 @@ static void describe(recipe_figure *fig, const figure_options *o)
 
     // the first run's contact
     if (r->contact && fig->sources[0].ran) {
-        trace_shade_contact(&fig->plot, &fig->sources[0].run.result.trace);
+        trace_shade(&fig->plot, &fig->sources[0].run.result.trace, false);
     }
 
     figure_take_look(&fig->plot.figure, &o->look);

@@ -163,11 +163,6 @@ static status write_pdf(const report *r, const char *path, fault *f)
     return code;
 }
 
-int report_length(int count)
-{
-    return count > 0 ? count : thesis_figure_count();
-}
-
 // ---- what it shows
 
 static status add_figures(report *r, fault *f)

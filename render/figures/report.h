@@ -12,6 +12,3 @@
 // computed and again when it is drawn on the page.
 status report_write(const char *folder, char *const *names, int count, run_monitor *monitor,
                     fault *f);
-
-// The number of items of a report on `count` names, without tables of parameters.
-int report_length(int count);

@@ -59,12 +59,6 @@ int palette_slot(int index)
     return slots[index % 8];
 }
 
-colour palette_grey(int index)
-{
-    assert(index >= 0 && index < (int)(sizeof greys / sizeof greys[0]));
-    return greys[index];
-}
-
 colour palette_shade(figure_theme theme, double share)
 {
     if (theme == THEME_MONO) {

@@ -23,9 +23,6 @@ colour palette_series(figure_theme theme, int slot, int place);
 // The slots in the order in which they differ most, again from the eighth on.
 int palette_slot(int index);
 
-// Black and the greys of a mono figure, 0 to 2 from dark to light.
-colour palette_grey(int index);
-
 // The colour at share 0 ... 1 of the colour scale. Mono: greys from dark to nearly white. Else
 // viridis of van der Walt and Smith (2015, public domain), straight lines between nine of its
 // colours. Perceptually uniform, from dark blue to yellow, with lightness increasing throughout, so

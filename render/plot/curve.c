@@ -42,13 +42,6 @@ double series_shade(const figure_series *s, size_t index)
     return value_at(s, s->shade, index);
 }
 
-void series_include_x(const figure_series *s, axis_scale *x)
-{
-    for (size_t i = 0; i < s->count; i++) {
-        scale_include(x, series_x(s, i));
-    }
-}
-
 void series_include_y(const figure_series *s, const axis_scale *within, axis_scale *y)
 {
     for (size_t i = 0; i < s->count; i++) {

@@ -25,8 +25,7 @@ double series_x(const figure_series *s, size_t index);
 double series_y(const figure_series *s, size_t index);
 double series_shade(const figure_series *s, size_t index);
 
-// Widens a scale to include every x of a series, or every y at an x inside *within.
-void series_include_x(const figure_series *s, axis_scale *x);
+// Widens a scale to include every y of a series at an x inside *within.
 void series_include_y(const figure_series *s, const axis_scale *within, axis_scale *y);
 
 // Passes the series' line to the sink, in page coordinates, clipped to the plane with a small

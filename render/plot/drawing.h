@@ -20,8 +20,6 @@ typedef struct placement {
     double ink[PLACEMENT_ROWS + 1][PLACEMENT_COLUMNS + 1];
 } placement;
 
-void placement_init(placement *g, figure_rect box);
-
 // Adds the ink of a line, or of a filled rectangle.
 void placement_line(placement *g, double x0, double y0, double x1, double y1, int weight);
 void placement_block(placement *g, figure_rect r, int weight);

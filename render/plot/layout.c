@@ -2,7 +2,7 @@
 // panels.
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
 #include "render/plot/drawing.h"
 
@@ -53,7 +53,9 @@ static status choose_x_range(drawing *d, fault *f)
         const figure_panel *panel = &fig->panels[p];
         axis_scale unused = scale_empty(panel->y.scale);
         for (int s = 0; s < panel->series_count; s++) {
-            series_include_x(&panel->series[s], x);
+            for (size_t i = 0; i < panel->series[s].count; i++) {
+                scale_include(x, series_x(&panel->series[s], i));
+            }
         }
         if (panel->map != NULL) {
             map_include(panel->map, x, &unused);
@@ -311,7 +313,8 @@ static bool fill_panels(drawing *d, placement *grid)
 
         // where curves run
         ink_sink sink = {.grid = grid};
-        placement_init(grid, l->plane.box);
+        memset(grid, 0, sizeof *grid);
+        grid->box = l->plane.box;
         for (int k = 0; k < l->panel->series_count; k++) {
             curve_trace(&l->plane, &l->panel->series[k], mark_ink, &sink);
         }

@@ -351,28 +351,22 @@ static void draw_hairline(const drawing *d, double x, double top, double bottom)
     cairo_restore(d->cr);
 }
 
-// The point of a mark, with the label that stands at it.
-static void draw_point(drawing *d, int index)
-{
-    const figure_mark *m = &d->fig->marks[index];
-    const plane *p = &d->panels[0].plane;
-    if (!has_point(d, m)) {
-        return;
-    }
-    set_colour(d->cr, d->style.colours->text);
-    cairo_new_path(d->cr);
-    cairo_arc(d->cr, plane_x(p, m->x), plane_y(p, m->y), DOT_RADIUS, 0, 2 * G_PI);
-    cairo_fill(d->cr);
-    if (at_point(d, index)) {
-        const figure_rect *r = &d->point_label[index];
-        draw_label(d, m->label, d->style.small, r->x, r->y, (anchor){0, 0});
-    }
-}
-
 void draw_points(drawing *d)
 {
+    const plane *p = &d->panels[0].plane;
     for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
-        draw_point(d, i);
+        const figure_mark *m = &d->fig->marks[i];
+        const figure_rect *r = &d->point_label[i];
+        if (!has_point(d, m)) {
+            continue;
+        }
+        set_colour(d->cr, d->style.colours->text);
+        cairo_new_path(d->cr);
+        cairo_arc(d->cr, plane_x(p, m->x), plane_y(p, m->y), DOT_RADIUS, 0, 2 * G_PI);
+        cairo_fill(d->cr);
+        if (at_point(d, i)) {
+            draw_label(d, m->label, d->style.small, r->x, r->y, (anchor){0, 0});
+        }
     }
 }
 

@@ -4,13 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-void placement_init(placement *g, figure_rect box)
-{
-    assert(g != NULL && box.width > 0 && box.height > 0);
-    memset(g, 0, sizeof *g);
-    g->box = box;
-}
-
 static int column_of(const placement *g, double x)
 {
     return (int)floor((x - g->box.x) / g->box.width * PLACEMENT_COLUMNS);

@@ -61,7 +61,7 @@ double set_series(const drawing *d, const panel_layout *l, int index)
             second = second || l->busy[i];
         }
         width *= wide && !second ? 1.7 : 1;
-        set_colour(d->cr, wide ? palette_grey(second ? 0 : 2)
+        set_colour(d->cr, wide ? palette_series(THEME_MONO, 0, second ? 0 : 4)
                                : palette_series(d->style.theme, s->colour, index));
         set_line_style(d->cr, LINE_SOLID, width);
         return width;

@@ -360,7 +360,7 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
     // marks and shading
     trace_mark_events(t, &runs[0]);
     fig->marks = t->marks;
-    (modes ? trace_shade_second_mode : trace_shade_contact)(&t->plot, &runs[0].result->trace);
+    trace_shade(&t->plot, &runs[0].result->trace, modes);
     return STATUS_OK;
 }
 

@@ -79,11 +79,6 @@ static char *duration_text(double seconds)
                                : "s");
 }
 
-bool trace_on_the_rig(const scenario *s)
-{
-    return s->parameters.control.law != LAW_NONE;
-}
-
 const char *trace_mode_name(const scenario *s, int mode)
 {
     const controller *law = controller_of(s->parameters.control.law);

@@ -5,9 +5,6 @@
 
 // --- labels: trace_labels.c. Free the texts with g_free.
 
-// Whether the run was on the rig, with a controller.
-bool trace_on_the_rig(const scenario *s);
-
 // Whether the hub is rigidly joined to the first link.
 bool trace_hub_is_first_link(const scenario *s);
 
@@ -28,9 +25,6 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 
 // Marks contact, peak, release and changes by the script; on the rig changes of mode.
 void trace_mark_events(trace_figure *t, const trace_run *run);
-
-// Shades where the controller was in its second mode.
-void trace_shade_second_mode(owned_figure *o, const trace *rows);
 
 // The impulses of all impacts, kept by the figure.
 figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o);

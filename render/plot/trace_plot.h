@@ -61,8 +61,8 @@ figure_series trace_series(const trace_run *run, int index, owned_figure *o);
 // A signal at the instants of one run less that of another, interpolated linearly between its rows.
 figure_series trace_difference(const trace *of, const trace *less, int index, owned_figure *o);
 
-// Makes the intervals of contact those that the figure shades.
-void trace_shade_contact(owned_figure *o, const trace *rows);
+// Shades a run's contact, or where the controller was in its second mode.
+void trace_shade(owned_figure *o, const trace *rows, bool modes);
 
 // Describes the panels (at most FIGURE_PANELS) of the runs (at most TRACE_RUNS). `title` is plain,
 // NULL for the first scenario's. The runs must outlive the figure. STATUS_BAD_ARGUMENT for an

@@ -70,7 +70,7 @@ void trace_mark_events(trace_figure *t, const trace_run *run)
     const summary *m = &run->result->summary;
 
     // modes of a controller say more than contacts
-    if (trace_on_the_rig(run->scenario) && mark_modes(t, run)) {
+    if (run->scenario->parameters.control.law != LAW_NONE && mark_modes(t, run)) {
         return;
     }
 
@@ -101,44 +101,25 @@ void trace_mark_events(trace_figure *t, const trace_run *run)
     }
 }
 
-static bool in_contact(const sample *row)
-{
-    return row->contact > 0.5;
-}
-
-static bool in_second_mode(const sample *row)
-{
-    return row->controller_mode == 1;
-}
-
-// Shades from each first row with the property to the next one without it.
-static void shade(owned_figure *o, const trace *rows, bool (*is_so)(const sample *row))
+void trace_shade(owned_figure *o, const trace *rows, bool modes)
 {
     GArray *found = g_array_new(FALSE, FALSE, sizeof(figure_interval));
     bool open = false;
+
+    // from each first row that is so to the next one that is not
     for (size_t i = 0; i < rows->row_count; i++) {
-        const double time = rows->rows[i].time;
-        bool now = is_so(&rows->rows[i]);
+        const sample *row = &rows->rows[i];
+        bool now = modes ? row->controller_mode == 1 : row->contact > 0.5;
         if (now && !open) {
-            const figure_interval begun = {time, time};
+            const figure_interval begun = {row->time, row->time};
             g_array_append_val(found, begun);
         } else if (open) {
-            g_array_index(found, figure_interval, found->len - 1).to = time;
+            g_array_index(found, figure_interval, found->len - 1).to = row->time;
         }
         open = now;
     }
     o->figure.interval_count = (int)found->len;
     o->figure.intervals = owned_figure_keep(o, g_array_free(found, FALSE));
-}
-
-void trace_shade_contact(owned_figure *o, const trace *rows)
-{
-    shade(o, rows, in_contact);
-}
-
-void trace_shade_second_mode(owned_figure *o, const trace *rows)
-{
-    shade(o, rows, in_second_mode);
 }
 
 figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o)

@@ -49,12 +49,6 @@ void mesh_finish(mesh *m)
     *m = (mesh){0};
 }
 
-void mesh_clear(mesh *m)
-{
-    assert(m != NULL);
-    m->vertex_count = m->corner_count = 0;
-}
-
 // Room for `more` items of a size after `count`, by doubling. Returns the items.
 static void *grown(mesh *m, void *items, size_t count, size_t more, size_t *capacity, size_t size)
 {

@@ -39,8 +39,6 @@ typedef struct mesh {
 } mesh;
 
 void mesh_finish(mesh *m);
-// Clears the mesh and keeps its memory for the next picture.
-void mesh_clear(mesh *m);
 
 // A circle of a solid of revolution.
 typedef struct lathe_ring {

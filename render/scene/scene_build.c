@@ -371,12 +371,6 @@ static int extent(scene *sc, vector *points)
     return count;
 }
 
-double scene_grid_of(double length)
-{
-    double power = pow(10, floor(log10(length / 10 * 1.0001))), share = length / 10 / power;
-    return (share >= 5 ? 5 : share >= 2 ? 2 : 1) * power;
-}
-
 static double heading(const scene *sc)
 {
     const parameters *p = &sc->scenario->parameters;

@@ -109,7 +109,11 @@ status scene_create(scene **out, const scenario *s, const run_result *result,
 
     sc->links = s->parameters.arm.links;
     sc->length = s->parameters.arm.length;
-    sc->grid = scene_grid_of(sc->length);
+
+    // the largest of 1, 2 or 5 times a power of ten that is at most a tenth of the length
+    double power = pow(10, floor(log10(sc->length / 10 * 1.0001)));
+    double share = sc->length / 10 / power;
+    sc->grid = (share >= 5 ? 5 : share >= 2 ? 2 : 1) * power;
 
     status code = prepare(sc, f);
     if (code != STATUS_OK) {
@@ -256,7 +260,7 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
     painting full = {.mesh = &sc->mesh, .camera = &sc->camera, .light = sc->light, .opacity = 1};
 
     // what is there now, and its shadow
-    mesh_clear(&sc->mesh);
+    sc->mesh.vertex_count = sc->mesh.corner_count = 0;
     scene_build_arm(sc, &sc->mesh, now);
     sample last = scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
     scene_build_hub(sc, last.hub_angle);
@@ -271,7 +275,7 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
             painting ghost = full;
             ghost.mesh = &sc->ghost;
             ghost.opacity = 1 - pale;
-            mesh_clear(&sc->ghost);
+            sc->ghost.vertex_count = sc->ghost.corner_count = 0;
             scene_build_arm(sc, &sc->ghost, times[i]);
             code = scene_painter_paint(sc->painter, &ghost, onto, f);
         }

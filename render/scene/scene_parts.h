@@ -226,9 +226,6 @@ void scene_build_trail(scene *sc, double from, double time);
 // Adds the arm at an instant [s] and the wall's force on it to a mesh of the scene.
 void scene_build_arm(scene *sc, mesh *into, double time);
 
-// The largest of 1, 2 or 5 times a power of ten that is at most a tenth of the length [m].
-double scene_grid_of(double length);
-
 // Places camera, light and floor so that the whole run is visible. STATUS_NO_MEMORY if there is no
 // room for the floor.
 status scene_set_view(scene *sc, fault *f);

@@ -315,7 +315,8 @@ static int report(const arguments *a)
 {
     fault f = {0};
     const char *folder = a->output ? a->output : REPORT_FOLDER;
-    const int steps = 2 * report_length(a->operand_count); // computed, then drawn
+    const int items = a->operand_count > 0 ? a->operand_count : thesis_figure_count();
+    const int steps = 2 * items; // computed, then drawn
     run_monitor *monitor = work_begin(a, PIECES, steps);
     status code = report_write(folder, a->operands, a->operand_count, monitor, &f);
     work_end();
