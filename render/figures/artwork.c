@@ -307,21 +307,6 @@ static char *beside(const char *file, const char *ending)
     return text_printf("%.*s%s", (int)length, file, ending);
 }
 
-// Title and caption as plain text in the .txt of a picture.
-static status write_caption(const artwork *a, const char *file, fault *f)
-{
-    whole_file out;
-    g_autofree char *caption = text_plain(a->caption != NULL ? a->caption : "");
-    g_autofree char *path = beside(file, ".txt");
-    status code = whole_file_open(&out, path, f);
-    if (code == STATUS_OK) {
-        fprintf(out.stream, "%s%s%s\n", a->title != NULL ? a->title : "",
-                caption[0] != '\0' ? "\n\n" : "", caption);
-        code = whole_file_commit(&out, f);
-    }
-    return code;
-}
-
 status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
                        fault *f)
 {
@@ -336,7 +321,15 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
 
     // text of a picture that has none of its own
     if (code == STATUS_OK && o->look.bare) {
-        code = write_caption(a, path, f);
+        whole_file text;
+        g_autofree char *txt = beside(path, ".txt");
+        g_autofree char *caption = text_plain(a->caption != NULL ? a->caption : "");
+        code = whole_file_open(&text, txt, f);
+        if (code == STATUS_OK) {
+            fprintf(text.stream, "%s%s%s\n", a->title != NULL ? a->title : "",
+                    caption[0] != '\0' ? "\n\n" : "", caption);
+            code = whole_file_commit(&text, f);
+        }
     }
 
     if (code == STATUS_OK && o->latex != NULL) {

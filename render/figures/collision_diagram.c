@@ -154,20 +154,6 @@ static void draw_collision(sketch *s, const diagram *d)
     draw_cut_body(s, d);
 }
 
-// Numbers of the cut body for the CSV.
-static void add_cut_body_values(diagram *d)
-{
-    const cut_body b = cut_last_body(d);
-    diagram_add_value(d, "mass m", b.mass, "kg");
-    diagram_add_value(d, "inertia J", b.inertia, "kg m2");
-    diagram_add_value(d, "lever rho", b.rho, "m");
-    diagram_add_value(d, "wall impulse F", b.wall_impulse, "N s");
-    diagram_add_value(d, "hinge impulse X", b.hinge_impulse, "N s");
-    diagram_add_value(d, "hinge torque impulse Y", b.hinge_torque, "N m s");
-    diagram_add_value(d, "jump of the centre's velocity", b.centre_jump, "m/s");
-    diagram_add_value(d, "jump of the point of collision's velocity", b.point_jump, "m/s");
-}
-
 status diagram_collision(const figure_order *order, artwork *out, fault *f)
 {
     diagram *d = diagram_create(order, 140 + BODY_HEIGHT, draw_collision);
@@ -192,7 +178,17 @@ status diagram_collision(const figure_order *order, artwork *out, fault *f)
         diagram_add_value(d, bodies[i], d->after[i], "rad/s after");
     }
     diagram_add_value(d, "approach speed", speed, "m/s");
-    add_cut_body_values(d);
+
+    // and of the cut body
+    const cut_body b = cut_last_body(d);
+    diagram_add_value(d, "mass m", b.mass, "kg");
+    diagram_add_value(d, "inertia J", b.inertia, "kg m2");
+    diagram_add_value(d, "lever rho", b.rho, "m");
+    diagram_add_value(d, "wall impulse F", b.wall_impulse, "N s");
+    diagram_add_value(d, "hinge impulse X", b.hinge_impulse, "N s");
+    diagram_add_value(d, "hinge torque impulse Y", b.hinge_torque, "N m s");
+    diagram_add_value(d, "jump of the centre's velocity", b.centre_jump, "m/s");
+    diagram_add_value(d, "jump of the point of collision's velocity", b.point_jump, "m/s");
 
     return diagram_open(
         d, out,

@@ -113,19 +113,6 @@ static void release_signals(void *owner)
     g_free(s);
 }
 
-// Runs the scenario, and again with the change of the second run.
-static status run_scenarios(signal_figure *s, const figure_order *order, fault *f)
-{
-    const thesis_figure *which = order->which;
-    status code = run_begin_changed(&s->runs[0], which->scenario, NULL, 0, order->monitor, f);
-    s->run_count = code == STATUS_OK;
-    if (code == STATUS_OK && which->beside != NULL) {
-        code = run_begin(&s->runs[1], which->scenario, which->beside, f);
-        s->run_count += code == STATUS_OK;
-    }
-    return code;
-}
-
 // The peak that the thesis prints for the run, as a point; its residual goes into the caption.
 static void add_printed_peak(signal_figure *s, const thesis_figure *which, GString *caption)
 {
@@ -189,8 +176,15 @@ static status open_signals(const figure_order *order, artwork *out, fault *f)
     trace_panel panels[THESIS_PANELS];
     signal_figure *s = g_new0(signal_figure, 1);
 
-    // the same panels for each model
-    status code = run_scenarios(s, order, f);
+    // the scenario, and again with the change of the second run
+    status code = run_begin_changed(&s->runs[0], which->scenario, NULL, 0, order->monitor, f);
+    s->run_count = code == STATUS_OK;
+    if (code == STATUS_OK && which->beside != NULL) {
+        code = run_begin(&s->runs[1], which->scenario, which->beside, f);
+        s->run_count += code == STATUS_OK;
+    }
+
+    // the same panels for each
     for (int i = 0; i < s->run_count; i++) {
         runs[i] = (trace_run){&s->runs[i].scenario, &s->runs[i].result, which->names[i],
                               .steps = which->steps && i == 0, .brief = i == 1};

@@ -70,20 +70,6 @@ static void put_title_page(cairo_t *cr, PangoContext *context, const report *r)
     }
 }
 
-// The place that the table of contents and the outline lead to.
-static void mark_item(cairo_t *cr, const report_item *item, guint index)
-{
-    cairo_surface_t *surface = cairo_get_target(cr);
-    g_autofree char *place = text_printf("name='item-%u'", index);
-    g_autofree char *target = text_printf("dest='item-%u'", index);
-    cairo_tag_begin(cr, CAIRO_TAG_DEST, place);
-    cairo_tag_end(cr, CAIRO_TAG_DEST);
-    if (cairo_surface_get_type(surface) == CAIRO_SURFACE_TYPE_PDF) {
-        cairo_pdf_surface_add_outline(surface, CAIRO_PDF_OUTLINE_ROOT, item->drawn.title, target,
-                                      0);
-    }
-}
-
 static status paint_page(cairo_t *cr, const void *what, fault *f)
 {
     const report_page *page = what;
@@ -101,7 +87,17 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
     for (guint i = page->first; i < page->last && code == STATUS_OK; i++) {
         const report_item *item = report_item_at(page->report, i);
         double scale = item_scale(item);
-        mark_item(cr, item, i);
+
+        // the place that the table of contents and the outline lead to
+        cairo_surface_t *surface = cairo_get_target(cr);
+        g_autofree char *place = text_printf("name='item-%u'", i);
+        g_autofree char *target = text_printf("dest='item-%u'", i);
+        cairo_tag_begin(cr, CAIRO_TAG_DEST, place);
+        cairo_tag_end(cr, CAIRO_TAG_DEST);
+        if (cairo_surface_get_type(surface) == CAIRO_SURFACE_TYPE_PDF) {
+            cairo_pdf_surface_add_outline(surface, CAIRO_PDF_OUTLINE_ROOT, item->drawn.title,
+                                          target, 0);
+        }
         cairo_save(cr);
         cairo_translate(cr, PAGE_MARGIN, y);
         cairo_scale(cr, scale, scale);

@@ -80,21 +80,15 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
     return code;
 }
 
-// The SVG as an element of the page: without the XML declaration, its ids made its own.
 static status add_svg(GString *html, const picture *p, guint index, GHashTable *letters, fault *f)
 {
-    // its own identifiers, as all figures stand in one page
     g_autofree char *svg = picture_svg(p, f);
     if (svg == NULL) {
         return f->code;
     }
-
-    // then smaller: fewer bytes, and letters shared with the other figures
     g_autofree char *prefix = text_printf("i%u-", index);
-    const char *root = strstr(svg, "<svg");
-    g_autofree char *own = svg_prefix_ids(root != NULL ? root : svg, prefix);
-    g_autofree char *small = svg_compact(own), *shared = svg_share_symbols(small, letters);
-    g_string_append(html, shared);
+    g_autofree char *small = svg_for_page(svg, prefix, letters);
+    g_string_append(html, small);
     return STATUS_OK;
 }
 

@@ -67,12 +67,6 @@ static gboolean prefix_id(const GMatchInfo *match, GString *out, gpointer prefix
     return FALSE;
 }
 
-char *svg_prefix_ids(const char *svg, const char *prefix)
-{
-    assert(svg != NULL && prefix != NULL);
-    return replaced(svg, ANY_ID, prefix_id, (gpointer)prefix);
-}
-
 char *svg_renumber_ids(const char *svg)
 {
     assert(svg != NULL);
@@ -103,9 +97,9 @@ static gboolean drop_known(const GMatchInfo *match, GString *out, gpointer conte
     return FALSE;
 }
 
-char *svg_share_symbols(const char *svg, GHashTable *known)
+// Omits letters that an earlier SVG has.
+static char *share_symbols(const char *svg, GHashTable *known)
 {
-    assert(svg != NULL && known != NULL);
     g_autoptr(GHashTable) renamed = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     g_autofree char *kept = replaced(svg, "<symbol [^>]*? id=\"([^\"')]*)[^>]*>(.*?)</symbol>",
                                      drop_known, &(letters){known, renamed});
@@ -252,16 +246,19 @@ static gboolean compact(const GMatchInfo *match, GString *out, gpointer context)
     return FALSE;
 }
 
-char *svg_compact(const char *svg)
+char *svg_for_page(const char *svg, const char *prefix, GHashTable *known)
 {
-    assert(svg != NULL);
+    assert(svg != NULL && prefix != NULL && known != NULL);
+    const char *root = strstr(svg, "<svg");
+    g_autofree char *own = replaced(root ? root : svg, ANY_ID, prefix_id, (gpointer)prefix);
+
     // the page that holds the picture says what it is
-    g_autofree char *bare = g_strdup(svg);
-    char *from = strstr(bare, "<metadata>"), *to = from ? strstr(from, "</metadata>") : NULL;
+    char *from = strstr(own, "<metadata>"), *to = from ? strstr(from, "</metadata>") : NULL;
     if (to != NULL) {
         to += strlen("</metadata>");
         memmove(from, to, strlen(to) + 1);
     }
     size_t last = SIZE_MAX;
-    return replaced(bare, "(<[^>]*>)([^<]*)", compact, &last);
+    g_autofree char *small = replaced(own, "(<[^>]*>)([^<]*)", compact, &last);
+    return share_symbols(small, known);
 }

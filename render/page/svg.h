@@ -10,20 +10,14 @@
 // g_free.
 char *svg_renumber_ids(const char *svg);
 
-// Puts a prefix before every id and every reference to one, so that several SVGs can stand in one
-// page. Free the result with g_free.
-char *svg_prefix_ids(const char *svg, const char *prefix);
-
-// Omits the outlines of letters (symbols) that an earlier SVG of the same page contains, and refers
-// to those. `known` has outline to id, both owned by it; new ones are added. Free the result with
-// g_free.
-char *svg_share_symbols(const char *svg, GHashTable *known);
-
-// The same picture in fewer bytes: lengths to a hundredth of a point (those of lines to a tenth),
-// colours as #rrggbb, without metadata and default attributes, and with successive lines of one
-// style in one path. Texts between tags stay as they are. The report of the whole thesis has 1.8 MB
-// by it instead of 3.4 (tests/test_figures.c). Free the result with g_free.
-char *svg_compact(const char *svg);
+// The SVG as an element of a page with others, in fewer bytes: without the XML declaration and
+// metadata; with a prefix before every id; lengths to a hundredth of a point (those of lines to a
+// tenth), colours as #rrggbb, without default attributes, successive lines of one style in one
+// path. Outlines of letters (symbols) that an earlier SVG of the page contains are omitted and
+// referred to there: `known` has outline to id, both owned by it; new ones are added. Texts between
+// tags stay as they are. The report of the whole thesis has 1.8 MB by it instead of 3.4
+// (tests/test_figures.c). Free the result with g_free.
+char *svg_for_page(const char *svg, const char *prefix, GHashTable *known);
 
 // Whether this thread is executing in regular expressions, which crash without memory. For a signal
 // handler.

@@ -166,20 +166,6 @@ static void draw_panel(drawing *d, int index)
     }
 }
 
-static void draw_frame_texts(drawing *d)
-{
-    double left;
-    const text_block title = frame_title(d, &left), caption = frame_caption(d, &left);
-    if (title.markup != NULL) {
-        draw_text(d, title, left, d->title_y, (anchor){0, 0}, d->style.colours->text);
-    }
-    if (caption.markup != NULL) {
-        draw_text(d, caption, left, d->caption_y, (anchor){0, 0}, d->style.colours->faint_text);
-    }
-    g_free((char *)title.markup);
-    draw_x_titles(d);
-}
-
 static void draw_all(drawing *d)
 {
     if (!d->fig->transparent) {
@@ -195,7 +181,16 @@ static void draw_all(drawing *d)
     draw_marks(d);
 
     // texts of the whole, then the panels
-    draw_frame_texts(d);
+    double left;
+    const text_block title = frame_title(d, &left), caption = frame_caption(d, &left);
+    if (title.markup != NULL) {
+        draw_text(d, title, left, d->title_y, (anchor){0, 0}, d->style.colours->text);
+    }
+    if (caption.markup != NULL) {
+        draw_text(d, caption, left, d->caption_y, (anchor){0, 0}, d->style.colours->faint_text);
+    }
+    g_free((char *)title.markup);
+    draw_x_titles(d);
     common_legend(d, true);
     for (int i = 0; i < d->fig->panel_count; i++) {
         draw_panel(d, i);

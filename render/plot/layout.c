@@ -185,21 +185,16 @@ static void place_columns(drawing *d)
 
 // ---- rows
 
-static double space_above(const panel_layout *l)
-{
-    return (l->legend_column ? l->legend.height + 2
-            : l->legend_row  ? 11
-                             : 0) +
-           (l->panel->heading != NULL ? HEADING_ROW : 0) +
-           (l->panel->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0);
-}
-
 // Space above a row of panels and its share of the height: the largest of its panels.
 static void row_needs(const drawing *d, int row, double *above, double *weight)
 {
     *above = *weight = 0;
     for (int i = row * d->columns; i < d->fig->panel_count && i < (row + 1) * d->columns; i++) {
-        *above = fmax(*above, space_above(&d->panels[i]));
+        const panel_layout *l = &d->panels[i];
+        double space = l->legend_column ? l->legend.height + 2 : l->legend_row ? 11 : 0;
+        space += l->panel->heading != NULL ? HEADING_ROW : 0;
+        space += l->panel->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0;
+        *above = fmax(*above, space);
         double own = d->fig->panels[i].weight;
         *weight = fmax(*weight, own > 0 ? own : 1);
     }

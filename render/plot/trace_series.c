@@ -36,13 +36,6 @@ static char *action_label(const scenario *s, const event *e)
     return text_printf("%s %s\u2009%s", name, value, unit);
 }
 
-static char *mode_label(const char *name, double mode)
-{
-    g_autofree char *escaped = name != NULL ? text_escape(name) : text_printf("%g", mode);
-    char *label = text_printf(name != NULL ? "%s mode" : "mode %s", escaped);
-    return label;
-}
-
 // Where the controller went into another mode, with the mode's name. False if it never did.
 static bool mark_modes(trace_figure *t, const trace_run *run)
 {
@@ -56,7 +49,10 @@ static bool mark_modes(trace_figure *t, const trace_run *run)
         if (isfinite(now) && isfinite(mode) && now != mode &&
             t->plot.figure.mark_count < TRACE_MARKS) {
             const char *name = trace_mode_name(run->scenario, (int)now);
-            add_mark(t, rows->rows[i].time, owned_figure_keep(&t->plot, mode_label(name, now)));
+            g_autofree char *escaped = name != NULL ? text_escape(name) : text_printf("%g", now);
+            add_mark(t, rows->rows[i].time,
+                     name != NULL ? owned_figure_printf(&t->plot, "%s mode", escaped)
+                                  : owned_figure_printf(&t->plot, "mode %s", escaped));
             t->marks[t->plot.figure.mark_count - 1].onwards = true;
             marked = true;
         }

@@ -71,19 +71,6 @@ static void ask_for(frame_helper *h, int frame)
     }
 }
 
-static void helper_begin(frame_helper *h, const film_plan *plan, int total)
-{
-    *h = (frame_helper){.plan = plan, .total = total};
-    for (int i = 0; i < BUFFERS; i++) {
-        h->jobs[i].onto = cairo_image_surface_create(CAIRO_FORMAT_RGB24, plan->options.width,
-                                                     plan->options.height);
-    }
-    h->wanted = g_async_queue_new();
-    h->painted = g_async_queue_new();
-    h->thread = g_thread_new("film", help, h);
-    ask_for(h, 1);
-}
-
 static void helper_end(frame_helper *h)
 {
     if (h->thread == NULL) {
@@ -142,7 +129,15 @@ static status add_frames(film_making *m, fault *f)
     }
 
     if (o->threads > 1 && code == STATUS_OK) {
-        helper_begin(&m->helper, m->plan, total);
+        frame_helper *h = &m->helper;
+        *h = (frame_helper){.plan = m->plan, .total = total};
+        for (int i = 0; i < BUFFERS; i++) {
+            h->jobs[i].onto = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o->width, o->height);
+        }
+        h->wanted = g_async_queue_new();
+        h->painted = g_async_queue_new();
+        h->thread = g_thread_new("film", help, h);
+        ask_for(h, 1);
     }
     for (int i = 0; i < total && code == STATUS_OK; i++) {
         if (o->stop != NULL && *o->stop != 0) {

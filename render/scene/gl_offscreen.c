@@ -247,20 +247,6 @@ static status open_egl(gl_offscreen *g, fault *f)
     return STATUS_OK;
 }
 
-static void close_egl(gl_offscreen *g)
-{
-    unsigned (*release)(void *, void *, void *, void *), (*destroy)(void *, void *);
-    if (g->display != NULL && load(g->handle, "eglMakeCurrent", &release)) {
-        release(g->display, NULL, NULL, NULL);
-    }
-    if (g->context != NULL && load(g->handle, "eglDestroyContext", &destroy)) {
-        destroy(g->display, g->context);
-    }
-    if (g->surface != NULL && load(g->handle, "eglDestroySurface", &destroy)) {
-        destroy(g->display, g->surface);
-    }
-}
-
 // ---- OpenGL
 
 static bool load_functions(gl_offscreen *g)
@@ -410,7 +396,16 @@ void gl_offscreen_destroy(gl_offscreen *g)
         }
         g_free(g->small);
     } else {
-        close_egl(g);
+        unsigned (*release)(void *, void *, void *, void *), (*destroy)(void *, void *);
+        if (g->display != NULL && load(g->handle, "eglMakeCurrent", &release)) {
+            release(g->display, NULL, NULL, NULL);
+        }
+        if (g->context != NULL && load(g->handle, "eglDestroyContext", &destroy)) {
+            destroy(g->display, g->context);
+        }
+        if (g->surface != NULL && load(g->handle, "eglDestroySurface", &destroy)) {
+            destroy(g->display, g->surface);
+        }
     }
 
     // the library stays: its threads may still be ending
