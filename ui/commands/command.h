@@ -299,10 +299,8 @@ void write_man_page(FILE *stream, const command *c);
 #define REFERENCE_PAGES "parameters|signals|quantities|laws|events|scenario.5"
 void write_reference(FILE *stream, const char *page);
 
-// Writes what the shell (bash, zsh or fish) needs to complete impactlab's command line.
-void write_bash_completion(FILE *stream);
-void write_zsh_completion(FILE *stream);
-void write_fish_completion(FILE *stream);
+// Writes what the shell, "bash", "zsh" or "fish", needs to complete impactlab's command line.
+void write_completion(FILE *stream, const char *shell);
 
 // Opens the scenario (a name or a file) and applies every --set. Every fault goes to stderr.
 // Returns EXIT_DONE, or the exit status to end with; in that case nothing has to be freed.

@@ -9,366 +9,297 @@
 
 #define SCENARIO_NAMES "impactlab list 2>/dev/null | cut -d' ' -f1"
 
-// What a shell offers for a value or an operand.
+// What a shell offers for a value.
 typedef enum offer {
-    OFFER_NOTHING,
-    OFFER_WORDS, // of OPTION_CHOICE and OPTION_WORD
+    OFFER_NOTHING, // numbers and free text cannot be guessed
+    OFFER_WORDS,   // of OPTION_CHOICE and OPTION_WORD
     OFFER_FILES,
     OFFER_PARAMETERS,
     OFFER_SCENARIOS, // and files
-    OFFER_QUANTITIES
+    OFFER_QUANTITIES,
+    OFFERS
 } offer;
 
-static offer offer_of(const option_row *o)
-{
-    switch (o->type) {
-    case OPTION_CHOICE:
-    case OPTION_WORD:
-        return OFFER_WORDS;
-    case OPTION_FILE:
-    case OPTION_FILES:
-    case OPTION_RESULT:
-    case OPTION_PICTURE:
-    case OPTION_PLACE:
-        return OFFER_FILES;
+static const offer offers[] = {
+    [OPTION_CHOICE] = OFFER_WORDS,
+    [OPTION_WORD] = OFFER_WORDS,
+    [OPTION_FILE] = OFFER_FILES,
+    [OPTION_FILES] = OFFER_FILES,
+    [OPTION_RESULT] = OFFER_FILES,
+    [OPTION_PICTURE] = OFFER_FILES,
+    [OPTION_PLACE] = OFFER_FILES,
+    [OPTION_SCENARIO] = OFFER_SCENARIOS,
+    [OPTION_PARAMETERS] = OFFER_PARAMETERS,
+    [OPTION_QUANTITY] = OFFER_QUANTITIES,
+};
 
-    // what the program knows by name
-    case OPTION_PARAMETERS:
-        return OFFER_PARAMETERS;
-    case OPTION_SCENARIO:
-        return OFFER_SCENARIOS;
-    case OPTION_QUANTITY:
-        return OFFER_QUANTITIES;
+// The texts of a shell. In each of them stands
+//   of a command:  %c its name, %s its summary, %W the words that an operand may be, %O its
+//   options,
+//                  %1 the place of the word among the operands, %y "yes" if it takes scenarios
+//   of an option:  %o its name, %l its letter, %h its help, %v the name of its value, %w its words,
+//                  %= "=" if it has a value, %* "*" if it may be repeated,
+//                  %L `letter` if it has one, %V `value` if it has one, %x what is offered for it
+//   of all:        %C the commands, %P the parameters, %Q the quantities
+typedef struct shell {
+    const char *name;
+    const char *escaped;                  // characters of helps that get a backslash
+    const char *head, *listed, *commands; // before all, for each command, before the commands
+    const char *begin, *option, *end;     // of a command
+    const char *letter, *value;           // of an option
+    const char *words, *scenarios;        // of a command whose operands are these
+    bool words_first;                     // before the options
+    const char *tail;
+    const char *offers[OFFERS];
+} shell;
 
-    // numbers and free text cannot be guessed
-    case OPTION_FLAG:
-    case OPTION_TEXT:
-    case OPTION_NUMBER:
-    case OPTION_LENGTH:
-    case OPTION_WHOLE:
-    case OPTION_SIZE:
-    case OPTION_NUMBERS:
-        break;
-    }
-    return OFFER_NOTHING;
-}
+static const shell shells[] = {
+    {.name = "bash",
+     .head = "# bash completion for impactlab\n"
+             "_impactlab_words() {\n"
+             "    COMPREPLY+=($(compgen -W \"$1\" -- \"$word\"))\n"
+             "}\n"
+             "_impactlab_files() {\n"
+             "    local IFS=$'\\n'\n"
+             "    compopt -o filenames\n"
+             "    COMPREPLY+=($(compgen -f -- \"$word\"))\n"
+             "}\n"
+             "_impactlab() {\n"
+             "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
+             "    local command=${COMP_WORDS[1]} options='' operands='' scenarios=''\n"
+             "    local parameters='%P'\n"
+             "    local quantities='%Q'\n"
+             "    COMPREPLY=()\n"
+             "    if [ \"$COMP_CWORD\" = 1 ]; then\n"
+             "        _impactlab_words '%C --help --version'\n"
+             "        return\n"
+             "    fi\n"
+             "    case $command in\n",
+     .begin = "    %c)\n        case $before in\n",
+     .option = "%V",
+     .value = "        '--%o'%L) %x; return ;;\n",
+     .letter = "|'-%l'",
+     .end = "        esac\n"
+            "        options='%O'\n"
+            "        operands='%W'\n"
+            "        scenarios=%y ;;\n",
+     .tail = "    esac\n"
+             "    case $word in\n"
+             "    -*) _impactlab_words \"$options\"; return ;;\n"
+             "    esac\n"
+             "    _impactlab_words \"$operands\"\n"
+             "    if [ -n \"$scenarios\" ]; then\n"
+             "        _impactlab_words \"$(" SCENARIO_NAMES ")\"\n"
+             "        _impactlab_files\n"
+             "    fi\n"
+             "}\n"
+             "complete -F _impactlab impactlab\n",
+     .offers = {[OFFER_NOTHING] = "return",
+                [OFFER_WORDS] = "_impactlab_words '%w'",
+                [OFFER_FILES] = "_impactlab_files",
+                [OFFER_PARAMETERS] = "_impactlab_words \"$parameters\"; compopt -o nospace",
+                [OFFER_SCENARIOS] = "_impactlab_words \"$(" SCENARIO_NAMES ")\"; _impactlab_files",
+                [OFFER_QUANTITIES] = "_impactlab_words \"$quantities\""}},
+    {.name = "zsh",
+     .escaped = "[]:\\",
+     .head = "#compdef impactlab\n"
+             "_impactlab_scenarios() {\n"
+             "    compadd -- $(" SCENARIO_NAMES ")\n"
+             "    _files\n"
+             "}\n"
+             "_impactlab_parameters() {\n"
+             "    compadd -S '' -- %P\n"
+             "}\n"
+             "_impactlab_quantities() {\n"
+             "    compadd -- %Q\n"
+             "}\n"
+             "_impactlab() {\n"
+             "    local context state line\n"
+             "    _arguments -C '1:command:->command' '*::argument:->argument'\n"
+             "    case $state in\n"
+             "    command)\n"
+             "        local -a commands=(",
+     .listed = "\n            '%c:%s'",
+     .commands = "\n        )\n"
+                 "        _describe command commands ;;\n"
+                 "    argument)\n"
+                 "        case $words[1] in\n",
+     .begin = "        %c)\n            _arguments",
+     .option = "%L \\\n            '%*--%o%=[%h]%V'",
+     .letter = " \\\n            '%*-%l[%h]%V'",
+     .value = ":%v:%x",
+     .words = " \\\n            '%1:word:(%W)'",
+     .scenarios = " \\\n            '*:scenario:_impactlab_scenarios'",
+     .end = " ;;\n",
+     .tail = "        esac ;;\n"
+             "    esac\n"
+             "}\n"
+             "if [ \"$funcstack[1]\" = _impactlab ]; then\n"
+             "    _impactlab \"$@\"\n"
+             "else\n"
+             "    compdef _impactlab impactlab\n"
+             "fi\n",
+     .offers = {[OFFER_NOTHING] = " ",
+                [OFFER_WORDS] = "(%w)",
+                [OFFER_FILES] = "_files",
+                [OFFER_PARAMETERS] = "_impactlab_parameters",
+                [OFFER_SCENARIOS] = "_impactlab_scenarios",
+                [OFFER_QUANTITIES] = "_impactlab_quantities"}},
+    {.name = "fish",
+     .head = "# fish completion for impactlab\n"
+             "function __impactlab_scenarios\n"
+             "    " SCENARIO_NAMES "\n"
+             "end\n"
+             "complete -c impactlab -f\n"
+             "complete -c impactlab -n __fish_use_subcommand -l version -d 'Print the version'\n",
+     .begin = "complete -c impactlab -n __fish_use_subcommand -f -a %c -d '%s'\n",
+     .words = "complete -c impactlab -n '__fish_seen_subcommand_from %c' -a '%W'\n",
+     .scenarios = "complete -c impactlab -n '__fish_seen_subcommand_from %c' -F -a "
+                  "'(__impactlab_scenarios)'\n",
+     .words_first = true,
+     .option = "complete -c impactlab -n '__fish_seen_subcommand_from %c' -l %o%L%V -d '%h'\n",
+     .letter = " -s %l",
+     .value = "%x",
+     .offers = {[OFFER_NOTHING] = " -x",
+                [OFFER_WORDS] = " -x -a '%w'",
+                [OFFER_FILES] = " -r -F",
+                [OFFER_PARAMETERS] = " -x -a '%P'",
+                [OFFER_SCENARIOS] = " -r -F -a '(__impactlab_scenarios)'",
+                [OFFER_QUANTITIES] = " -x -a '%Q'"}},
+};
 
-// The words of a choice with a blank between them.
-static void put_choices(FILE *stream, const option_row *o)
-{
-    for (const char *c = o->value; *c != '\0'; c++) {
-        fputc(*c == '|' ? ' ' : *c, stream);
-    }
-}
-
-static void put_parameters(FILE *stream)
-{
-    for (int i = 0; i < parameter_count; i++) {
-        fprintf(stream, "%s%s=", i > 0 ? " " : "", parameter_table[i].path);
-    }
-}
-
-static void put_quantities(FILE *stream)
-{
-    for (int i = 0; i < summary_count; i++) {
-        fprintf(stream, "%s%s", i > 0 ? " " : "", summary_table[i].key);
-    }
-}
-
-static void put_commands(FILE *stream)
-{
-    for (int i = 0; i < command_count; i++) {
-        fprintf(stream, "%s%s", i > 0 ? " " : "", command_table[i]->name);
-    }
-}
-
-// The words other than scenarios that an operand of the command may be.
-static void put_operand_words(FILE *stream, const command *c)
-{
-    for (int i = 0; c->operand_word != NULL && c->operand_word(i) != NULL; i++) {
-        fprintf(stream, "%s%s", i > 0 ? " " : "", c->operand_word(i));
-    }
-}
-
-// Text between single quotes of a shell; `escaped` are characters that get a backslash.
-static void put_quoted(FILE *stream, const char *text, const char *escaped)
+// Text between single quotes of a shell.
+static void put_quoted(FILE *stream, const shell *h, const char *text)
 {
     for (; *text != '\0'; text++) {
-        if (strchr(escaped, *text) != NULL) {
+        if (h->escaped != NULL && strchr(h->escaped, *text) != NULL) {
             fputc('\\', stream);
         }
         fprintf(stream, *text == '\'' ? "'\\''" : "%c", *text);
     }
 }
 
-// What a shell offers for an option's value: its words between two texts, else the text of the
-// offer.
-static void put_offer(FILE *stream, const option_row *o, const char *const texts[],
-                      const char *open, const char *close)
+// The i-th word of a list of the whole program, NULL after the last.
+static const char *listed_word(char list, const command *c, int i)
 {
-    if (offer_of(o) != OFFER_WORDS) {
-        fputs(texts[offer_of(o)], stream);
-        return;
+    const option_row *o = list == 'O' ? command_option(c, i) : NULL;
+    switch (list) {
+    case 'C':
+        return i < command_count ? command_table[i]->name : NULL;
+    case 'P':
+        return i < parameter_count ? parameter_table[i].path : NULL;
+    case 'Q':
+        return i < summary_count ? summary_table[i].key : NULL;
+    case 'O':
+        return o != NULL ? o->name : NULL;
+    default:
+        return c->operand_word != NULL ? c->operand_word(i) : NULL;
     }
-    fputs(open, stream);
-    put_choices(stream, o);
-    fputs(close, stream);
 }
 
-// --- bash -----------------------------------------------------------------------------------
-
-static void put_bash_offer(FILE *stream, const option_row *o)
+// A text of the shell (NULL: none), of a command and an option of it (NULL where there is none).
+static void put(FILE *stream, const shell *h, const char *text, const command *c,
+                const option_row *o)
 {
-    static const char *const calls[] = {
-        [OFFER_NOTHING] = "return",
-        [OFFER_FILES] = "_impactlab_files",
-        [OFFER_PARAMETERS] = "_impactlab_words \"$parameters\"; compopt -o nospace",
-        [OFFER_SCENARIOS] = "_impactlab_words \"$(" SCENARIO_NAMES ")\"; _impactlab_files",
-        [OFFER_QUANTITIES] = "_impactlab_words \"$quantities\"",
-    };
+    const char *word;
+    for (; text != NULL && *text != '\0'; text++) {
+        if (*text != '%') {
+            fputc(*text, stream);
+            continue;
+        }
+        switch (*++text) {
+        case 'c':
+            fputs(c->name, stream);
+            break;
+        case 's':
+            put_quoted(stream, h, c->summary);
+            break;
+        case '1':
+            fputs(c->takes_scenarios ? "1" : "*", stream);
+            break;
+        case 'y':
+            fputs(c->takes_scenarios ? "yes" : "", stream);
+            break;
 
-    fprintf(stream, "        '--%s'", o->name);
-    if (o->letter != 0) {
-        fprintf(stream, "|'-%c'", o->letter);
-    }
-    fprintf(stream, ") ");
+        // of an option
+        case 'o':
+            fputs(o->name, stream);
+            break;
+        case 'l':
+            fputc(o->letter, stream);
+            break;
+        case 'h':
+            put_quoted(stream, h, o->help);
+            break;
+        case 'v':
+            put_quoted(stream, h, o->value);
+            break;
+        case 'w':
+            for (word = o->value; *word != '\0'; word++) {
+                fputc(*word == '|' ? ' ' : *word, stream);
+            }
+            break;
+        case '=':
+            fputs(o->type != OPTION_FLAG ? "=" : "", stream);
+            break;
+        case '*':
+            fputs(option_is_text_list(o->type) || o->type == OPTION_NUMBERS ? "*" : "", stream);
+            break;
+        case 'L':
+            put(stream, h, o->letter != 0 ? h->letter : NULL, c, o);
+            break;
+        case 'V':
+            put(stream, h, o->type != OPTION_FLAG ? h->value : NULL, c, o);
+            break;
+        case 'x':
+            put(stream, h, h->offers[offers[o->type]], c, o);
+            break;
 
-    put_offer(stream, o, calls, "_impactlab_words '", "'");
-    fprintf(stream, "; return ;;\n");
-}
-
-static void put_bash_command(FILE *stream, const command *c)
-{
-    const option_row *o;
-
-    // values by the option before the cursor
-    fprintf(stream, "    %s)\n        case $before in\n", c->name);
-    for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
-        if (o->type != OPTION_FLAG) {
-            put_bash_offer(stream, o);
+        // lists
+        default:
+            for (int i = 0; (word = listed_word(*text, c, i)) != NULL; i++) {
+                fprintf(stream, "%s%s%s%s", i > 0 ? " " : "", *text == 'O' ? "--" : "", word,
+                        *text == 'P' ? "=" : "");
+            }
+            break;
         }
     }
-
-    // words that need none
-    fprintf(stream, "        esac\n        options='");
-    for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
-        fprintf(stream, "%s--%s", i > 0 ? " " : "", o->name);
-    }
-    fprintf(stream, "'\n        operands='");
-    put_operand_words(stream, c);
-    fprintf(stream, "'\n        scenarios=%s ;;\n", c->takes_scenarios ? "yes" : "");
 }
 
-void write_bash_completion(FILE *stream)
+static void put_operands(FILE *stream, const shell *h, const command *c)
 {
-    assert(stream != NULL);
-    fprintf(stream, "# bash completion for impactlab\n"
-                    "_impactlab_words() {\n"
-                    "    COMPREPLY+=($(compgen -W \"$1\" -- \"$word\"))\n"
-                    "}\n"
-                    "_impactlab_files() {\n"
-                    "    local IFS=$'\\n'\n"
-                    "    compopt -o filenames\n"
-                    "    COMPREPLY+=($(compgen -f -- \"$word\"))\n"
-                    "}\n"
-                    "_impactlab() {\n"
-                    "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
-                    "    local command=${COMP_WORDS[1]} options='' operands='' scenarios=''\n"
-                    "    local parameters='");
+    put(stream, h, c->operand_word != NULL ? h->words : NULL, c, NULL);
+    put(stream, h, c->takes_scenarios ? h->scenarios : NULL, c, NULL);
+}
 
-    put_parameters(stream);
-    fprintf(stream, "'\n    local quantities='");
-    put_quantities(stream);
-    fprintf(stream, "'\n    COMPREPLY=()\n"
-                    "    if [ \"$COMP_CWORD\" = 1 ]; then\n        _impactlab_words '");
-    put_commands(stream);
-
-    fprintf(stream, " --help --version'\n        return\n    fi\n    case $command in\n");
+void write_completion(FILE *stream, const char *name)
+{
+    assert(stream != NULL && name != NULL);
+    const shell *h = shells;
+    while (strcmp(h->name, name) != 0) {
+        h++;
+    }
+    put(stream, h, h->head, NULL, NULL);
     for (int i = 0; i < command_count; i++) {
-        put_bash_command(stream, command_table[i]);
+        put(stream, h, h->listed, command_table[i], NULL);
     }
+    put(stream, h, h->commands, NULL, NULL);
 
-    fprintf(stream, "    esac\n"
-                    "    case $word in\n"
-                    "    -*) _impactlab_words \"$options\"; return ;;\n"
-                    "    esac\n"
-                    "    _impactlab_words \"$operands\"\n"
-                    "    if [ -n \"$scenarios\" ]; then\n"
-                    "        _impactlab_words \"$(" SCENARIO_NAMES ")\"\n"
-                    "        _impactlab_files\n"
-                    "    fi\n"
-                    "}\n"
-                    "complete -F _impactlab impactlab\n");
-}
-
-// --- zsh ------------------------------------------------------------------------------------
-
-static void put_zsh_option(FILE *stream, const option_row *o)
-{
-    static const char *const actions[] = {
-        [OFFER_NOTHING] = " ",
-        [OFFER_FILES] = "_files",
-        [OFFER_PARAMETERS] = "_impactlab_parameters",
-        [OFFER_SCENARIOS] = "_impactlab_scenarios",
-        [OFFER_QUANTITIES] = "_impactlab_quantities",
-    };
-
-    bool repeats = option_is_text_list(o->type) || o->type == OPTION_NUMBERS;
-
-    // the short form, then the long one
-    for (int form = o->letter != 0 ? 0 : 1; form < 2; form++) {
-        fprintf(stream, " \\\n            '%s", repeats ? "*" : "");
-        if (form == 0) {
-            fprintf(stream, "-%c", o->letter);
-        } else {
-            fprintf(stream, "--%s%s", o->name, o->type == OPTION_FLAG ? "" : "=");
+    // each command with its options
+    for (int i = 0; i < command_count; i++) {
+        const command *c = command_table[i];
+        const option_row *o;
+        put(stream, h, h->begin, c, NULL);
+        if (h->words_first) {
+            put_operands(stream, h, c);
         }
-
-        fprintf(stream, "[");
-        put_quoted(stream, o->help, "[]:\\");
-        fprintf(stream, "]");
-
-        if (o->type != OPTION_FLAG) {
-            fprintf(stream, ":");
-            put_quoted(stream, o->value, "[]:\\");
-            fprintf(stream, ":");
-            put_offer(stream, o, actions, "(", ")");
+        for (int k = 0; (o = command_option(c, k)) != NULL; k++) {
+            put(stream, h, h->option, c, o);
         }
-
-        fprintf(stream, "'");
+        if (!h->words_first) {
+            put_operands(stream, h, c);
+        }
+        put(stream, h, h->end, c, NULL);
     }
-}
-
-static void put_zsh_command(FILE *stream, const command *c)
-{
-    const option_row *o;
-    fprintf(stream, "        %s)\n            _arguments", c->name);
-
-    for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
-        put_zsh_option(stream, o);
-    }
-
-    if (c->operand_word != NULL) {
-        fprintf(stream, " \\\n            '%s:word:(", c->takes_scenarios ? "1" : "*");
-        put_operand_words(stream, c);
-        fprintf(stream, ")'");
-    }
-
-    if (c->takes_scenarios) {
-        fprintf(stream, " \\\n            '*:scenario:_impactlab_scenarios'");
-    }
-    fprintf(stream, " ;;\n");
-}
-
-void write_zsh_completion(FILE *stream)
-{
-    assert(stream != NULL);
-    fprintf(stream, "#compdef impactlab\n"
-                    "_impactlab_scenarios() {\n"
-                    "    compadd -- $(" SCENARIO_NAMES ")\n    _files\n}\n"
-                    "_impactlab_parameters() {\n    compadd -S '' -- ");
-    put_parameters(stream);
-
-    fprintf(stream, "\n}\n_impactlab_quantities() {\n    compadd -- ");
-    put_quantities(stream);
-
-    fprintf(stream, "\n}\n"
-                    "_impactlab() {\n"
-                    "    local context state line\n"
-                    "    _arguments -C '1:command:->command' '*::argument:->argument'\n"
-                    "    case $state in\n"
-                    "    command)\n"
-                    "        local -a commands=(");
-
-    for (int i = 0; i < command_count; i++) {
-        fprintf(stream, "\n            '%s:", command_table[i]->name);
-        put_quoted(stream, command_table[i]->summary, ":\\");
-        fprintf(stream, "'");
-    }
-
-    fprintf(stream, "\n        )\n"
-                    "        _describe command commands ;;\n"
-                    "    argument)\n"
-                    "        case $words[1] in\n");
-    for (int i = 0; i < command_count; i++) {
-        put_zsh_command(stream, command_table[i]);
-    }
-
-    fprintf(stream, "        esac ;;\n    esac\n}\n"
-                    "if [ \"$funcstack[1]\" = _impactlab ]; then\n"
-                    "    _impactlab \"$@\"\n"
-                    "else\n"
-                    "    compdef _impactlab impactlab\n"
-                    "fi\n");
-}
-
-// --- fish -----------------------------------------------------------------------------------
-
-static void put_fish_option(FILE *stream, const command *c, const option_row *o)
-{
-    static const char *const no_value[] = {[OFFER_NOTHING] = ""};
-    static const char *const values[] = {
-        [OFFER_NOTHING] = " -x",         [OFFER_FILES] = " -r -F",
-        [OFFER_PARAMETERS] = " -x -a '", [OFFER_SCENARIOS] = " -r -F -a '(__impactlab_scenarios)'",
-        [OFFER_QUANTITIES] = " -x -a '",
-    };
-    fprintf(stream, "complete -c impactlab -n '__fish_seen_subcommand_from %s' -l %s", c->name,
-            o->name);
-
-    if (o->letter != 0) {
-        fprintf(stream, " -s %c", o->letter);
-    }
-
-    // the lists that have no function of their own stand in the text
-    put_offer(stream, o, o->type == OPTION_FLAG ? no_value : values, " -x -a '", "'");
-    if (offer_of(o) == OFFER_PARAMETERS) {
-        put_parameters(stream);
-    } else if (offer_of(o) == OFFER_QUANTITIES) {
-        put_quantities(stream);
-    }
-    fputs(offer_of(o) == OFFER_PARAMETERS || offer_of(o) == OFFER_QUANTITIES ? "'" : "", stream);
-
-    fprintf(stream, " -d '");
-    put_quoted(stream, o->help, "");
-    fprintf(stream, "'\n");
-}
-
-static void put_fish_command(FILE *stream, const command *c)
-{
-    const option_row *o;
-    fprintf(stream, "complete -c impactlab -n __fish_use_subcommand -f -a %s -d '", c->name);
-    put_quoted(stream, c->summary, "");
-    fprintf(stream, "'\n");
-
-    if (c->operand_word != NULL) {
-        fprintf(stream, "complete -c impactlab -n '__fish_seen_subcommand_from %s' -a '", c->name);
-        put_operand_words(stream, c);
-        fprintf(stream, "'\n");
-    }
-
-    if (c->takes_scenarios) {
-        fprintf(stream,
-                "complete -c impactlab -n '__fish_seen_subcommand_from %s' -F -a "
-                "'(__impactlab_scenarios)'\n",
-                c->name);
-    }
-
-    for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
-        put_fish_option(stream, c, o);
-    }
-}
-
-void write_fish_completion(FILE *stream)
-{
-    assert(stream != NULL);
-    fprintf(stream, "# fish completion for impactlab\n"
-                    "function __impactlab_scenarios\n"
-                    "    " SCENARIO_NAMES "\n"
-                    "end\n"
-                    "complete -c impactlab -f\n"
-                    "complete -c impactlab -n __fish_use_subcommand -l version -d 'Print the "
-                    "version'\n");
-    for (int i = 0; i < command_count; i++) {
-        put_fish_command(stream, command_table[i]);
-    }
+    put(stream, h, h->tail, NULL, NULL);
 }

@@ -115,25 +115,6 @@ void print_commands(FILE *stream)
 
 // --- the command ----------------------------------------------------------------------------
 
-static int write_completion(const char *shell)
-{
-    static const struct {
-        const char *shell;
-        void (*write)(FILE *stream);
-    } writers[] = {
-        {"bash", write_bash_completion},
-        {"zsh", write_zsh_completion},
-        {"fish", write_fish_completion},
-    };
-
-    for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++) {
-        if (strcmp(writers[i].shell, shell) == 0) {
-            writers[i].write(stdout);
-        }
-    }
-    return EXIT_DONE;
-}
-
 static void write_page(FILE *stream, const scenario *s, const void *about)
 {
     (void)s;
@@ -193,7 +174,8 @@ static int help(const arguments *a)
     }
 
     if (a->completion != NULL) {
-        return write_completion(a->completion);
+        write_completion(stdout, a->completion);
+        return EXIT_DONE;
     }
     if (a->man_pages != NULL) {
         return write_pages(a->man_pages);
