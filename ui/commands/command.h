@@ -299,6 +299,11 @@ void write_man_page(FILE *stream, const command *c);
 #define REFERENCE_PAGES "parameters|signals|quantities|laws|events|scenario.5"
 void write_reference(FILE *stream, const char *page);
 
+// What a parameter may be: "0.1 to 100", "list of 1 to 2", "text", or its words with `separator`
+// between them. Returns text.
+enum { RANGE_TEXT = 256 };
+const char *format_range(const parameter_info *info, const char *separator, char text[RANGE_TEXT]);
+
 // Writes what the shell, "bash", "zsh" or "fish", needs to complete impactlab's command line.
 void write_completion(FILE *stream, const char *shell);
 

@@ -5,6 +5,7 @@
 #include <assert.h>
 #include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
 #include "src/base/shipped.h"
@@ -15,50 +16,52 @@
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"
 
-// --- man pages --------------------------------------------------------------------------------
-// One a command, and one of impactlab.
+// --- text in pages ------------------------------------------------------------------------------
 
-// Text in which troff finds no request and no escape of its own.
-static void put_text(FILE *stream, const char *text, int bytes)
+// Text of a man page, in which troff finds no request and no escape of its own, or of a table's
+// cell or paragraph in which Markdown finds no marks of its own.
+static void put_escaped(FILE *stream, bool man, const char *text, int bytes)
 {
     for (int i = 0; i < bytes; i++) {
         // a dot or quote at the start of a line would be a request
-        bool at_start = i == 0 || text[i - 1] == '\n';
-        if (at_start && strchr(".'", text[i]) != NULL) {
+        if (man && (i == 0 || text[i - 1] == '\n') && strchr(".'", text[i]) != NULL) {
             fputs("\\&", stream);
         }
+        if (strchr(man ? "\\-" : "|*_<\\", text[i]) != NULL) {
+            fputc('\\', stream);
+        }
+        fputc(man && text[i] == '\\' ? 'e' : text[i], stream);
+    }
+}
 
-        switch (text[i]) {
-        case '\\':
-            fputs("\\e", stream);
-            break;
-        case '-':
-            fputs("\\-", stream);
-            break;
-        default:
-            fputc(text[i], stream);
+// Prints a page's text: %s a text as it is, %u in capital letters, %m for troff, %t for Markdown,
+// %g a number.
+static void put(FILE *stream, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    for (; *format != '\0'; format++) {
+        const char kind = *format == '%' ? *++format : '\0';
+        const char *text = kind != '\0' && kind != 'g' ? va_arg(list, const char *) : "";
+        if (kind == '\0') {
+            fputc(*format, stream);
+        } else if (kind == 'g') {
+            fprintf(stream, "%g", va_arg(list, double));
+        } else if (kind == 's') {
+            fputs(text, stream);
+        } else if (kind == 'u') {
+            for (; *text != '\0'; text++) {
+                fputc(toupper((unsigned char)*text), stream);
+            }
+        } else {
+            put_escaped(stream, kind == 'm', text, (int)strlen(text));
         }
     }
+    va_end(list);
 }
 
-static void put_string(FILE *stream, const char *text)
-{
-    put_text(stream, text, (int)strlen(text));
-}
-
-static void put_upper(FILE *stream, const char *text)
-{
-    for (; *text != '\0'; text++) {
-        fputc(toupper((unsigned char)*text), stream);
-    }
-}
-
-static void put_title(FILE *stream, const char *title)
-{
-    fprintf(stream, ".SH ");
-    put_upper(stream, title);
-    fprintf(stream, "\n");
-}
+// --- man pages --------------------------------------------------------------------------------
+// One a command, and one of impactlab.
 
 static void put_paragraphs(FILE *stream, const char *text)
 {
@@ -67,45 +70,27 @@ static void put_paragraphs(FILE *stream, const char *text)
 
     while (next_paragraph(&text, &p)) {
         if (p.literal && !was_literal) {
-            fprintf(stream, ".PP\n.nf\n");
+            put(stream, ".PP\n.nf\n");
         } else if (!p.literal) {
-            fprintf(stream, "%s.PP\n", was_literal ? ".fi\n" : "");
+            put(stream, "%s.PP\n", was_literal ? ".fi\n" : "");
         }
-
-        put_text(stream, p.start, p.bytes);
-        fprintf(stream, "\n");
+        put_escaped(stream, true, p.start, p.bytes);
+        put(stream, "\n");
         was_literal = p.literal;
     }
-
-    fprintf(stream, "%s", was_literal ? ".fi\n" : "");
-}
-
-static void put_option(FILE *stream, const option_row *o)
-{
-    fprintf(stream, ".TP\n\\fB");
-    if (o->letter != 0) {
-        fprintf(stream, "\\-%c\\fR, \\fB", o->letter);
-    }
-    fprintf(stream, "\\-\\-");
-    put_string(stream, o->name);
-
-    if (o->value != NULL) {
-        fprintf(stream, " \\fI");
-        put_string(stream, o->value);
-    }
-
-    fprintf(stream, "\\fR\n");
-    put_string(stream, o->help);
-    fprintf(stream, "\n");
+    put(stream, was_literal ? ".fi\n" : "");
 }
 
 static void put_options(FILE *stream, const option_table *t, const char *title_before)
 {
     if (strcmp(t->title, title_before) != 0) {
-        put_title(stream, t->title);
+        put(stream, ".SH %u\n", t->title);
     }
-    for (int i = 0; i < t->count; i++) {
-        put_option(stream, &t->rows[i]);
+    for (const option_row *o = t->rows; o < t->rows + t->count; o++) {
+        const char letter[] = {o->letter, '\0'};
+        put(stream, o->letter != 0 ? ".TP\n\\fB\\-%s\\fR, \\fB" : ".TP\n\\fB", letter);
+        put(stream, o->value != NULL ? "\\-\\-%m \\fI%m" : "\\-\\-%m", o->name, o->value);
+        put(stream, "\\fR\n%m\n", o->help);
     }
 }
 
@@ -116,13 +101,9 @@ typedef struct term {
 
 static void put_terms(FILE *stream, const char *title, const term *terms, int count)
 {
-    put_title(stream, title);
+    put(stream, ".SH %u\n", title);
     for (int i = 0; i < count; i++) {
-        fprintf(stream, ".TP\n\\fB");
-        put_string(stream, terms[i].name);
-        fprintf(stream, "\\fR\n");
-        put_string(stream, terms[i].meaning);
-        fprintf(stream, "\n");
+        put(stream, ".TP\n\\fB%m\\fR\n%m\n", terms[i].name, terms[i].meaning);
     }
 }
 
@@ -155,10 +136,9 @@ static const term examples[] = {
 
 static void write_overview(FILE *stream)
 {
-    fprintf(stream, ".SH NAME\nimpactlab \\- impact and force control of a flexible robot arm\n"
-                    ".SH SYNOPSIS\n\\fBimpactlab\\fR [\\fICOMMAND\\fR [\\fIARGUMENT\\fR]...]\n");
-
-    put_title(stream, "Description");
+    put(stream, ".SH NAME\nimpactlab \\- impact and force control of a flexible robot arm\n"
+                ".SH SYNOPSIS\n\\fBimpactlab\\fR [\\fICOMMAND\\fR [\\fIARGUMENT\\fR]...]\n"
+                ".SH DESCRIPTION\n");
     put_paragraphs(
         stream,
         "impactlab simulates a robot arm, a hub turned by a motor with a beam of one or more links "
@@ -168,33 +148,24 @@ static void write_overview(FILE *stream)
         "Options may stand before or after the other arguments. Files are written whole or not at "
         "all. impactlab --version prints the version.");
 
-    put_title(stream, "Commands");
+    put(stream, ".SH COMMANDS\n");
     for (int i = 0; i < command_count; i++) {
         const command *c = command_table[i];
-        fprintf(stream, ".TP\n\\fBimpactlab\\-%s\\fR(1)\n", c->name);
-        put_string(stream, c->summary);
-        fprintf(stream, ".\n");
+        put(stream, ".TP\n\\fBimpactlab\\-%s\\fR(1)\n%m.\n", c->name, c->summary);
     }
 
     PUT_TERMS(stream, "Environment", environment);
     PUT_TERMS(stream, "Exit status", exit_status);
     PUT_TERMS(stream, "Examples", examples);
-    fputs(".SH SEE ALSO\n\\fBimpactlab\\-scenario\\fR(5), \\fBlibimpactlab\\fR(3)\n", stream);
+    put(stream, ".SH SEE ALSO\n\\fBimpactlab\\-scenario\\fR(5), \\fBlibimpactlab\\fR(3)\n");
 }
 
 static void write_command(FILE *stream, const command *c)
 {
-    // name and call
-    fprintf(stream, ".SH NAME\nimpactlab\\-%s \\- ", c->name);
-    put_string(stream, c->summary);
-    fprintf(stream, "\n.SH SYNOPSIS\n\\fBimpactlab %s\\fR%s", c->name, c->operands[0] ? " " : "");
-    put_string(stream, c->operands);
-    fprintf(stream, " [\\fIOPTION\\fR]...\n");
-
-    // what it does
-    put_title(stream, "Description");
-    put_string(stream, c->summary);
-    fprintf(stream, ".\n");
+    put(stream, ".SH NAME\nimpactlab\\-%s \\- %m\n", c->name, c->summary);
+    put(stream, ".SH SYNOPSIS\n\\fBimpactlab %s\\fR%s%m [\\fIOPTION\\fR]...\n", c->name,
+        c->operands[0] ? " " : "", c->operands);
+    put(stream, ".SH DESCRIPTION\n%m.\n", c->summary);
     put_paragraphs(stream, c->help);
 
     // its options, table by table
@@ -205,22 +176,15 @@ static void write_command(FILE *stream, const command *c)
         title = t->title;
     }
     PUT_TERMS(stream, "Exit status", exit_status);
-    fprintf(stream, ".SH SEE ALSO\n\\fBimpactlab\\fR(1)\n");
+    put(stream, ".SH SEE ALSO\n\\fBimpactlab\\fR(1)\n");
 }
 
 void write_man_page(FILE *stream, const command *c)
 {
-    assert(stream != NULL);
-
     // a page of its own for each command, named as man looks it up
-    fprintf(stream, ".TH IMPACTLAB");
-    if (c != NULL) {
-        fprintf(stream, "\\-");
-        put_upper(stream, c->name);
-    }
-    fprintf(stream, " 1 \"\" \"impactlab %s\"\n", lab_version());
-
-    // the sections below the heading
+    assert(stream != NULL);
+    put(stream, c != NULL ? ".TH IMPACTLAB\\-%u" : ".TH IMPACTLAB", c != NULL ? c->name : "");
+    put(stream, " 1 \"\" \"impactlab %s\"\n", lab_version());
     if (c == NULL) {
         write_overview(stream);
     } else {
@@ -231,101 +195,83 @@ void write_man_page(FILE *stream, const command *c)
 // --- chapters ---------------------------------------------------------------------------------
 // In Markdown; and the man page of scenario files.
 
-// Text of a table's cell or a paragraph, in which Markdown finds no marks of its own.
-static void put_cell(FILE *stream, const char *text)
-{
-    for (; *text != '\0'; text++) {
-        if (strchr("|*_<\\", *text) != NULL) {
-            fputc('\\', stream);
-        }
-        fputc(*text, stream);
-    }
-}
+// What is said of a parameter.
+typedef struct parameter_words {
+    char range[RANGE_TEXT];
+    char initial[2 * PARAMETER_TEXT_SIZE + 16]; // its default, also of the printed model if other
+} parameter_words;
 
-// ---- parameters
-
-// "0.1 to 100", "point, plane, none", "true, false", "text".
-static void put_range(FILE *stream, const parameter_info *info)
+const char *format_range(const parameter_info *info, const char *separator, char text[RANGE_TEXT])
 {
-    switch (info->type) {
-    case PARAMETER_CHOICE:
-        for (const char *c = info->choices; *c != '\0'; c++) {
-            fputs(*c == '|' ? ", " : (char[]){*c, '\0'}, stream);
-        }
-        break;
-    case PARAMETER_BOOLEAN:
-        fputs("true, false", stream);
-        break;
-    case PARAMETER_TEXT:
-        fputs("text", stream);
-        break;
-    case PARAMETER_LIST:
-    case PARAMETER_REAL:
-    case PARAMETER_INTEGER:
-        fprintf(stream, "%s%g to %g", info->type == PARAMETER_LIST ? "list of " : "", info->minimum,
-                info->maximum);
-        break;
+    assert(info != NULL && separator != NULL && text != NULL);
+    const char *choices = info->type == PARAMETER_CHOICE    ? info->choices
+                          : info->type == PARAMETER_BOOLEAN ? "true|false"
+                          : info->type == PARAMETER_TEXT    ? "text"
+                                                            : NULL;
+    if (choices == NULL) {
+        snprintf(text, RANGE_TEXT, "%s%g to %g", info->type == PARAMETER_LIST ? "list of " : "",
+                 info->minimum, info->maximum);
+        return text;
     }
+    size_t length = 0;
+    for (const char *c = choices; *c != '\0' && length < RANGE_TEXT; c++) {
+        length += (size_t)snprintf(text + length, RANGE_TEXT - length, "%s",
+                                   *c == '|' ? separator : (char[]){*c, '\0'});
+    }
+    return text;
 }
 
 // The default under a model as scenario files would give it, "derived" if other parameters give it.
-static void format_default(int index, arm_model_kind model, char *text, size_t size)
+static void format_default(int index, arm_model_kind model, char text[PARAMETER_TEXT_SIZE])
 {
-    const parameter_info *info = &parameter_table[index];
     parameters p;
-
     parameters_defaults(&p, model);
-    if (!parameter_is_text(info) && isnan(parameter_get(&p, index))) {
-        snprintf(text, size, "derived");
+    if (!parameter_is_text(&parameter_table[index]) && isnan(parameter_get(&p, index))) {
+        snprintf(text, PARAMETER_TEXT_SIZE, "derived");
     } else {
-        parameter_format(&p, index, text, size);
+        parameter_format(&p, index, text, PARAMETER_TEXT_SIZE);
     }
 }
 
-static void put_default(FILE *stream, int index)
+static parameter_words words_of(int index)
 {
     char corrected[PARAMETER_TEXT_SIZE], printed[PARAMETER_TEXT_SIZE];
-
-    format_default(index, ARM_CORRECTED, corrected, sizeof corrected);
-    format_default(index, ARM_PRINTED, printed, sizeof printed);
-    fputs(corrected, stream);
-    if (strcmp(corrected, printed) != 0) {
-        fprintf(stream, " (printed: %s)", printed);
-    }
+    parameter_words w;
+    format_range(&parameter_table[index], ", ", w.range);
+    format_default(index, ARM_CORRECTED, corrected);
+    format_default(index, ARM_PRINTED, printed);
+    snprintf(w.initial, sizeof w.initial,
+             strcmp(corrected, printed) != 0 ? "%s (printed: %s)" : "%s", corrected, printed);
+    return w;
 }
 
-// Whether a group, "arm" of "arm.k2", begins with this parameter; its length in *length.
-static bool group_begins(int index, int *length)
+// The group "arm" of "arm.k2", if it begins with this parameter; else "".
+static const char *group_that_begins(int index, char group[32])
 {
     const char *path = parameter_table[index].path;
-    *length = (int)(strchr(path, '.') - path);
-    return index == 0 || strncmp(path, parameter_table[index - 1].path, (size_t)*length + 1) != 0;
+    const int length = (int)(strchr(path, '.') - path);
+    const bool begins =
+        index == 0 || strncmp(path, parameter_table[index - 1].path, (size_t)length + 1) != 0;
+    snprintf(group, 32, "%.*s", begins ? length : 0, path);
+    return group;
 }
 
 static void write_parameters(FILE *stream)
 {
-    fputs("# Parameters\n\nEvery parameter of a scenario, by its path. A default is \"derived\" if "
-          "it "
-          "follows from other parameters; *timed* ones may change during a run.\n",
-          stream);
+    put(stream, "# Parameters\n\nEvery parameter of a scenario, by its path. A default is "
+                "\"derived\" if it follows from other parameters; *timed* ones may change during a "
+                "run.\n");
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
-        int length;
-
-        if (group_begins(i, &length)) {
-            fprintf(
-                stream,
-                "\n## %.*s\n\n| path | default | unit | range | meaning |\n|---|---|---|---|---|\n",
-                length, info->path);
+        const parameter_words w = words_of(i);
+        char group[32];
+        if (group_that_begins(i, group)[0] != '\0') {
+            put(stream,
+                "\n## %s\n\n| path | default | unit | range | meaning |\n|---|---|---|---|---|\n",
+                group);
         }
-
-        fprintf(stream, "| `%s` | ", info->path);
-        put_default(stream, i);
-        fprintf(stream, " | %s | ", info->unit);
-        put_range(stream, info);
-        fputs(" | ", stream);
-        put_cell(stream, info->description);
-        fprintf(stream, "%s |\n", info->timed ? "; *timed*" : "");
+        put(stream, "| `%s` | %s | %s | %s | %t%s |\n", info->path, w.initial, info->unit, w.range,
+            info->description, info->timed ? "; *timed*" : "");
     }
 }
 
@@ -333,43 +279,32 @@ static void write_parameters(FILE *stream)
 
 static void write_signals(FILE *stream)
 {
-    fputs(
+    put(stream,
         "# Signals\n\nWhat a run records at every row: columns of `--csv`, names for `--signals`, "
-        "panes and recipes.\n\n| name | symbol | unit | meaning |\n|---|---|---|---|\n",
-        stream);
-    for (int i = 0; i < signal_count; i++) {
-        const signal_info *s = &signal_table[i];
-        fprintf(stream, "| `%s` | ", s->name);
-        put_cell(stream, s->ascii);
-        fprintf(stream, " | %s | ", s->unit);
-        put_cell(stream, s->description);
-        fprintf(stream, "%s |\n", s->optional ? "; only if recorded" : "");
+        "panes and recipes.\n\n| name | symbol | unit | meaning |\n|---|---|---|---|\n");
+    for (const signal_info *s = signal_table; s < signal_table + signal_count; s++) {
+        put(stream, "| `%s` | %t | %s | %t%s |\n", s->name, s->ascii, s->unit, s->description,
+            s->optional ? "; only if recorded" : "");
     }
 }
 
 static void write_quantities(FILE *stream)
 {
-    fputs("# Quantities\n\nThe numbers of a run: keys of `run --json`, `expect`, sweeps and "
-          "comparisons. One that did not occur is null.\n\n"
-          "| key | unit | meaning |\n|---|---|---|\n",
-          stream);
-    for (int i = 0; i < summary_count; i++) {
-        const summary_info *s = &summary_table[i];
-        fprintf(stream, "| `%s` | %s | ", s->key, s->unit);
-        put_cell(stream, s->description);
-        fprintf(stream, "%s |\n", s->special ? "; only in some runs" : "");
+    put(stream, "# Quantities\n\nThe numbers of a run: keys of `run --json`, `expect`, sweeps and "
+                "comparisons. One that did not occur is null.\n\n"
+                "| key | unit | meaning |\n|---|---|---|\n");
+    for (const summary_info *s = summary_table; s < summary_table + summary_count; s++) {
+        put(stream, "| `%s` | %s | %t%s |\n", s->key, s->unit, s->description,
+            s->special ? "; only in some runs" : "");
     }
 }
 
 static void write_events(FILE *stream)
 {
-    fputs("# Events\n\nWhat happens between rows, located in time: `events` of `run --json`.\n\n"
-          "| kind | what happens |\n|---|---|\n",
-          stream);
+    put(stream, "# Events\n\nWhat happens between rows, located in time: `events` of `run "
+                "--json`.\n\n| kind | what happens |\n|---|---|\n");
     for (int i = 0; event_description(i) != NULL; i++) {
-        fprintf(stream, "| `%s` | ", event_name((event_kind)i));
-        put_cell(stream, event_description(i));
-        fputs(" |\n", stream);
+        put(stream, "| `%s` | %t |\n", event_name((event_kind)i), event_description(i));
     }
 }
 
@@ -384,27 +319,22 @@ static void put_law_parameters(FILE *stream, const controller *c)
 
         snprintf(path, sizeof path, "control.%s", c->parameters[i].name);
         if (parameter_find(path) >= 0 && c->parameters[i].description == NULL) {
-            fprintf(stream, "- `%s`\n", path);
-            continue;
+            put(stream, "- `%s`\n", path);
+        } else {
+            put(stream, "- in `control.settings`: `%s`, %g %s (%g to %g), %t\n", p.name, p.initial,
+                p.unit != NULL ? p.unit : "", p.minimum, p.maximum,
+                p.description != NULL ? p.description : "");
         }
-
-        fprintf(stream, "- in `control.settings`: `%s`, %g %s (%g to %g), ", p.name, p.initial,
-                p.unit != NULL ? p.unit : "", p.minimum, p.maximum);
-        put_cell(stream, p.description != NULL ? p.description : "");
-        fputc('\n', stream);
     }
 }
 
 static void write_laws(FILE *stream)
 {
-    fputs(
-        "# Control laws and their parameters\n\nThe choices of `control.law`, what each does, and "
-        "the parameters that it reads.\n",
-        stream);
+    put(stream, "# Control laws and their parameters\n\nThe choices of `control.law`, what each "
+                "does, and the parameters that it reads.\n");
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
-        fprintf(stream, "\n## %s\n\n", control_law_table[law].word);
-        put_cell(stream, control_law_table[law].description);
-        fputs(".\n\n", stream);
+        put(stream, "\n## %s\n\n%t.\n\n", control_law_table[law].word,
+            control_law_table[law].description);
         if (controller_of(law) != NULL) {
             put_law_parameters(stream, controller_of(law));
         }
@@ -413,25 +343,9 @@ static void write_laws(FILE *stream)
 
 // ---- the man page of scenario files
 
-static void put_man_parameter(FILE *stream, int index)
-{
-    const parameter_info *info = &parameter_table[index];
-
-    fputs(".TP\n\\fB", stream);
-    put_string(stream, info->path);
-    fprintf(stream, "\\fR%s%s\n", info->unit[0] != '\0' ? " in " : "", info->unit);
-    put_string(stream, info->description);
-    fputs(".\nDefault: ", stream);
-    put_default(stream, index);
-    fputs("; range: ", stream);
-    put_range(stream, info);
-    fprintf(stream, "%s.\n", info->timed ? "; may change during a run" : "");
-}
-
 static void write_scenario_man(FILE *stream)
 {
-    fprintf(
-        stream,
+    put(stream,
         ".TH IMPACTLAB\\-SCENARIO 5 \"\" \"impactlab %s\"\n"
         ".SH NAME\nimpactlab\\-scenario \\- files that describe a run of impactlab\n"
         ".SH SYNOPSIS\n.nf\n"
@@ -450,19 +364,18 @@ static void write_scenario_man(FILE *stream)
         "describes them under \\(lqScenario files\\(rq.\n",
         lab_version());
     for (int i = 0; i < parameter_count; i++) {
-        int length;
-        if (group_begins(i, &length)) {
-            fputs(".SH ", stream);
-            for (int k = 0; k < length; k++) {
-                fputc(toupper((unsigned char)parameter_table[i].path[k]), stream);
-            }
-            fputc('\n', stream);
+        const parameter_info *info = &parameter_table[i];
+        const parameter_words w = words_of(i);
+        char group[32];
+        if (group_that_begins(i, group)[0] != '\0') {
+            put(stream, ".SH %u\n", group);
         }
-        put_man_parameter(stream, i);
+        put(stream, ".TP\n\\fB%m\\fR%s%s\n%m.\nDefault: %s; range: %s%s.\n", info->path,
+            info->unit[0] != '\0' ? " in " : "", info->unit, info->description, w.initial, w.range,
+            info->timed ? "; may change during a run" : "");
     }
-    fputs(".SH SEE ALSO\n\\fBimpactlab\\fR(1), \\fBimpactlab\\-check\\fR(1), "
-          "\\fBlibimpactlab\\fR(3)\n",
-          stream);
+    put(stream, ".SH SEE ALSO\n\\fBimpactlab\\fR(1), \\fBimpactlab\\-check\\fR(1), "
+                "\\fBlibimpactlab\\fR(3)\n");
 }
 
 void write_reference(FILE *stream, const char *page)

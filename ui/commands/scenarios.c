@@ -203,31 +203,13 @@ const command lesson_command = {
 
 // --- show -------------------------------------------------------------------------------------
 
-static void print_range(const parameter_info *info)
-{
-    char text[256];
-    if (info->type == PARAMETER_CHOICE) {
-        snprintf(text, sizeof text, "%s", info->choices);
-    } else if (info->type == PARAMETER_BOOLEAN) {
-        snprintf(text, sizeof text, "true|false");
-    } else if (info->type == PARAMETER_TEXT) {
-        snprintf(text, sizeof text, "text");
-    } else if (info->type == PARAMETER_LIST) {
-        snprintf(text, sizeof text, "list of %g to %g", info->minimum, info->maximum);
-    } else {
-        snprintf(text, sizeof text, "%g to %g", info->minimum, info->maximum);
-    }
-    say("  %-29s", text);
-}
-
 static void print_parameter(const parameters *p, int index)
 {
     const parameter_info *info = &parameter_table[index];
-    char value[128];
+    char value[128], range[RANGE_TEXT];
     parameter_format(p, index, value, sizeof value);
-    say("%-33s %c %18s %-9s", info->path, p->set[index] ? '=' : ' ', value, info->unit);
-    print_range(info);
-    printf("  %s\n", info->description);
+    say("%-33s %c %18s %-9s  %-29s  %s\n", info->path, p->set[index] ? '=' : ' ', value, info->unit,
+        format_range(info, "|", range), info->description);
 }
 
 // Each number of control.settings under its path: where the law is known with its unit and range.
