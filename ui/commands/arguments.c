@@ -17,43 +17,32 @@
 
 // --- shared options ---------------------------------------------------------------------------
 
-static const option_row set_rows[] = {
-    OPTION(PARAMETERS, "set", "PATH=VALUE", "give a parameter another value (may be repeated)",
-           PLACE(sets)),
-    OPTION(FLAG, "allow-code", NULL,
-           "let the scenario start the program or load the plug-in that it names",
-           PLACE(allow_code)),
-};
-const option_table set_options = OPTION_TABLE("Options", set_rows);
+#define SHARED_OPTIONS(...)                                                                        \
+    {                                                                                              \
+        "Options", (const option_row[]){__VA_ARGS__},                                              \
+            (int)(sizeof(option_row[]){__VA_ARGS__} / sizeof(option_row))                          \
+    }
 
-static const option_row vary_rows[] = {
+const option_table set_options =
+    SHARED_OPTIONS(OPTION(PARAMETERS, "set", "PATH=VALUE",
+                          "give a parameter another value (may be repeated)", PLACE(sets)),
+                   OPTION(FLAG, "allow-code", NULL,
+                          "let the scenario start the program or load the plug-in that it names",
+                          PLACE(allow_code)));
+const option_table vary_options = SHARED_OPTIONS(
     OPTION(PARAMETERS, "vary", "PATH=a:b:n",
-           "vary a parameter: n values from a to b (may be repeated)", PLACE(varies)),
-};
-const option_table vary_options = OPTION_TABLE("Options", vary_rows);
-
-static const option_row json_rows[] = {
-    OPTION(RESULT, "json", "FILE|-", "write the results as JSON; - is the standard output",
-           PLACE(json)),
-};
-const option_table json_options = OPTION_TABLE("Options", json_rows);
-
-static const option_row drawn_rows[] = {
-    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}",
-           "draw the study; a CSV of what is drawn beside it", PLACE(plot)),
-};
-const option_table drawn_options = OPTION_TABLE("Options", drawn_rows);
-
-static const option_row quiet_rows[] = {
-    OPTION(FLAG, "quiet", NULL, "print no summary", PLACE(quiet), .letter = 'q'),
-};
-const option_table quiet_options = OPTION_TABLE("Options", quiet_rows);
+           "vary a parameter: n values from a to b (may be repeated)", PLACE(varies)));
+const option_table json_options = SHARED_OPTIONS(OPTION(
+    RESULT, "json", "FILE|-", "write the results as JSON; - is the standard output", PLACE(json)));
+const option_table drawn_options =
+    SHARED_OPTIONS(OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}",
+                          "draw the study; a CSV of what is drawn beside it", PLACE(plot)));
+const option_table quiet_options =
+    SHARED_OPTIONS(OPTION(FLAG, "quiet", NULL, "print no summary", PLACE(quiet), .letter = 'q'));
 
 // its place is nowhere: the program prints the help
-static const option_row help_rows[] = {
-    OPTION(FLAG, "help", NULL, "print this help", .letter = 'h'),
-};
-const option_table help_options = OPTION_TABLE("Options", help_rows);
+const option_table help_options =
+    SHARED_OPTIONS(OPTION(FLAG, "help", NULL, "print this help", .letter = 'h'));
 
 static const option_row view_rows[] = {
     OPTION(CHOICE, "gl", "osmesa|egl|cairo|auto",
@@ -102,22 +91,17 @@ const option_table page_options = OPTION_TABLE("Pictures", page_rows);
 
 static int read_number(const option_row *o, const char *text, double *value)
 {
-    const char *rest;
-    const char *space = o->unit != NULL ? " " : "", *unit = o->unit != NULL ? o->unit : "";
-    double number;
-
-    if (decimal_read(text, &number, &rest) && *rest == '\0' && number >= o->low &&
-        number <= o->high) {
-        *value = number;
+    const char *rest, *unit = o->unit != NULL ? o->unit : "";
+    char limit[64] = "";
+    if (decimal_read(text, value, &rest) && *rest == '\0' && *value >= o->low &&
+        *value <= o->high) {
         return EXIT_DONE;
     }
-
-    if (isinf(o->high)) {
-        return complain("--%s %s: expected a number from %g%s%s", o->name, text, o->low, space,
-                        unit);
+    if (!isinf(o->high)) {
+        snprintf(limit, sizeof limit, " to %g", o->high);
     }
-    return complain("--%s %s: expected a number from %g to %g%s%s", o->name, text, o->low, o->high,
-                    space, unit);
+    return complain("--%s %s: expected a number from %g%s%s%s", o->name, text, o->low, limit,
+                    unit[0] != '\0' ? " " : "", unit);
 }
 
 // A length in millimetres; without a unit it is one already.
@@ -177,30 +161,24 @@ static int read_size(const option_row *o, const char *text, grid_size *size)
     return EXIT_DONE;
 }
 
-// "a|b|c" as people write it: "a, b or c".
-static int complain_choice(const option_row *o, const char *text)
+static int check_choice(const option_row *o, const char *text)
 {
     char words[256] = "";
     size_t length = 0;
-    for (const char *c = o->value; *c != '\0' && length + 5 < sizeof words; c++) {
-        const char *joint = strchr(c + 1, '|') != NULL ? ", " : " or ";
-        char single[2] = {*c, '\0'};
-        length += (size_t)snprintf(words + length, sizeof words - length, "%s",
-                                   *c == '|' ? joint : single);
-    }
-    return complain("--%s %s: expected %s", o->name, text, words);
-}
-
-static int check_choice(const option_row *o, const char *text)
-{
-    size_t length = strlen(text);
-    for (const char *word = o->value; word != NULL; word = strchr(word, '|')) {
-        word += *word == '|';
-        if (length > 0 && length == strcspn(word, "|") && strncmp(word, text, length) == 0) {
+    for (const char *word = o->value, *end; *word != '\0'; word = end + (*end == '|')) {
+        end = word + strcspn(word, "|");
+        const int bytes = (int)(end - word);
+        if (bytes > 0 && strlen(text) == (size_t)bytes && memcmp(word, text, strlen(text)) == 0) {
             return EXIT_DONE;
         }
+
+        // as people write them: "a, b or c"
+        const char *joint = word == o->value ? "" : *end == '|' ? ", " : " or ";
+        length +=
+            (size_t)snprintf(words + length, sizeof words - length, "%s%.*s", joint, bytes, word);
+        assert(length < sizeof words);
     }
-    return complain_choice(o, text);
+    return complain("--%s %s: expected %s", o->name, text, words);
 }
 
 static int check_quantity(const option_row *o, const char *key)
@@ -235,12 +213,12 @@ static int option_store(arguments *a, const option_row *o, char *text)
 
     // what may be given several times
     case OPTION_NUMBERS: {
-        number_list *list = place;
-        return read_number(o, text, &list->items[list->count++]);
+        option_list *list = place;
+        return read_number(o, text, &list->numbers[list->count++]);
     }
     case OPTION_FILES:
     case OPTION_PARAMETERS: {
-        text_list *list = place;
+        option_list *list = place;
         list->items[list->count++] = text;
         return EXIT_DONE;
     }
@@ -352,11 +330,6 @@ static int row_of(const command *self, int found)
     return i;
 }
 
-static bool is_repeated(const option_row *o)
-{
-    return o->type == OPTION_NUMBERS || option_is_text_list(o->type);
-}
-
 // Adds a word to the command line that pictures remember, in quotes where a shell needs them.
 static void remember(arguments *a, const char *before, const char *word)
 {
@@ -412,7 +385,7 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
             return true;
         }
 
-        *exit_status = given[i] && o->type != OPTION_FLAG && !is_repeated(o)
+        *exit_status = given[i] && o->type != OPTION_FLAG && !option_is_list(o->type)
                            ? complain("option --%s was given twice", o->name)
                            : option_store(a, o, optarg);
         given[i] = true;
@@ -426,14 +399,13 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
 // Two results must not end in one place.
 static int check_places(const arguments *a)
 {
-    const option_row *o, *other;
+    const option_row *o;
 
     // each path against those of the options before it
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
-        const char *path = option_is_written(o) ? option_text(a, o) : NULL;
+        const char *path = option_written(a, o);
         for (int j = 0; path != NULL && j < i; j++) {
-            other = command_option(a->command, j);
-            const char *before = option_is_written(other) ? option_text(a, other) : NULL;
+            const char *before = option_written(a, command_option(a->command, j));
             if (before != NULL && strcmp(path, before) == 0) {
                 return complain("two results cannot both be written to %s",
                                 strcmp(path, "-") == 0 ? "the standard output" : path);
@@ -466,13 +438,9 @@ static bool prepare(arguments *a, int argc)
     // lists have room for all that the command line could hold
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         void *place = option_place(a, o);
-        if (option_is_text_list(o->type)) {
-            text_list *list = place;
-            list->items = calloc((size_t)argc + 1, sizeof *list->items);
-            room = room && list->items != NULL;
-        } else if (o->type == OPTION_NUMBERS) {
-            number_list *list = place;
-            list->items = calloc((size_t)argc + 1, sizeof *list->items);
+        if (option_is_list(o->type)) {
+            option_list *list = place;
+            list->items = calloc((size_t)argc + 1, sizeof *list->items + sizeof *list->numbers);
             room = room && list->items != NULL;
         } else if (o->type == OPTION_NUMBER) {
             *(double *)place = o->initial;
@@ -517,10 +485,8 @@ void arguments_finish(arguments *a)
 {
     const option_row *o;
     for (int i = 0; a->command != NULL && (o = command_option(a->command, i)) != NULL; i++) {
-        if (option_is_text_list(o->type)) {
-            free(((text_list *)option_place(a, o))->items);
-        } else if (o->type == OPTION_NUMBERS) {
-            free(((number_list *)option_place(a, o))->items);
+        if (option_is_list(o->type)) {
+            free(((option_list *)option_place(a, o))->items);
         }
     }
     free(a->command_line);
@@ -535,12 +501,10 @@ int check_results(const arguments *a)
 
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         fault f = {.code = STATUS_OK};
-        const char *path = option_is_written(o) ? option_text(a, o) : NULL;
-
+        const char *path = option_written(a, o);
         if (path == NULL || o->type == OPTION_PLACE) {
             continue;
         }
-
         if (o->type == OPTION_PICTURE) {
             f.code = picture_check_path(path, &f);
         }

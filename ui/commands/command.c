@@ -124,6 +124,11 @@ bool option_is_written(const option_row *o)
     return o->type == OPTION_RESULT || o->type == OPTION_PICTURE || o->type == OPTION_PLACE;
 }
 
+const char *option_written(const arguments *a, const option_row *o)
+{
+    return option_is_written(o) ? option_text(a, o) : NULL;
+}
+
 // --- what they share --------------------------------------------------------------------------
 
 int complain(const char *format, ...)
@@ -211,7 +216,7 @@ static int check_keeps_scenario(const scenario *s, const arguments *a)
 {
     const option_row *o;
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
-        if (option_is_written(o) && is_same_file(option_text(a, o), s->file)) {
+        if (is_same_file(option_written(a, o), s->file)) {
             return complain("'%s' is the scenario itself, expected another file for the results",
                             option_text(a, o));
         }
@@ -247,21 +252,6 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
         scenario_finish(s);
     }
     return result;
-}
-
-// Keeps the last of several.
-static void keep_fault(void *context, const char *sentence)
-{
-    fault_set(context, STATUS_OK, "%s", sentence);
-}
-
-int open_listed(scenario *s, const char *name, bool *faulty)
-{
-    assert(s != NULL && name != NULL && faulty != NULL);
-    fault f = {0};
-    f.code = scenario_open(s, name, keep_fault, &f);
-    *faulty = f.code == STATUS_BAD_SCENARIO;
-    return *faulty || f.code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
 int with_scenario(const char *name_or_file, const arguments *a,

@@ -32,26 +32,25 @@ typedef enum option_type {
     OPTION_LENGTH,     // the same with a unit, "85mm", "8.5cm", "3.35in"; double [mm]
     OPTION_WHOLE,      // a whole number from `low` to `high`; uint64_t
     OPTION_SIZE,       // WIDTHxHEIGHT, each from 1 to `high`; grid_size
-    OPTION_NUMBERS,    // may be repeated; number_list, in the order of the command line
-    OPTION_FILES,      // as OPTION_FILE, may be repeated; text_list
-    OPTION_PARAMETERS, // PATH=..., may be repeated; text_list, in the order of the command line
+    OPTION_NUMBERS,    // may be repeated; option_list, in the order of the command line
+    OPTION_FILES,      // as OPTION_FILE, may be repeated; option_list
+    OPTION_PARAMETERS, // PATH=..., may be repeated; option_list, in the order of the command line
 } option_type;
 
-typedef struct text_list {
-    char **items;
+// The values of an option that may be repeated.
+typedef struct option_list {
+    union {
+        char **items;
+        double *numbers; // of OPTION_NUMBERS
+    };
     int count;
-} text_list;
+} option_list;
 
-// Whether the option's place is such a list.
-static inline bool option_is_text_list(option_type type)
+// Whether the place is such a list: of the last types.
+static inline bool option_is_list(option_type type)
 {
-    return type == OPTION_FILES || type == OPTION_PARAMETERS;
+    return type >= OPTION_NUMBERS;
 }
-
-typedef struct number_list {
-    double *items;
-    int count;
-} number_list;
 
 typedef struct grid_size {
     int width, height; // 0 if not given
@@ -116,27 +115,27 @@ typedef struct arguments {
     bool fitted; // --fitted
 
     // what is run
-    text_list sets;                 // --set
-    bool allow_code;                // --allow-code
-    text_list varies;               // --vary
-    text_list besides;              // --beside
-    text_list data, fits, headings; // of identify: --data, --fit, --column
-    const char *validate, *cases;   // of identify
-    const char *links;              // of identify, "2,4,8"
-    uint64_t starts;                // of identify, 0 if not given
-    const char *sampling;           // --sample, NULL: grid
-    uint64_t runs, seed;            // --runs (0 if not given), --seed
-    uint64_t jobs;                  // runs at a time, 0 if not given
-    const char *part;               // --part, "K/N"
-    const char *quantity;           // --quantity, a key
-    const char *only, *baseline;    // of bench
-    const char *against, *columns;  // of compare
-    double tolerance;               // of compare [%]
-    const char *laws, *over;        // of robust
-    const char *minimise, *subject; // of tune
-    const char *then;               // of predict, "TIME:VOLTS,..."
-    const char *place;              // of linear, --at
-    bool looped, injects;           // of linear, --law and --inject
+    option_list sets;                 // --set
+    bool allow_code;                  // --allow-code
+    option_list varies;               // --vary
+    option_list besides;              // --beside
+    option_list data, fits, headings; // of identify: --data, --fit, --column
+    const char *validate, *cases;     // of identify
+    const char *links;                // of identify, "2,4,8"
+    uint64_t starts;                  // of identify, 0 if not given
+    const char *sampling;             // --sample, NULL: grid
+    uint64_t runs, seed;              // --runs (0 if not given), --seed
+    uint64_t jobs;                    // runs at a time, 0 if not given
+    const char *part;                 // --part, "K/N"
+    const char *quantity;             // --quantity, a key
+    const char *only, *baseline;      // of bench
+    const char *against, *columns;    // of compare
+    double tolerance;                 // of compare [%]
+    const char *laws, *over;          // of robust
+    const char *minimise, *subject;   // of tune
+    const char *then;                 // of predict, "TIME:VOLTS,..."
+    const char *place;                // of linear, --at
+    bool looped, injects;             // of linear, --law and --inject
 
     // files for results
     const char *json, *csv, *mat, *plot, *nyquist, *scene, *output, *db, *markdown, *format;
@@ -150,7 +149,7 @@ typedef struct arguments {
     char *command_line;   // without paths that are written to; owned
     double dpi;           // of a PNG; 0 if not given
     const char *overlay;  // CSV
-    number_list instants; // --at [s]
+    option_list instants; // --at [s]
     const char *gl, *camera;
     double exaggerate;
     uint64_t ghosts;
@@ -280,8 +279,10 @@ void *option_place(const arguments *a, const option_row *o);
 // The text an option's place holds, NULL if it was not given. Only for types that store a text.
 const char *option_text(const arguments *a, const option_row *o);
 
-// Whether the option names a place that results are written to.
+// Whether the option names a place that results are written to; that place, NULL if it does not or
+// was not given.
 bool option_is_written(const option_row *o);
+const char *option_written(const arguments *a, const option_row *o);
 
 // Reports each path that results could not be written to, before anything is computed. Returns the
 // exit status.
@@ -310,11 +311,6 @@ void write_completion(FILE *stream, const char *shell);
 // Opens the scenario (a name or a file) and applies every --set. Every fault goes to stderr.
 // Returns EXIT_DONE, or the exit status to end with; in that case nothing has to be freed.
 int open_scenario(scenario *s, const char *name_or_file, const arguments *a);
-
-// Opens a scenario of the list. One with faults is no failure and none is told: *faulty says so,
-// and then nothing has to be freed. Returns EXIT_DONE, or the exit status if it could not be read,
-// which has been reported.
-int open_listed(scenario *s, const char *name, bool *faulty) __attribute__((warn_unused_result));
 
 // Opens the scenario, calls `use` with it and closes it. Returns the exit status.
 int with_scenario(const char *name_or_file, const arguments *a,

@@ -243,7 +243,7 @@ static void put(FILE *stream, const shell *h, const char *text, const command *c
             fputs(o->type != OPTION_FLAG ? "=" : "", stream);
             break;
         case '*':
-            fputs(option_is_text_list(o->type) || o->type == OPTION_NUMBERS ? "*" : "", stream);
+            fputs(option_is_list(o->type) ? "*" : "", stream);
             break;
         case 'L':
             put(stream, h, o->letter != 0 ? h->letter : NULL, c, o);

@@ -42,17 +42,11 @@ static int check_ids(const arguments *a)
     return EXIT_DONE;
 }
 
-// What came of a figure.
-typedef struct drawn {
-    bool over;
-    char *tex; // its figure environment, NULL before
-} drawn;
-
 // Figures in the order in which they were asked for.
 typedef struct figure_list {
     const thesis_figure **figures;
-    size_t *order; // in which they are begun: slow ones first
-    drawn *drawn;
+    size_t *order;      // in which they are begun
+    char **tex;         // the figure environment of each that is drawn, NULL of the others
     size_t count, told; // told: number of those already reported
     bool quiet;
     const char *folder, *formats;
@@ -89,13 +83,13 @@ static status take_one(void *context, size_t i, const void *result, fault *f)
 {
     figure_list *list = context;
     const figure_result *from = result;
-    list->drawn[list->order[i]] = (drawn){.over = from->code == STATUS_OK, .tex = from->tex};
     if (from->code != STATUS_OK) {
+        free(from->tex);
         *f = from->fault;
         return from->code;
     }
-
-    for (; list->told < list->count && list->drawn[list->told].over; list->told++) {
+    list->tex[list->order[i]] = from->tex;
+    for (; list->told < list->count && list->tex[list->told] != NULL; list->told++) {
         const thesis_figure *which = list->figures[list->told];
         if (!list->quiet) {
             say("%-10s  %s/%s  %s\n", which->id, list->folder, which->file, which->caption);
@@ -104,54 +98,40 @@ static status take_one(void *context, size_t i, const void *result, fault *f)
     return STATUS_OK;
 }
 
-// Draws all of them, on as many threads as there are processors.
-static status draw_list(figure_list *list, int threads, fault *f)
+// Draws the figures that were asked for, on as many threads as there are processors, and writes
+// their environments.
+static status draw_and_write(figure_list *list, const arguments *a, fault *f)
 {
     const pool_work work = {.context = list,
                             .count = list->count,
                             .result_size = sizeof(figure_result),
                             .compute = draw_one,
                             .collect = take_one};
-
-    // slow ones first, so that no thread is left with one at the end
-    size_t first = 0, last = list->count;
-    for (size_t i = list->count; i-- > 0;) {
-        last -= !list->figures[i]->slow;
-        if (!list->figures[i]->slow) {
-            list->order[last] = i;
-        }
-    }
-    for (size_t i = 0; i < list->count; i++) {
-        if (list->figures[i]->slow) {
-            list->order[first++] = i;
-        }
-    }
-    return pool_run(&work, threads, f);
-}
-
-// The environments of all figures in their order.
-static status write_environments(const figure_list *list, const char *path, fault *f)
-{
-    whole_file out;
-    status code = whole_file_open(&out, path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    for (size_t i = 0; i < list->count; i++) {
-        fputs(list->drawn[i].tex, out.stream);
-    }
-    return whole_file_commit(&out, f);
-}
-
-// Chooses the figures that were asked for, draws them and writes what else was asked for.
-static status draw_and_write(figure_list *list, const arguments *a, fault *f)
-{
     for (size_t i = 0; i < list->count; i++) {
         list->figures[i] =
             a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : thesis_figure_at((int)i);
     }
-    const status code = draw_list(list, many_runs_jobs(a), f);
-    return code == STATUS_OK && a->latex != NULL ? write_environments(list, a->latex, f) : code;
+
+    // slow ones first, so that no thread is left with one at the end
+    size_t placed = 0;
+    for (int slow = 1; slow >= 0; slow--) {
+        for (size_t i = 0; i < list->count; i++) {
+            if (list->figures[i]->slow == slow) {
+                list->order[placed++] = i;
+            }
+        }
+    }
+
+    whole_file out;
+    status code = pool_run(&work, many_runs_jobs(a), f);
+    if (code == STATUS_OK && a->latex != NULL &&
+        (code = whole_file_open(&out, a->latex, f)) == STATUS_OK) {
+        for (size_t i = 0; i < list->count; i++) {
+            fputs(list->tex[i], out.stream);
+        }
+        code = whole_file_commit(&out, f);
+    }
+    return code;
 }
 
 // What was drawn, and where it lies.
@@ -188,18 +168,18 @@ static int figures(const arguments *a)
     // lists of figures to be drawn and of their results
     list.figures = calloc(count, sizeof(const thesis_figure *));
     list.order = calloc(count, sizeof *list.order);
-    list.drawn = calloc(count, sizeof *list.drawn);
-    const bool room = list.figures != NULL && list.order != NULL && list.drawn != NULL;
+    list.tex = calloc(count, sizeof *list.tex);
+    const bool room = list.figures != NULL && list.order != NULL && list.tex != NULL;
     if ((room ? draw_and_write(&list, a, &f) : fault_no_memory(&f)) != STATUS_OK) {
         code = complain_fault(&f);
     } else if (a->json != NULL) {
         code = write_json(a->json, figures_array(&list));
     }
 
-    for (size_t i = 0; list.drawn != NULL && i < count; i++) {
-        free(list.drawn[i].tex);
+    for (size_t i = 0; list.tex != NULL && i < count; i++) {
+        free(list.tex[i]);
     }
-    free(list.drawn);
+    free(list.tex);
     free(list.order);
     free(list.figures);
     return code;
@@ -257,26 +237,22 @@ static int plot(const arguments *a)
         code = complain("a recipe says itself which signals and data it shows, --%s is for runs",
                         o.overlay != NULL ? "overlay" : "signals");
     }
+    if (code != EXIT_DONE) {
+        return code;
+    }
     char *path = a->plot != NULL ? strdup(a->plot) : default_name(a->operands[0]);
-    if (path == NULL) {
-        fault_no_memory(&f);
-        return complain_fault(&f);
-    }
-    if (code == EXIT_DONE && picture_check_path(path, &f) != STATUS_OK) {
-        code = complain_fault(&f);
-    }
+    status done = path != NULL ? picture_check_path(path, &f) : fault_no_memory(&f);
 
     // faults in the recipe are reported as they are found and leave f empty
-    if (code == EXIT_DONE) {
-        status opened = recipe_open(a->operands[0], &o, report_to_stderr, NULL, &art, &f);
-        if (opened != STATUS_OK) {
-            code = f.code != STATUS_OK ? complain_fault(&f) : EXIT_BAD_ARGUMENTS;
-        } else {
-            code = artwork_publish(&art, &o, path, true, &f) == STATUS_OK ? EXIT_DONE
-                                                                          : complain_fault(&f);
+    if (done == STATUS_OK) {
+        done = recipe_open(a->operands[0], &o, report_to_stderr, NULL, &art, &f);
+        code = done != STATUS_OK && f.code == STATUS_OK ? EXIT_BAD_ARGUMENTS : EXIT_DONE;
+        if (done == STATUS_OK) {
+            done = artwork_publish(&art, &o, path, true, &f);
             artwork_finish(&art);
         }
     }
+    code = done != STATUS_OK && code == EXIT_DONE ? complain_fault(&f) : code;
 
     // a default name is not known to the user yet
     if (code == EXIT_DONE && !a->quiet) {
@@ -307,22 +283,18 @@ const command plot_command = {
 
 // --- report -----------------------------------------------------------------------------------
 
-#define PIECES        "steps"
-
-#define REPORT_FOLDER "report"
-
 static int report(const arguments *a)
 {
     fault f = {0};
-    const char *folder = a->output ? a->output : REPORT_FOLDER;
+    const char *folder = a->output ? a->output : "report";
     const int items = a->operand_count > 0 ? a->operand_count : thesis_figure_count();
     const int steps = 2 * items; // computed, then drawn
-    run_monitor *monitor = work_begin(a, PIECES, steps);
+    run_monitor *monitor = work_begin(a, "steps", steps);
     status code = report_write(folder, a->operands, a->operand_count, monitor, &f);
     work_end();
 
     if (code == STATUS_STOPPED) {
-        work_leave(monitor->pieces, steps, PIECES, "the report is as it was before");
+        work_leave(monitor->pieces, steps, "steps", "the report is as it was before");
     }
     if (code != STATUS_OK) {
         return complain_fault(&f);

@@ -197,7 +197,7 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
 
     // the instants asked for in their order, or some that show the approach
     if (count > 0) {
-        memcpy(times, a->instants.items, (size_t)count * sizeof *times);
+        memcpy(times, a->instants.numbers, (size_t)count * sizeof *times);
         qsort(times, (size_t)count, sizeof *times, compare_numbers);
     } else if (result->trace.row_count > 0) {
         count = DEFAULT_INSTANTS;

@@ -47,31 +47,54 @@ static int close_listing(listing *l, const arguments *a, int result)
     return a->json != NULL ? worse(result, write_json(a->json, l->all)) : result;
 }
 
+// What a list says of a scenario.
+typedef struct listed {
+    bool faulty; // it has faults, which are reported when it is opened, and no title
+    bool is_lesson;
+    char title[SCENARIO_TITLE + 1];
+} listed;
+
+// Keeps the last of several.
+static void keep_fault(void *context, const char *sentence)
+{
+    fault_set(context, STATUS_OK, "%s", sentence);
+}
+
+// Reads what a list says of a scenario. Returns the exit status if it could not be read.
+static int read_listed(const char *name, listed *l)
+{
+    scenario s;
+    fault f = {0};
+    f.code = scenario_open(&s, name, keep_fault, &f);
+    *l = (listed){.faulty = f.code != STATUS_OK};
+    if (!l->faulty) {
+        l->is_lesson = s.lesson.step_count > 0;
+        snprintf(l->title, sizeof l->title, "%s", s.title != NULL ? s.title : "");
+        scenario_finish(&s);
+    }
+    return !l->faulty || f.code == STATUS_BAD_SCENARIO ? EXIT_DONE : complain_fault(&f);
+}
+
 // Adds a line or, for a program, an object of name and title, which is null of one with faults.
 // Returns the exit status.
 static int list_one(const char *name, int width, json_t *all)
 {
-    scenario s;
-    bool faulty;
-    int result = open_listed(&s, name, &faulty);
+    listed l;
+    const int result = read_listed(name, &l);
     if (result != EXIT_DONE) {
         return result;
     }
 
     // the titles of all stand in a column
-    const char *title = faulty || s.title == NULL ? "" : s.title;
     if (all != NULL) {
         json_t *object = json_object();
         json_put(object, "name", json_text(name));
-        json_put(object, "title", faulty ? json_null() : json_text(title));
+        json_put(object, "title", l.faulty ? json_null() : json_text(l.title));
         json_add(all, object);
-    } else if (faulty) {
+    } else if (l.faulty) {
         say("%-*s  (has faults, see impactlab check %s)\n", width, name, name);
     } else {
-        say("%-*s  %s\n", width, name, title);
-    }
-    if (!faulty) {
-        scenario_finish(&s);
+        say("%-*s  %s\n", width, name, l.title);
     }
     return EXIT_DONE;
 }
@@ -104,23 +127,6 @@ const command list_command = {
 };
 
 // --- lesson -----------------------------------------------------------------------------------
-
-// Tells whether a scenario is a lesson, and its title if so. One with faults is none; they are
-// reported when it is opened. Returns the exit status.
-static int read_lesson(const char *name, bool *is_lesson, char *title, size_t size)
-{
-    scenario s;
-    bool faulty;
-    int code = open_listed(&s, name, &faulty);
-    *is_lesson = code == EXIT_DONE && !faulty && s.lesson.step_count > 0;
-    if (*is_lesson) {
-        snprintf(title, size, "%s", s.title != NULL ? s.title : "");
-    }
-    if (code == EXIT_DONE && !faulty) {
-        scenario_finish(&s);
-    }
-    return code;
-}
 
 // The last part of a scenario's name.
 static const char *leaf_of(const char *name)
@@ -156,7 +162,6 @@ static int open_lesson(const arguments *a, char *name)
 static int run_lesson(const arguments *a)
 {
     listing l;
-    char title[256];
     bool found = false;
     if (a->json != NULL && a->operand_count > 0) {
         return complain("--json lists the lessons, expected no name beside it");
@@ -171,15 +176,15 @@ static int run_lesson(const arguments *a)
     for (int i = 0; i < l.count && !found; i++) {
         const bool named = wanted != NULL && (strcmp(l.names[i], wanted) == 0 ||
                                               strcmp(leaf_of(l.names[i]), wanted) == 0);
-        bool is_lesson = false;
+        listed here = {0};
         if (wanted == NULL || named) {
-            code = worse(code, read_lesson(l.names[i], &is_lesson, title, sizeof title));
+            code = worse(code, read_listed(l.names[i], &here));
         }
-        found = is_lesson && named;
+        found = here.is_lesson && named;
         if (found) {
             code = open_lesson(a, l.names[i]);
-        } else if (is_lesson) {
-            list_lesson(l.all, l.names[i], title);
+        } else if (here.is_lesson) {
+            list_lesson(l.all, l.names[i], here.title);
         }
     }
     if (wanted != NULL && !found && code == EXIT_DONE) {
