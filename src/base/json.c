@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,6 +52,31 @@ json_t *json_numbers(const double *values, int count)
         json_add(array, json_number(values[i]));
     }
     return array;
+}
+
+json_t *json_members(json_t *object, const char *members, ...)
+{
+    assert(members != NULL);
+    va_list list;
+    va_start(list, members);
+    while (*members != '\0') {
+        char key[64];
+        const int length = (int)strcspn(members, ":");
+        assert(length < (int)sizeof key && members[length] == ':');
+        snprintf(key, sizeof key, "%.*s", length, members);
+
+        const char type = members[length + 1];
+        json_put(object, key,
+                 type == 'n'   ? json_number(va_arg(list, double))
+                 : type == 'i' ? json_integer(va_arg(list, int))
+                 : type == 'b' ? json_boolean(va_arg(list, int))
+                 : type == 't' ? json_text(va_arg(list, const char *))
+                               : va_arg(list, json_t *));
+        members += length + 2;
+        members += strspn(members, " ");
+    }
+    va_end(list);
+    return object;
 }
 
 static void write_string(FILE *stream, const char *text)

@@ -21,6 +21,13 @@ json_t *json_text(const char *text);
 void json_put(json_t *object, const char *key, json_t *value);
 void json_add(json_t *array, json_t *value);
 
+// Puts members into an object and returns it: each word "KEY:T" of `members` takes an argument, n a
+// double (json_number), i an int, b a bool, t a text (json_text), o a json_t *, which is taken
+// over.
+//
+//     json_members(json_object(), "path:t value:n", axis->name, limit->value)
+json_t *json_members(json_t *object, const char *members, ...);
+
 // Writes a JSON value with two spaces of indentation, keys in the order in which they were set and
 // numbers as number_format gives them. Errors stay in the stream (ferror); NULL, for which there
 // was no memory, is lost.

@@ -139,13 +139,10 @@ static json_t *figures_array(const figure_list *list)
 {
     json_t *array = json_array();
     for (size_t i = 0; i < list->count; i++) {
-        json_t *object = json_object();
-        json_put(object, "id", json_text(list->figures[i]->id));
-        json_put(object, "folder", json_text(list->folder));
-        json_put(object, "file", json_text(list->figures[i]->file));
-        json_put(object, "formats", json_text(list->formats));
-        json_put(object, "caption", json_text(list->figures[i]->caption));
-        json_add(array, object);
+        const thesis_figure *which = list->figures[i];
+        json_add(array,
+                 json_members(json_object(), "id:t folder:t file:t formats:t caption:t", which->id,
+                              list->folder, which->file, list->formats, which->caption));
     }
     return array;
 }

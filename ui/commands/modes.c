@@ -48,24 +48,18 @@ static json_t *modes_object(const scenario *s, const void *found)
 {
     const arm *a = &((const arm_modes *)found)->arm;
     const mode_set *sets = ((const arm_modes *)found)->sets;
-    json_t *object = json_object(), *array = json_array();
-    json_put(object, "scenario", json_text(s->name));
-
+    json_t *array = json_array();
     for (int i = 0; i < HOLDS; i++) {
-        json_t *entry = json_object(), *shapes = json_array();
+        json_t *shapes = json_array();
         for (int mode = 0; mode < sets[i].count; mode++) {
             json_add(shapes, array_of(sets[i].shapes + mode * a->dof, a->dof, 1));
         }
 
-        json_put(entry, "hub", json_string(holds[i].hub_name));
-        json_put(entry, "tip", json_string(holds[i].tip_name));
-        json_put(entry, "frequency_Hz", array_of(sets[i].frequencies, sets[i].count, 1 / TWO_PI));
-        json_put(entry, "shapes", shapes);
-        json_add(array, entry);
+        json_t *frequencies = array_of(sets[i].frequencies, sets[i].count, 1 / TWO_PI);
+        json_add(array, json_members(json_object(), "hub:t tip:t frequency_Hz:o shapes:o",
+                                     holds[i].hub_name, holds[i].tip_name, frequencies, shapes));
     }
-
-    json_put(object, "modes", array);
-    return object;
+    return json_members(json_object(), "scenario:t modes:o", s->name, array);
 }
 
 static void print_set(const arm *a, const mode_set *set, const char *hub, const char *tip)

@@ -43,18 +43,14 @@ static bool read_commands(const char *text, command_list *list)
 
 static json_t *prediction_object(const prediction_answer *answer)
 {
-    json_t *object = json_object();
     bool known = prediction_known(answer);
     const prediction *p = &answer->prediction;
-    json_put(object, "method", json_string(answer->name));
-    json_put(object, "message", json_text(known ? answer->note : prediction_reason(answer)));
-    json_put(object, "holds", known ? json_boolean(p->holds) : json_null());
-    json_put(object, "peak_N", json_number(p->force));
-    json_put(object, "time_to_peak_s", json_number(p->delay));
-    json_put(object, "impulse_Ns", json_number(p->impulse));
-    json_put(object, "equivalent_restitution", json_number(p->restitution));
-    json_put(object, "inductance_changes_peak_N", json_number(p->inductance));
-    return object;
+    return json_members(json_object(),
+                        "method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
+                        "equivalent_restitution:n inductance_changes_peak_N:n",
+                        answer->name, known ? answer->note : prediction_reason(answer),
+                        known ? json_boolean(p->holds) : json_null(), p->force, p->delay,
+                        p->impulse, p->restitution, p->inductance);
 }
 
 // What the predictors say of a run.
@@ -68,22 +64,18 @@ static json_t *predict_object(const scenario *s, const void *found)
 {
     const predicted *p = found;
     const landing *came = &p->result->landing;
-    json_t *object = json_object(), *array = json_array(), *simulation = json_object();
-    json_put(object, "scenario", json_text(s->name));
-    json_put(object, "t_s", json_number(p->row->time));
+    json_t *array = json_array();
 
     // one entry each, even where a predictor has no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         json_add(array, prediction_object(&p->answers[i]));
     }
-    json_put(object, "predictions", array);
 
     // the same pulse in the run
-    json_put(simulation, "peak_N", json_number(came->peak));
-    json_put(simulation, "time_to_peak_s", json_number(came->time_to_peak));
-    json_put(simulation, "impulse_Ns", json_number(came->impulse));
-    json_put(object, "simulation", simulation);
-    return object;
+    json_t *simulation = json_members(json_object(), "peak_N:n time_to_peak_s:n impulse_Ns:n",
+                                      came->peak, came->time_to_peak, came->impulse);
+    return json_members(json_object(), "scenario:t t_s:n predictions:o simulation:o", s->name,
+                        p->row->time, array, simulation);
 }
 
 static void print_line(const char *label, double force, double delay, double impulse)

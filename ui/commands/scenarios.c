@@ -87,10 +87,8 @@ static int list_one(const char *name, int width, json_t *all)
 
     // the titles of all stand in a column
     if (all != NULL) {
-        json_t *object = json_object();
-        json_put(object, "name", json_text(name));
-        json_put(object, "title", l.faulty ? json_null() : json_text(l.title));
-        json_add(all, object);
+        json_add(all, json_members(json_object(), "name:t title:o", name,
+                                   l.faulty ? json_null() : json_text(l.title)));
     } else if (l.faulty) {
         say("%-*s  (has faults, see impactlab check %s)\n", width, name, name);
     } else {
@@ -142,11 +140,8 @@ static void list_lesson(json_t *all, const char *name, const char *title)
         say("%-20s %s\n", leaf_of(name), title);
         return;
     }
-    json_t *object = json_object();
-    json_put(object, "name", json_text(leaf_of(name)));
-    json_put(object, "scenario", json_text(name));
-    json_put(object, "title", json_text(title));
-    json_add(all, object);
+    json_add(all,
+             json_members(json_object(), "name:t scenario:t title:t", leaf_of(name), name, title));
 }
 
 // Opens the lab on a lesson, as the lab command does on a scenario.
@@ -277,7 +272,7 @@ static void print_expectations(const scenario *s)
 // The same for a program: values by path, and which of them were given.
 static json_t *show_object(const scenario *s)
 {
-    json_t *object = json_object(), *given = json_array();
+    json_t *given = json_array();
     char title[SCENARIO_TITLED];
 
     // defaults are not named
@@ -288,12 +283,9 @@ static json_t *show_object(const scenario *s)
     }
 
     // what describes it, and all values whether given or not
-    json_put(object, "scenario", json_text(s->name));
-    json_put(object, "title", json_text(scenario_titled(s, title)));
-    json_put(object, "description", json_text(s->description));
-    json_put(object, "parameters", export_parameters(&s->parameters));
-    json_put(object, "given", given);
-    return object;
+    return json_members(json_object(), "scenario:t title:t description:t parameters:o given:o",
+                        s->name, scenario_titled(s, title), s->description,
+                        export_parameters(&s->parameters), given);
 }
 
 static int print_scenario(const arguments *a, scenario *s)
@@ -390,10 +382,7 @@ static int check_one(const char *file, const arguments *a, checking *c)
         result = tell_unopened(&c->told, code, file);
     }
 
-    json_t *object = json_object();
-    json_put(object, "file", json_text(file));
-    json_put(object, "faults", c->faults);
-    json_add(c->files, object);
+    json_add(c->files, json_members(json_object(), "file:t faults:o", file, c->faults));
     return result;
 }
 

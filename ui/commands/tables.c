@@ -10,23 +10,17 @@ static json_t *tables_object(const scenario *s, const void *found)
 {
     const thesis_tables *t = found;
     (void)s;
-    json_t *object = json_object(), *rows = json_array();
+    json_t *rows = json_array();
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
-        json_t *line = json_object();
-
-        json_put(line, "table", json_string(row->table));
-        json_put(line, "k2_factor", json_number(row->k2_factor));
-        json_put(line, "model", json_string(row->model));
-        json_put(line, "quantity", json_string(row->quantity));
-        json_put(line, "voltage_V", json_numbers(t->voltage, TABLE_VOLTAGES));
-        json_put(line, "printed", json_numbers(row->printed, TABLE_VOLTAGES));
-        json_put(line, "computed", json_numbers(row->computed, TABLE_VOLTAGES));
-        json_add(rows, line);
+        json_t *line = json_members(json_object(), "table:t k2_factor:n model:t quantity:t",
+                                    row->table, row->k2_factor, row->model, row->quantity);
+        json_add(rows, json_members(line, "voltage_V:o printed:o computed:o",
+                                    json_numbers(t->voltage, TABLE_VOLTAGES),
+                                    json_numbers(row->printed, TABLE_VOLTAGES),
+                                    json_numbers(row->computed, TABLE_VOLTAGES)));
     }
-
-    json_put(object, "tables", rows);
-    return object;
+    return json_members(json_object(), "tables:o", rows);
 }
 
 static const struct {

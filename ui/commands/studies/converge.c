@@ -12,21 +12,14 @@
 static json_t *panel_object(const scenario *s, const void *found)
 {
     const convergence_panel *panel = found;
-    json_t *object = json_object(), *rows = json_array();
-    json_put(object, "scenario", json_text(s->name));
-    json_put(object, "step_s", json_numbers(panel->step, PANEL_STEPS));
-
+    json_t *rows = json_array();
     for (int k = 0; k < panel->row_count; k++) {
         const convergence_row *row = &panel->rows[k];
-        json_t *line = json_object();
-        json_put(line, "quantity", json_string(row->key));
-        json_put(line, "values", json_numbers(row->value, PANEL_STEPS));
-        json_put(line, "order", json_number(row->order));
-        json_add(rows, line);
+        json_add(rows, json_members(json_object(), "quantity:t values:o order:n", row->key,
+                                    json_numbers(row->value, PANEL_STEPS), row->order));
     }
-
-    json_put(object, "convergence", rows);
-    return object;
+    return json_members(json_object(), "scenario:t step_s:o convergence:o", s->name,
+                        json_numbers(panel->step, PANEL_STEPS), rows);
 }
 
 // Whether steps make no difference beyond rounding.

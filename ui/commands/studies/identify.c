@@ -94,15 +94,11 @@ static json_t *answer(const scenario *s, const void *found)
     (void)s;
     json_t *object = identify_json(&o->fit), *links = json_array();
     for (int i = 0; i < o->link_count; i++) {
-        json_t *line = json_object();
-        json_put(line, "links", json_integer(o->links[i]));
-        json_put(line, "aic", json_number(o->aic[i]));
-        json_put(line, "white", json_boolean(o->white[i]));
-        json_add(links, line);
+        json_add(links, json_members(json_object(), "links:i aic:n white:b", o->links[i], o->aic[i],
+                                     o->white[i]));
     }
-    json_put(object, "links", links);
-    json_put(object, "validation", identify_traces_json(&o->validation));
-    return object;
+    return json_members(object, "links:o validation:o", links,
+                        identify_traces_json(&o->validation));
 }
 
 static void print_traces(const identification *id, const char *what)

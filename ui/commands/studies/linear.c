@@ -134,64 +134,50 @@ static void list_matrices(const linear_system *s, matrix *list)
     list[3] = (matrix){"D", s->outputs, 1, s->d};
 }
 
-static void put_numbers(json_t *object, const char *const *keys, const double *numbers, int count)
-{
-    for (int i = 0; i < count; i++) {
-        json_put(object, keys[i], json_number(numbers[i]));
-    }
-}
-
 static json_t *as_json(const scenario *base, const void *found)
 {
     const analysis *x = found;
-    static const char *const rest_keys[] = {"force_N", "command_V", "hub_angle_rad",
-                                            "contact_margin_Ns"};
-    static const char *const root_keys[] = {"real_per_s", "imaginary_rad_per_s", "damping",
-                                            "z_real", "z_imaginary"};
-    static const char *const gain_keys[] = {"frequency_Hz", "gain_db", "phase_deg"};
-    static const char *const margin_keys[] = {"gain_db", "gain_down_db", "phase_deg", "delay_s",
-                                              "disk"};
-    json_t *object = json_object(), *roots[2] = {json_array(), json_array()};
-    const double rest[] = {x->arm.force, x->arm.voltage, x->arm.hub_angle, x->least_push};
-    json_put(object, "scenario", json_text(base->name));
-    json_put(object, "at", json_string(x->word));
-    put_numbers(object, rest_keys, rest, 4);
+    json_t *roots[2] = {json_array(), json_array()};
     for (int set = 0; set < SETS; set++) {
         for (int i = 0; i < x->sets[set].count; i++) {
             const double complex z = x->sets[set].values[i], s = in_time(x, z);
-            const double numbers[] = {creal(s), cimag(s), linear_damping(s), creal(z), cimag(z)};
             json_t *root = json_object();
             if (set != POLES) {
                 json_put(root, "output", json_string(x->sets[set].output));
             }
-            put_numbers(root, root_keys, numbers, x->period > 0 ? 5 : 3);
+            json_members(root, "real_per_s:n imaginary_rad_per_s:n damping:n", creal(s), cimag(s),
+                         linear_damping(s));
+            if (x->period > 0) {
+                json_members(root, "z_real:n z_imaginary:n", creal(z), cimag(z));
+            }
             json_add(roots[set != POLES], root);
         }
     }
-    json_put(object, "poles", roots[0]);
-    json_put(object, "zeros", roots[1]);
+    json_t *object = json_members(json_object(),
+                                  "scenario:t at:t force_N:n command_V:n hub_angle_rad:n "
+                                  "contact_margin_Ns:n poles:o zeros:o",
+                                  base->name, x->word, x->arm.force, x->arm.voltage,
+                                  x->arm.hub_angle, x->least_push, roots[0], roots[1]);
 
     // the loop
     const linear_response *r = &x->response;
     if (r->count > 0) {
         const linear_margins *m = &x->margins;
-        const double numbers[] = {m->gain_db, m->gain_down_db, m->phase_deg, m->delay_s, m->disk};
-        json_t *margins = x->stable ? json_object() : json_null(), *loop = json_array();
-        if (x->stable) {
-            put_numbers(margins, margin_keys, numbers, 5);
-        }
+        json_t *loop = json_array();
+        json_t *margins = !x->stable ? json_null()
+                                     : json_members(json_object(),
+                                                    "gain_db:n gain_down_db:n phase_deg:n "
+                                                    "delay_s:n disk:n",
+                                                    m->gain_db, m->gain_down_db, m->phase_deg,
+                                                    m->delay_s, m->disk);
         for (int i = 0; i < r->count; i++) {
-            const double gain[] = {r->frequency[i] / TWO_PI,
-                                   20 * plain_log(cabs(r->gain[i])) / plain_log(10),
-                                   carg(r->gain[i]) * 360 / TWO_PI};
-            json_t *entry = json_object();
-            put_numbers(entry, gain_keys, gain, 3);
-            json_add(loop, entry);
+            json_add(loop, json_members(json_object(), "frequency_Hz:n gain_db:n phase_deg:n",
+                                        r->frequency[i] / TWO_PI,
+                                        20 * plain_log(cabs(r->gain[i])) / plain_log(10),
+                                        carg(r->gain[i]) * 360 / TWO_PI));
         }
-        json_put(object, "stable", json_boolean(x->stable));
-        json_put(object, "measured", json_boolean(x->measured));
-        json_put(object, "margins", margins);
-        json_put(object, "loop", loop);
+        json_members(object, "stable:b measured:b margins:o loop:o", x->stable, x->measured,
+                     margins, loop);
     }
 
     // the matrices, row by row
@@ -366,30 +352,22 @@ static json_t *survey_json(const scenario *base, const void *found)
 {
     const analysis *x = found;
     const sweep *s = &x->sweep;
-    json_t *object = json_object(), *points = json_array(), *limits = json_array();
-    json_put(object, "scenario", json_text(base->name));
-    json_put(object, "at", json_string(x->word));
+    json_t *points = json_array(), *limits = json_array();
     for (size_t i = 0; i < s->run_count; i++) {
-        json_t *entry = json_object(), *values = json_object();
+        json_t *values = json_object();
         for (int axis = 0; axis < s->axis_count; axis++) {
             json_put(values, s->axes[axis].name, json_number(sweep_value(s, i, axis)));
         }
-        json_put(entry, "values", values);
-        json_put(entry, told[0].key, json_number(x->numbers[0][i]));
-        json_put(entry, "stable", json_boolean(x->holds[0][i]));
-        json_put(entry, told[1].key, json_number(x->numbers[1][i]));
-        json_add(points, entry);
+        json_add(points,
+                 json_members(json_object(), "values:o growth_per_s:n stable:b settling_time_s:n",
+                              values, x->numbers[0][i], x->holds[0][i], x->numbers[1][i]));
     }
     for (int i = 0; i < x->limit_count; i++) {
-        json_t *line = json_object();
-        json_put(line, "path", json_text(s->axes[0].name));
-        json_put(line, "value", json_number(x->limits[i].value));
-        json_put(line, "of", json_string(x->limits[i].by_runs ? "runs" : "poles"));
-        json_add(limits, line);
+        json_add(limits, json_members(json_object(), "path:t value:n of:t", s->axes[0].name,
+                                      x->limits[i].value, x->limits[i].by_runs ? "runs" : "poles"));
     }
-    json_put(object, "varied", points);
-    json_put(object, "limits", limits);
-    return object;
+    return json_members(json_object(), "scenario:t at:t varied:o limits:o", base->name, x->word,
+                        points, limits);
 }
 
 static void write_survey(FILE *stream, const scenario *base, const void *found)

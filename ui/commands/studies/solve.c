@@ -23,21 +23,15 @@ static json_t *answer(const scenario *s, const void *asked)
 {
     const question *q = asked;
     const solution *found = &q->found;
-    json_t *object = json_object(), *limits = json_array();
-    json_put(object, "scenario", json_text(s->name));
+    json_t *limits = json_array();
     for (int i = 0; i < found->count; i++) {
         const solve_limit *limit = &found->limits[i];
-        json_t *line = json_object();
-        json_put(line, "path", json_text(q->axis.name));
-        json_put(line, "value", json_number(limit->value));
-        json_put(line, "quantity", json_text(summary_table[q->condition.quantity].key));
-        json_put(line, "reached", json_number(limit->reached));
-        json_put(line, "holds", json_text(limit->holds_below ? "below" : "above"));
-        json_put(line, "jumps", json_boolean(limit->jumps));
-        json_add(limits, line);
+        json_add(limits, json_members(
+                             json_object(), "path:t value:n quantity:t reached:n holds:t jumps:b",
+                             q->axis.name, limit->value, summary_table[q->condition.quantity].key,
+                             limit->reached, limit->holds_below ? "below" : "above", limit->jumps));
     }
-    json_put(object, "solve", limits);
-    return object;
+    return json_members(json_object(), "scenario:t solve:o", s->name, limits);
 }
 
 // How many values of the range say nothing, and why.

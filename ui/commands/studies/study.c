@@ -19,37 +19,29 @@
 static json_t *methods_object(const scenario *s, const void *found)
 {
     const method_study *study = found;
-    json_t *object = json_object(), *reference = json_object(), *points = json_array();
-    json_put(object, "scenario", json_text(s->name));
+    json_t *points = json_array();
 
     // what errors are measured against
-    json_put(reference, "method", json_string("event"));
-    json_put(reference, "step_s", json_number(study->reference_step));
+    json_t *reference =
+        json_members(json_object(), "method:t step_s:n", "event", study->reference_step);
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         json_put(reference, study_keys[k], json_number(study->reference[k]));
     }
-    json_put(object, "reference", reference);
 
     for (int m = 0; m < STUDY_METHODS; m++) {
         for (int i = 0; i < STUDY_STEPS; i++) {
             const study_point *p = &study->points[m][i];
-            json_t *line = json_object(), *errors = json_object();
-
-            json_put(line, "method", json_string(study_methods[m]));
-            json_put(line, "step_s", json_number(p->step));
-            json_put(line, "computing_time_s", json_number(p->cost));
-
+            json_t *errors = json_object();
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
                 json_put(errors, study_keys[k], json_number(p->error[k]));
             }
-
-            json_put(line, "errors", errors);
-            json_add(points, line);
+            json_add(points,
+                     json_members(json_object(), "method:t step_s:n computing_time_s:n errors:o",
+                                  study_methods[m], p->step, p->cost, errors));
         }
     }
-
-    json_put(object, "methods", points);
-    return object;
+    return json_members(json_object(), "scenario:t reference:o methods:o", s->name, reference,
+                        points);
 }
 
 static void print_methods(const scenario *s, const void *found)
@@ -176,32 +168,26 @@ static int study_of_methods(const arguments *a, scenario *s)
 static json_t *links_object(const scenario *s, const void *found)
 {
     const links_study *study = found;
-    json_t *object = json_object(), *rows = json_array(), *quantities = json_array();
-    json_put(object, "scenario", json_text(s->name));
+    json_t *rows = json_array(), *quantities = json_array();
     for (int i = 0; i < study->count; i++) {
-        json_t *line = json_object();
-        json_put(line, "links", json_integer(links_numbers[i]));
+        json_t *line = json_members(json_object(), "links:i", links_numbers[i]);
         for (int k = 0; k < LINKS_QUANTITIES; k++) {
             json_put(line, study->rows[k].key, json_number(study->rows[k].value[i]));
         }
         json_add(rows, line);
     }
-    json_put(object, "links", rows);
 
     // what they tend to
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         const links_row *row = &study->rows[k];
-        json_t *line = json_object();
-        json_put(line, "quantity", json_string(row->key));
-        json_put(line, "order", json_number(row->order));
-        json_put(line, "limit", json_number(row->limit));
-        json_put(line, "error", json_number(row->error));
-        json_put(line, "beam", json_number(row->beam));
-        json_put(line, "enough_links", row->enough > 0 ? json_integer(row->enough) : json_null());
-        json_add(quantities, line);
+        json_add(quantities,
+                 json_members(json_object(),
+                              "quantity:t order:n limit:n error:n beam:n "
+                              "enough_links:o",
+                              row->key, row->order, row->limit, row->error, row->beam,
+                              row->enough > 0 ? json_integer(row->enough) : json_null()));
     }
-    json_put(object, "limits", quantities);
-    return object;
+    return json_members(json_object(), "scenario:t links:o limits:o", s->name, rows, quantities);
 }
 
 static void print_links(const scenario *s, const void *found)

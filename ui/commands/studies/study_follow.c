@@ -13,13 +13,10 @@ static json_t *points_array(const follow_point *points)
     json_t *array = json_array();
     for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
         const follow_point *p = &points[i];
-        json_t *line = json_object();
-        json_put(line, "frequency_Hz", json_number(follow_frequencies[i]));
-        json_put(line, "gain", json_number(p->gain));
-        json_put(line, "phase_deg", json_number(p->phase));
-        json_put(line, "error", json_number(p->error));
-        json_put(line, "wall_N_per_m", json_number(p->shaken));
-        json_add(array, line);
+        json_add(array,
+                 json_members(json_object(),
+                              "frequency_Hz:n gain:n phase_deg:n error:n wall_N_per_m:n",
+                              follow_frequencies[i], p->gain, p->phase, p->error, p->shaken));
     }
     return array;
 }
@@ -27,16 +24,12 @@ static json_t *points_array(const follow_point *points)
 static json_t *follow_object(const scenario *s, const void *found)
 {
     const follow_study *study = found;
-    json_t *object = json_object(), *laws = json_object();
-    json_put(object, "scenario", json_text(s->name));
+    json_t *laws = json_object();
     for (int k = 0; k < FOLLOW_LAWS; k++) {
         json_put(laws, follow_laws[k], points_array(study->points[k]));
     }
-    json_put(object, "follow", laws);
-    json_put(object, "bound", points_array(study->bound));
-    json_put(object, "later_s", json_number(study->later));
-    json_put(object, "zero_per_s", json_number(study->zero));
-    return object;
+    return json_members(json_object(), "scenario:t follow:o bound:o later_s:n zero_per_s:n",
+                        s->name, laws, points_array(study->bound), study->later, study->zero);
 }
 
 // A number of every point, over the frequencies.

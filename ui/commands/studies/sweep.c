@@ -323,11 +323,9 @@ const command sweep_command = {
 
 static json_t *merged_object(const char *path, const sweep_merged *merged)
 {
-    json_t *object = json_object();
-    json_put(object, "file", json_text(path));
-    json_put(object, "runs", json_integer((json_int_t)merged->runs));
-    json_put(object, "runs_of_sweep", json_integer((json_int_t)merged->total));
-    return object;
+    return json_members(json_object(), "file:t runs:o runs_of_sweep:o", path,
+                        json_integer((json_int_t)merged->runs),
+                        json_integer((json_int_t)merged->total));
 }
 
 static int merge(const arguments *a)

@@ -98,23 +98,16 @@ static json_t *answer(const scenario *s, const void *found_by)
            *numbers = json_array();
     for (int i = 0; i < found->asked.vary_count; i++) {
         const tune_result *changed = &t->rows[CHANGED + 2 * i];
-        json_t *number = json_object();
-        json_put(number, "path", json_text(found->plan.axes[i].name));
-        json_put(number, "given", json_number(given_value(t, i)));
-        json_put(number, "value", json_number(found->found[i]));
-        json_put(number, "tenth_lower", json_number(changed[0].value));
-        json_put(number, "tenth_higher", json_number(changed[1].value));
-        json_add(numbers, number);
+        json_add(numbers,
+                 json_members(json_object(), "path:t given:n value:n tenth_lower:n tenth_higher:n",
+                              found->plan.axes[i].name, given_value(t, i), found->found[i],
+                              changed[0].value, changed[1].value));
     }
-    json_put(object, "scenario", json_text(s->name));
-    json_put(object, "minimise", json_text(found->asked.minimise));
-    json_put(object, "evaluations", json_integer((json_int_t)found->done));
-    json_put(object, "runs_each", json_integer((json_int_t)found->each));
-    json_put(object, "least", json_number(found->best.value));
-    json_put(object, "unseen_given", json_number(t->rows[GIVEN].value));
-    json_put(object, "unseen_tuned", json_number(t->rows[TUNED].value));
-    json_put(object, "tune", numbers);
-    return object;
+    return json_members(object,
+                        "scenario:t minimise:t evaluations:i runs_each:i least:n unseen_given:n "
+                        "unseen_tuned:n tune:o",
+                        s->name, found->asked.minimise, (int)found->done, (int)found->each,
+                        found->best.value, t->rows[GIVEN].value, t->rows[TUNED].value, numbers);
 }
 
 static void print_answer(const scenario *s, const void *found_by)
