@@ -75,61 +75,28 @@ static void list_sources(search_source sources[SOURCES])
 
 // --- how it is shown ----------------------------------------------------------------------------
 
-static void print_named(FILE *stream, const char *kind, const char *name, const char *unit)
-{
-    fprintf(stream, "%s %s%s%s%s", kind, name, unit[0] != '\0' ? " [" : "", unit,
-            unit[0] != '\0' ? "]" : "");
-}
-
 // Name of a thing, without its explanation.
-static void print_name(FILE *stream, int source, int index)
+static void print_name(FILE *stream, int source, int index, const search_entry *e)
 {
-    const manual_section s = manual_section_at(source == SECTIONS ? index : 0);
-    switch (source) {
-    case SECTIONS:
-        fprintf(stream, "%s, \"%s\"", s.page, s.heading);
-        break;
-    case PARAMETERS:
-        print_named(stream, "parameter", parameter_table[index].path, parameter_table[index].unit);
-        break;
-    case QUANTITIES:
-        print_named(stream, "quantity", summary_table[index].key, summary_table[index].unit);
-        break;
-    case SIGNALS:
-        print_named(stream, "signal", signal_table[index].name, signal_table[index].unit);
-        break;
-    default:
-        fprintf(stream, "impactlab %s", command_table[index]->name);
-        break;
+    const char *unit = source == PARAMETERS   ? parameter_table[index].unit
+                       : source == QUANTITIES ? summary_table[index].unit
+                       : source == SIGNALS    ? signal_table[index].unit
+                                              : "";
+    if (source == SECTIONS) {
+        fprintf(stream, "%s, \"%s\"\n", manual_section_at(index).page, e->title);
+    } else {
+        fprintf(stream, "%s %s%s%s%s\n", source == COMMANDS ? "impactlab" : e->above, e->title,
+                unit[0] != '\0' ? " [" : "", unit, unit[0] != '\0' ? "]" : "");
     }
 }
 
-// A line that says how to go on from there; nothing for a page.
-static void print_way_on(FILE *stream, int source, int index)
-{
-    switch (source) {
-    case PARAMETERS:
-        fprintf(stream, "    impactlab show SCENARIO lists it, --set %s=VALUE changes it\n",
-                parameter_table[index].path);
-        break;
-    case QUANTITIES:
-        fprintf(stream,
-                "    impactlab run SCENARIO --json - has it, sweep --quantity %s draws it\n",
-                summary_table[index].key);
-        break;
-    case SIGNALS:
-        fprintf(stream,
-                "    impactlab run SCENARIO --csv FILE has it, --plot FILE --signals %s "
-                "draws it\n",
-                signal_table[index].name);
-        break;
-    case COMMANDS:
-        fprintf(stream, "    impactlab %s --help\n", command_table[index]->name);
-        break;
-    default:
-        break;
-    }
-}
+// How to go on from a thing, before and behind its name; nothing for a page.
+static const char *const ways_on[SOURCES][2] = {
+    [PARAMETERS] = {"impactlab show SCENARIO lists it, --set ", "=VALUE changes it"},
+    [QUANTITIES] = {"impactlab run SCENARIO --json - has it, sweep --quantity ", " draws it"},
+    [SIGNALS] = {"impactlab run SCENARIO --csv FILE has it, --plot FILE --signals ", " draws it"},
+    [COMMANDS] = {"impactlab ", " --help"},
+};
 
 // Bytes of a text up to `most`, whole words.
 static int cut_length(const char *text, int most)
@@ -150,14 +117,16 @@ static void print_hit(FILE *stream, const search_source *sources, const search_h
     const char *text = hit->text >= 0 ? e.texts[hit->text] : "";
 
     fprintf(stream, "\n");
-    print_name(stream, hit->source, hit->index);
-    fprintf(stream, "\n");
+    print_name(stream, hit->source, hit->index, &e);
     const int length = cut_length(text, PASSAGE);
     print_indented(stream, text, length, LINE, INDENT);
     if (text[length] != '\0') {
         fprintf(stream, "    ...\n");
     }
-    print_way_on(stream, hit->source, hit->index);
+    const char *const *way = ways_on[hit->source];
+    if (way[0] != NULL) {
+        fprintf(stream, "    %s%s%s\n", way[0], e.title, way[1]);
+    }
 }
 
 int print_answers(FILE *stream, const char *question)
@@ -195,8 +164,7 @@ int print_meanings(FILE *stream, const char *words)
             }
             fprintf(stream, "%s", count++ == 0 ? "it may mean\n" : "");
             fprintf(stream, "  ");
-            print_name(stream, s, i);
-            fprintf(stream, "\n");
+            print_name(stream, s, i, &e);
             print_indented(stream, e.texts[0], cut_length(e.texts[0], PASSAGE), LINE, INDENT);
         }
     }

@@ -428,11 +428,6 @@ void print_indented(FILE *stream, const char *text, int bytes, int width, int in
     fprintf(stream, "%s", column > 0 ? "\n" : "");
 }
 
-void print_wrapped(FILE *stream, const char *text, int bytes, int width)
-{
-    print_indented(stream, text, bytes, width, 0);
-}
-
 bool next_paragraph(const char **text, paragraph *p)
 {
     assert(text != NULL && *text != NULL && p != NULL);

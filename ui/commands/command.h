@@ -366,10 +366,7 @@ typedef struct paragraph {
 // before a line that begins with a blank; other line ends count as blanks.
 bool next_paragraph(const char **text, paragraph *p);
 
-// Prints words in lines of at most `width` characters.
-void print_wrapped(FILE *stream, const char *text, int bytes, int width);
-
-// The same, each line behind `indent` blanks.
+// Prints words in lines of at most `width` characters, each line behind `indent` blanks.
 void print_indented(FILE *stream, const char *text, int bytes, int width, int indent);
 
 // True if the terminal's character set is UTF-8, by the locale or, where it is not there, its name.

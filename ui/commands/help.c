@@ -24,7 +24,7 @@ static void print_paragraphs(FILE *stream, const char *text)
         if (p.literal) {
             fprintf(stream, "%.*s\n", p.bytes, p.start);
         } else {
-            print_wrapped(stream, p.start, p.bytes, LINE);
+            print_indented(stream, p.start, p.bytes, LINE, 0);
         }
 
         was_literal = p.literal;

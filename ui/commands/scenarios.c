@@ -294,7 +294,7 @@ static int print_scenario(const arguments *a, scenario *s)
         return write_json(a->json, show_object(s));
     }
     say_title(s);
-    print_wrapped(stdout, s->description, (int)strlen(s->description), 96);
+    print_indented(stdout, s->description, (int)strlen(s->description), 96, 0);
 
     printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",
            "value", "unit", "range");

@@ -81,20 +81,25 @@ static const char *const inferred[] = {
 };
 enum { INFERRED = sizeof inferred / sizeof inferred[0] };
 
-// Rows that a fit has, what it was, and its mean errors.
+// A heading where table or model changes, and the rows below it.
+static void print_rows(const thesis_tables *t)
+{
+    for (int i = 0; i < t->row_count; i++) {
+        const table_row *row = &t->rows[i], *before = i > 0 ? row - 1 : NULL;
+        if (before == NULL || strcmp(before->table, row->table) != 0 ||
+            strcmp(before->model, row->model) != 0) {
+            printf("%sTable %s, %g times the nominal k2, %s%s\n", i > 0 ? "\n" : "", row->table,
+                   row->k2_factor, row->model, strcmp(row->model, "fitted") == 0 ? "" : " model");
+        }
+        print_row(t, row);
+    }
+}
+
 static void print_fitted(const scenario *s, const void *found)
 {
     const thesis_tables *t = found;
     (void)s;
-    for (int i = 0; i < t->row_count; i++) {
-        const table_row *row = &t->rows[i];
-        if (i == 0 || strcmp(t->rows[i - 1].table, row->table) != 0) {
-            printf("%sTable %s, %g times the nominal k2, fitted\n", i > 0 ? "\n" : "", row->table,
-                   row->k2_factor);
-        }
-        print_row(t, row);
-    }
-
+    print_rows(t);
     printf("\nMean error over the 12 cells of a row kind:\n");
     for (size_t i = 0; i < sizeof labels / sizeof labels[0]; i++) {
         const double error = tables_mean_error(t, "fitted", labels[i].quantity);
@@ -108,21 +113,7 @@ static void print_tables(const scenario *s, const void *found)
 {
     const thesis_tables *t = found;
     (void)s;
-    const char *table = "", *model = "";
-    for (int i = 0; i < t->row_count; i++) {
-        const table_row *row = &t->rows[i];
-
-        // a heading where table or model changes
-        if (strcmp(table, row->table) != 0 || strcmp(model, row->model) != 0) {
-            printf("%sTable %s, %g times the nominal k2, %s model\n", i > 0 ? "\n" : "", row->table,
-                   row->k2_factor, row->model);
-        }
-
-        table = row->table;
-        model = row->model;
-        print_row(t, row);
-    }
-
+    print_rows(t);
     printf("\nMean error over the 12 cells of a row kind (printed model, corrected model):\n");
     for (size_t i = 0; i < sizeof labels / sizeof labels[0]; i++) {
         printf("  %-36s %6.1f %% %6.1f %%\n", labels[i].label,

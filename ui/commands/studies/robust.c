@@ -21,7 +21,7 @@ static const char default_set[] = "sets/robust.set";
 // What the command line asks for, and what was found: by case, in it by law.
 typedef struct robustness {
     const arguments *arguments;
-    scenario scenario;
+    const scenario *scenario;
     robust_set set;
     int laws[LAW_COUNT + 1]; // control_law; behind the last the one of --against, if it is given
     int count;               // of laws, that one left out
@@ -30,16 +30,6 @@ typedef struct robustness {
     robust_law *found;
     int judged;
 } robustness;
-
-static void finish(robustness *r)
-{
-    for (int i = 0; i < r->judged; i++) {
-        robust_law_finish(&r->found[i]);
-    }
-    free(r->found);
-    robust_set_finish(&r->set);
-    scenario_finish(&r->scenario);
-}
 
 // The law of a word of a certain length; LAW_NONE if there is none.
 static int find_law(const char *text, size_t length)
@@ -85,7 +75,7 @@ static int read_laws(robustness *r)
 {
     const char *rest = r->arguments->laws;
     if (rest == NULL) {
-        r->laws[r->count++] = r->scenario.parameters.control.law;
+        r->laws[r->count++] = r->scenario->parameters.control.law;
     }
 
     // each of the words between commas
@@ -102,7 +92,7 @@ static int read_laws(robustness *r)
 
     // what cannot be run, or not be shown
     if (r->laws[0] == LAW_NONE) {
-        return complain("%s has no control law, expected one or --laws", r->scenario.name);
+        return complain("%s has no control law, expected one or --laws", r->scenario->name);
     }
     if (r->arguments->plot != NULL && r->count > ROBUST_MOST_CURVES) {
         return complain("--plot shows at most %d laws", ROBUST_MOST_CURVES);
@@ -207,7 +197,7 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
 // of a plug-in or a program are not known here: it may have any.
 static bool others_have_parameter(const robustness *r, const char *name)
 {
-    const int own = r->scenario.parameters.control.law, laws = r->count + (r->against == r->count);
+    const int own = r->scenario->parameters.control.law, laws = r->count + (r->against == r->count);
     bool known = false;
     for (int i = own == LAW_NONE ? 0 : -1; i < laws && !known; i++) {
         const controller *law = controller_of(i < 0 ? own : r->laws[i]);
@@ -244,16 +234,6 @@ static void fit_settings(const robustness *r, int law, control_parameters *contr
     }
 }
 
-// Why case k (-1: none) cannot be looked at.
-static int refuse(const robustness *r, int k, const fault *why)
-{
-    fault f = *why;
-    if (k >= 0) {
-        robust_case_fault(&r->set.cases[k], why, &f);
-    }
-    return complain_fault(&f);
-}
-
 // What a law gets to do under case k of the set, -1: under the scenario as it is. The same draws
 // for every law. `base` and `under` last as long as the sweep; `tell` says which settings it does
 // without.
@@ -268,42 +248,38 @@ static int open_law(const robustness *r, const scenario *base, int which, int k,
 
     // said once, and where a case has settings of its own
     const bool own =
-        strcmp(under->parameters.control.settings, r->scenario.parameters.control.settings) != 0;
+        strcmp(under->parameters.control.settings, r->scenario->parameters.control.settings) != 0;
     fit_settings(r, r->laws[which], &under->parameters.control, (k <= 0 || own) && tell);
     if (parameters_resolve(&under->parameters, &f) != STATUS_OK ||
         sweep_init(s, under, &request, &f) != STATUS_OK) {
-        return refuse(r, k, &f);
+        fault of_case = f;
+        if (k >= 0) {
+            robust_case_fault(&r->set.cases[k], &f, &of_case);
+        }
+        return complain_fault(&of_case);
     }
     return EXIT_DONE;
 }
 
-// All laws under case k: looked at, or run.
-static int run_laws(robustness *r, const scenario *base, int k, bool run)
+// All laws under case k (-1: the scenario as it is), looked at or run. Everything that can be wrong
+// with a case is known before the first one is run.
+static int take_case(robustness *r, int k, bool run)
 {
+    fault f = {0};
+    scenario base, under;
+    sweep s;
+    const robust_case *c = k >= 0 ? &r->set.cases[k] : NULL;
+    if (robust_case_scenario(&base, r->scenario, c, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     int code = EXIT_DONE;
     for (int i = 0; i < r->count + (r->against == r->count) && code == EXIT_DONE; i++) {
-        scenario under;
-        sweep s;
-        code = open_law(r, base, i, k, run && !r->arguments->quiet, &under, &s);
+        code = open_law(r, &base, i, k, run && !r->arguments->quiet, &under, &s);
         if (code == EXIT_DONE) {
             code = run ? judge_law(r, control_law_table[r->laws[i]].word, k, &s) : EXIT_DONE;
             sweep_finish(&s);
         }
     }
-    return code;
-}
-
-// Case k, -1: the scenario as it is. Everything that can be wrong with a case is known before the
-// first one is run.
-static int take_case(robustness *r, int k, bool run)
-{
-    fault f = {0};
-    scenario base;
-    const robust_case *c = k >= 0 ? &r->set.cases[k] : NULL;
-    if (robust_case_scenario(&base, &r->scenario, c, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
-    const int code = run_laws(r, &base, k, run);
     robust_case_finish(&base);
     return code;
 }
@@ -363,8 +339,8 @@ static int report(const robustness *r)
                                             .markdown = write_markdown,
                                             .plot = plot,
                                             .text = print_table};
-    const robust_table table = {r->scenario.name, r->found, r->judged, r->arguments->against};
-    const int code = write_results(r->arguments, &written, &r->scenario, &table, true);
+    const robust_table table = {r->scenario->name, r->found, r->judged, r->arguments->against};
+    const int code = write_results(r->arguments, &written, r->scenario, &table, true);
 
     // nothing to judge is a failure
     bool any = false;
@@ -374,15 +350,10 @@ static int report(const robustness *r)
     return any ? code : worse(code, EXIT_FAILED);
 }
 
-static int robust(const arguments *a)
+static int robust(const arguments *a, scenario *s)
 {
-    robustness r = {.arguments = a};
-    int code = open_scenario(&r.scenario, a->operands[0], a);
-    if (code != EXIT_DONE) {
-        return code;
-    }
-
-    code = read_laws(&r);
+    robustness r = {.arguments = a, .scenario = s};
+    int code = read_laws(&r);
     code = code == EXIT_DONE ? read_set(&r) : code;
     code = code == EXIT_DONE ? read_against(&r) : code;
 
@@ -396,7 +367,12 @@ static int robust(const arguments *a)
         code = run_case(&r, k);
     }
     code = code == EXIT_DONE ? report(&r) : code;
-    finish(&r);
+
+    for (int i = 0; i < r.judged; i++) {
+        robust_law_finish(&r.found[i]);
+    }
+    free(r.found);
+    robust_set_finish(&r.set);
     return code;
 }
 
@@ -435,5 +411,5 @@ const command robust_command = {
         "Ctrl-C finishes the runs in hand, within five seconds (exit status 130); with --db they "
         "are kept.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
-    .run = robust,
+    .use = robust,
 };

@@ -18,8 +18,7 @@ typedef struct sweep_order {
     const arguments *arguments;
     const char *quantity; // key of the quantity that is drawn and summarised
     sweep_share share;    // of all runs
-    sweep_request request;
-    scenario scenario;
+    const scenario *scenario;
     sweep sweep;
 } sweep_order;
 
@@ -87,8 +86,8 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
 
     // how many runs there were
     char changes[SCENARIO_CHANGES];
-    say("%s%s: %zu run%s (%s), %zu failed", o->scenario.name,
-        scenario_changes(&o->scenario, changes), s->run_count, s->run_count == 1 ? "" : "s",
+    say("%s%s: %zu run%s (%s), %zu failed", o->scenario->name,
+        scenario_changes(o->scenario, changes), s->run_count, s->run_count == 1 ? "" : "s",
         sweep_sampling_name(s->sampling), failed);
     if (p->done_now < p->total) {
         printf(", %zu were there already", p->total - p->done_now);
@@ -151,9 +150,7 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     return failed == o->sweep.run_count ? worse(code, EXIT_FAILED) : code;
 }
 
-// --- the sweep --------------------------------------------------------------------------------
-
-// --- the request ----------------------------------------------------------------------------
+// --- the request ------------------------------------------------------------------------------
 
 static sweep_sampling sampling_of(const char *name)
 {
@@ -163,17 +160,6 @@ static sweep_sampling sampling_of(const char *name)
         }
     }
     return SWEEP_GRID;
-}
-
-static sweep_order order_of(const arguments *a)
-{
-    return (sweep_order){.arguments = a,
-                         .quantity = a->quantity != NULL ? a->quantity : "peak_force_N",
-                         .request = {.vary = a->varies.items,
-                                     .vary_count = a->varies.count,
-                                     .sampling = sampling_of(a->sampling),
-                                     .runs = (size_t)a->runs,
-                                     .seed = a->seed}};
 }
 
 // Reads --part K/N, which needs a database: what a part computes is good for being merged.
@@ -206,32 +192,6 @@ static int read_share(const arguments *a, sweep_share *share)
     return EXIT_DONE;
 }
 
-// Reads the scenario and the varied parameters, and checks everything that can be wrong in advance.
-static int prepare(sweep_order *o, const arguments *a)
-{
-    fault f = {0};
-
-    *o = order_of(a);
-    int code = read_share(a, &o->share);
-    code = code == EXIT_DONE ? open_scenario(&o->scenario, a->operands[0], a) : code;
-    if (code != EXIT_DONE) {
-        return code;
-    }
-
-    // a sweep that cannot be, or that could not be drawn, is refused before it computes
-    if (sweep_init(&o->sweep, &o->scenario, &o->request, &f) != STATUS_OK) {
-        code = complain_fault(&f);
-    } else if (a->plot != NULL && sweep_plot_check(&o->sweep, a->plot, &f) != STATUS_OK) {
-        code = complain_fault(&f);
-        sweep_finish(&o->sweep);
-    }
-
-    if (code != EXIT_DONE) {
-        scenario_finish(&o->scenario);
-    }
-    return code;
-}
-
 // --- the runs -------------------------------------------------------------------------------
 
 static int compute(const sweep_order *o, sweep_store *store)
@@ -254,33 +214,42 @@ static int compute(const sweep_order *o, sweep_store *store)
         return report_sweep(o, store, &progress);
     }
     if (!o->arguments->quiet) {
-        say("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario.name, o->share.part,
+        say("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario->name, o->share.part,
             o->share.parts, progress.done, o->sweep.run_count, o->arguments->db);
     }
     return progress.failed > 0 && progress.failed == progress.total ? EXIT_FAILED : EXIT_DONE;
 }
 
-static int sweep_command_run(const arguments *a)
+// A sweep that cannot be, or that could not be drawn, is refused before it computes.
+static int sweep_and_report(const arguments *a, scenario *base)
 {
-    sweep_order o;
+    sweep_order o = {.arguments = a,
+                     .scenario = base,
+                     .quantity = a->quantity != NULL ? a->quantity : "peak_force_N"};
+    const sweep_request request = {.vary = a->varies.items,
+                                   .vary_count = a->varies.count,
+                                   .sampling = sampling_of(a->sampling),
+                                   .runs = (size_t)a->runs,
+                                   .seed = a->seed};
     fault f = {0};
     sweep_store *store;
-
-    int code = prepare(&o, a);
+    int code = read_share(a, &o.share);
     if (code != EXIT_DONE) {
         return code;
     }
+    if (sweep_init(&o.sweep, base, &request, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
 
     // the rows, in the file or in memory
-    if (sweep_store_open(&store, a->db, &o.sweep, &f) == STATUS_OK) {
+    if ((a->plot == NULL || sweep_plot_check(&o.sweep, a->plot, &f) == STATUS_OK) &&
+        sweep_store_open(&store, a->db, &o.sweep, &f) == STATUS_OK) {
         code = compute(&o, store);
         sweep_store_close(store);
     } else {
         code = complain_fault(&f);
     }
-
     sweep_finish(&o.sweep);
-    scenario_finish(&o.scenario);
     return code;
 }
 
@@ -316,7 +285,7 @@ const command sweep_command = {
         "Runs that fail are rows too; the\nexit status is 1 if all of them failed.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
-    .run = sweep_command_run,
+    .use = sweep_and_report,
 };
 
 // --- merge ------------------------------------------------------------------------------------
