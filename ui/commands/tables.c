@@ -47,11 +47,7 @@ static void print_cells(const char *name, const double *values, double scale, co
 {
     printf("    %-12s", name);
     for (int i = 0; i < TABLE_VOLTAGES; i++) {
-        if (isnan(values[i])) {
-            printf("%10s", "-");
-        } else {
-            printf(format, values[i] * scale);
-        }
+        print_cell(9, format, values[i] * scale);
     }
     printf("\n");
 }
@@ -64,10 +60,10 @@ static void print_row(const thesis_tables *t, const table_row *row)
         percent[i] = 100 * (row->computed[i] / row->printed[i] - 1);
     }
     printf("  %s [%s]\n", label_of(row->quantity), delay ? "ms" : "N");
-    print_cells("voltage", t->voltage, 1, "%8g V");
-    print_cells("thesis", row->printed, scale, "%10.4g");
-    print_cells("computed", row->computed, scale, "%10.4g");
-    print_cells("difference", percent, 1, "%+8.1f %%");
+    print_cells("voltage", t->voltage, 1, "%g V");
+    print_cells("thesis", row->printed, scale, "%.4g");
+    print_cells("computed", row->computed, scale, "%.4g");
+    print_cells("difference", percent, 1, "%+.1f %%");
 }
 
 // Constants the thesis never prints, inferred from its tables (errata A), and why.

@@ -23,7 +23,7 @@ typedef struct comparison {
     int combinations;
     compare_row *rows;    // operands of each combination
     compare_row *against; // one of each combination
-    int done;             // rows that are computed, the first ones
+    compare_table table;  // of the rows that are computed, the first ones
     bool failed;
 } comparison;
 
@@ -128,45 +128,45 @@ static bool run_one(comparison *c, int i, int combination, run_monitor *monitor,
     return true;
 }
 
-// Combination by combination, what the rows are held against first. False if it was stopped: then
-// c->done rows are there.
-static bool run_all(comparison *c, run_monitor *monitor)
+// Combination by combination, what the rows are held against first. Once it was stopped the table
+// is that of the rows before.
+static status run_all(comparison *c, run_monitor *monitor)
 {
     for (int k = 0; k < c->combinations; k++) {
         if (c->opened > c->operands && !run_one(c, c->operands, k, monitor, &c->against[k])) {
-            return false;
+            return STATUS_STOPPED;
         }
         for (int i = 0; i < c->operands; i++) {
-            if (!run_one(c, i, k, monitor, &c->rows[c->done])) {
-                return false;
+            if (!run_one(c, i, k, monitor, &c->rows[c->table.count])) {
+                return STATUS_STOPPED;
             }
-            c->done++;
+            c->table.count++;
         }
     }
-    return true;
+    return STATUS_OK;
 }
 
-static void write_csv(FILE *stream, const scenario *s, const void *table)
+static void write_csv(FILE *stream, const scenario *s, const void *found)
 {
     (void)s;
-    compare_csv(stream, table);
+    compare_csv(stream, &((const comparison *)found)->table);
 }
 
-static void write_markdown(FILE *stream, const scenario *s, const void *table)
+static void write_markdown(FILE *stream, const scenario *s, const void *found)
 {
     (void)s;
-    compare_markdown(stream, table);
+    compare_markdown(stream, &((const comparison *)found)->table);
 }
 
-static json_t *table_json(const scenario *s, const void *table)
+static json_t *table_json(const scenario *s, const void *found)
 {
     (void)s;
-    return compare_json(table);
+    return compare_json(&((const comparison *)found)->table);
 }
 
-static void print_table(const scenario *s, const void *table)
+static void print_table(const scenario *s, const void *found)
 {
-    const compare_table *t = table;
+    const compare_table *t = &((const comparison *)found)->table;
     (void)s;
     if (t->count > 0) {
         compare_text(stdout, t);
@@ -174,20 +174,6 @@ static void print_table(const scenario *s, const void *table)
     if (t->count > 0 && t->against != NULL) {
         say("\n* differs from %s by more than %g %%\n", t->against->scenario, 100 * t->tolerance);
     }
-}
-
-// Writes what there is as one table.
-static int report(const arguments *a, const comparison *c, compare_table *t)
-{
-    static const command_results r = {
-        .json = table_json, .csv = write_csv, .markdown = write_markdown, .text = print_table};
-    t->rows = c->rows;
-    t->count = c->done;
-    t->group = c->operands;
-    t->varied = c->swept > 0 ? c->sweeps[0].axes : NULL;
-    t->varied_count = a->varies.count;
-    t->against = a->against != NULL ? c->against : NULL;
-    return worse(c->failed ? EXIT_FAILED : EXIT_DONE, write_results(a, &r, NULL, t, true));
 }
 
 // What the runs are called: changes that all have stand in the title, else beside the scenario's
@@ -213,8 +199,10 @@ static bool name_runs(const comparison *c, char *names[TRACE_RUNS], char *title,
 }
 
 // The recorded signals of all scenarios in one figure, a colour each.
-static int plot_runs(const arguments *a, const comparison *c)
+static int plot_runs(const arguments *a, const scenario *s, const void *found)
 {
+    const comparison *c = found;
+    (void)s;
     trace_run shown[TRACE_RUNS] = {{.scenario = NULL}};
     run_result results[TRACE_RUNS];
     char *names[TRACE_RUNS], title[64 + SCENARIO_CHANGES];
@@ -265,28 +253,29 @@ static int plot_runs(const arguments *a, const comparison *c)
 
 static int compare(const arguments *a)
 {
-    comparison c = {0};
-    compare_table table = {0};
+    static const command_results r = {.json = table_json,
+                                      .csv = write_csv,
+                                      .markdown = write_markdown,
+                                      .text = print_table,
+                                      .plot = plot_runs,
+                                      .kept = "the table is that of these"};
+    comparison c = {.table.tolerance = a->tolerance / 100};
     fault f = {0};
-    table.tolerance = a->tolerance / 100;
-
-    if (a->columns != NULL && compare_choose(&table, a->columns, &f) != STATUS_OK) {
+    if (a->columns != NULL && compare_choose(&c.table, a->columns, &f) != STATUS_OK) {
         return complain("--columns %s: %s", a->columns, f.text);
     }
 
     int result = open_all(&c, a);
     if (result == EXIT_DONE) {
-        const int runs = c.combinations * c.opened;
-        run_monitor *monitor = work_begin(a, "runs", runs);
-        const bool whole = run_all(&c, monitor);
-        work_end();
-
-        // what there is, and then the end if that is not all
-        result = report(a, &c, &table);
-        if (!whole) {
-            work_leave(monitor->pieces, runs, "runs", "the table is that of these");
-        }
-        result = a->plot != NULL ? worse(result, plot_runs(a, &c)) : result;
+        c.table.rows = c.rows;
+        c.table.group = c.operands;
+        c.table.varied = c.swept > 0 ? c.sweeps[0].axes : NULL;
+        c.table.varied_count = a->varies.count;
+        c.table.against = a->against != NULL ? c.against : NULL;
+        run_monitor *monitor = work_begin(a, "runs", c.combinations * c.opened);
+        const status code = run_all(&c, monitor);
+        result = work_finish(a, code, &f, &r, NULL, &c);
+        result = c.failed ? worse(result, EXIT_FAILED) : result;
     }
     finish(&c);
     return result;

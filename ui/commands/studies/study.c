@@ -102,15 +102,17 @@ static void raise_zeros(method_study *study)
 
 static int plot_methods(const arguments *a, const scenario *s, const void *found)
 {
-    static const char *const labels[STUDY_METHODS] = {"Newmark", "generalised α", "event method"};
-    static const marker_kind markers[STUDY_METHODS] = {MARKER_SQUARE, MARKER_TRIANGLE,
-                                                       MARKER_CIRCLE};
-    static const int colours[STUDY_METHODS] = {1, 2, 0};
-    static const char *const names[STUDY_QUANTITIES] = {
-        "Error of first contact", "Error of first pulse\u2019s peak", "Error of steady force"};
-    static const char *const plain[STUDY_QUANTITIES] = {"first_contact", "first_pulse_peak",
-                                                        "steady_force"};
-    static const char *const units[STUDY_QUANTITIES] = {"s", "N", "N"};
+    static const struct {
+        const char *label;
+        marker_kind marker;
+        int colour;
+    } methods[STUDY_METHODS] = {{"Newmark", MARKER_SQUARE, 1},
+                                {"generalised α", MARKER_TRIANGLE, 2},
+                                {"event method", MARKER_CIRCLE, 0}};
+    static const figure_axis axes[STUDY_QUANTITIES] = {
+        {.name = "first_contact", .label = "Error of first contact", .unit = "s"},
+        {.name = "first_pulse_peak", .label = "Error of first pulse\u2019s peak", .unit = "N"},
+        {.name = "steady_force", .label = "Error of steady force", .unit = "N"}};
     figure_series series[STUDY_QUANTITIES][STUDY_METHODS];
     figure_panel panels[STUDY_QUANTITIES];
     method_study drawn = *(const method_study *)found;
@@ -119,22 +121,18 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         for (int m = 0; m < STUDY_METHODS; m++) {
             series[k][m] = (figure_series){.name = study_methods[m],
-                                           .label = labels[m],
+                                           .label = methods[m].label,
                                            .x = &drawn.points[m][0].cost,
                                            .y = &drawn.points[m][0].error[k],
                                            .count = STUDY_STEPS,
                                            .stride = sizeof(study_point),
-                                           .colour = colours[m],
-                                           .marker = markers[m]};
+                                           .colour = methods[m].colour,
+                                           .marker = methods[m].marker};
         }
 
-        panels[k] = (figure_panel){.y = {.name = plain[k],
-                                         .label = names[k],
-                                         .unit = units[k],
-                                         .scale = SCALE_LOGARITHMIC},
-                                   .series = series[k],
-                                   .series_count = STUDY_METHODS,
-                                   .weight = 1.8};
+        panels[k] = (figure_panel){
+            .y = axes[k], .series = series[k], .series_count = STUDY_METHODS, .weight = 1.8};
+        panels[k].y.scale = SCALE_LOGARITHMIC;
     }
 
     const figure fig = {

@@ -68,14 +68,18 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
     static const marker_kind markers[FOLLOW_LAWS] = {MARKER_CIRCLE,   MARKER_SQUARE, MARKER_DIAMOND,
                                                      MARKER_TRIANGLE, MARKER_CROSS,  MARKER_CIRCLE};
     static const struct {
-        const char *name, *label, *unit;
+        figure_axis axis;
         size_t offset;
-        scale_kind scale;
     } drawn[] = {
-        {"error", "Error over the wave", "", offsetof(follow_point, error), SCALE_LOGARITHMIC},
-        {"phase", "Phase of the force", "°", offsetof(follow_point, phase), SCALE_LINEAR},
-        {"wall", "Force over a wall’s motion", "N/m", offsetof(follow_point, shaken),
-         SCALE_LOGARITHMIC},
+        {{.name = "error", .label = "Error over the wave", .scale = SCALE_LOGARITHMIC},
+         offsetof(follow_point, error)},
+        {{.name = "phase", .label = "Phase of the force", .unit = "°"},
+         offsetof(follow_point, phase)},
+        {{.name = "wall",
+          .label = "Force over a wall’s motion",
+          .unit = "N/m",
+          .scale = SCALE_LOGARITHMIC},
+         offsetof(follow_point, shaken)},
     };
     enum { PANELS = sizeof drawn / sizeof *drawn };
     figure_series series[PANELS][FOLLOW_LAWS + 1];
@@ -94,10 +98,7 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
                                            .marker = law ? markers[k] : MARKER_NONE,
                                            .secondary = !law};
         }
-        panels[n] = (figure_panel){.y = {.name = drawn[n].name,
-                                         .label = drawn[n].label,
-                                         .unit = drawn[n].unit,
-                                         .scale = drawn[n].scale},
+        panels[n] = (figure_panel){.y = drawn[n].axis,
                                    .series = series[n],
                                    .series_count = FOLLOW_LAWS + 1,
                                    .weight = 1.8};
