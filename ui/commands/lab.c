@@ -28,9 +28,7 @@ static const char first_scenario[] = "corrected/first-impact";
 static int run_script(explorer *ex, const char *path)
 {
     char line[LINE_TEXT];
-
-    bool is_stdin = strcmp(path, "-") == 0;
-    FILE *stream = is_stdin ? stdin : fopen(path, "r");
+    FILE *stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
     if (stream == NULL) {
         return complain("%s cannot be read: %s", path, strerror(errno));
     }
@@ -40,10 +38,9 @@ static int run_script(explorer *ex, const char *path)
     for (int number = 1; code == EXIT_DONE && !ex->state.quit && fgets(line, sizeof line, stream);
          number++) {
         if (strchr(line, '\n') == NULL && !feof(stream)) {
-            code =
-                complain("%s:%d: no command, expected a text of less than %d bytes and the end of "
-                         "the line",
-                         path, number, LINE_TEXT);
+            code = complain("%s:%d: no command, expected a text of less than %d bytes and the end "
+                            "of the line",
+                            path, number, LINE_TEXT);
             break;
         }
         line[strcspn(line, "\r\n")] = '\0';
@@ -56,16 +53,16 @@ static int run_script(explorer *ex, const char *path)
         code = complain("%s cannot be read: %s", path, strerror(errno));
     }
 
-    if (!is_stdin) {
+    if (stream != stdin) {
         fclose(stream);
     }
     return code;
 }
 
-static int print_screen(explorer *ex, int width, int height)
+static int print_screen(explorer *ex)
 {
     screen s = {0};
-    if (!screen_resize(&s, width, height)) {
+    if (!screen_resize(&s, ex->state.size.width, ex->state.size.height)) {
         complain("%s", status_text(STATUS_NO_MEMORY));
         return EXIT_FAILED;
     }
@@ -77,23 +74,15 @@ static int print_screen(explorer *ex, int width, int height)
 
 static int run_off_screen(explorer *ex, const arguments *a)
 {
-    int width = 120, height = 40;
     fault f = {0};
-
-    if (a->size.width > 0) {
-        width = a->size.width;
-        height = a->size.height;
-    }
-
-    ex->state.size = (screen_size){width, height};
+    ex->state.size =
+        a->size.width > 0 ? (screen_size){a->size.width, a->size.height} : (screen_size){120, 40};
     int code = a->script != NULL ? run_script(ex, a->script) : EXIT_DONE;
-
     if (code == EXIT_DONE && a->keys != NULL && !explorer_keys(ex, a->keys, &f)) {
         code = complain_fault(&f);
     }
-
     if (code == EXIT_DONE && !a->quiet) {
-        code = print_screen(ex, width, height);
+        code = print_screen(ex);
     }
 
     // the keys went on, but what they were to do is not done
@@ -141,13 +130,15 @@ static void show(explorer *ex, screen *s, picture_layer *layer)
     if ((width != s->width || height != s->height) && !screen_resize(s, width, height)) {
         return;
     }
-    terminal_mouse(ex->state.looks.mouse);
-    const colour_depth depth = ex->state.looks.depth;
-    ex->state.looks.shown_depth = depth == DEPTH_AUTO ? terminal_depth() : depth;
+    looks *l = &ex->state.looks;
+    terminal_mouse(l->mouse);
+    l->shown_depth = l->depth;
+    if (l->depth == DEPTH_AUTO) {
+        l->shown_depth = terminal_depth();
+    }
     explorer_draw(ex, s);
-    terminal_show(s, ex->state.looks.glyphs, ex->state.looks.theme, ex->state.looks.depth,
-                  ex->state.looks.redraw);
-    ex->state.looks.redraw = false;
+    terminal_show(s, l->glyphs, l->theme, l->depth, l->redraw);
+    l->redraw = false;
     loss_forget(); // the next picture shows what this one lacks
 }
 
