@@ -107,6 +107,19 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
     entry < (table) + sizeof(table) / sizeof((table)[0]);                                          \
     entry++
 
+// Texts in turn: for (EACH_TEXT(c, "one", "two")) { ... *c ... }
+#define EACH_TEXT(entry, ...)                                                                      \
+    const char *const *entry = (const char *const[]){__VA_ARGS__, NULL};                           \
+    *entry != NULL;                                                                                \
+    entry++
+
+// Values in turn: for (EACH_OF(double, x, 1, 2)) { ... *x ... }
+#define EACH_OF(type, entry, ...)                                                                  \
+    const type *entry = (const type[]){__VA_ARGS__},                                               \
+               *entry##_end = entry + sizeof((const type[]){__VA_ARGS__}) / sizeof(type);          \
+    entry < entry##_end;                                                                           \
+    entry++
+
 // A new text, to be freed: what a call writes to `stream`. WRITTEN(text, json_write(stream, j));
 #define WRITTEN(text, ...)                                                                         \
     char *text = NULL;                                                                             \

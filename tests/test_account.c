@@ -50,13 +50,11 @@ TEST(test_a_first_impact_is_told_in_five_sentences)
 // Whatever ships: at least a sentence, each ends, and no number is missing.
 TEST(test_every_scenario_has_an_account)
 {
-    static const char *const names[] = {
-        "corrected/free-vibration", "corrected/hertz-wall", "corrected/restitution",
-        "corrected/three-links",    "corrected/stuck-hub",  "corrected/pull-away",
-        "thesis/fig-3-4",           "thesis/fig-2-4",       "compare/hybrid",
-        "compare/force-pd",         "compare/observer",     "corrected/push-in-contact",
-        "corrected/spring-hub",     "corrected/newmark",    "corrected/clamped-vibration"};
-    for (EACH(c, names)) {
+    for (EACH_TEXT(c, "corrected/free-vibration", "corrected/hertz-wall", "corrected/restitution",
+                   "corrected/three-links", "corrected/stuck-hub", "corrected/pull-away",
+                   "thesis/fig-3-4", "thesis/fig-2-4", "compare/hybrid", "compare/force-pd",
+                   "compare/observer", "corrected/push-in-contact", "corrected/spring-hub",
+                   "corrected/newmark", "corrected/clamped-vibration")) {
         OPEN_SESSION(s, *c);
         const int count = run_account(&s.effective, &s.run, sentences);
         assert_true(count >= 1 && count <= ACCOUNT_SENTENCES);

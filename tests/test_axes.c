@@ -105,12 +105,10 @@ TEST(test_keys_change_the_axis_of_the_pane_in_focus)
 TEST(test_wrong_axes_are_told)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    static const char *const wrong[] = {
-        "axis",          "axis 2 1",     "axis 1 1",     "axis 1",      "axis nan 2",
-        "axis 0 x 1",    "axis purple",  "axis auto 25", "axis auto 0", "axis 0 2 all more",
-        "axis auto 1 2", "axis auto -1", "zoom",         "zoom 1",      "zoom 2 1",
-        "zoom 1 2 3",    "pan",          "pan nowhere",  "pan left"};
-    for (EACH(c, wrong)) {
+    for (EACH_TEXT(c, "axis", "axis 2 1", "axis 1 1", "axis 1", "axis nan 2", "axis 0 x 1",
+                   "axis purple", "axis auto 25", "axis auto 0", "axis 0 2 all more",
+                   "axis auto 1 2", "axis auto -1", "zoom", "zoom 1", "zoom 2 1", "zoom 1 2 3",
+                   "pan", "pan nowhere", "pan left")) {
         refuse(&ex, *c);
     }
     assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_AUTO);
@@ -177,10 +175,8 @@ TEST(test_a_controlled_run_shows_readings_and_commands)
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>28");
     char *text = picture(&ex, 160, 60, GLYPHS_BRAILLE);
-    static const char *const wanted[] = {
-        "force_reading", "calculated_force",     "encoder", "desired_angle", "tachometer",
-        "command 2.284", "controller_mode force"};
-    for (EACH(c, wanted)) {
+    for (EACH_TEXT(c, "force_reading", "calculated_force", "encoder", "desired_angle", "tachometer",
+                   "command 2.284", "controller_mode force")) {
         fail_if(strstr(text, *c) == NULL, "'%s' is not on the screen:\n%s", *c, text);
     }
     free(text);

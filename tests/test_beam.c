@@ -251,9 +251,8 @@ TEST(an_arm_has_nothing_of_the_one_before)
 // The longest chain is as good as a beam: w1 = 1.8751^2 sqrt(EI / (m L^3)), with EI = k2 L / 2.
 TEST(the_longest_chain_has_the_damping_of_a_beam)
 {
-    const char *const hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
-    for (int i = 0; i < 2; i++) {
-        const parameters p = parameters_with("arm.links=1024 arm.damping_ratio=0.03 %s", hubs[i]);
+    for (EACH_TEXT(c, "arm.hub_joint=rigid", "arm.hub_joint=beam")) {
+        const parameters p = parameters_with("arm.links=1024 arm.damping_ratio=0.03 %s", *c);
         arm a = arm_of(&p);
         const double w = 1.8751 * 1.8751 * sqrt(p.arm.k2 / (2 * p.arm.mass)) / p.arm.length;
         check_relative(a.joint_damping, 2 * 0.03 / w * a.joint_stiffness, 0.01);

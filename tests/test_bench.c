@@ -97,15 +97,13 @@ TEST(what_is_written_is_read_back)
 
 TEST(a_file_that_is_no_baseline_is_refused)
 {
-    static const char *const texts[] = {"{", "[]", "{\"bench\": 3}",
-                                        "{\"bench\": [{\"name\": \"x\"}]}",
-                                        "{\"bench\": [{\"name\": \"x\", \"unit\": \"s\"}]}"};
     bench_result *read;
     int count;
     fault f;
-    for (int i = 0; i < 5; i++) {
+    for (EACH_TEXT(c, "{", "[]", "{\"bench\": 3}", "{\"bench\": [{\"name\": \"x\"}]}",
+                   "{\"bench\": [{\"name\": \"x\", \"unit\": \"s\"}]}")) {
         char path[64];
-        make_file(path, texts[i]);
+        make_file(path, *c);
         f.text[0] = '\0';
         assert_int_equal(bench_read(path, &read, &count, &f), STATUS_CANNOT_READ);
         assert_non_null(strstr(f.text, path));

@@ -24,12 +24,11 @@ TEST(the_model_has_the_numbers_of_the_arm)
     check_close(m.spring_force, 19.68, 1e-9);
     check_close(m.mass_force, 0.0167, 1e-4);
     check_close(m.torque_limit, 4.377, 1e-3);
-    const char *const beyond[] = {
-        "arm.links=1",       "arm.hub_joint=spring", "arm.damping_ratio=0.1",    "wall.kind=none",
-        "arm.model=printed", "arm.tilt=0.3",         "arm.tip_mass=0.1",         "arm.air_drag=0.1",
-        "arm.stiffening=1",  "wall.motion=sine",     "wall.contact=kelvin-voigt"};
-    for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
-        parameters p = fixture_parameters(SETTINGS(beyond[i]));
+    for (EACH_TEXT(c, "arm.links=1", "arm.hub_joint=spring", "arm.damping_ratio=0.1",
+                   "wall.kind=none", "arm.model=printed", "arm.tilt=0.3", "arm.tip_mass=0.1",
+                   "arm.air_drag=0.1", "arm.stiffening=1", "wall.motion=sine",
+                   "wall.contact=kelvin-voigt")) {
+        parameters p = fixture_parameters(SETTINGS(*c));
         assert_false(pressed_arm_model_of(&p, &m));
     }
 
@@ -63,9 +62,8 @@ TEST(a_strong_motor_leaves_the_closed_forms)
 {
     pressed_arm_model m = model_of(SETTINGS("motor.voltage_limit=1000"));
     double s = divergence(&m), k = m.spring_force;
-    const double velocities[] = {0.4, 1.37, 4};
-    for (int i = 0; i < 3; i++) {
-        pressed_state at = {0.003, velocities[i]};
+    for (EACH_OF(double, c, 0.4, 1.37, 4)) {
+        pressed_state at = {0.003, *c};
         double xi = k * (at.x + at.velocity / s);
         check_relative(best_peak(&m, at), xi, 1e-4);
         const double peak = 1.4 * xi, low = 0.6 * xi, high = 1.9 * xi;

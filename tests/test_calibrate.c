@@ -138,25 +138,24 @@ TEST(stiction_does_not_spoil_the_ratio)
 static void many_links_press_as_commanded_with_their_table(void **state)
 {
     (void)state;
-    const char *const sensors[] = {"sensor.ideal=true", "sensor.ideal=false"};
     // (the recovering law takes the ringing of twelve links for lost contact)
     const char *const laws[] = {"control.law=hybrid", "control.law=reverse-torque",
                                 "control.law=speed-limit", "control.law=bang-bang"};
-    for (int ideal = 0; ideal < 2; ideal++) {
+    for (EACH_TEXT(each, "sensor.ideal=true", "sensor.ideal=false")) {
         char table[PARAMETER_TEXT_SIZE + 32];
-        calibration c = calibrated(SETTINGS("arm.links=12", sensors[ideal], "control.law=hybrid"));
+        calibration c = calibrated(SETTINGS("arm.links=12", *each, "control.law=hybrid"));
         table_setting(&c, table, sizeof table);
         for (int k = 0; k < 4; k++) {
             for (int force = k == 0 ? 1 : 2; force <= (k == 0 ? 3 : 2); force++) {
                 char command[32];
                 snprintf(command, sizeof command, "control.force=%d", force);
-                summary with = rig_summary(SETTINGS("arm.links=12", sensors[ideal], laws[k], table,
-                                                    command, "run.duration=5"));
+                summary with = rig_summary(
+                    SETTINGS("arm.links=12", *each, laws[k], table, command, "run.duration=5"));
                 check_close(with.steady_force_N, force, 0.03 * force);
             }
         }
-        summary without = rig_summary(
-            SETTINGS("arm.links=12", sensors[ideal], "control.law=hybrid", "run.duration=5"));
+        summary without =
+            rig_summary(SETTINGS("arm.links=12", *each, "control.law=hybrid", "run.duration=5"));
         check_below(without.steady_force_N, 0.75);
     }
 }

@@ -130,15 +130,14 @@ TEST(varied_values_have_columns)
 // Full knowledge of the state bounds every law, and only where its model holds.
 TEST(nothing_beats_the_best)
 {
-    const char *const laws[] = {"control.law=hybrid", "control.law=optimal",
-                                "control.law=predictive", "control.law=force-pd"};
-    for (int i = 0; i < 4; i++) {
+    for (EACH_TEXT(c, "control.law=hybrid", "control.law=optimal", "control.law=predictive",
+                   "control.law=force-pd")) {
         for (int k = 1; k <= 8; k++) {
             char force[32];
             SCOPED(run_finish) run_result r;
             snprintf(force, sizeof force, "control.force=%g", 0.5 * k);
             scenario s = {.name = (char *)"it",
-                          .parameters = rig_parameters_with("%s %s", laws[i], force)};
+                          .parameters = rig_parameters_with("%s %s", *c, force)};
             assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
             compare_row row = compare_row_of(&s, &r);
             check_below(row.values[1], row.values[0]);
@@ -147,12 +146,11 @@ TEST(nothing_beats_the_best)
         }
     }
     scenario s;
-    const char *const beyond[] = {"arm.links=3", "arm.hub_joint=spring", "wall.restitution=0.5",
-                                  "arm.model=printed", "arm.damping_ratio=0.01"};
-    for (int i = 0; i < 5; i++) {
+    for (EACH_TEXT(each, "arm.links=3", "arm.hub_joint=spring", "wall.restitution=0.5",
+                   "arm.model=printed", "arm.damping_ratio=0.01")) {
         SCOPED(run_finish) run_result r;
         s = (scenario){.name = (char *)"it",
-                       .parameters = rig_parameters_with("control.law=hybrid %s", beyond[i])};
+                       .parameters = rig_parameters_with("control.law=hybrid %s", *each)};
         run_scenario(&s, false, &r);
         compare_row row = compare_row_of(&s, &r);
         assert_true(isnan(row.values[1]) && isnan(row.values[4]));

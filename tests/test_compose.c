@@ -48,16 +48,15 @@ TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
     check_small(&ex, 20, 5, "The lab needs 40 x\n12 characters, here\nare 20 x 5. q quits.\n");
     check_small(&ex, 200, 5, "The lab needs 40 x 12 characters, here are 200 x 5. q quits.\n");
     // no word is ever cut at the edge
-    static const char *const words[] = {"The",         "lab",    "needs", "40",    "x",      "12",
-                                        "characters,", "here",   "are",   "q",     "quits.", "the",
-                                        "(q",          "quits)", "<",     "small", "40x12"};
     for (int width = 1; width < 60; width++) {
         for (int height = 1; height < 12; height++) {
             SCOPED(free_kept) char *text = picture(&ex, width, height, GLYPHS_ASCII);
             char *rest = text;
             for (char *word; (word = strtok_r(rest, " \n", &rest)) != NULL;) {
                 bool known = strspn(word, "0123456789x.:") == strlen(word);
-                for (EACH(c, words)) {
+                for (EACH_TEXT(c, "The", "lab", "needs", "40", "x", "12", "characters,", "here",
+                               "are", "q", "quits.", "the", "(q", "quits)", "<", "small",
+                               "40x12")) {
                     known = known || strcmp(word, *c) == 0;
                 }
                 fail_if(!known, "'%s' at %d x %d", word, width, height);
@@ -96,9 +95,8 @@ TEST(test_eighty_columns_show_what_a_first_visit_needs)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
-    static const char *const wanted[] = {"force 1.2", "w1 0.2", "gap 0",     "voltage",
-                                         "0.0\u2524", "1 s",    "0.1\u2524", "N, 93 ms"};
-    for (EACH(c, wanted)) {
+    for (EACH_TEXT(c, "force 1.2", "w1 0.2", "gap 0", "voltage", "0.0\u2524", "1 s", "0.1\u2524",
+                   "N, 93 ms")) {
         assert_has(&ex, 80, 24, *c);
     }
     press(&ex, "b");

@@ -48,15 +48,13 @@ static const convergence_row *row_of(const convergence_panel *panel, const char 
 
 TEST(the_implicit_methods_are_of_second_order_through_impacts)
 {
-    static const char *const methods[] = {"method.name=newmark", "method.name=generalized-alpha"};
-    static const char *const keys[] = {"first_contact_s", "contact_impulse_Ns",
-                                       "first_pulse_peak_N", "steady_force_N", "motor_work_J"};
-    for (int m = 0; m < 2; m++) {
-        convergence_panel panel = panel_of(given("%s", methods[m]));
+    for (EACH_TEXT(c, "method.name=newmark", "method.name=generalized-alpha")) {
+        convergence_panel panel = panel_of(given("%s", *c));
         check_close(panel.step[0], 1e-3, 0);
         check_close(panel.step[2], 2.5e-4, 0);
-        for (int k = 0; k < 5; k++) {
-            check_close(row_of(&panel, keys[k])->order, 2, 0.15);
+        for (EACH_TEXT(key, "first_contact_s", "contact_impulse_Ns", "first_pulse_peak_N",
+                       "steady_force_N", "motor_work_J")) {
+            check_close(row_of(&panel, *key)->order, 2, 0.15);
         }
     }
 }

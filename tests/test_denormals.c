@@ -36,11 +36,10 @@ static motion *fading_motion(arm *a, const char *links, const char *method, cons
 // series, to what its tolerance leaves by the stiff engine.
 TEST(an_arm_that_coasts_comes_to_rest)
 {
-    static const char *const links[] = {"arm.links=1", "arm.links=2"};
-    for (int k = 0; k < 2; k++) {
+    for (EACH_TEXT(c, "arm.links=1", "arm.links=2")) {
         arm a;
         SCOPED(motion_destroy_kept)
-        motion *m = fading_motion(&a, links[k], "method.name=event", "motor.stiction=0");
+        motion *m = fading_motion(&a, *c, "method.name=event", "motor.stiction=0");
         motion_start(&a, m, 0, 1);
         go(&a, m, 100);
         assert_true(fabs(state_velocities(m, m->state)[0]) > 1e-70);

@@ -33,8 +33,7 @@ TEST(test_lines_of_dots_stay_within_their_canvas)
 TEST(test_every_glyph_has_a_twin_in_ascii)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    static const char *const pages[] = {"<End>bp", "?", "<Esc>c", "<Esc>o", "<Esc><Tab>m"};
-    for (EACH(one, pages)) {
+    for (EACH_TEXT(one, "<End>bp", "?", "<Esc>c", "<Esc>o", "<Esc><Tab>m")) {
         press(&ex, *one);
         SCOPED(free_kept) char *text = picture(&ex, 150, 50, GLYPHS_ASCII);
         for (const char *c = text; *c; c++) {
@@ -204,9 +203,7 @@ TEST(test_every_scenario_and_every_size_draws)
     static const int sizes[][2] = {{1, 1},   {300, 100}, {40, 12}, {41, 13}, {72, 20},
                                    {99, 29}, {100, 30},  {39, 50}, {200, 5}};
     for (EACH(one, sizes)) {
-        static const char *const pages[] = {"",       "?",          "<Esc>o",
-                                            "<Esc>c", "<Esc>:set ", "<Esc><Tab>"};
-        for (EACH(c, pages)) {
+        for (EACH_TEXT(c, "", "?", "<Esc>o", "<Esc>c", "<Esc>:set ", "<Esc><Tab>")) {
             press(&ex, *c);
             free(picture(&ex, (*one)[0], (*one)[1], GLYPHS_BLOCKS));
         }

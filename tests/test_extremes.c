@@ -40,8 +40,7 @@ static status ends_of_push(int links, double impulse)
 
 TEST(a_push_of_any_size_ends_a_run_or_lets_it_go_on)
 {
-    static const int links[] = {1, 2, 3, 8};
-    for (EACH(c, links)) {
+    for (EACH_OF(int, c, 1, 2, 3, 8)) {
         assert_int_equal(ends_of_push(*c, 1e300), STATUS_NOT_FINITE);
         assert_int_equal(ends_of_push(*c, -1e300), STATUS_NOT_FINITE);
         assert_int_equal(ends_of_push(*c, 1e-300), STATUS_OK);
@@ -52,16 +51,14 @@ TEST(a_push_of_any_size_ends_a_run_or_lets_it_go_on)
 // Whoever asks a run of either model to end gets its first rows, and hears at which instant.
 TEST(a_run_that_is_asked_to_end_does)
 {
-    static const char *const models[] = {"printed", "corrected"};
-    for (int i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "printed", "corrected")) {
         char text[128];
         SCOPED(scenario_finish) scenario s;
         SCOPED(run_finish) run_result whole;
         SCOPED(run_finish) run_result ended;
         run_monitor monitor = {.stop = true};
         const run_options options = {.keep_trace = true, .monitor = &monitor};
-        snprintf(text, sizeof text, "title: Ended\narm: {model: %s}\nrun: {duration: 0.5 s}\n",
-                 models[i]);
+        snprintf(text, sizeof text, "title: Ended\narm: {model: %s}\nrun: {duration: 0.5 s}\n", *c);
         read_scenario(&s, text);
         assert_int_equal(run_scenario(&s, true, &whole), STATUS_OK);
         assert_int_equal(run_scenario_with(&s, &options, &ended), STATUS_STOPPED);
@@ -85,9 +82,8 @@ TEST(strides_that_pass_no_time_end_a_run)
 // grows with N^3, and it is at the first contact.
 TEST(the_peak_of_a_damped_chain_is_at_its_impact)
 {
-    static const int links[] = {16, 24, 28, 32, 40};
     double before = 0;
-    for (EACH(c, links)) {
+    for (EACH_OF(int, c, 16, 24, 28, 32, 40)) {
         char text[200];
         SCOPED(run_finish) run_result result;
         SCOPED(scenario_finish) scenario s;
@@ -158,15 +154,13 @@ TEST(runs_without_an_end_are_abandoned_and_not_stored)
 
 TEST(runs_abandoned_before_they_begin_are_not_set_up)
 {
-    static const char *const texts[] = {"title: Corrected\n",
-                                        "title: Printed\narm: {model: printed}\n",
-                                        "title: Under a law\ncontrol: {law: hybrid}\n"};
     const atomic_bool already = true;
-    for (int i = 0; i < 3; i++) {
+    for (EACH_TEXT(c, "title: Corrected\n", "title: Printed\narm: {model: printed}\n",
+                   "title: Under a law\ncontrol: {law: hybrid}\n")) {
         SCOPED(scenario_finish) scenario s;
         SCOPED(run_finish) run_result result;
         side_by_side *storage = NULL;
-        read_scenario(&s, texts[i]);
+        read_scenario(&s, *c);
         run_together(&s, 1, &already, &result, &storage);
         assert_int_equal(result.summary.status, STATUS_STOPPED);
         assert_true(isnan(result.summary.steps) || result.summary.steps == 0);

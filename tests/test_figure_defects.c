@@ -129,12 +129,10 @@ static void check_peak(const figure_mark *m, const figure_text *t, double x, dou
 // either.
 TEST(the_label_of_the_peak_stands_at_its_point)
 {
-    static const char *const names[] = {"corrected/first-impact", "corrected/stiff-beam",
-                                        "corrected/five-links",   "corrected/spring-hub",
-                                        "corrected/plane-wall",   "corrected/fast-impact",
-                                        "thesis/fig-3-4"};
-    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
-        check_labels(names[i], 0, 0, check_peak);
+    for (EACH_TEXT(c, "corrected/first-impact", "corrected/stiff-beam", "corrected/five-links",
+                   "corrected/spring-hub", "corrected/plane-wall", "corrected/fast-impact",
+                   "thesis/fig-3-4")) {
+        check_labels(*c, 0, 0, check_peak);
     }
 }
 
@@ -161,8 +159,6 @@ TEST(numbers_keep_their_units)
     const char *caption = "At 1 V and 10 ms, <i>β</i> = 0.4, <i>h</i> = 10\u2009ms, a peak of "
                           "5.40\u2009N after 12.5 ms, <i>k</i><sub>1</sub> = 0.4 at "
                           "4.92\u2009N·m/rad, 3\u2009V·s/rad. impactlab 0.1.0.";
-    static const char *const torn[] = {"V",   "ms", "= ",    "=\u00a0", "rad",
-                                       "0.4", "N",  "0.1.0", "10 ms,"};
     PangoContext *context = text_context_create();
     for (double width = 60; width < 300; width += 7) {
         PangoLayout *layout = text_layout_create(
@@ -171,8 +167,8 @@ TEST(numbers_keep_their_units)
         for (int i = 1; i < pango_layout_get_line_count(layout); i++) {
             const char *line =
                 text + pango_layout_line_get_start_index(pango_layout_get_line_readonly(layout, i));
-            for (size_t k = 0; k < G_N_ELEMENTS(torn); k++) {
-                fail_if(strncmp(line, torn[k], strlen(torn[k])) == 0,
+            for (EACH_TEXT(c, "V", "ms", "= ", "=\u00a0", "rad", "0.4", "N", "0.1.0", "10 ms,")) {
+                fail_if(strncmp(line, *c, strlen(*c)) == 0,
                         "at %g points a line begins with '%.12s'", width, line);
             }
         }
@@ -185,14 +181,13 @@ TEST(numbers_keep_their_units)
 // have 6 points there, or those of the text about it.
 TEST(indices_can_be_read_on_scaled_pages)
 {
-    static const double scales[] = {0.65, 1, 1.38};
     PangoContext *context = text_context_create();
-    for (size_t i = 0; i < G_N_ELEMENTS(scales); i++) {
-        const text_block t = {.markup = "<sub>2</sub>", .size = 8 / scales[i], .scale = scales[i]};
+    for (EACH_OF(double, c, 0.65, 1, 1.38)) {
+        const text_block t = {.markup = "<sub>2</sub>", .size = 8 / *c, .scale = *c};
         PangoLayout *layout = text_layout_create(context, &t);
         PangoLayoutRun *run = pango_layout_get_line_readonly(layout, 0)->runs->data;
         PangoFontDescription *font = pango_font_describe(run->item->analysis.font);
-        check_close(scales[i] * pango_font_description_get_size(font) / PANGO_SCALE, 6, 0.01);
+        check_close(*c * pango_font_description_get_size(font) / PANGO_SCALE, 6, 0.01);
         pango_font_description_free(font);
         g_object_unref(layout);
     }
@@ -435,7 +430,6 @@ TEST(all_plots_have_axes_of_one_style)
 TEST(words_are_lines_not_colours)
 {
     static figure_report r;
-    static const char *const names[] = {"event", "newmark", "generalized-alpha"};
     cairo_surface_t *surface =
         paint_sweep("motor.voltage=1:2:6", "method.name=event,newmark,generalized-alpha", &r);
     colour darkest = palette_shade(THEME_COLOUR, 0);
@@ -447,8 +441,8 @@ TEST(words_are_lines_not_colours)
             assert_true(off > 12);
         }
     }
-    for (int i = 0; i < 3; i++) {
-        expect_text(&r, names[i]);
+    for (EACH_TEXT(c, "event", "newmark", "generalized-alpha")) {
+        expect_text(&r, *c);
     }
     cairo_surface_destroy(surface);
 }

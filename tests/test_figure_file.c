@@ -5,17 +5,16 @@
 
 TEST(same_bytes_also_for_later_figures)
 {
-    static const char *const formats[] = {"png", "pdf", "svg"};
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     for (int n = 1; n <= 20; n++) {
-        for (int i = 0; i < 3; i++) {
+        for (EACH_TEXT(c, "png", "pdf", "svg")) {
             char name[64];
-            snprintf(name, sizeof name, "same-%d.%s", n, formats[i]);
+            snprintf(name, sizeof name, "same-%d.%s", n, *c);
             write_figure(&s.figure.plot.figure, name);
             if (n == 2 || n == 20) {
                 char first[64];
-                snprintf(first, sizeof first, "same-1.%s", formats[i]);
+                snprintf(first, sizeof first, "same-1.%s", *c);
                 expect_same_bytes(first, name);
             }
         }
@@ -117,10 +116,9 @@ TEST(svg_ids_are_unique_and_all_references_resolve)
         assert_true(g_hash_table_add(ids, g_strndup(c, strcspn(c, "\""))));
     }
     int references = 0;
-    static const char *const openings[] = {"href=\"#", "url(#"};
-    for (int kind = 0; kind < 2; kind++) {
-        for (char *c = strstr(svg, openings[kind]); c != NULL; c = strstr(c, openings[kind])) {
-            c += strlen(openings[kind]);
+    for (EACH_TEXT(each, "href=\"#", "url(#")) {
+        for (char *c = strstr(svg, *each); c != NULL; c = strstr(c, *each)) {
+            c += strlen(*each);
             char *id = g_strndup(c, strcspn(c, "\")"));
             assert_true(g_hash_table_contains(ids, id));
             g_free(id);
@@ -177,13 +175,12 @@ TEST(faults_are_sentences)
 
 TEST(a_full_disk_is_noticed)
 {
-    static const char *const names[] = {"full.png", "full.pdf", "full.svg"};
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    for (int i = 0; i < 3; i++) {
+    for (EACH_TEXT(c, "full.png", "full.pdf", "full.svg")) {
         fault f = {0};
-        assert_int_equal(symlink("/dev/full", names[i]), 0);
-        assert_int_equal(figure_write(&s.figure.plot.figure, names[i], &f), STATUS_CANNOT_WRITE);
+        assert_int_equal(symlink("/dev/full", *c), 0);
+        assert_int_equal(figure_write(&s.figure.plot.figure, *c, &f), STATUS_CANNOT_WRITE);
         assert_true(strlen(f.text) > 10);
     }
 }

@@ -26,9 +26,8 @@ TEST(every_figure_is_tidy)
 
 TEST(figures_fit_a_column_of_85_mm)
 {
-    static const char *const ids[] = {"2.1", "2.2", "3.4", "3.11", "4.3", "4.6",
-                                      "5.2", "5.6", "5.7", "T3.1", "T4.2"};
-    for (EACH(c, ids)) {
+    for (EACH_TEXT(c, "2.1", "2.2", "3.4", "3.11", "4.3", "4.6", "5.2", "5.6", "5.7", "T3.1",
+                   "T4.2")) {
         artwork drawn = open_figure(*c, (figure_options){.look.width = 85});
         check_close(drawn.width, 85 / 25.4 * 72, 1e-6);
         artwork_finish(&drawn);
@@ -69,9 +68,8 @@ TEST(figures_say_what_they_show)
 // reads like one of them.
 TEST(the_predictors_figures_have_the_legends_colours)
 {
-    static const char *const ids[] = {"4.4", "4.5"};
-    for (int k = 0; k < 2; k++) {
-        SCOPED(artwork_finish) artwork drawn = open_figure(ids[k], (figure_options){0});
+    for (EACH_TEXT(c, "4.4", "4.5")) {
+        SCOPED(artwork_finish) artwork drawn = open_figure(*c, (figure_options){0});
         int blue = 0;
         cairo_surface_t *surface = page_pixels(&drawn, 1, NULL);
         const int width = cairo_image_surface_get_width(surface);
@@ -230,12 +228,11 @@ TEST(a_second_run_writes_the_same_bytes)
         }
     }
     for (int i = 0; i < 5; i++) {
-        static const char *const endings[] = {"png", "pdf", "svg", "csv"};
-        for (int k = 0; k < 4; k++) {
+        for (EACH_TEXT(c, "png", "pdf", "svg", "csv")) {
             char first[64], second[64];
             const char *file = thesis_figure_find(ids[i])->file;
-            snprintf(first, sizeof first, "once/%s.%s", file, endings[k]);
-            snprintf(second, sizeof second, "twice/%s.%s", file, endings[k]);
+            snprintf(first, sizeof first, "once/%s.%s", file, *c);
+            snprintf(second, sizeof second, "twice/%s.%s", file, *c);
             expect_same_bytes(first, second);
         }
     }
@@ -243,12 +240,11 @@ TEST(a_second_run_writes_the_same_bytes)
 
 TEST(fonts_are_embedded_as_outlines)
 {
-    static const char *const ids[] = {"2.1", "T3.2", "4.4"};
-    for (size_t i = 0; i < 3; i++) {
+    for (EACH_TEXT(c, "2.1", "T3.2", "4.4")) {
         size_t length;
         char name[64];
-        DONE(draw_plain(ids[i], "fonts", "pdf", &f));
-        snprintf(name, sizeof name, "fonts/%s.pdf", thesis_figure_find(ids[i])->file);
+        DONE(draw_plain(*c, "fonts", "pdf", &f));
+        snprintf(name, sizeof name, "fonts/%s.pdf", thesis_figure_find(*c)->file);
         SCOPED(free_kept) char *pdf = read_file(name, &length);
         assert_null(memmem(pdf, length, "/Type3", 6));
         assert_non_null(memmem(pdf, length, "/FontFile2", 10));
@@ -257,11 +253,10 @@ TEST(fonts_are_embedded_as_outlines)
 
 TEST(themes_change_the_page)
 {
-    static const char *const ids[] = {"3.4", "4.1", "T2.1"};
-    for (size_t i = 0; i < 3; i++) {
+    for (EACH_TEXT(c, "3.4", "4.1", "T2.1")) {
         for (figure_theme theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
             SCOPED(artwork_finish)
-            artwork drawn = open_figure(ids[i], (figure_options){.look.theme = theme});
+            artwork drawn = open_figure(*c, (figure_options){.look.theme = theme});
             cairo_surface_t *surface = page_pixels(&drawn, 1, NULL);
             unsigned char corner = cairo_image_surface_get_data(surface)[4];
             assert_true(theme == THEME_DARK ? corner < 60 : corner > 250);
@@ -371,10 +366,9 @@ TEST(captions_say_whose_shading_it_is)
 // Simulation and bench stand over the same seconds.
 TEST(chapters_2_and_3_have_one_time_axis)
 {
-    static const char *const ids[] = {"2.4", "2.5", "2.6", "3.2"};
-    for (size_t i = 0; i < G_N_ELEMENTS(ids); i++) {
+    for (EACH_TEXT(c, "2.4", "2.5", "2.6", "3.2")) {
         static figure_report r;
-        SCOPED(artwork_finish) artwork drawn = open_figure(ids[i], (figure_options){0});
+        SCOPED(artwork_finish) artwork drawn = open_figure(*c, (figure_options){0});
         record_page(&drawn, &r);
 
         // the last tick stands at the panel's right end
@@ -384,7 +378,7 @@ TEST(chapters_2_and_3_have_one_time_axis)
             found = found || (strcmp(r.texts[k].text, "1.0") == 0 &&
                               fabs(p.x + p.width / 2 - r.panels[0].x - r.panels[0].width) < 0.6);
         }
-        fail_if(!found, "%s: its time axis does not end at 1.0 s", ids[i]);
+        fail_if(!found, "%s: its time axis does not end at 1.0 s", *c);
     }
 }
 
@@ -418,12 +412,11 @@ TEST(the_last_link_goes_through_the_contact_point)
 
 TEST(the_algorithm_has_the_thesis_numbers)
 {
-    static const char *const numbers[] = {"1", "2", "2.1", "2.2", "3", "3.1", "3.2", "4"};
     SCOPED(free_kept) char *csv = csv_of("T3.2");
     const char *at = csv;
-    for (size_t i = 0; i < G_N_ELEMENTS(numbers); i++) {
+    for (EACH_TEXT(c, "1", "2", "2.1", "2.2", "3", "3.1", "3.2", "4")) {
         char start[8];
-        snprintf(start, sizeof start, "\n%s,", numbers[i]);
+        snprintf(start, sizeof start, "\n%s,", *c);
         at = strstr(at, start);
         assert_non_null(at);
         at++;

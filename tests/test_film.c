@@ -344,15 +344,14 @@ static void stop_now(int number)
 // An encoder that hangs, before the first frame or after the last, is left at the first signal.
 TEST(test_encoder_hangs)
 {
-    static const char *const scripts[] = {"#!/bin/sh\ntrap '' TERM\nexec sleep 1000\n",
-                                          "#!/bin/sh\ncat >/dev/null\nexec sleep 1000\n"};
     SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
     options.stop = &stopped;
     struct sigaction act = {.sa_handler = stop_now};
     sigaction(SIGALRM, &act, NULL);
-    for (int i = 0; i < 2; i++) {
-        char *old = with_encoder(scripts[i]);
+    for (EACH_TEXT(c, "#!/bin/sh\ntrap '' TERM\nexec sleep 1000\n",
+                   "#!/bin/sh\ncat >/dev/null\nexec sleep 1000\n")) {
+        char *old = with_encoder(*c);
         int before = count_files(test_folder);
         stopped = 0;
         alarm(1);

@@ -67,8 +67,7 @@ TEST(test_the_force_near_a_fold_is_that_of_another_engine)
 // Neither do the strides of chains lead through a fold, nor to a release in it.
 TEST(test_no_step_leads_through_a_fold)
 {
-    const char *const voltages[] = {"motor.voltage=8.6", "motor.voltage=8.8", "motor.voltage=9.8"};
-    for (EACH(c, voltages)) {
+    for (EACH_TEXT(c, "motor.voltage=8.6", "motor.voltage=8.8", "motor.voltage=9.8")) {
         SCOPED(run_finish) run_result r;
         run_with(SETTINGS("wall.kind=plane", "wall.angle=0.0018", "wall.restitution=0.08",
                           "arm.mass=1.5", "arm.length=0.3", "arm.hub_inertia=0.00036",

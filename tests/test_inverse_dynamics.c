@@ -192,9 +192,8 @@ TEST(rigid_body_torque_leaves_vibration)
 // Open-loop: what it believes of the stiffness is what it gets.
 TEST(wrong_stiffness_costs)
 {
-    const char *const factors[] = {"belief.k2_factor=0.8", "belief.k2_factor=1.2"};
-    for (int i = 0; i < 2; i++) {
-        travelled wrong = travel(given("motor.stiction=0 %s", factors[i]));
+    for (EACH_TEXT(c, "belief.k2_factor=0.8", "belief.k2_factor=1.2")) {
+        travelled wrong = travel(given("motor.stiction=0 %s", *c));
         check_below(0.02, wrong.left_moving);
         check_below(0.01, wrong.tip_error);
         check_below(wrong.tip_error, 0.1);
@@ -216,15 +215,14 @@ static const event *first_impact(const run_result *r)
 
 TEST(tip_meets_the_wall_as_fast_as_planned)
 {
-    const double speeds[] = {0.1, 0.2, 0.4, 0.8};
-    for (int i = 0; i < 4; i++) {
+    for (EACH_OF(double, c, 0.1, 0.2, 0.4, 0.8)) {
         for (int seed = 1; seed <= 5; seed++) {
             char speed[48];
-            snprintf(speed, sizeof speed, "control.arrival_speed=%g", speeds[i]);
+            snprintf(speed, sizeof speed, "control.arrival_speed=%g", *c);
             SCOPED(run_finish)
             run_result r = rig_run(
                 given("control.law=inverse-dynamics %s control.seed=%d", speed, seed), false);
-            check_relative(first_impact(&r)->speed, speeds[i], 0.03);
+            check_relative(first_impact(&r)->speed, *c, 0.03);
             check_close(first_impact(&r)->time, 0.583, 0.006);
             check_close(r.summary.steady_force_N, 1, 0.03);
         }
@@ -234,13 +232,12 @@ TEST(tip_meets_the_wall_as_fast_as_planned)
 // Sampled fast and without friction the force is the planned one through the impact and after it.
 TEST(force_follows_its_plan)
 {
-    const char *const speeds[] = {"control.arrival_speed=0", "control.arrival_speed=0.3"};
-    for (int i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "control.arrival_speed=0", "control.arrival_speed=0.3")) {
         SCOPED(run_finish)
         run_result r =
             rig_run(given("control.law=inverse-dynamics sensor.ideal=true motor.stiction=0 "
                           "control.rate=5000 control.transition_time=0.1 %s",
-                          speeds[i]),
+                          *c),
                     true);
         for (size_t k = 0; k < r.trace.row_count; k++) {
             const sample *row = &r.trace.rows[k];

@@ -14,9 +14,8 @@ static double peak(const explorer *ex)
 // again.
 TEST(test_opening_loses_nothing)
 {
-    static const char *const ways[] = {"]", "[", "o/three<Enter>", ":open thesis/fig-3-4<Enter>",
-                                       ":lesson hybrid-law<Enter>"};
-    for (EACH(c, ways)) {
+    for (EACH_TEXT(c, "]", "[", "o/three<Enter>", ":open thesis/fig-3-4<Enter>",
+                   ":lesson hybrid-law<Enter>")) {
         OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, ":seek 0.1<Enter>:set motor.voltage 0.5<Enter>b:seek 0.3<Enter>");
         const double changed = peak(&ex);

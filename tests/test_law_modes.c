@@ -11,11 +11,10 @@ static void assert_pictured(explorer *ex, int width, int height, glyph_set set, 
 TEST(test_the_panel_is_whole_on_every_screen)
 {
     static const int sizes[][2] = {{80, 24}, {100, 30}, {120, 40}, {200, 60}};
-    static const char *const laws[] = {
-        "hybrid",     "recovering",  "force-pd",  "force-integral", "discontinuous", "optimal",
-        "predictive", "speed-limit", "open-loop", "bang-bang",      "reverse-torque"};
     OPEN_EXPLORER(ex, "compare/hybrid");
-    for (EACH(c, laws)) {
+    for (EACH_TEXT(c, "hybrid", "recovering", "force-pd", "force-integral", "discontinuous",
+                   "optimal", "predictive", "speed-limit", "open-loop", "bang-bang",
+                   "reverse-torque")) {
         char line[64], mode[MODE_NAME_SIZE], wanted[64];
         snprintf(line, sizeof line, "law %s", *c);
         assert_true(explorer_carry_out(&ex, line));
@@ -61,15 +60,14 @@ TEST(test_one_key_goes_through_the_modes)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.9<Enter>");
-    static const char *const modes[] = {"approach", "impact", "force"};
-    for (int i = 0; i < 3; i++) {
+    for (EACH_TEXT(c, "approach", "impact", "force")) {
         char wanted[64];
         press(&ex, "L");
         // going on replaces the lock made at the same instant
         assert_int_equal(ex.state.session.input_count, 1);
-        snprintf(wanted, sizeof wanted, "locked: %s (F frees)", modes[i]);
+        snprintf(wanted, sizeof wanted, "locked: %s (F frees)", *c);
         assert_shows(&ex, wanted);
-        snprintf(wanted, sizeof wanted, "[%s]", modes[i]);
+        snprintf(wanted, sizeof wanted, "[%s]", *c);
         assert_shows(&ex, wanted);
     }
     press(&ex, "L");

@@ -6,13 +6,10 @@
 // A model-based law waits for its command not at all, for part of a period, or for all of it.
 TEST(laws_know_any_delay)
 {
-    static const char *const laws[] = {"control.law=optimal", "control.law=observer"};
-    static const char *const delays[] = {"control.delay_periods=0", "control.delay_periods=0.5",
-                                         "control.delay_periods=1"};
-    for (int i = 0; i < 2; i++) {
-        for (int k = 0; k < 3; k++) {
-            const summary s =
-                rig_summary_with("%s %s control.delay=0 control.force=1", laws[i], delays[k]);
+    for (EACH_TEXT(c, "control.law=optimal", "control.law=observer")) {
+        for (EACH_TEXT(each, "control.delay_periods=0", "control.delay_periods=0.5",
+                       "control.delay_periods=1")) {
+            const summary s = rig_summary_with("%s %s control.delay=0 control.force=1", *c, *each);
             assert_true(s.impacts >= 1);
             check_relative(s.steady_force_N, 1.0, 0.1);
         }
@@ -21,9 +18,8 @@ TEST(laws_know_any_delay)
 
 TEST(a_motor_without_torque_is_said)
 {
-    static const char *const laws[] = {"control.law=optimal", "control.law=observer"};
-    for (int i = 0; i < 2; i++) {
-        check_refused(given("%s motor.amplifier_gain=0", laws[i]), "it needs a motor");
+    for (EACH_TEXT(c, "control.law=optimal", "control.law=observer")) {
+        check_refused(given("%s motor.amplifier_gain=0", *c), "it needs a motor");
     }
 }
 

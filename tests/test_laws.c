@@ -123,13 +123,11 @@ TEST(the_thesis_needs_its_200_hertz)
 // w' = -(kv/I1) w becomes w(k + 1) = w(k) - (kv T/I1) w(k - 1), stable below kv = I1/T.
 TEST(the_rate_limits_the_velocity_gain)
 {
-    const double rates[] = {100, 150, 200, 300, 500};
-    for (int i = 0; i < 5; i++) {
+    for (EACH_OF(double, c, 100, 150, 200, 300, 500)) {
         assert_int_equal(
-            failures_of(given("control.rate=%g control.kv=%g", rates[i], 0.55 * 5.2e-3 * rates[i])),
-            0);
-        assert_true(failures_of(given("control.rate=%g control.kv=%g", rates[i],
-                                      1.6 * 5.2e-3 * rates[i])) >= 4);
+            failures_of(given("control.rate=%g control.kv=%g", *c, 0.55 * 5.2e-3 * *c)), 0);
+        assert_true(failures_of(given("control.rate=%g control.kv=%g", *c, 1.6 * 5.2e-3 * *c)) >=
+                    4);
     }
 }
 
@@ -162,14 +160,12 @@ TEST(optimal_law_beats_the_hybrid)
 
 TEST(optimal_law_stands_wrong_beliefs)
 {
-    const char *const beliefs[] = {"belief.k2_factor=0.8", "belief.k2_factor=1.2",
-                                   "belief.wall_error=0.02", "belief.wall_error=-0.02"};
-    const char *const forces[] = {"control.force=0.5", "control.force=1", "control.force=2",
-                                  "control.force=3"};
-    for (int i = 0; i < 4; i++) {
-        for (int k = 0; k < 4; k++) {
-            summary hybrid = rig_summary_with("control.law=hybrid %s %s", forces[k], beliefs[i]);
-            summary optimal = rig_summary_with("control.law=optimal %s %s", forces[k], beliefs[i]);
+    for (EACH_TEXT(c, "belief.k2_factor=0.8", "belief.k2_factor=1.2", "belief.wall_error=0.02",
+                   "belief.wall_error=-0.02")) {
+        for (EACH_TEXT(each, "control.force=0.5", "control.force=1", "control.force=2",
+                       "control.force=3")) {
+            summary hybrid = rig_summary_with("control.law=hybrid %s %s", *each, *c);
+            summary optimal = rig_summary_with("control.law=optimal %s %s", *each, *c);
             check_close(optimal.separations, 0, 0);
             // (a law that stays below the command has no overshoot to be beaten)
             check_below(optimal.force_over_command_N,
@@ -182,11 +178,10 @@ TEST(optimal_law_stands_wrong_beliefs)
 // The approach goes as fast as the limit on the force allows, wherever the wall is.
 TEST(predictive_law_keeps_its_limit)
 {
-    const double limits[] = {0.7, 1, 1.5, 2};
-    for (int i = 0; i < 4; i++) {
+    for (EACH_OF(double, c, 0.7, 1, 1.5, 2)) {
         for (int k = 0; k < 8; k++) {
             char limit[48];
-            snprintf(limit, sizeof limit, "control.force_limit=%g", limits[i]);
+            snprintf(limit, sizeof limit, "control.force_limit=%g", *c);
             summary fast =
                 rig_summary_with("control.law=predictive %s control.seed=%d initial.angle=%g "
                                  "control.force=0.5 control.approach_voltage=5",
@@ -194,10 +189,10 @@ TEST(predictive_law_keeps_its_limit)
             summary blind = rig_summary_with("control.law=optimal control.seed=%d initial.angle=%g "
                                              "control.force=0.5 control.approach_voltage=5",
                                              k, -0.2 - 0.013 * k);
-            check_below(fast.peak_force_N, limits[i]);
+            check_below(fast.peak_force_N, *c);
             check_below(2, blind.peak_force_N);
             // and no slower than that needs: the limit is nearly used
-            check_below(0.75 * limits[i], fast.peak_force_N);
+            check_below(0.75 * *c, fast.peak_force_N);
         }
     }
 }
@@ -236,10 +231,9 @@ TEST(same_tip_speed_at_another_phase_gives_another_peak)
 TEST(slower_approach_hits_softer)
 {
     double last = HUGE_VAL;
-    const char *const limits[] = {"control.speed_limit=0.6", "control.speed_limit=0.4",
-                                  "control.speed_limit=0.2"};
-    for (int i = 0; i < 3; i++) {
-        summary s = rig_summary_with("control.law=speed-limit %s run.duration=2.5", limits[i]);
+    for (EACH_TEXT(c, "control.speed_limit=0.6", "control.speed_limit=0.4",
+                   "control.speed_limit=0.2")) {
+        summary s = rig_summary_with("control.law=speed-limit %s run.duration=2.5", *c);
         check_below(s.contact_impulse_Ns, last);
         last = s.contact_impulse_Ns;
     }
@@ -249,11 +243,9 @@ TEST(slower_approach_hits_softer)
 // that regulates it.
 TEST(every_law_ends_near_its_force)
 {
-    const char *const laws[] = {"control.law=hybrid",         "control.law=force-pd",
-                                "control.law=reverse-torque", "control.law=speed-limit",
-                                "control.law=discontinuous",  "control.law=recovering",
-                                "control.law=optimal",        "control.law=bang-bang"};
-    for (EACH(c, laws)) {
+    for (EACH_TEXT(c, "control.law=hybrid", "control.law=force-pd", "control.law=reverse-torque",
+                   "control.law=speed-limit", "control.law=discontinuous", "control.law=recovering",
+                   "control.law=optimal", "control.law=bang-bang")) {
         summary s = rig_summary_with("%s", *c);
         check_close(s.steady_force_N, 1, 0.05);
     }
@@ -279,8 +271,7 @@ TEST(recovering_law_returns_to_position_control)
 // Spring and beam in series: a wall believed d rad off costs d k K/(k + K) of torque, K = 4 k2.
 TEST(impedance_gives_way_by_its_stiffness)
 {
-    static const double stiffness[] = {5, 20, 40};
-    for (EACH(c, stiffness)) {
+    for (EACH_OF(double, c, 5, 20, 40)) {
         summary right = rig_summary_with(
             "control.law=impedance motor.stiction=0 control.settings=stiffness=%g", *c);
         summary off = rig_summary_with("control.law=impedance motor.stiction=0 "
@@ -349,11 +340,6 @@ TEST(settings_are_numbers_within_limits)
         {"gain=1 gain=5", 5, 3},
         {"gains=4 gain=-1", -1, 4},
     };
-    static const char *const wrong[] = {
-        "gain",   "gain=",    "gain=x",  "gain=5x",   "gain=5,",    "gain=1e",   "gain=nan",
-        "gain=-", "gain==5",  "gain=5=", "gain=8.01", "gain=-4.01", "gain=inf",  "gains=-1e-9",
-        "gai=5",  "gainss=5", "=5",      "5",         "gain=5 x",   "gain=5 =1",
-    };
     parameters p = rig_parameters(NULL);
     fault f = {0};
     for (EACH(one, right)) {
@@ -364,7 +350,9 @@ TEST(settings_are_numbers_within_limits)
         check_close(values[0], one->gain, 0);
         check_close(values[1], one->gains, 0);
     }
-    for (EACH(c, wrong)) {
+    for (EACH_TEXT(c, "gain", "gain=", "gain=x", "gain=5x", "gain=5,", "gain=1e", "gain=nan",
+                   "gain=-", "gain==5", "gain=5=", "gain=8.01", "gain=-4.01", "gain=inf",
+                   "gains=-1e-9", "gai=5", "gainss=5", "=5", "5", "gain=5 x", "gain=5 =1")) {
         double values[2];
         strcpy(p.control.settings, *c);
         fail_if(controller_values(&law, &p, values, &f) != STATUS_BAD_SCENARIO,
@@ -376,9 +364,8 @@ TEST(settings_are_numbers_within_limits)
 // Admittance ends where the reading is right, wherever the wall is and however stiff the beam.
 TEST(admittance_ends_with_the_force)
 {
-    static const char *const wrong[] = {"belief.wall_error=0.02", "belief.k2_factor=0.75",
-                                        "belief.torque_factor=0.85", "control.force=2"};
-    for (EACH(c, wrong)) {
+    for (EACH_TEXT(c, "belief.wall_error=0.02", "belief.k2_factor=0.75",
+                   "belief.torque_factor=0.85", "control.force=2")) {
         summary s = rig_summary_with("control.law=admittance run.duration=2 %s", *c);
         check_close(s.steady_error_N, 0, 0.05);
         check_below(s.force_over_command_N, 0.2 * s.force_command_N);
@@ -389,15 +376,13 @@ TEST(admittance_ends_with_the_force)
 // and costs little where the belief was right.
 TEST(the_impact_angle_can_be_measured)
 {
-    static const char *const sources[] = {"control.impact_angle=film",
-                                          "control.impact_angle=accelerometer"};
     static const char *const beliefs[] = {"belief.wall_error=-0.02", "belief.wall_error=0",
                                           "belief.wall_error=0.02"};
     for (int b = 0; b < 3; b++) {
         summary told = rig_summary_with("control.law=hybrid %s", beliefs[b]);
         check_close(fabs(told.steady_error_N), b == 1 ? 0 : 0.13, 0.02);
-        for (int i = 0; i < 2; i++) {
-            summary s = rig_summary_with("control.law=hybrid %s %s", sources[i], beliefs[b]);
+        for (EACH_TEXT(c, "control.impact_angle=film", "control.impact_angle=accelerometer")) {
+            summary s = rig_summary_with("control.law=hybrid %s %s", *c, beliefs[b]);
             check_below(fabs(s.steady_error_N), 0.06);
             assert_int_equal(s.separations, 0);
         }

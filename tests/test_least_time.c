@@ -36,9 +36,8 @@ static int torque_of(const parameters *p, const least_time *t, double *torque)
 TEST(full_voltage_either_way_has_it)
 {
     parameters p = fixture_parameters(SETTINGS(START));
-    static const double forces[] = {0.5, 1, 4};
-    for (int i = 0; i < 3; i++) {
-        least_time t = least_time_of(&p, forces[i], 0.05, 2 * forces[i]);
+    for (EACH_OF(double, c, 0.5, 1, 4)) {
+        least_time t = least_time_of(&p, *c, 0.05, 2 * *c);
         double torque[4000], tip, press;
         int n = torque_of(&p, &t, torque);
         least_time_follow(&p, torque, n, &tip, &press);

@@ -30,10 +30,8 @@ static void go_through(explorer *ex, const char *name)
 
 TEST(test_a_copy_keeps_its_lesson)
 {
-    static const char *const names[] = {"lessons/impulse-and-force", "lessons/two-predictors",
-                                        "lessons/step-size",         "lessons/beta-and-gamma",
-                                        "lessons/hybrid-law",        "lessons/what-a-sensor-sees"};
-    for (EACH(c, names)) {
+    for (EACH_TEXT(c, "lessons/impulse-and-force", "lessons/two-predictors", "lessons/step-size",
+                   "lessons/beta-and-gamma", "lessons/hybrid-law", "lessons/what-a-sensor-sees")) {
         SCOPED(scenario_finish) scenario s = shipped(*c);
         scenario copy = read_again(&s);
         SCOPED(explorer_finish) explorer ex;

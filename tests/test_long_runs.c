@@ -92,13 +92,11 @@ static void assert_as_from_the_start(const session *s)
 
 TEST(a_resumed_run_is_the_run_from_the_start)
 {
-    static const char *const names[] = {
-        "corrected/first-impact", "corrected/newmark",   "corrected/restitution",
-        "corrected/spring-hub",   "corrected/stuck-hub", "corrected/five-links",
-        "corrected/pull-away",    "compare/hybrid",      "thesis/fig-3-4"};
     random_generator random;
     random_seed(&random, 7);
-    for (EACH(c, names)) {
+    for (EACH_TEXT(c, "corrected/first-impact", "corrected/newmark", "corrected/restitution",
+                   "corrected/spring-hub", "corrected/stuck-hub", "corrected/five-links",
+                   "corrected/pull-away", "compare/hybrid", "thesis/fig-3-4")) {
         SCOPED(session_finish) session s;
         fault f = {0};
         open_lasting(&s, *c, "3", HUGE_VAL);

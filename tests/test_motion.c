@@ -67,12 +67,11 @@ TEST(a_single_rod_follows_its_closed_form)
 // of it, the sine of a parabola, has its say in how long that is.
 TEST(a_rod_that_gathers_speed_meets_the_wall_where_it_is)
 {
-    static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
-    for (int i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
         SCOPED(run_finish)
         run_result r = run(SETTINGS("arm.links=1", "motor.back_emf=0", "motor.viscous_friction=0",
                                     "motor.stiction=0", "motor.voltage=8", "wall.angle=2.5",
-                                    "wall.restitution=0.95", walls[i], "run.duration=3"));
+                                    "wall.restitution=0.95", *c, "run.duration=3"));
         const double torque = 8 * 6.02 * 0.249092 * 9.80665 / 33.6;
         const double t = sqrt(2 * 2.5 * (0.40108 / 3 + 5.2e-3) / torque);
         check_close(r.summary.first_contact_s, t, 1e-12);
@@ -141,9 +140,8 @@ TEST(an_arm_inside_a_rigid_wall_is_never_ok)
 // what is within stiction or slides is not.
 TEST(a_hub_held_beyond_stiction_is_noted)
 {
-    static const char *const engines[] = {"method.engine=pair", "method.engine=stiff"};
-    for (int i = 0; i < 2; i++) {
-        const parameters p = fixture_parameters(SETTINGS("motor.stiction=1e3", engines[i]));
+    for (EACH_TEXT(c, "method.engine=pair", "method.engine=stiff")) {
+        const parameters p = fixture_parameters(SETTINGS("motor.stiction=1e3", *c));
         arm a = arm_of(&p);
         SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         motion_report r;
@@ -424,15 +422,14 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
             check_close(r.summary.first_pulse_s, c->released, 1e-6);
         }
     }
-    static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
-    for (int i = 0; i < 2; i++) {
-        SCOPED(run_finish) run_result r = run(SETTINGS("arm.links=2", walls[i], "wall.angle=0"));
+    for (EACH_TEXT(each, "wall.contact=rigid", "wall.contact=kelvin-voigt")) {
+        SCOPED(run_finish) run_result r = run(SETTINGS("arm.links=2", *each, "wall.angle=0"));
         assert_true(r.summary.first_contact_s > 0.05);
         run_finish(&r);
 
         // behind a spring the tip swings off as the fourth power of the time
         r = run(SETTINGS("arm.hub_joint=spring", "arm.k1=276", "arm.k2=64", "motor.voltage=2",
-                         walls[i], "wall.angle=0"));
+                         *each, "wall.angle=0"));
         check_close(r.summary.first_contact_s, 0.0262512050, 1e-9);
         assert_true(r.summary.first_pulse_peak_N > 1);
     }
@@ -442,12 +439,11 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
 // comes from 1 nm in front of it.
 TEST(an_arm_that_moves_into_the_wall_is_in_contact)
 {
-    static const char *const walls[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
-    for (int i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "wall.contact=kelvin-voigt", "wall.contact=hunt-crossley")) {
         SCOPED(run_finish)
-        run_result at = run(SETTINGS(walls[i], "wall.angle=0", "initial.velocity=1"));
+        run_result at = run(SETTINGS(*c, "wall.angle=0", "initial.velocity=1"));
         run_result before =
-            run(SETTINGS(walls[i], "wall.angle=0", "initial.velocity=1", "initial.angle=-1e-9"));
+            run(SETTINGS(*c, "wall.angle=0", "initial.velocity=1", "initial.angle=-1e-9"));
         check_close(at.summary.first_contact_s, 0, 0);
         check_relative(at.summary.first_pulse_peak_N, before.summary.first_pulse_peak_N, 1e-5);
         check_relative(at.summary.peak_force_N, before.summary.peak_force_N, 1e-5);
@@ -476,8 +472,7 @@ TEST(an_arm_on_the_wall_does_not_strike_it)
 // What rounding leaves of the gap's rate in contact neither strikes nor lifts off.
 TEST(a_push_of_nothing_changes_nothing)
 {
-    static const char *const arms[] = {"arm.links=2", "arm.links=12", "arm.tip_mass=0.01"};
-    for (EACH(c, arms)) {
+    for (EACH_TEXT(c, "arm.links=2", "arm.links=12", "arm.tip_mass=0.01")) {
         enum { PUSHES = 20 };
         action todo[PUSHES];
         for (int k = 0; k < PUSHES; k++) {

@@ -229,16 +229,3 @@ TEST(a_small_inductance_is_none_in_the_limit)
     }
     check_close(log2((momentum[1] - momentum[0]) / (momentum[2] - momentum[0])), 1, 0.1);
 }
-
-TEST(what_belongs_to_a_current_drive_is_refused_with_a_voltage)
-{
-    const char *const paths[] = {"motor.transconductance"};
-    for (int i = 0; i < 1; i++) {
-        parameters p;
-        fault f;
-        parameters_defaults(&p, ARM_CORRECTED);
-        assert_int_equal(parameter_set_text(&p, parameter_find(paths[i]), "0.5", &f), STATUS_OK);
-        assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
-        assert_string_equal(f.path, paths[i]);
-    }
-}

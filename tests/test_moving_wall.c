@@ -38,8 +38,7 @@ TEST(a_driven_spring_has_its_amplitude_and_phase)
     arm a = arm_of(&p);
     const double length = a.link_length, k = 2000, c = 20, u = 1e-5;
     const double inertia = a.hub_inertia + a.link_mass * length * length / 3;
-    static const char *const frequencies[] = {"2", "15", "20", "60"};
-    for (EACH(one, frequencies)) {
+    for (EACH_TEXT(one, "2", "15", "20", "60")) {
         const double w = 2 * M_PI * atof(*one), period = 2 * M_PI / w;
         const double lre = length * length * k - inertia * w * w, lim = length * length * w * c;
         const double d = lre * lre + lim * lim;
@@ -94,10 +93,9 @@ TEST(a_rigid_wall_leads_the_tip)
 // leaves a wall at rest: seen from the wall. The sine is slow enough to be straight.
 TEST(a_wall_at_constant_speed_is_one_at_rest_seen_from_it)
 {
-    static const double shares[] = {0, 0.5, 1};
-    for (size_t i = 0; i < 3; i++) {
+    for (EACH_OF(double, c, 0, 0.5, 1)) {
         char e[64];
-        snprintf(e, sizeof e, "wall.restitution=%g", shares[i]);
+        snprintf(e, sizeof e, "wall.restitution=%g", *c);
         const parameters p =
             fixture_parameters(SETTINGS(PRESSED_LINK, "arm.tilt=0", "initial.angle=-0.01", e,
                                         "wall.motion_amplitude=10", "wall.motion_frequency=0.001"));
@@ -108,7 +106,7 @@ TEST(a_wall_at_constant_speed_is_one_at_rest_seen_from_it)
         const double meets = asin(place / 10) / w, speed = 10 * w * cos(w * meets);
         const passage done = move_on(&a, m, meets + 1e-3, 1000);
         assert_int_equal(done.impacts, 1);
-        const double turns = -(1 + shares[i]) * speed / (a.link_length * cos(0.01));
+        const double turns = -(1 + *c) * speed / (a.link_length * cos(0.01));
         const double inertia = a.hub_inertia + a.link_mass * a.link_length * a.link_length / 3;
         check_relative(state_velocities(m, m->state)[0], turns, 1e-5);
         check_relative(done.momentum, -inertia * turns / (a.link_length * cos(0.01)), 1e-5);
@@ -119,10 +117,9 @@ TEST(a_wall_at_constant_speed_is_one_at_rest_seen_from_it)
 // An arm at rest that a wall strikes gets the impulse with which it would strike the wall.
 TEST(only_the_relative_velocity_counts_at_an_impact)
 {
-    static const char *const kinds[] = {"wall.kind=plane", "wall.kind=point"};
-    for (size_t i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "wall.kind=plane", "wall.kind=point")) {
         const parameters p = fixture_parameters(
-            SETTINGS("arm.links=3", "arm.hub_joint=spring", "wall.angle=0.2", kinds[i]));
+            SETTINGS("arm.links=3", "arm.hub_joint=spring", "wall.angle=0.2", *c));
         arm still, comes;
         arm_init(&still, &p);
         comes = still;

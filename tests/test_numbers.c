@@ -72,8 +72,7 @@ TEST(decimals_are_read_with_what_follows)
 
 TEST(what_is_no_decimal_is_refused)
 {
-    const char *const texts[] = {"", "x", "0x10", "inf", "nan", "-.", " 1", "+-1", "e5"};
-    for (EACH(c, texts)) {
+    for (EACH_TEXT(c, "", "x", "0x10", "inf", "nan", "-.", " 1", "+-1", "e5")) {
         double value;
         const char *rest;
         assert_false(decimal_read(*c, &value, &rest));
@@ -155,9 +154,7 @@ TEST(decimals)
     assert_true(decimal_read("-1.5e2  N", &value, &rest));
     check_close(value, -150, 0);
     assert_string_equal(rest, "N");
-    static const char *const none[] = {"",     "x",   "-",    ".",   "+-1",
-                                       "0x10", "inf", ".inf", "nan", " 1"};
-    for (EACH(c, none)) {
+    for (EACH_TEXT(c, "", "x", "-", ".", "+-1", "0x10", "inf", ".inf", "nan", " 1")) {
         assert_false(decimal_read(*c, &value, &rest));
     }
 }
