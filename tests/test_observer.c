@@ -234,11 +234,10 @@ TEST(a_touch_loses_energy)
 
 TEST(overshoot_is_small_when_told_the_truth)
 {
-    const char *const forces[] = {"control.force=0.5", "control.force=1", "control.force=2",
-                                  "control.force=4"};
-    for (int i = 0; i < 4; i++) {
-        summary hybrid = rig_summary_with("control.law=hybrid %s", forces[i]);
-        summary s = rig_summary_with("control.law=observer %s", forces[i]);
+    for (EACH_TEXT(c, "control.force=0.5", "control.force=1", "control.force=2",
+                   "control.force=4")) {
+        summary hybrid = rig_summary_with("control.law=hybrid %s", *c);
+        summary s = rig_summary_with("control.law=observer %s", *c);
         check_below(s.force_over_command_N, 0.1 * s.force_command_N);
         check_below(s.settling_time_s, 0.3);
         check_below(s.first_contact_s + s.settling_time_s,
@@ -250,24 +249,13 @@ TEST(overshoot_is_small_when_told_the_truth)
 // What no table covered: each within 30 %, settled, steady within 5 %.
 TEST(wrong_beliefs_do_no_harm)
 {
-    const char *const beliefs[] = {"belief.mass_factor=0.85",
-                                   "belief.mass_factor=1.15",
-                                   "belief.friction_factor=0.7",
-                                   "belief.friction_factor=1.3",
-                                   "belief.wall_error=0.03",
-                                   "belief.wall_error=-0.03",
-                                   "belief.k2_factor=0.75",
-                                   "belief.k2_factor=1.25",
-                                   "belief.torque_factor=0.85",
-                                   "belief.torque_factor=1.15",
-                                   "initial.angle=-0.6",
-                                   "wall.kind=plane",
-                                   "wall.restitution=0.3",
-                                   "belief.hub_spring_factor=10",
-                                   "sensor.fsr_noise=0.06",
-                                   "sensor.tachometer_offset=0.02",
-                                   "sensor.tachometer_offset=-0.02"};
-    for (EACH(c, beliefs)) {
+    for (EACH_TEXT(c, "belief.mass_factor=0.85", "belief.mass_factor=1.15",
+                   "belief.friction_factor=0.7", "belief.friction_factor=1.3",
+                   "belief.wall_error=0.03", "belief.wall_error=-0.03", "belief.k2_factor=0.75",
+                   "belief.k2_factor=1.25", "belief.torque_factor=0.85",
+                   "belief.torque_factor=1.15", "initial.angle=-0.6", "wall.kind=plane",
+                   "wall.restitution=0.3", "belief.hub_spring_factor=10", "sensor.fsr_noise=0.06",
+                   "sensor.tachometer_offset=0.02", "sensor.tachometer_offset=-0.02")) {
         summary s = rig_summary_with("control.law=observer run.duration=2 %s", *c);
         check_below(s.force_over_command_N, 0.3);
         assert_false(isnan(s.settling_time_s));
@@ -278,10 +266,9 @@ TEST(wrong_beliefs_do_no_harm)
 // A tip thrown back is met softly: the second meeting is no harder than the command allows.
 TEST(walls_that_throw_back_are_met_softly)
 {
-    static const char *const walls[] = {"wall.restitution=0.1", "wall.restitution=0.2",
-                                        "wall.contact=kelvin-voigt wall.stiffness=1000",
-                                        "wall.contact=kelvin-voigt wall.stiffness=5000"};
-    for (EACH(c, walls)) {
+    for (EACH_TEXT(c, "wall.restitution=0.1", "wall.restitution=0.2",
+                   "wall.contact=kelvin-voigt wall.stiffness=1000",
+                   "wall.contact=kelvin-voigt wall.stiffness=5000")) {
         for (int newtons = 1; newtons <= 3; newtons += 2) {
             summary s = rig_summary_with("control.law=observer run.duration=2 control.force=%d %s",
                                          newtons, *c);
@@ -304,8 +291,7 @@ TEST(a_delay_untold_does_no_harm)
 // Arms of more links than it is told of, and arms that it is told of.
 TEST(it_settles_on_many_links)
 {
-    static const int links[] = {3, 5, 8};
-    for (EACH(c, links)) {
+    for (EACH_OF(int, c, 3, 5, 8)) {
         for (int told = 0; told < 2; told++) {
             summary s = rig_summary_with("control.law=observer arm.damping_ratio=0.01 "
                                          "arm.links=%d belief.links=%d",
@@ -332,10 +318,9 @@ static controller_setup setup_of(const parameters *p)
 // Behind a spring a torque is no force at once, and a limit on that force is none of the command.
 TEST(a_hub_on_a_spring_does_not_swing)
 {
-    static const char *const springs[] = {"arm.k1=90", "arm.k1=150", "arm.k1=300"};
-    for (int i = 0; i < 3; i++) {
-        summary s = rig_summary_with("control.law=observer control.force=2 arm.hub_joint=spring %s",
-                                     springs[i]);
+    for (EACH_TEXT(c, "arm.k1=90", "arm.k1=150", "arm.k1=300")) {
+        summary s =
+            rig_summary_with("control.law=observer control.force=2 arm.hub_joint=spring %s", *c);
         check_below(s.settling_time_s, 0.3);
         check_close(s.steady_error_N, 0, 0.05);
     }
@@ -392,14 +377,9 @@ static observer_arms arms_after(const char *const *settings)
 // other arm.
 TEST(readings_tell_which_arm_it_is)
 {
-    static const char *const told[] = {
-        "",
-        "belief.k2_factor=1.2",
-        "belief.mass_factor=0.87",
-        "arm.links=3 belief.links=3",
-        "arm.links=8 belief.links=8 arm.damping_ratio=0.01",
-    };
-    for (EACH(c, told)) {
+    for (EACH_TEXT(c, "", "belief.k2_factor=1.2", "belief.mass_factor=0.87",
+                   "arm.links=3 belief.links=3",
+                   "arm.links=8 belief.links=8 arm.damping_ratio=0.01")) {
         assert_int_equal(arms_after(given("control.law=observer %s", *c)).on, 0);
     }
 
@@ -447,8 +427,7 @@ TEST(a_wall_that_gives_is_found)
 // what was believed, and the force at the end does not depend on it.
 TEST(it_learns_how_stiff_the_arm_is)
 {
-    static const double wrong[] = {0.75, 1.25};
-    for (EACH(c, wrong)) {
+    for (EACH_OF(double, c, 0.75, 1.25)) {
         const char *const settings[] = {"control.law=observer", NULL};
         parameters p = rig_parameters(settings);
         p.belief.k2_factor = *c;
@@ -527,12 +506,11 @@ TEST(the_tip_comes_back_no_faster_than_it_came)
 // Walls that give, and that throw the tip back: it comes to rest on them with the wanted force.
 TEST(it_settles_on_walls_that_give)
 {
-    static const char *const walls[] = {
-        "kelvin-voigt wall.stiffness=200",   "kelvin-voigt wall.stiffness=2e4",
-        "kelvin-voigt wall.stiffness=1e6",   "kelvin-voigt wall.stiffness=1e5 wall.mass=0.01",
-        "hunt-crossley wall.stiffness=5000", "hunt-crossley wall.stiffness=7.5e4",
-        "hunt-crossley wall.stiffness=1e6"};
-    for (EACH(c, walls)) {
+    for (EACH_TEXT(c, "kelvin-voigt wall.stiffness=200", "kelvin-voigt wall.stiffness=2e4",
+                   "kelvin-voigt wall.stiffness=1e6",
+                   "kelvin-voigt wall.stiffness=1e5 wall.mass=0.01",
+                   "hunt-crossley wall.stiffness=5000", "hunt-crossley wall.stiffness=7.5e4",
+                   "hunt-crossley wall.stiffness=1e6")) {
         summary s = rig_summary_with("control.law=observer run.duration=2.5 wall.contact=%s", *c);
         check_below(s.settling_time_s, 1.5);
         check_below(s.separations, 40);

@@ -146,18 +146,16 @@ TEST(wall_and_friction_leave_open_what_the_force_is)
         "wall: {restitution: 0.5}\n",
         "wall: {angle: 0.1, kind: plane}\ninitial: {angle: 0.1}\n",
     };
-    static const double volts[] = {1, 0.2, 9};
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
-        for (int j = 0; j < 3; j++) {
+        for (EACH_OF(double, c, 1, 0.2, 9)) {
             char text[300];
             snprintf(text, sizeof text, "%s%srun: {duration: 4}\n" SETS,
-                     strncmp(ways[i], "arm", 3) == 0 ? "" : "arm: {links: 1}\n", ways[i], 0.0,
-                     volts[j]);
+                     strncmp(ways[i], "arm", 3) == 0 ? "" : "arm: {links: 1}\n", ways[i], 0.0, *c);
             SCOPED(run_finish) run_result r = run_of(text);
             const summary *s = &r.summary;
             const double length = i == 6 ? 0.5 : 1;
-            const double least = (torque_of(volts[j]) - kst) / length;
-            const double most = (torque_of(volts[j]) + kst) / length;
+            const double least = (torque_of(*c) - kst) / length;
+            const double most = (torque_of(*c) + kst) / length;
             check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
             check_bounds(s->peak_force_low_N, s->peak_force_high_N, least, most);
             if (i == 7) {
@@ -178,20 +176,19 @@ TEST(wall_and_friction_leave_open_what_the_force_is)
 // Where the motor pulls, less than friction holds, the wall may press as hard as that.
 TEST(a_link_that_rests_may_be_pressed_or_not)
 {
-    static const double volts[] = {0.05, 0, -0.05};
-    for (int i = 0; i < 3; i++) {
+    for (EACH_OF(double, c, 0.05, 0, -0.05)) {
         char text[200];
         snprintf(text, sizeof text,
-                 "arm: {links: 1}\nmotor: {voltage: %g}\ninitial: {angle: 0.1}\n", volts[i]);
+                 "arm: {links: 1}\nmotor: {voltage: %g}\ninitial: {angle: 0.1}\n", *c);
         run_result at_start = run_of(text);
-        const double least = torque_of(volts[i]) - kst, most = torque_of(volts[i]) + kst;
+        const double least = torque_of(*c) - kst, most = torque_of(*c) + kst;
         const summary *s = &at_start.summary;
         check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
         check_bounds(s->peak_force_low_N, s->peak_force_high_N, least, most);
         run_finish(&at_start);
 
         // the same after an impact and less and less of a command
-        snprintf(text, sizeof text, "arm: {links: 1}\n" SETS, 0.5, volts[i]);
+        snprintf(text, sizeof text, "arm: {links: 1}\n" SETS, 0.5, *c);
         SCOPED(run_finish) run_result later = run_of(text);
         s = &later.summary;
         check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
@@ -299,13 +296,12 @@ TEST(a_link_that_is_stopped_sticks_whatever_rounding_says)
 // Steps too long for the hub's decay stop the link at the wall, too, and it presses.
 TEST(a_link_stops_in_long_steps)
 {
-    static const char *const methods[] = {"newmark", "generalized-alpha"};
-    for (int i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "newmark", "generalized-alpha")) {
         char text[200];
         snprintf(text, sizeof text,
                  "arm: {links: 1}\nmotor: {viscous_friction: 150, voltage: 9}\n"
                  "wall: {angle: 0.02}\nmethod: {name: %s, step: 0.01}\nrun: {duration: 2}\n",
-                 methods[i]);
+                 *c);
         SCOPED(run_finish) run_result r = run_of(text);
         check_relative(r.summary.steady_force_N, torque_of(9), 1e-12);
         check_close(row_at(&r, 2)->hub_velocity, 0, 0);

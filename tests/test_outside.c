@@ -90,11 +90,10 @@ static parameters parameters_of(const struct outside_case *c)
 SWEEP_TEST(one_list_has_all_that_names_a_file)
 {
     assert_int_equal(CASES, outside_count);
-    static const char *const own[] = {"control.settings", "control.lock", "control.k2_table",
-                                      "control.playback_column"};
     for (int i = 0; i < parameter_count; i++) {
         bool known = parameter_table[i].type != PARAMETER_TEXT;
-        for (EACH(c, own)) {
+        for (EACH_TEXT(c, "control.settings", "control.lock", "control.k2_table",
+                       "control.playback_column")) {
             known = known || strcmp(parameter_table[i].path, *c) == 0;
         }
         for (int k = 0; k < outside_count; k++) {

@@ -18,11 +18,10 @@ static const char *set_list(parameters *p, const char *path, const char *text, f
 
 TEST(lists_are_written_in_one_way)
 {
-    static const char *const same[] = {"10,12.5,9",          "10, 12.5, 9",  "[10, 12.5, 9]",
-                                       " [ 10 ,12.5 , 9 ] ", "1e1,12.50,9.", "10 N m/rad, 12.5, 9"};
     parameters p;
     fault f;
-    for (EACH(c, same)) {
+    for (EACH_TEXT(c, "10,12.5,9", "10, 12.5, 9", "[10, 12.5, 9]", " [ 10 ,12.5 , 9 ] ",
+                   "1e1,12.50,9.", "10 N m/rad, 12.5, 9")) {
         assert_string_equal(set_list(&p, "arm.joint_stiffness", *c, &f), "10, 12.5, 9");
     }
 

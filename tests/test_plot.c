@@ -79,24 +79,11 @@ TEST(all_texts_of_a_run_are_drawn)
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     record(&s.figure.plot.figure, &r);
-    static const char *const wanted[] = {"Synthetic run & <more>",
-                                         "Time t (s)",
-                                         "Contact force f (N)",
-                                         "Angle (rad)",
-                                         "Angular velocity (rad\u2060/\u2060s)",
-                                         "\u03b81  hub",
-                                         "\u03b83  last link",
-                                         "wall",
-                                         "contact",
-                                         "peak 2.10\u2009N",
-                                         "release",
-                                         "Impulse\n(N\u00b7s)",
-                                         "0.044",
-                                         "0.009",
-                                         "\u22120.4",
-                                         "0.4"};
-    for (size_t i = 0; i < G_N_ELEMENTS(wanted); i++) {
-        expect_text(&r, wanted[i]);
+    for (EACH_TEXT(c, "Synthetic run & <more>", "Time t (s)", "Contact force f (N)", "Angle (rad)",
+                   "Angular velocity (rad\u2060/\u2060s)", "\u03b81  hub", "\u03b83  last link",
+                   "wall", "contact", "peak 2.10\u2009N", "release", "Impulse\n(N\u00b7s)", "0.044",
+                   "0.009", "\u22120.4", "0.4")) {
+        expect_text(&r, *c);
     }
     assert_int_equal(r.panel_count, RUN_PANELS);
     assert_true(r.insets[0].width > 0);
@@ -105,12 +92,11 @@ TEST(all_texts_of_a_run_are_drawn)
 
 TEST(nothing_is_clipped_or_covered)
 {
-    static const double widths[] = {0, 85, 120, 260};
-    for (int i = 0; i < 4; i++) {
+    for (EACH_OF(double, c, 0, 85, 120, 260)) {
         for (int theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
             SCOPED(synthetic_finish) synthetic s;
             synthetic_init(&s, run_panels, RUN_PANELS);
-            s.figure.plot.figure.width = widths[i];
+            s.figure.plot.figure.width = *c;
             s.figure.plot.figure.theme = theme;
             expect_tidy(&s.figure.plot.figure);
         }
@@ -259,14 +245,13 @@ TEST(a_spike_of_one_sample_is_visible)
 TEST(points_that_are_not_finite_leave_a_gap)
 {
     enum { COUNT = 101 };
-    const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
-    for (int kind = 0; kind < 3; kind++) {
+    for (EACH_OF(double, c, (double)NAN, (double)INFINITY, -(double)INFINITY)) {
         double x[COUNT], y[COUNT];
         for (int i = 0; i < COUNT; i++) {
             x[i] = i / 100.0;
-            y[i] = i > 40 && i < 60 ? bad[kind] : 0.5;
+            y[i] = i > 40 && i < 60 ? *c : 0.5;
         }
-        x[80] = bad[kind];
+        x[80] = *c;
         figure_series series = {.x = x, .y = y, .count = COUNT, .colour = 5};
         figure_panel panel = {.series = &series, .series_count = 1, .y.low = 0, .y.high = 1};
         figure fig = {.panels = &panel, .panel_count = 1};

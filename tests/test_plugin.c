@@ -65,12 +65,10 @@ TEST(modes_of_a_plugin_are_its_own)
 TEST(command_that_is_not_finite_stops_the_run)
 {
     char file[160];
-    const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
-    for (int i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "arm.model=corrected", "arm.model=printed")) {
         SCOPED(run_finish) run_result r;
         plugin_setting(file, sizeof file, broken_file);
-        scenario s = {.parameters =
-                          rig_parameters_with("control.law=plugin %s %s", file, models[i])};
+        scenario s = {.parameters = rig_parameters_with("control.law=plugin %s %s", file, *c)};
         assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
         assert_non_null(strstr(r.summary.message, "at t = 0.1 s the controller 'broken'"));
         check_close(r.trace.rows[r.trace.row_count - 1].time, 0.1, 0.0011);

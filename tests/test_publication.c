@@ -9,11 +9,10 @@
 TEST(bare_pages_have_no_title_and_no_caption)
 {
     static figure_report r;
-    static const char *const some[] = {"2.2", "3.4", "4.3", "T3.1"};
-    for (size_t k = 0; k < G_N_ELEMENTS(some); k++) {
+    for (EACH_TEXT(c, "2.2", "3.4", "4.3", "T3.1")) {
         figure_options dressed = {.look.width = 120}, bare = {.look = {.width = 120, .bare = true}};
         SCOPED(artwork_finish)
-        artwork a = open_figure(some[k], dressed), b = open_figure(some[k], bare);
+        artwork a = open_figure(*c, dressed), b = open_figure(*c, bare);
         check_below(b.height, a.height - 12);
         record_page(&b, &r);
         char *start = g_strndup(b.title, 12);

@@ -150,10 +150,8 @@ static void fly(const observer_design *d, double *z, double torque)
 // torque beyond the limits, and hardly later than by the bound.
 TEST(the_plan_does_what_it_says)
 {
-    static const char *const starts[] = {"initial.angle=-0.06", "initial.angle=-0.1",
-                                         "initial.angle=-0.35"};
-    for (int i = 0; i < 3; i++) {
-        parameters p = fixture_parameters(SETTINGS(starts[i], "wall.angle=0"));
+    for (EACH_TEXT(c, "initial.angle=-0.06", "initial.angle=-0.1", "initial.angle=-0.35")) {
+        parameters p = fixture_parameters(SETTINGS(*c, "wall.angle=0"));
         const observer_design d = design_of(&p);
         const double most = motor_torque_per_volt(&p.motor) * VOLTS;
         double z[ESTIMATOR_STATES];

@@ -143,11 +143,10 @@ static void library_agrees(void **state)
 static void implicit_methods_converge(void **state)
 {
     (void)state;
-    const char *const methods[] = {"newmark", "generalized-alpha"};
     reference_answer r = reference_of(&cases[0]);
-    for (int i = 0; i < 2; i++) {
-        summary coarse = library_of(&cases[0], methods[i], 1e-3);
-        summary fine = library_of(&cases[0], methods[i], 1e-4);
+    for (EACH_TEXT(c, "newmark", "generalized-alpha")) {
+        summary coarse = library_of(&cases[0], *c, 1e-3);
+        summary fine = library_of(&cases[0], *c, 1e-4);
         double errors[3][2] = {
             {coarse.first_contact_s - r.first_contact, fine.first_contact_s - r.first_contact},
             {coarse.contact_impulse_Ns - r.first_impulse,

@@ -39,9 +39,7 @@ TEST(delay_shifts_the_command)
 // largest of the rows.
 TEST(a_command_still_on_its_way_does_not_count)
 {
-    static const char *const ends[] = {"run.duration=0.32", "run.duration=0.3102",
-                                       "run.duration=0.305"};
-    for (EACH(c, ends)) {
+    for (EACH_TEXT(c, "run.duration=0.32", "run.duration=0.3102", "run.duration=0.305")) {
         SCOPED(run_finish)
         run_result r = rig_run(given("control.law=force-pd control.force_gain=5 "
                                      "control.delay=0.003068 control.seed=423 %s",
@@ -59,13 +57,12 @@ TEST(a_command_still_on_its_way_does_not_count)
 // where jitter brings that one early.
 TEST(a_command_a_period_late_goes_out_with_the_next_sample)
 {
-    const char *const jitters[] = {"control.jitter=0", "control.jitter=0.002"};
-    for (int k = 0; k < 2; k++) {
+    for (EACH_TEXT(c, "control.jitter=0", "control.jitter=0.002")) {
         rig *r;
         bool changed;
         double latest = 0;
         parameters p = rig_parameters_with(
-            "control.law=force-pd control.delay_periods=1 %s sensor.ideal=true", jitters[k]);
+            "control.law=force-pd control.delay_periods=1 %s sensor.ideal=true", *c);
         DONE(rig_create(&r, &p, NULL, &f));
         for (int i = 0; i < 300; i++) {
             // forces that never repeat, so that every command is another one

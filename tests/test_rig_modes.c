@@ -51,10 +51,8 @@ TEST(every_lockable_law_stays_in_every_mode_of_its_own)
 
 TEST(approach_means_the_approach_command)
 {
-    static const char *const laws[] = {"hybrid",   "recovering",     "reverse-torque",
-                                       "force-pd", "force-integral", "discontinuous",
-                                       "optimal"};
-    for (EACH(c, laws)) {
+    for (EACH_TEXT(c, "hybrid", "recovering", "reverse-torque", "force-pd", "force-integral",
+                   "discontinuous", "optimal")) {
         SCOPED(run_finish)
         run_result r =
             locked_run(given("control.law=%s control.approach_voltage=0.8", *c), "approach");
@@ -215,9 +213,8 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
 // the law goes for where the wall is believed to be; what it then presses with is what is wanted.
 TEST(pressing_from_the_start_finds_the_wall)
 {
-    const char *const laws[] = {"control.law=optimal", "control.law=predictive"};
-    for (int i = 0; i < 2; i++) {
-        summary s = rig_summary_with("%s control.lock=press", laws[i]);
+    for (EACH_TEXT(c, "control.law=optimal", "control.law=predictive")) {
+        summary s = rig_summary_with("%s control.lock=press", *c);
         check_close(s.steady_force_N, 1, 0.03);
         check_below(s.peak_force_N, 2);
         check_close(s.separations, 0, 0);

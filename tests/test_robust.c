@@ -87,20 +87,16 @@ TEST(cases_are_what_differs)
     robust_set_finish(&set);
 
     // what is no case, and a case that cannot be
-    static const char *const wrong[] = {"control.seed=1,2\ncase no colon\n",
-                                        "control.seed=1,2\ncase a: push=0.05\n",
-                                        "control.seed=1,2\ncase a: nonsense\n",
-                                        "case a:\n",
-                                        "control.seed=1,2\ncase : arm.links=3\n",
-                                        "control.seed=1,2\ncase a: push=0.1@-1\n",
-                                        "control.seed=1,2\ncase a: push=0.1@1 s\n",
-                                        "control.seed=1,2\ncase a: push=1e999@0.1\n",
-                                        "control.seed=1,2\ncase a: push=0.1@1e999\n",
-                                        "control.seed=1,2\ncase a: push=much@1\n",
-                                        "control.seed=1,2\ncase a: push=0.1@soon\n",
-                                        ("control.seed=1,2\ncase a: push=1@1; push=1@2; push=1@3;"
-                                         "push=1@4; push=1@5\n")};
-    for (EACH(c, wrong)) {
+    for (EACH_TEXT(
+             c, "control.seed=1,2\ncase no colon\n", "control.seed=1,2\ncase a: push=0.05\n",
+             "control.seed=1,2\ncase a: nonsense\n", "case a:\n",
+             "control.seed=1,2\ncase : arm.links=3\n", "control.seed=1,2\ncase a: push=0.1@-1\n",
+             "control.seed=1,2\ncase a: push=0.1@1 s\n",
+             "control.seed=1,2\ncase a: push=1e999@0.1\n",
+             "control.seed=1,2\ncase a: push=0.1@1e999\n",
+             "control.seed=1,2\ncase a: push=much@1\n", "control.seed=1,2\ncase a: push=0.1@soon\n",
+             ("control.seed=1,2\ncase a: push=1@1; push=1@2; push=1@3;"
+              "push=1@4; push=1@5\n"))) {
         assert_int_equal(read_set(&set, *c, &f), STATUS_BAD_ARGUMENT);
         robust_set_finish(&set); // as callers do
     }
@@ -152,8 +148,7 @@ TEST(pushes_of_a_case_must_act)
 // Whatever stands in the place of a set is refused once, and the caller goes on.
 TEST(what_is_no_set_is_refused)
 {
-    static const char *const places[] = {".", "/dev/full", "/dev/zero", "/dev/null", "/nowhere"};
-    for (EACH(c, places)) {
+    for (EACH_TEXT(c, ".", "/dev/full", "/dev/zero", "/dev/null", "/nowhere")) {
         SCOPED(robust_set_finish) robust_set set;
         fault f = {0};
         const status code = robust_set_read(&set, *c, &f);

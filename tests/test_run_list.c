@@ -171,17 +171,16 @@ TEST(test_an_integral_has_its_own_unit)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "X:trace force gap_velocity hub_acceleration contact<Enter>");
-    static const char *const units[] = {" N s ", " m ", " rad/s "};
     for (int narrow = 0; narrow < 2; narrow++) {
         SCOPED(free_kept)
         char *text = picture(&ex, narrow ? 100 : 140, 40, GLYPHS_BRAILLE);
         char *line = text;
-        for (int i = 0; i < 3; i++) {
+        for (EACH_TEXT(c, " N s ", " m ", " rad/s ")) {
             line = strstr(line + 1, narrow ? "\u222b" : "integral");
             assert_non_null(line);
             const size_t length = strcspn(line, "\n");
-            const char *unit = memmem(line, length, units[i], strlen(units[i]));
-            fail_if(unit == NULL, "no '%s' in '%.*s'", units[i], (int)length, line);
+            const char *unit = memmem(line, length, *c, strlen(*c));
+            fail_if(unit == NULL, "no '%s' in '%.*s'", *c, (int)length, line);
         }
 
         // a state has the time that it is on

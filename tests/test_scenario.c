@@ -181,9 +181,8 @@ TEST(faults_of_one_line_are_told_from_left_to_right)
     sentences all;
     const char *text = "{wall: {knd: 3}, script: [{at: x}], w: 1, arm: {lnks: 3}}\n";
     assert_int_equal(parse(&s, text, &all), STATUS_BAD_SCENARIO);
-    static const char *const wrong[] = {"'knd'", "at", "'w'", "'lnks'"};
     const char *before = all.text;
-    for (EACH(c, wrong)) {
+    for (EACH_TEXT(c, "'knd'", "at", "'w'", "'lnks'")) {
         const char *at = strstr(before, *c);
         assert_non_null(at);
         before = at;

@@ -50,11 +50,10 @@ TEST(columns_count_characters)
 // No sentence may carry what a terminal would obey.
 TEST(sentences_are_printable)
 {
-    static const char *const texts[] = {
-        "arm: {k2: \"\\e[31m\"}\n", "\"\\a\\e]0;x\": 1\n", "arm: {\"a\\nb\": 1}\n",
-        "arm: {model: \"\\x9b31m\"}\n",
-        "arm: {k2: aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\xc3\xa4}\n"};
-    for (EACH(one, texts)) {
+    for (EACH_TEXT(
+             one, "arm: {k2: \"\\e[31m\"}\n", "\"\\a\\e]0;x\": 1\n", "arm: {\"a\\nb\": 1}\n",
+             "arm: {model: \"\\x9b31m\"}\n",
+             "arm: {k2: aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\xc3\xa4}\n")) {
         scenario s;
         sentences all;
         assert_int_equal(parse(&s, *one, &all), STATUS_BAD_SCENARIO);

@@ -155,8 +155,7 @@ TEST(test_camera_words)
     assert_int_equal(view.kind, CAMERA_FREE);
     check_close(view.azimuth, -60, 0);
     check_close(view.elevation, 40.5, 0);
-    static const char *const wrong[] = {"", "front", "10", "10,", "10,0", "400,40", "1,2,3"};
-    for (EACH(c, wrong)) {
+    for (EACH_TEXT(c, "", "front", "10", "10,", "10,0", "400,40", "1,2,3")) {
         assert_false(camera_read(*c, &view));
     }
 }

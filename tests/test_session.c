@@ -105,14 +105,11 @@ static void assert_same_before(const trace *a, const trace *b, double time)
 
 TEST(test_what_is_before_a_change_stays_to_the_last_bit)
 {
-    static const char *const names[] = {"corrected/first-impact", "corrected/generalized-alpha",
-                                        "corrected/newmark",      "corrected/five-links",
-                                        "corrected/restitution",  "corrected/stuck-hub",
-                                        "compare/hybrid",         "thesis/fig-3-4",
-                                        "corrected/spring-hub"};
     random_generator random;
     random_seed(&random, 6);
-    for (EACH(c, names)) {
+    for (EACH_TEXT(c, "corrected/first-impact", "corrected/generalized-alpha", "corrected/newmark",
+                   "corrected/five-links", "corrected/restitution", "corrected/stuck-hub",
+                   "compare/hybrid", "thesis/fig-3-4", "corrected/spring-hub")) {
         OPEN_SESSION(s, *c);
         for (int k = 0; k < 24; k++) {
             session_seek(&s, random_uniform(&random) * session_end(&s));
@@ -208,9 +205,8 @@ TEST(test_no_change_puts_the_arm_behind_the_wall)
 
 TEST(test_a_saved_scenario_reproduces_the_run)
 {
-    static const char *const names[] = {"corrected/first-impact", "corrected/voltage-step",
-                                        "corrected/three-links"};
-    for (EACH(c, names)) {
+    for (EACH_TEXT(c, "corrected/first-impact", "corrected/voltage-step",
+                   "corrected/three-links")) {
         OPEN_SESSION(s, *c);
         session_seek(&s, 0.123);
         change(&s, "motor.voltage", "0.7");

@@ -48,20 +48,18 @@ TEST(a_gesture_is_one_step)
     assert_int_equal(session_new_gesture(&s), 5);
 
     // those without a gesture one by one
-    static const int left[] = {6, 5, 4, 1, 0};
-    for (int i = 0; i < 5; i++) {
+    for (EACH_OF(int, c, 6, 5, 4, 1, 0)) {
         DONE(session_undo(&s, &f));
-        assert_int_equal(s.input_count, left[i]);
+        assert_int_equal(s.input_count, *c);
         assert_int_equal(s.input_total, 7);
         assert_int_equal(session_new_gesture(&s), 5);
-        check_close(s.now, s.inputs[left[i]].seen_at, 0);
+        check_close(s.now, s.inputs[*c].seen_at, 0);
     }
     REFUSED(STATUS_BAD_ARGUMENT, "", session_undo(&s, &f));
-    static const int again[] = {1, 4, 5, 6, 7};
-    for (int i = 0; i < 5; i++) {
+    for (EACH_OF(int, each, 1, 4, 5, 6, 7)) {
         DONE(session_redo(&s, &f));
-        assert_int_equal(s.input_count, again[i]);
-        check_close(s.now, s.inputs[again[i] - 1].time, 0);
+        assert_int_equal(s.input_count, *each);
+        check_close(s.now, s.inputs[*each - 1].time, 0);
     }
     REFUSED(STATUS_BAD_ARGUMENT, "", session_redo(&s, &f));
 

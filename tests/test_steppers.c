@@ -100,9 +100,8 @@ TEST(orders_are_as_published)
 
 TEST(newmark_without_damping_keeps_the_amplitude)
 {
-    double steps[] = {0.1, 1, 10, 1000};
-    for (int i = 0; i < 4; i++) {
-        check_close(spectral_radius(steps[i], "method.name=newmark", "method.beta=0.25"), 1, 1e-3);
+    for (EACH_OF(double, c, 0.1, 1, 10, 1000)) {
+        check_close(spectral_radius(*c, "method.name=newmark", "method.beta=0.25"), 1, 1e-3);
     }
 }
 

@@ -68,11 +68,10 @@ TEST(a_program_hears_and_answers)
 // Signals that the lab ignores or holds back are a program's as usual.
 TEST(a_program_takes_every_signal)
 {
-    static const int some[] = {SIGHUP, SIGPIPE, SIGUSR1, SIGTERM, 64};
     sigset_t held, before;
     sigfillset(&held);
     sigprocmask(SIG_SETMASK, &held, &before);
-    for (EACH(c, some)) {
+    for (EACH_OF(int, c, SIGHUP, SIGPIPE, SIGUSR1, SIGTERM, 64)) {
         char command[64];
         void (*was)(int) = signal(*c, SIG_IGN);
         snprintf(command, sizeof command, "kill -%d $$; exit 1", *c);

@@ -243,9 +243,8 @@ TEST(more_axes_than_there_may_be_are_refused)
 // Rows of runs that the sweep does not have are the work of others.
 TEST(rows_that_are_no_runs_are_refused)
 {
-    static const char *const changes[] = {"UPDATE run SET run = 0 WHERE run = 1",
-                                          "UPDATE run SET run = 9 WHERE run = 1"};
-    for (EACH(c, changes)) {
+    for (EACH_TEXT(c, "UPDATE run SET run = 0 WHERE run = 1",
+                   "UPDATE run SET run = 9 WHERE run = 1")) {
         SCOPED(sweep_finish) sweep s;
         must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
         sweep_store *store = must_open("rows.sqlite", &s);

@@ -69,10 +69,8 @@ TEST(a_grid_has_both_ends)
 
 TEST(what_is_no_axis_is_refused)
 {
-    static const char *const wrong[] = {"",          "1:2",   "1:2:0", "1:2:3:lag", "1:2:3:log:4",
-                                        "0:1:3:log", "x:1:3", "1,,2",  "1:2:1e9",   "-1:2:3",
-                                        "1:2:2.5"};
-    for (EACH(c, wrong)) {
+    for (EACH_TEXT(c, "", "1:2", "1:2:0", "1:2:3:lag", "1:2:3:log:4", "0:1:3:log", "x:1:3", "1,,2",
+                   "1:2:1e9", "-1:2:3", "1:2:2.5")) {
         SCOPED(sweep_axis_finish) sweep_axis axis = {.parameter = parameter_find("arm.k2")};
         fault f = {0};
         char text[64];
@@ -101,10 +99,9 @@ TEST(a_refusal_says_what_is_expected)
     check_refused("control.settings", "1:2:3", false, "is a text");
     check_refused("arm.joint_stiffness", "1:2:3", false, "its first number is");
     check_refused("arm.k2[1]", "1:2:3", false, "is no list");
-    static const char *const no_numbers[] = {"arm.joint_stiffness[0]",  "arm.joint_stiffness[1.5]",
-                                             "arm.joint_stiffness[]",   "arm.joint_stiffness[1",
-                                             "arm.joint_stiffness[1]x", "arm.joint_stiffness[999]"};
-    for (EACH(c, no_numbers)) {
+    for (EACH_TEXT(c, "arm.joint_stiffness[0]", "arm.joint_stiffness[1.5]", "arm.joint_stiffness[]",
+                   "arm.joint_stiffness[1", "arm.joint_stiffness[1]x",
+                   "arm.joint_stiffness[999]")) {
         check_refused(*c, "1:2:3", false, "is no number of a list");
     }
     check_refused("arm.joint_stiffness[1]", "[]:4:2", false, "is no number");

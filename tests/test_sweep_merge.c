@@ -312,13 +312,12 @@ SWEEP_TEST(a_journal_names_no_file_to_delete)
 
     // also where the database is reached by a link
     assert_int_equal(symlink("part", "link"), 0);
-    static const char *const names[] = {"part", "link"};
-    for (int i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "part", "link")) {
         write_journal("part", notes);
         sweep_store *store;
         REFUSED(STATUS_BAD_ARGUMENT, "part-journal' is no journal of this program",
-                sweep_store_open(&store, names[i], &s, &f));
-        check_refused((char *[]){(char *)names[i]}, 1, "no journal");
+                sweep_store_open(&store, *c, &s, &f));
+        check_refused((char *[]){(char *)*c}, 1, "no journal");
         assert_int_equal(access(notes, F_OK), 0);
     }
 

@@ -90,10 +90,9 @@ TEST(a_touch_that_does_not_hold_leaves_its_cell_empty_in_all_rows)
         for (int v = 0; v < TABLE_VOLTAGES; v++) {
             bool holds = isfinite(seen->computed[v]);
             held += holds;
-            const char *others[4] = {"delay_simulation", "max_force_energy", "max_force_dynamics",
-                                     "delay_dynamics"};
-            for (int k = 0; k < 4; k++) {
-                const table_row *other = row_of(names[i], "corrected", others[k]);
+            for (EACH_TEXT(c, "delay_simulation", "max_force_energy", "max_force_dynamics",
+                           "delay_dynamics")) {
+                const table_row *other = row_of(names[i], "corrected", *c);
                 assert_true(isfinite(other->computed[v]) == holds);
             }
         }

@@ -332,11 +332,9 @@ static run_result run(const char *const *settings)
 // Rows so near each other that none of them misses the peak by more than rounding.
 TEST(peaks_are_the_largest_force_there_is)
 {
-    const char *const voltages[] = {"motor.voltage=0.5537109375", "motor.voltage=1",
-                                    "motor.voltage=3.3"};
-    for (int i = 0; i < 3; i++) {
+    for (EACH_TEXT(c, "motor.voltage=0.5537109375", "motor.voltage=1", "motor.voltage=3.3")) {
         SCOPED(run_finish)
-        run_result r = run(SETTINGS(voltages[i], "method.step=2e-6", "run.duration=0.7"));
+        run_result r = run(SETTINGS(*c, "method.step=2e-6", "run.duration=0.7"));
         double largest = 0;
         for (size_t k = 0; k < r.trace.row_count; k++) {
             largest = fmax(largest, r.trace.rows[k].force);
@@ -417,12 +415,11 @@ static moving_arm started(const char *const *settings)
 // motor throws it back.
 TEST(a_slow_start_into_the_wall_is_an_impact)
 {
-    const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
-    for (int i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
         for (double speed = 1e-8; speed < 1e-3; speed *= 10) {
             char velocity[64];
             snprintf(velocity, sizeof velocity, "initial.velocity=%g", speed);
-            moving_arm moving = started(SETTINGS(walls[i], "arm.k2=20000", "motor.voltage=10",
+            moving_arm moving = started(SETTINGS(*c, "arm.k2=20000", "motor.voltage=10",
                                                  "motor.amplifier_gain=1000", "wall.angle=3",
                                                  "initial.angle=3", velocity));
             assert_int_equal(next_event(&moving, 1e-3), MOTION_IMPACT);

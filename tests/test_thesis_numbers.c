@@ -89,14 +89,13 @@ TEST(the_table_of_the_single_run)
     static const char *const pairs[][2] = {
         {"0.2", "0.5"}, {"0.3", "0.5"}, {"0.4", "0.5"}, {"0.4", "0.6"}, {"0.5", "0.5"},
         {"0.5", "0.7"}, {"0.6", "0.5"}, {"0.6", "0.9"}, {"0.7", "0.5"}, {"0.7", "0.9"}};
-    static const char *const steps[] = {"1e-3", "1e-4", "1e-5"};
     for (EACH(one, pairs)) {
         char row[256], beta[32], gamma[32], step[32];
         int used = snprintf(row, sizeof row, "| %s, %s |", (*one)[0], (*one)[1]);
-        for (int k = 0; k < 3; k++) {
+        for (EACH_TEXT(each, "1e-3", "1e-4", "1e-5")) {
             snprintf(beta, sizeof beta, "method.beta=%s", (*one)[0]);
             snprintf(gamma, sizeof gamma, "method.gamma=%s", (*one)[1]);
-            snprintf(step, sizeof step, "method.step=%s", steps[k]);
+            snprintf(step, sizeof step, "method.step=%s", *each);
             SCOPED(forget)
             computed c = run_with("thesis/fig-3-4", SETS("printed.reevaluation=none",
                                                          "run.duration=0.6", beta, gamma, step));
@@ -213,11 +212,10 @@ TEST(errors_of_the_tables)
               100 * tables_mean_error(&fitted, "fitted", "delay_simulation"));
     double off = 0, bias = 0;
     int outside = 0, outside_best = 0;
-    static const char *const names[] = {"4.1", "4.2", "4.3"};
-    for (int k = 0; k < 3; k++) {
-        const table_row *r = row_of(&fitted, names[k], "fitted", "delay_dynamics");
-        const table_row *force = row_of(&fitted, names[k], "fitted", "max_force_simulation");
-        const table_row *delay = row_of(&fitted, names[k], "fitted", "delay_simulation");
+    for (EACH_TEXT(c, "4.1", "4.2", "4.3")) {
+        const table_row *r = row_of(&fitted, *c, "fitted", "delay_dynamics");
+        const table_row *force = row_of(&fitted, *c, "fitted", "max_force_simulation");
+        const table_row *delay = row_of(&fitted, *c, "fitted", "delay_simulation");
         for (int v = 0; v < TABLE_VOLTAGES; v++) {
             const double error_of_cell = (r->computed[v] - r->printed[v]) / r->printed[v];
             off += fabs(error_of_cell) / 12;

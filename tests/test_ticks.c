@@ -158,11 +158,10 @@ TEST(narrow_range_far_from_zero)
 TEST(hopeless_limits)
 {
     ticks t;
-    const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
-    for (int i = 0; i < 3; i++) {
-        ticks_between(&t, 0, bad[i], 5);
+    for (EACH_OF(double, c, (double)NAN, (double)INFINITY, -(double)INFINITY)) {
+        ticks_between(&t, 0, *c, 5);
         assert_int_equal(t.count, 0);
-        ticks_between(&t, bad[i], 0, 5);
+        ticks_between(&t, *c, 0, 5);
         assert_int_equal(t.count, 0);
     }
     ticks_between(&t, 3, 3, 5);

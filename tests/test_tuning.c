@@ -227,12 +227,11 @@ static void extremes_of(const trace *t, double from, double to, double *low, dou
 // degrees, and holds its force on a wall that comes and goes by a millimetre.
 TEST(test_every_law_follows_its_set_point)
 {
-    static const char *const laws[] = {
-        "hybrid",    "recovering", "speed-limit",   "reverse-torque", "bang-bang",  "force-pd",
-        "impedance", "admittance", "discontinuous", "optimal",        "predictive", "observer"};
-    for (size_t i = 0; i < sizeof laws / sizeof *laws; i++) {
+    for (EACH_TEXT(c, "hybrid", "recovering", "speed-limit", "reverse-torque", "bang-bang",
+                   "force-pd", "impedance", "admittance", "discontinuous", "optimal", "predictive",
+                   "observer")) {
         char name[64];
-        snprintf(name, sizeof name, "compare/%s", laws[i]);
+        snprintf(name, sizeof name, "compare/%s", *c);
         session step, ramp, wave, wall;
         session *all[] = {&step, &ramp, &wave, &wall};
         for (int k = 0; k < 4; k++) {
@@ -243,15 +242,15 @@ TEST(test_every_law_follows_its_set_point)
         change(&wall, "wall.motion", "sine");
         session_seek(&wall, 6);
         extremes_of(&wall.run.trace, 3, 6, &low, &high);
-        fail_if(low < 0.9 || high > 1.1, "%s: %g to %g N on a moving wall", laws[i], low, high);
+        fail_if(low < 0.9 || high > 1.1, "%s: %g to %g N on a moving wall", *c, low, high);
 
         session_seek(&step, 2);
         change(&step, "control.force", "1.5");
         session_seek(&step, 4);
         extremes_of(&step.run.trace, 2.15, 4, &low, &high);
-        fail_if(low < 1.425 || high > 1.575, "%s: %g to %g N after a step", laws[i], low, high);
+        fail_if(low < 1.425 || high > 1.575, "%s: %g to %g N after a step", *c, low, high);
         extremes_of(&step.run.trace, 2, 4, &low, &high);
-        fail_if(high > 1.565, "%s: over by %g N", laws[i], high - 1.5);
+        fail_if(high > 1.565, "%s: over by %g N", *c, high - 1.5);
 
         session_seek(&ramp, 2);
         change(&ramp, "control.force_rate", "5");
@@ -260,8 +259,8 @@ TEST(test_every_law_follows_its_set_point)
         const trace *t = &ramp.run.trace;
         for (double time = 2.1; time < 2.4; time += 5e-3) {
             const double is = t->rows[trace_row_at(t, time)].force, wanted = 1 + 5 * (time - 2);
-            fail_if(fabs(is - wanted) > 0.12 * wanted, "%s: %g N at %g s for %g N", laws[i], is,
-                    time, wanted);
+            fail_if(fabs(is - wanted) > 0.12 * wanted, "%s: %g N at %g s for %g N", *c, is, time,
+                    wanted);
         }
 
         change(&wave, "control.force_amplitude", "0.2");
@@ -276,7 +275,7 @@ TEST(test_every_law_follows_its_set_point)
             before = row->time;
         }
         fail_if(fabs(hypot(in_phase, across) - 1) > 0.15 || fabs(atan2(across, in_phase)) > 0.1,
-                "%s: a wave of %g, %g", laws[i], in_phase, across);
+                "%s: a wave of %g, %g", *c, in_phase, across);
         for (int k = 0; k < 4; k++) {
             session_finish(all[k]);
         }
@@ -378,8 +377,7 @@ TEST(what_nobody_took_at_the_start_can_change)
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     const int force = PARAMETER_INDEX(control.force);
-    static const int laws[] = {LAW_NONE, LAW_PROCESS, LAW_HYBRID};
-    for (EACH(c, laws)) {
+    for (EACH_OF(int, c, LAW_NONE, LAW_PROCESS, LAW_HYBRID)) {
         p.control.law = *c;
         assert_true(rig_can_change(&p, force));
         assert_false(rig_can_change(&p, PARAMETER_INDEX(control.law)));

@@ -51,9 +51,8 @@ static double rate_of(const wall_model *w, link_motion l)
 TEST(rates_are_the_derivatives_of_the_penetration)
 {
     const link_motion now = {0.49, 0.08, -0.3, 0.7, 2, -1.5, 0.25, -1.1, 4};
-    const char *const kinds[] = {"wall.kind=point", "wall.kind=plane"};
-    for (int k = 0; k < 2; k++) {
-        wall_model w = wall_of(SETTINGS(kinds[k], "wall.angle=0.2"));
+    for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
+        wall_model w = wall_of(SETTINGS(*c, "wall.angle=0.2"));
         const double h = 1e-5;
         link_motion before = after(now, -h), later = after(now, h);
         wall_contact at = contact_of(&w, now);
@@ -69,9 +68,8 @@ TEST(rates_are_the_derivatives_of_the_penetration)
 
 TEST(a_straight_arm_at_the_walls_angle_touches_it)
 {
-    const char *const kinds[] = {"wall.kind=point", "wall.kind=plane"};
-    for (int k = 0; k < 2; k++) {
-        wall_model w = wall_of(SETTINGS(kinds[k], "wall.angle=0.3"));
+    for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
+        wall_model w = wall_of(SETTINGS(*c, "wall.angle=0.3"));
         link_motion l = {.x = 0.5 * cos(0.3), .y = 0.5 * sin(0.3), .angle = 0.3};
         assert_true(wall_stands(&w));
         check_close(contact_of(&w, l).penetration, 0, 1e-15);
@@ -102,10 +100,9 @@ TEST(slow_impacts_are_plastic)
 // What the spring stores, against the integral.
 TEST(a_soft_walls_force_has_its_energy)
 {
-    static const char *const laws[] = {"wall.contact=kelvin-voigt", "wall.contact=hunt-crossley"};
-    for (int k = 0; k < 2; k++) {
-        const wall_model w = wall_of(
-            SETTINGS(laws[k], "wall.stiffness=2e4", "wall.damping=30", "wall.exponent=1.7"));
+    for (EACH_TEXT(c, "wall.contact=kelvin-voigt", "wall.contact=hunt-crossley")) {
+        const wall_model w =
+            wall_of(SETTINGS(*c, "wall.stiffness=2e4", "wall.damping=30", "wall.exponent=1.7"));
         const double depth = 2e-3;
 
         // the midpoint rule over the depth, without the damper

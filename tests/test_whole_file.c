@@ -150,9 +150,8 @@ TEST_IN_FOLDER(the_standard_output_is_written_or_said_to_be_full)
 
 TEST_IN_FOLDER(what_cannot_be_written_is_said_beforehand)
 {
-    const char *const bad[] = {"nowhere/file", ".", "", "nothing/"};
     put_file("file", "");
-    for (EACH(c, bad)) {
+    for (EACH_TEXT(c, "nowhere/file", ".", "", "nothing/")) {
         whole_file w;
         fault f = {0};
         assert_int_equal(whole_file_check(*c, &f), STATUS_CANNOT_WRITE);
@@ -215,14 +214,13 @@ TEST_IN_FOLDER(only_the_reader_of_the_standard_output_may_leave)
 // or in its place.
 TEST_IN_FOLDER(a_file_may_have_the_first_descriptor)
 {
-    const char *const names[] = {"first", "/dev/null"};
     const int input = dup(0);
     assert_true(input > 0);
-    for (int i = 0; i < 2; i++) {
+    for (EACH_TEXT(c, "first", "/dev/null")) {
         whole_file w;
         fault f = {0};
         close(0);
-        const status opened = whole_file_open(&w, names[i], &f);
+        const status opened = whole_file_open(&w, *c, &f);
         if (opened == STATUS_OK) {
             fputs("text", w.stream);
         }
