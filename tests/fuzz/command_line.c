@@ -4,34 +4,13 @@
 // not 0; nothing that is said has control characters.
 #include "tests/fuzz/fuzz.h"
 
-#include <ctype.h>
 #include <getopt.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include "ui/commands/command.h"
 
 enum { MOST_LINES = 16, MOST_WORDS = 40, MOST_LETTERS = 24, DRAWN_OF = 16 };
-
-// The bytes that are left; at their end there are zeros.
-typedef struct source {
-    const uint8_t *data;
-    size_t size, at;
-} source;
-
-static uint8_t next(source *s)
-{
-    return s->at < s->size ? s->data[s->at++] : 0;
-}
-
-static const char *one_of(source *s, const char *const *words, size_t count)
-{
-    return words[next(s) % count];
-}
-#define ONE_OF(s, ...)                                                                             \
-    one_of(s, (const char *const[]){__VA_ARGS__},                                                  \
-           sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
 
 // A line that is being made.
 typedef struct line {
@@ -50,19 +29,10 @@ static void add(line *l, char *word)
     l->words[l->count++] = word;
 }
 
-// Any letters, but of no path that leaves the folder and no number that takes minutes to compute.
 static char *raw_word(source *s, line *l)
 {
     char word[MOST_LETTERS + 1];
-    const size_t length = next(s) % MOST_LETTERS;
-    int digits = 0;
-    for (size_t i = 0; i < length; i++) {
-        char c = (char)next(s);
-        digits = isdigit((unsigned char)c) ? digits + 1 : 0;
-        const bool kept = c != '\0' && c != '/' && digits < 3 && strchr("eExX~", c) == NULL;
-        word[i] = kept ? c : '_';
-    }
-    word[length] = '\0';
+    fuzz_letters(s, word, MOST_LETTERS);
     l->raw = true;
     return strdup(word[0] == '.' || word[0] == '-' ? "_" : word);
 }

@@ -22,56 +22,6 @@ static size_t random_below(size_t limit)
     return (size_t)(random_state % limit);
 }
 
-// What a damaged file may hold.
-static const char *const pieces[] = {
-    "{",
-    "}",
-    "[",
-    "]",
-    ":",
-    "- ",
-    "\n",
-    "\n  ",
-    "#",
-    "\"",
-    "'",
-    "|\n",
-    ">\n",
-    "&a ",
-    "*a",
-    "!!str ",
-    "---\n",
-    "...\n",
-    "\t",
-    "\xff",
-    "\xc3",
-    "\xef\xbb\xbf",
-    "\xe2\x80\xa8",
-    "%YAML 1.1\n",
-    "? ",
-    "null",
-    "~",
-    "nan",
-    "-1",
-    "1e999",
-    ".inf",
-    "0x1p9",
-    "\"\\0\"",
-    "\"\\e\"",
-    "arm:",
-    "k2: ",
-    "script:\n  - at: 0.1\n    push: 1\n",
-    "set: {motor.voltage: 2 V}",
-    "expect:\n  impacts: {value: 3, tolerance: 0}\n",
-    "at: 1e9",
-    "links: 3",
-    "model: printed",
-    "tolerance: -1",
-    "first_contact_s: null\n",
-    "duration: 1e5",
-    "<<: ",
-};
-
 // Puts `length` bytes in at `at`; returns the new size.
 static size_t insert(char *text, size_t size, size_t at, const char *bytes, size_t length)
 {
@@ -89,7 +39,7 @@ static size_t mutate(char *text, size_t size)
     size_t at = random_below(size + 1);
     size_t length = 1 + random_below(24);
     length = length < size - at ? length : size - at;
-    const char *piece = pieces[random_below(sizeof pieces / sizeof pieces[0])];
+    const size_t which = random_below(1 << 20);
     switch (random_below(5)) {
     case 0: // another byte
         if (at < size) {
@@ -108,8 +58,19 @@ static size_t mutate(char *text, size_t size)
     case 3: // the end is missing, now and then
         return random_below(8) == 0 ? at : size;
     default:
-        return insert(text, size, at, piece, strlen(piece));
+        break;
     }
+
+    // what a damaged file may hold
+    const char *piece = FUZZ_PICK(
+        which, "{", "}", "[", "]", ":", "- ", "\n", "\n  ", "#", "\"", "'", "|\n", ">\n", "&a ",
+        "*a", "!!str ", "---\n", "...\n", "\t", "\xff", "\xc3", "\xef\xbb\xbf", "\xe2\x80\xa8",
+        "%YAML 1.1\n", "? ", "null", "~", "nan", "-1", "1e999", ".inf", "0x1p9", "\"\\0\"",
+        "\"\\e\"", "arm:", "k2: ", "script:\n  - at: 0.1\n    push: 1\n",
+        "set: {motor.voltage: 2 V}", "expect:\n  impacts: {value: 3, tolerance: 0}\n", "at: 1e9",
+        "links: 3", "model: printed", "tolerance: -1", "first_contact_s: null\n", "duration: 1e5",
+        "<<: ");
+    return insert(text, size, at, piece, strlen(piece));
 }
 
 static size_t read_bytes(const char *path, char *text)

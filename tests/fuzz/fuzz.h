@@ -2,11 +2,13 @@
 // libFuzzer calls it (tests/fuzz/run), or driver.c with mutations of the corpus.
 #pragma once
 
+#include <ctype.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -29,6 +31,35 @@ static inline char *fuzz_text(const uint8_t *data, size_t size)
     }
     text[size] = '\0';
     return text;
+}
+
+// The bytes that are left; at their end there are zeros.
+typedef struct source {
+    const uint8_t *data;
+    size_t size, at;
+} source;
+
+static inline uint8_t next(source *s)
+{
+    return s->at < s->size ? s->data[s->at++] : 0;
+}
+
+// One of the texts, by a number or by the next byte: FUZZ_PICK(7, "a", "b"), ONE_OF(s, "a", "b").
+#define FUZZ_PICK(number, ...)                                                                     \
+    (((const char *const[]){                                                                       \
+        __VA_ARGS__})[(number) % (sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))])
+#define ONE_OF(s, ...) FUZZ_PICK(next(s), __VA_ARGS__)
+
+// Any letters, of no path that leaves the folder and no number that takes minutes to compute.
+static inline void fuzz_letters(source *s, char *text, size_t most)
+{
+    int digits = 0;
+    for (size_t left = next(s) % most; left > 0; left--) {
+        const char c = (char)next(s);
+        digits = isdigit((unsigned char)c) ? digits + 1 : 0;
+        *text++ = c != '\0' && digits < 3 && strchr("/~eExX", c) == NULL ? c : '_';
+    }
+    *text = '\0';
 }
 
 // Makes a folder of the target's own the current one, which goes with the program, and empties it.

@@ -2,91 +2,24 @@
 // the kind that its help names and with others, keys by their names, and any letters. The lab draws
 // after each piece, cells that a terminal may show; a text with a key that is none says so. Files
 // are written into a folder of the target's own.
-#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_lab.h"
 
-#include <ctype.h>
-#include <math.h>
-#include <string.h>
-
-#include "src/base/words.h"
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"
-#include "ui/explorer/explorer.h"
 #include "ui/explorer/state/command_list.h"
 
 enum { MOST_PIECES = 24, PIECE = 200 };
 
-// The bytes that are left; at their end there are zeros.
-typedef struct source {
-    const uint8_t *data;
-    size_t size, at;
-} source;
-
-static uint8_t next(source *s)
-{
-    return s->at < s->size ? s->data[s->at++] : 0;
-}
-
-// Any letters, of no path that leaves the folder and no number that takes minutes to compute.
-static void add_letters(source *s, char *text, size_t room)
-{
-    size_t used = strlen(text);
-    int digits = 0;
-    for (int left = next(s) % 12; left > 0 && used + 2 < room; left--) {
-        const char c = (char)next(s);
-        digits = isdigit((unsigned char)c) ? digits + 1 : 0;
-        const bool kept = c != '\0' && digits < 3 && strchr("/~eE", c) == NULL;
-        text[used++] = kept ? c : '_';
-    }
-    text[used] = '\0';
-}
-
 // An argument for a command: a word of its help, something that such words stand for, or letters.
 static void add_argument(source *s, const explorer_command *c, char *text, size_t room)
 {
-    static const char *const values[] = {"0.05",
-                                         "end",
-                                         "-1",
-                                         "2",
-                                         "0",
-                                         "nan",
-                                         "1e9",
-                                         "0.02 0.08",
-                                         "auto",
-                                         "off",
-                                         "next",
-                                         "up",
-                                         "motor.voltage 3",
-                                         "arm.k2=3:5:3",
-                                         "wall.angle 0.2",
-                                         "wall.angle 9",
-                                         "control.law hybrid",
-                                         "run.duration 0.05",
-                                         "force gap",
-                                         "force",
-                                         "out.csv",
-                                         "out.yaml",
-                                         "out.svg",
-                                         "out.png",
-                                         "out.txt",
-                                         "none/out.csv",
-                                         "1 a name",
-                                         "x step 5",
-                                         "x nothing",
-                                         "F2 set motor.voltage 2",
-                                         "impact",
-                                         "hybrid",
-                                         "1 2",
-                                         "134",
-                                         "Control",
-                                         "2 0.5"};
     const size_t used = strlen(text);
     const char *word = c->argument;
     switch (next(s) % 6) {
     case 0:
         return;
     case 1:
-        add_letters(s, text, room);
+        fuzz_letters(s, text + used, 12);
         return;
     case 2: // one of the alternatives
         for (int skip = next(s) % 6; skip > 0 && strchr(word, '|') != NULL; skip--) {
@@ -103,37 +36,39 @@ static void add_argument(source *s, const explorer_command *c, char *text, size_
         return;
     default:
         snprintf(text + used, room - used, "%s",
-                 values[next(s) % (sizeof values / sizeof values[0])]);
+                 ONE_OF(s, "0.05", "end", "-1", "2", "0", "nan", "1e9", "0.02 0.08", "auto", "off",
+                        "next", "up", "motor.voltage 3", "arm.k2=3:5:3", "wall.angle 0.2",
+                        "wall.angle 9", "control.law hybrid", "run.duration 0.05", "force gap",
+                        "force", "out.csv", "out.yaml", "out.svg", "out.png", "out.txt",
+                        "none/out.csv", "1 a name", "x step 5", "x nothing",
+                        "F2 set motor.voltage 2", "impact", "hybrid", "1 2", "134", "Control",
+                        "2 0.5"));
     }
 }
 
 // Whether a command goes through scenarios that take seconds.
 static bool is_left_out(const char *command)
 {
-    static const char *const names[] = {"open", "find", "lesson", "palette", "extend"};
-    bool found = false;
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        found = found || strcmp(command, names[i]) == 0;
-    }
-    return found;
+    char word[64];
+    snprintf(word, sizeof word, " %s ", command);
+    return strstr(" open find lesson palette extend ", word) != NULL;
 }
 
 // The next piece: a command with its argument, a key by its name, or letters.
 static void make_piece(source *s, char text[PIECE])
 {
-    static const char *const names[] = {
-        "<Space>", "<Enter>",  "<Esc>",       "<Tab>",    "<Up>",  "<Down>",   "<Left>",
-        "<Right>", "<PgUp>",   "<S-Up>",      "<S-Left>", "<C-r>", "<F1>",     "<Home>",
-        "<End>",   "<Delete>", "<Backspace>", "<C-l>",    "<",     "<no key>", "<>"};
     const explorer_command *c;
     text[0] = '\0';
     switch (next(s) % 4) {
     case 0:
-        snprintf(text, PIECE, "%s", names[next(s) % (sizeof names / sizeof names[0])]);
+        snprintf(text, PIECE, "%s",
+                 ONE_OF(s, "<Space>", "<Enter>", "<Esc>", "<Tab>", "<Up>", "<Down>", "<Left>",
+                        "<Right>", "<PgUp>", "<S-Up>", "<S-Left>", "<C-r>", "<F1>", "<Home>",
+                        "<End>", "<Delete>", "<Backspace>", "<C-l>", "<", "<no key>", "<>"));
         return;
     case 1:
         // not the keys that open scenarios
-        add_letters(s, text, PIECE);
+        fuzz_letters(s, text, 12);
         for (char *at = text; *at != '\0'; at++) {
             *at = strchr("o[]x\x10", *at) != NULL ? ' ' : *at;
         }
@@ -148,17 +83,13 @@ static void make_piece(source *s, char text[PIECE])
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const char yaml[] = "title: base\nrun: {duration: 0.1 s}\n";
     source s = {data, size, 0};
-    scenario base;
     explorer ex;
     screen shown = {0};
-    fault f = {0};
+    fault f;
     fuzz_folder();
     setenv("XDG_CONFIG_HOME", ".", 1);
-    fuzz_scenario(&base, yaml);
-    FUZZ_CHECK(explorer_init(&ex, &base, HUGE_VAL, &f) == STATUS_OK);
-    ex.state.size = (screen_size){120, 40};
+    fuzz_open_lab(&ex);
 
     for (int i = 0; i < MOST_PIECES && s.at < s.size && !ex.state.quit; i++) {
         char piece[PIECE];
@@ -166,11 +97,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         f = (fault){.code = STATUS_OK};
         const bool pressed = explorer_keys(&ex, piece, &f);
         FUZZ_CHECK(pressed == (f.code == STATUS_OK) && (pressed || f.text[0] != '\0'));
-        FUZZ_CHECK(screen_resize(&shown, 120, 40));
-        explorer_draw(&ex, &shown);
-        for (long place = 0; place < (long)shown.width * shown.height; place++) {
-            FUZZ_CHECK(!is_unprintable(shown.cells[place].glyph));
-        }
+        fuzz_draw(&ex, &shown);
     }
     screen_finish(&shown);
     explorer_finish(&ex);

@@ -1,14 +1,9 @@
 // Lessons of scenario files: what is read keeps the promises of lesson.h and reads back from its
 // own copy; now and then it is gone through in the lab, by its own commands, with wrong answers
 // before.
-#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_lab.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "src/base/words.h"
 #include "src/tables/summary.h"
-#include "ui/explorer/explorer.h"
 
 enum { PLAYED_OF = 8, MOST_STEPS = 12 };
 
@@ -111,11 +106,7 @@ static void play(const scenario *s)
                 explorer_carry_out(&ex, line);
             }
         }
-        FUZZ_CHECK(screen_resize(&shown, 100, 30));
-        explorer_draw(&ex, &shown);
-        for (long place = 0; place < (long)shown.width * shown.height; place++) {
-            FUZZ_CHECK(!is_unprintable(shown.cells[place].glyph));
-        }
+        fuzz_draw(&ex, &shown);
         explorer_carry_out(&ex, "continue");
     }
     screen_finish(&shown);

@@ -1,21 +1,11 @@
 // The lab under any bytes: two a step. The first chooses a key, a piece of a command, the mouse, a
 // byte of an escape sequence or a new size, the second which; then the screen is drawn, of cells
 // that a terminal may show.
-#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/fuzz_lab.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "src/base/words.h"
-#include "ui/explorer/explorer.h"
 #include "ui/terminal/escape_sequence.h"
 
 enum { MOST_STEPS = 60 };
-
-static const char *const lines[] = {
-    "set motor.voltage 2",  "set wall.angle 0.1", "seek 0.05",  "branch",       "undo",
-    "set motor.voltage x",  "panes 27",           "theme mono", "law hybrid",   "law none",
-    "set run.duration 0.2", "colours 16",         "mouse off",  "key x seek 0", "redo"};
 
 static void step(explorer *ex, escape_sequence *sequence, uint8_t kind, uint8_t which)
 {
@@ -28,7 +18,11 @@ static void step(explorer *ex, escape_sequence *sequence, uint8_t kind, uint8_t 
         }
         break;
     case 1:
-        explorer_carry_out(ex, lines[which % (sizeof lines / sizeof lines[0])]);
+        explorer_carry_out(ex, FUZZ_PICK(which, "set motor.voltage 2", "set wall.angle 0.1",
+                                         "seek 0.05", "branch", "undo", "set motor.voltage x",
+                                         "panes 27", "theme mono", "law hybrid", "law none",
+                                         "set run.duration 0.2", "colours 16", "mouse off",
+                                         "key x seek 0", "redo"));
         break;
     case 2:
         report =
@@ -51,23 +45,14 @@ static void step(explorer *ex, escape_sequence *sequence, uint8_t kind, uint8_t 
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const char yaml[] = "title: base\nrun: {duration: 0.1 s}\n";
-    scenario s;
     explorer ex;
     screen shown = {0};
-    fault f = {0};
     escape_sequence sequence = {.state = SEQUENCE_NONE};
-    fuzz_scenario(&s, yaml);
-    FUZZ_CHECK(explorer_init(&ex, &s, HUGE_VAL, &f) == STATUS_OK);
-    ex.state.size = (screen_size){120, 40};
+    fuzz_open_lab(&ex);
 
     for (size_t i = 0; i + 1 < size && i < 2 * MOST_STEPS && !ex.state.quit; i += 2) {
         step(&ex, &sequence, data[i], data[i + 1]);
-        FUZZ_CHECK(screen_resize(&shown, ex.state.size.width, ex.state.size.height));
-        explorer_draw(&ex, &shown);
-        for (long place = 0; place < (long)shown.width * shown.height; place++) {
-            FUZZ_CHECK(!is_unprintable(shown.cells[place].glyph));
-        }
+        fuzz_draw(&ex, &shown);
     }
     screen_finish(&shown);
     explorer_finish(&ex);
