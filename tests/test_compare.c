@@ -31,14 +31,28 @@ static compare_row row_of(scenario *s, const char *name, const char *law)
     return row;
 }
 
-// What a function writes about a table into *text, which the caller frees.
-static void keep(char **text, const compare_table *t,
-                 void (*write)(FILE *stream, const compare_table *t))
+// What is written about a table.
+typedef struct forms {
+    char *page, *text, *csv, *json;
+} forms;
+
+static forms forms_of(const compare_table *t)
 {
-    size_t size;
-    FILE *stream = open_memstream(text, &size);
-    write(stream, t);
-    fclose(stream);
+    WRITTEN(page, compare_markdown(stream, t));
+    WRITTEN(text, compare_text(stream, t));
+    WRITTEN(csv, compare_csv(stream, t));
+    json_t *whole = compare_json(t);
+    forms f = {page, text, csv, json_dumps(whole, JSON_COMPACT)};
+    json_decref(whole);
+    return f;
+}
+
+static void forget(forms *f)
+{
+    free(f->page);
+    free(f->text);
+    free(f->csv);
+    free(f->json);
 }
 
 TEST(rows_reach_every_form)
@@ -48,37 +62,32 @@ TEST(rows_reach_every_form)
                            row_of(&b, "bare", "control.law=none")};
     assert_string_equal(rows[0].law, "hybrid");
     assert_string_equal(rows[1].law, "none");
-    SCOPED(free_kept) char *csv;
-    SCOPED(free_kept) char *text;
     compare_table table = {
         .rows = rows, .count = 2, .against = rows, .group = 2, .tolerance = 0.05};
-    keep(&text, &table, compare_text);
-    keep(&csv, &table, compare_csv);
+    SCOPED(forget) forms of = forms_of(&table);
     // the reference differs from itself in nothing, the bare arm in its peak
-    char *second = strchr(text, '\n') + 1, *third = strchr(second, '\n') + 1;
+    char *second = strchr(of.text, '\n') + 1, *third = strchr(second, '\n') + 1;
     assert_null(memchr(second, '*', (size_t)(third - second)));
     assert_non_null(strchr(third, '*'));
-    assert_non_null(strstr(csv, "\n\"a \"\"b\"\"\",hybrid,ok,"));
-    assert_non_null(strstr(csv, ",,,\n")); // no error, command and energy without a rig
-    json_t *whole = compare_json(&table), *runs = json_object_get(whole, "runs");
-    assert_int_equal(json_array_size(runs), 2);
-    assert_int_equal(json_array_size(json_object_get(json_array_get(runs, 0), "differs")), 0);
-    assert_true(json_is_null(json_object_get(json_array_get(runs, 1), "steady_error_N")));
-    check_close(json_number_value(json_object_get(json_array_get(runs, 0), "peak_force_N")),
-                rows[0].values[0], 0);
-    assert_string_equal(json_string_value(json_object_get(whole, "against")), "a \"b\"");
-    check_close(json_number_value(json_object_get(whole, "tolerance")), 0.05, 0);
-    assert_null(json_object_get(json_array_get(runs, 0), "varied"));
-    json_decref(whole);
+    assert_non_null(strstr(of.csv, "\n\"a \"\"b\"\"\",hybrid,ok,"));
+    assert_non_null(strstr(of.csv, ",,,\n")); // no error, command and energy without a rig
+    char peak[80];
+    snprintf(peak, sizeof peak, "\"peak_force_N\":%.17g,", rows[0].values[0]);
+    const char *run = strstr(of.json, "\"runs\":[{"), *next = strstr(run, "},{");
+    assert_non_null(strstr(next, "\"steady_error_N\":null"));
+    assert_null(strstr(next + 1, "},{"));
+    const char *own = strstr(run, peak), *same = strstr(run, "\"differs\":[]");
+    assert_true(own != NULL && own < next && same != NULL && same < next);
+    assert_non_null(strstr(of.json, "\"against\":\"a \\\"b\\\"\""));
+    assert_non_null(strstr(of.json, "\"tolerance\":0.05"));
+    assert_null(strstr(of.json, "varied"));
 
     // without a reference nothing is said of one
     table.against = NULL;
-    whole = compare_json(&table);
-    runs = json_object_get(whole, "runs");
-    assert_null(json_object_get(whole, "against"));
-    assert_null(json_object_get(whole, "tolerance"));
-    assert_null(json_object_get(json_array_get(runs, 0), "differs"));
-    json_decref(whole);
+    SCOPED(forget) forms alone = forms_of(&table);
+    for (EACH_TEXT(c, "against", "tolerance", "differs")) {
+        assert_null(strstr(alone.json, *c));
+    }
 }
 
 // Two scenarios at two forces, each pair compared with the reference of its own force.
@@ -103,28 +112,19 @@ TEST(varied_values_have_columns)
                        .group = 2,
                        .tolerance = 0.05};
     DONE(compare_choose(&t, "peak_force_N,impacts", &f));
-    char *text, *csv;
-    SCOPED(free_kept) char *page;
-    keep(&page, &t, compare_markdown);
-    keep(&text, &t, compare_text);
-    keep(&csv, &t, compare_csv);
-    assert_non_null(strstr(page, "| scenario | law | force [N] | gains | peak [N] | impacts |\n"
-                                 "|---|---|---|---|---|---|\n"
-                                 "| a | hybrid | 0.5 | volts | 1.5 | 0 |\n"));
-    assert_null(strstr(text, "error"));
-    assert_non_null(strstr(text, "9*"));
-    assert_null(strstr(text, "1.5*"));
+    SCOPED(forget) forms of = forms_of(&t);
+    assert_non_null(strstr(of.page, "| scenario | law | force [N] | gains | peak [N] | impacts |\n"
+                                    "|---|---|---|---|---|---|\n"
+                                    "| a | hybrid | 0.5 | volts | 1.5 | 0 |\n"));
+    assert_null(strstr(of.text, "error"));
+    assert_non_null(strstr(of.text, "9*"));
+    assert_null(strstr(of.text, "1.5*"));
+    assert_non_null(strstr(
+        of.csv, "scenario[],law[],control.force[N],control.gains[],status[],peak_force[N],"));
     assert_non_null(
-        strstr(csv, "scenario[],law[],control.force[N],control.gains[],status[],peak_force[N],"));
-    json_t *whole = compare_json(&t), *run = json_array_get(json_object_get(whole, "runs"), 2);
-    json_t *values = json_object_get(run, "varied");
-    check_close(json_number_value(json_object_get(values, "control.force")), 2, 0);
-    assert_string_equal(json_string_value(json_object_get(values, "control.gains")), "volts");
+        strstr(of.json, "\"varied\":{\"control.force\":2.0,\"control.gains\":\"volts\"}"));
     REFUSED(STATUS_BAD_ARGUMENT, "did you mean 'impacts'?",
             compare_choose(&t, "peak_force_N,impact", &f));
-    json_decref(whole);
-    free(text);
-    free(csv);
 }
 
 // Full knowledge of the state bounds every law, and only where its model holds.
@@ -133,11 +133,9 @@ TEST(nothing_beats_the_best)
     for (EACH_TEXT(c, "control.law=hybrid", "control.law=optimal", "control.law=predictive",
                    "control.law=force-pd")) {
         for (int k = 1; k <= 8; k++) {
-            char force[32];
             SCOPED(run_finish) run_result r;
-            snprintf(force, sizeof force, "control.force=%g", 0.5 * k);
             scenario s = {.name = (char *)"it",
-                          .parameters = rig_parameters_with("%s %s", *c, force)};
+                          .parameters = rig_parameters_with("%s control.force=%g", *c, 0.5 * k)};
             assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
             compare_row row = compare_row_of(&s, &r);
             check_below(row.values[1], row.values[0]);
@@ -189,29 +187,17 @@ TEST(a_failed_run_says_so)
     }
     const compare_table t = {
         .rows = rows, .count = 2, .varied = varied, .varied_count = 2, .group = 1};
-    char *text, *csv;
-    SCOPED(free_kept) char *page;
-    keep(&page, &t, compare_markdown);
-    keep(&text, &t, compare_text);
-    keep(&csv, &t, compare_csv);
-    assert_non_null(strstr(text, " failed\n"));
-    assert_null(strstr(strstr(text, " failed\n") + 1, " failed\n"));
-    assert_non_null(strstr(csv, "\nb,none,"));
-    assert_non_null(strstr(csv, ",failed,,"));
-    assert_non_null(strstr(page, " 1234 | 1234 |"));
-    assert_non_null(strstr(page, " – | – |"));
-
-    json_t *whole = compare_json(&t), *runs = json_object_get(whole, "runs");
-    json_t *first = json_array_get(runs, 0), *second = json_array_get(runs, 1);
-    json_t *values = json_object_get(first, "varied");
-    assert_string_equal(json_string_value(json_object_get(first, "status")), "ok");
-    assert_string_equal(json_string_value(json_object_get(second, "status")), "failed");
-    assert_true(json_is_null(json_object_get(second, "peak_force_N")));
-    assert_true(json_is_true(json_object_get(values, "printed.spring_counted_twice")));
-    assert_string_equal(json_string_value(json_object_get(values, "arm.model")), "printed");
-    json_decref(whole);
-    free(text);
-    free(csv);
+    SCOPED(forget) forms of = forms_of(&t);
+    assert_non_null(strstr(of.text, " failed\n"));
+    assert_null(strstr(strstr(of.text, " failed\n") + 1, " failed\n"));
+    assert_non_null(strstr(of.csv, "\nb,none,"));
+    assert_non_null(strstr(of.csv, ",failed,,"));
+    assert_non_null(strstr(of.page, " 1234 | 1234 |"));
+    assert_non_null(strstr(of.page, " – | – |"));
+    assert_non_null(strstr(of.json,
+                           "\"varied\":{\"printed.spring_counted_twice\":true,"
+                           "\"arm.model\":\"printed\"},\"law\":\"none\",\"status\":\"ok\""));
+    assert_non_null(strstr(of.json, "\"status\":\"failed\",\"peak_force_N\":null"));
 }
 
 // Every form to the last character: widths, marks, units, and a thousand without digits behind it.
@@ -233,28 +219,22 @@ TEST(forms_are_written_to_the_letter)
                        .group = 3,
                        .tolerance = 0.05};
     DONE(compare_choose(&t, "impacts,peak_force_N", &f));
-    char *text, *csv;
-    SCOPED(free_kept) char *page;
-    keep(&page, &t, compare_markdown);
-    keep(&text, &t, compare_text);
-    keep(&csv, &t, compare_csv);
-    assert_string_equal(page, "| scenario | law | force [N] | ideal | peak [N] | impacts |\n"
-                              "|---|---|---|---|---|---|\n"
-                              "| a | hybrid | 0.5 | true | 1.5 | 1000 |\n"
-                              "| much longer | none | 12.25 | false | – | 1000 |\n"
-                              "| c | recovering | 1 | true | 1.6 | -1000 |\n");
+    SCOPED(forget) forms of = forms_of(&t);
+    assert_string_equal(of.page, "| scenario | law | force [N] | ideal | peak [N] | impacts |\n"
+                                 "|---|---|---|---|---|---|\n"
+                                 "| a | hybrid | 0.5 | true | 1.5 | 1000 |\n"
+                                 "| much longer | none | 12.25 | false | – | 1000 |\n"
+                                 "| c | recovering | 1 | true | 1.6 | -1000 |\n");
     assert_string_equal(
-        text, "scenario     law         force/N  ideal       peak/N       impacts \n"
-              "a            hybrid          0.5   true          1.5          1000 \n"
-              "much longer  none          12.25  false            -*        999.8  failed\n"
-              "c            recovering        1   true          1.6*        -1000*\n");
-    const char *rows_of_csv = strchr(csv, '\n') + 1;
+        of.text, "scenario     law         force/N  ideal       peak/N       impacts \n"
+                 "a            hybrid          0.5   true          1.5          1000 \n"
+                 "much longer  none          12.25  false            -*        999.8  failed\n"
+                 "c            recovering        1   true          1.6*        -1000*\n");
+    const char *rows_of_csv = strchr(of.csv, '\n') + 1;
     assert_string_equal(rows_of_csv,
                         "a,hybrid,0.5,true,ok,1.5,0,0,0,0,0,0,1000,0,0,0,0\n"
                         "much longer,none,12.25,false,failed,,0,0,0,0,0,0,999.75,0,0,0,0\n"
                         "c,recovering,1,true,ok,1.6,0,0,0,0,0,0,-1000,0,0,0,0\n");
-    free(text);
-    free(csv);
 }
 
 // Each number of a row is the summary's, or a bound that holds for such an arm only.
