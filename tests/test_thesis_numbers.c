@@ -24,18 +24,16 @@ typedef struct computed {
     run_result result;
 } computed;
 
-// Runs a scenario with changes "PATH=VALUE", up to NULL.
-static computed run_with(const char *name, const char *const *sets)
+// Runs a scenario with changes "PATH=VALUE ...".
+static computed run_with(const char *name, const char *format, ...)
 {
     computed c;
-    int count = 0;
-    while (sets[count] != NULL) {
-        count++;
-    }
-    assert_int_equal(scenario_open(&c.scenario, name, fail_on_fault, NULL), STATUS_OK);
-    assert_int_equal(
-        scenario_override_all(&c.scenario, (char *const *)sets, count, fail_on_fault, NULL),
-        STATUS_OK);
+    char changes[256];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(changes, sizeof changes, format, values);
+    va_end(values);
+    c.scenario = shipped_with(name, changes);
     run_scenario(&c.scenario, true, &c.result);
     return c;
 }
@@ -46,12 +44,10 @@ static void forget(computed *c)
     scenario_finish(&c->scenario);
 }
 
-#define SETS(...) ((const char *const[]){__VA_ARGS__, NULL})
-
 // A number of a run's summary.
-static double number(const char *name, const char *const *sets, const char *key)
+static double number(const char *name, const char *changes, const char *key)
 {
-    SCOPED(forget) computed c = run_with(name, sets);
+    SCOPED(forget) computed c = run_with(name, "%s", changes);
     const double value = summary_value(&c.result.summary, summary_index(key));
     return value;
 }
@@ -60,18 +56,18 @@ static double number(const char *name, const char *const *sets, const char *key)
 
 TEST(numbers_of_the_first_chapters)
 {
-    const double pulse = number("corrected/first-impact", SETS(NULL), "first_pulse_s");
-    const double stiff = number("corrected/stiff-beam", SETS(NULL), "first_pulse_s");
+    const double pulse = number("corrected/first-impact", "", "first_pulse_s");
+    const double stiff = number("corrected/stiff-beam", "", "first_pulse_s");
     page_says("lasts %.0f times as long as that of one a hundred times as stiff", pulse / stiff);
     page_says("agrees: %.0f ms at the nominal $k_2$, %.1f ms at a hundred times that", 1e3 * pulse,
-              1e3 * number("corrected/first-impact", SETS("arm.k2=492"), "first_pulse_s"));
+              1e3 * number("corrected/first-impact", "arm.k2=492", "first_pulse_s"));
     page_says("it loses contact once and hits with %.2f N, a constant voltage with %.2f N",
-              number("compare/reverse-torque", SETS(NULL), "peak_force_N"),
-              number("corrected/first-impact", SETS(NULL), "peak_force_N"));
-    check_close(number("compare/reverse-torque", SETS(NULL), "separations"), 1, 0);
+              number("compare/reverse-torque", "", "peak_force_N"),
+              number("corrected/first-impact", "", "peak_force_N"));
+    check_close(number("compare/reverse-torque", "", "separations"), 1, 0);
 
     // where the hub turns back
-    SCOPED(forget) computed first = run_with("corrected/first-impact", SETS(NULL));
+    SCOPED(forget) computed first = run_with("corrected/first-impact", "");
     const summary *m = &first.result.summary;
     const trace *t = &first.result.trace;
     size_t e = 0;
@@ -90,15 +86,14 @@ TEST(the_table_of_the_single_run)
         {"0.2", "0.5"}, {"0.3", "0.5"}, {"0.4", "0.5"}, {"0.4", "0.6"}, {"0.5", "0.5"},
         {"0.5", "0.7"}, {"0.6", "0.5"}, {"0.6", "0.9"}, {"0.7", "0.5"}, {"0.7", "0.9"}};
     for (EACH(one, pairs)) {
-        char row[256], beta[32], gamma[32], step[32];
+        char row[256];
         int used = snprintf(row, sizeof row, "| %s, %s |", (*one)[0], (*one)[1]);
         for (EACH_TEXT(each, "1e-3", "1e-4", "1e-5")) {
-            snprintf(beta, sizeof beta, "method.beta=%s", (*one)[0]);
-            snprintf(gamma, sizeof gamma, "method.gamma=%s", (*one)[1]);
-            snprintf(step, sizeof step, "method.step=%s", *each);
             SCOPED(forget)
-            computed c = run_with("thesis/fig-3-4", SETS("printed.reevaluation=none",
-                                                         "run.duration=0.6", beta, gamma, step));
+            computed c = run_with("thesis/fig-3-4",
+                                  "printed.reevaluation=none run.duration=0.6 method.beta=%s "
+                                  "method.gamma=%s method.step=%s",
+                                  (*one)[0], (*one)[1], *each);
             const summary *m = &c.result.summary;
             used +=
                 m->status == STATUS_OK
@@ -108,8 +103,8 @@ TEST(the_table_of_the_single_run)
         page_says("%s", row);
     }
     page_says("agrees: %.0f N where two runs give %.2f N",
-              number("thesis/fig-3-4", SETS("printed.reevaluation=none"), "peak_force_N"),
-              number("thesis/fig-3-4", SETS(NULL), "peak_force_N"));
+              number("thesis/fig-3-4", "printed.reevaluation=none", "peak_force_N"),
+              number("thesis/fig-3-4", "", "peak_force_N"));
 }
 
 // ---- tables 4.1 to 4.3
@@ -117,16 +112,11 @@ TEST(the_table_of_the_single_run)
 static const char *const tables[] = {"thesis/table-4-1", "thesis/table-4-2", "thesis/table-4-3"};
 
 // Largest force of the printed model within 0.12 s of the touch, and its delay from there.
-static void run_cell(const char *table, const char *const *more, double voltage, double *peak,
+static void run_cell(const char *table, const char *more, double voltage, double *peak,
                      double *delay)
 {
-    char volts[32];
-    snprintf(volts, sizeof volts, "motor.voltage=%g", voltage);
-    const char *sets[16] = {volts, "run.duration=1.2"};
-    for (int i = 0; more[i] != NULL; i++) {
-        sets[i + 2] = more[i];
-    }
-    SCOPED(forget) computed c = run_with(table, sets);
+    SCOPED(forget)
+    computed c = run_with(table, "motor.voltage=%g run.duration=1.2 %s", voltage, more);
     const trace *t = &c.result.trace;
     double touch = -1;
     *peak = 0;
@@ -141,7 +131,7 @@ static void run_cell(const char *table, const char *const *more, double voltage,
 }
 
 // Mean |relative error| of forces and delays against what the thesis prints, over some tables.
-static void errors_of(int from, int to, const char *const *sets, double later, double error[2])
+static void errors_of(int from, int to, const char *sets, double later, double error[2])
 {
     static const double voltages[TABLE_VOLTAGES] = {1, 2, 5, 10};
     int cells = 0;
@@ -193,17 +183,17 @@ TEST(errors_of_the_tables)
               100 * tables_mean_error(&printed, "printed", "delay_dynamics"));
 
     // the cells run one by one are those of the tables
-    errors_of(0, 2, SETS(NULL), 0, error);
+    errors_of(0, 2, "", 0, error);
     check_close(error[0], 100 * tables_mean_error(&printed, "printed", "max_force_simulation"),
                 0.05);
     check_close(error[1], 100 * mean, 0.05);
-    errors_of(0, 2, SETS(NULL), 1e-3, error);
+    errors_of(0, 2, "", 1e-3, error);
     page_says("and the mean error is %.0f %%.", error[1]);
-    errors_of(0, 2, SETS("arm.hub_inertia=1.078e-3"), 1e-3, error);
+    errors_of(0, 2, "arm.hub_inertia=1.078e-3", 1e-3, error);
     page_says("the forces are %.1f %% and the delays %.1f %% off.", error[0], error[1]);
-    errors_of(1, 1, SETS("arm.k1=50"), 0, error);
+    errors_of(1, 1, "arm.k1=50", 0, error);
     page_says("with $k_1$ = 50 within %.0f %%", ceil(error[0]));
-    errors_of(2, 2, SETS("arm.k1=120"), 0, error);
+    errors_of(2, 2, "arm.k1=120", 0, error);
     page_says("with $k_1$ = 120 within %.0f %%", ceil(error[0]));
 
     // one set for all, and the factor of the impact dynamics
@@ -250,15 +240,11 @@ TEST(what_was_tried_on_the_delays)
             error[i] += 100 * fabs(tried[i] - wanted) / wanted / 12;
         }
     }
-    static const char *const attempts[] = {"$T$ cut to whole steps",
-                                           "$T$ less one step",
-                                           "$T$ less two steps",
-                                           "$\\frac{\\pi}{4}T$, the true quarter oscillation",
-                                           "$\\frac{\\pi}{4}T$ and a step",
-                                           "$\\frac23T$",
-                                           "$T/\\sqrt2$"};
-    for (int i = 0; i < 7; i++) {
-        page_says("| %s | %.1f %% |", attempts[i], error[i]);
+    const double *off = error;
+    for (EACH_TEXT(tried, "$T$ cut to whole steps", "$T$ less one step", "$T$ less two steps",
+                   "$\\frac{\\pi}{4}T$, the true quarter oscillation",
+                   "$\\frac{\\pi}{4}T$ and a step", "$\\frac23T$", "$T/\\sqrt2$")) {
+        page_says("| %s | %.1f %% |", *tried, *off++);
     }
 }
 
@@ -308,7 +294,7 @@ TEST(figures_of_the_hybrid_controller)
     double off[2][2];
     for (int i = 0; i < 2; i++) {
         SCOPED(forget)
-        computed c = run_with("thesis/fig-5-2", i == 0 ? SETS(NULL) : SETS("arm.links=8"));
+        computed c = run_with("thesis/fig-5-2", "arm.links=%d", i == 0 ? 2 : 8);
         const trace *t = &c.result.trace;
         off[i][0] = off_the_plan(t, offsetof(sample, encoder), offsetof(sample, desired_angle));
         off[i][1] =
@@ -322,12 +308,11 @@ TEST(figures_of_the_hybrid_controller)
 
     // 5.6 and 5.7 are the run of 5.1 at twice the force
     SCOPED(forget)
-    computed one = run_with("thesis/fig-5-1", SETS(NULL)),
-             two = run_with("thesis/fig-5-7", SETS(NULL));
-    SCOPED(forget) computed angle = run_with("thesis/fig-5-6", SETS(NULL));
+    computed one = run_with("thesis/fig-5-1", ""), two = run_with("thesis/fig-5-7", "");
+    SCOPED(forget) computed angle = run_with("thesis/fig-5-6", "");
     assert_true(one.scenario.parameters.initial.angle == two.scenario.parameters.initial.angle &&
                 one.scenario.parameters.initial.angle == angle.scenario.parameters.initial.angle);
-    SCOPED(forget) computed far = run_with("thesis/fig-5-7", SETS("initial.angle=-0.1"));
+    SCOPED(forget) computed far = run_with("thesis/fig-5-7", "initial.angle=-0.1");
     page_says(
         "agrees at 1 N: one contact, 90 %% of the steady force after %.3f s, settled after %.2f "
         "s; at 2 N one contact, settled after %.2f s, but 90 %% only after %.3f s, and after "
@@ -339,40 +324,38 @@ TEST(figures_of_the_hybrid_controller)
 
 TEST(numbers_of_the_control_laws)
 {
-    const double hybrid = number("compare/hybrid", SETS(NULL), "peak_force_N");
-    page_says("agrees: %.2f N against %.2f N",
-              number("compare/bang-bang", SETS(NULL), "peak_force_N"), hybrid);
+    const double hybrid = number("compare/hybrid", "", "peak_force_N");
+    page_says("agrees: %.2f N against %.2f N", number("compare/bang-bang", "", "peak_force_N"),
+              hybrid);
     page_says("agrees: %.2f N instead of %.2f N, and %.2f s later at the wall",
-              number("compare/speed-limit", SETS(NULL), "peak_force_N"), hybrid,
-              number("compare/speed-limit", SETS(NULL), "first_contact_s") -
-                  number("compare/hybrid", SETS(NULL), "first_contact_s"));
+              number("compare/speed-limit", "", "peak_force_N"), hybrid,
+              number("compare/speed-limit", "", "first_contact_s") -
+                  number("compare/hybrid", "", "first_contact_s"));
     page_says("agrees: %.2f N and %.2f N",
-              number("compare/vibration-phase", SETS("wall.angle=0.11"), "peak_force_N"),
-              number("compare/vibration-phase", SETS("wall.angle=0.21"), "peak_force_N"));
+              number("compare/vibration-phase", "wall.angle=0.11", "peak_force_N"),
+              number("compare/vibration-phase", "wall.angle=0.21", "peak_force_N"));
     page_says("steady force %.2f of the command as printed, %.2f corrected",
-              number("compare/hybrid-printed", SETS(NULL), "steady_force_N"),
-              number("compare/hybrid", SETS(NULL), "steady_force_N"));
+              number("compare/hybrid-printed", "", "steady_force_N"),
+              number("compare/hybrid", "", "steady_force_N"));
     assert_int_equal(
-        (int)number("compare/force-integral-soft-wall", SETS("wall.contact=rigid"), "impacts"), 9);
-    assert_int_equal((int)number("compare/force-integral-soft-wall", SETS(NULL), "separations"), 0);
+        (int)number("compare/force-integral-soft-wall", "wall.contact=rigid", "impacts"), 9);
+    assert_int_equal((int)number("compare/force-integral-soft-wall", "", "separations"), 0);
 
     // told where the wall is by different means
-    const double told = number("compare/hybrid", SETS("belief.wall_error=0.02"), "steady_force_N");
-    const double film =
-        number("compare/hybrid", SETS("belief.wall_error=0.02", "control.impact_angle=film"),
+    const double told = number("compare/hybrid", "belief.wall_error=0.02", "steady_force_N");
+    const double film = number("compare/hybrid", "belief.wall_error=0.02 control.impact_angle=film",
+                               "steady_force_N");
+    const double measured =
+        number("compare/hybrid", "belief.wall_error=0.02 control.impact_angle=accelerometer",
                "steady_force_N");
-    const double measured = number(
-        "compare/hybrid", SETS("belief.wall_error=0.02", "control.impact_angle=accelerometer"),
-        "steady_force_N");
     page_says("the force is %.2f N off when told, %.2f N by film, below 0.003 N by [accelerometer]",
               fabs(told - 1), fabs(film - 1));
     check_below(fabs(measured - 1), 0.003);
 
     // gains from which on the proportional law bounces, and rates at which the hybrid fails
-    static const char *const gains[] = {"control.force_gain=1", "control.force_gain=3",
-                                        "control.force_gain=4", "control.force_gain=6"};
+    static const int gains[] = {1, 3, 4, 6};
     for (int i = 0; i < 4; i++) {
-        SCOPED(forget) computed c = run_with("compare/force-pd", SETS(gains[i]));
+        SCOPED(forget) computed c = run_with("compare/force-pd", "control.force_gain=%d", gains[i]);
         const summary *m = &c.result.summary;
         assert_true(i == 0   ? m->separations == 0 && m->settling_time_s > 0
                     : i == 1 ? m->separations == 1 && m->settling_time_s > 0
@@ -380,13 +363,13 @@ TEST(numbers_of_the_control_laws)
     }
     page_says(
         "at 1 V/N one contact, at 3 V/N a bounce, from 4 V/N on it bounces and never settles");
-    static const char *const rates[] = {"30", "50", "55", "100", "160", "170", "200"};
+    static const int rates[] = {30, 50, 55, 100, 160, 170, 200};
     for (int i = 0; i < 7; i++) {
-        char rate[32];
-        snprintf(rate, sizeof rate, "control.rate=%s", rates[i]);
-        const double on_spring = number("compare/sampling-rate", SETS(rate), "settling_time_s");
-        const double rigid =
-            number("compare/sampling-rate", SETS(rate, "arm.hub_joint=rigid"), "settling_time_s");
+        char rate[64];
+        const int used = snprintf(rate, sizeof rate, "control.rate=%d", rates[i]);
+        const double on_spring = number("compare/sampling-rate", rate, "settling_time_s");
+        snprintf(rate + used, sizeof rate - (size_t)used, " arm.hub_joint=rigid");
+        const double rigid = number("compare/sampling-rate", rate, "settling_time_s");
         assert_int_equal(isnan(on_spring), i == 0 || (i >= 2 && i <= 4));
         assert_int_equal(isnan(rigid), i == 0);
     }
