@@ -301,25 +301,13 @@ static double lagged_force(const parameters *p, double time_constant, double aft
 // with thousands of newtons: a force sensor reads their impulse.
 TEST(sensors_feel_the_spike_of_a_damped_chain)
 {
-    static const char *const ratios[] = {"arm.damping_ratio=0.3", "arm.damping_ratio=1"};
-    static const char *const links[] = {"arm.links=8", "arm.links=32"};
     for (int i = 0; i < 4; i++) {
-        const char *const settings[] = {ratios[i % 2],
-                                        links[i / 2],
-                                        "control.law=open-loop",
-                                        "control.rate=20000",
-                                        "method.step=5e-5",
-                                        "initial.angle=-0.001",
-                                        "initial.velocity=1",
-                                        "run.duration=0.0015",
-                                        "sensor.piezo=true",
-                                        "sensor.piezo_gain=1e-3",
-                                        "sensor.piezo_leak_time=0",
-                                        "sensor.piezo_range=0",
-                                        "sensor.piezo_noise=0",
-                                        "sensor.adc_bits=0",
-                                        "sensor.dac_bits=0",
-                                        NULL};
+        const char *const *settings =
+            given("arm.damping_ratio=%g arm.links=%d control.law=open-loop control.rate=20000 "
+                  "method.step=5e-5 initial.angle=-0.001 initial.velocity=1 run.duration=0.0015 "
+                  "sensor.piezo=true sensor.piezo_gain=1e-3 sensor.piezo_leak_time=0 "
+                  "sensor.piezo_range=0 sensor.piezo_noise=0 sensor.adc_bits=0 sensor.dac_bits=0",
+                  i % 2 ? 1 : 0.3, i / 2 ? 32 : 8);
         const parameters p = rig_parameters(settings);
         SCOPED(run_finish) run_result run = rig_run(settings, true);
 

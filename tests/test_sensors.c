@@ -250,31 +250,17 @@ TEST(ripple_follows_the_shaft)
 // (1 + gain error) times the value and an offset, each sensor its own; none with ideal sensors.
 TEST(sensors_show_what_they_are_calibrated_for)
 {
-    const char *const all[] = {"sensor.encoder_gain_error=0.02",
-                               "sensor.encoder_offset=-0.03",
-                               "sensor.tachometer_gain_error=-0.1",
-                               "sensor.tachometer_offset=0.2",
-                               "sensor.fsr_gain_error=0.25",
-                               "sensor.fsr_offset=-0.5",
-                               "sensor.piezo_gain_error=0.5",
-                               "sensor.piezo_offset=0.1",
-                               "sensor.piezo=true",
-                               "sensor.encoder_counts=0",
-                               "sensor.tachometer_noise=0",
-                               "sensor.tachometer_ripple=0",
-                               "sensor.fsr_noise=0",
-                               "sensor.fsr_rise_time=0",
-                               "sensor.piezo_noise=0",
-                               "sensor.piezo_rise_time=0",
-                               "sensor.piezo_leak_time=0",
-                               "sensor.adc_bits=0",
-                               NULL,
-                               NULL};
-    const char *as_ideal[sizeof all / sizeof all[0]];
-    memcpy(as_ideal, all, sizeof all);
-    as_ideal[18] = "sensor.ideal=true";
     for (int ideal = 0; ideal < 2; ideal++) {
-        sensors s = fresh_sensors(ideal ? as_ideal : all, 1);
+        sensors s = fresh_sensors(
+            given("sensor.encoder_gain_error=0.02 sensor.encoder_offset=-0.03 "
+                  "sensor.tachometer_gain_error=-0.1 sensor.tachometer_offset=0.2 "
+                  "sensor.fsr_gain_error=0.25 sensor.fsr_offset=-0.5 sensor.piezo_gain_error=0.5 "
+                  "sensor.piezo_offset=0.1 sensor.piezo=true sensor.encoder_counts=0 "
+                  "sensor.tachometer_noise=0 sensor.tachometer_ripple=0 sensor.fsr_noise=0 "
+                  "sensor.fsr_rise_time=0 sensor.piezo_noise=0 sensor.piezo_rise_time=0 "
+                  "sensor.piezo_leak_time=0 sensor.adc_bits=0 sensor.ideal=%s",
+                  ideal ? "true" : "false"),
+            1);
         for (double x = 0.5; x < 3; x += 0.7) {
             sensor_reading r = read_hub(&s, x, x, x);
             check_close(r.encoder, ideal ? x : 1.02 * x - 0.03, 1e-12);
