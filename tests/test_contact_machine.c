@@ -23,10 +23,14 @@ static moving_rod start_rod_by(const char *const *settings, const engine *by)
     return r;
 }
 
-static moving_rod start_rod(const char *const *settings)
+static void drop_rod(moving_rod *r)
 {
-    return start_rod_by(settings, NULL);
+    motion_destroy(r->motion);
 }
+
+#define START_ROD_BY(r, by, ...)                                                                   \
+    SCOPED(drop_rod) moving_rod r = start_rod_by(given(__VA_ARGS__), by)
+#define START_ROD(r, ...) START_ROD_BY(r, NULL, __VA_ARGS__)
 
 static double speed_of(const moving_rod *r)
 {
@@ -54,22 +58,19 @@ static motion_report next_event(moving_rod *r, double until)
 TEST(the_state_at_the_start_follows_from_where_the_arm_is)
 {
     // pressed at the wall, the wall answers with all of the motor's torque
-    moving_rod pressed = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    START_ROD(pressed, "arm.links=1 initial.angle=0.1");
     assert_true(touches(&pressed));
     check_relative(pressed.motion->state[SLOT_FORCE], pressed.arm.motor.torque, 1e-12);
-    motion_destroy(pressed.motion);
 
     // less torque than stiction away from the wall: the hub sticks
-    moving_rod stuck = start_rod(SETTINGS("arm.links=1", "motor.voltage=0.05"));
+    START_ROD(stuck, "arm.links=1 motor.voltage=0.05");
     assert_false(touches(&stuck));
     assert_true(stuck.motion->state[SLOT_FRICTION] == HUB_STICK);
     check_close(stuck.motion->state[SLOT_FRICTION_TORQUE], -stuck.arm.motor.torque, 1e-15);
-    motion_destroy(stuck.motion);
 
     // more, and it slides
-    moving_rod driven = start_rod(SETTINGS("arm.links=1", "motor.voltage=1"));
+    START_ROD(driven, "arm.links=1 motor.voltage=1");
     assert_true(driven.motion->state[SLOT_FRICTION] == HUB_FORWARD);
-    motion_destroy(driven.motion);
 }
 
 // A face stands at rest: an arm that starts on it and moves into it strikes it at once, as one does
@@ -77,10 +78,9 @@ TEST(the_state_at_the_start_follows_from_where_the_arm_is)
 TEST(an_arm_that_starts_on_a_face_strikes_it)
 {
     const double speed = 0.2, mass = 0.5;
-    moving_rod r =
-        start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt", "wall.stiffness=1e4",
-                           "wall.mass=0.5", "initial.angle=0.1", "initial.velocity=0.2"));
-    SCOPED(motion_destroy_kept) motion *m = r.motion;
+    START_ROD(r, "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 wall.mass=0.5 "
+                 "initial.angle=0.1 initial.velocity=0.2");
+    motion *m = r.motion;
     const double inertia = r.inertia, length = r.arm.link_length;
     assert_false(touches(&r));
     check_relative(m->record.start_energy, inertia * speed * speed / 2, 1e-12);
@@ -99,10 +99,9 @@ TEST(an_arm_that_starts_on_a_face_strikes_it)
 TEST(a_face_that_flees_is_met_slowly)
 {
     for (int i = 0; i < 2; i++) {
-        moving_rod r = start_rod(SETTINGS(
-            "arm.links=1", "wall.contact=kelvin-voigt", "wall.stiffness=1e4", "wall.mass=0.5",
-            "wall.restitution=0.5", "method.rest_speed=0.02", "initial.velocity=0.2"));
-        SCOPED(motion_destroy_kept) motion *m = r.motion;
+        START_ROD(r, "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 wall.mass=0.5 "
+                     "wall.restitution=0.5 method.rest_speed=0.02 initial.velocity=0.2");
+        motion *m = r.motion;
         const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
         const double met = i == 0 ? 0.01 : 0.03;
         m->state[SLOT_FACE_VELOCITY] = chain_penetration_rate(&r.arm, q, w) - met;
@@ -116,36 +115,34 @@ TEST(a_face_that_flees_is_met_slowly)
 
 TEST(a_plastic_impact_stops_the_rod_and_holds_it)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1"));
+    START_ROD(r, "arm.links=1");
     motion_report impact = next_event(&r, 1);
     assert_int_equal(impact.event, MOTION_IMPACT);
     assert_true(impact.holds && touches(&r));
     check_relative(impact.impulse, r.inertia * impact.speed, 1e-12);
     check_relative(impact.loss, r.inertia * impact.speed * impact.speed / 2, 1e-12);
     check_close(speed_of(&r), 0, 1e-15);
-    motion_destroy(r.motion);
 }
 
 TEST(an_elastic_impact_turns_the_rod_back)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.restitution=0.8"));
+    START_ROD(r, "arm.links=1 wall.restitution=0.8");
     motion_report impact = next_event(&r, 1);
     assert_int_equal(impact.event, MOTION_IMPACT);
     assert_false(impact.holds || touches(&r));
     check_relative(speed_of(&r), -0.8 * impact.speed, 1e-12);
     check_close(r.motion->state[SLOT_FORCE], 0, 0);
-    motion_destroy(r.motion);
 }
 
 // The face of a wall that gives stays on an arm that is pushed as long as it presses, parts from
 // one that is torn away faster than it follows, and is met again.
 TEST(a_push_parts_arm_and_face)
 {
-    const char *const damping[] = {"wall.damping=0", "wall.damping=50"};
     for (int i = 0; i < 2; i++) {
-        moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt", damping[i],
-                                          "wall.stiffness=1e5", "wall.angle=0", "motor.voltage=1",
-                                          "initial.velocity=0.1"));
+        START_ROD(r,
+                  "arm.links=1 wall.contact=kelvin-voigt wall.damping=%d wall.stiffness=1e5 "
+                  "wall.angle=0 motor.voltage=1 initial.velocity=0.1",
+                  50 * i);
         motion_report report;
         assert_true(touches(&r));
 
@@ -176,7 +173,6 @@ TEST(a_push_parts_arm_and_face)
         motion_push(&r.arm, r.motion, -100, &report);
         motion_push(&r.arm, r.motion, -100, &report);
         assert_int_equal(touches(&r), i == 0);
-        motion_destroy(r.motion);
     }
 }
 
@@ -184,7 +180,7 @@ TEST(a_push_parts_arm_and_face)
 TEST(a_torque_just_beyond_stiction_moves_the_rod)
 {
     for (int sign = -1; sign <= 1; sign += 2) {
-        moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.voltage=0.05"));
+        START_ROD(r, "arm.links=1 motor.voltage=0.05");
         assert_int_equal(contact_state_of(r.motion->state).friction, HUB_STICK);
         const double per_volt = r.arm.motor.torque / 0.05, stiction = r.arm.motor.stiction;
         arm_set_voltage(&r.arm, sign * (1 + 1e-8) * stiction / per_volt);
@@ -193,7 +189,6 @@ TEST(a_torque_just_beyond_stiction_moves_the_rod)
                          sign < 0 ? HUB_BACKWARD : HUB_FORWARD);
         check_relative(state_accelerations(r.motion, r.motion->state)[0],
                        sign * 1e-8 * stiction / r.inertia, 1e-6);
-        motion_destroy(r.motion);
     }
 }
 
@@ -201,7 +196,8 @@ TEST(a_torque_just_beyond_stiction_moves_the_rod)
 // the step then ends as if it had not been looked for. The series of the same arm have no need to.
 TEST(a_located_peak_leaves_the_step_as_it_was)
 {
-    moving_rod steps = start_rod_by(NULL, &explicit_engine), series = start_rod(NULL);
+    START_ROD_BY(steps, &explicit_engine, "arm.links=2");
+    START_ROD(series, "arm.links=2");
     assert_ptr_not_equal(steps.motion->engine, series.motion->engine);
     moving_rod *const both[] = {&steps, &series};
     for (int i = 0; i < 2; i++) {
@@ -223,81 +219,72 @@ TEST(a_located_peak_leaves_the_step_as_it_was)
         check_close(steps.motion->state[SLOT_COUNT + i], series.motion->state[SLOT_COUNT + i],
                     1e-8);
     }
-    motion_destroy(steps.motion);
-    motion_destroy(series.motion);
 }
 
 TEST(a_push_in_flight_adds_its_impulse)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.kind=none", "initial.velocity=1"));
+    START_ROD(r, "arm.links=1 wall.kind=none initial.velocity=1");
     motion_report report = {0};
     motion_push(&r.arm, r.motion, 0.03, &report);
     assert_int_equal(report.event, MOTION_REACHED);
     check_relative(speed_of(&r), 1 + 0.03 / r.inertia, 1e-13);
     // its work is that of the mean velocity
     check_relative(r.motion->state[SLOT_EXTERNAL_WORK], 0.03 * (1 + speed_of(&r)) / 2, 1e-12);
-    motion_destroy(r.motion);
 }
 
 TEST(a_push_into_the_wall_is_answered_by_it)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    START_ROD(r, "arm.links=1 initial.angle=0.1");
     motion_report report = {0};
     motion_push(&r.arm, r.motion, 0.03, &report);
     assert_int_equal(report.event, MOTION_IMPACT);
     check_relative(report.impulse, 0.03, 1e-12);
     check_close(speed_of(&r), 0, 1e-14);
     assert_true(report.holds && touches(&r));
-    motion_destroy(r.motion);
 }
 
 TEST(a_push_away_ends_the_contact)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    START_ROD(r, "arm.links=1 initial.angle=0.1");
     motion_report report = {0};
     motion_push(&r.arm, r.motion, -0.03, &report);
     assert_false(report.holds || touches(&r));
     check_relative(speed_of(&r), -0.03 / r.inertia, 1e-12);
-    motion_destroy(r.motion);
 }
 
 TEST(a_torque_away_from_the_wall_ends_the_contact)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    START_ROD(r, "arm.links=1 initial.angle=0.1");
     double before = r.arm.motor.torque;
     arm_set_voltage(&r.arm, -1);
     motion_retorque(&r.arm, r.motion, before);
     assert_false(touches(&r));
     double torque = r.arm.motor.torque + r.arm.motor.stiction;
     check_relative(state_accelerations(r.motion, r.motion->state)[0], torque / r.inertia, 1e-12);
-    motion_destroy(r.motion);
 }
 
 // A release is looked at, not obeyed: what is pressed at the wall stays there.
 TEST(a_release_of_what_is_pressed_is_none)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1", "initial.angle=0.1"));
+    START_ROD(r, "arm.links=1 initial.angle=0.1");
     const double force = r.motion->state[SLOT_FORCE];
     motion_report release = {.event = MOTION_RELEASE};
     motion_apply(&r.arm, r.motion, &release);
     assert_true(touches(&r));
     check_relative(r.motion->state[SLOT_FORCE], force, 1e-12);
-    motion_destroy(r.motion);
 }
 
 // Without stiction a hub that begins to turn meets no event of friction on its way to the wall.
 TEST(a_hub_without_stiction_never_sticks)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.stiction=0"));
+    START_ROD(r, "arm.links=1 motor.stiction=0");
     assert_int_equal(next_event(&r, 1).event, MOTION_IMPACT);
-    motion_destroy(r.motion);
 }
 
 // A wall that gives stops nothing at once: the rod of 1 m keeps its speed, the damper answers it.
 TEST(a_wall_that_gives_takes_the_rod_at_its_speed)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1", "wall.contact=kelvin-voigt",
-                                      "wall.stiffness=1e4", "wall.damping=20"));
+    START_ROD(r, "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 wall.damping=20");
     motion_report report = {.event = MOTION_REACHED};
     while (report.event == MOTION_REACHED) {
         assert_int_equal(motion_step(&r.arm, r.motion, 1, 1e-3, &report), STATUS_OK);
@@ -308,14 +295,13 @@ TEST(a_wall_that_gives_takes_the_rod_at_its_speed)
     assert_true(report.holds && touches(&r));
     check_close(speed_of(&r), speed, 0);
     check_relative(r.motion->state[SLOT_FORCE], 20 * speed, 1e-9);
-    motion_destroy(r.motion);
 }
 
 // A hub behind its spring under a torque that jumps: one that slides is accelerated by all of it,
 // one that sticks lets friction take it.
 TEST(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not)
 {
-    moving_rod sliding = start_rod(SETTINGS("arm.hub_joint=spring", "initial.velocity=1"));
+    START_ROD(sliding, "arm.hub_joint=spring initial.velocity=1");
     const double torque = sliding.arm.motor.torque;
     const double before = state_accelerations(sliding.motion, sliding.motion->state)[0];
     arm_set_voltage(&sliding.arm, 0.5);
@@ -325,9 +311,8 @@ TEST(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not)
     check_close(sliding.motion->state[SLOT_FRICTION_TORQUE], -sliding.arm.motor.stiction, 0);
     check_relative(state_accelerations(sliding.motion, sliding.motion->state)[0] - before,
                    jump / sliding.arm.hub_inertia, 1e-9);
-    motion_destroy(sliding.motion);
 
-    moving_rod stuck = start_rod(SETTINGS("arm.hub_joint=spring", "motor.voltage=0.05"));
+    START_ROD(stuck, "arm.hub_joint=spring motor.voltage=0.05");
     const double held = stuck.arm.motor.torque;
     assert_true(stuck.motion->state[SLOT_FRICTION] == HUB_STICK);
     stuck.motion->state[SLOT_JUMPED] = 0;
@@ -337,26 +322,24 @@ TEST(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not)
     check_close(stuck.motion->state[SLOT_FRICTION_TORQUE], -stuck.arm.motor.torque, 1e-15);
     check_close(state_accelerations(stuck.motion, stuck.motion->state)[0], 0, 0);
     assert_true(stuck.motion->state[SLOT_JUMPED] == 0); // the implicit methods go on as they were
-    motion_destroy(stuck.motion);
 }
 
 TEST(a_cut_changes_nothing_before_it)
 {
-    moving_rod free = start_rod(SETTINGS("arm.links=1")), cut = start_rod(SETTINGS("arm.links=1"));
+    START_ROD(free, "arm.links=1");
+    START_ROD(cut, "arm.links=1");
     cut.motion->record.tstop = 0.35; // after the impact
     motion_report a = next_event(&free, 1), b = next_event(&cut, 1);
     assert_int_equal(a.event, MOTION_IMPACT);
     assert_int_equal(b.event, MOTION_IMPACT);
     assert_memory_equal(free.motion->state, cut.motion->state,
                         (size_t)free.motion->size * sizeof(double));
-    motion_destroy(free.motion);
-    motion_destroy(cut.motion);
 }
 
 // A motion that was begun anew is the one it was the first time, to the last bit.
 TEST(a_motion_can_be_started_again)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=1", "motor.voltage=3"));
+    START_ROD(r, "arm.links=1 motor.voltage=3");
     double first[256];
     const size_t size = (size_t)r.motion->size;
     assert_true(size <= sizeof first / sizeof first[0]);
@@ -371,7 +354,6 @@ TEST(a_motion_can_be_started_again)
         }
     }
     assert_memory_equal(first, r.motion->state, size * sizeof *first);
-    motion_destroy(r.motion);
 }
 
 // The algorithmic accelerations that the implicit methods go on with are those of the instant;
@@ -390,12 +372,11 @@ static void assert_starts_anew(const moving_rod *r)
 // After every jump, of events and of torques, an implicit method starts anew.
 TEST(implicit_methods_start_anew_after_a_jump)
 {
-    static const char *const joints[] = {"arm.hub_joint=rigid", "arm.hub_joint=spring"};
-    static const char *const links[] = {"arm.links=2", "arm.links=5"};
     int events[MOTION_SLIP + 1] = {0}, moved = 0;
     for (int i = 0; i < 4; i++) {
-        moving_rod r = start_rod(SETTINGS("method.name=generalized-alpha", joints[i / 2],
-                                          links[i % 2], "motor.stiction=0.02"));
+        START_ROD(r,
+                  "method.name=generalized-alpha arm.hub_joint=%s arm.links=%d motor.stiction=0.02",
+                  i / 2 ? "spring" : "rigid", i % 2 ? 5 : 2);
         assert_starts_anew(&r);
         const double start[] = {0.35, 0.5, 0.6, 0.7, 0.8, 0.9}, volts[] = {2, -0.5, 0.8, 0.3, 0, 1};
         for (int k = 0; k < 6; k++) {
@@ -417,7 +398,6 @@ TEST(implicit_methods_start_anew_after_a_jump)
                 moved++;
             }
         }
-        motion_destroy(r.motion);
     }
     assert_true(events[MOTION_IMPACT] > 3 && events[MOTION_RELEASE] > 1 && moved > 3);
 }
@@ -425,12 +405,10 @@ TEST(implicit_methods_start_anew_after_a_jump)
 // What is held at wall and hub has neither velocity nor acceleration, to the last bit, and stays.
 TEST(what_is_held_does_not_move)
 {
-    static const char *const stictions[] = {"motor.stiction=0.1", "motor.stiction=0.4"};
-    static const char *const methods[] = {"method.name=event", "method.name=generalized-alpha"};
     for (int i = 0; i < 4; i++) {
-        moving_rod r = start_rod(
-            SETTINGS(stictions[i % 2], methods[i / 2], "arm.damping_ratio=0.1", "motor.voltage=2"));
-        SCOPED(motion_destroy_kept) motion *m = r.motion;
+        START_ROD(r, "motor.stiction=%g method.name=%s arm.damping_ratio=0.1 motor.voltage=2",
+                  i % 2 ? 0.4 : 0.1, i / 2 ? "generalized-alpha" : "event");
+        motion *m = r.motion;
         const double *q = state_angles(m, m->state);
         int held = 0;
         double before[2] = {0};
@@ -456,8 +434,8 @@ TEST(what_is_held_does_not_move)
 // An arm with long flights keeps bouncing: the chatter rule counts only short flights.
 TEST(bounces_in_long_flights_are_no_chatter)
 {
-    moving_rod r = start_rod(SETTINGS("arm.links=2", "wall.restitution=0.95", "motor.voltage=2",
-                                      "motor.stiction=0", "arm.damping_ratio=0.01"));
+    START_ROD(r, "arm.links=2 wall.restitution=0.95 motor.voltage=2 motor.stiction=0 "
+                 "arm.damping_ratio=0.01");
     const double shortest = 2 * 3.14159265358979 / r.arm.highest_frequency;
     int far = 0, in_a_row = 0;
     double last = -HUGE_VAL;
@@ -475,7 +453,6 @@ TEST(bounces_in_long_flights_are_no_chatter)
             assert_true(!event.chatter || in_a_row > MOTION_MOST_SHORT_FLIGHTS);
         }
     }
-    motion_destroy(r.motion);
 }
 
 // A force that only rises is largest at the last instant there was, one that only falls where it
@@ -483,8 +460,8 @@ TEST(bounces_in_long_flights_are_no_chatter)
 TEST(the_peak_of_a_rising_force_is_at_its_end)
 {
     for (int i = 0; i < 2; i++) {
-        moving_rod r = start_rod_by(NULL, i == 0 ? NULL : &explicit_engine);
-        SCOPED(motion_destroy_kept) motion *m = r.motion;
+        START_ROD_BY(r, i == 0 ? NULL : &explicit_engine, "arm.links=2");
+        motion *m = r.motion;
         while (next_event(&r, 1).event != MOTION_IMPACT) {
         }
         const double touched = m->state[SLOT_TIME];
