@@ -48,7 +48,6 @@ static const rgb light[INK_COUNT] = {
 
 bool ink_rgb(colour_theme theme, ink i, rgb *colour)
 {
-    assert(colour != NULL);
     *colour = theme == COLOURS_LIGHT ? light[i] : dark[i];
     return theme != COLOURS_MONO && i != INK_TEXT && i != INK_TITLE && i != INK_SELECTED;
 }

@@ -6,7 +6,6 @@
 
 void pictures_finish(picture_layer *layer)
 {
-    assert(layer != NULL);
     for (int i = 0; i < PICTURES; i++) {
         if (layer->items[i].surface != NULL) {
             cairo_surface_destroy(layer->items[i].surface);
@@ -17,7 +16,6 @@ void pictures_finish(picture_layer *layer)
 
 void pictures_clear(screen *s)
 {
-    assert(s != NULL);
     if (s->pictures != NULL) {
         s->pictures->count = 0;
     }
@@ -45,7 +43,6 @@ static bool fit_surface(screen_picture *p, int width, int height)
 
 cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
 {
-    assert(s != NULL);
     picture_layer *layer = s->pictures;
 
     // kept within the screen
@@ -98,7 +95,6 @@ static void put_words(screen *s, int picture, const char *words)
 
 void picture_end(screen *s, cairo_t *cr)
 {
-    assert(s != NULL && cr != NULL);
     picture_layer *layer = s->pictures;
     const bool drawn = cairo_status(cr) == CAIRO_STATUS_SUCCESS;
     cairo_destroy(cr);
@@ -165,7 +161,6 @@ int pictures_regions(const screen *s, int most_width, int most_height,
 
 rgb picture_ink(const screen *s, colour_theme theme, ink i)
 {
-    assert(s != NULL && s->pictures != NULL);
     const rgb black = {0, 0, 0}, white = {255, 255, 255};
     const rgb ground = s->pictures->ground;
     rgb colour;

@@ -267,7 +267,6 @@ const char pixel_ask_cell[] = "\033[16t";
 
 const char *pixel_answers_begin(pixel_answers *a, bool multiplexer)
 {
-    assert(a != NULL);
     *a = (pixel_answers){.stage = PIXELS_ASKED_NAME, .multiplexer = multiplexer};
     return ask_name;
 }
@@ -342,7 +341,6 @@ static void take_sizes(pixel_answers *a, const char *text, char final)
 
 const char *pixel_answers_take(pixel_answers *a, const escape_sequence *answer)
 {
-    assert(a != NULL && answer != NULL);
     const char *text = answer->text;
     const bool asked = a->stage == PIXELS_ASKED;
     int number = 0;
@@ -376,7 +374,6 @@ const char *pixel_answers_take(pixel_answers *a, const escape_sequence *answer)
 
 pixel_protocol pixel_answers_protocol(const pixel_answers *a)
 {
-    assert(a != NULL);
     if (a->stage != PIXELS_ANSWERED) {
         return PIXELS_NONE;
     }

@@ -12,7 +12,6 @@ enum { BRAILLE = 0x2800 };
 
 bool screen_resize(screen *s, int width, int height)
 {
-    assert(s != NULL);
     width = width < 1 ? 1 : width;
     height = height < 1 ? 1 : height;
     cell *cells = calloc((size_t)width * (size_t)height, sizeof *cells);
@@ -33,7 +32,6 @@ void screen_finish(screen *s)
 
 void screen_clear(screen *s)
 {
-    assert(s != NULL);
     for (long i = 0; i < (long)s->width * s->height; i++) {
         s->cells[i] = (cell){' ', INK_TEXT};
     }
@@ -77,7 +75,6 @@ uint32_t glyph_decode(const char **text)
 
 int text_cells(const char *text)
 {
-    assert(text != NULL);
     int count = 0;
     while (*text != '\0') {
         glyph_decode(&text);
@@ -89,7 +86,6 @@ int text_cells(const char *text)
 int screen_text(screen *s, int x, int y, int room, ink colour, const char *text)
 {
     int taken = 0;
-    assert(s != NULL && text != NULL);
     while (*text != '\0' && taken < room) {
         screen_put(s, x + taken, y, glyph_decode(&text), colour);
         taken++;
@@ -101,7 +97,6 @@ int screen_print(screen *s, int x, int y, int room, ink colour, const char *form
 {
     char text[1024];
     va_list list;
-    assert(format != NULL);
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
@@ -139,7 +134,6 @@ int text_wrap(const char *text, int width, text_line *lines, int most, bool *spl
 int screen_words(screen *s, int x, int y, int room, ink colour, const char *text)
 {
     text_line words = {text, 0};
-    assert(s != NULL && text != NULL);
     if (text_cells(text) <= room) {
         return screen_text(s, x, y, room, colour, text);
     }
@@ -151,7 +145,6 @@ int screen_words(screen *s, int x, int y, int room, ink colour, const char *text
 void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title)
 {
     int right = x + width - 1, bottom = y + height - 1;
-    assert(s != NULL && title != NULL);
 
     // sides, and an empty inside
     for (int row = y; row <= bottom; row++) {
@@ -179,7 +172,6 @@ void screen_frame(screen *s, int x, int y, int width, int height, ink colour, co
 
 void screen_tint(screen *s, int x, int y, int width, int height, ink colour)
 {
-    assert(s != NULL);
     for (int row = y; row < y + height; row++) {
         for (int column = x; column < x + width; column++) {
             cell *c = cell_at(s, column, row);
@@ -222,7 +214,6 @@ static bool clip(double low, double high, double a, double b, double *from, doub
 void canvas_line(const canvas *c, double x0, double y0, double x1, double y1, ink colour)
 {
     double from = 0, to = 1;
-    assert(c != NULL && c->screen != NULL);
     if (!isfinite(x0 + y0 + x1 + y1) || !clip(-1, 2 * c->width, x0, x1, &from, &to) ||
         !clip(-1, 4 * c->height, y0, y1, &from, &to)) {
         return;
@@ -300,8 +291,6 @@ uint32_t glyph_in_set(uint32_t glyph, glyph_set set)
 
 void glyph_encode(uint32_t glyph, char *text)
 {
-    assert(text != NULL);
-
     // one byte, or a first one with the length and six bits in each that follows
     if (glyph < 0x80) {
         *text++ = (char)glyph;
@@ -323,7 +312,6 @@ void glyph_encode(uint32_t glyph, char *text)
 
 void screen_dump(const screen *s, glyph_set set, FILE *stream)
 {
-    assert(s != NULL && stream != NULL);
     for (int y = 0; y < s->height; y++) {
         const cell *row = s->cells + (long)y * s->width;
 

@@ -233,7 +233,6 @@ status terminal_open(fault *f)
         start_color();
         use_default_colors();
     }
-    tty.themed = false;
     terminal_bracket_pastes(true);
     ask_for_pixels();
     return STATUS_OK;
@@ -246,9 +245,7 @@ void terminal_close(void)
         terminal_bracket_pastes(false);
         terminal_remove_pictures();
         // where there is no alternate screen the prompt comes back to an empty one
-        if (tty.painted) {
-            clearok(stdscr, TRUE);
-        }
+        clearok(stdscr, TRUE);
         erase();
         refresh();
         curs_set(1);
@@ -275,7 +272,6 @@ void terminal_close(void)
 
 void terminal_size(int *width, int *height)
 {
-    assert(width != NULL && height != NULL);
     *width = COLS > 0 ? COLS : 1;
     *height = LINES > 0 ? LINES : 1;
 }

@@ -1,5 +1,5 @@
-// What the terminal shows: cells through ncurses or, in colours that it cannot address, by escape
-// sequences; pictures.
+// What the terminal shows: cells by the sequences of its description, in colours that this does not
+// know by those that all terminals with them have; pictures.
 #include "ui/terminal/terminal.h"
 #include "ui/terminal/terminal_state.h"
 
@@ -20,13 +20,7 @@
 #include "ui/terminal/pictures.h"
 #include "ui/terminal/pixels.h"
 
-// --- bytes and cells past ncurses -------------------------------------------------------------
-
-// Bytes on their way to the terminal.
-typedef struct outlet {
-    char bytes[8192];
-    size_t used;
-} outlet;
+// --- bytes and cells --------------------------------------------------------------------------
 
 static size_t sent_in_all;
 
@@ -37,7 +31,6 @@ size_t terminal_sent(void)
 
 void terminal_send(const char *bytes, size_t count)
 {
-    assert(bytes != NULL);
     sent_in_all += count;
     for (size_t sent = 0; sent < count;) {
         ssize_t taken = write(STDOUT_FILENO, bytes + sent, count - sent);
@@ -52,55 +45,71 @@ void terminal_send(const char *bytes, size_t count)
     }
 }
 
-static void send(outlet *o)
+static FILE *sequences; // where put_byte writes
+
+static int put_byte(int byte)
 {
-    terminal_send(o->bytes, o->used);
-    o->used = 0;
+    return putc(byte, sequences);
 }
 
-static void put(outlet *o, const char *text)
+// Writes a sequence of the terminal's description, with one number; nothing if it has none.
+static void put_capability(FILE *stream, const char *name, int number)
 {
-    size_t length = strlen(text);
-    if (o->used + length > sizeof o->bytes) {
-        send(o);
+    const char *text = tigetstr(name);
+    if (text != NULL && text != (const char *)-1) {
+        sequences = stream;
+        tputs(tparm(text, (long)number), 1, put_byte);
     }
-    memcpy(o->bytes + o->used, text, length);
-    o->used += length;
 }
 
-// The sequence that selects an ink.
-static void put_ink(outlet *o, ink i, colour_theme theme, colour_depth depth)
+// One of 16 or 256 colours: terminals of eight show the bright ones as bold.
+static void put_indexed(FILE *stream, int index, colour_depth depth)
 {
-    char text[64] = "";
-    rgb c;
+    if (COLORS >= 8 && COLORS <= 256 && (depth == DEPTH_16 || COLORS == 256)) {
+        put_capability(stream, "setaf", index < COLORS ? index : index & 7);
+    } else if (depth == DEPTH_256) {
+        fprintf(stream, "\033[38;5;%dm", index);
+    } else {
+        fprintf(stream, "\033[%dm", index < 8 ? 30 + index : 90 + index - 8);
+    }
+}
 
-    // which colour, if any, and whether it is bold
-    int index = depth == DEPTH_256 ? ink_256(theme, i) : depth == DEPTH_16 ? ink_16(theme, i) : -1;
-    bool coloured = ink_rgb(theme, i, &c) && depth != DEPTH_MONO;
-    // many terminals show bold dark colours as bright ones, which are not readable on a light
-    // background
-    bool faint = theme == COLOURS_LIGHT && depth == DEPTH_16 && coloured;
-    bool bold = (i == INK_TITLE || i == INK_EVENT || i == INK_WARNING) && !faint;
+// Selects an ink. Bold, dim and underlined cells say without colours what these say elsewhere.
+static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
+{
+    rgb c;
+    const bool mono = theme == COLOURS_MONO || depth == DEPTH_MONO;
+    const bool coloured = !mono && ink_rgb(theme, i, &c);
+    const int index = depth == DEPTH_256 ? ink_256(theme, i) : ink_16(theme, i);
+    const bool bright = coloured && depth == DEPTH_16 && COLORS == 8 && index >= 8;
+
+    // many terminals show bold dark colours as bright ones, which are not readable on light ground
+    const bool faint = theme == COLOURS_LIGHT && depth == DEPTH_16 && coloured;
+    const bool bold = i == INK_TITLE || i == INK_EVENT || i == INK_WARNING;
+    put_capability(stream, "sgr0", 0);
+    if (i == INK_SELECTED) {
+        put_capability(stream, "rev", 0);
+    } else if (bright || (bold && !faint) || (mono && i == INK_FORCE)) {
+        put_capability(stream, "bold", 0);
+    }
+    if (mono && (i == INK_DIM || i == INK_OTHER)) {
+        put_capability(stream, "dim", 0);
+    } else if (mono && i == INK_WARNING) {
+        put_capability(stream, "smul", 0);
+    }
 
     // the colour in the terminal's own units
     if (coloured && depth == DEPTH_TRUE) {
-        snprintf(text, sizeof text, ";38;2;%d;%d;%d", c.red, c.green, c.blue);
-    } else if (coloured && depth == DEPTH_256 && index >= 0) {
-        snprintf(text, sizeof text, ";38;5;%d", index);
-    } else if (coloured && depth == DEPTH_16 && index >= 0) {
-        snprintf(text, sizeof text, ";%d", index < 8 ? 30 + index : 90 + index - 8);
+        fprintf(stream, "\033[38;2;%d;%d;%dm", c.red, c.green, c.blue);
+    } else if (coloured && index >= 0) {
+        put_indexed(stream, index, depth);
     }
-    put(o, "\033[0");
-    put(o, bold ? ";1" : i == INK_SELECTED ? ";7" : "");
-    put(o, text);
-    put(o, "m");
 }
 
 // Writes the cells that have changed (all of them if `whole`; the terminal is empty then).
-static void paint_cells(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
-                        bool whole)
+static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool whole)
 {
-    static outlet o;
+    const char *place = tigetstr("cup");
     int at_x = -1, at_y = -1, colour = -1;
     for (int y = 0; y < s->height; y++) {
         for (int x = 0; x < s->width; x++) {
@@ -116,26 +125,25 @@ static void paint_cells(const screen *s, glyph_set glyphs, colour_theme theme, c
             }
 
             // the cursor and the ink follow where they are not there yet
-            char text[32];
             if (at_x != x || at_y != y) {
-                snprintf(text, sizeof text, "\033[%d;%dH", y + 1, x + 1);
-                put(&o, text);
+                sequences = stream;
+                tputs(tparm(place, (long)y, (long)x), 1, put_byte);
             }
             if (colour != (int)c.ink) {
-                put_ink(&o, c.ink, theme, depth);
+                put_ink(stream, c.ink, tty.theme, tty.depth);
                 colour = (int)c.ink;
             }
 
             // what takes no cell or two would break the grid
+            char text[5];
             uint32_t glyph = glyph_in_set(c.glyph, glyphs);
             glyph_encode(wcwidth((wchar_t)glyph) == 1 ? glyph : '?', text);
-            put(&o, text);
+            fputs(text, stream);
             at_x = x + 1;
             at_y = y;
         }
     }
-    put(&o, "\033[0m");
-    send(&o);
+    put_capability(stream, "sgr0", 0);
 }
 
 // --- pictures ---------------------------------------------------------------------------------
@@ -240,8 +248,8 @@ static void write_regions(FILE *stream, const screen *s, const picture_region *r
     shown.count = count;
 }
 
-// Shows the pictures of a screen whose cells are shown: those that have changed, or all.
-static void show_pictures(const screen *s, bool whole)
+// Writes the pictures of a screen whose cells are shown: those that have changed, or all.
+static void paint_pictures(FILE *stream, const screen *s, bool whole)
 {
     const pixel_answers *a = &tty.pixels;
     picture_region regions[PICTURE_REGIONS];
@@ -257,21 +265,7 @@ static void show_pictures(const screen *s, bool whole)
     }
     const bool fit = width > 0 && height > 0 && s->pictures != NULL;
     const int count = fit ? pictures_regions(s, width, height, regions) : 0;
-
-    // all of them at once
-    const shown_pictures before = shown;
-    text_stream all;
-    if (text_stream_open(&all)) {
-        write_regions(all.stream, s, regions, count, whole);
-        size_t size;
-        char *bytes = text_stream_close(&all, &size);
-        if (bytes != NULL) {
-            terminal_send(bytes, size);
-        } else {
-            shown = before; // no memory: nothing was sent
-        }
-        free(bytes);
-    }
+    write_regions(stream, s, regions, count, whole);
 }
 
 void terminal_remove_pictures(void)
@@ -314,83 +308,6 @@ bool terminal_is_light(void)
     return last != NULL && (strcmp(last, ";7") == 0 || strcmp(last, ";15") == 0);
 }
 
-static void set_colours(colour_theme theme, colour_depth depth)
-{
-    for (int i = 0; i < INK_COUNT && tty.colours; i++) {
-        int index = depth == DEPTH_256 ? ink_256(theme, (ink)i) : ink_16(theme, (ink)i);
-        // eight colours are bright where they are bold
-        tty.bright[i] = index >= COLORS;
-        init_pair((short)(i + 1), (short)(tty.bright[i] ? index & 7 : index), -1);
-    }
-    tty.theme = theme;
-    tty.depth = depth;
-    tty.themed = true;
-}
-
-static attr_t attributes_of(ink colour, bool coloured)
-{
-    // bold and dim distinguish what colours do elsewhere
-    switch (colour) {
-    case INK_SELECTED:
-        return A_REVERSE;
-    case INK_TITLE:
-    case INK_EVENT:
-        return A_BOLD;
-
-    // the meaning of a colour needs another sign without colours
-    case INK_DIM:
-    case INK_OTHER:
-        return coloured ? A_NORMAL : A_DIM;
-    case INK_WARNING:
-        return coloured ? A_BOLD : A_BOLD | A_UNDERLINE;
-    case INK_FORCE:
-        return coloured ? A_NORMAL : A_BOLD;
-    default:
-        return A_NORMAL;
-    }
-}
-
-static void show_cell(int x, int y, cell c, glyph_set glyphs, bool coloured)
-{
-    cchar_t out;
-    wchar_t text[2] = {(wchar_t)glyph_in_set(c.glyph, glyphs), 0};
-    // what takes no cell or two would break the grid
-    if (wcwidth(text[0]) != 1) {
-        text[0] = '?';
-    }
-
-    // bold means bright with eight colours
-    attr_t attributes = attributes_of(c.ink, coloured);
-    rgb ignored;
-    if (coloured && tty.bright[c.ink]) {
-        attributes |= A_BOLD;
-    } else if (coloured && tty.theme == COLOURS_LIGHT && tty.depth == DEPTH_16 &&
-               ink_rgb(tty.theme, c.ink, &ignored)) {
-        // many terminals show bold dark colours as bright ones: unreadable on light ground
-        attributes &= ~(attr_t)A_BOLD;
-    }
-
-    setcchar(&out, text, attributes, coloured ? (short)(c.ink + 1) : 0, NULL);
-    mvadd_wch(y, x, &out);
-}
-
-// Shows the cells through ncurses.
-static void show_by_curses(const screen *s, glyph_set glyphs, bool coloured, bool whole)
-{
-    // what has changed since the last picture
-    for (int y = 0; y < s->height; y++) {
-        for (int x = 0; x < s->width; x++) {
-            long i = (long)y * s->width + x;
-            cell c = s->cells[i], old = tty.shown.cells[i];
-            if (whole || c.glyph != old.glyph || c.ink != old.ink) {
-                show_cell(x, y, c, glyphs, coloured);
-                tty.shown.cells[i] = c;
-            }
-        }
-    }
-    refresh();
-}
-
 void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
                    bool whole)
 {
@@ -399,47 +316,44 @@ void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour
     // another size, theme or depth: everything anew
     bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;
     depth = depth == DEPTH_AUTO ? terminal_depth() : depth;
-    if (!tty.themed || tty.theme != theme || tty.depth != depth) {
-        set_colours(theme, depth);
-        whole = true;
-    }
     if (!same_size && !screen_resize(&tty.shown, s->width, s->height)) {
         return;
     }
-    whole = whole || !same_size;
-
-    // ncurses has numbers for the colours that the terminal's description has, no others
-    bool coloured = theme != COLOURS_MONO && depth != DEPTH_MONO;
-    bool numbered =
-        tty.colours && COLORS <= 256 && depth != DEPTH_TRUE && (depth == DEPTH_16 || COLORS == 256);
-    tty.painted = coloured && !numbered;
-
-    // a terminal that knows synchronised output shows the frame at once, others ignore it
-    terminal_send("\033[?2026h", 8);
-
-    // ncurses keeps count of what is on the screen even where it does not paint
+    whole = whole || !same_size || tty.theme != theme || tty.depth != depth;
+    tty.theme = theme;
+    tty.depth = depth;
     if (whole) {
         clearok(stdscr, TRUE);
         erase();
-    }
-    if (tty.painted) {
-        // so that it finds nothing to do by itself later
         refresh();
-        paint_cells(s, glyphs, theme, depth, whole);
-    } else {
-        show_by_curses(s, glyphs, coloured, whole);
     }
 
-    // ncurses takes a picture's cells for blanks, and may have cleared them
-    show_pictures(s, whole || !tty.painted);
-    terminal_send("\033[?2026l", 8);
+    // all at once; a terminal that knows synchronised output shows it at once, others ignore it
+    text_stream all;
+    char *bytes = NULL;
+    size_t size;
+    const shown_pictures before = shown;
+    if (text_stream_open(&all)) {
+        fputs("\033[?2026h", all.stream);
+        paint_cells(all.stream, s, glyphs, whole);
+        paint_pictures(all.stream, s, whole);
+        fputs("\033[?2026l", all.stream);
+        bytes = text_stream_close(&all, &size);
+    }
+    if (bytes != NULL) {
+        terminal_send(bytes, size);
+    } else {
+        // no memory: nothing was sent, and the next picture is a whole one
+        shown = before;
+        screen_finish(&tty.shown);
+    }
+    free(bytes);
 }
 
 // --- the clipboard ----------------------------------------------------------------------------
 
 void terminal_copy(const char *text)
 {
-    assert(text != NULL);
     gchar *coded = g_base64_encode((const guchar *)text, strlen(text));
     terminal_send("\033]52;c;", 7);
     terminal_send(coded, strlen(coded));

@@ -18,9 +18,7 @@ typedef struct terminal_state {
     screen shown;         // contents of the terminal
     colour_theme theme;   // theme of the colours that are set
     colour_depth depth;
-    bool bright[INK_COUNT]; // inks drawn in bold because there are no bright colours
-    bool colours, themed, mouse, has_mouse;
-    bool painted;             // the contents were not drawn by ncurses
+    bool colours, mouse, has_mouse;
     escape_sequence sequence; // sequence begun on the input
     double sequence_time;     // of its last character [s]
     bool pasting;             // what comes is pasted text
