@@ -2,7 +2,6 @@
 // commands that give keys another meaning.
 #include "ui/explorer/explorer.h"
 
-#include <assert.h>
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +35,6 @@ static bool find_command(explorer_state *st, const char *line, int *index)
 
 bool explorer_execute(explorer_state *st, const char *line)
 {
-    assert(st != NULL && line != NULL);
     char text[LINE_TEXT];
     int begin = (int)strspn(line, " \t:"), index;
     line += begin;
@@ -66,7 +64,6 @@ bool explorer_execute(explorer_state *st, const char *line)
 
 bool explorer_carry_out(explorer *ex, const char *line)
 {
-    assert(ex != NULL);
     const bool done = explorer_execute(&ex->state, line);
     act_follow_lesson(&ex->state);
     act_tell_replay(&ex->state);
@@ -218,7 +215,6 @@ static bool execute_line(explorer_state *st, const char *path, int number, const
 
 void explorer_load_settings(explorer *ex)
 {
-    assert(ex != NULL);
     explorer_state *st = &ex->state;
     char path[1024], *line = NULL;
     message_line first = {.text = ""};
@@ -297,7 +293,6 @@ static void write_settings(const explorer_state *st, FILE *stream)
 
 bool act_remember(explorer_state *st, const char *argument)
 {
-    (void)argument;
     char path[1024];
     whole_file file;
     fault f = {0};
@@ -321,7 +316,6 @@ bool act_remember(explorer_state *st, const char *argument)
 
 void explorer_welcome(explorer *ex)
 {
-    assert(ex != NULL);
     char path[1024];
     if (!user_file("visited", path, sizeof path, true) || access(path, F_OK) == 0) {
         return;

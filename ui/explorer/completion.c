@@ -1,6 +1,5 @@
 #include "ui/explorer/explorer.h"
 
-#include <assert.h>
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -226,7 +225,6 @@ static int word_begins(const char *text)
 
 bool complete_prompt(explorer_state *st)
 {
-    assert(st != NULL);
     prompt *p = &st->prompt;
     char name[CANDIDATE];
 

@@ -1,6 +1,5 @@
 #include "ui/explorer/explorer.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "ui/explorer/panels/panel.h"
@@ -8,7 +7,6 @@
 
 status explorer_init(explorer *ex, scenario *s, double patience, fault *f)
 {
-    assert(ex != NULL && s != NULL);
     memset(ex, 0, sizeof *ex);
     if (consent_needed(s)) {
         s->parameters.code_allowed = consent_remembered(s);
@@ -30,7 +28,6 @@ void explorer_finish(explorer *ex)
 
 bool explorer_follow(explorer *ex)
 {
-    assert(ex != NULL);
     session *s = &ex->state.session;
 
     // a run of a sweep, or more of the present one
@@ -51,20 +48,17 @@ bool explorer_follow(explorer *ex)
 
 void explorer_advance(explorer *ex, double seconds)
 {
-    assert(ex != NULL);
     act_advance(&ex->state, seconds);
 }
 
 bool explorer_is_busy(const explorer *ex)
 {
-    assert(ex != NULL);
     return ex->state.playback.playing || ex->state.session.computing != NULL ||
            !lab_sweep_is_done(&ex->state.sweep);
 }
 
 void explorer_draw(explorer *ex, screen *s)
 {
-    assert(ex != NULL && s != NULL);
     explorer_state *st = &ex->state;
     const screen_size size = {s->width, s->height};
     st->size = size;

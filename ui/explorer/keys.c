@@ -2,7 +2,6 @@
 // mouse.
 #include "ui/explorer/explorer.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "ui/terminal/keys.h"
@@ -11,7 +10,6 @@
 
 bool explorer_keys(explorer *ex, const char *text, fault *f)
 {
-    assert(ex != NULL && text != NULL);
     while (*text != '\0' && !ex->state.quit) {
         // a character by itself, unless it begins a name
         const char *close = *text == '<' ? strchr(text, '>') : NULL;
@@ -89,7 +87,6 @@ static void key_in_prompt(explorer *ex, int key)
         act_hush(&ex->state);
         break;
     case KEY_CODE_ENTER:
-    case '\n':
         enter_prompt(ex);
         break;
     case 'p' & 0x1f: {
@@ -134,7 +131,6 @@ static void key_in_filter(explorer *ex, int key)
         st->filters.typing = PANEL_NONE;
         break;
     case KEY_CODE_ENTER:
-    case '\n':
         st->filters.typing = PANEL_NONE;
         if (filtered == PANEL_PARAMETERS && !st->parameters.on_heading) {
             explorer_carry_out(ex, "edit");
@@ -181,7 +177,6 @@ static void escape(explorer *ex)
 static void key_by_table(explorer *ex, int key)
 {
     explorer_state *st = &ex->state;
-    key = key == '\n' ? KEY_CODE_ENTER : key == 127 || key == 8 ? KEY_CODE_BACKSPACE : key;
     const char *bound = key_line(&st->keys, key);
     const bool asked = st->asked_to_quit;
     if (key == 'y' && st->session.run.summary.status == STATUS_NOT_ALLOWED) {
@@ -198,7 +193,7 @@ static void key_by_table(explorer *ex, int key)
         explorer_carry_out(ex, line);
     } else if (key == KEY_CODE_ESCAPE) {
         escape(ex);
-    } else if (key > ' ' && key < KEY_CODE_FIRST && key != 127) {
+    } else if (key > ' ' && key < KEY_CODE_FIRST) {
         char name[8];
         glyph_encode((uint32_t)key, name);
         act_warn(st, "'%s' does nothing here, ? lists the keys", name);
@@ -212,8 +207,8 @@ static void key_by_table(explorer *ex, int key)
 
 void explorer_key(explorer *ex, int key)
 {
-    assert(ex != NULL);
     explorer_state *st = &ex->state;
+    key = key == '\n' ? KEY_CODE_ENTER : key == 127 || key == 8 ? KEY_CODE_BACKSPACE : key;
 
     // the page of a first visit takes no key
     if (st->page.panel == PANEL_WELCOME) {
@@ -237,7 +232,6 @@ void explorer_key(explorer *ex, int key)
 
 void explorer_paste(explorer *ex, int character)
 {
-    assert(ex != NULL);
     explorer_state *st = &ex->state;
     const bool typing = st->prompt.open || st->filters.typing != PANEL_NONE ||
                         (st->page.panel == PANEL_SCENARIOS && st->scenarios.filtering);
@@ -333,8 +327,6 @@ static void turn_wheel(explorer *ex, pointer_event e)
 
 void explorer_point(explorer *ex, pointer_event e)
 {
-    assert(ex != NULL);
-
     // a gesture is a press, its drags and its release; what is left is the wheel
     switch (e.kind) {
     case POINTER_PRESS:

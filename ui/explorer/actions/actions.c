@@ -17,7 +17,6 @@ static void put_message(explorer_state *st, bool warning, const char *format, va
 
 bool act_hush(explorer_state *st)
 {
-    assert(st != NULL);
     st->message.text[0] = '\0';
     return true;
 }
@@ -51,13 +50,11 @@ bool act_refuse(explorer_state *st, const char *format, ...)
 
 bool act_worked(explorer_state *st, status code, const fault *f)
 {
-    assert(f != NULL);
     return code == STATUS_OK || act_refuse(st, "%s", f->text[0] ? f->text : status_text(code));
 }
 
 bool act_read_number(explorer_state *st, const char *text, double *value)
 {
-    assert(text != NULL && value != NULL);
     char *end;
     *value = strtod(text, &end);
     if (end == text || *end != '\0' || !isfinite(*value)) {
@@ -68,7 +65,6 @@ bool act_read_number(explorer_state *st, const char *text, double *value)
 
 bool act_read_optional(explorer_state *st, const char *text, double *value)
 {
-    assert(text != NULL && value != NULL);
     return text[0] == '\0' || act_read_number(st, text, value);
 }
 
@@ -129,7 +125,6 @@ bool act_read_pane(explorer_state *st, const char *word, int *index)
 
 bool act_tell_failed_run(explorer_state *st)
 {
-    assert(st != NULL);
     const summary *m = &st->session.run.summary;
     const control_parameters *c = &st->session.effective.parameters.control;
     if (m->status == STATUS_NOT_ALLOWED) {
@@ -145,7 +140,6 @@ bool act_tell_failed_run(explorer_state *st)
 
 bool act_need_whole_run(explorer_state *st)
 {
-    assert(st != NULL);
     const session *s = &st->session;
     if (s->computing == NULL) {
         return true;

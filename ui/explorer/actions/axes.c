@@ -1,7 +1,6 @@
 // Actions on the axes of the curves: which part of the run is visible, and which values.
 #include "ui/explorer/actions/actions.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,7 +78,6 @@ bool act_pan(explorer_state *st, const char *argument)
 
 bool act_follow(explorer_state *st, const char *argument)
 {
-    (void)argument;
     st->window.adrift = false;
     return act_tell(st, "the curves follow the cursor");
 }

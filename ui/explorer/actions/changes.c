@@ -139,7 +139,6 @@ bool act_nudge(explorer_state *st, const char *argument)
 // Makes the run of the selected value the present run, by a change from the start.
 static bool take_swept(explorer_state *st)
 {
-    assert(st != NULL);
     const lab_sweep *sweep = &st->sweep;
     session *s = &st->session;
     char value[SWEEP_VALUE_TEXT];
@@ -234,7 +233,6 @@ static bool turn(explorer_state *st, int direction)
 bool act_undo(explorer_state *st, const char *argument)
 {
     session_forget_ghost(&st->session);
-    (void)argument;
     fault f = {0};
     if (st->session.input_count == 0 && state_can_turn(st, -1)) {
         return turn(st, -1);
@@ -246,7 +244,6 @@ bool act_undo(explorer_state *st, const char *argument)
 bool act_redo(explorer_state *st, const char *argument)
 {
     session_forget_ghost(&st->session);
-    (void)argument;
     fault f = {0};
     if (st->session.input_count == st->session.input_total && state_can_turn(st, 1)) {
         return turn(st, 1);
@@ -256,7 +253,6 @@ bool act_redo(explorer_state *st, const char *argument)
 
 bool act_exchange_model(explorer_state *st, const char *argument)
 {
-    (void)argument;
     bool printed = st->session.effective.parameters.arm.model == ARM_PRINTED;
     return act_change(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
 }
@@ -300,7 +296,6 @@ void act_hold_slider(explorer_state *st, slider_drag d)
 
 bool act_follow_slider(explorer_state *st)
 {
-    assert(st != NULL);
     const slider_grip *grip = &st->slider;
     const parameters p = state_parameters(st);
     if (!grip->held || parameter_get(&p, grip->parameter) == grip->value) {
@@ -311,7 +306,6 @@ bool act_follow_slider(explorer_state *st)
 
 bool act_drop_slider(explorer_state *st)
 {
-    assert(st != NULL);
     const bool followed = act_follow_slider(st);
     st->slider.held = false;
     return followed;
@@ -325,14 +319,6 @@ static int read_change(explorer_state *st, const char **text)
     const int count = st->session.input_count;
     return count == 0 ? (act_refuse(st, "there are no changes"), -1)
                       : act_read_index(st, text, count, "changes", ":changes");
-}
-
-bool act_show_changes(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    st->page.panel = st->page.panel == PANEL_CHANGES ? PANEL_NONE : PANEL_CHANGES;
-    st->change = st->session.input_count > 0 ? st->session.input_count - 1 : 0;
-    return true;
 }
 
 bool act_edit_change(explorer_state *st, const char *argument)

@@ -57,11 +57,3 @@ bool act_note(explorer_state *st, const char *argument)
     snprintf(st->notes[at].text, sizeof st->notes[at].text, "%s", text);
     return act_tell(st, "noted at %.5f s; :notes lists them, figures show them", time);
 }
-
-bool act_show_notes(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    st->page.panel = st->page.panel == PANEL_NOTES ? PANEL_NONE : PANEL_NOTES;
-    st->note = 0;
-    return true;
-}

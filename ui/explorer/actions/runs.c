@@ -1,7 +1,6 @@
 // Actions on several runs: pinning and taking them, what they are compared with, sweeps.
 #include "ui/explorer/actions/actions.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,7 +39,6 @@ static bool pin(explorer_state *st, const char *name)
 
 bool act_branch(explorer_state *st, const char *argument)
 {
-    (void)argument;
     if (!pin(st, "")) {
         return false;
     }
@@ -59,19 +57,11 @@ bool act_pin(explorer_state *st, const char *argument)
 
 bool act_forget(explorer_state *st, const char *argument)
 {
-    (void)argument;
     session_forget_ghost(&st->session);
     if (st->pinned.baseline >= 0) {
         run_list_drop(&st->pinned, st->pinned.baseline);
     }
     return act_settle_baseline(st);
-}
-
-bool act_show_runs(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    st->page.panel = st->page.panel == PANEL_RUN_LIST ? PANEL_NONE : PANEL_RUN_LIST;
-    return true;
 }
 
 // Reads the number of a pinned run off *text; -1 if it is refused.
@@ -356,7 +346,6 @@ bool act_solve(explorer_state *st, const char *argument)
 
 bool act_continue_sweep(explorer_state *st)
 {
-    assert(st != NULL);
     fault f = {0};
     lab_sweep *sweep = &st->sweep;
 
@@ -457,7 +446,6 @@ bool act_set_metric(explorer_state *st, const char *argument)
 
 void act_select_swept(explorer_state *st, int direction)
 {
-    assert(st != NULL);
     lab_sweep *sweep = &st->sweep;
     const int last = sweep->count - 1, at = sweep->selected + direction;
 

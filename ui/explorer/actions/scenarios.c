@@ -1,7 +1,6 @@
 // Actions on scenarios and lessons: opening one, its run as it is computed, answers.
 #include "ui/explorer/actions/actions.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +20,6 @@ static void keep_first_fault(void *context, const char *sentence)
 
 bool act_open_scenario(explorer_state *st, const char *name)
 {
-    assert(st != NULL && name != NULL);
     scenario s;
     session fresh;
     fault f = {0};
@@ -89,7 +87,6 @@ bool act_find_scenario(explorer_state *st, const char *argument)
 
 bool act_stop(explorer_state *st, const char *argument)
 {
-    (void)argument;
     session *s = &st->session;
     if (s->computing == NULL) {
         return act_refuse(st, "nothing is being computed");
@@ -103,7 +100,6 @@ bool act_stop(explorer_state *st, const char *argument)
 
 bool act_allow(explorer_state *st, const char *argument)
 {
-    (void)argument;
     session *s = &st->session;
     fault f = {0};
     bool kept;
@@ -127,7 +123,6 @@ bool act_allow(explorer_state *st, const char *argument)
 
 void act_tell_replay(explorer_state *st)
 {
-    assert(st != NULL);
     const process_replay again = session_take_replay(&st->session);
     const message_line before = st->message;
     if (again.restarted) {
@@ -190,7 +185,6 @@ bool act_open_lesson(explorer_state *st, const char *argument)
 
 void act_follow_lesson(explorer_state *st)
 {
-    assert(st != NULL);
     const lesson_step *step = present_step(st);
     st->lesson.passed =
         st->lesson.passed || (step != NULL && step->check != LESSON_READ &&
@@ -225,7 +219,6 @@ bool act_answer(explorer_state *st, const char *argument)
 
 bool act_go_on(explorer_state *st, const char *argument)
 {
-    (void)argument;
     const lesson *l = &st->session.base.lesson;
     const lesson_step *step = present_step(st);
     if (step == NULL) {

@@ -21,7 +21,6 @@ static void follow_tip(explorer_state *st)
 
 bool act_hold_tip(explorer_state *st, plane_vector place)
 {
-    assert(st != NULL);
     const session *s = &st->session;
     tip_pull *p = &st->pull;
     if (s->effective.parameters.arm.model == ARM_PRINTED) {
@@ -49,7 +48,6 @@ bool act_hold_tip(explorer_state *st, plane_vector place)
 
 void act_move_pull(explorer_state *st, plane_vector place)
 {
-    assert(st != NULL);
     st->pull.x = place.x;
     st->pull.y = place.y;
     follow_tip(st);
@@ -58,7 +56,6 @@ void act_move_pull(explorer_state *st, plane_vector place)
 // Gives the run the pushes that are due until an instant [s], if the tip is held.
 static bool pull_until(explorer_state *st, double time)
 {
-    assert(st != NULL);
     session *s = &st->session;
     tip_pull *p = &st->pull;
     const double end = s->effective.parameters.run.duration;
@@ -81,7 +78,6 @@ static bool pull_until(explorer_state *st, double time)
 
 bool act_drop_pull(explorer_state *st)
 {
-    assert(st != NULL);
     tip_pull *p = &st->pull;
     if (!p->held) {
         return true;
@@ -105,7 +101,6 @@ void act_scrub(explorer_state *st, double time)
 
 bool act_advance(explorer_state *st, double seconds)
 {
-    assert(st != NULL);
     session *s = &st->session;
     playback *play = &st->playback;
     if (!play->playing || !(seconds > 0)) {
@@ -136,7 +131,6 @@ bool act_advance(explorer_state *st, double seconds)
 
 bool act_play(explorer_state *st, const char *argument)
 {
-    (void)argument;
     session *s = &st->session;
     session_forget_ghost(s);
     st->playback.playing = !st->playback.playing;
@@ -288,7 +282,6 @@ bool act_set_slow(explorer_state *st, const char *argument)
 
 bool act_restart(explorer_state *st, const char *argument)
 {
-    (void)argument;
     session_seek(&st->session, 0);
     st->session.seen = 0;
     st->playback.playing = true;

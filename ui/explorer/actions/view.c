@@ -122,7 +122,6 @@ bool act_set_mark(explorer_state *st, const char *argument)
 
 bool act_other_side(explorer_state *st, const char *argument)
 {
-    (void)argument;
     bool narrow = st->size.width > 0 && st->size.width < SIDE_WIDTH;
 
     // the panels of the side, then those that are folded for want of room
@@ -144,7 +143,6 @@ bool act_other_side(explorer_state *st, const char *argument)
 
 bool act_statistics(explorer_state *st, const char *argument)
 {
-    (void)argument;
     const bool there = st->side.panel == PANEL_STATISTICS;
     st->side.panel = there ? panel_first_on_side() : PANEL_STATISTICS;
     st->side.in_front = !there;
@@ -160,40 +158,33 @@ static bool toggle_page(explorer_state *st, panel_id page)
     return true;
 }
 
-bool act_show_help(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    return toggle_page(st, PANEL_HELP);
-}
-
-bool act_show_info(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    return toggle_page(st, PANEL_INFO);
-}
-
-bool act_explain(explorer_state *st, const char *argument)
-{
-    (void)argument;
-    return toggle_page(st, PANEL_EXPLAIN);
-}
+#define ACTION_OF_PAGE(action, page)                                                               \
+    bool action(explorer_state *st, const char *argument)                                          \
+    {                                                                                              \
+        return toggle_page(st, page);                                                              \
+    }
+ACTION_OF_PAGE(act_show_help, PANEL_HELP)
+ACTION_OF_PAGE(act_show_info, PANEL_INFO)
+ACTION_OF_PAGE(act_explain, PANEL_EXPLAIN)
+ACTION_OF_PAGE(act_show_poles, PANEL_POLES)
+ACTION_OF_PAGE(act_compare, PANEL_COMPARISON)
+ACTION_OF_PAGE(act_show_runs, PANEL_RUN_LIST)
 
 bool act_show_why(explorer_state *st, const char *argument)
 {
-    (void)argument;
     return act_need_whole_run(st) && toggle_page(st, PANEL_WHY);
 }
 
-bool act_show_poles(explorer_state *st, const char *argument)
+bool act_show_notes(explorer_state *st, const char *argument)
 {
-    (void)argument;
-    return toggle_page(st, PANEL_POLES);
+    st->note = 0;
+    return toggle_page(st, PANEL_NOTES);
 }
 
-bool act_compare(explorer_state *st, const char *argument)
+bool act_show_changes(explorer_state *st, const char *argument)
 {
-    (void)argument;
-    return toggle_page(st, PANEL_COMPARISON);
+    st->change = st->session.input_count > 0 ? st->session.input_count - 1 : 0;
+    return toggle_page(st, PANEL_CHANGES);
 }
 
 // Reads one of the words into a choice, which changes how the screen looks: it is drawn anew.
@@ -308,14 +299,12 @@ bool act_set_bending(explorer_state *st, const char *argument)
 
 bool act_redraw(explorer_state *st, const char *argument)
 {
-    (void)argument;
     st->looks.redraw = true;
     return true;
 }
 
 bool act_quit(explorer_state *st, const char *argument)
 {
-    (void)argument;
     const session *s = &st->session;
     const int pins = st->kept_pins == st->pinned.pinned ? 0 : st->pinned.count;
     int changes = st->saved_version == state_run_id(st) ? 0 : s->input_count;
@@ -343,7 +332,6 @@ bool act_quit(explorer_state *st, const char *argument)
 
 bool act_quit_now(explorer_state *st, const char *argument)
 {
-    (void)argument;
     st->quit = true;
     return true;
 }
@@ -377,7 +365,6 @@ void act_move_in_palette(explorer_state *st, int direction)
 
 bool act_line_of_palette(const explorer_state *st, char line[LINE_TEXT], bool *goes_on)
 {
-    assert(st != NULL && line != NULL && goes_on != NULL);
     static palette_entry entries[PALETTE_ENTRIES];
     const int count = palette_find(&st->scenarios, &st->keys, st->prompt.text, entries);
     const int at = st->palette.selected;

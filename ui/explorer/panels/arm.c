@@ -1,7 +1,6 @@
 // The arm, its wall and the contact force, drawn live.
 #include "ui/explorer/panels/plot.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,7 +117,6 @@ static plan_view whole_view(const explorer_state *st, const arm_extent *extent, 
 int arm_rows(const explorer_state *st, layout *lay, screen_size room)
 {
     enum { LEAST = 14 };
-    assert(st != NULL && lay != NULL);
     find_extent(st, &lay->extent);
 
     // what is drawn in true proportion takes its height, and the force an arrow

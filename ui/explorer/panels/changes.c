@@ -54,11 +54,9 @@ static bool list_key(explorer_state *st, int key)
 
     // keys move the selection or do something with the change
     snprintf(number, sizeof number, "%d", st->change + 1);
-    if (key == KEY_CODE_UP || key == 'k') {
-        st->change -= st->change > 0;
-    } else if (key == KEY_CODE_DOWN || key == 'j') {
-        st->change += st->change + 1 < s->input_count;
-    } else if (key == KEY_CODE_ENTER || key == '\n') {
+    if (page_select(key, &st->change, s->input_count)) {
+        return true;
+    } else if (key == KEY_CODE_ENTER) {
         return act_edit_change(st, number);
     } else if (key == 'd' || key == 'x' || key == KEY_CODE_DELETE) {
         return act_drop_change(st, number);
@@ -81,14 +79,7 @@ static bool list_key(explorer_state *st, int key)
 
 static bool point(explorer_state *st, const panel_gesture *g)
 {
-    const int index = g->hit.index + g->event.y - g->hit.area.y;
-    if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
-        return page_point(st, g);
-    }
-    if (index < st->session.input_count) {
-        st->change = index;
-    }
-    return true;
+    return page_point_at_line(st, g, &st->change, st->session.input_count);
 }
 
 const panel changes_panel = {.name = "changes", .draw = draw, .point = point, .key = list_key};

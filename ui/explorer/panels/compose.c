@@ -1,6 +1,5 @@
 #include "ui/explorer/panels/panel.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "ui/terminal/pictures.h"
@@ -432,7 +431,6 @@ bool compose_fits(screen_size size)
 
 void compose_screen(const explorer_state *st, layout *lay, screen *s)
 {
-    assert(st != NULL && lay != NULL && s != NULL);
     screen_clear(s);
     pictures_clear(s);
     layout_begin(lay, st);

@@ -120,7 +120,6 @@ static int rows(const explorer_state *st, screen_size body)
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 {
-    (void)lay;
     const sample *row = session_sample(&st->session);
     parameters p = state_parameters(st);
     char title[128];

@@ -1,6 +1,5 @@
 #include "ui/explorer/panels/panel.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -36,7 +35,6 @@ typedef struct lane_band {
 
 void lanes_survey(const explorer_state *st, lane_survey *known)
 {
-    assert(st != NULL && known != NULL);
     const trace *t = &st->session.run.trace;
     const unsigned long run = state_run_id(st);
 
@@ -113,7 +111,6 @@ static bool has_map(const explorer_state *st)
 
 int lanes_rows(const explorer_state *st, const lane_survey *known, int height)
 {
-    assert(st != NULL && known != NULL);
     lane lanes[MOST_LANES];
     const int wanted = find_lanes(st, known, lanes) + has_map(st);
     const int spare = st->looks.lanes == LANES_ALL ? height - LEAST_CURVES
@@ -318,7 +315,6 @@ static void draw_map(const explorer_state *st, layout *lay, screen *s, area a, a
 
 void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a)
 {
-    assert(st != NULL && lay != NULL && s != NULL);
     lane lanes[MOST_LANES];
     const int count = find_lanes(st, &lay->lanes, lanes);
     area line = {a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1, 1};
@@ -345,7 +341,6 @@ void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a)
 
 bool lanes_point(explorer_state *st, const panel_gesture *g)
 {
-    assert(st != NULL && g != NULL);
     const area line = g->hit.area;
     const double share = (g->event.x - line.x + 0.5) / (line.width > 0 ? line.width : 1);
     if (g->event.kind != POINTER_PRESS && g->event.kind != POINTER_DRAG) {

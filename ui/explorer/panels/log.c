@@ -61,7 +61,6 @@ static int find_later_inputs(const explorer_state *st, size_t seen, int later[MO
 
 static int rows(const explorer_state *st, screen_size body)
 {
-    (void)st;
     return body.height / 4;
 }
 

@@ -12,7 +12,9 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
                  count > 0 ? "notes (Enter goes there, d drops, Esc closes)"
                            : "notes (Esc closes)");
-    layout_add_hit(lay, (hit_area){PANEL_NOTES, PART_LINES, first, a});
+    const area lines = {a.x + 1, a.y + 1, a.width - 2, rows};
+    layout_add_hit(lay, (hit_area){PANEL_NOTES, PART_BODY, 0, a});
+    layout_add_hit(lay, (hit_area){PANEL_NOTES, PART_LINES, first, lines});
     if (count == 0) {
         screen_text(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM,
                     "none yet: :note TEXT at an instant");
@@ -30,11 +32,9 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 static bool key(explorer_state *st, int key)
 {
     const int last = st->note_count - 1;
-    if (key == KEY_CODE_UP || key == 'k') {
-        st->note -= st->note > 0;
-    } else if (key == KEY_CODE_DOWN || key == 'j') {
-        st->note += st->note < last;
-    } else if ((key == KEY_CODE_ENTER || key == '\n') && last >= 0) {
+    if (page_select(key, &st->note, st->note_count)) {
+        return true;
+    } else if (key == KEY_CODE_ENTER && last >= 0) {
         st->page.panel = PANEL_NONE;
         act_scrub(st, st->notes[st->note].time);
     } else if ((key == 'd' || key == 'x' || key == KEY_CODE_DELETE) && last >= 0) {
@@ -47,12 +47,7 @@ static bool key(explorer_state *st, int key)
 
 static bool point(explorer_state *st, const panel_gesture *g)
 {
-    const int index = g->hit.index + g->event.y - g->hit.area.y - 1;
-    if (g->event.kind != POINTER_PRESS || index < 0 || index >= st->note_count) {
-        return page_point(st, g);
-    }
-    st->note = index;
-    return true;
+    return page_point_at_line(st, g, &st->note, st->note_count);
 }
 
 const panel notes_panel = {.name = "notes", .draw = draw, .point = point, .key = key};

@@ -30,7 +30,8 @@ static const char mouse[] =
     "event, a parameter or a scenario (once more opens it); drag a slider and let go. Shift-drag "
     "selects text in most terminals.";
 
-enum { WRAPPED = 24 }; // most lines of one text
+enum { WRAPPED = 24, MOST_LINES = 600 }; // of one text, of a page
+enum { TEXT_WIDTH = 84 };                // of a page of sentences [cells]
 
 // A page that is being written.
 typedef struct page {
@@ -166,15 +167,34 @@ static void draw_lines(screen *s, area a, const char *title, const help_line *li
     }
 }
 
+// A page as `write` writes it, at most `width` wide and as high as its lines, or scrolled.
+static void draw_page(const explorer_state *st, layout *lay, screen *s, area body, int width,
+                      const char *title, void (*write)(const explorer_state *st, page *p))
+{
+    static help_line lines[MOST_LINES];
+    area a = page_area(body, width, body.height);
+    page p = {.lines = lines, .most = MOST_LINES, .width = a.width - 4};
+    write(st, &p);
+    a = page_area(body, width, p.count + 2);
+    const int scroll = page_scroll(lay, st->page.panel, a, p.count, 2);
+    draw_lines(s, a, title, lines + scroll, p.count - scroll);
+}
+
+#define PAGE(page_name, draw_it)                                                                   \
+    {                                                                                              \
+        .name = page_name, .draw = draw_it, .point = page_point, .key = page_key                   \
+    }
+
 static void draw_help(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    enum { MOST = 600, WIDTH = 114 };
-    static help_line lines[MOST];
+    enum { WIDTH = 114 };
+    static help_line lines[MOST_LINES];
     const char *filter = st->filters.text[PANEL_HELP];
 
     // as wide as it may be, then as high as its lines need
     area a = page_area(body, WIDTH, body.height);
-    const int count = keep_matching(lines, help_write(&st->keys, a.width - 4, lines, MOST), filter);
+    const int all = help_write(&st->keys, a.width - 4, lines, MOST_LINES);
+    const int count = keep_matching(lines, all, filter);
     a = page_area(body, WIDTH, count + 2);
     const int scroll = page_scroll(lay, PANEL_HELP, a, count, 2);
     char title[LINE_TEXT];
@@ -189,55 +209,47 @@ static void draw_help(const explorer_state *st, layout *lay, screen *s, area bod
     draw_lines(s, a, title, lines + scroll, count - scroll);
 }
 
-const panel help_panel = {.name = "help", .draw = draw_help, .point = page_point, .key = page_key};
+const panel help_panel = PAGE("help", draw_help);
 
 // --- the scenario -----------------------------------------------------------------------------
 
-// The title, the description and the script in lines; returns how many.
-static int write_info(const scenario *base, int width, help_line *lines, int most)
+// The title, the description and the script.
+static void write_info(const explorer_state *st, page *p)
 {
-    page p = {.lines = lines, .most = most, .width = width};
-    add_text(&p, 0, base->title != NULL ? base->title : "", NULL);
-    lines[0].keys = text_cells(lines[0].text); // in their colour
-    if (p.count > 0) {
-        new_line(&p);
+    const scenario *base = &st->session.base;
+    add_text(p, 0, base->title != NULL ? base->title : "", NULL);
+    p->lines[0].keys = text_cells(p->lines[0].text); // in their colour
+    if (p->count > 0) {
+        new_line(p);
     }
-    add_text(&p, 0, base->description != NULL ? base->description : "", NULL);
-    if (p.count > 0 && lines[p.count - 1].text[0] != '\0') {
-        new_line(&p);
+    add_text(p, 0, base->description != NULL ? base->description : "", NULL);
+    if (p->count > 0 && p->lines[p->count - 1].text[0] != '\0') {
+        new_line(p);
     }
 
     // what its script does
-    for (int i = 0; i < base->action_count && p.count < most; i++) {
+    for (int i = 0; i < base->action_count; i++) {
         const action *a = &base->actions[i];
         char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH];
         if (a->kind == ACTION_PUSH) {
-            snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
+            snprintf(new_line(p)->text, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
         } else {
             action_format_value(a, value, sizeof value);
-            snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  %s = %s", a->time,
+            snprintf(new_line(p)->text, LINE_TEXT, "%9.5f s  %s = %s", a->time,
                      action_path(a, path), value);
         }
     }
-    return p.count > 0 && lines[p.count - 1].text[0] == '\0' ? p.count - 1 : p.count;
+    p->count -= p->count > 0 && p->lines[p->count - 1].text[0] == '\0';
 }
 
 static void draw_info(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    enum { MOST = 48, WIDTH = 84 };
-    static help_line lines[MOST];
     char title[LINE_TEXT];
-    area a = page_area(body, WIDTH, body.height);
-    const int count = write_info(&st->session.base, a.width - 4, lines, MOST);
-
-    // as high as the text, or scrolled
-    a = page_area(body, WIDTH, count + 2);
-    const int scroll = page_scroll(lay, PANEL_INFO, a, count, 2);
     snprintf(title, sizeof title, "%.180s (Esc closes)", st->session.base.name);
-    draw_lines(s, a, title, lines + scroll, count - scroll);
+    draw_page(st, lay, s, body, TEXT_WIDTH, title, write_info);
 }
 
-const panel info_panel = {.name = "info", .draw = draw_info, .point = page_point, .key = page_key};
+const panel info_panel = PAGE("info", draw_info);
 
 // --- what one stands on -----------------------------------------------------------------------
 
@@ -279,83 +291,73 @@ static void explain_predictors(page *p)
              NULL);
 }
 
-static void draw_explain(const explorer_state *st, layout *lay, screen *s, area body)
+static void write_explanation(const explorer_state *st, page *p)
 {
-    enum { MOST = 64, WIDTH = 84 };
-    static help_line lines[MOST];
-    area a = page_area(body, WIDTH, body.height);
-    page p = {.lines = lines, .most = MOST, .width = a.width - 4};
     const int focused = panes_focused(&st->panes);
     const event *e = session_event(&st->session);
     char text[2 * LINE_TEXT];
-    explain_parameter(st, &p);
+    explain_parameter(st, p);
 
     // the signals in focus, their symbols spelled out, then the event at the cursor
     for (int k = 0; focused >= 0 && k < st->panes.pane[focused].count; k++) {
         const signal_info *info = &signal_table[st->panes.pane[focused].signals[k]];
         if (k == 0) {
-            add_heading(&p, "signals of the pane in focus (w: next pane)");
+            add_heading(p, "signals of the pane in focus (w: next pane)");
         }
         snprintf(text, sizeof text, "%s (%s%s%s): %s.", info->name, info->ascii,
                  info->unit[0] ? ", in " : "", info->unit, info->description);
-        add_text(&p, 0, text, NULL);
+        add_text(p, 0, text, NULL);
     }
     if (e != NULL) {
-        add_heading(&p, "the event at the cursor");
+        add_heading(p, "the event at the cursor");
         snprintf(text, sizeof text, "%s: %s.", event_name(e->kind),
                  event_description((int)e->kind));
-        add_text(&p, 0, text, NULL);
+        add_text(p, 0, text, NULL);
     }
-    explain_predictors(&p);
-    a = page_area(body, WIDTH, p.count + 2);
-    const int scroll = page_scroll(lay, PANEL_EXPLAIN, a, p.count, 2);
-    draw_lines(s, a, "what is here (? lists keys and commands, Esc closes)", lines + scroll,
-               p.count - scroll);
+    explain_predictors(p);
 }
+
+static void draw_explain(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    draw_page(st, lay, s, body, TEXT_WIDTH, "what is here (? lists keys and commands, Esc closes)",
+              write_explanation);
+}
+
+const panel explain_panel = PAGE("explain", draw_explain);
 
 // The page of a first visit: what is behind it goes on, the first key closes it and acts.
-static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area body)
+static void write_welcome(const explorer_state *st, page *p)
 {
-    enum { MOST = 12, WIDTH = 76 };
-    static help_line lines[MOST];
-    area a = page_area(body, WIDTH, body.height);
-    page p = {.lines = lines, .most = MOST, .width = a.width - 4};
-    (void)st;
-    add_entry(&p, "1",
+    add_entry(p, "1",
               "The arm hits the wall by itself. Space stops it, I goes back to just before.");
-    add_entry(&p, "2",
-              "b keeps this run; Enter, 0.5, Enter halves the voltage: both are compared.");
-    add_entry(&p, "3", "o / hybrid Enter presses with 1 N by a control law. ? lists all keys.");
-    a = page_area(body, WIDTH, p.count + 2);
-    page_scroll(lay, PANEL_WELCOME, a, p.count, 2);
-    draw_lines(s, a, "a first visit (any key goes on)", lines, p.count);
+    add_entry(p, "2", "b keeps this run; Enter, 0.5, Enter halves the voltage: both are compared.");
+    add_entry(p, "3", "o / hybrid Enter presses with 1 N by a control law. ? lists all keys.");
 }
 
-const panel welcome_panel = {
-    .name = "welcome", .draw = draw_welcome, .point = page_point, .key = page_key};
+static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    draw_page(st, lay, s, body, 76, "a first visit (any key goes on)", write_welcome);
+}
 
-const panel explain_panel = {
-    .name = "explain", .draw = draw_explain, .point = page_point, .key = page_key};
+const panel welcome_panel = PAGE("welcome", draw_welcome);
 
 // --- the account of the run -------------------------------------------------------------------
 
-static void draw_why(const explorer_state *st, layout *lay, screen *s, area body)
+static void write_account(const explorer_state *st, page *p)
 {
-    enum { MOST = 48, WIDTH = 84 };
-    static help_line lines[MOST];
     char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE];
-    area a = page_area(body, WIDTH, body.height);
-    page p = {.lines = lines, .most = MOST, .width = a.width - 4};
     const int count = run_account(&st->session.effective, &st->session.run, sentences);
     for (int i = 0; i < count; i++) {
-        add_text(&p, 0, sentences[i], NULL);
+        add_text(p, 0, sentences[i], NULL);
     }
-    a = page_area(body, WIDTH, p.count + 2);
-    const int scroll = page_scroll(lay, PANEL_WHY, a, p.count, 2);
-    draw_lines(s, a, "why (Esc closes)", lines + scroll, p.count - scroll);
 }
 
-const panel why_panel = {.name = "why", .draw = draw_why, .point = page_point, .key = page_key};
+static void draw_why(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    draw_page(st, lay, s, body, TEXT_WIDTH, "why (Esc closes)", write_account);
+}
+
+const panel why_panel = PAGE("why", draw_why);
 
 // --- the poles --------------------------------------------------------------------------------
 
@@ -465,8 +467,7 @@ static void draw_poles(const explorer_state *st, layout *lay, screen *s, area bo
     }
 }
 
-const panel poles_panel = {
-    .name = "poles", .draw = draw_poles, .point = page_point, .key = page_key};
+const panel poles_panel = PAGE("poles", draw_poles);
 
 // --- the comparison ---------------------------------------------------------------------------
 
@@ -544,5 +545,4 @@ static void draw_comparison(const explorer_state *st, layout *lay, screen *s, ar
     }
 }
 
-const panel comparison_panel = {
-    .name = "comparison", .draw = draw_comparison, .point = page_point, .key = page_key};
+const panel comparison_panel = PAGE("comparison", draw_comparison);

@@ -21,13 +21,11 @@ const panel *panel_of(panel_id id)
 
 bool panel_fits(const panel *p, screen_size body)
 {
-    assert(p != NULL);
     return body.width >= p->least_width && body.height >= p->least_body;
 }
 
 bool panel_scroll(explorer_state *st, const panel_gesture *g, int lines)
 {
-    assert(st != NULL && g != NULL);
     st->scroll[g->hit.panel] += lines * pointer_wheel(g->event);
     return pointer_wheel(g->event) != 0;
 }
@@ -70,7 +68,6 @@ bool line_has_dot(unsigned pattern, long across)
 
 void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink colour)
 {
-    assert(s != NULL);
     const canvas line = {s, x, y, cells, 1};
     for (int i = 0; i < 2 * cells; i++) {
         if (line_has_dot(pattern, i)) {
@@ -85,7 +82,6 @@ void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink 
 
 void draw_number(char *text, size_t size, double value)
 {
-    assert(text != NULL);
     if (!isfinite(value)) {
         snprintf(text, size, "-");
     } else if (fabs(value) < NOTHING) {
@@ -114,7 +110,6 @@ area page_area(area body, int width, int height)
 
 void layout_begin(layout *lay, const explorer_state *st)
 {
-    assert(lay != NULL && st != NULL);
     lay->hit_count = 0;
     lay->plot = (area){0};
     lay->stage = (arm_stage){0};
@@ -126,7 +121,6 @@ void layout_begin(layout *lay, const explorer_state *st)
 
 void layout_add_hit(layout *lay, hit_area hit)
 {
-    assert(lay != NULL);
     if (lay->hit_count < HIT_AREAS) {
         lay->hits[lay->hit_count++] = hit;
     }
@@ -139,7 +133,6 @@ bool area_holds(area a, int x, int y)
 
 hit_area layout_hit(const layout *lay, int x, int y)
 {
-    assert(lay != NULL);
     for (int i = lay->hit_count; i-- > 0;) {
         if (area_holds(lay->hits[i].area, x, y)) {
             return lay->hits[i];
@@ -159,7 +152,6 @@ int layout_keep_scroll(layout *lay, panel_id id, int last)
 
 void layout_settle(const layout *lay, explorer_state *st)
 {
-    assert(lay != NULL && st != NULL);
     st->page.lines = lay->page_lines;
     st->scenarios.first = lay->first_scenario;
     memcpy(st->scroll, lay->scroll, sizeof st->scroll);
@@ -208,7 +200,6 @@ int page_scroll(layout *lay, panel_id id, area a, int lines, int head)
 
 bool page_point(explorer_state *st, const panel_gesture *g)
 {
-    assert(st != NULL && g != NULL);
     if (pointer_wheel(g->event) == 0) {
         return false;
     }
@@ -216,5 +207,24 @@ bool page_point(explorer_state *st, const panel_gesture *g)
         int key = pointer_wheel(g->event) < 0 ? KEY_CODE_UP : KEY_CODE_DOWN;
         panel_of(st->page.panel)->key(st, key);
     }
+    return true;
+}
+
+bool page_select(int key, int *selected, int count)
+{
+    const int by = key == KEY_CODE_UP || key == 'k' ? -1 : key == KEY_CODE_DOWN || key == 'j';
+    if (*selected + by >= 0 && *selected + by < count) {
+        *selected += by;
+    }
+    return by != 0;
+}
+
+bool page_point_at_line(explorer_state *st, const panel_gesture *g, int *selected, int count)
+{
+    const int index = g->hit.index + g->event.y - g->hit.area.y;
+    if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
+        return page_point(st, g);
+    }
+    *selected = index < count ? index : *selected;
     return true;
 }

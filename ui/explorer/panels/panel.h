@@ -180,6 +180,12 @@ bool page_key(explorer_state *st, int key);
 // not lines; returns how far it is scrolled.
 int page_scroll(layout *lay, panel_id id, area a, int lines, int head);
 
+// Keys for up and down move the selection in a list of `count` lines; false for other keys.
+bool page_select(int key, int *selected, int count);
+
+// A press selects the line of a list under the mouse; all else is page_point's.
+bool page_point_at_line(explorer_state *st, const panel_gesture *g, int *selected, int count);
+
 // The wheel presses a page's keys for up and down.
 bool page_point(explorer_state *st, const panel_gesture *g);
 

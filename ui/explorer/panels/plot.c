@@ -293,7 +293,6 @@ static void draw_instants(screen *s, area a, double from, double to)
 
 area draw_time_axis(const explorer_state *st, screen *s, area a)
 {
-    assert(st != NULL && s != NULL);
     const session *e = &st->session;
     const trace *t = &e->run.trace;
     double from, to;

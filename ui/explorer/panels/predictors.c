@@ -131,8 +131,6 @@ static void predictor_line(screen *s, area a, int line, const char *label, const
 
 static int rows(const explorer_state *st, screen_size body)
 {
-    (void)st;
-    (void)body;
     return ROWS;
 }
 

@@ -10,7 +10,6 @@ enum { SAMPLE = 4, PEAK = 10 };
 
 static int rows(const explorer_state *st, screen_size body)
 {
-    (void)body;
     return st->pinned.count > 0 ? st->pinned.count + 3 : 0;
 }
 
@@ -123,13 +122,11 @@ static bool list_key(explorer_state *st, int key)
     snprintf(number, sizeof number, "%d", list->selected + 1);
 
     // keys move the selection or do something with the run
-    if (key == KEY_CODE_UP || key == 'k') {
-        list->selected -= list->selected > 0;
-    } else if (key == KEY_CODE_DOWN || key == 'j') {
-        list->selected += list->selected + 1 < list->count;
+    if (page_select(key, &list->selected, list->count)) {
+        return true;
     } else if (list->count == 0) {
         st->page.panel = PANEL_NONE;
-    } else if (key == KEY_CODE_ENTER || key == '\n') {
+    } else if (key == KEY_CODE_ENTER) {
         st->page.panel = PANEL_NONE;
         return act_take_run(st, number);
     } else if (key == ' ') {
@@ -152,12 +149,7 @@ static bool list_key(explorer_state *st, int key)
 // A click selects a run.
 static bool point_at_page(explorer_state *st, const panel_gesture *g)
 {
-    if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
-        return page_point(st, g);
-    }
-    const int index = g->event.y - g->hit.area.y;
-    st->pinned.selected = index < st->pinned.count ? index : st->pinned.selected;
-    return true;
+    return page_point_at_line(st, g, &st->pinned.selected, st->pinned.count);
 }
 
 const panel run_list_panel = {

@@ -104,7 +104,7 @@ static bool open_selected(explorer_state *st)
 static bool filter_key(explorer_state *st, int key)
 {
     scenario_menu *menu = &st->scenarios;
-    const bool opens = key == KEY_CODE_ENTER || key == '\n';
+    const bool opens = key == KEY_CODE_ENTER;
     if (opens || key == KEY_CODE_ESCAPE) {
         menu->filtering = false;
     } else if (key == KEY_CODE_UP || key == KEY_CODE_DOWN) {
@@ -134,7 +134,7 @@ static bool list_key(explorer_state *st, int key)
         for (int i = 0; i < 10; i++) {
             scenario_menu_move(menu, key == KEY_CODE_PAGE_UP ? -1 : 1);
         }
-    } else if (key == KEY_CODE_ENTER || key == '\n') {
+    } else if (key == KEY_CODE_ENTER) {
         return open_selected(st);
     } else if (key == KEY_CODE_ESCAPE || key == 'q' || key == 'o') {
         st->page.panel = PANEL_NONE;

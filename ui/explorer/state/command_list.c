@@ -19,7 +19,6 @@ const int explorer_command_count = sizeof explorer_command_table / sizeof explor
 
 int explorer_command_find(const char *name)
 {
-    assert(name != NULL);
     int found = -1, matches = 0;
 
     // the whole name, else the only one that begins with it
@@ -40,7 +39,6 @@ int explorer_command_find(const char *name)
 
 const char *explorer_command_suggest(const char *name)
 {
-    assert(name != NULL);
     nearest_word near = nearest_begin(name);
     for (int i = 0; i < explorer_command_count; i++) {
         nearest_try(&near, explorer_command_table[i].name);
@@ -173,7 +171,6 @@ static const struct {
 
 int key_of_name(const char *name, size_t length)
 {
-    assert(name != NULL);
     for (size_t i = 0; i < sizeof key_names / sizeof key_names[0]; i++) {
         if (strlen(key_names[i].name) == length && strncmp(key_names[i].name, name, length) == 0) {
             return key_names[i].key;
@@ -196,7 +193,6 @@ int key_of_name(const char *name, size_t length)
 
 void key_name(int key, char *text, size_t size)
 {
-    assert(text != NULL);
     char glyph[8];
 
     // by name, as Ctrl with a letter, or as itself
@@ -238,7 +234,6 @@ static int own_index(const key_bindings *b, int key)
 
 user_key *key_find_own(key_bindings *b, int key)
 {
-    assert(b != NULL);
     int index = own_index(b, key);
     return index >= 0 ? &b->own[index] : NULL;
 }
@@ -261,7 +256,6 @@ void key_remove_own(key_bindings *b, user_key *own)
 
 const char *key_line(const key_bindings *b, int key)
 {
-    assert(b != NULL);
     int index = own_index(b, key);
     if (index >= 0) {
         return b->own[index].line[0] ? b->own[index].line : NULL;

@@ -37,7 +37,6 @@ const value_range value_range_empty = {(double)INFINITY, (double)-INFINITY};
 
 void value_range_widen(value_range *r, value_range other)
 {
-    assert(r != NULL);
     r->low = fmin(r->low, other.low);
     r->high = fmax(r->high, other.high);
 }
@@ -113,7 +112,6 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
 
 void panes_define(pane_set *set, const pane_wishes *wishes)
 {
-    assert(set != NULL && wishes != NULL);
     const bool same = set->controlled == wishes->controlled;
     set->controlled = wishes->controlled;
     set->room = wishes->room;
@@ -141,7 +139,6 @@ void panes_define(pane_set *set, const pane_wishes *wishes)
 
 int panes_focused(const pane_set *set)
 {
-    assert(set != NULL);
     for (int i = 0; i < PANES; i++) {
         int index = (set->focus + i) % PANES;
         if (set->pane[index].shown) {
@@ -153,7 +150,6 @@ int panes_focused(const pane_set *set)
 
 bool pane_has_amounts(const pane *p)
 {
-    assert(p != NULL);
     bool found = false;
     for (int k = 0; k < p->count; k++) {
         found = found || !signal_is_state(p->signals[k]);
@@ -168,7 +164,6 @@ bool pane_is_over_time(const pane *p)
 
 bool pane_is_derived(const pane *p)
 {
-    assert(p != NULL);
     bool found = false;
     for (int k = 0; k < p->count; k++) {
         found = found || signal_is_derived(p->signals[k]);
@@ -195,7 +190,6 @@ int panes_add(pane_set *set, const pane *own)
 
 void pane_fix_axis(pane *p, value_range limits)
 {
-    assert(p != NULL);
     double low = limits.low, high = limits.high;
     double least = 1e-9 * fmax(fabs(low), fabs(high)) + 1e-15;
     if (isfinite(low) && isfinite(high) && high - low >= least && high - low < 1e15) {
@@ -206,7 +200,6 @@ void pane_fix_axis(pane *p, value_range limits)
 
 void pane_grow_axis(pane *p)
 {
-    assert(p != NULL);
     p->grown = value_range_empty;
     p->scaling = AXIS_GROW;
 }
@@ -222,7 +215,6 @@ static bool shows_all(const time_window *w)
 
 void time_window_range(const time_window *w, double duration, double *from, double *to)
 {
-    assert(w != NULL && from != NULL && to != NULL);
     *from = shows_all(w) ? 0 : w->from;
     *to = shows_all(w) ? duration : w->to;
 }
@@ -241,7 +233,6 @@ void time_window_show(time_window *w, double duration, double from, double to)
 
 void time_window_show_all(time_window *w)
 {
-    assert(w != NULL);
     *w = (time_window){0};
 }
 
@@ -272,7 +263,6 @@ void time_window_follow(time_window *w, double duration, double now)
 
 void extremes_forget(extremes *e)
 {
-    assert(e != NULL);
     for (size_t i = 0; i < sizeof e->pairs / sizeof e->pairs[0]; i++) {
         free(e->pairs[i]);
     }
@@ -329,7 +319,6 @@ void extremes_update(extremes *e, unsigned long run, const trace *t, int signal)
 
 const double *extremes_pairs(const extremes *e, unsigned long run, const trace *t, int signal)
 {
-    assert(e != NULL && t != NULL);
     assert(signal >= 0 && signal < EXTREMES_SIGNALS);
     bool covers = e->run == run && e->rows[signal] == t->row_count;
     return covers ? e->pairs[signal] : NULL;

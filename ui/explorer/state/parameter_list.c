@@ -82,7 +82,6 @@ void parameter_list_arrange(parameter_list *list, const parameters *p, int selec
 int parameter_list_lines(const parameter_list *list, const char *filter,
                          parameter_line lines[PARAMETER_LINES])
 {
-    assert(list != NULL && filter != NULL && lines != NULL);
     int count = 0, group = -1;
     bool headed = false;
     for (int i = 0; i < parameter_count && count + 2 <= PARAMETER_LINES; i++) {
@@ -111,7 +110,6 @@ int parameter_list_lines(const parameter_list *list, const char *filter,
 
 int parameter_list_selected(const parameter_list *list, const parameter_line *lines, int count)
 {
-    assert(list != NULL && lines != NULL);
     const int group = parameter_group(list->parameter);
     int heading = 0;
 
@@ -151,7 +149,6 @@ void parameter_list_fold(parameter_list *list, int parameter)
 
 int parameter_of_name(const char *name)
 {
-    assert(name != NULL);
     const int exact = parameter_find(name);
     const size_t length = strlen(name);
     int found[3] = {-1, -1, -1}, count[3] = {0};
@@ -181,7 +178,6 @@ int parameter_of_name(const char *name)
 
 bool slider_scale_of(int parameter, double value, slider_scale *scale)
 {
-    assert(scale != NULL);
     return parameter_usual_range(parameter, value, &scale->low, &scale->high, &scale->logarithmic);
 }
 

@@ -35,7 +35,6 @@ double playback_slowness(const playback *p, const trace *t, double duration, dou
 
 double playback_next_speed(const playback *p, int direction)
 {
-    assert(p != NULL);
     static const double speeds[] = {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2,
                                     0.5,   1,     2,     5,    10,   20,   50,  100};
     const int count = sizeof speeds / sizeof speeds[0];
@@ -87,6 +86,5 @@ void recorded_tip(const trace *t, const arm_parameters *beam, size_t row, plane_
 
 double pull_force(const tip_pull *p, plane_vector tip, plane_vector across)
 {
-    assert(p != NULL);
     return PULL_STIFFNESS * ((p->x - tip.x) * across.x + (p->y - tip.y) * across.y);
 }

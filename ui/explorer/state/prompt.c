@@ -16,7 +16,6 @@
 
 void prompt_open(prompt *p, const char *format, ...)
 {
-    assert(p != NULL && format != NULL);
     va_list list;
     va_start(list, format);
     vsnprintf(p->text, sizeof p->text, format, list);
@@ -28,7 +27,6 @@ void prompt_open(prompt *p, const char *format, ...)
 
 void prompt_open_value(prompt *p, const char *text, const char *value)
 {
-    assert(p != NULL && text != NULL && value != NULL);
     prompt_open(p, "%s%s", text, value);
     p->fixed = (int)strlen(text);
     p->replaces = value[0] != '\0';
@@ -36,8 +34,7 @@ void prompt_open_value(prompt *p, const char *text, const char *value)
 
 bool prompt_type(prompt *p, int key)
 {
-    assert(p != NULL);
-    const bool erases = key == KEY_CODE_BACKSPACE || key == 127 || key == 8;
+    const bool erases = key == KEY_CODE_BACKSPACE;
     const bool has_value = strlen(p->text) > (size_t)p->fixed;
     const bool replaces = p->replaces;
     p->replaces = false;
@@ -59,11 +56,10 @@ bool prompt_type(prompt *p, int key)
 
 bool text_type(char *text, int key)
 {
-    assert(text != NULL);
     size_t length = strlen(text);
 
     // backspace takes a whole UTF-8 character, C-u everything
-    if (key == KEY_CODE_BACKSPACE || key == 127 || key == 8) {
+    if (key == KEY_CODE_BACKSPACE) {
         while (length > 0 && (text[length - 1] & 0xc0) == 0x80) {
             length--;
         }
@@ -111,7 +107,6 @@ static int count_of(const scenario_menu *menu, palette_kind kind)
 palette_text palette_describe(const scenario_menu *menu, const key_bindings *keys,
                               palette_entry entry)
 {
-    assert(menu != NULL && keys != NULL);
     palette_text text = {0};
     const char *name, *about;
 
@@ -205,7 +200,6 @@ static int compare_entries(const void *a, const void *b)
 int palette_find(const scenario_menu *menu, const key_bindings *keys, const char *words,
                  palette_entry entries[PALETTE_ENTRIES])
 {
-    assert(menu != NULL && keys != NULL && words != NULL && entries != NULL);
     int count = 0;
     for (int kind = 0; kind < PALETTE_KINDS; kind++) {
         for (int i = 0; i < count_of(menu, (palette_kind)kind) && count < PALETTE_ENTRIES; i++) {
@@ -230,7 +224,6 @@ int palette_find(const scenario_menu *menu, const key_bindings *keys, const char
 void palette_line(const scenario_menu *menu, palette_entry entry, char *line, size_t size,
                   bool *goes_on)
 {
-    assert(menu != NULL && line != NULL && goes_on != NULL);
     *goes_on = false;
 
     // what is chosen becomes the command that deals with it
@@ -250,7 +243,6 @@ void palette_line(const scenario_menu *menu, palette_entry entry, char *line, si
 
 bool palette_shows(const prompt *p)
 {
-    assert(p != NULL);
     return p->open &&
            (p->searches || (p->fixed == 0 && p->text[0] != '\0' && strchr(p->text, ' ') == NULL));
 }

@@ -58,7 +58,6 @@ void run_log_update(run_log *log, unsigned long run, const trace *t, bool comple
 
 double run_log_next(const run_log *log, double time, int direction)
 {
-    assert(log != NULL);
     double found = -1;
     for (size_t i = 0; i < log->count; i++) {
         double at = log->entries[i].time;
@@ -74,7 +73,6 @@ double run_log_next(const run_log *log, double time, int direction)
 
 void run_log_forget(run_log *log)
 {
-    assert(log != NULL);
     free(log->entries);
     *log = (run_log){0};
 }
@@ -92,7 +90,6 @@ void law_modes_update(law_modes *m, unsigned long run, const parameters *p)
 
 void law_mode_name(const law_modes *m, double mode, char *text, size_t size)
 {
-    assert(m != NULL && text != NULL);
     if (mode >= 0 && mode < m->count) {
         snprintf(text, size, "%s", m->names[(int)mode]);
     } else {

@@ -25,7 +25,6 @@ static bool has_input(const session_input *inputs, int count, const session_inpu
 
 int run_list_of_scenario(const run_list *list, const session *s)
 {
-    assert(list != NULL && s != NULL);
     int count = 0;
     for (int i = 0; i < list->count; i++) {
         count += same_base(&list->runs[i].from.base, &s->base);
@@ -46,7 +45,6 @@ void input_value_text(const session_input *in, char text[SESSION_INPUT_TEXT])
 // A change as a line of text: what it gives what, and from when on.
 static void run_list_input_text(const session_input *in, char *text, size_t size)
 {
-    assert(in != NULL && text != NULL);
     if (in->kind == SESSION_INPUT_PUSH) {
         snprintf(text, size, "push %g at %.4g s", in->value, in->time);
         return;
@@ -135,7 +133,6 @@ static void propose_name(const run_list *list, const session *s, char name[RUN_N
 
 void run_list_name_strangers(run_list *list, const session *s)
 {
-    assert(list != NULL && s != NULL);
     for (int i = 0; i < list->count; i++) {
         pinned_run *p = &list->runs[i];
         if (strcmp(p->name, AS_OPENED) == 0 && !same_base(&p->from.base, &s->base)) {
@@ -146,7 +143,6 @@ void run_list_name_strangers(run_list *list, const session *s)
 
 status run_list_pin(run_list *list, const session *s, const char *name, fault *f)
 {
-    assert(list != NULL && s != NULL && name != NULL);
     pinned_run p = {.id = list->pinned + 1};
 
     // one of the same changes only becomes the baseline
@@ -204,7 +200,6 @@ void run_list_drop(run_list *list, int index)
 
 void run_list_clear(run_list *list)
 {
-    assert(list != NULL);
     while (list->count > 0) {
         run_list_drop(list, list->count - 1);
     }
@@ -215,13 +210,11 @@ void run_list_clear(run_list *list)
 
 bool lab_sweep_is_on(const lab_sweep *sweep)
 {
-    assert(sweep != NULL);
     return sweep->axis.text != NULL;
 }
 
 bool lab_sweep_is_map(const lab_sweep *sweep)
 {
-    assert(sweep != NULL);
     return sweep->second.text != NULL;
 }
 
@@ -257,7 +250,6 @@ void lab_sweep_values(const lab_sweep *sweep, int index, double values[2])
 
 void lab_sweep_end(lab_sweep *sweep)
 {
-    assert(sweep != NULL);
     for (int i = 0; i < lab_sweep_curves(sweep); i++) {
         run_finish(&sweep->runs[i].run);
     }
@@ -294,7 +286,6 @@ static status read_axis(sweep_axis *axis, const char *definition, fault *f)
 
 status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
 {
-    assert(sweep != NULL && definition != NULL);
     lab_sweep fresh = {.metric = sweep->metric, .computed = sweep->computed};
     const size_t length = strcspn(definition, " ");
     const char *rest = definition + length + strspn(definition + length, " ");
@@ -374,7 +365,6 @@ status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
 
 void difference_finish(run_difference *d)
 {
-    assert(d != NULL);
     trace_finish(&d->trace);
     *d = (run_difference){.built = d->built};
 }
@@ -439,7 +429,6 @@ static status add_row(run_difference *d, const trace *run, const trace *other, s
 
 void difference_update(run_difference *d, unsigned long run, const trace *t, const trace *other)
 {
-    assert(d != NULL && t != NULL && other != NULL);
     if (!d->on || other->row_count == 0) {
         return;
     }

@@ -11,7 +11,6 @@
 
 void scenario_menu_read(scenario_menu *menu)
 {
-    assert(menu != NULL);
     const status code = scenario_list(&menu->names, &menu->count, NULL);
     loss_unless(code != STATUS_NO_MEMORY);
     menu->count = code == STATUS_OK ? menu->count : 0;
@@ -43,8 +42,6 @@ static void sort_lessons(scenario_menu *menu)
 
 void scenario_menu_read_titles(scenario_menu *menu)
 {
-    assert(menu != NULL);
-
     // read once, as it opens every file
     if (menu->texts != NULL || menu->count == 0) {
         return;
@@ -70,7 +67,6 @@ void scenario_menu_read_titles(scenario_menu *menu)
 
 void scenario_menu_finish(scenario_menu *menu)
 {
-    assert(menu != NULL);
     for (int i = 0; i < menu->count; i++) {
         free(menu->names[i]);
         free(menu->texts != NULL ? menu->texts[i].title : NULL);
@@ -83,7 +79,6 @@ void scenario_menu_finish(scenario_menu *menu)
 
 int scenario_menu_find(const scenario_menu *menu, const char *name)
 {
-    assert(menu != NULL && name != NULL);
     int at = -1;
     for (int i = 0; i < menu->count; i++) {
         at = strcmp(menu->names[i], name) == 0 ? i : at;
@@ -125,7 +120,6 @@ bool scenario_menu_shows(const scenario_menu *menu, int index)
 
 int scenario_menu_in_line(const scenario_menu *menu, int line)
 {
-    assert(menu != NULL);
     for (int i = 0; i < menu->count; i++) {
         if (scenario_menu_shows(menu, i) && line-- == 0) {
             return i;
@@ -147,7 +141,6 @@ void scenario_menu_move(scenario_menu *menu, int direction)
 
 void scenario_menu_keep_selection_shown(scenario_menu *menu)
 {
-    assert(menu != NULL);
     if (menu->selected < menu->count && !scenario_menu_shows(menu, menu->selected)) {
         menu->selected = -1;
         scenario_menu_move(menu, 1);
@@ -177,8 +170,6 @@ static bool ratio_is_in_range(const lesson_step *step, const session *s)
 bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, const session *s,
                          const run_list *pinned)
 {
-    assert(step != NULL && p != NULL && s != NULL && pinned != NULL);
-
     // to be read or answered
     switch (step->check) {
     case LESSON_READ:

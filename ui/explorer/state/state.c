@@ -93,7 +93,6 @@ static void show_anew(explorer_state *st)
 
 status state_init(explorer_state *st, scenario *s, double patience, fault *f)
 {
-    assert(st != NULL && s != NULL);
     memset(st, 0, sizeof *st);
     status code = session_open(&st->session, s, patience, f);
     if (code != STATUS_OK) {
@@ -167,7 +166,6 @@ static status take_visit(const explorer_state *st, visit *v, fault *f)
 
 status state_take_session(explorer_state *st, session *fresh, fault *f)
 {
-    assert(st != NULL && fresh != NULL);
     visit left;
     const status code = take_visit(st, &left, f);
     if (code != STATUS_OK) {
@@ -223,13 +221,11 @@ status state_turn(explorer_state *st, int direction, fault *f)
 
 unsigned long state_run_id(const explorer_state *st)
 {
-    assert(st != NULL);
     return ((unsigned long)st->opened << 32) | st->session.version;
 }
 
 int state_visible_pins(const explorer_state *st)
 {
-    assert(st != NULL);
     int count = 0;
     for (int i = 0; i < st->pinned.count; i++) {
         count += !st->pinned.runs[i].hidden;
@@ -239,7 +235,6 @@ int state_visible_pins(const explorer_state *st)
 
 int state_run_count(const explorer_state *st)
 {
-    assert(st != NULL);
     if (st->difference.on && st->session.has_other) {
         return 1;
     }
@@ -308,26 +303,22 @@ const char *state_run_name(const explorer_state *st, int index)
 
 parameters state_parameters(const explorer_state *st)
 {
-    assert(st != NULL);
     return session_parameters_at(&st->session, st->session.now);
 }
 
 bool state_has_law(const explorer_state *st)
 {
-    assert(st != NULL);
     return st->session.effective.parameters.control.law != LAW_NONE;
 }
 
 const law_modes *state_law_modes(explorer_state *st)
 {
-    assert(st != NULL);
     law_modes_update(&st->modes, state_run_id(st), &st->session.effective.parameters);
     return &st->modes;
 }
 
 const run_log *state_run_log(explorer_state *st)
 {
-    assert(st != NULL);
     const session *s = &st->session;
     run_log_update(&st->log, state_run_id(st), &s->run.trace, s->computing == NULL);
     return &st->log;
@@ -349,7 +340,6 @@ void state_change_text(const explorer_state *st, int index, char *text, size_t s
 
 int state_later_changes(const explorer_state *st)
 {
-    assert(st != NULL);
     const session *s = &st->session;
     int count = 0;
     for (int i = 0; i < s->input_count; i++) {
@@ -360,13 +350,11 @@ int state_later_changes(const explorer_state *st)
 
 int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES])
 {
-    assert(st != NULL);
     return parameter_list_lines(&st->parameters, st->filters.text[PANEL_PARAMETERS], lines);
 }
 
 const char *state_inert_reason(const explorer_state *st, int parameter)
 {
-    assert(st != NULL);
     return inert_reason(&st->session.effective.parameters, parameter);
 }
 
@@ -374,13 +362,11 @@ const char *state_inert_reason(const explorer_state *st, int parameter)
 
 void state_window(const explorer_state *st, double *from, double *to)
 {
-    assert(st != NULL);
     time_window_range(&st->window, duration_of(st), from, to);
 }
 
 void state_show_part(explorer_state *st, double from, double to)
 {
-    assert(st != NULL);
     time_window_show(&st->window, duration_of(st), from, to);
 }
 
@@ -533,8 +519,6 @@ static void update_residual(explorer_state *st)
 
 void state_update(explorer_state *st)
 {
-    assert(st != NULL);
-
     // the panes depend on the law and on the room there is
     const bool taller = st->size.height != st->panes_height;
     if (state_has_law(st) != st->panes.controlled || taller) {

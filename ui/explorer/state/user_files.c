@@ -46,7 +46,6 @@ bool user_file(const char *name, char *path, size_t size, bool make)
 
 bool consent_needed(const scenario *s)
 {
-    assert(s != NULL);
     const parameters *p = &s->parameters;
     return (p->control.law == LAW_PROCESS || p->control.law == LAW_PLUGIN) && !p->code_allowed;
 }
@@ -123,7 +122,6 @@ static bool look_through(const char *path, const char *digest, FILE *copy)
 
 bool consent_remembered(const scenario *s)
 {
-    assert(s != NULL);
     char path[1024], digest[SHA256_TEXT];
 
     // the program is read only if the user has allowed any
@@ -133,7 +131,6 @@ bool consent_remembered(const scenario *s)
 
 status consent_remember(const scenario *s, bool *kept, fault *f)
 {
-    assert(s != NULL && kept != NULL);
     char path[1024], digest[SHA256_TEXT], what[2 * PARAMETER_TEXT_SIZE];
     *kept = false;
     if (!digest_of(s, digest) || !user_file("allowed", path, sizeof path, true)) {

@@ -32,7 +32,6 @@ panel_id panel_first_on_side(void)
 
 bool filter_passes(const char *filter, const char *text)
 {
-    assert(filter != NULL && text != NULL);
     char word[LINE_TEXT];
     while (*(filter += strspn(filter, " ")) != '\0') {
         const size_t length = strcspn(filter, " ");
