@@ -140,6 +140,11 @@ printf 'control.seed=1,2\ncase a: arm.k2=4\ncase b: control.settings=stiffness=2
 expect 0 robust compare/observer --laws hybrid,impedance --runs 2 --over settings.set
 says err "hybrid runs without 'stiffness=20'"
 
+# --- a run that never starts has no numbers to print: its sentence stands alone
+expect 1 run compare/hybrid --set control.law=process --set control.command=false
+says err "the scenario wants to start the program 'false'"
+! grep -qE ' -$|^ +steps ' out || fail "numbers of a run that never started"
+
 # --- what is wrong with a set is told before anything is run, with its lines, and all cases at once
 printf 'control.seed=1,2\ncase a: control.settings=kp=2\ncase b: arm.links=-3\ncase c:\ncase d: arm.k2=x\n' >faulty.set
 expect 2 robust compare/observer --runs 2 --over faulty.set --db faulty.sqlite

@@ -215,6 +215,21 @@ TEST(the_arm_that_was_measured_is_found)
     press_shows(&ex, ":data off<Enter>", "no measured data (:data");
 }
 
+TEST(data_without_a_command_say_what_is_missing_and_what_for)
+{
+    FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_no_command.csv");
+    char keys[LINE_TEXT];
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("time[s],encoder[rad]\n0,0\n0.1,0.01\n0.2,0.02\n", file);
+    assert_int_equal(fclose(file), 0);
+    snprintf(keys, sizeof keys, ":data %s<Enter>", path);
+    press(&ex, keys);
+    press_warns(&ex, ":identify k2<Enter>", "no column 'command', the voltage [V] with which");
+    assert_non_null(strstr(ex.state.message.text, "record it, or rename its heading"));
+}
+
 TEST(what_is_copied_gives_the_run_again)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");

@@ -34,8 +34,15 @@ static status read_column(const csv_table *t, const char *signal, const char *un
         }
     }
     *values = NULL;
-    if (!needed && csv_table_find(t, heading) < 0) {
+    const bool missing = csv_table_find(t, heading) < 0;
+    if (!needed && missing) {
         return STATUS_OK;
+    }
+    if (missing && strcmp(heading, "command") == 0) {
+        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
+                               "%.300s:1:1: there is no column 'command', the voltage [V] with "
+                               "which each trial run is driven: record it, or rename its heading",
+                               t->file);
     }
     return strcmp(signal, "time") == 0 ? csv_table_times(t, heading, values, f)
                                        : csv_table_numbers(t, heading, unit, values, f);

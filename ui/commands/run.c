@@ -130,6 +130,11 @@ static void print_run(const scenario *s, const void *found)
 {
     const run_result *result = found;
     print_heading(s);
+
+    // what failed before its first step has no numbers: the sentence that follows says why
+    if (result->summary.status != STATUS_OK && result->summary.steps == 0) {
+        return;
+    }
     print_quantities(&result->summary);
     print_events(s, &result->trace);
     print_expectations(s, &result->summary);
