@@ -173,7 +173,7 @@ int main(int count, char **words)
 {
     const int seed = count > 1 ? atoi(words[1]) : 1, cases = count > 2 ? atoi(words[2]) : 40;
     const char *law = count > 3 ? words[3] : "observer";
-    const int trials = count > 4 ? atoi(words[4]) : 300, file = mkstemp(command_file);
+    const int trials = count > 4 ? atoi(words[4]) : 900, file = mkstemp(command_file);
     tally t = {0};
     if (file < 0) {
         perror(command_file);
