@@ -148,18 +148,17 @@ int api_signal(const char *name, impactlab_error *error)
     return -1;
 }
 
-int api_open_text(text_stream *stream, char **text, impactlab_error *error)
+int api_text(char **text, void (*write)(FILE *stream, const void *what), const void *what,
+             impactlab_error *error)
 {
     // what was lost on this thread before is nothing of this text's
+    text_stream stream;
     loss_forget();
     *text = NULL;
-    return text_stream_open(stream) ? IMPACTLAB_OK
-                                    : api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
-}
-
-int api_close_text(text_stream *stream, char **text, impactlab_error *error)
-{
-    *text = text_stream_close(stream, NULL);
+    if (text_stream_open(&stream)) {
+        write(stream.stream, what);
+        *text = text_stream_close(&stream, NULL);
+    }
     return *text != NULL ? api_done(error)
                          : api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
 }

@@ -65,7 +65,7 @@ int api_axis(const char *path, sweep_axis *axis, impactlab_error *error);
 // Index of a signal, likewise.
 int api_signal(const char *name, impactlab_error *error);
 
-// A stream for a text that is handed to the caller; then *text, if all of it is there.
+// A text that is handed to the caller, if all of what `write` writes is there.
 // IMPACTLAB_NO_MEMORY if not.
-int api_open_text(text_stream *stream, char **text, impactlab_error *error);
-int api_close_text(text_stream *stream, char **text, impactlab_error *error);
+int api_text(char **text, void (*write)(FILE *stream, const void *what), const void *what,
+             impactlab_error *error);

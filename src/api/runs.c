@@ -163,30 +163,30 @@ int impactlab_run_event(const impactlab_run *run, size_t index, impactlab_event 
 
 // --- as texts ---------------------------------------------------------------------------------
 
+static void write_json(FILE *stream, const void *what)
+{
+    const impactlab_run *run = what;
+    json_t *object = export_run(&run->scenario, &run->result);
+    json_write(stream, object);
+    json_decref(object);
+}
+
+static void write_csv(FILE *stream, const void *what)
+{
+    const impactlab_run *run = what;
+    export_csv(stream, &run->result.trace, run->scenario.parameters.arm.links);
+}
+
 int impactlab_run_json(const impactlab_run *run, char **json, impactlab_error *error)
 {
     API_NEEDS(error, run, json);
-
-    text_stream stream;
-    if (api_open_text(&stream, json, error) != IMPACTLAB_OK) {
-        return IMPACTLAB_NO_MEMORY;
-    }
-
-    json_t *object = export_run(&run->scenario, &run->result);
-    json_write(stream.stream, object);
-    json_decref(object);
-    return api_close_text(&stream, json, error);
+    return api_text(json, write_json, run, error);
 }
 
 int impactlab_run_csv(const impactlab_run *run, char **csv, impactlab_error *error)
 {
     API_NEEDS(error, run, csv);
-    text_stream stream;
-    if (api_open_text(&stream, csv, error) != IMPACTLAB_OK) {
-        return IMPACTLAB_NO_MEMORY;
-    }
-    export_csv(stream.stream, &run->result.trace, run->scenario.parameters.arm.links);
-    return api_close_text(&stream, csv, error);
+    return api_text(csv, write_csv, run, error);
 }
 
 // --- what was predicted -----------------------------------------------------------------------

@@ -205,15 +205,15 @@ int impactlab_scenario_is_set(const impactlab_scenario *handle, const char *path
            (name == NULL || settings_get(&handle->scenario.parameters, name, &value));
 }
 
+static void write_yaml(FILE *stream, const void *what)
+{
+    scenario_write(stream, what);
+}
+
 int impactlab_scenario_yaml(const impactlab_scenario *handle, char **yaml, impactlab_error *error)
 {
     API_NEEDS(error, handle, yaml);
-    text_stream stream;
-    if (api_open_text(&stream, yaml, error) != IMPACTLAB_OK) {
-        return IMPACTLAB_NO_MEMORY;
-    }
-    scenario_write(stream.stream, &handle->scenario);
-    return api_close_text(&stream, yaml, error);
+    return api_text(yaml, write_yaml, &handle->scenario, error);
 }
 
 // --- changing ---------------------------------------------------------------------------------

@@ -107,29 +107,22 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     const three_body_state *s = &question->bodies;
     status code = STATUS_OK;
 
-    if (which != PREDICTOR_LINEARISED && p->motor.drive == DRIVE_VOLTAGE &&
-        p->motor.current_limit > 0) {
-        return PREDICTION_UNLIMITED_ONLY;
-    }
-
     // the thesis's begin with an impact of two bare links
-    if (which != PREDICTOR_LINEARISED && p->wall.contact != WALL_RIGID) {
-        return PREDICTION_RIGID_WALL_ONLY;
-    }
-    if (p->wall.motion != MOTION_NONE && p->wall.kind != WALL_NONE) {
-        return PREDICTION_STILL_WALL_ONLY;
-    }
-    if (which != PREDICTOR_LINEARISED && p->arm.tilt != 0) {
-        return PREDICTION_LEVEL_ONLY;
-    }
-    if (which != PREDICTOR_LINEARISED && p->arm.tip_mass > 0) {
-        return PREDICTION_BARE_TIP_ONLY;
-    }
-    if (which != PREDICTOR_LINEARISED && !is_plain_beam(&p->arm)) {
-        return PREDICTION_EQUAL_LINKS_ONLY;
-    }
-    if (which == PREDICTOR_ENERGY && question->command.count > 0) {
-        return PREDICTION_KNOWS_NO_TIME;
+    const bool thesis = which != PREDICTOR_LINEARISED;
+    const bool limited = p->motor.drive == DRIVE_VOLTAGE && p->motor.current_limit > 0;
+    const bool moves = p->wall.motion != MOTION_NONE && p->wall.kind != WALL_NONE;
+    const bool timed = which == PREDICTOR_ENERGY && question->command.count > 0;
+    const prediction_outcome refused =
+        thesis && limited                         ? PREDICTION_UNLIMITED_ONLY
+        : thesis && p->wall.contact != WALL_RIGID ? PREDICTION_RIGID_WALL_ONLY
+        : moves                                   ? PREDICTION_STILL_WALL_ONLY
+        : thesis && p->arm.tilt != 0              ? PREDICTION_LEVEL_ONLY
+        : thesis && p->arm.tip_mass > 0           ? PREDICTION_BARE_TIP_ONLY
+        : thesis && !is_plain_beam(&p->arm)       ? PREDICTION_EQUAL_LINKS_ONLY
+        : timed                                   ? PREDICTION_KNOWS_NO_TIME
+                                                  : PREDICTION_HOLDS;
+    if (refused != PREDICTION_HOLDS) {
+        return refused;
     }
 
     switch (which) {

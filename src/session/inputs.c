@@ -217,23 +217,27 @@ static bool are_one_gesture(const session *s, int index)
     return gesture != 0 && s->inputs[index - 1].gesture == gesture;
 }
 
+// Takes out the last input (step -1) or puts in the next (1), with all of its gesture, and computes
+// the run; they stay where they are if that fails.
+static status move_inputs(session *s, int step, fault *f)
+{
+    const int before = s->input_count;
+    do {
+        s->input_count += step;
+    } while (s->input_count > 0 && s->input_count < s->input_total &&
+             are_one_gesture(s, s->input_count));
+    const status code = session_compute(s, f);
+    s->input_count = code == STATUS_OK ? s->input_count : before;
+    return code;
+}
+
 status session_undo(session *s, fault *f)
 {
     assert(s != NULL);
     if (s->input_count == 0) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to undo");
     }
-
-    // computed without the last one, or all of its gesture, which stay if that fails
-    const int before = s->input_count;
-    do {
-        s->input_count--;
-    } while (s->input_count > 0 && are_one_gesture(s, s->input_count));
-    status code = session_compute(s, f);
-    if (code != STATUS_OK) {
-        s->input_count = before;
-        return code;
-    }
+    TRY(move_inputs(s, -1, f));
     restore_cursor(s, &s->inputs[s->input_count]);
     return STATUS_OK;
 }
@@ -244,16 +248,7 @@ status session_redo(session *s, fault *f)
     if (s->input_count == s->input_total) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to redo");
     }
-
-    const int before = s->input_count;
-    do {
-        s->input_count++;
-    } while (s->input_count < s->input_total && are_one_gesture(s, s->input_count));
-    status code = session_compute(s, f);
-    if (code != STATUS_OK) {
-        s->input_count = before;
-        return code;
-    }
+    TRY(move_inputs(s, 1, f));
 
     // to where it takes effect
     const session_input *in = &s->inputs[s->input_count - 1];

@@ -157,14 +157,12 @@ static bool is_whole(const search *s)
 // neighbours where there are enough points.
 static double point_of(const search *s, size_t i)
 {
-    const double low = fmin(s->axis->low, s->axis->high), high = fmax(s->axis->low, s->axis->high);
-    const double last = (double)(s->found->points - 1), share = (double)i / last;
-    if (i == 0 || i == (size_t)s->found->points - 1) {
-        return i == 0 ? low : high;
-    }
-    double value = s->axis->logarithmic ? low * plain_pow(high / low, share)
-                                        : (low * (last - (double)i) + high * (double)i) / last;
-    return is_whole(s) ? round(value) : value;
+    sweep_axis rising = *s->axis;
+    rising.low = fmin(s->axis->low, s->axis->high);
+    rising.high = fmax(s->axis->low, s->axis->high);
+    const bool end = i == 0 || i == (size_t)s->found->points - 1;
+    const double value = sweep_axis_point(&rising, i, (size_t)s->found->points);
+    return is_whole(s) && !end ? round(value) : value;
 }
 
 static void compute_point(void *context, size_t i, void *scratch, void *result)

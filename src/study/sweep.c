@@ -112,35 +112,28 @@ static status draw_latin(sweep *s, random_generator *g, fault *f)
 // As many as were asked for, or as the grid has.
 static status count_runs(sweep *s, size_t runs, fault *f)
 {
-    // drawn ones: as many as were asked for
-    if (s->sampling != SWEEP_GRID) {
-        if (runs < 1 || runs > SWEEP_MOST_RUNS) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "--sample %s needs --runs with a number from 1 to %d",
-                             sweep_sampling_name(s->sampling), SWEEP_MOST_RUNS);
-        }
-        s->run_count = runs;
-        return STATUS_OK;
+    const bool grid = s->sampling == SWEEP_GRID;
+    if (!grid && (runs < 1 || runs > SWEEP_MOST_RUNS)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "--sample %s needs --runs with a number from 1 to %d",
+                         sweep_sampling_name(s->sampling), SWEEP_MOST_RUNS);
     }
 
-    // the product of the axes
-    s->run_count = 1;
-    for (int i = 0; i < s->axis_count; i++) {
-        // both factors are small enough for the product to fit
+    // of a grid the product of its axes, whose factors are small enough to fit
+    s->run_count = grid ? 1 : runs;
+    for (int i = 0; i < s->axis_count && grid; i++) {
         s->run_count *= s->axes[i].count;
         if (s->run_count > SWEEP_MOST_RUNS) {
             return fault_set(f, STATUS_BAD_ARGUMENT, "the grid has more than %d runs",
                              SWEEP_MOST_RUNS);
         }
     }
-
-    if (runs != 0) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "--runs goes with --sample random or latin; a grid is as large as it is, "
-                         "here %zu",
-                         s->run_count);
-    }
-    return STATUS_OK;
+    return !grid || runs == 0
+               ? STATUS_OK
+               : fault_set(f, STATUS_BAD_ARGUMENT,
+                           "--runs goes with --sample random or latin; a grid is as large as it "
+                           "is, here %zu",
+                           s->run_count);
 }
 
 // The values of random sampling, all at once, so that they do not depend on the order of the runs.

@@ -200,22 +200,14 @@ static size_t split(char *text, char separator, char **pieces, size_t most)
     return count;
 }
 
-// Point number i of the n that span the range.
-static double range_point(const sweep_axis *axis, size_t i, size_t n)
+double sweep_axis_point(const sweep_axis *axis, size_t i, size_t n)
 {
-    double x = (double)i, last = (double)(n - 1), value;
-    if (i == 0 || i == n - 1) {
-        return i == 0 ? axis->low : axis->high;
-    }
-    if (axis->logarithmic) {
-        value = axis->low * plain_pow(axis->high / axis->low, x / last);
-    } else {
-        value = (axis->low * (last - x) + axis->high * x) / last;
-    }
-
-    // a whole number as near as there is one; an even spacing that misses them is refused instead
-    return axis->logarithmic && sweep_axis_parameter(axis)->type == PARAMETER_INTEGER ? round(value)
-                                                                                      : value;
+    assert(axis != NULL && n >= 2 && i < n);
+    const double low = axis->low, high = axis->high, x = (double)i, last = (double)(n - 1);
+    return i == 0              ? low
+           : i == n - 1        ? high
+           : axis->logarithmic ? low * plain_pow(high / low, x / last)
+                               : (low * (last - x) + high * x) / last;
 }
 
 // The values of a range; each is checked as a parameter, and none may come twice.
@@ -227,7 +219,10 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
 
     // a range may leave what the parameter allows at either end
     for (size_t i = 0; i < n; i++) {
-        axis->values[i] = range_point(axis, i, n);
+        // a whole number as near as there is one; an even spacing that misses them is refused
+        const bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
+        const double value = sweep_axis_point(axis, i, n);
+        axis->values[i] = axis->logarithmic && whole && i > 0 && i + 1 < n ? round(value) : value;
         TRY(check_value(axis, axis->values[i], f));
 
         // whole numbers too close together

@@ -51,6 +51,9 @@ bool sweep_axis_has_words(const sweep_axis *axis);
 // The value that the parameters have; NaN if they have none, as of a setting that is not given.
 double sweep_axis_get(const sweep_axis *axis, const parameters *p);
 
+// Point number i < n of n >= 2 that span a range evenly, or in equal ratios if it is logarithmic.
+double sweep_axis_point(const sweep_axis *axis, size_t i, size_t n);
+
 // A value of the axis as a scenario file would give it, exact ("newmark", "0.1").
 void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t size);
 
