@@ -9,15 +9,6 @@
 // Below this force contact is given up at the next step [N].
 #define RELEASE_FORCE 1e-6
 
-// The end of a step that may yet be refused.
-typedef struct step_result {
-    double angle[3], velocity[3];
-    double newmark_acceleration[3]; // from (3.7)
-    double acceleration[3];         // re-evaluated where contact is, else Newmark's own
-    double newmark_force;
-    bool constrained;
-} step_result;
-
 // Velocities and accelerations that Newmark's approximation (3.6), (3.7) gives for angles q at the
 // end of a step that starts from m->row.
 static void newmark_rates(const printed_motion *m, const double q[3], double w[3], double alpha[3])
@@ -37,14 +28,14 @@ static void newmark_rates(const printed_motion *m, const double q[3], double w[3
 // early once residual or change are nil. The first guess, unchanged angles, implies velocities of
 // about (1 - gamma/beta) times the old ones, of the wrong sign: with a single Newton step the
 // friction of (2.15) would push the hub on, so that at least two are needed.
-static status solve_step(const printed_motion *m, step_result *r)
+static status solve_step(printed_motion *m, printed_row *r)
 {
     const double tolerance = 1e-6, h = m->method.step;
     const printed_arm *a = &m->arm;
     const double *start = m->row.angle;
     newmark_slopes slopes = {1 / (m->method.beta * h * h), m->method.gamma / (m->method.beta * h)};
-    int n = r->constrained ? 4 : 3;
-    double x[4] = {start[0], start[1], start[2], r->constrained ? m->newmark_force : 0};
+    int n = r->contact ? 4 : 3;
+    double x[4] = {start[0], start[1], start[2], r->contact ? m->newmark_force : 0};
 
     for (int iteration = 0; iteration < a->switches.newton_iterations; iteration++) {
         double w[3], alpha[3], residual[4], full[4][4], matrix[16], error = 0, change = 0;
@@ -79,17 +70,17 @@ static status solve_step(const printed_motion *m, step_result *r)
     }
 
     memcpy(r->angle, x, sizeof r->angle);
-    r->newmark_force = r->constrained ? x[3] : 0;
+    m->newmark_force = r->contact ? x[3] : 0;
     newmark_rates(m, r->angle, r->velocity, r->newmark_acceleration);
     return STATUS_OK;
 }
 
 // Chooses the system to solve as the listing does: the constraint stays as long as the force is
 // positive, and in any case for the first step of a contact.
-static void choose_system(printed_motion *m, step_result *r)
+static void choose_system(printed_motion *m, printed_row *r)
 {
-    r->constrained = m->in_contact && (m->force > RELEASE_FORCE || m->contact_steps == 0);
-    if (r->constrained) {
+    r->contact = m->in_contact && (m->force > RELEASE_FORCE || m->contact_steps == 0);
+    if (r->contact) {
         m->contact_steps++;
         return;
     }
@@ -104,12 +95,10 @@ static void choose_system(printed_motion *m, step_result *r)
 // Accelerations and force from (2.15)-(2.17) and (3.13), the second run of the thesis's strategy.
 // With `force_after_release` the listing's own condition, which looks at the last force and not at
 // the contact, so that a force may outlive it.
-static status reevaluate(printed_motion *m, step_result *r)
+static status reevaluate(printed_motion *m, printed_row *r)
 {
-    bool wanted = r->constrained;
-    if (m->arm.switches.force_after_release) {
-        wanted = m->force > 0 || m->contact_steps == 1;
-    }
+    const bool wanted =
+        m->arm.switches.force_after_release ? m->force > 0 || m->contact_steps == 1 : r->contact;
 
     memcpy(r->acceleration, r->newmark_acceleration, sizeof r->acceleration);
     if (!wanted) {
@@ -119,7 +108,7 @@ static status reevaluate(printed_motion *m, step_result *r)
 
     // the single run has the multiplier of the constraint, and nothing but Newmark's accelerations
     if (m->arm.switches.reevaluation == REEVALUATE_NONE) {
-        m->force = r->newmark_force;
+        m->force = m->newmark_force;
     } else if (!printed_reevaluate(&m->arm, r->angle, r->velocity, r->acceleration, &m->force)) {
         return STATUS_SINGULAR;
     }
@@ -131,17 +120,12 @@ static status reevaluate(printed_motion *m, step_result *r)
 
 // One time step of Table 3.2 into *r. A step that ends behind the wall is taken back and done again
 // with the constraint.
-static status try_step(printed_motion *m, step_result *r)
+static status try_step(printed_motion *m, printed_row *r)
 {
     for (;;) {
         choose_system(m, r);
-        status result = solve_step(m, r); // with Newmark's rule
-        if (result == STATUS_OK) {
-            result = reevaluate(m, r);
-        }
-        if (result != STATUS_OK) {
-            return result;
-        }
+        TRY(solve_step(m, r)); // with Newmark's rule
+        TRY(reevaluate(m, r));
 
         // the strategy of Table 3.2: contact is found by its violation
         bool touched = !m->in_contact && m->contact_steps == 0 && wall_stands(&m->arm.wall) &&
@@ -154,7 +138,7 @@ static status try_step(printed_motion *m, step_result *r)
 }
 
 // Name of the first number of the step's end that is not finite, or NULL.
-static const char *not_finite(const step_result *r, double force)
+static const char *not_finite(const printed_row *r)
 {
     static const char *const names[3][3] = {
         {"theta1 (hub angle)", "theta2 (first link's angle)", "theta3 (second link's angle)"},
@@ -170,32 +154,12 @@ static const char *not_finite(const step_result *r, double force)
             }
         }
     }
-    return isfinite(force) ? NULL : "the contact force";
+    return isfinite(r->force) ? NULL : "the contact force";
 }
 
 static double gap_at(const printed_arm *a, const double angle[3])
 {
     return wall_stands(&a->wall) ? -printed_penetration(a, angle) : HUGE_VAL;
-}
-
-// The step's end is what the next one starts from.
-static void accept_step(printed_motion *m, const step_result *r, double time)
-{
-    const double *fed =
-        m->arm.switches.feed_newmark_acceleration ? r->newmark_acceleration : r->acceleration;
-    memcpy(m->fed_acceleration, fed, sizeof m->fed_acceleration);
-    m->newmark_force = r->newmark_force;
-    m->steps++;
-
-    printed_row *row = &m->row;
-    memcpy(row->angle, r->angle, sizeof row->angle);
-    memcpy(row->velocity, r->velocity, sizeof row->velocity);
-    memcpy(row->acceleration, r->acceleration, sizeof row->acceleration);
-    memcpy(row->newmark_acceleration, r->newmark_acceleration, sizeof row->newmark_acceleration);
-    row->time = time;
-    row->force = m->force;
-    row->contact = r->constrained;
-    row->gap = gap_at(&m->arm, row->angle);
 }
 
 void printed_motion_start(printed_motion *m, const parameters *p)
@@ -234,25 +198,32 @@ status printed_motion_step(printed_motion *m, fault *f)
 {
     assert(m != NULL && !printed_motion_ended(m));
     const double start = m->row.time, end = (double)(m->steps + 1) * m->method.step;
-    step_result r;
+    printed_row r = {.time = end};
 
     // the equations' own failures
     status result = try_step(m, &r);
     if (result != STATUS_OK) {
         return fault_set(f, result, "the equations of the step from t = %.9g s %s contact %s",
-                         start, r.constrained ? "in" : "without",
+                         start, r.contact ? "in" : "without",
                          result == STATUS_SINGULAR ? "are singular"
                                                    : "have a residual that is not finite");
     }
 
     // an overflow, reported before the next step starts from it
-    const char *name = not_finite(&r, m->force);
+    r.force = m->force;
+    const char *name = not_finite(&r);
     if (name != NULL) {
         return fault_set(f, STATUS_NOT_FINITE,
                          "%s is not finite after the step from t = %.9g s to t = %.9g s", name,
                          start, end);
     }
 
-    accept_step(m, &r, end);
+    // the step's end is what the next one starts from
+    const double *fed =
+        m->arm.switches.feed_newmark_acceleration ? r.newmark_acceleration : r.acceleration;
+    memcpy(m->fed_acceleration, fed, sizeof m->fed_acceleration);
+    m->steps++;
+    r.gap = gap_at(&m->arm, r.angle);
+    m->row = r;
     return STATUS_OK;
 }
