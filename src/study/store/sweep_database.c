@@ -107,32 +107,33 @@ status database_recognise(sweep_database *store, bool *empty, fault *f)
                            "'%s' is a database that holds no sweep of this program", store->path);
 }
 
-// A row a run: its number, the values of the axes, how it ended, the summary.
-static status create_run_table(sweep_database *store, fault *f)
+int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS])
 {
-    const sweep *s = store->sweep;
-    sqlite3_str *sql = sqlite3_str_new(store->database);
-    sqlite3_str_appendall(sql, "CREATE TABLE run (run INTEGER PRIMARY KEY");
-
-    // what is varied
-    for (int i = 0; i < s->axis_count; i++) {
-        const sweep_axis *axis = &s->axes[i];
-        sqlite3_str_appendf(sql, ", \"%w\" %s NOT NULL", axis->name,
-                            sweep_axis_has_words(axis)                              ? "TEXT"
-                            : sweep_axis_parameter(axis)->type == PARAMETER_INTEGER ? "INTEGER"
-                                                                                    : "REAL");
+    int count = 0;
+    columns[count++] = (run_column){{"run", "run", ""}, "INTEGER PRIMARY KEY"};
+    for (const sweep_axis *a = s->axes; a < s->axes + s->axis_count; a++) {
+        const parameter_info *info = sweep_axis_parameter(a);
+        columns[count++] = (run_column){{a->name, a->name, info->unit},
+                                        sweep_axis_has_words(a)           ? "TEXT NOT NULL"
+                                        : info->type == PARAMETER_INTEGER ? "INTEGER NOT NULL"
+                                                                          : "REAL NOT NULL",
+                                        .quote = "\""};
     }
-
-    // how it ended, and with what numbers
-    sqlite3_str_appendall(sql, ", status TEXT NOT NULL, message TEXT NOT NULL");
-    for (int i = 0; i < summary_count; i++) {
-        sqlite3_str_appendf(sql, ", \"%w\" REAL", summary_table[i].key);
+    columns[count++] = (run_column){{"status", "status", ""}, "TEXT NOT NULL"};
+    columns[count++] = (run_column){{"message", "message", ""}, "TEXT NOT NULL"};
+    for (const summary_info *q = summary_table; q < summary_table + summary_count; q++) {
+        columns[count++] = (run_column){{q->key, q->name, q->unit}, "REAL", "\"", q->timing};
     }
-    sqlite3_str_appendall(sql, ")");
+    return count;
+}
 
-    // NULL without memory
+// Executes or prepares the statement that was put together, NULL without memory.
+static status use_text(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **statement, fault *f)
+{
     char *text = sqlite3_str_finish(sql);
-    status code = text ? database_execute(store, text, f) : fault_no_memory(f);
+    const status code = text == NULL        ? fault_no_memory(f)
+                        : statement == NULL ? database_execute(store, text, f)
+                                            : database_prepare(store, statement, text, f);
     sqlite3_free(text);
     return code;
 }
@@ -145,37 +146,29 @@ status database_create_tables(sweep_database *store, fault *f)
                          "PRAGMA user_version = " LAYOUT ";"
                          "CREATE TABLE sweep (key TEXT UNIQUE NOT NULL, value TEXT NOT NULL)",
                          f));
-    return create_run_table(store, f);
+    run_column columns[RUN_MOST_COLUMNS];
+    const int count = database_columns(store->sweep, columns);
+    sqlite3_str *sql = sqlite3_str_new(store->database);
+    for (int i = 0; i < count; i++) {
+        const char *quote = columns[i].quote != NULL ? columns[i].quote : "";
+        sqlite3_str_appendf(sql, "%s%s%w%s %s", i == 0 ? "CREATE TABLE run (" : ", ", quote,
+                            columns[i].told.key, quote, columns[i].type);
+    }
+    sqlite3_str_appendall(sql, ")");
+    return use_text(store, sql, NULL, f);
 }
 
 status database_prepare_insert(sweep_database *store, sqlite3_stmt **insert, fault *f)
 {
     assert(store != NULL && store->sweep != NULL && insert != NULL);
+    run_column columns[RUN_MOST_COLUMNS];
     sqlite3_str *sql = sqlite3_str_new(store->database);
-
-    // as many question marks as columns
-    int columns = RUN_FIRST_VALUE + store->sweep->axis_count + RUN_OUTCOME_COLUMNS + summary_count;
-    sqlite3_str_appendall(sql, "INSERT INTO run VALUES (?");
-    for (int i = 1; i < columns; i++) {
-        sqlite3_str_appendall(sql, ", ?");
+    for (int i = database_columns(store->sweep, columns); i > 0; i--) {
+        sqlite3_str_appendall(sql,
+                              sqlite3_str_length(sql) == 0 ? "INSERT INTO run VALUES (?" : ", ?");
     }
     sqlite3_str_appendall(sql, ")");
-
-    char *text = sqlite3_str_finish(sql);
-    status code = text ? database_prepare(store, insert, text, f) : fault_no_memory(f);
-    sqlite3_free(text);
-    return code;
-}
-
-// The name of a column of the table `run`.
-static const char *column_name(const sweep *s, int column)
-{
-    static const char *const outcome[RUN_OUTCOME_COLUMNS] = {"status", "message"};
-    int value = column - RUN_FIRST_VALUE, word = value - s->axis_count;
-    return column < RUN_FIRST_VALUE     ? "run"
-           : value < s->axis_count      ? s->axes[value].name
-           : word < RUN_OUTCOME_COLUMNS ? outcome[word]
-                                        : summary_table[word - RUN_OUTCOME_COLUMNS].key;
+    return use_text(store, sql, insert, f);
 }
 
 // The text in that column of the row that a statement stands on; NULL if there is none, one that
@@ -290,8 +283,8 @@ static status check_rows(sweep_database *store, fault *f)
 status database_check_runs(sweep_database *store, fault *f)
 {
     assert(store != NULL && store->sweep != NULL);
-    const sweep *s = store->sweep;
-    const int columns = RUN_FIRST_VALUE + s->axis_count + RUN_OUTCOME_COLUMNS + summary_count;
+    run_column expected[RUN_MOST_COLUMNS];
+    const int columns = database_columns(store->sweep, expected);
     sqlite3_stmt *rows;
     status code = database_prepare(store, &rows, "SELECT * FROM run", f);
     int found = code == STATUS_OK ? sqlite3_column_count(rows) : 0;
@@ -299,10 +292,10 @@ status database_check_runs(sweep_database *store, fault *f)
     // name by name, in their order
     for (int i = 0; i < columns && code == STATUS_OK; i++) {
         const char *name = i < found ? sqlite3_column_name(rows, i) : NULL;
-        if (name == NULL || strcmp(name, column_name(s, i)) != 0) {
+        if (name == NULL || strcmp(name, expected[i].told.key) != 0) {
             code = fault_set(f, STATUS_BAD_ARGUMENT,
                              "'%s' has %.60s in column %d of its runs, expected %s", store->path,
-                             name != NULL ? name : "nothing", i + 1, column_name(s, i));
+                             name != NULL ? name : "nothing", i + 1, expected[i].told.key);
         }
     }
 

@@ -4,12 +4,24 @@
 #include <assert.h>
 #include <sqlite3.h>
 
+#include "src/study/result_rows.h"
 #include "src/study/sweep_run.h"
 #include "src/study/sweep_definition.h"
 
 // Of the table `run`: number of the run, then the varied values, status and message, then the
 // quantities of the summary.
-enum { RUN_FIRST_VALUE = 1, RUN_OUTCOME_COLUMNS = 2 };
+enum {
+    RUN_FIRST_VALUE = 1,
+    RUN_OUTCOME_COLUMNS = 2,
+    RUN_MOST_COLUMNS = RUN_FIRST_VALUE + SWEEP_MOST_AXES + RUN_OUTCOME_COLUMNS + SUMMARY_NUMBERS
+};
+
+typedef struct run_column {
+    result_column told; // its key is its name in the database
+    const char *type;   // of SQLite
+    const char *quote;  // round its name there; NULL: none
+    bool timing;        // depends on the machine
+} run_column;
 
 typedef struct sweep_database {
     sweep_store store; // what others know of it
@@ -39,6 +51,9 @@ status database_recognise(sweep_database *store, bool *empty, fault *f);
 // STATUS_BAD_ARGUMENT unless the table `run` has the columns of store->sweep, in their order, and
 // in each row a run of it, once, with the values that the sweep gives it and finite numbers.
 status database_check_runs(sweep_database *store, fault *f);
+
+// The columns of the table `run` of a sweep; returns how many.
+int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS]);
 
 // Creates the tables `sweep` and `run` and marks the database as a sweep; in a transaction of the
 // caller's.

@@ -116,40 +116,6 @@ status sweep_store_quantity(sweep_store *of, const char *key, double *values, si
 
 // --- as files ---------------------------------------------------------------------------------
 
-enum { MOST_COLUMNS = RUN_FIRST_VALUE + SWEEP_MOST_AXES + RUN_OUTCOME_COLUMNS + SUMMARY_NUMBERS };
-
-// Columns of the table `run` but those that depend on the machine, and where they stand there.
-typedef struct written_columns {
-    int count, at[MOST_COLUMNS];
-    result_column columns[MOST_COLUMNS];
-} written_columns;
-
-static void add_column(written_columns *w, int at, const char *key, const char *name,
-                       const char *unit)
-{
-    w->at[w->count] = at;
-    w->columns[w->count++] = (result_column){key, name, unit};
-}
-
-static void list_columns(const sweep *s, written_columns *w)
-{
-    int at = RUN_FIRST_VALUE;
-    w->count = 0;
-    add_column(w, 0, "run", "run", "");
-    for (const sweep_axis *a = s->axes; a < s->axes + s->axis_count; a++) {
-        add_column(w, at++, a->name, a->name, sweep_axis_parameter(a)->unit);
-    }
-
-    // how it ended, and with what numbers
-    add_column(w, at++, "status", "status", "");
-    add_column(w, at++, "message", "message", "");
-    for (const summary_info *q = summary_table; q < summary_table + summary_count; q++, at++) {
-        if (!q->timing) {
-            add_column(w, at, q->key, q->name, q->unit);
-        }
-    }
-}
-
 static result_cell cell_at(sqlite3_stmt *row, int column)
 {
     const int type = sqlite3_column_type(row, column);
@@ -175,29 +141,38 @@ static status write_rows(sweep_database *store, FILE *stream, bool json, fault *
     assert(stream != NULL);
     sqlite3_stmt *rows;
     csv_writer csv = csv_begin(stream);
-    written_columns w;
+    run_column all[RUN_MOST_COLUMNS];
+    result_column columns[RUN_MOST_COLUMNS];
+    int at[RUN_MOST_COLUMNS], count = 0;
     const char *separator = "\n    ";
     TRY(database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f));
-    list_columns(store->sweep, &w);
+
+    // all columns but those that depend on the machine
+    for (int i = 0, most = database_columns(store->sweep, all); i < most; i++) {
+        if (!all[i].timing) {
+            at[count] = i;
+            columns[count++] = all[i].told;
+        }
+    }
     if (json) {
         begin_json(store->sweep, stream);
     } else {
-        result_headings(&csv, w.columns, w.count);
+        result_headings(&csv, columns, count);
     }
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
-        result_cell cells[MOST_COLUMNS];
-        for (int k = 0; k < w.count; k++) {
-            cells[k] = cell_at(rows, w.at[k]);
+        result_cell cells[RUN_MOST_COLUMNS];
+        for (int k = 0; k < count; k++) {
+            cells[k] = cell_at(rows, at[k]);
         }
         if (json) {
             json_t *object = json_object(); // NULL loses whatever is put into it
-            result_put(object, w.columns, cells, w.count);
+            result_put(object, columns, cells, count);
             fputs(separator, stream);
             json_write_member(stream, object, 2);
             json_decref(object);
             separator = ",\n    ";
         } else {
-            result_row(&csv, cells, w.count);
+            result_row(&csv, cells, count);
         }
     }
     fputs(json ? "\n  ]\n}\n" : "", stream);
