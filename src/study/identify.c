@@ -88,6 +88,11 @@ status identify_add_path(identification *id, const char *text, fault *f)
     return STATUS_OK;
 }
 
+bool identify_at_end(const fitted_parameter *fit)
+{
+    return fit->value == fit->low_most || fit->value == fit->high_most;
+}
+
 void identify_finish(identification *id)
 {
     for (int i = 0; i < id->count; i++) {

@@ -17,6 +17,7 @@
 #include "src/study/sweep_axis.h"
 
 #define IDENTIFY_GUARD 0.01 // [s]
+#define IDENTIFY_PART  1e-6 // of a direction: smaller ones do not make a parameter undetermined
 
 enum {
     IDENTIFY_PATHS = 12,  // that are fitted, at most

@@ -1,20 +1,16 @@
-// How well parameters are known, whether the model is one, and the result as JSON and as a set.
+// How well parameters are known, and whether the model is one.
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/base/dense.h"
-#include "src/base/json.h"
-#include "src/base/numbers.h"
 #include "src/base/plain_math.h"
-#include "src/base/random.h"
 #include "src/study/identify.h"
 
 #define QUANTILE    1.959963984540054 // of 95 %
 #define BLOCK       0.05              // in which residuals may be correlated [s]
 #define LEAST_KNOWN 1.0   // singular value below which a combination is off by all its value
-#define HAS_A_PART  1e-6  // of a direction: smaller ones do not make a parameter undetermined
 #define NO_SAY      1e-12 // share of the largest eigenvalue below which there is none
 #define WHITE       3.5   // standard normal deviate that white residuals exceed once in 4000
 #define NOISE_KNOWN 2.0   // factor within which a bench knows its noise
@@ -60,14 +56,15 @@ static status judge_whiteness(identification *id, fault *f)
         const bool alone = t->reading[CHANNEL_TACHOMETER] == NULL;
         for (int c = 0; c < CHANNELS; c++) {
             t->rms[c] = t->whiteness[c] = (double)NAN;
-            for (size_t i = 0; t->reading[c] != NULL && i < t->rows; i++) {
+            if (t->reading[c] == NULL) {
+                continue;
+            }
+            for (size_t i = 0; i < t->rows; i++) {
                 series[i] = t->deviation[c][i] > 0 ? *residual++ : 0;
             }
-            if (t->reading[c] != NULL) {
-                t->whiteness[c] = whiteness_of(series, t->deviation[c], t->rows, &t->rms[c]);
-                const bool counts = c != CHANNEL_ENCODER || alone;
-                id->white = id->white && !(counts && t->whiteness[c] > WHITE);
-            }
+            t->whiteness[c] = whiteness_of(series, t->deviation[c], t->rows, &t->rms[c]);
+            const bool counts = c != CHANNEL_ENCODER || alone;
+            id->white = id->white && !(counts && t->whiteness[c] > WHITE);
         }
         residual += t->contact_count;
         free(series);
@@ -288,7 +285,7 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
         for (int k = 0; k < id->undetermined; k++) {
             part += id->direction[k * p + i] * id->direction[k * p + i];
         }
-        fit->determined = part < HAS_A_PART;
+        fit->determined = part < IDENTIFY_PART;
         fit->standard_error =
             fit->determined ? id->fit[i].scale * sqrt(id->covariance[i * p + i]) : (double)NAN;
         fit->low = fit->value - QUANTILE * fit->standard_error;
@@ -305,199 +302,4 @@ double identify_misfit(const identification *id, double *most)
     const double freedoms = (double)(id->residuals - (size_t)(id->unknowns + id->count));
     *most = NOISE_KNOWN * NOISE_KNOWN * (1 + CHANCE * sqrt(2 / freedoms));
     return id->chi_square / freedoms;
-}
-
-// --- words and files --------------------------------------------------------------------------
-
-const char *identify_words(const identification *id, int k, char *text, size_t size)
-{
-    const double *part = id->direction + k * id->count;
-    int largest = 0;
-    for (int i = 1; i < id->count; i++) {
-        largest = fabs(part[i]) > fabs(part[largest]) ? i : largest;
-    }
-    const char *joint = "";
-    size_t used = 0;
-    text[0] = '\0';
-    for (int sign = 1; sign >= -1; sign -= 2) {
-        bool first = true;
-        for (int i = 0; i < id->count && used + 1 < size; i++) {
-            const double share = part[i] / part[largest] * sign;
-            if (share * share < HAS_A_PART) {
-                continue;
-            }
-            if (share > 0) {
-                used += (size_t)decimal_print(text + used, size - used, "%s%s%s by %.3g %%", joint,
-                                              first ? sign > 0 ? "raising " : "lowering " : "",
-                                              id->fit[i].axis.name, 10 * share);
-                joint = " and ";
-                first = false;
-            }
-        }
-        joint = used > 0 ? " while " : "";
-    }
-    if (used < size) {
-        snprintf(text + used, size - used, " changes no reading by more than its noise");
-    }
-    return text;
-}
-
-json_t *identify_traces_json(const identification *id)
-{
-    json_t *traces = json_array();
-    for (int k = 0; k < id->trace_count; k++) {
-        const recorded_trace *t = &id->traces[k];
-        json_t *line = json_object(), *channels = json_array();
-        json_put(line, "file", json_text(t->file));
-        json_put(line, "time_shift_s", json_number(t->own[OWN_SHIFT]));
-        json_put(line, "encoder_offset_rad", json_number(t->own[OWN_OFFSET]));
-        json_put(line, "initial_angle_rad", json_number(t->own[OWN_ANGLE]));
-        json_put(line, "initial_velocity_rad_s", json_number(t->own[OWN_VELOCITY]));
-        json_put(line, "contacts", json_integer(t->contact_count));
-        json_put(line, "contact_error_s", json_number(t->contact_error));
-        json_put(line, "peak_error_percent", json_number(100 * t->peak_error));
-        for (int c = 0; c < CHANNELS; c++) {
-            if (t->reading[c] != NULL) {
-                json_t *channel = json_object();
-                json_put(channel, "signal", json_text(signal_table[identify_signals[c]].name));
-                json_put(channel, "rms_over_deviation", json_number(t->rms[c]));
-                json_put(channel, "whiteness", json_number(t->whiteness[c]));
-                json_add(channels, channel);
-            }
-        }
-        json_put(line, "residuals", channels);
-        json_add(traces, line);
-    }
-    return traces;
-}
-
-bool identify_at_end(const fitted_parameter *fit)
-{
-    return fit->value == fit->low_most || fit->value == fit->high_most;
-}
-
-json_t *identify_json(const identification *id)
-{
-    json_t *object = json_object(), *fit = json_array(), *rows = json_array(),
-           *words = json_array();
-    const int p = id->count;
-    json_put(object, "scenario", json_text(id->base->name));
-    for (int i = 0; i < p; i++) {
-        const fitted_parameter *of = &id->fit[i];
-        json_t *line = json_object();
-        double row[IDENTIFY_PATHS];
-        json_put(line, "path", json_text(of->axis.name));
-        json_put(line, "value", json_number(of->value));
-        json_put(line, "standard_error", json_number(of->standard_error));
-        json_put(line, "low", json_number(of->low));
-        json_put(line, "high", json_number(of->high));
-        json_put(line, "determined", json_boolean(of->determined));
-        json_put(line, "at_end_of_range", json_boolean(identify_at_end(of)));
-        json_add(fit, line);
-        for (int j = 0; j < p; j++) {
-            const double size = sqrt(id->covariance[i * p + i]) * sqrt(id->covariance[j * p + j]);
-            row[j] = of->determined && id->fit[j].determined ? id->covariance[i * p + j] / size
-                                                             : (double)NAN;
-        }
-        json_add(rows, json_numbers(row, p));
-    }
-    for (int k = 0; k < id->undetermined; k++) {
-        char text[1024];
-        json_add(words, json_text(identify_words(id, k, text, sizeof text)));
-    }
-    json_put(object, "fit", fit);
-    json_put(object, "correlation", rows);
-    json_put(object, "singular_values", json_numbers(id->singular, p));
-    json_put(object, "undetermined", words);
-    json_put(object, "chi_square", json_number(id->chi_square));
-    json_put(object, "residuals", json_integer((json_int_t)id->residuals - p));
-    json_put(object, "aic", json_number(id->aic));
-    json_put(object, "white", json_boolean(id->white));
-    json_put(object, "traces", identify_traces_json(id));
-    return object;
-}
-
-// An arm of the covariance, whose eigenvectors and -values these are: along each a normal number.
-static void draw_arm(const identification *id, const double *directions, const double *values,
-                     random_generator *random, double *drawn)
-{
-    const int p = id->count;
-    for (int i = 0; i < p; i++) {
-        drawn[i] = id->fit[i].value;
-    }
-    for (int k = 0; k < p; k++) {
-        double sum = -6;
-        for (int i = 0; i < 12; i++) {
-            sum += random_uniform(random);
-        }
-        for (int i = 0; i < p; i++) {
-            drawn[i] += sum * sqrt(fmax(values[k], 0)) * directions[k * p + i] * id->fit[i].scale;
-        }
-    }
-    for (int i = 0; i < p; i++) {
-        drawn[i] = fmin(fmax(drawn[i], id->fit[i].low_most), id->fit[i].high_most);
-    }
-}
-
-// One line of a set: numbers of all arms.
-static void write_line(FILE *stream, const char *path, bool first, const double *numbers)
-{
-    fprintf(stream, "%s%s=", first ? "" : "with ", path);
-    for (int n = 0; n < IDENTIFY_CASES; n++) {
-        char text[NUMBER_TEXT];
-        number_format(text, numbers[n]);
-        fprintf(stream, "%s%s", n > 0 ? "," : "", text);
-    }
-    fputc('\n', stream);
-}
-
-void identify_write_set(FILE *stream, const identification *id)
-{
-    // what a law is told of a parameter, as a factor of the true value
-    const struct {
-        int parameter, belief;
-    } told[] = {{PARAMETER_INDEX(arm.k2), PARAMETER_INDEX(belief.k2_factor)},
-                {PARAMETER_INDEX(arm.mass), PARAMETER_INDEX(belief.mass_factor)},
-                {PARAMETER_INDEX(arm.hub_inertia), PARAMETER_INDEX(belief.inertia_factor)},
-                {PARAMETER_INDEX(motor.torque_constant), PARAMETER_INDEX(belief.torque_factor)},
-                {PARAMETER_INDEX(motor.stiction), PARAMETER_INDEX(belief.friction_factor)}};
-    double drawn[IDENTIFY_CASES][IDENTIFY_PATHS], numbers[IDENTIFY_CASES];
-    random_generator random;
-    double directions[IDENTIFY_PATHS * IDENTIFY_PATHS], values[IDENTIFY_PATHS] = {0};
-    double scratch[2 * IDENTIFY_PATHS];
-    memcpy(directions, id->covariance, sizeof directions);
-    if (!symmetric_eigen(id->count, directions, values, scratch)) {
-        memset(values, 0, sizeof values); // every arm is the fitted one
-    }
-    random_seed(&random, id->seed);
-    for (int n = 0; n < IDENTIFY_CASES; n++) {
-        draw_arm(id, directions, values, &random, drawn[n]);
-    }
-
-    fprintf(stream,
-            "# %d arms drawn from the covariance of a fit; the law is told the fitted one\n"
-            "control.seed=1:1000000\n",
-            IDENTIFY_CASES);
-    bool first = true;
-    for (int i = 0; i < id->count; i++) {
-        const fitted_parameter *fit = &id->fit[i];
-        if (!fit->determined) {
-            continue;
-        }
-        for (int n = 0; n < IDENTIFY_CASES; n++) {
-            numbers[n] = drawn[n][i];
-        }
-        write_line(stream, fit->axis.name, first, numbers);
-        first = false;
-        for (size_t k = 0; k < sizeof told / sizeof *told; k++) {
-            if (strcmp(parameter_table[told[k].parameter].path, fit->axis.name) == 0) {
-                const double before = parameter_get(&id->base->parameters, told[k].belief);
-                for (int n = 0; n < IDENTIFY_CASES; n++) {
-                    const double factor = drawn[n][i] != 0 ? fit->value / drawn[n][i] : 1;
-                    numbers[n] = fmin(fmax(before * factor, 0.01), 100);
-                }
-                write_line(stream, parameter_table[told[k].belief].path, false, numbers);
-            }
-        }
-    }
 }
