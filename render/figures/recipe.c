@@ -101,19 +101,6 @@ static figure_axis horizontal_axis(recipe_figure *fig)
     return x;
 }
 
-// The recipe's runs with every parameter, for the file.
-static char *parameters_of(const recipe_figure *fig)
-{
-    GString *out = g_string_new(NULL);
-    for (int i = 0; i < fig->recipe.source_count; i++) {
-        if (fig->sources[i].ran) {
-            g_autofree char *line = parameters_line(&fig->sources[i].run.scenario);
-            text_append(out, "%s%s", out->len > 0 ? "; " : "", line);
-        }
-    }
-    return g_string_free(out, FALSE);
-}
-
 static void describe(recipe_figure *fig, const figure_options *o)
 {
     const recipe *r = &fig->recipe;
@@ -130,7 +117,16 @@ static void describe(recipe_figure *fig, const figure_options *o)
     shown->shared_y = r->shared;
     shown->marks = r->marks;
     shown->mark_count = r->mark_count;
-    shown->parameters = owned_figure_keep(&fig->plot, parameters_of(fig));
+
+    // runs with every parameter, for the file
+    GString *values = g_string_new(NULL);
+    for (int i = 0; i < r->source_count; i++) {
+        if (fig->sources[i].ran) {
+            g_autofree char *line = parameters_line(&fig->sources[i].run.scenario);
+            text_append(values, "%s%s", parameters->len > 0 ? "; " : "", line);
+        }
+    }
+    shown->parameters = owned_figure_keep(&fig->plot, g_string_free(values, FALSE));
 
     // the first run's contact
     if (r->contact && fig->sources[0].ran) {

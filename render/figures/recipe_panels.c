@@ -129,16 +129,6 @@ static void add_map(recipe_figure *fig, int panel, int source)
         .count = s->count, .no_line = true,    .marker = MARKER_CIRCLE, .radius = 2.4};
 }
 
-static void add_table(recipe_figure *fig, int panel, int source)
-{
-    bool empty = fig->plot.panels[panel].map == NULL && fig->plot.panels[panel].series_count == 0;
-    if (fig->recipe.sources[source].z == NULL) {
-        add_curve(fig, panel, source);
-    } else if (empty && fig->sources[source].count > 0) {
-        add_map(fig, panel, source);
-    }
-}
-
 // ---- curves
 
 static const trace *trace_of(const recipe_figure *fig, int source)
@@ -248,20 +238,6 @@ static void describe_axis(recipe_figure *fig, int panel)
     }
 }
 
-// A panel with the first one's curves needs no legend of its own.
-static void share_legend(recipe_figure *fig, int panel)
-{
-    const figure_panel *first = &fig->plot.panels[0], *p = &fig->plot.panels[panel];
-    bool same = panel > 0 && p->series_count == first->series_count;
-    for (int i = 0; i < p->series_count && same; i++) {
-        same = g_strcmp0(p->series[i].label, first->series[i].label) == 0 &&
-               p->series[i].colour == first->series[i].colour;
-    }
-    if (same) {
-        fig->plot.panels[panel].keyless = true;
-    }
-}
-
 void recipe_describe_panel(recipe_figure *fig, int panel)
 {
     const recipe_panel *from = &fig->recipe.panels[panel];
@@ -278,13 +254,25 @@ void recipe_describe_panel(recipe_figure *fig, int panel)
         add_difference(fig, panel);
     }
     for (int i = 0; i < from->source_count; i++) {
-        if (fig->recipe.sources[from->sources[i]].kind == SOURCE_TABLE) {
-            add_table(fig, panel, from->sources[i]);
-            continue;
+        const int source = from->sources[i];
+        const recipe_source *s = &fig->recipe.sources[source];
+        const bool empty = p->map == NULL && p->series_count == 0;
+        if (s->kind == SOURCE_TABLE && s->z == NULL) {
+            add_curve(fig, panel, source);
+        } else if (s->kind == SOURCE_TABLE && empty && fig->sources[source].count > 0) {
+            add_map(fig, panel, source);
         }
-        for (int k = 0; k < from->signal_count; k++) {
-            add_signal(fig, panel, from->sources[i], k, from->signal_count);
+        for (int k = 0; k < from->signal_count && s->kind != SOURCE_TABLE; k++) {
+            add_signal(fig, panel, source, k, from->signal_count);
         }
     }
-    share_legend(fig, panel);
+
+    // a panel with the first one's curves needs no legend of its own
+    const figure_panel *first = &fig->plot.panels[0];
+    bool same = panel > 0 && p->series_count == first->series_count;
+    for (int i = 0; i < p->series_count && same; i++) {
+        same = g_strcmp0(p->series[i].label, first->series[i].label) == 0 &&
+               p->series[i].colour == first->series[i].colour;
+    }
+    p->keyless = same;
 }

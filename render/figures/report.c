@@ -183,34 +183,6 @@ static status add_figures(report *r, fault *f)
     return STATUS_OK;
 }
 
-static void add_parameter_row(table_page *t, const parameter_info *info, int index,
-                              const parameters *corrected, const parameters *printed)
-{
-    char values[2][128], unit[64];
-    parameter_format(corrected, index, values[0], sizeof values[0]);
-    parameter_format(printed, index, values[1], sizeof values[1]);
-    text_unit(info->unit, unit, sizeof unit);
-    char *cells[] = {text_escape(info->path), text_escape(values[0]), text_escape(values[1]),
-                     text_escape(unit), text_escape(info->description)};
-    table_add_row(t, (const char *const *)cells);
-    for (size_t i = 0; i < G_N_ELEMENTS(cells); i++) {
-        g_free(cells[i]);
-    }
-}
-
-static table_page *new_parameter_table(const char *group, size_t length)
-{
-    table_page *t = g_new0(table_page, 1);
-    g_autofree char *title = text_printf("Parameters: %.*s", (int)length, group);
-    table_begin(t, title);
-    table_add_column(t, "Parameter", 3.7, TEXT_LEFT);
-    table_add_column(t, "Corrected", 1.1, TEXT_LEFT);
-    table_add_column(t, "Printed", 1.1, TEXT_LEFT);
-    table_add_column(t, "Unit", 0.9, TEXT_LEFT);
-    table_add_column(t, "Meaning", 3.2, TEXT_LEFT);
-    return t;
-}
-
 // The defaults of both models, a table for each group "arm", "motor" ...
 static void add_parameters(report *r)
 {
@@ -224,10 +196,28 @@ static void add_parameters(report *r)
     for (int i = 0; i < parameter_count;) {
         const char *group = parameter_table[i].path;
         size_t length = strcspn(group, ".");
-        table_page *t = new_parameter_table(group, length);
+        table_page *t = g_new0(table_page, 1);
+        g_autofree char *title = text_printf("Parameters: %.*s", (int)length, group);
+        table_begin(t, title);
+        table_add_column(t, "Parameter", 3.7, TEXT_LEFT);
+        table_add_column(t, "Corrected", 1.1, TEXT_LEFT);
+        table_add_column(t, "Printed", 1.1, TEXT_LEFT);
+        table_add_column(t, "Unit", 0.9, TEXT_LEFT);
+        table_add_column(t, "Meaning", 3.2, TEXT_LEFT);
+
         for (; i < parameter_count && strncmp(parameter_table[i].path, group, length + 1) == 0;
              i++) {
-            add_parameter_row(t, &parameter_table[i], i, &corrected, &printed);
+            const parameter_info *info = &parameter_table[i];
+            char own[128], theirs[128], unit[64];
+            parameter_format(&corrected, i, own, sizeof own);
+            parameter_format(&printed, i, theirs, sizeof theirs);
+            text_unit(info->unit, unit, sizeof unit);
+            g_auto(GStrv) cells = g_new0(char *, 6);
+            const char *const texts[] = {info->path, own, theirs, unit, info->description};
+            for (size_t k = 0; k < G_N_ELEMENTS(texts); k++) {
+                cells[k] = text_escape(texts[k]);
+            }
+            table_add_row(t, (const char *const *)cells);
         }
 
         report_item item = {.model = "defaults of both models", .drawn = artwork_of_table(t)};

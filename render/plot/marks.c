@@ -323,27 +323,21 @@ void clip_out_labels(const drawing *d)
     cairo_clip(d->cr);
 }
 
-// Whether the line of a mark would cross a legend inside a panel, or a label at a point.
-static bool crosses_legend(const drawing *d, double x)
-{
-    bool found = false;
-    for (int i = 0; i < d->fig->panel_count; i++) {
-        const panel_layout *l = &d->panels[i];
-        found = found ||
-                (l->legend_inside && x > l->legend.x - 1 && x < l->legend.x + l->legend.width + 1);
-    }
-    for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
-        const figure_rect *r = &d->point_label[i];
-        found = found || (x > r->x && x < r->x + r->width);
-    }
-    return found;
-}
-
 // The hairline of a mark from `top` down to `bottom`, interrupted by legends.
 static void draw_hairline(const drawing *d, double x, double top, double bottom)
 {
+    bool crosses = false;
+    for (int i = 0; i < d->fig->panel_count; i++) {
+        const panel_layout *l = &d->panels[i];
+        crosses = crosses || (l->legend_inside && x > l->legend.x - 1 &&
+                              x < l->legend.x + l->legend.width + 1);
+    }
+    for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
+        const figure_rect *r = &d->point_label[i];
+        crosses = crosses || (x > r->x && x < r->x + r->width);
+    }
     cairo_save(d->cr);
-    if (crosses_legend(d, x)) {
+    if (crosses) {
         clip_out_labels(d);
     }
     set_mark_line(d);

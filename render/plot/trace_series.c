@@ -133,24 +133,6 @@ figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o)
 
 // ==== series
 
-static figure_series series_of(const trace_run *run, int index)
-{
-    assert(index >= 0 && index < signal_count);
-
-    const trace *rows = &run->result->trace;
-    const signal_info *signal = &signal_table[index];
-    const char *base = (const char *)rows->rows;
-    figure_series s = {signal->name, .count = rows->row_count, .stride = sizeof(sample),
-                       .colour = signal->colour, .style = signal->style};
-
-    // a run without rows gives no addresses
-    if (base != NULL) {
-        s.x = (const double *)(base + offsetof(sample, time));
-        s.y = (const double *)(base + signal->offset);
-    }
-    return s;
-}
-
 // A point that lies between two rows.
 typedef struct located_point {
     double x, y;
@@ -207,7 +189,18 @@ static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
 
 figure_series trace_series(const trace_run *run, int index, owned_figure *o)
 {
-    figure_series s = series_of(run, index);
+    assert(index >= 0 && index < signal_count);
+    const trace *rows = &run->result->trace;
+    const signal_info *signal = &signal_table[index];
+    const char *base = (const char *)rows->rows;
+    figure_series s = {signal->name, .count = rows->row_count, .stride = sizeof(sample),
+                       .colour = signal->colour, .style = signal->style};
+
+    // a run without rows gives no addresses
+    if (base != NULL) {
+        s.x = (const double *)(base + offsetof(sample, time));
+        s.y = (const double *)(base + signal->offset);
+    }
     if (index == SIGNAL_INDEX(force) && !run->points && s.count > 0) {
         add_peaks(&s, &run->result->summary, o);
     }

@@ -187,21 +187,6 @@ static status check_options(const film_options *o, fault *f)
     return STATUS_OK;
 }
 
-static film_options completed(const film_options *options)
-{
-    film_options o = *options;
-    if (o.width == 0 && o.height == 0) {
-        o.width = 1280;
-        o.height = 720;
-    }
-    o.frames_per_second = o.frames_per_second ? o.frames_per_second : 30;
-    o.seconds = o.seconds != 0 ? o.seconds : 10;
-    o.slow = o.slow != 0 ? o.slow : 8;
-    o.threads = o.threads > 0 ? o.threads : (int)g_get_num_processors();
-    o.threads = o.threads < MOST_THREADS ? o.threads : MOST_THREADS;
-    return o;
-}
-
 static status record(film_making *m, const char *path, fault *f)
 {
     // the same notes as a picture's, of the first run
@@ -233,7 +218,18 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
 {
     assert(runs != NULL && run_count >= 1 && run_count <= FILM_RUNS);
     assert(options != NULL && path != NULL);
-    const film_options o = completed(options);
+    film_options o = *options;
+    if (o.width == 0 && o.height == 0) {
+        o.width = 1280;
+        o.height = 720;
+    }
+    o.frames_per_second = o.frames_per_second ? o.frames_per_second : 30;
+    o.seconds = o.seconds != 0 ? o.seconds : 10;
+    o.slow = o.slow != 0 ? o.slow : 8;
+    o.threads = o.threads > 0 ? o.threads : (int)g_get_num_processors();
+    o.threads = o.threads < MOST_THREADS ? o.threads : MOST_THREADS;
+
+    // only a film that can be painted
     status code = check_options(&o, f);
     for (int i = 0; i < run_count && code == STATUS_OK; i++) {
         if (runs[i].result->trace.row_count == 0) {

@@ -6,16 +6,6 @@
 
 enum { CURVE_PIECES = 96 }; // of a beam with few links
 
-// The rows on both sides of t and the share of the second.
-static size_t bracket(const trace *t, double time, size_t *after, double *share)
-{
-    size_t until = trace_rows_until(t, time), before = until > 0 ? until - 1 : 0;
-    *after = until > 0 && until < t->row_count ? until : before;
-    double span = t->rows[*after].time - t->rows[before].time;
-    *share = span > 0 ? (time - t->rows[before].time) / span : 0;
-    return before;
-}
-
 static double between(double a, double b, double share)
 {
     return a + share * (b - a);
@@ -24,9 +14,14 @@ static double between(double a, double b, double share)
 sample scene_joints(const trace *t, const parameters *p, double time, vector *joints)
 {
     assert(t != NULL && t->row_count > 0 && p != NULL && joints != NULL && isfinite(time));
-    size_t after, links = (size_t)p->arm.links, first = (size_t)t->angle_count - links;
-    double share, lengths[PARAMETER_LINKS_MOST];
-    size_t before = bracket(t, time, &after, &share);
+    size_t links = (size_t)p->arm.links, first = (size_t)t->angle_count - links;
+    double lengths[PARAMETER_LINKS_MOST];
+
+    // the rows on both sides of the instant and the share of the second
+    size_t until = trace_rows_until(t, time), before = until > 0 ? until - 1 : 0;
+    size_t after = until > 0 && until < t->row_count ? until : before;
+    double span = t->rows[after].time - t->rows[before].time;
+    double share = span > 0 ? (time - t->rows[before].time) / span : 0;
     const double *a = t->angles + before * (size_t)t->angle_count + first;
     const double *b = t->angles + after * (size_t)t->angle_count + first;
     parameters_link_lengths(&p->arm, lengths);

@@ -322,24 +322,6 @@ static status check_instants(const scene_picture *p, fault *f)
     return STATUS_OK;
 }
 
-static status write_surface(const scene *sc, cairo_surface_t *surface, const char *path, fault *f)
-{
-    whole_file file;
-    g_autofree char *values = parameters_line(sc->scenario);
-    g_autofree char *title = scenario_title(sc->scenario);
-    const png_note notes[] = {{"Title", title},
-                              {"Software", picture_software()},
-                              {"Parameters", values},
-                              {"Renderer", scene_renderer_name(sc)}};
-
-    status code = whole_file_open(&file, path, f);
-    if (code == STATUS_OK) {
-        code = png_file_write(file.stream, surface, PICTURE_DPI, notes, 4, f);
-        code = whole_file_close(&file, code, f);
-    }
-    return code;
-}
-
 status scene_write(const scene_picture *p, const char *path, fault *f)
 {
     assert(p != NULL && p->scenario != NULL && p->result != NULL && p->times != NULL);
@@ -357,7 +339,20 @@ status scene_write(const scene_picture *p, const char *path, fault *f)
         p->options.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, sc->options.width,
         sc->options.height);
     code = scene_paint(sc, p->times, p->count, surface, f);
-    code = code == STATUS_OK ? write_surface(sc, surface, path, f) : code;
+
+    // with what it was made from
+    whole_file file;
+    g_autofree char *values = parameters_line(sc->scenario);
+    g_autofree char *title = scenario_title(sc->scenario);
+    const png_note notes[] = {{"Title", title},
+                              {"Software", picture_software()},
+                              {"Parameters", values},
+                              {"Renderer", scene_renderer_name(sc)}};
+    code = code == STATUS_OK ? whole_file_open(&file, path, f) : code;
+    if (code == STATUS_OK) {
+        code = png_file_write(file.stream, surface, PICTURE_DPI, notes, 4, f);
+        code = whole_file_close(&file, code, f);
+    }
     cairo_surface_destroy(surface);
     scene_destroy(sc);
     return code;
