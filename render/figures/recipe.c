@@ -123,7 +123,7 @@ static void describe(recipe_figure *fig, const figure_options *o)
     for (int i = 0; i < r->source_count; i++) {
         if (fig->sources[i].ran) {
             g_autofree char *line = parameters_line(&fig->sources[i].run.scenario);
-            text_append(values, "%s%s", parameters->len > 0 ? "; " : "", line);
+            text_append(values, "%s%s", values->len > 0 ? "; " : "", line);
         }
     }
     shown->parameters = owned_figure_keep(&fig->plot, g_string_free(values, FALSE));
