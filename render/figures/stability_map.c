@@ -72,24 +72,6 @@ static void add_layer(newmark_map *m, figure_series layer)
     m->layer_count++;
 }
 
-// Table 3.1: gamma = 1/2 and 2 beta = gamma; beta = 1/4, where contact sets its own bound; and the
-// pair of the thesis.
-static void add_bounds(newmark_map *m)
-{
-    static const double bound_x[] = {0, 0.5, (double)NAN, 0.25, 0.5};
-    static const double bound_y[] = {0.5, 0.5, (double)NAN, 0.5, 1};
-    static const double quarter_x[] = {0.25, 0.25}, quarter_y[] = {GAMMA_LOW, GAMMA_HIGH};
-    static const double thesis_x[] = {0.4}, thesis_y[] = {0.5};
-
-    add_layer(m, (figure_series){"bounds", "Table 3.1", .x = bound_x, .y = bound_y, .count = 5,
-                                 .colour = 6, .rim = true});
-    add_layer(m, (figure_series){"contact", "<i>β</i> = ¼", .x = quarter_x, .y = quarter_y,
-                                 .count = 2, .colour = 6, .style = LINE_DASHED, .rim = true});
-    add_layer(m, (figure_series){"thesis", "the thesis: 0.4, 0.5", .x = thesis_x, .y = thesis_y,
-                                 .count = 1, .marker = MARKER_CROSS, .radius = 3, .no_line = true,
-                                 .rim = true});
-}
-
 // ---- the runs
 
 static gpointer compute_cells(gpointer data)
@@ -152,7 +134,20 @@ static void compute(newmark_map *m)
         m->gamma[i] = GAMMA_LOW + (GAMMA_HIGH - GAMMA_LOW) * (i + 0.5) / rows;
     }
 
-    add_bounds(m);
+    // Table 3.1: gamma = 1/2 and 2 beta = gamma; beta = 1/4, where contact sets its own bound; and
+    // the pair of the thesis
+    static const double bound_x[] = {0, 0.5, (double)NAN, 0.25, 0.5};
+    static const double bound_y[] = {0.5, 0.5, (double)NAN, 0.5, 1};
+    static const double quarter_x[] = {0.25, 0.25}, quarter_y[] = {GAMMA_LOW, GAMMA_HIGH};
+    static const double thesis_x[] = {0.4}, thesis_y[] = {0.5};
+
+    add_layer(m, (figure_series){"bounds", "Table 3.1", .x = bound_x, .y = bound_y, .count = 5,
+                                 .colour = 6, .rim = true});
+    add_layer(m, (figure_series){"contact", "<i>β</i> = ¼", .x = quarter_x, .y = quarter_y,
+                                 .count = 2, .colour = 6, .style = LINE_DASHED, .rim = true});
+    add_layer(m, (figure_series){"thesis", "the thesis: 0.4, 0.5", .x = thesis_x, .y = thesis_y,
+                                 .count = 1, .marker = MARKER_CROSS, .radius = 3, .no_line = true,
+                                 .rim = true});
     GThread *helper = g_thread_new("map", compute_cells, m);
     compute_cells(m);
     g_thread_join(helper);
@@ -160,26 +155,21 @@ static void compute(newmark_map *m)
 
 // ---- the picture
 
-static void describe_panel(newmark_map *m, int panel)
-{
-    m->maps[panel] = (figure_map){m->beta, m->gamma, .columns = (size_t)m->kind->columns,
-                                  .rows = (size_t)m->kind->rows, .z = m->values[panel]};
-    m->colours[panel] =
-        (figure_colours){.axis = m->kind->scale, .reversed = true, .bar = panel == MAP_PANELS - 1};
-    m->plot.panels[panel] = (figure_panel){
-        .heading = m->kind->headings[panel],
-        .y = {.name = "gamma", .label = "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH},
-        .weight = WEIGHT,
-        .map = &m->maps[panel],
-        .colours = &m->colours[panel],
-        .series = m->plot.series[panel],
-        .series_count = m->layer_count};
-}
-
 static artwork open_map(newmark_map *m, const figure_options *o)
 {
     for (int panel = 0; panel < MAP_PANELS; panel++) {
-        describe_panel(m, panel);
+        m->maps[panel] = (figure_map){m->beta, m->gamma, .columns = (size_t)m->kind->columns,
+                                      .rows = (size_t)m->kind->rows, .z = m->values[panel]};
+        m->colours[panel] = (figure_colours){
+            .axis = m->kind->scale, .reversed = true, .bar = panel == MAP_PANELS - 1};
+        m->plot.panels[panel] = (figure_panel){
+            .heading = m->kind->headings[panel],
+            .y = {.name = "gamma", .label = "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH},
+            .weight = WEIGHT,
+            .map = &m->maps[panel],
+            .colours = &m->colours[panel],
+            .series = m->plot.series[panel],
+            .series_count = m->layer_count};
     }
 
     figure *fig = &m->plot.figure;

@@ -81,17 +81,6 @@ void scale_widen(axis_scale *s, double share)
 
 // ---- ticks
 
-static void choose_even_ticks(axis *a, int wanted)
-{
-    ticks_between(&a->even, a->scale.low, a->scale.high, wanted);
-    a->count = a->even.count;
-    for (int i = 0; i < a->count; i++) {
-        a->at[i] = a->even.value[i];
-        tick_label(&a->even, i, a->own[i]);
-        a->text[i] = a->own[i];
-    }
-}
-
 // "0.01", "20", "2·10<sup>−6</sup>" for mantissa times the power of ten, alike all along an axis.
 static void format_decade(const axis_scale *s, int mantissa, int power, char text[AXIS_LABEL])
 {
@@ -149,7 +138,13 @@ void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
     } else if (a->scale.kind == SCALE_LOGARITHMIC) {
         choose_decades(a, wanted);
     } else {
-        choose_even_ticks(a, wanted);
+        ticks_between(&a->even, a->scale.low, a->scale.high, wanted);
+        a->count = a->even.count;
+        for (int i = 0; i < a->count; i++) {
+            a->at[i] = a->even.value[i];
+            tick_label(&a->even, i, a->own[i]);
+            a->text[i] = a->own[i];
+        }
     }
 }
 

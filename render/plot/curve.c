@@ -94,32 +94,28 @@ static void pen_lift(pen *p)
     p->has_point = p->moved = false;
 }
 
-static void pen_line(pen *p, point q)
-{
-    point a = p->at;
-    double from = 0, to = 1;
-
-    // the part inside
-    if (narrow(a.x, q.x - a.x, p->left, p->right, &from, &to) &&
-        narrow(a.y, q.y - a.y, p->top, p->bottom, &from, &to)) {
-        if (!p->moved) {
-            p->sink(p->context, STROKE_MOVE, a.x + from * (q.x - a.x), a.y + from * (q.y - a.y));
-        }
-        // exactly q where nothing is cut off
-        point end = to == 1 ? q : (point){a.x + to * (q.x - a.x), a.y + to * (q.y - a.y)};
-        p->sink(p->context, STROKE_LINE, end.x, end.y);
-        p->moved = to == 1;
-    } else {
-        p->moved = false;
-    }
-}
-
 static void pen_to(pen *p, point q)
 {
     q.x = fmax(-FARTHEST, fmin(FARTHEST, q.x));
     q.y = fmax(-FARTHEST, fmin(FARTHEST, q.y));
     if (p->has_point) {
-        pen_line(p, q);
+        point a = p->at;
+        double from = 0, to = 1;
+
+        // the part inside
+        if (narrow(a.x, q.x - a.x, p->left, p->right, &from, &to) &&
+            narrow(a.y, q.y - a.y, p->top, p->bottom, &from, &to)) {
+            if (!p->moved) {
+                p->sink(p->context, STROKE_MOVE, a.x + from * (q.x - a.x),
+                        a.y + from * (q.y - a.y));
+            }
+            // exactly q where nothing is cut off
+            point end = to == 1 ? q : (point){a.x + to * (q.x - a.x), a.y + to * (q.y - a.y)};
+            p->sink(p->context, STROKE_LINE, end.x, end.y);
+            p->moved = to == 1;
+        } else {
+            p->moved = false;
+        }
     }
     p->alone = !p->has_point;
     p->has_point = true;

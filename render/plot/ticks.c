@@ -180,30 +180,6 @@ static bool straighten(wish *w)
     return isfinite(w->high - w->low);
 }
 
-static void fill(ticks *t, const labelling *l, double first, int count)
-{
-    t->count = count < TICKS_MOST ? count : TICKS_MOST;
-    for (int i = 0; i < t->count; i++) {
-        double value = tick_value(l, first + (double)i * l->j);
-        t->value[i] = value == 0 ? 0 : value; // no minus zero
-    }
-
-    t->step = t->count > 1 ? tick_value(l, l->j) : 0;
-    // minor ticks fall on rounder numbers than the step itself
-    static const int parts[NICE] = {5, 5, 4, 5, 4, 3};
-    t->minor = l->j == 1 ? parts[l->nice] : 1;
-    // long rows of zeros go into a factor
-    double largest = 0;
-    for (int i = 0; i < t->count; i++) {
-        largest = fmax(largest, fabs(t->value[i]));
-    }
-    t->exponent = 0;
-    if (largest > 0 && (largest >= 1e5 || largest < 1e-2)) {
-        t->exponent = 3 * (int)floor(log10(largest) / 3);
-    }
-    t->decimals = decimals_needed(t);
-}
-
 void ticks_between(ticks *t, double low, double high, int wanted)
 {
     assert(t != NULL);
@@ -225,7 +201,23 @@ void ticks_between(ticks *t, double low, double high, int wanted)
         first -= best.j;
     }
 
-    fill(t, &best, first, (int)floor((w.high + slack - first * unit) / (best.j * unit)) + 1);
+    const int count = (int)floor((w.high + slack - first * unit) / (best.j * unit)) + 1;
+    t->count = count < TICKS_MOST ? count : TICKS_MOST;
+    double largest = 0;
+    for (int i = 0; i < t->count; i++) {
+        double value = tick_value(&best, first + (double)i * best.j);
+        t->value[i] = value == 0 ? 0 : value; // no minus zero
+        largest = fmax(largest, fabs(t->value[i]));
+    }
+    t->step = t->count > 1 ? tick_value(&best, best.j) : 0;
+
+    // minor ticks fall on rounder numbers than the step itself; long rows of zeros go into a factor
+    static const int parts[NICE] = {5, 5, 4, 5, 4, 3};
+    t->minor = best.j == 1 ? parts[best.nice] : 1;
+    if (largest > 0 && (largest >= 1e5 || largest < 1e-2)) {
+        t->exponent = 3 * (int)floor(log10(largest) / 3);
+    }
+    t->decimals = decimals_needed(t);
 }
 
 void tick_label(const ticks *t, int index, char text[TICK_TEXT])

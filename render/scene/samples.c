@@ -299,16 +299,6 @@ static uint32_t over(uint32_t upper, uint32_t below)
     return upper + (even | odd << 8);
 }
 
-// The part of a tile within a region.
-static gl_region tile_within(const sample_buffer *b, int tile, gl_region r)
-{
-    int x = tile % b->tiles_across * SAMPLE_TILE, y = tile / b->tiles_across * SAMPLE_TILE;
-    int left = x > r.x ? x : r.x, top = y > r.y ? y : r.y;
-    int right = x + SAMPLE_TILE < r.x + r.width ? x + SAMPLE_TILE : r.x + r.width;
-    int bottom = y + SAMPLE_TILE < r.y + r.height ? y + SAMPLE_TILE : r.y + r.height;
-    return (gl_region){left, top, right - left, bottom - top};
-}
-
 // Lays the means of a tile's samples over the picture.
 static void lay_tile(const sample_buffer *b, gl_region region, gl_region tile, uint32_t opacity,
                      cairo_surface_t *onto)
@@ -329,31 +319,28 @@ static void lay_tile(const sample_buffer *b, gl_region region, gl_region tile, u
     }
 }
 
-// Makes a tile's samples empty and far again.
-static void wipe_tile(sample_buffer *b, gl_region tile)
-{
-    ptrdiff_t across = (ptrdiff_t)b->samples * b->width;
-    int count = b->samples * tile.width;
-    for (int row = b->samples * tile.y; row < b->samples * (tile.y + tile.height); row++) {
-        ptrdiff_t at = row * across + (ptrdiff_t)b->samples * tile.x;
-        memset(b->pixels + at, 0, (size_t)count * sizeof *b->pixels);
-        for (int i = 0; i < count; i++) {
-            b->depths[at + i] = FARTHEST;
-        }
-    }
-}
-
 void samples_lay_over(sample_buffer *b, gl_region region, double opacity, cairo_surface_t *onto)
 {
     assert(b != NULL && onto != NULL && opacity >= 0 && opacity <= 1);
     const uint32_t share = (uint32_t)(256 * opacity + 0.5);
     cairo_surface_flush(onto);
     for (int i = 0; i < b->tiles_across * b->tiles_down; i++) {
-        gl_region tile = tile_within(b, i, region);
-        if (b->touched[i] && tile.width > 0 && tile.height > 0) {
-            lay_tile(b, region, tile, share, onto);
-            if (b->depths != NULL) {
-                wipe_tile(b, tile);
+        // the part of the tile within the region
+        const int x = i % b->tiles_across * SAMPLE_TILE, y = i / b->tiles_across * SAMPLE_TILE;
+        const int left = MAX(x, region.x), right = MIN(x + SAMPLE_TILE, region.x + region.width);
+        const int top = MAX(y, region.y), bottom = MIN(y + SAMPLE_TILE, region.y + region.height);
+        if (!b->touched[i] || right <= left || bottom <= top) {
+            continue;
+        }
+        lay_tile(b, region, (gl_region){left, top, right - left, bottom - top}, share, onto);
+
+        // its samples are empty and far again
+        const size_t count = (size_t)(b->samples * (right - left));
+        for (int row = b->samples * top; row < b->samples * bottom && b->depths != NULL; row++) {
+            ptrdiff_t at = (ptrdiff_t)row * b->samples * b->width + (ptrdiff_t)b->samples * left;
+            memset(b->pixels + at, 0, count * sizeof *b->pixels);
+            for (size_t k = 0; k < count; k++) {
+                b->depths[at + (ptrdiff_t)k] = FARTHEST;
             }
         }
     }
