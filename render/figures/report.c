@@ -8,7 +8,6 @@
 
 #include "render/figures/figures.h"
 #include "render/figures/recipe.h"
-#include "render/figures/report_parts.h"
 #include "render/figures/run_figure.h"
 #include "src/base/shipped.h"
 

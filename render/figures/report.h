@@ -2,7 +2,9 @@
 // origin and the command that makes it, as one web page and one PDF.
 #pragma once
 
-#include "src/base/fault.h"
+#include <glib.h>
+
+#include "render/figures/artwork.h"
 #include "src/run/run_result.h"
 
 // Writes FOLDER/report.html, which needs no other file and no network, and FOLDER/report.pdf.
@@ -12,3 +14,34 @@
 // computed and again when it is drawn on the page.
 status report_write(const char *folder, char *const *names, int count, run_monitor *monitor,
                     fault *f);
+
+// --- its items, and its web page: report_html.c
+
+// One thing the report shows.
+typedef struct report_item {
+    const char *scenario, *model; // scenario may be NULL
+    char *command;                // NULL: no command
+    artwork drawn;
+    int page; // of the PDF, counted from 1
+} report_item;
+
+typedef struct report {
+    GArray *items;       // of report_item
+    const char *preface; // description of the report, a sentence or two
+    char *heading;
+    run_monitor *monitor; // NULL: nobody looks on
+} report;
+
+static inline report_item *report_item_at(const report *r, guint index)
+{
+    return &g_array_index(r->items, report_item, index);
+}
+
+// Counts a finished item; STATUS_STOPPED if the report is to end here.
+status report_item_done(const report *r, fault *f);
+
+// Appends what an item is made of, and the command for it in an element of its own.
+void report_add_facts(GString *out, const report_item *item, const char *gap, const char *tag);
+
+// Writes FOLDER/report.html. Returns the status of painting and writing.
+status report_write_html(const report *r, const char *path, fault *f);

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/figures/report_parts.h"
+#include "render/figures/report.h"
 #include "render/page/svg.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"

@@ -222,14 +222,3 @@ void draw_y_title(drawing *d, const panel_layout *l)
                      d->style.colours->text);
     }
 }
-
-void draw_x_titles(drawing *d)
-{
-    g_autofree char *title = axis_title(&d->x);
-    // once below all columns
-    if (d->fig->x.label != NULL) {
-        draw_label(d, title, d->style.label,
-                   (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
-                   (anchor){0.5, 0});
-    }
-}

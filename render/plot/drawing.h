@@ -171,7 +171,6 @@ typedef struct axes_look {
 } axes_look;
 void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_look look);
 void draw_y_title(drawing *d, const panel_layout *l);
-void draw_x_titles(drawing *d);
 
 // --- series: series.c
 

@@ -168,12 +168,13 @@ static void draw_panel(drawing *d, int index)
 
 static void draw_all(drawing *d)
 {
-    if (!d->fig->transparent) {
+    const figure *fig = d->fig;
+    if (!fig->transparent) {
         fill_box(d->cr, &d->page, d->style.colours->page);
     }
 
     // behind the data
-    for (int i = 0; i < d->fig->panel_count; i++) {
+    for (int i = 0; i < fig->panel_count; i++) {
         draw_intervals(d, &d->panels[i].plane);
         draw_grid(d, &d->panels[i].plane, &d->x, &d->panels[i].y);
     }
@@ -190,9 +191,16 @@ static void draw_all(drawing *d)
         draw_text(d, caption, left, d->caption_y, (anchor){0, 0}, d->style.colours->faint_text);
     }
     g_free((char *)title.markup);
-    draw_x_titles(d);
+
+    // the horizontal axis once, below all columns
+    g_autofree char *x_title = axis_title(&d->x);
+    if (fig->x.label != NULL) {
+        draw_label(d, x_title, d->style.label,
+                   (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
+                   (anchor){0.5, 0});
+    }
     common_legend(d, true);
-    for (int i = 0; i < d->fig->panel_count; i++) {
+    for (int i = 0; i < fig->panel_count; i++) {
         draw_panel(d, i);
     }
     draw_points(d);
