@@ -20,7 +20,7 @@
 
 // Items from first to last, one below the other.
 typedef struct report_page {
-    const report *report;
+    const report_content *report;
     guint first, last; // last is not included
     int number;        // 0: the title page
 } report_page;
@@ -47,7 +47,7 @@ static void put_text(cairo_t *cr, PangoContext *context, const char *markup, dou
     text_draw(cr, context, &t);
 }
 
-static void put_title_page(cairo_t *cr, PangoContext *context, const report *r)
+static void put_title_page(cairo_t *cr, PangoContext *context, const report_content *r)
 {
     double y = 120;
     put_text(cr, context, r->heading, 18, true, PAGE_MARGIN, y);
@@ -119,7 +119,7 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
 }
 
 // Puts as many items on each page as there is room for.
-static GArray *make_pages(const report *r)
+static GArray *make_pages(const report_content *r)
 {
     // the title page, then as many items as fit
     GArray *pages = g_array_new(FALSE, TRUE, sizeof(report_page));
@@ -141,7 +141,7 @@ static GArray *make_pages(const report *r)
     return pages;
 }
 
-static status write_pdf(const report *r, const char *path, fault *f)
+static status write_pdf(const report_content *r, const char *path, fault *f)
 {
     GArray *pages = make_pages(r);
     picture *pictures = g_new0(picture, pages->len);
@@ -160,7 +160,7 @@ static status write_pdf(const report *r, const char *path, fault *f)
 
 // ---- what it shows
 
-static status add_figures(report *r, fault *f)
+static status add_figures(report_content *r, fault *f)
 {
     const figure_options options = {0};
 
@@ -183,7 +183,7 @@ static status add_figures(report *r, fault *f)
 }
 
 // The defaults of both models, a table for each group "arm", "motor" ...
-static void add_parameters(report *r)
+static void add_parameters(report_content *r)
 {
     parameters corrected, printed;
     parameters_defaults(&corrected, ARM_CORRECTED);
@@ -260,7 +260,7 @@ static status open_recipe(report_item *item, const char *path, fault *f)
     return STATUS_OK;
 }
 
-static status add_own(report *r, char *const *names, int count, fault *f)
+static status add_own(report_content *r, char *const *names, int count, fault *f)
 {
     status code = STATUS_OK;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
@@ -280,9 +280,9 @@ status report_write(const char *folder, char *const *names, int count, run_monit
 {
     assert(folder != NULL && (names != NULL || count == 0));
     fault why = {0};
-    report r = {.monitor = monitor,
-                .items = g_array_new(FALSE, TRUE, sizeof(report_item)),
-                .heading = g_strconcat("impactlab ", lab_version(), ": report", NULL)};
+    report_content r = {.monitor = monitor,
+                        .items = g_array_new(FALSE, TRUE, sizeof(report_item)),
+                        .heading = g_strconcat("impactlab ", lab_version(), ": report", NULL)};
     r.preface = count > 0
                     ? "Runs and recipes, drawn by the lab. Under each stand the scenario, the "
                       "model and the one command that makes it again."

@@ -25,23 +25,23 @@ typedef struct report_item {
     int page; // of the PDF, counted from 1
 } report_item;
 
-typedef struct report {
+typedef struct report_content {
     GArray *items;       // of report_item
     const char *preface; // description of the report, a sentence or two
     char *heading;
     run_monitor *monitor; // NULL: nobody looks on
-} report;
+} report_content;
 
-static inline report_item *report_item_at(const report *r, guint index)
+static inline report_item *report_item_at(const report_content *r, guint index)
 {
     return &g_array_index(r->items, report_item, index);
 }
 
 // Counts a finished item; STATUS_STOPPED if the report is to end here.
-status report_item_done(const report *r, fault *f);
+status report_item_done(const report_content *r, fault *f);
 
 // Appends what an item is made of, and the command for it in an element of its own.
 void report_add_facts(GString *out, const report_item *item, const char *gap, const char *tag);
 
 // Writes FOLDER/report.html. Returns the status of painting and writing.
-status report_write_html(const report *r, const char *path, fault *f);
+status report_write_html(const report_content *r, const char *path, fault *f);

@@ -27,7 +27,7 @@ void report_add_facts(GString *out, const report_item *item, const char *gap, co
     }
 }
 
-status report_item_done(const report *r, fault *f)
+status report_item_done(const report_content *r, fault *f)
 {
     run_monitor_count(r->monitor);
     return run_monitor_stops(r->monitor)
@@ -44,7 +44,7 @@ static void add_lines(GString *html, const char *const *lines, size_t count)
     }
 }
 
-static void add_head(const report *r, GString *html)
+static void add_head(const report_content *r, GString *html)
 {
     text_append(html,
                 "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -193,7 +193,7 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
     return code;
 }
 
-static status add_section(const report *r, guint index, GString *html, GHashTable *letters,
+static status add_section(const report_content *r, guint index, GString *html, GHashTable *letters,
                           fault *f)
 {
     status code = STATUS_OK;
@@ -215,7 +215,7 @@ static status add_section(const report *r, guint index, GString *html, GHashTabl
     return code;
 }
 
-status report_write_html(const report *r, const char *path, fault *f)
+status report_write_html(const report_content *r, const char *path, fault *f)
 {
     whole_file file;
     status code = STATUS_OK;

@@ -280,7 +280,7 @@ const command plot_command = {
 
 // --- report -----------------------------------------------------------------------------------
 
-static int make_report(const arguments *a)
+static int report(const arguments *a)
 {
     fault f = {0};
     const char *folder = a->output ? a->output : "report";
@@ -318,5 +318,5 @@ const command report_command = {
     .most = 64,
     .takes_scenarios = true,
     .options = {OWN_OPTIONS(report_rows), &quiet_options},
-    .run = make_report,
+    .run = report,
 };
