@@ -51,8 +51,7 @@ static void write_value(sketch *s, point at, double ax, const char *symbol, doub
     g_autofree char *number = text_number(value, 3);
     char shown[32];
     text_unit(unit, shown, sizeof shown);
-    g_autofree char *text = text_printf("%s = %s\u2009%s", symbol, number, shown);
-    sketch_small(s, at, (anchor){ax, 0.5}, text);
+    sketch_small(s, at, (anchor){ax, 0.5}, "%s = %s\u2009%s", symbol, number, shown);
 }
 
 // The whole arm, its hinge to the last body cut.

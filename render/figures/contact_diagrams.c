@@ -65,8 +65,9 @@ static void draw_full_arm(const sketch *s, arm_places a)
 }
 
 // Wall and contact force at a place, across a link that has the given direction on the page.
-static void draw_wall(sketch *s, point at, double direction, const char *force)
+static void draw_wall(sketch *s, point at, double direction, const char *symbol, double force)
 {
+    g_autofree char *quantity = text_quantity(force, 3, "N");
     double ux = cos(direction), uy = -sin(direction), nx = -sin(direction), ny = -cos(direction);
     point wall = {at.x + 4 * nx, at.y + 4 * ny};
     sketch_wall(s, (point){wall.x + 16 * ux, wall.y + 16 * uy},
@@ -74,14 +75,8 @@ static void draw_wall(sketch *s, point at, double direction, const char *force)
 
     point start = {at.x + (FORCE_LENGTH + 4) * nx, at.y + (FORCE_LENGTH + 4) * ny};
     sketch_arrow(s, start, (point){at.x + 4 * nx, at.y + 4 * ny}, 5);
-    sketch_label(s, (point){start.x + 4 * nx, start.y + 4 * ny}, (anchor){0.5, 1}, force);
-}
-
-static char *force_text(const char *symbol, double force)
-{
-    g_autofree char *quantity = text_quantity(force, 3, "N");
-    char *text = text_printf("%s = %s", symbol, quantity);
-    return text;
+    sketch_label(s, (point){start.x + 4 * nx, start.y + 4 * ny}, (anchor){0.5, 1}, "%s = %s",
+                 symbol, quantity);
 }
 
 // ---- 3.1: two successive steps
@@ -115,8 +110,7 @@ static void draw_contact(sketch *s, const diagram *d)
     sketch_label(s, (point){(one.joint.x + one.end.x) / 2 - 8, (one.joint.y + one.end.y) / 2 - 8},
                  (anchor){1, 1}, "<i>l</i>");
 
-    g_autofree char *force = force_text("<i>f</i>", of->one.force);
-    draw_wall(s, contact, direction_of(one.joint, contact), force);
+    draw_wall(s, contact, direction_of(one.joint, contact), "<i>f</i>", of->one.force);
 
     // which is which
     double key = s->top + 14;
@@ -219,8 +213,8 @@ static void draw_deformation(sketch *s, const diagram *d)
     diagram_link_angle(s, peak.joint, 66, direction_of(peak.joint, peak.end),
                        "<i>θ</i><sub>3</sub> − <i>θ</i><sub>0</sub>");
 
-    g_autofree char *force = force_text("<i>f</i><sub>max</sub>", of->one.force);
-    draw_wall(s, contact, direction_of(peak.joint, contact), force);
+    draw_wall(s, contact, direction_of(peak.joint, contact), "<i>f</i><sub>max</sub>",
+              of->one.force);
 
     // a name at each joint
     sketch_small(s, shifted(assumed.joint, 0, -5), (anchor){0.5, 1}, "energy principle");

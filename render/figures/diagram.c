@@ -131,7 +131,7 @@ void diagram_angle(sketch *s, point at, angle_arc a)
     double middle = (a.from + a.to) / 2, away = a.radius + 3;
     sketch_arc(s, (arc){at, a.radius, a.from, a.to, true}, SKETCH_INK);
     sketch_label(s, (point){at.x + away * cos(middle), at.y - away * sin(middle)}, (anchor){0, 0.5},
-                 a.markup);
+                 "%s", a.markup);
 }
 
 void diagram_link_angle(sketch *s, point at, double radius, double to, const char *markup)

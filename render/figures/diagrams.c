@@ -23,7 +23,7 @@ static void draw_length(sketch *s, point from, point to, double away, anchor par
     sketch_measure(s, start, end);
     sketch_label(s,
                  (point){(start.x + end.x) / 2 + beyond * nx, (start.y + end.y) / 2 + beyond * ny},
-                 part, markup);
+                 part, "%s", markup);
 }
 
 static void draw_links(sketch *s, const diagram *d)

@@ -9,8 +9,6 @@
 #define TITLE_SIZE   9.0
 #define TITLE_SPACE  7.0
 #define CAPTION_SIZE 6.5
-#define LABEL_SIZE   8.0
-#define SMALL_SIZE   7.0
 #define LINE_WIDTH   0.8
 #define STRONG_WIDTH 1.1 // of arrows, coils and walls
 #define HEAD_LENGTH  5.0
@@ -445,29 +443,15 @@ static text_block framed(const sketch *s, text_block t)
     return t;
 }
 
-__attribute__((format(printf, 5, 0))) static void
-draw_printed(sketch *s, point at, anchor part, double size, const char *format, va_list list)
+void sketch_text(sketch *s, double size, point at, anchor part, const char *format, ...)
 {
     assert(s != NULL && format != NULL);
+    va_list list;
+    va_start(list, format);
     g_autofree char *markup = text_vprintf(format, list);
+    va_end(list);
     const text_block t = framed(s, (text_block){.markup = markup, .size = size});
     draw_block(s, &t, at, part, s->colours->text);
-}
-
-void sketch_label(sketch *s, point at, anchor part, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    draw_printed(s, at, part, LABEL_SIZE, format, list);
-    va_end(list);
-}
-
-void sketch_small(sketch *s, point at, anchor part, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    draw_printed(s, at, part, SMALL_SIZE, format, list);
-    va_end(list);
 }
 
 void sketch_wrapped(sketch *s, point at, const text_block *text)

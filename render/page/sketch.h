@@ -90,12 +90,12 @@ void sketch_resistor(const sketch *s, point from, point to);
 // A fixed surface: a line, hatched on its right-hand side as seen from its start.
 void sketch_wall(const sketch *s, point from, point to);
 
-// A text with its anchor at a place, printed as by text_printf, in the letters of labels or
-// smaller.
-void sketch_label(sketch *s, point at, anchor part, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-void sketch_small(sketch *s, point at, anchor part, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+// A text with its anchor at a place, printed as by text_printf, in letters of a size; those of
+// labels and smaller ones.
+void sketch_text(sketch *s, double size, point at, anchor part, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+#define sketch_label(s, ...) sketch_text(s, 8, __VA_ARGS__)
+#define sketch_small(s, ...) sketch_text(s, 7, __VA_ARGS__)
 
 // A text that begins at a point, wrapped at its width; its size is that of a designed page. The
 // frame's family replaces the block's.
