@@ -325,46 +325,40 @@ static void write_point(long_form *t, double x, double y, double shade)
     csv_end_row(&t->csv);
 }
 
-static void write_series(long_form *t, const figure_panel *panel, const figure_series *s)
-{
-    for (size_t i = 0; i < s->count && !ferror(t->csv.stream); i++) {
-        if (!isfinite(series_x(s, i))) {
-            continue;
-        }
-
-        write_panel_name(t, panel);
-        write_name(t, s->name, s->label, NULL);
-        double shade = s->shade != NULL ? series_shade(s, i) : (double)NAN;
-        write_point(t, series_x(s, i), series_y(s, i), shade);
-    }
-}
-
-static void write_map(long_form *t, const figure_panel *panel)
+// All that a panel shows of its own.
+static void write_panel(long_form *t, const figure_panel *panel)
 {
     const figure_map *map = panel->map;
-    for (size_t i = 0; i < map->columns && !ferror(t->csv.stream); i++) {
+    for (int k = 0; k < panel->series_count; k++) {
+        const figure_series *s = &panel->series[k];
+        for (size_t i = 0; i < s->count && !ferror(t->csv.stream); i++) {
+            if (!isfinite(series_x(s, i))) {
+                continue;
+            }
+            write_panel_name(t, panel);
+            write_name(t, s->name, s->label, NULL);
+            double shade = s->shade != NULL ? series_shade(s, i) : (double)NAN;
+            write_point(t, series_x(s, i), series_y(s, i), shade);
+        }
+    }
+    for (size_t i = 0; map != NULL && i < map->columns && !ferror(t->csv.stream); i++) {
         for (size_t j = 0; j < map->rows; j++) {
             write_panel_name(t, panel);
             csv_text(&t->csv, "map");
             write_point(t, map->x[i], map->y[j], map->z[i * map->rows + j]);
         }
     }
-}
-
-static void write_levels_and_impulses(long_form *t, const figure_panel *panel)
-{
     for (int i = 0; i < panel->impulse_count; i++) {
         write_panel_name(t, panel);
         write_name(t, "impulse", NULL, panel->impulse_unit);
         write_point(t, panel->impulses[i].x, panel->impulses[i].size, (double)NAN);
     }
 
-    // levels go by their label alone
+    // levels go by their label alone, and have no x of their own
     for (int i = 0; i < panel->level_count; i++) {
         const char *label = panel->levels[i].label;
         write_panel_name(t, panel);
         write_name(t, NULL, label ? label : "level", NULL);
-        // a level has no x of its own
         write_point(t, (double)NAN, panel->levels[i].y, (double)NAN);
     }
 }
@@ -440,14 +434,7 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
 
     // panel by panel, then what all share
     for (int p = 0; p < fig->panel_count; p++) {
-        const figure_panel *panel = &fig->panels[p];
-        for (int s = 0; s < panel->series_count; s++) {
-            write_series(&t, panel, &panel->series[s]);
-        }
-        if (panel->map != NULL) {
-            write_map(&t, panel);
-        }
-        write_levels_and_impulses(&t, panel);
+        write_panel(&t, &fig->panels[p]);
     }
     write_marks(&t, fig);
     return whole_file_commit(&file, f);

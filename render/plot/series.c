@@ -180,20 +180,6 @@ static void draw_marker(const drawing *d, const panel_layout *l, const figure_se
     cairo_restore(d->cr);
 }
 
-static void draw_markers(const drawing *d, const panel_layout *l, const plane *p,
-                         const figure_series *s)
-{
-    const figure_rect *box = &p->box;
-
-    // only those on the panel
-    for (size_t i = 0; s->marker != MARKER_NONE && i < s->count; i++) {
-        double x = plane_x(p, series_x(s, i)), y = plane_y(p, series_y(s, i));
-        if (x >= box->x && x <= box->x + box->width && y >= box->y && y <= box->y + box->height) {
-            draw_marker(d, l, s, x, y, s->shade != NULL ? series_shade(s, i) : (double)NAN);
-        }
-    }
-}
-
 // ---- lines
 
 typedef struct stroke_context {
@@ -241,10 +227,17 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
             picture_stroke(d->cr);
         }
 
-        // markers are not cut at the panel's edge
+        // markers on the panel are not cut at its edge
         cairo_restore(d->cr);
         set_series(d, l, i);
-        draw_markers(d, l, p, s);
+        const figure_rect *box = &p->box;
+        for (size_t k = 0; s->marker != MARKER_NONE && k < s->count; k++) {
+            double x = plane_x(p, series_x(s, k)), y = plane_y(p, series_y(s, k));
+            if (x >= box->x && x <= box->x + box->width && y >= box->y &&
+                y <= box->y + box->height) {
+                draw_marker(d, l, s, x, y, s->shade != NULL ? series_shade(s, k) : (double)NAN);
+            }
+        }
     }
     cairo_restore(d->cr);
 }

@@ -157,17 +157,6 @@ static sample beam_path(const painter *g, const trace *rows)
     return row;
 }
 
-static void paint_hub(const painter *g, double angle)
-{
-    const double x = plan_x(g->view, 0), y = plan_y(g->view, 0);
-    const double radius = fmin(size_of(g, HUB_RADIUS, 6), 0.3 * g->view->height);
-    pen(g, g->plan->colours.hub, 2);
-    disc(g, x, y, radius, g->plan->colours.hub, 0.75);
-
-    // a spoke tells its angle
-    stroke_line(g, x, y, x + radius * cos(angle), y - radius * sin(angle));
-}
-
 // The wall's force on the tip: an arrow that points at it, as long as its share of the peak.
 static void paint_force(const painter *g, double x, double y, const sample *row)
 {
@@ -224,7 +213,14 @@ static void paint_all(const painter *g)
     }
     const sample row = beam_path(g, p->rows);
     cairo_path_t *path = cairo_copy_path(g->cr);
-    paint_hub(g, row.hub_angle);
+
+    // the hub with a spoke that tells its angle
+    const double hub_x = plan_x(g->view, 0), hub_y = plan_y(g->view, 0);
+    const double radius = fmin(size_of(g, HUB_RADIUS, 6), 0.3 * g->view->height);
+    pen(g, p->colours.hub, 2);
+    disc(g, hub_x, hub_y, radius, p->colours.hub, 0.75);
+    stroke_line(g, hub_x, hub_y, hub_x + radius * cos(row.hub_angle),
+                hub_y - radius * sin(row.hub_angle));
 
     // a rim, and the beam's own colour inside it
     cairo_new_path(g->cr);
