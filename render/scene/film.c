@@ -196,7 +196,7 @@ static status record(film_making *m, const char *path, fault *f)
     const png_note notes[] = {{"Title", title},
                               {"Software", picture_software()},
                               {"Parameters", values},
-                              {"Renderer", film_painter_name(m->painter)}};
+                              {"Renderer", scene_renderer_name(m->painter->scenes[0])}};
     const film_facts facts = {
         plan->options.width, plan->options.height, plan->options.frames_per_second,
         .notes = notes,      .note_count = 4,      .stop = plan->options.stop};

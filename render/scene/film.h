@@ -4,6 +4,7 @@
 
 #include <signal.h>
 
+#include "render/page/text.h"
 #include "render/page/page.h"
 #include "render/scene/scene.h"
 #include "src/run/run_result.h"
@@ -77,7 +78,13 @@ typedef struct film_plan {
     double trace_scale;                // pixels per point in them
 } film_plan;
 
-typedef struct film_painter film_painter;
+// What paints its frames.
+typedef struct film_painter {
+    const film_plan *plan;
+    scene *scenes[FILM_RUNS];
+    cairo_surface_t *views[FILM_RUNS];
+    PangoContext *context;
+} film_painter;
 
 // Prepares a film of runs with rows. The options must be complete and in range. Fails as
 // figure_paint does. film_plan_finish must be called in either case.
@@ -89,9 +96,6 @@ void film_plan_finish(film_plan *plan);
 // scene_create does.
 status film_painter_create(film_painter **out, const film_plan *plan, fault *f);
 void film_painter_destroy(film_painter *p);
-
-// Name of the renderer, for the film's metadata.
-const char *film_painter_name(const film_painter *p);
 
 // Paints the frame at a film's time [s] onto a surface RGB24 of the film's size.
 status film_painter_frame(film_painter *p, double film_time, cairo_surface_t *onto, fault *f);

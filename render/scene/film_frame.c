@@ -132,13 +132,6 @@ double film_clock_time(const film_clock *c, double film_time, double *speed)
 #define VEIL          0.82 // how far the future of the traces is faded out
 #define GAP           2    // between views [pixels]
 
-struct film_painter {
-    const film_plan *plan;
-    scene *scenes[FILM_RUNS];
-    cairo_surface_t *views[FILM_RUNS];
-    PangoContext *context;
-};
-
 // ---- the plan
 
 static colour page_of(const film_plan *plan)
@@ -295,12 +288,6 @@ void film_painter_destroy(film_painter *p)
     }
     g_clear_object(&p->context);
     g_free(p);
-}
-
-const char *film_painter_name(const film_painter *p)
-{
-    assert(p != NULL);
-    return scene_renderer_name(p->scenes[0]);
 }
 
 // ---- what lies round the arms

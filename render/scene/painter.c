@@ -5,14 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct scene_painter {
-    gl_offscreen *gl; // NULL: samples are filled by hand
-    sample_buffer samples;
-    char name[300];
-    gl_vertex *vertices;
-    size_t vertex_capacity;
-};
-
 bool scene_renderer_find(const char *name, scene_renderer *which)
 {
     assert(name != NULL && which != NULL);
@@ -89,12 +81,6 @@ void scene_painter_destroy(scene_painter *p)
         free(p->vertices);
         free(p);
     }
-}
-
-const char *scene_painter_name(const scene_painter *p)
-{
-    assert(p != NULL);
-    return p->name;
 }
 
 // ---- light

@@ -142,7 +142,7 @@ void scene_destroy(scene *sc)
 const char *scene_renderer_name(const scene *sc)
 {
     assert(sc != NULL);
-    return scene_painter_name(sc->painter);
+    return sc->painter->name;
 }
 
 // ---- the picture

@@ -76,9 +76,6 @@ status scene_painter_create(scene_painter **out, scene_renderer which, int width
                             int samples, fault *f);
 void scene_painter_destroy(scene_painter *p);
 
-// Name of the renderer, for the picture's metadata.
-const char *scene_painter_name(const scene_painter *p);
-
 // The mesh to be painted, with camera and light.
 typedef struct painting {
     const mesh *mesh;
@@ -156,6 +153,15 @@ void samples_take(sample_buffer *b, const gl_triangles *t);
 // with the given opacity (0 to 1). `region` is the part of the picture in `pixels`, with contiguous
 // rows. Samples filled without OpenGL are empty afterwards.
 void samples_lay_over(sample_buffer *b, gl_region region, double opacity, cairo_surface_t *onto);
+
+// What paints them.
+struct scene_painter {
+    gl_offscreen *gl; // NULL: samples are filled by hand
+    sample_buffer samples;
+    char name[300]; // of the renderer, for the picture's metadata
+    gl_vertex *vertices;
+    size_t vertex_capacity;
+};
 
 // --- the scene
 
