@@ -217,8 +217,8 @@ KERNEL last_terms all_last_terms(const real *block, const equations *e, ptrdiff_
     return tail;
 }
 
-KERNEL int series(real *block, const int contact, const int point, const int hub_spring,
-                  bool damped)
+// The equations of a stride, from the block's inputs.
+KERNEL equations equations_of(const real *block, const int hub_spring, bool damped)
 {
     const real zero = (real){0}, mass = block[AT_MASS], l = block[AT_LENGTH];
     const mask stuck = MASK(block[AT_FRICTION] == 0);
@@ -236,8 +236,15 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
                    .damped = damped};
     e.m11 = e.m22 + mass * l * l + (hub_spring ? zero : block[AT_HUB_INERTIA]);
     e.inverse_hub = hub_spring ? choose(stuck, zero, 1 / block[AT_HUB_INERTIA]) : zero;
+    return e;
+}
 
+KERNEL int series(real *block, const int contact, const int point, const int hub_spring,
+                  bool damped)
+{
     // the start
+    const real zero = (real){0};
+    equations e = equations_of(block, hub_spring, damped);
     factors x;
     real hub_rate[TAYLOR_MOST + 1]; // of the hub spring
 #if LANES > 1
@@ -294,34 +301,26 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     const mask jumped = MASK(block[AT_EDGE_RATE] >= 0);
     bound_wall(block, contact, block + (contact ? AT_FORCE : AT_GAP),
                contact ? (int)order : (int)order + 2, jumped);
-    bound_hub(block, hub_spring ? block + AT_RATE_0 : w1, block + AT_HOLD, (int)order, stuck,
+    bound_hub(block, hub_spring ? block + AT_RATE_0 : w1, block + AT_HOLD, (int)order, e.stuck,
               jumped);
     return (int)order;
 }
 
 // --- entries ----------------------------------------------------------------------------------
 
-#define FORM(name, contact, point, hub_spring)                                                     \
-    static __attribute__((noinline)) int name(real *block, bool damped)                            \
-    {                                                                                              \
-        return series(block, contact, point, hub_spring, damped);                                  \
-    }
-FORM(free_plane, 0, 0, 0)
-FORM(free_point, 0, 1, 0)
-FORM(held_plane, 1, 0, 0)
-FORM(held_point, 1, 1, 0)
-FORM(spring_free_plane, 0, 0, 1)
-FORM(spring_free_point, 0, 1, 1)
-FORM(spring_held_plane, 1, 0, 1)
-FORM(spring_held_point, 1, 1, 1)
-#undef FORM
-
-static int compute(double *block, taylor_form form)
+// Each form has loops of its own.
+KERNEL int of_wall(real *block, taylor_form f, const int contact, const int hub_spring)
 {
-    static int (*const forms[2][2][2])(real *, bool) = {
-        {{free_plane, free_point}, {held_plane, held_point}},
-        {{spring_free_plane, spring_free_point}, {spring_held_plane, spring_held_point}}};
-    return forms[form.hub_spring][form.contact][form.point]((real *)block, form.damped);
+    return f.point ? series(block, contact, 1, hub_spring, f.damped)
+                   : series(block, contact, 0, hub_spring, f.damped);
+}
+
+static int compute(double *block, taylor_form f)
+{
+    real *lanes = (real *)block;
+    return f.hub_spring ? f.contact ? of_wall(lanes, f, 1, 1) : of_wall(lanes, f, 0, 1)
+           : f.contact ? of_wall(lanes, f, 1, 0)
+                        : of_wall(lanes, f, 0, 0);
 }
 
 #if LANES > 1

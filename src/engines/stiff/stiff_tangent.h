@@ -45,8 +45,11 @@ KERNEL complex_lanes along(const stiff_step *s, const double *row, const complex
     return sum;
 }
 
-// J at the middle stage, of whose lanes that is one.
-KERNEL void find_jacobian(stiff_step *s, int half, int lane)
+// The middle stage, of which the tangent is.
+enum { HALF = RADAU_MIDDLE / 4, LANE = RADAU_MIDDLE % 4 };
+
+// J there.
+KERNEL void find_jacobian(stiff_step *s)
 {
     double x = 0, y = 0;
     const int last = s->links - 1;
@@ -55,10 +58,10 @@ KERNEL void find_jacobian(stiff_step *s, int half, int lane)
         y += s->pivot[k].ls;
     }
     const stiff_pivot *p = &s->pivot[last];
-    x -= s->wall->sine * s->shift[0].half[half][lane];
-    y += s->wall->cosine * s->shift[0].half[half][lane];
+    x -= s->wall->sine * s->shift[0].half[HALF][LANE];
+    y += s->wall->cosine * s->shift[0].half[HALF][LANE];
     const double l = s->link[last].length;
-    const double c = s->body[last].c[half][lane], sn = s->body[last].s[half][lane];
+    const double c = s->body[last].c[HALF][LANE], sn = s->body[last].s[HALF][LANE];
     const bool point = s->wall->kind == WALL_POINT;
     const double ex = point ? -sn : -s->wall->sine, ey = point ? c : s->wall->cosine;
     s->jacobian[0] = 0;
@@ -72,12 +75,9 @@ KERNEL void find_jacobian(stiff_step *s, int half, int lane)
     }
 }
 
-static void factor(stiff_step *s)
+// The links' rows, from the tip inwards; what they show to the hub, tau of stiff_step.h.
+KERNEL complex_lanes factor_links(stiff_step *s, complex_lanes g, complex_lanes g2)
 {
-    enum { HALF = RADAU_MIDDLE / 4, LANE = RADAU_MIDDLE % 4 };
-    const complex_lanes g = s->g, g2 = times(g, g);
-
-    // from the tip inwards
     complex_lanes pxx = number(s->tip_mass), pxy = number(0), pyy = pxx;
     complex_lanes px = number(0), py = px, tau = px;
     double carried = s->tip_mass;
@@ -110,7 +110,7 @@ static void factor(stiff_step *s)
             }
             kappa = plus(scaled(stiffness, g2), scaled(l->damping, g));
         } else {
-            tau = d; // the hub's, below
+            tau = d; // the hub's own
         }
         const complex_lanes inv = inverse(plus(d, kappa)), share = times(kappa, inv);
         *p = (stiff_pivot){ux, uy, inv, kappa, share, lc, ls};
@@ -124,7 +124,12 @@ static void factor(stiff_step *s)
         }
     }
 
-    // the hub, whose back EMF works through the current
+    return tau;
+}
+
+// The hub, whose back EMF works through the current.
+KERNEL void factor_hub(stiff_step *s, complex_lanes g, complex_lanes g2, complex_lanes tau)
+{
     complex_lanes hub = plus(tau, plus(number(s->hub_inertia), scaled(s->hub_damping, g)));
     if (s->drive == STIFF_FOLLOWS) {
         const double brakes = s->motor->torque_constant * s->motor->back_emf / s->motor->resistance;
@@ -139,11 +144,14 @@ static void factor(stiff_step *s)
     if (s->first == 0) {
         s->pivot[0].inverse = s->hub_inverse;
     }
+}
 
-    // the borders' answers
+// The borders' answers and their equations, the contact's last; eliminated in that order.
+KERNEL void factor_borders(stiff_step *s, complex_lanes g, complex_lanes g2)
+{
     const int count = stiff_borders(s);
     if (s->contact != STIFF_FREE) {
-        find_jacobian(s, HALF, LANE);
+        find_jacobian(s);
     }
     for (int b = 0; b < count; b++) {
         const double *row = stiff_border_row(s, b);
@@ -153,7 +161,6 @@ static void factor(stiff_step *s)
         solve_bare(s, s->border[b]);
     }
 
-    // their equations, the contact's last; eliminated in that order
     if (s->contact == STIFF_GIVES) {
         const double depth = -s->gap.at[RADAU_MIDDLE], rate = -s->rate.at[RADAU_MIDDLE];
         double stiffness = s->wall->stiffness, damping = s->wall->damping;
@@ -185,6 +192,13 @@ static void factor(stiff_step *s)
             }
         }
     }
+}
+
+static void factor(stiff_step *s)
+{
+    const complex_lanes g = s->g, g2 = times(g, g);
+    factor_hub(s, g, g2, factor_links(s, g, g2));
+    factor_borders(s, g, g2);
 }
 
 // y of the right side that stands there, with its borders.
