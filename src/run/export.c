@@ -1,6 +1,7 @@
 #include "src/run/export.h"
 
 #include <assert.h>
+#include <math.h>
 
 #include "src/base/csv.h"
 #include "src/base/json.h"
@@ -60,12 +61,10 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
         const expectation *e = &s->expectations[i];
         double value = summary_value(&result->summary, e->quantity);
 
-        json_t *object = json_object();
-        json_put(object, "quantity", json_string(summary_table[e->quantity].key));
-        json_put(object, "expected", e->is_null ? json_null() : json_number(e->value));
-        json_put(object, "tolerance", e->is_null ? json_null() : json_number(e->tolerance));
-        json_put(object, "value", json_number(value));
-        json_put(object, "met", json_boolean(expectation_is_met(e, value)));
+        json_t *object = json_members(
+            json_object(), "quantity:t expected:n tolerance:n value:n met:b",
+            summary_table[e->quantity].key, e->is_null ? (double)NAN : e->value,
+            e->is_null ? (double)NAN : e->tolerance, value, expectation_is_met(e, value));
 
         json_add(array, object);
     }
@@ -75,16 +74,12 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
 // An event with what its kind has.
 static json_t *event_object(const scenario *s, const event *e)
 {
-    json_t *object = json_object();
-    json_put(object, "t_s", json_number(e->time));
-    json_put(object, "kind", json_string(event_name(e->kind)));
-
+    json_t *object = json_members(json_object(), "t_s:n kind:t", e->time, event_name(e->kind));
     if (e->kind == EVENT_IMPACT || e->kind == EVENT_PUSH) {
         json_put(object, "impulse_Ns", json_number(e->impulse));
     }
     if (e->kind == EVENT_IMPACT) {
-        json_put(object, "speed_m_s", json_number(e->speed));
-        json_put(object, "loss_J", json_number(e->loss));
+        json_members(object, "speed_m_s:n loss_J:n", e->speed, e->loss);
     }
 
     if (e->kind == EVENT_CHANGE && e->index >= 0 && e->index < s->action_count) {
@@ -115,11 +110,8 @@ json_t *export_run(const scenario *s, const run_result *result)
     }
 
     // which run, and how it went
-    json_put(object, "scenario", json_text(s->name));
-    json_put(object, "version", json_string(lab_version()));
-    json_put(object, "status", json_string(summary_status(m)));
-    json_put(object, "message", json_text(m->message));
-    json_put(object, "method_used", json_text(m->method));
+    json_members(object, "scenario:t version:t status:t message:t method_used:t", s->name,
+                 lab_version(), summary_status(m), m->message, m->method);
 
     // what went in and what came out
     json_put(object, "parameters", export_parameters(&s->parameters));

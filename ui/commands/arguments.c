@@ -224,21 +224,12 @@ static int option_store(arguments *a, const option_row *o, char *text)
     }
 
     // texts are kept as they are, and checked where only some are known
-    case OPTION_TEXT:
-    case OPTION_WORD:
-    case OPTION_CHOICE:
-    case OPTION_FILE:
-    case OPTION_RESULT:
-    case OPTION_PICTURE:
-    case OPTION_PLACE:
-    case OPTION_SCENARIO:
-    case OPTION_QUANTITY:
+    default:
         *(const char **)place = text;
         return o->type == OPTION_CHOICE     ? check_choice(o, text)
                : o->type == OPTION_QUANTITY ? check_quantity(o, text)
                                             : EXIT_DONE;
     }
-    return EXIT_DONE;
 }
 
 // getopt_long's value of the option in row i is ROW_VALUE + i, apart from all letters

@@ -75,28 +75,7 @@ static int read_listed(const char *name, listed *l)
     return !l->faulty || f.code == STATUS_BAD_SCENARIO ? EXIT_DONE : complain_fault(&f);
 }
 
-// Adds a line or, for a program, an object of name and title, which is null of one with faults.
-// Returns the exit status.
-static int list_one(const char *name, int width, json_t *all)
-{
-    listed l;
-    const int result = read_listed(name, &l);
-    if (result != EXIT_DONE) {
-        return result;
-    }
-
-    // the titles of all stand in a column
-    if (all != NULL) {
-        json_add(all, json_members(json_object(), "name:t title:o", name,
-                                   l.faulty ? json_null() : json_text(l.title)));
-    } else if (l.faulty) {
-        say("%-*s  (has faults, see impactlab check %s)\n", width, name, name);
-    } else {
-        say("%-*s  %s\n", width, name, l.title);
-    }
-    return EXIT_DONE;
-}
-
+// A line of each or, for a program, an object of name and title, which is null of one with faults.
 static int list(const arguments *a)
 {
     listing l;
@@ -104,12 +83,25 @@ static int list(const arguments *a)
     if (result != EXIT_DONE) {
         return result;
     }
+
+    // the titles of all stand in a column
     for (int i = 0; i < l.count; i++) {
-        int length = (int)strlen(l.names[i]);
+        const int length = (int)strlen(l.names[i]);
         width = length > width ? length : width;
     }
     for (int i = 0; i < l.count; i++) {
-        result = worse(result, list_one(l.names[i], width, l.all));
+        const char *name = l.names[i];
+        listed here;
+        const int read = read_listed(name, &here);
+        result = worse(result, read);
+        if (read == EXIT_DONE && l.all != NULL) {
+            json_add(l.all, json_members(json_object(), "name:t title:o", name,
+                                         here.faulty ? json_null() : json_text(here.title)));
+        } else if (read == EXIT_DONE && here.faulty) {
+            say("%-*s  (has faults, see impactlab check %s)\n", width, name, name);
+        } else if (read == EXIT_DONE) {
+            say("%-*s  %s\n", width, name, here.title);
+        }
     }
     return close_listing(&l, a, result);
 }
@@ -133,27 +125,6 @@ static const char *leaf_of(const char *name)
     return slash != NULL ? slash + 1 : name;
 }
 
-// Adds a lesson to those listed, as JSON or on the screen.
-static void list_lesson(json_t *all, const char *name, const char *title)
-{
-    if (all == NULL) {
-        say("%-20s %s\n", leaf_of(name), title);
-        return;
-    }
-    json_add(all,
-             json_members(json_object(), "name:t scenario:t title:t", leaf_of(name), name, title));
-}
-
-// Opens the lab on a lesson, as the lab command does on a scenario.
-static int open_lesson(const arguments *a, char *name)
-{
-    arguments opened = *a;
-    char *operands[] = {name};
-    opened.operands = operands;
-    opened.operand_count = 1;
-    return command_find("lab")->run(&opened);
-}
-
 static int run_lesson(const arguments *a)
 {
     listing l;
@@ -169,17 +140,23 @@ static int run_lesson(const arguments *a)
     // without a name all of them, otherwise the one with that name
     const char *wanted = a->operand_count > 0 ? a->operands[0] : NULL;
     for (int i = 0; i < l.count && !found; i++) {
-        const bool named = wanted != NULL && (strcmp(l.names[i], wanted) == 0 ||
-                                              strcmp(leaf_of(l.names[i]), wanted) == 0);
+        const char *name = l.names[i], *leaf = leaf_of(name);
         listed here = {0};
-        if (wanted == NULL || named) {
-            code = worse(code, read_listed(l.names[i], &here));
+        if (wanted == NULL || strcmp(name, wanted) == 0 || strcmp(leaf, wanted) == 0) {
+            code = worse(code, read_listed(name, &here));
         }
-        found = here.is_lesson && named;
+        found = here.is_lesson && wanted != NULL;
         if (found) {
-            code = open_lesson(a, l.names[i]);
+            // as the lab command opens a scenario
+            arguments opened = *a;
+            opened.operands = &l.names[i];
+            opened.operand_count = 1;
+            code = command_find("lab")->run(&opened);
+        } else if (here.is_lesson && l.all != NULL) {
+            json_add(l.all, json_members(json_object(), "name:t scenario:t title:t", leaf, name,
+                                         here.title));
         } else if (here.is_lesson) {
-            list_lesson(l.all, l.names[i], here.title);
+            say("%-20s %s\n", leaf, here.title);
         }
     }
     if (wanted != NULL && !found && code == EXIT_DONE) {

@@ -122,11 +122,10 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     fault f = {0};
     size_t failed = 0;
     double *values = malloc(o->sweep.run_count * sizeof *values);
-    if (values == NULL) {
-        fault_set(&f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
-        return complain_fault(&f);
-    }
-    if (sweep_store_quantity(store, o->quantity, values, &failed, &f) != STATUS_OK) {
+    const status read = values == NULL
+                            ? fault_no_memory(&f)
+                            : sweep_store_quantity(store, o->quantity, values, &failed, &f);
+    if (read != STATUS_OK) {
         free(values);
         return complain_fault(&f);
     }
@@ -166,11 +165,8 @@ static sweep_sampling sampling_of(const char *name)
 static int read_share(const arguments *a, sweep_share *share)
 {
     char rest;
-    *share = (sweep_share){0, 0};
-
-    // the whole sweep
     if (a->part == NULL) {
-        return EXIT_DONE;
+        return EXIT_DONE; // the whole sweep
     }
 
     // which part of how many
