@@ -20,13 +20,11 @@ static void catch_signal(int number)
 // The progress bar: a line on the terminal that is written over.
 static void show_progress(void *context, int done, int total)
 {
-    char bar[BAR_LENGTH + 1];
+    static const char full[BAR_LENGTH + 1] = "========================================";
+    const int filled = BAR_LENGTH * done / total;
     (void)context;
-    for (int i = 0; i < BAR_LENGTH; i++) {
-        bar[i] = i < BAR_LENGTH * done / total ? '=' : ' ';
-    }
-    bar[BAR_LENGTH] = '\0';
-    fprintf(stderr, "\r[%s] %3d %%  %d of %d frames", bar, 100 * done / total, done, total);
+    fprintf(stderr, "\r[%.*s%*s] %3d %%  %d of %d frames", filled, full, BAR_LENGTH - filled, "",
+            100 * done / total, done, total);
 }
 
 static film_options options_of(const arguments *a)
@@ -130,15 +128,14 @@ static int film_runs(const arguments *a, const filmed *m)
         fprintf(stderr, "\r%78s\r", "");
     }
 
-    if (code == STATUS_OK) {
-        if (!a->quiet) {
-            say("%s: %s\n", m->names[0], a->output);
-        }
-        return EXIT_DONE;
+    if (code != STATUS_OK) {
+        const int exit_status = complain_fault(&f);
+        return signal_caught != 0 ? 128 + signal_caught : exit_status;
     }
-
-    int exit_status = complain_fault(&f);
-    return signal_caught != 0 ? 128 + signal_caught : exit_status;
+    if (!a->quiet) {
+        say("%s: %s\n", m->names[0], a->output);
+    }
+    return EXIT_DONE;
 }
 
 static int animate(const arguments *a)
@@ -151,15 +148,12 @@ static int animate(const arguments *a)
 
     // errors of the request are reported before anything is simulated
     int code = check_view(a);
-    if (code != EXIT_DONE) {
-        return code;
-    }
-    if (film_file_check(a->output, &f) != STATUS_OK) {
-        return complain_fault(&f);
+    if (code == EXIT_DONE && film_file_check(a->output, &f) != STATUS_OK) {
+        code = complain_fault(&f);
     }
 
     filmed m = {0};
-    code = open_all(&m, a);
+    code = code == EXIT_DONE ? open_all(&m, a) : code;
     code = code == EXIT_DONE ? run_all(&m) : code;
     code = code == EXIT_DONE ? film_runs(a, &m) : code;
     finish_filmed(&m);

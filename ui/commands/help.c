@@ -36,37 +36,6 @@ static int option_width(const option_row *o)
     return (int)(strlen(o->name) + (o->value != NULL ? 1 + strlen(o->value) : 0));
 }
 
-// Width of the column of a command's options.
-static int widest_option(const command *c)
-{
-    const option_row *o;
-    int widest = 0;
-    for (int i = 0; (o = command_option(c, i)) != NULL; i++) {
-        int width = option_width(o);
-        widest = width > widest ? width : widest;
-    }
-    return widest;
-}
-
-static void print_option(FILE *stream, const option_row *o, int column)
-{
-    char letter[] = {'-', o->letter, ',', '\0'};
-    fprintf(stream, "  %-3s --%s%s%s%*s  %s\n", o->letter != 0 ? letter : "", o->name,
-            o->value ? " " : "", o->value ? o->value : "", column - option_width(o), "", o->help);
-}
-
-// The rows of a table below its title, which is left out where it is that of the table before.
-static void print_table(FILE *stream, const command *c, const option_table *t,
-                        const char *title_before)
-{
-    if (strcmp(t->title, title_before) != 0) {
-        fprintf(stream, "\n%s:\n", t->title);
-    }
-    for (int i = 0; i < t->count; i++) {
-        print_option(stream, &t->rows[i], widest_option(c));
-    }
-}
-
 void print_help(FILE *stream, const command *self)
 {
     assert(stream != NULL && self != NULL);
@@ -74,12 +43,25 @@ void print_help(FILE *stream, const command *self)
             self->operands[0] ? " " : "", self->operands, self->summary);
     print_paragraphs(stream, self->help);
 
-    // its options, each table's below the others of its title
+    // its options, each table's below the others of its title, in two columns
     const option_table *t;
+    const option_row *o;
     const char *title = "";
+    int widest = 0;
+    for (int i = 0; (o = command_option(self, i)) != NULL; i++) {
+        widest = option_width(o) > widest ? option_width(o) : widest;
+    }
     for (int i = 0; (t = command_options(self, i)) != NULL; i++) {
-        print_table(stream, self, t, title);
+        if (strcmp(t->title, title) != 0) {
+            fprintf(stream, "\n%s:\n", t->title);
+        }
         title = t->title;
+        for (o = t->rows; o < t->rows + t->count; o++) {
+            const char letter[] = {'-', o->letter, ',', '\0'};
+            fprintf(stream, "  %-3s --%s%s%s%*s  %s\n", o->letter != 0 ? letter : "", o->name,
+                    o->value ? " " : "", o->value ? o->value : "", widest - option_width(o), "",
+                    o->help);
+        }
     }
 }
 

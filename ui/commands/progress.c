@@ -74,17 +74,6 @@ static void *tick(void *argument)
     return NULL;
 }
 
-// The thread of the notes, which is not to take the interrupt.
-static void start_ticking(void)
-{
-    sigset_t interrupt, mask;
-    sigemptyset(&interrupt);
-    sigaddset(&interrupt, SIGINT);
-    pthread_sigmask(SIG_BLOCK, &interrupt, &mask);
-    ticker.ticks = pthread_create(&ticker.thread, NULL, tick, &ticker) == 0;
-    pthread_sigmask(SIG_SETMASK, &mask, NULL);
-}
-
 static void begin(const arguments *a)
 {
     struct sigaction act = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
@@ -102,9 +91,17 @@ static void begin(const arguments *a)
     if (ticker.before.sa_handler == SIG_IGN) {
         sigaction(SIGINT, &ticker.before, NULL);
     }
-    if (isatty(STDERR_FILENO) && !a->quiet) {
-        start_ticking();
+    if (!isatty(STDERR_FILENO) || a->quiet) {
+        return;
     }
+
+    // the thread of the notes is not to take it
+    sigset_t interrupt, mask;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &interrupt, &mask);
+    ticker.ticks = pthread_create(&ticker.thread, NULL, tick, &ticker) == 0;
+    pthread_sigmask(SIG_SETMASK, &mask, NULL);
 }
 
 run_monitor *work_begin(const arguments *a, const char *pieces, int total)
@@ -184,6 +181,8 @@ enum {
     MOST_WAITED = 5, // time for runs under way after a signal [s]
 };
 
+static const char full_bar[BAR_LENGTH + 1] = "========================";
+
 static volatile sig_atomic_t signal_caught;
 static volatile double time_caught; // [s]
 static atomic_bool abandoned;
@@ -232,13 +231,8 @@ static void show_progress(void *context, const sweep_progress *p)
 {
     assert(p != NULL);
     const char *word = context;
-    char bar[BAR_LENGTH + 1], left[32] = "", failed[32] = "", line[256];
-
-    int filled = p->total > 0 ? (int)(BAR_LENGTH * p->done / p->total) : 0;
-    for (int i = 0; i < BAR_LENGTH; i++) {
-        bar[i] = i < filled ? '=' : ' ';
-    }
-    bar[BAR_LENGTH] = '\0';
+    char left[32] = "", failed[32] = "", line[256];
+    const int filled = p->total > 0 ? (int)(BAR_LENGTH * p->done / p->total) : 0;
 
     // at the rate so far
     if (p->done_now > 0) {
@@ -253,9 +247,9 @@ static void show_progress(void *context, const sweep_progress *p)
         snprintf(failed, sizeof failed, ", %zu failed", p->failed);
     }
 
-    snprintf(line, sizeof line, "%s%s[%s] %3zu %%  %zu of %zu runs%s%s", word != NULL ? word : "",
-             word != NULL ? " " : "", bar, 100 * p->done / p->total, p->done, p->total, failed,
-             left);
+    snprintf(line, sizeof line, "%s%s[%.*s%*s] %3zu %%  %zu of %zu runs%s%s",
+             word != NULL ? word : "", word != NULL ? " " : "", filled, full_bar,
+             BAR_LENGTH - filled, "", 100 * p->done / p->total, p->done, p->total, failed, left);
     fprintf(stderr, "\r%-78.78s", line);
 }
 
