@@ -42,11 +42,15 @@ static int check_ids(const arguments *a)
     return EXIT_DONE;
 }
 
+typedef struct asked_figure {
+    const thesis_figure *figure;
+    char *tex; // its figure environment, NULL before it is drawn
+} asked_figure;
+
 // Figures in the order in which they were asked for.
 typedef struct figure_list {
-    const thesis_figure **figures;
+    asked_figure *figures;
     size_t *order;      // in which they are begun
-    char **tex;         // the figure environment of each that is drawn, NULL of the others
     size_t count, told; // told: number of those already reported
     bool quiet;
     const char *folder, *formats;
@@ -63,7 +67,7 @@ typedef struct figure_result {
 static void draw_one(void *context, size_t i, void *scratch, void *result)
 {
     const figure_list *list = context;
-    const thesis_figure *which = list->figures[list->order[i]];
+    const thesis_figure *which = list->figures[list->order[i]].figure;
     figure_result *out = result;
     (void)scratch;
     text_stream tex;
@@ -88,9 +92,9 @@ static status take_one(void *context, size_t i, const void *result, fault *f)
         *f = from->fault;
         return from->code;
     }
-    list->tex[list->order[i]] = from->tex;
-    for (; list->told < list->count && list->tex[list->told] != NULL; list->told++) {
-        const thesis_figure *which = list->figures[list->told];
+    list->figures[list->order[i]].tex = from->tex;
+    for (; list->told < list->count && list->figures[list->told].tex != NULL; list->told++) {
+        const thesis_figure *which = list->figures[list->told].figure;
         if (!list->quiet) {
             say("%-10s  %s/%s  %s\n", which->id, list->folder, which->file, which->caption);
         }
@@ -108,7 +112,7 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
                             .compute = draw_one,
                             .collect = take_one};
     for (size_t i = 0; i < list->count; i++) {
-        list->figures[i] =
+        list->figures[i].figure =
             a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : thesis_figure_at((int)i);
     }
 
@@ -116,7 +120,7 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
     size_t placed = 0;
     for (int slow = 1; slow >= 0; slow--) {
         for (size_t i = 0; i < list->count; i++) {
-            if (list->figures[i]->slow == slow) {
+            if (list->figures[i].figure->slow == slow) {
                 list->order[placed++] = i;
             }
         }
@@ -127,7 +131,7 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
     if (code == STATUS_OK && a->latex != NULL &&
         (code = whole_file_open(&out, a->latex, f)) == STATUS_OK) {
         for (size_t i = 0; i < list->count; i++) {
-            fputs(list->tex[i], out.stream);
+            fputs(list->figures[i].tex, out.stream);
         }
         code = whole_file_commit(&out, f);
     }
@@ -139,7 +143,7 @@ static json_t *figures_array(const figure_list *list)
 {
     json_t *array = json_array();
     for (size_t i = 0; i < list->count; i++) {
-        const thesis_figure *which = list->figures[i];
+        const thesis_figure *which = list->figures[i].figure;
         json_add(array,
                  json_members(json_object(), "id:t folder:t file:t formats:t caption:t", which->id,
                               list->folder, which->file, list->formats, which->caption));
@@ -163,21 +167,17 @@ static int figures(const arguments *a)
     }
 
     // lists of figures to be drawn and of their results
-    list.figures = calloc(count, sizeof(const thesis_figure *));
-    list.order = calloc(count, sizeof *list.order);
-    list.tex = calloc(count, sizeof *list.tex);
-    const bool room = list.figures != NULL && list.order != NULL && list.tex != NULL;
-    if ((room ? draw_and_write(&list, a, &f) : fault_no_memory(&f)) != STATUS_OK) {
+    list.figures = calloc(count, sizeof *list.figures + sizeof *list.order);
+    list.order = (size_t *)(list.figures + count);
+    const status drawn = list.figures != NULL ? draw_and_write(&list, a, &f) : fault_no_memory(&f);
+    if (drawn != STATUS_OK) {
         code = complain_fault(&f);
     } else if (a->json != NULL) {
         code = write_json(a->json, figures_array(&list));
     }
-
-    for (size_t i = 0; list.tex != NULL && i < count; i++) {
-        free(list.tex[i]);
+    for (size_t i = 0; list.figures != NULL && i < count; i++) {
+        free(list.figures[i].tex);
     }
-    free(list.tex);
-    free(list.order);
     free(list.figures);
     return code;
 }

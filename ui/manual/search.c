@@ -157,8 +157,8 @@ static occurrences entry_words(const question_words *q, const search_entry *e)
     return o;
 }
 
-// BM25 of one field; *share is how much of the question is met.
-static double score_of(const question_words *q, const occurrences *o, double *share)
+// BM25 of one field, times how much of the question is met.
+static double score_of(const question_words *q, const occurrences *o)
 {
     const double room = 1 - LENGTH_SHARE + LENGTH_SHARE * o->length / USUAL_LENGTH;
     double score = 0, met = 0, all = 0;
@@ -168,8 +168,7 @@ static double score_of(const question_words *q, const occurrences *o, double *sh
         met += o->of[i] > 0 ? q->weight[i] : 0;
         all += q->weight[i];
     }
-    *share = all > 0 ? met / all : 0;
-    return score;
+    return all > 0 ? score * (met / all) : 0;
 }
 
 // Number of entries, and of those that have each word.
@@ -238,9 +237,8 @@ static int best_text(const question_words *q, const search_entry *e)
     double highest = 0;
     for (int i = 0; i < e->text_count; i++) {
         occurrences o = {.length = 0};
-        double share;
         count_words(&o, q, e->texts[i], 1);
-        const double score = score_of(q, &o, &share) * share;
+        const double score = score_of(q, &o);
         if (score > highest) {
             highest = score;
             best = i;
@@ -253,16 +251,15 @@ static int best_text(const question_words *q, const search_entry *e)
 // there are then.
 static int keep_hit(search_hit *hits, int count, int most, search_hit hit)
 {
-    int at = count < most ? count : most;
-    while (at > 0 && hits[at - 1].score < hit.score) {
-        at--;
+    int at = count;
+    for (; at > 0 && hits[at - 1].score < hit.score; at--) {
+        if (at < most) {
+            hits[at] = hits[at - 1];
+        }
     }
-    if (at == most) {
-        return count;
+    if (at < most) {
+        hits[at] = hit;
     }
-    const int behind = count < most ? count - at : most - 1 - at;
-    memmove(&hits[at + 1], &hits[at], (size_t)behind * sizeof hits[0]);
-    hits[at] = hit;
     return count < most ? count + 1 : most;
 }
 
@@ -284,8 +281,7 @@ int search_find(const search_source *sources, int source_count, const char *ques
         for (int i = 0; i < sources[s].count; i++) {
             const search_entry e = sources[s].entry(i);
             const occurrences o = entry_words(&q, &e);
-            double share;
-            const double score = score_of(&q, &o, &share) * share;
+            const double score = score_of(&q, &o);
             if (score > 0) {
                 const search_hit hit = {s, i, best_text(&q, &e), score};
                 count = keep_hit(hits, count, most, hit);

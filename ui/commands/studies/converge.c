@@ -140,22 +140,6 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
     return publish_titled(a, &r->scenario[0], "the same run at three steps", &fig);
 }
 
-// The same with the memory it takes.
-static int draw_runs(const arguments *a, const three_runs *r)
-{
-    double *work[4] = {NULL};
-    bool room = true;
-    for (int i = 0; i < 4; i++) {
-        work[i] = malloc((r->result[i / 2].trace.row_count + 1) * sizeof(double));
-        room = room && work[i] != NULL;
-    }
-    int code = room ? draw(a, r, work) : worse(EXIT_FAILED, complain("out of memory"));
-    for (int i = 0; i < 4; i++) {
-        free(work[i]);
-    }
-    return code;
-}
-
 static int plot(const arguments *a, const scenario *s, const void *panel)
 {
     fault f = {0};
@@ -169,8 +153,19 @@ static int plot(const arguments *a, const scenario *s, const void *panel)
     status ran = run_all(s, panel, monitor, r, &f);
     work_end();
 
+    // abscissas and ordinates of two differences
+    double *work[4];
+    const size_t room = r->result[0].trace.row_count + r->result[1].trace.row_count + 1;
+    work[0] = ran == STATUS_OK ? malloc(4 * room * sizeof(double)) : NULL;
+    for (int i = 1; i < 4 && work[0] != NULL; i++) {
+        work[i] = work[0] + (size_t)i * room;
+    }
+    int code = ran != STATUS_OK  ? complain_fault(&f)
+               : work[0] != NULL ? draw(a, r, work)
+                                 : worse(EXIT_FAILED, complain("out of memory"));
+
     // runs that came about are released whether all did or not
-    int code = ran == STATUS_OK ? draw_runs(a, r) : complain_fault(&f);
+    free(work[0]);
     for (int i = 0; i < PANEL_STEPS; i++) {
         run_finish(&r->result[i]);
     }
