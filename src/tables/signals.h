@@ -7,63 +7,120 @@
 
 #include "src/base/fault.h"
 
-// One recorded row: the state at an instant and the quantities that belong to exactly that state.
-typedef struct sample {
-    double time;               // t [s]
-    double hub_angle;          // theta1 [rad]
-    double first_angle;        // theta2, first link [rad]
-    double last_angle;         // theta3, last link [rad]
-    double hub_velocity;       // [rad/s]
-    double first_velocity;     // [rad/s]
-    double last_velocity;      // [rad/s]
-    double hub_acceleration;   // [rad/s2]
-    double first_acceleration; // [rad/s2]
-    double last_acceleration;  // [rad/s2]
-    double gap;                // distance of the contact point, at rest, from the arm [m]
-    double gap_velocity;       // [m/s]
-    double force;              // contact force, impulses excluded [N]
-    double impulse;            // of the impact at this very instant [N s]
-    double contact;            // 1 while in contact, else 0
-    double sticking;           // 1 while the hub sticks, else 0
-    double voltage;            // command to the amplifier [V]
-    double motor_torque;       // kT/Ra times amplified command, before back EMF [N m]
-    double friction_torque;    // Coulomb friction at the hub, as it acts [N m]
-    double kinetic_energy;     // [J]
-    double strain_energy;      // [J]
-    double motor_work;         // done by motor_torque since the start [J]
-    double external_work;      // done by pushes since the start [J]
-    double viscous_loss;       // back EMF and viscous friction [J]
-    double friction_loss;      // Coulomb friction [J]
-    double damping_loss;       // structural damping [J]
-    double impact_loss;        // [J]
-    double energy_residual;    // residual of the energy balance [J]
-    // on the rig, as of its last sample; NaN without one
-    double encoder;          // hub angle as read [rad]
-    double tachometer;       // hub velocity as read [rad/s]
-    double force_reading;    // contact force as the FSR reads it [N]
-    double piezo_force;      // contact force as the piezoelectric sensor reads it [N]
-    double film;             // bending as the piezo film reads it [rad]
-    double accelerometer;    // hub acceleration as read [rad/s2]
-    double command;          // what the controller asked for [V]
-    double controller_mode;  // index of the controller's mode
-    double desired_angle;    // of the hub [rad]
-    double desired_velocity; // of the hub [rad/s]
-    double calculated_force; // what the controller takes the contact force to be [N]
-    // of a wall that gives; NaN at a rigid one
-    double wall_energy;   // that its spring and the motion of its face hold [J]
-    double wall_loss;     // lost in it [J]
-    double wall_place;    // of a wall that moves, towards the arm; else NaN [m]
-    double wall_work;     // that it does; else NaN [J]
-    double weight_energy; // from the hub's axis on, NaN in a level plane [J]
-    double face_depth;    // how far its face is pushed in, NaN in a rigid one [m]
-    // on the rig with a limit on the force
-    double predicted_force; // largest force if the tip struck now, as of the last sample [N]
-} sample;
-
 typedef enum line_style { LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT } line_style;
 
 // The body whose motion a signal is.
 typedef enum signal_body { BODY_NONE, BODY_HUB, BODY_FIRST_LINK, BODY_LAST_LINK } signal_body;
+
+// Every recorded quantity: name, symbol as Pango markup and in ASCII, unit, description, label of
+// its axis, colour and line, and what else there is to say of it.
+//
+// From `encoder` on they are those of the rig as of its last sample, NaN without one; from
+// `wall_energy` to `face_depth` those of walls and weight, NaN where these are not; of
+// `predicted_force` the rig has a limit on the force. Places and the gap are those of the contact
+// point, at rest; the friction torque is as it acts.
+#define SIGNALS(SIGNAL)                                                                            \
+    SIGNAL(time, "t", "t", "s", "simulated time", "Time", 0, LINE_SOLID)                           \
+    SIGNAL(hub_angle, "θ<sub>1</sub>", "th1", "rad", "angle of the hub", "Angle", 0, LINE_SOLID,   \
+           .body = BODY_HUB)                                                                       \
+    SIGNAL(first_angle, "θ<sub>2</sub>", "th2", "rad", "angle of the first link", "Angle", 1,      \
+           LINE_DASHED, .body = BODY_FIRST_LINK)                                                   \
+    SIGNAL(last_angle, "θ<sub>3</sub>", "th3", "rad", "angle of the last link", "Angle", 2,        \
+           LINE_SOLID, .body = BODY_LAST_LINK)                                                     \
+    SIGNAL(hub_velocity, "θ̇<sub>1</sub>", "w1", "rad/s", "angular velocity of the hub",            \
+           "Angular velocity", 0, LINE_SOLID, .body = BODY_HUB)                                    \
+    SIGNAL(first_velocity, "θ̇<sub>2</sub>", "w2", "rad/s", "angular velocity of the first link",   \
+           "Angular velocity", 1, LINE_DASHED, .body = BODY_FIRST_LINK)                            \
+    SIGNAL(last_velocity, "θ̇<sub>3</sub>", "w3", "rad/s", "angular velocity of the last link",     \
+           "Angular velocity", 2, LINE_SOLID, .body = BODY_LAST_LINK)                              \
+    SIGNAL(hub_acceleration, "θ̈<sub>1</sub>", "a1", "rad/s2", "angular acceleration of the hub",   \
+           "Angular acceleration", 0, LINE_SOLID, .body = BODY_HUB)                                \
+    SIGNAL(first_acceleration, "θ̈<sub>2</sub>", "a2", "rad/s2",                                    \
+           "angular acceleration of the first link", "Angular acceleration", 1, LINE_DASHED,       \
+           .body = BODY_FIRST_LINK)                                                                \
+    SIGNAL(last_acceleration, "θ̈<sub>3</sub>", "a3", "rad/s2",                                     \
+           "angular acceleration of the last link", "Angular acceleration", 2, LINE_SOLID,         \
+           .body = BODY_LAST_LINK)                                                                 \
+    SIGNAL(gap, "g", "gap", "m", "distance of the arm from the contact point", "Gap", 3,           \
+           LINE_SOLID)                                                                             \
+    SIGNAL(gap_velocity, "ġ", "vgap", "m/s", "rate of the gap", "Rate of the gap", 3, LINE_DASHED) \
+    SIGNAL(force, "f", "f", "N", "contact force, impulses excluded", "Contact force", 5,           \
+           LINE_SOLID)                                                                             \
+    SIGNAL(impulse, "p", "p", "N s", "impulse of an impact at this very instant", "Impulse", 4,    \
+           LINE_SOLID)                                                                             \
+    SIGNAL(contact, "contact", "contact", "", "1 while in contact", "In contact", 3, LINE_SOLID)   \
+    SIGNAL(sticking, "stick", "stick", "", "1 while the hub sticks", "Sticking", 6, LINE_DOTTED)   \
+    SIGNAL(voltage, "v", "v", "V", "command to the amplifier", "Voltage", 6, LINE_SOLID)           \
+    SIGNAL(motor_torque, "τ<sub>m</sub>", "tau", "N m", "motor torque before back EMF",            \
+           "Motor torque", 6, LINE_DASHED)                                                         \
+    SIGNAL(friction_torque, "τ<sub>c</sub>", "tauc", "N m", "Coulomb friction torque at the hub",  \
+           "Friction torque", 4, LINE_DASHED)                                                      \
+    SIGNAL(kinetic_energy, "T", "T", "J", "kinetic energy", "Kinetic energy", 0, LINE_SOLID)       \
+    SIGNAL(strain_energy, "V", "V", "J", "strain energy of the springs", "Strain energy", 1,       \
+           LINE_DASHED)                                                                            \
+    SIGNAL(motor_work, "W<sub>m</sub>", "Wm", "J", "work done by the motor torque", "Work", 2,     \
+           LINE_SOLID)                                                                             \
+    SIGNAL(external_work, "W<sub>e</sub>", "We", "J", "work done by pushes", "Work", 2,            \
+           LINE_DOTTED)                                                                            \
+    SIGNAL(viscous_loss, "D<sub>v</sub>", "Dv", "J", "lost to back EMF and viscous friction",      \
+           "Energy lost", 3, LINE_DASHED)                                                          \
+    SIGNAL(friction_loss, "D<sub>c</sub>", "Dc", "J", "lost to Coulomb friction", "Energy lost",   \
+           4, LINE_DOTTED)                                                                         \
+    SIGNAL(damping_loss, "D<sub>s</sub>", "Ds", "J", "lost to structural damping", "Energy lost",  \
+           6, LINE_DASH_DOT)                                                                       \
+    SIGNAL(impact_loss, "D<sub>i</sub>", "Di", "J", "lost in impacts", "Energy lost", 5,           \
+           LINE_DASHED)                                                                            \
+    SIGNAL(energy_residual, "r", "res", "J", "energy the ledger does not account for",             \
+           "Energy unaccounted for", 7, LINE_SOLID)                                                \
+    SIGNAL(encoder, "θ<sub>enc</sub>", "enc", "rad", "hub angle as the encoder reads it",          \
+           "Hub angle", 0, LINE_SOLID)                                                             \
+    SIGNAL(tachometer, "θ̇<sub>tach</sub>", "tach", "rad/s",                                        \
+           "hub velocity as the tachometer reads it", "Hub velocity", 0, LINE_SOLID)               \
+    SIGNAL(force_reading, "f<sub>FSR</sub>", "fsr", "N", "contact force as the FSR reads it",      \
+           "Contact force", 5, LINE_SOLID)                                                         \
+    SIGNAL(piezo_force, "f<sub>piezo</sub>", "fpz", "N",                                           \
+           "contact force as the piezoelectric sensor reads it", "Contact force", 2, LINE_SOLID,   \
+           .optional = true)                                                                       \
+    SIGNAL(film, "δ<sub>film</sub>", "film", "rad",                                                \
+           "bending of the beam, last link's angle minus the first's, as the piezo film reads it", \
+           "Bending", 4, LINE_SOLID, .optional = true)                                             \
+    SIGNAL(accelerometer, "θ̈<sub>acc</sub>", "acc", "rad/s2",                                      \
+           "hub acceleration as the accelerometer reads it", "Hub acceleration", 0, LINE_SOLID,    \
+           .optional = true)                                                                       \
+    SIGNAL(command, "u", "u", "V", "command of the controller", "Command", 6, LINE_SOLID)          \
+    SIGNAL(controller_mode, "mode", "mode", "", "mode of the controller, counted from 0", "Mode",  \
+           3, LINE_SOLID)                                                                          \
+    SIGNAL(desired_angle, "θ<sub>d</sub>", "thd", "rad", "hub angle that the controller wants",    \
+           "Hub angle", 1, LINE_DASHED)                                                            \
+    SIGNAL(desired_velocity, "θ̇<sub>d</sub>", "wd", "rad/s",                                       \
+           "hub velocity that the controller wants", "Hub velocity", 1, LINE_DASHED)               \
+    SIGNAL(calculated_force, "f<sub>calc</sub>", "fcalc", "N",                                     \
+           "contact force that the controller calculates", "Contact force", 2, LINE_DASHED)        \
+    SIGNAL(wall_energy, "V<sub>w</sub>", "Vw", "J", "energy that a wall that gives holds",         \
+           "Strain energy", 5, LINE_DASHED, .optional = true)                                      \
+    SIGNAL(wall_loss, "D<sub>w</sub>", "Dw", "J", "lost in a wall that gives", "Energy lost", 5,   \
+           LINE_DASH_DOT, .optional = true)                                                        \
+    SIGNAL(wall_place, "u<sub>w</sub>", "uw", "m",                                                 \
+           "where a wall that moves is, along its normal towards the arm", "Place of the wall", 3, \
+           LINE_SOLID, .optional = true)                                                           \
+    SIGNAL(wall_work, "W<sub>w</sub>", "Ww", "J", "work done by a wall that moves", "Work", 5,     \
+           LINE_DOTTED, .optional = true)                                                          \
+    SIGNAL(weight_energy, "V<sub>g</sub>", "Vg", "J",                                              \
+           "potential energy of the weight in a tilted plane, from the hub's axis on",             \
+           "Strain energy", 6, LINE_DASHED, .optional = true)                                      \
+    SIGNAL(face_depth, "x<sub>w</sub>", "xw", "m",                                                 \
+           "how far the face of a wall that gives is pushed in", "Depth of the wall's face", 2,    \
+           LINE_DASHED, .optional = true)                                                          \
+    SIGNAL(predicted_force, "f<sub>pred</sub>", "fpred", "N",                                      \
+           "largest contact force if the tip struck now, as the rig predicts it", "Contact force", \
+           4, LINE_DOTTED, .optional = true)
+
+// One recorded row: the state at an instant and the quantities that belong to exactly that state.
+typedef struct sample {
+#define SIGNAL_FIELD(name, ...) double name;
+    SIGNALS(SIGNAL_FIELD)
+#undef SIGNAL_FIELD
+} sample;
 
 typedef struct signal_info {
     const char *name;        // as in CSV headers and --plot, "contact_force"
@@ -71,12 +128,12 @@ typedef struct signal_info {
     const char *ascii;       // the same in ASCII
     const char *unit;        // "N", "rad/s2" is written "rad/s²" in figures by the plotter
     const char *description; // one sentence without a full stop
-    signal_body body;        // BODY_NONE where the description says all
     const char *quantity;    // label of its axis, the same for every body: "Angular velocity"
     int colour;              // slot in the palette, 0-7
     line_style style;
-    size_t offset; // in struct sample
-    bool optional; // of a sensor that need not be there: no column where nothing is recorded
+    signal_body body; // BODY_NONE where the description says all
+    bool optional;    // of a sensor that need not be there: no column where nothing is recorded
+    size_t offset;    // in struct sample
 } signal_info;
 
 // The recorded ones, and behind them those that are derived from them.
