@@ -7,6 +7,72 @@
 
 #include "src/base/fault.h"
 
+// The numbers of a run: field and key, name, label, unit, description, and what is special about
+// it. Those of the rig, from `force_command_N` to `return_speed_m_s`, are NaN without one.
+#define SUMMARY_NUMBERS_OF_A_RUN(NUMBER)                                                           \
+    NUMBER(first_contact_s, "first_contact", "first contact", "s",                                 \
+           "the arm touches the wall for the first time")                                          \
+    NUMBER(contact_impulse_Ns, "contact_impulse", "contact impulse", "N s",                        \
+           "impulse of the first impact")                                                          \
+    NUMBER(first_pulse_peak_N, "first_pulse_peak", "first pulse peak", "N",                        \
+           "largest force from first contact to first release")                                    \
+    FORCE_BOUNDS(NUMBER, first_pulse_peak, "first pulse peak",                                     \
+                 "largest force from first contact to first release")                              \
+    NUMBER(first_pulse_time_to_peak_s, "first_pulse_time_to_peak", "first pulse time to peak",     \
+           "s", "from first contact to that force")                                                \
+    NUMBER(first_pulse_s, "first_pulse", "first pulse", "s",                                       \
+           "from first contact to first release")                                                  \
+    NUMBER(peak_force_N, "peak_force", "peak force", "N", "largest force of the whole run")        \
+    FORCE_BOUNDS(NUMBER, peak_force, "peak force", "largest force of the whole run")               \
+    NUMBER(time_to_peak_s, "time_to_peak", "time to peak", "s",                                    \
+           "from first contact to that force")                                                     \
+    NUMBER(impacts, "impacts", "impacts", "", "impacts of the whole run")                          \
+    NUMBER(separations, "separations", "separations", "",                                          \
+           "times that the arm leaves the wall by more than 1 um")                                 \
+    NUMBER(steady_force_N, "steady_force", "steady force", "N", "mean force over the last 0.1 s")  \
+    FORCE_BOUNDS(NUMBER, steady_force, "steady force", "mean force over the last 0.1 s")           \
+    NUMBER(force_overshoot_percent, "force_overshoot", "force overshoot", "%",                     \
+           "largest force over the steady one")                                                    \
+    NUMBER(settling_time_s, "settling_time", "settling time", "s",                                 \
+           "from first contact until the force is steady within 5 % for good")                     \
+    NUMBER(max_penetration_m, "max_penetration", "max penetration", "m",                           \
+           "largest depth of the arm behind the wall")                                             \
+    NUMBER(motor_work_J, "motor_work", "motor work", "J", "work done by the motor torque")         \
+    NUMBER(energy_residual_J, "energy_residual", "energy residual", "J",                           \
+           "largest energy that the ledger does not account for")                                  \
+    NUMBER(wall_loss_J, "wall_loss", "wall loss", "J", "energy lost in a wall that gives",         \
+           .special = true)                                                                        \
+    NUMBER(force_command_N, "force_command", "force command", "N",                                 \
+           "force that the controller is to hold at the end", .special = true)                     \
+    NUMBER(force_over_command_N, "force_over_command", "force over command", "N",                  \
+           "largest force minus the commanded one", .special = true)                               \
+    NUMBER(smoothed_over_command_N, "smoothed_over_command", "smoothed over command", "N",         \
+           "largest mean of the force over 5 ms, impulses included, from 20 ms after first "       \
+           "contact on, minus the commanded force",                                                \
+           .special = true)                                                                        \
+    NUMBER(steady_error_N, "steady_error", "steady error", "N",                                    \
+           "steady force minus the commanded one", .special = true)                                \
+    NUMBER(largest_command_V, "largest_command", "largest command", "V",                           \
+           "largest command to the amplifier either way", .special = true)                         \
+    NUMBER(electrical_energy_J, "electrical_energy", "electrical energy", "J",                     \
+           "energy that the amplifier fed into the motor", .special = true)                        \
+    NUMBER(approach_speed_m_s, "approach_speed", "approach speed", "m/s",                          \
+           "largest speed of the tip towards the wall before first contact", .special = true)      \
+    NUMBER(return_speed_m_s, "return_speed", "return speed", "m/s",                                \
+           "largest speed of the tip towards the wall without contact, after the first",           \
+           .special = true)                                                                        \
+    NUMBER(steps, "steps", "steps", "", "time steps taken")                                        \
+    NUMBER(cpu_time_s, "cpu_time", "cpu time", "s", "processor time of the run", .timing = true)   \
+    NUMBER(wall_time_s, "wall_time", "wall time", "s", "time that passed during the run",          \
+           .timing = true)
+
+// The bounds of a force that is not determined, else NaN.
+#define FORCE_BOUNDS(NUMBER, number, label, what)                                                  \
+    NUMBER(number##_low_N, #number "_low", label " low", "N",                                      \
+           "least that the " what " may be where it is not determined", .special = true)           \
+    NUMBER(number##_high_N, #number "_high", label " high", "N",                                   \
+           "most that the " what " may be where it is not determined", .special = true)
+
 // The results of a run. A quantity that did not occur is NaN (null in JSON).
 typedef struct summary {
     status status;
@@ -15,39 +81,9 @@ typedef struct summary {
     char message[1024]; // what stopped the run, or a remark; "" if there is none
     char method[32];    // the method in fact used, "pair"
     // numbers only from here on, see summary_value
-    double first_contact_s;
-    double contact_impulse_Ns; // impulse of the first impact
-    double first_pulse_peak_N; // largest force from first contact to first release
-    // the bounds of a force that is not determined, else NaN
-    double first_pulse_peak_low_N, first_pulse_peak_high_N;
-    double first_pulse_time_to_peak_s;
-    double first_pulse_s; // length of the first pulse; NaN if it never ends
-    double peak_force_N;  // largest force of the whole run
-    double peak_force_low_N, peak_force_high_N;
-    double time_to_peak_s; // after first contact
-    double impacts;
-    double separations;    // episodes after first contact with a gap above 1 um
-    double steady_force_N; // mean over the last 0.1 s
-    double steady_force_low_N, steady_force_high_N;
-    double force_overshoot_percent; // of peak_force_N over steady_force_N
-    double settling_time_s; // from first contact until within 5 % of steady_force_N for good
-    double max_penetration_m;
-    double motor_work_J;
-    double energy_residual_J; // largest absolute value over the run
-    double wall_loss_J;       // lost in a wall that gives, NaN at a rigid one
-    // on the rig only, else NaN
-    double force_command_N;         // control.force
-    double force_over_command_N;    // peak_force_N - force_command_N
-    double smoothed_over_command_N; // largest mean over 5 ms from 20 ms after contact on, less
-                                    // force_command_N
-    double steady_error_N;          // steady_force_N - force_command_N
-    double largest_command_V;       // in magnitude, of those that took effect
-    double electrical_energy_J;     // that the amplifier fed into the motor
-    double approach_speed_m_s;      // largest of the tip towards the wall before first contact
-    double return_speed_m_s; // the same in flights after first contact, 0 if contact is never lost
-    double steps;            // time steps taken
-    double cpu_time_s;       // processor time of the run's own thread
-    double wall_time_s;      // time that passed meanwhile
+#define SUMMARY_FIELD(number, ...) double number;
+    SUMMARY_NUMBERS_OF_A_RUN(SUMMARY_FIELD)
+#undef SUMMARY_FIELD
 } summary;
 
 typedef struct summary_info {
