@@ -18,22 +18,25 @@ const char *status_text(status code)
     return "unknown status";
 }
 
-static void fill(fault *f, status code, const char *format, va_list args)
+// Fills f (may be NULL) with all that it has to say.
+static void fill(fault *f, status code, const char *path, int line, int column, const char *format,
+                 va_list args)
 {
-    f->code = code;
-    f->path = "";
-    f->line = f->column = 0;
-    decimal_vprint(f->text, sizeof f->text, format, args);
+    if (f != NULL) {
+        f->code = code;
+        f->path = path;
+        f->line = line;
+        f->column = column;
+        decimal_vprint(f->text, sizeof f->text, format, args);
+    }
 }
 
 status fault_set(fault *f, status code, const char *format, ...)
 {
-    if (f != NULL) {
-        va_list args;
-        va_start(args, format);
-        fill(f, code, format, args);
-        va_end(args);
-    }
+    va_list args;
+    va_start(args, format);
+    fill(f, code, "", 0, 0, format, args);
+    va_end(args);
     return code;
 }
 
@@ -45,26 +48,19 @@ status fault_no_memory(fault *f)
 status fault_set_at(fault *f, status code, const char *path, const char *format, ...)
 {
     assert(path != NULL);
-    if (f != NULL) {
-        va_list args;
-        va_start(args, format);
-        fill(f, code, format, args);
-        va_end(args);
-        f->path = path;
-    }
+    va_list args;
+    va_start(args, format);
+    fill(f, code, path, 0, 0, format, args);
+    va_end(args);
     return code;
 }
 
 status fault_set_place(fault *f, status code, int line, int column, const char *format, ...)
 {
     assert(line > 0 && column > 0);
-    if (f != NULL) {
-        va_list args;
-        va_start(args, format);
-        fill(f, code, format, args);
-        va_end(args);
-        f->line = line;
-        f->column = column;
-    }
+    va_list args;
+    va_start(args, format);
+    fill(f, code, "", line, column, format, args);
+    va_end(args);
     return code;
 }
