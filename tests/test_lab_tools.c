@@ -230,6 +230,24 @@ TEST(data_without_a_command_say_what_is_missing_and_what_for)
     assert_non_null(strstr(ex.state.message.text, "record it, or rename its heading"));
 }
 
+TEST(a_page_says_how_much_of_it_is_shown)
+{
+    static const char *const pages[] = {"?", "c", "<F1>", ":poles<Enter>"};
+    for (EACH(keys, pages)) {
+        OPEN_EXPLORER(ex, "corrected/first-impact");
+        press(&ex, *keys);
+        assert_shows_at(&ex, 80, 16, " of ");
+        assert_shows_at(&ex, 80, 16, " lines ");
+    }
+
+    // and what it shows besides
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":poles<Enter>");
+    assert_shows_at(&ex, 80, 24, "free, 5.48 Hz");
+    ex.state.page.panel = PANEL_WELCOME;
+    assert_shows_at(&ex, 80, 24, "1  The arm hits the wall by itself.");
+}
+
 TEST(what_is_copied_gives_the_run_again)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");

@@ -156,75 +156,74 @@ static int keep_matching(help_line *lines, int count, const char *filter)
     return filter[0] != '\0' ? kept : count;
 }
 
-// The lines of a page from the one on that it is scrolled to, in their frame.
-static void draw_lines(screen *s, area a, const char *title, const help_line *lines, int count)
+#define PAGE(title) .name = title, .point = page_point, .key = page_key
+
+// The frame of a page, which says how many of its lines are shown down to its end.
+static void draw_page_frame(screen *s, area a, const char *title, int last, int count)
 {
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
-    for (int i = 0; i < a.height - 2 && i < count; i++) {
-        int x = a.x + 2, y = a.y + 1 + i, room = a.width - 4;
-        screen_text(s, x, y, room, lines[i].heading ? INK_EVENT : INK_TEXT, lines[i].text);
-        screen_tint(s, x, y, lines[i].keys < room ? lines[i].keys : room, 1, INK_TITLE);
+    if (last < count || count > a.height - 2) {
+        screen_print(s, a.x + 2, a.y + a.height - 1, a.width - 4, INK_DIM, " %d of %d lines ", last,
+                     count);
     }
 }
 
-// A page as `write` writes it, at most `width` wide and as high as its lines, or scrolled.
-static void draw_page(const explorer_state *st, layout *lay, screen *s, area body, int width,
-                      const char *title, void (*write)(const explorer_state *st, page *p))
+// A page of at most `width` that is to be written.
+static page begin_page(area body, int width)
 {
     static help_line lines[MOST_LINES];
-    area a = page_area(body, width, body.height);
-    page p = {.lines = lines, .most = MOST_LINES, .width = a.width - 4};
-    write(st, &p);
-    a = page_area(body, width, p.count + 2);
-    const int scroll = page_scroll(lay, st->page.panel, a, p.count, 2);
-    draw_lines(s, a, title, lines + scroll, p.count - scroll);
+    const area a = page_area(body, width, body.height);
+    return (page){.lines = lines, .most = MOST_LINES, .width = a.width - 4};
 }
 
-#define PAGE(page_name, draw_it)                                                                   \
-    {                                                                                              \
-        .name = page_name, .draw = draw_it, .point = page_point, .key = page_key                   \
+// Draws one that is written, as high as its lines and `below` rows for what comes under them, or
+// scrolled; returns its area.
+static area draw_page(const explorer_state *st, layout *lay, screen *s, area body, const page *p,
+                      const char *title, int below)
+{
+    const area a = page_area(body, p->width + 4, p->count + 2 + below);
+    const int scroll = page_scroll(lay, st->page.panel, a, p->count, 2);
+    const int left = p->count - scroll, rows = left < a.height - 2 ? left : a.height - 2;
+    draw_page_frame(s, a, title, scroll + rows, p->count);
+    for (int i = 0; i < rows; i++) {
+        const help_line *line = &p->lines[scroll + i];
+        const int x = a.x + 2, y = a.y + 1 + i, room = a.width - 4;
+        screen_text(s, x, y, room, line->heading ? INK_EVENT : INK_TEXT, line->text);
+        screen_tint(s, x, y, line->keys < room ? line->keys : room, 1, INK_TITLE);
     }
+    return a;
+}
 
 static void draw_help(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    enum { WIDTH = 114 };
-    static help_line lines[MOST_LINES];
     const char *filter = st->filters.text[PANEL_HELP];
-
-    // as wide as it may be, then as high as its lines need
-    area a = page_area(body, WIDTH, body.height);
-    const int all = help_write(&st->keys, a.width - 4, lines, MOST_LINES);
-    const int count = keep_matching(lines, all, filter);
-    a = page_area(body, WIDTH, count + 2);
-    const int scroll = page_scroll(lay, PANEL_HELP, a, count, 2);
-    char title[LINE_TEXT];
-    snprintf(title, sizeof title,
-             count <= a.height - 2 ? "keys and commands (/ filters, Esc closes)"
-             : a.width < 60        ? "%d of %d lines (Esc closes)"
-                                   : "keys and commands, %d of %d lines (/ filters, Esc closes)",
-             scroll + a.height - 2, count);
+    char title[LINE_TEXT] = "keys and commands (/ filters, Esc closes)";
+    page p = begin_page(body, 114);
+    p.count = keep_matching(p.lines, help_write(&st->keys, p.width, p.lines, p.most), filter);
     if (filter[0] != '\0') {
         snprintf(title, sizeof title, "keys and commands /%.200s", filter);
     }
-    draw_lines(s, a, title, lines + scroll, count - scroll);
+    draw_page(st, lay, s, body, &p, title, 0);
 }
 
-const panel help_panel = PAGE("help", draw_help);
+const panel help_panel = {PAGE("help"), .draw = draw_help};
 
 // --- the scenario -----------------------------------------------------------------------------
 
 // The title, the description and the script.
-static void write_info(const explorer_state *st, page *p)
+static void draw_info(const explorer_state *st, layout *lay, screen *s, area body)
 {
+    page p = begin_page(body, TEXT_WIDTH);
+    char title[LINE_TEXT];
     const scenario *base = &st->session.base;
-    add_text(p, 0, base->title != NULL ? base->title : "", NULL);
-    p->lines[0].keys = text_cells(p->lines[0].text); // in their colour
-    if (p->count > 0) {
-        new_line(p);
+    add_text(&p, 0, base->title != NULL ? base->title : "", NULL);
+    p.lines[0].keys = text_cells(p.lines[0].text); // in their colour
+    if (p.count > 0) {
+        new_line(&p);
     }
-    add_text(p, 0, base->description != NULL ? base->description : "", NULL);
-    if (p->count > 0 && p->lines[p->count - 1].text[0] != '\0') {
-        new_line(p);
+    add_text(&p, 0, base->description != NULL ? base->description : "", NULL);
+    if (p.count > 0 && p.lines[p.count - 1].text[0] != '\0') {
+        new_line(&p);
     }
 
     // what its script does
@@ -232,24 +231,19 @@ static void write_info(const explorer_state *st, page *p)
         const action *a = &base->actions[i];
         char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH];
         if (a->kind == ACTION_PUSH) {
-            snprintf(new_line(p)->text, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
+            snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
         } else {
             action_format_value(a, value, sizeof value);
-            snprintf(new_line(p)->text, LINE_TEXT, "%9.5f s  %s = %s", a->time,
+            snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  %s = %s", a->time,
                      action_path(a, path), value);
         }
     }
-    p->count -= p->count > 0 && p->lines[p->count - 1].text[0] == '\0';
+    p.count -= p.count > 0 && p.lines[p.count - 1].text[0] == '\0';
+    snprintf(title, sizeof title, "%.180s (Esc closes)", base->name);
+    draw_page(st, lay, s, body, &p, title, 0);
 }
 
-static void draw_info(const explorer_state *st, layout *lay, screen *s, area body)
-{
-    char title[LINE_TEXT];
-    snprintf(title, sizeof title, "%.180s (Esc closes)", st->session.base.name);
-    draw_page(st, lay, s, body, TEXT_WIDTH, title, write_info);
-}
-
-const panel info_panel = PAGE("info", draw_info);
+const panel info_panel = {PAGE("info"), .draw = draw_info};
 
 // --- what one stands on -----------------------------------------------------------------------
 
@@ -291,73 +285,65 @@ static void explain_predictors(page *p)
              NULL);
 }
 
-static void write_explanation(const explorer_state *st, page *p)
+static void draw_explain(const explorer_state *st, layout *lay, screen *s, area body)
 {
+    page p = begin_page(body, TEXT_WIDTH);
     const int focused = panes_focused(&st->panes);
     const event *e = session_event(&st->session);
     char text[2 * LINE_TEXT];
-    explain_parameter(st, p);
+    explain_parameter(st, &p);
 
     // the signals in focus, their symbols spelled out, then the event at the cursor
     for (int k = 0; focused >= 0 && k < st->panes.pane[focused].count; k++) {
         const signal_info *info = &signal_table[st->panes.pane[focused].signals[k]];
         if (k == 0) {
-            add_heading(p, "signals of the pane in focus (w: next pane)");
+            add_heading(&p, "signals of the pane in focus (w: next pane)");
         }
         snprintf(text, sizeof text, "%s (%s%s%s): %s.", info->name, info->ascii,
                  info->unit[0] ? ", in " : "", info->unit, info->description);
-        add_text(p, 0, text, NULL);
+        add_text(&p, 0, text, NULL);
     }
     if (e != NULL) {
-        add_heading(p, "the event at the cursor");
+        add_heading(&p, "the event at the cursor");
         snprintf(text, sizeof text, "%s: %s.", event_name(e->kind),
                  event_description((int)e->kind));
-        add_text(p, 0, text, NULL);
+        add_text(&p, 0, text, NULL);
     }
-    explain_predictors(p);
+    explain_predictors(&p);
+    draw_page(st, lay, s, body, &p, "what is here (? lists keys and commands, Esc closes)", 0);
 }
 
-static void draw_explain(const explorer_state *st, layout *lay, screen *s, area body)
-{
-    draw_page(st, lay, s, body, TEXT_WIDTH, "what is here (? lists keys and commands, Esc closes)",
-              write_explanation);
-}
-
-const panel explain_panel = PAGE("explain", draw_explain);
+const panel explain_panel = {PAGE("explain"), .draw = draw_explain};
 
 // The page of a first visit: what is behind it goes on, the first key closes it and acts.
-static void write_welcome(const explorer_state *st, page *p)
-{
-    add_entry(p, "1",
-              "The arm hits the wall by itself. Space stops it, I goes back to just before.");
-    add_entry(p, "2", "b keeps this run; Enter, 0.5, Enter halves the voltage: both are compared.");
-    add_entry(p, "3", "o / hybrid Enter presses with 1 N by a control law. ? lists all keys.");
-}
-
 static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    draw_page(st, lay, s, body, 76, "a first visit (any key goes on)", write_welcome);
+    page p = begin_page(body, 76);
+    p.column = 3;
+    add_entry(&p, "1",
+              "The arm hits the wall by itself. Space stops it, I goes back to just before.");
+    add_entry(&p, "2",
+              "b keeps this run; Enter, 0.5, Enter halves the voltage: both are compared.");
+    add_entry(&p, "3", "o / hybrid Enter presses with 1 N by a control law. ? lists all keys.");
+    draw_page(st, lay, s, body, &p, "a first visit (any key goes on)", 0);
 }
 
-const panel welcome_panel = PAGE("welcome", draw_welcome);
+const panel welcome_panel = {PAGE("welcome"), .draw = draw_welcome};
 
 // --- the account of the run -------------------------------------------------------------------
 
-static void write_account(const explorer_state *st, page *p)
-{
-    char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE];
-    const int count = run_account(&st->session.effective, &st->session.run, sentences);
-    for (int i = 0; i < count; i++) {
-        add_text(p, 0, sentences[i], NULL);
-    }
-}
-
 static void draw_why(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    draw_page(st, lay, s, body, TEXT_WIDTH, "why (Esc closes)", write_account);
+    char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE];
+    page p = begin_page(body, TEXT_WIDTH);
+    const int count = run_account(&st->session.effective, &st->session.run, sentences);
+    for (int i = 0; i < count; i++) {
+        add_text(&p, 0, sentences[i], NULL);
+    }
+    draw_page(st, lay, s, body, &p, "why (Esc closes)", 0);
 }
 
-const panel why_panel = PAGE("why", draw_why);
+const panel why_panel = {PAGE("why"), .draw = draw_why};
 
 // --- the poles --------------------------------------------------------------------------------
 
@@ -431,7 +417,7 @@ static void draw_shapes(screen *s, area a, const parameters *values)
                         INK_ARM);
             x = end;
         }
-        screen_print(s, c.x, a.y, wide, INK_DIM, "%.3g Hz", w[i] / (2 * acos(-1)));
+        screen_print(s, c.x, a.y, wide, INK_DIM, "free, %.3g Hz", w[i] / (2 * acos(-1)));
         n++;
     }
     free(w);
@@ -440,17 +426,16 @@ static void draw_shapes(screen *s, area a, const parameters *values)
 
 static void draw_poles(const explorer_state *st, layout *lay, screen *s, area body)
 {
-    enum { MOST = 500, WIDTH = 64 };
-    static help_line lines[MOST];
+    static help_line lines[MOST_LINES];
     static parameters shown;
     static page p;
     const parameters now = state_parameters(st);
-    area a = page_area(body, WIDTH, body.height);
+    const int width = begin_page(body, 64).width;
 
     // computed anew where a parameter has changed: many links take a while
-    if (p.width != a.width - 4 || memcmp(&shown, &now, sizeof now) != 0) {
+    if (p.width != width || memcmp(&shown, &now, sizeof now) != 0) {
         memcpy(&shown, &now, sizeof now);
-        p = (page){.lines = lines, .most = MOST, .width = a.width - 4};
+        p = (page){.lines = lines, .most = MOST_LINES, .width = width};
         add_text(&p, 0, "The arm near rest with the values at the cursor, without its law.", NULL);
         snprintf(new_line(&p)->text, LINE_TEXT, "%12s%12s%12s", "[Hz]", "damping", "decay [s]");
         for (linear_place place = LINEAR_FREE; place <= LINEAR_STUCK; place++) {
@@ -458,16 +443,14 @@ static void draw_poles(const explorer_state *st, layout *lay, screen *s, area bo
         }
     }
     const bool shows = p.count + 2 + SHAPE_ROWS <= body.height && now.arm.links <= MOST_SHAPED;
-    a = page_area(body, WIDTH, p.count + 2 + (shows ? SHAPE_ROWS : 0));
-    const int scroll = page_scroll(lay, PANEL_POLES, a, p.count, 2);
-    draw_lines(s, a, "poles (Esc closes)", lines + scroll, p.count - scroll);
+    const int below = shows ? SHAPE_ROWS : 0;
+    const area a = draw_page(st, lay, s, body, &p, "poles (Esc closes)", below);
     if (shows) {
-        const int below = a.y + a.height - 1 - SHAPE_ROWS;
-        draw_shapes(s, (area){a.x + 2, below, a.width - 4, SHAPE_ROWS}, &now);
+        draw_shapes(s, (area){a.x + 2, a.y + a.height - 1 - below, a.width - 4, below}, &now);
     }
 }
 
-const panel poles_panel = PAGE("poles", draw_poles);
+const panel poles_panel = {PAGE("poles"), .draw = draw_poles};
 
 // --- the comparison ---------------------------------------------------------------------------
 
@@ -517,8 +500,10 @@ static void draw_comparison(const explorer_state *st, layout *lay, screen *s, ar
     area a = page_area(body, names + 3 * width + 4, rows * count + 3);
     int room = a.width - 4, shown = a.height - 3;
     int scroll = page_scroll(lay, PANEL_COMPARISON, a, rows * count, 3);
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
-                 e->has_other ? "two runs (Esc closes)" : "this run (b branches, Esc closes)");
+    const int all = rows * count, last = scroll + shown;
+    draw_page_frame(s, a,
+                    e->has_other ? "two runs (Esc closes)" : "this run (b branches, Esc closes)",
+                    (last < all ? last : all) / rows, count);
     screen_print(s, a.x + 2 + names, a.y + 1, room - names, INK_DIM, "%*s", width, "now");
     if (e->has_other) {
         // under the name that the legend has
@@ -545,4 +530,4 @@ static void draw_comparison(const explorer_state *st, layout *lay, screen *s, ar
     }
 }
 
-const panel comparison_panel = PAGE("comparison", draw_comparison);
+const panel comparison_panel = {PAGE("comparison"), .draw = draw_comparison};

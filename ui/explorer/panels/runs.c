@@ -110,9 +110,9 @@ static void draw_page(const explorer_state *st, layout *lay, screen *s, area bod
         draw_pinned(st, s, (area){lines.x, lines.y + i, lines.width, 1}, i);
     }
     screen_text(s, a.x + 2, a.y + a.height - 2, a.width - 4, INK_DIM,
-                count > 0 ? "Enter goes on with it, Space hides, = compares with it, r renames, "
-                            "d drops, D subtracts"
-                          : "none yet: b pins the run there is, then change something");
+                count > 0
+                    ? "Enter takes it, Space hides, = compares, r renames, d drops, D subtracts"
+                    : "none yet: b pins the run there is, then change something");
 }
 
 static bool list_key(explorer_state *st, int key)
