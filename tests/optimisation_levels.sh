@@ -22,38 +22,50 @@ libraries=($(pkg-config --libs yaml-0.1 jansson sqlite3) -ldl -lm -lpthread)
 # what a run needs: the library below the studies, which make many runs or time them, and its own
 # interface above
 mapfile -t sources < <(find src tests/optimisation_runs.c -name '*.c' | grep -Ev '^src/(api|study)/' | sort)
+# the engines' kernels are compiled once for each width (src/engines/meson.build): SOURCE@WIDTH
+units=()
+for source in "${sources[@]}"; do
+    case $source in
+    */taylor_kernel.c) units+=("$source"@{1,1_avx2,2,4,8}) ;;
+    */stiff_kernel.c) units+=("$source"@{1,4}) ;;
+    *) units+=("$source") ;;
+    esac
+done
+
+# the compiler's words come first, then a unit and its object
+compile_unit() {
+    local words=("${@:1:$#-2}") unit=${*: -2:1} object=${*: -1}
+    if [[ $unit == *@* ]]; then
+        local width=${unit#*@} engine=${unit##*/}
+        words+=("-DLANES=${width%%_*}" "-DLOOPS=${engine%%_*}_loops_$width")
+    fi
+    "${words[@]}" -c "${unit%@*}" -o "$object"
+}
+export -f compile_unit
 newest_header=$(find src -name '*.h' -printf '%T@\n' | sort -n | tail -n 1)
 
-# level and source of every object to be made, two words an object
+# level, unit and object of every object to be made, three words an object
 stale() {
-    local level source object
+    local level unit object
     for level in 1 2 3; do
         mkdir -p "$work/$level"
-        for source in "${sources[@]}"; do
-            object=$work/$level/${source//\//_}.o
-            if [ ! -e "$object" ] || [ "$source" -nt "$object" ] || [ "$script" -nt "$object" ] ||
+        for unit in "${units[@]}"; do
+            object=$work/$level/${unit//\//_}.o
+            if [ ! -e "$object" ] || [ "${unit%@*}" -nt "$object" ] || [ "$script" -nt "$object" ] ||
                 [ "$(stat -c %Y "$object")" -le "${newest_header%.*}" ]; then
-                printf '%s\0%s\0' "$level" "$source"
+                printf '%s\0%s\0%s\0' "-O$level" "$unit" "$object"
             fi
         done
     done
 }
-
-# the compiler's words come first, then level and source
-make_object() {
-    local words=("${@:1:$#-2}") level=${*: -2:1} source=${*: -1}
-    "${words[@]}" "-O$level" -c "$source" -o "$work/$level/${source//\//_}.o"
-}
-export work
-export -f make_object
 # shellcheck disable=SC2016
-stale | xargs -0 -r -n 2 -P "$(nproc)" bash -c 'make_object "$@"' each "${cc[@]}" "${flags[@]}"
+stale | xargs -0 -r -n 3 -P "$(nproc)" bash -c 'compile_unit "$@"' each "${cc[@]}" "${flags[@]}"
 
 for level in 1 2 3; do
     # objects of sources that are gone must not be linked
     objects=()
-    for source in "${sources[@]}"; do
-        objects+=("$work/$level/${source//\//_}.o")
+    for unit in "${units[@]}"; do
+        objects+=("$work/$level/${unit//\//_}.o")
     done
     "${cc[@]}" -o "$work/runs-O$level" "${objects[@]}" "${libraries[@]}"
     "$work/runs-O$level" >"$work/O$level.txt"

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <poll.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -177,16 +178,18 @@ static bool lock_temporary(int descriptor)
     return !held && (fstat(descriptor, &about) != 0 || about.st_nlink > 0);
 }
 
-// Removes a temporary of the user's that nobody holds a lock on.
+// Removes a temporary of the user's that nobody holds a lock on, if it still has that name: it may
+// have become its file since it was opened, and the name another one's.
 static void remove_if_left(int folder, const char *name)
 {
-    struct stat about;
+    struct stat about, named;
     int file = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) {
         return;
     }
     if (fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_uid == geteuid() &&
-        flock(file, LOCK_EX | LOCK_NB) == 0) {
+        flock(file, LOCK_EX | LOCK_NB) == 0 &&
+        fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && named.st_ino == about.st_ino) {
         unlinkat(folder, name, 0);
     }
     close(file);
@@ -208,6 +211,25 @@ void whole_file_clean_folder(const char *path)
     }
     if (folder != NULL) {
         closedir(folder);
+    }
+}
+
+// The same for the folder of `path`, once for each folder after another: the frames of a film, the
+// pictures of a report go into one many times.
+static void clean_folder_of(const char *path)
+{
+    static pthread_mutex_t looking = PTHREAD_MUTEX_INITIALIZER;
+    static struct stat last;
+    struct stat about;
+    char folder[PATH_MAX];
+    if (stat(folder_of(path, folder), &about) == 0) {
+        pthread_mutex_lock(&looking);
+        const bool known = about.st_dev == last.st_dev && about.st_ino == last.st_ino;
+        last = about;
+        pthread_mutex_unlock(&looking);
+        if (!known) {
+            whole_file_clean_folder(folder);
+        }
     }
 }
 
@@ -283,8 +305,7 @@ static int open_target(whole_file *w, mode_t mode)
     int reason = 0;
     if (mode == 0 || S_ISREG(mode)) {
         // what is left of runs before goes first
-        char folder[PATH_MAX];
-        whole_file_clean_folder(folder_of(w->path, folder));
+        clean_folder_of(w->path);
         reason = create_temporary(w, mode);
     } else {
         w->descriptor = open(w->path, O_WRONLY | O_CLOEXEC);

@@ -304,7 +304,7 @@ static value_and_slope rest_gap_of(const double *state)
 static value_and_slope stepped_gap(const arm *a, motion *m, double h)
 {
     const bool fails = motion_try_step(a, m, h) != STATUS_OK;
-    return fails ? (value_and_slope){NAN, NAN} : rest_gap_of(m->trial);
+    return fails ? (value_and_slope){(double)NAN, (double)NAN} : rest_gap_of(m->trial);
 }
 
 status locate_peak(const arm *a, motion *m, double h)

@@ -147,22 +147,23 @@ static void list_unknowns(identification *id)
 // The present values as unknowns, each in its scale.
 static void to_unknowns(const identification *id, double *x)
 {
-    for (int n = 0; n < id->unknowns; n++) {
+    for (int n = 0; n < id->count; n++) {
+        x[n] = id->fit[n].value / id->fit[n].scale;
+    }
+    for (int n = id->count; n < id->unknowns; n++) {
         const own_unknown *u = &id->own[n - id->count];
-        x[n] = n < id->count ? id->fit[n].value / id->fit[n].scale
-                             : id->traces[u->trace].own[u->own] / own_scale[u->own];
+        x[n] = id->traces[u->trace].own[u->own] / own_scale[u->own];
     }
 }
 
 static void from_unknowns(identification *id, const double *x)
 {
-    for (int n = 0; n < id->unknowns; n++) {
+    for (int n = 0; n < id->count; n++) {
+        id->fit[n].value = within_range(&id->fit[n], x[n] * id->fit[n].scale);
+    }
+    for (int n = id->count; n < id->unknowns; n++) {
         const own_unknown *u = &id->own[n - id->count];
-        if (n < id->count) {
-            id->fit[n].value = within_range(&id->fit[n], x[n] * id->fit[n].scale);
-        } else {
-            id->traces[u->trace].own[u->own] = x[n] * own_scale[u->own];
-        }
+        id->traces[u->trace].own[u->own] = x[n] * own_scale[u->own];
     }
 }
 
@@ -198,11 +199,13 @@ static void compute_piece(void *context, size_t i, void *scratch, void *result)
     memcpy(own, t->own, sizeof own);
     for (int n = 0; n < id->unknowns; n++) {
         const double x = here->x[n] + (n == here->moved ? here->by : 0);
-        const own_unknown *u = &id->own[n - id->count];
         if (n < id->count) {
             const fitted_parameter *fit = &id->fit[n];
             (void)sweep_axis_apply(&fit->axis, within_range(fit, x * fit->scale), &p, &ignored);
-        } else if (u->trace == here->trace) {
+            continue;
+        }
+        const own_unknown *u = &id->own[n - id->count];
+        if (u->trace == here->trace) {
             own[u->own] = x * own_scale[u->own];
         }
     }
