@@ -1,6 +1,6 @@
 // Why a law is out of bounds on drawn cases (law_cases.h), and whether any command is within them.
 //
-//     law_bounds [SEED [COUNT [LAW [TRIALS]]]]
+//     law_bounds [SEED [COUNT [LAW [TRIALS [CAUSES [FOUND]]]]]]
 //
 // Of every run that is out of bounds a line tells: which error of the case, were it not there,
 // would bring the law within them; and the best of all commands tried by somebody who knows arm,
@@ -8,6 +8,7 @@
 // voltages to the touch, two from there, one that presses, and with a push two more against that.
 // A search found within the bounds proves that the case is no matter of physics; one that found
 // none proves nothing, since a law sees what happens. Last, the classes and how many are in each.
+// Exit status 1 if fewer than CAUSES runs have such an error or fewer than FOUND such a command.
 #include <unistd.h>
 
 #include "src/arm/motor.h"
@@ -140,6 +141,8 @@ static bool has(const law_case *c, int error)
 }
 
 typedef struct tally {
+    const char *law;
+    int trials;
     int out, lost, slow, high, wrong, late; // runs out of bounds, and by which of them
     int found;                              // of which some command is within them
     int by[ERRORS], several;                // an error without which the run is within; none is
@@ -169,58 +172,62 @@ static void print_tally(const tally *t)
     printf("%4d out of them whichever one error is missing\n", t->several);
 }
 
+// Prints which error of a run brings it within the bounds when it is missing, and counts it.
+static void print_causes(tally *t, const law_case *c, double command)
+{
+    bool alone = false;
+    for (int e = 0; e < ERRORS; e++) {
+        if (!has(c, e)) {
+            continue;
+        }
+        const law_case less = without(c, e);
+        const double open_loop = run_case(&less, "open-loop", 1).first_contact_s;
+        const bool cause = judge(&less, t->law, command, open_loop).within;
+        t->by[e > 0 && errors[e].draw == errors[e - 1].draw ? e - 1 : e] += cause;
+        alone = alone || cause;
+        printf(" %s%s", errors[e].name, cause ? " (cause)," : ",");
+    }
+    t->several += !alone;
+}
+
+static void explain_case(void *to, int number, const law_case *c, int command, double open_loop,
+                         const verdict *v)
+{
+    tally *t = to;
+    if (v->within) {
+        return;
+    }
+    count_bounds(t, v);
+    printf("case %2d at %g N: over %.3g %%, %.3g s, %.2g %%, lost %g;", number, commands[command],
+           v->over, v->settling, v->error, v->lost);
+    print_causes(t, c, commands[command]);
+
+    // and who knows all
+    if (t->trials > 0) {
+        verdict best = {0};
+        const double least = search(c, commands[command], open_loop, t->trials, &best);
+        t->found += best.within;
+        printf(" best %.2f: over %.3g %%, %.3g s, lost %g%s", least, best.over, best.settling,
+               best.lost, best.within ? ", not physics" : "");
+    }
+    putchar('\n');
+    fflush(stdout);
+}
+
 int main(int count, char **words)
 {
     const int seed = count > 1 ? atoi(words[1]) : 1, cases = count > 2 ? atoi(words[2]) : 40;
-    const char *law = count > 3 ? words[3] : "observer";
-    const int trials = count > 4 ? atoi(words[4]) : 900, file = mkstemp(command_file);
-    tally t = {0};
+    const int causes = count > 5 ? atoi(words[5]) : 0, found = count > 6 ? atoi(words[6]) : 0;
+    tally t = {.law = count > 3 ? words[3] : "observer",
+               .trials = count > 4 ? atoi(words[4]) : 900};
+    const int file = mkstemp(command_file);
     if (file < 0) {
         perror(command_file);
         return 2;
     }
     close(file);
-    random_seed(&generator, (uint64_t)seed);
-    for (int i = 0; i < cases; i++) {
-        const law_case c = draw_case(seed);
-        const double open_loop = run_case(&c, "open-loop", 1).first_contact_s;
-        for (int k = 0; k < COMMANDS; k++) {
-            const verdict v = judge(&c, law, commands[k], open_loop);
-            if (v.within) {
-                continue;
-            }
-            count_bounds(&t, &v);
-            printf("case %2d at %g N: over %.3g %%, %.3g s, %.2g %%, lost %g;", i, commands[k],
-                   v.over, v.settling, v.error, v.lost);
-
-            // one error less
-            bool alone = false;
-            for (int e = 0; e < ERRORS; e++) {
-                if (!has(&c, e)) {
-                    continue;
-                }
-                const law_case less = without(&c, e);
-                const double before = run_case(&less, "open-loop", 1).first_contact_s;
-                const bool cause = judge(&less, law, commands[k], before).within;
-                t.by[e > 0 && errors[e].draw == errors[e - 1].draw ? e - 1 : e] += cause;
-                alone = alone || cause;
-                printf(" %s%s", errors[e].name, cause ? " (cause)," : ",");
-            }
-            t.several += !alone;
-
-            // and who knows all
-            if (trials > 0) {
-                verdict best = {0};
-                const double least = search(&c, commands[k], open_loop, trials, &best);
-                t.found += best.within;
-                printf(" best %.2f: over %.3g %%, %.3g s, lost %g%s", least, best.over,
-                       best.settling, best.lost, best.within ? ", not physics" : "");
-            }
-            putchar('\n');
-            fflush(stdout);
-        }
-    }
+    judge_cases(seed, cases, t.law, explain_case, &t);
     remove(command_file);
     print_tally(&t);
-    return 0;
+    return t.out - t.several < causes || t.found < found;
 }

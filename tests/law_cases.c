@@ -12,37 +12,41 @@
 // within them at a command. Beyond the last ones: over 120 % or 0.8 s.
 #include "tests/law_cases.h"
 
+typedef struct tally {
+    int within[COMMANDS], beyond[COMMANDS];
+} tally;
+
+static void count_case(void *to, int number, const law_case *c, int command, double open_loop,
+                       const verdict *v)
+{
+    (void)open_loop;
+    tally *t = to;
+    t->within[command] += v->within;
+    t->beyond[command] += v->beyond;
+    if (v->within) {
+        return;
+    }
+    printf("%s case %d at %g N: over %.3g %%, settled %.3g s, error %.2g %%, lost %g, late %.2f:",
+           v->beyond ? "BEYOND" : "out   ", number, commands[command], v->over, v->settling,
+           v->error, v->lost, v->late);
+    for (int j = 0; j < c->count; j++) {
+        printf(" %s", c->settings[j]);
+    }
+    printf(c->push != 0 ? " push=%.3g@%.3g\n" : "\n", c->push, c->push_time);
+}
+
 int main(int count, char **words)
 {
     const int seed = count > 1 ? atoi(words[1]) : 1, cases = count > 2 ? atoi(words[2]) : 40;
     const char *law = count > 3 ? words[3] : "observer";
-    int within[COMMANDS] = {0}, beyond[COMMANDS] = {0}, failed = 0;
-    random_seed(&generator, (uint64_t)seed);
-    for (int i = 0; i < cases; i++) {
-        const law_case c = draw_case(seed);
-        const double open_loop = run_case(&c, "open-loop", 1).first_contact_s;
-        for (int k = 0; k < COMMANDS; k++) {
-            const verdict v = judge(&c, law, commands[k], open_loop);
-            within[k] += v.within;
-            beyond[k] += v.beyond;
-            if (v.within) {
-                continue;
-            }
-            printf("%s case %d at %g N: over %.3g %%, settled %.3g s, error %.2g %%, lost %g, "
-                   "late %.2f:",
-                   v.beyond ? "BEYOND" : "out   ", i, commands[k], v.over, v.settling, v.error,
-                   v.lost, v.late);
-            for (int j = 0; j < c.count; j++) {
-                printf(" %s", c.settings[j]);
-            }
-            printf(c.push != 0 ? " push=%.3g@%.3g\n" : "\n", c.push, c.push_time);
-        }
-    }
+    tally t = {0};
+    judge_cases(seed, cases, law, count_case, &t);
+
+    bool failed = false;
     for (int k = 0; k < COMMANDS; k++) {
         printf("%s, seed %d, %g N: %d of %d within the bounds, %d beyond the last ones\n", law,
-               seed, commands[k], within[k], cases, beyond[k]);
-        const int least = count > 4 + k ? atoi(words[4 + k]) : 0;
-        failed = failed || within[k] < least;
+               seed, commands[k], t.within[k], cases, t.beyond[k]);
+        failed = failed || t.within[k] < (count > 4 + k ? atoi(words[4 + k]) : 0);
     }
     return failed;
 }

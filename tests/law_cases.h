@@ -237,3 +237,19 @@ static verdict judge(const law_case *c, const char *law, double command, double 
     v.beyond = !(ok && v.over <= 120 && v.settling <= 0.8);
     return v;
 }
+
+// Draws that many cases and judges each at every command; `each` is told of them in order.
+typedef void judged_case(void *tally, int number, const law_case *c, int command, double open_loop,
+                         const verdict *v);
+static void judge_cases(int seed, int count, const char *law, judged_case *each, void *tally)
+{
+    random_seed(&generator, (uint64_t)seed);
+    for (int i = 0; i < count; i++) {
+        const law_case c = draw_case(seed);
+        const double open_loop = run_case(&c, "open-loop", 1).first_contact_s;
+        for (int k = 0; k < COMMANDS; k++) {
+            const verdict v = judge(&c, law, commands[k], open_loop);
+            each(tally, i, &c, k, open_loop, &v);
+        }
+    }
+}

@@ -131,7 +131,8 @@ double motion_decay_length(const arm *a, double reach, double since)
     return fmax(GRADING * since, reach / fmax(a->highest_frequency, a->fastest_decay));
 }
 
-double motion_wall_compliance(const arm *a, motion *m, double *state)
+// How much a unit force of a wall that gives accelerates the gap in contact [1/kg].
+static double wall_compliance(const arm *a, motion *m, double *state)
 {
     double compliance;
     a = motion_arm_at(a, m, state[SLOT_TIME]);
@@ -140,13 +141,15 @@ double motion_wall_compliance(const arm *a, motion *m, double *state)
     return compliance / (1 + a->wall.face_mass * compliance); // both masses on the spring
 }
 
-double motion_wall_rate(const arm *a, motion *m, double *state)
+// Fastest rate (frequency or decay) of the arm on a wall that gives, or of a face left alone, in a
+// state of this motion [1/s]; 0 for other walls.
+static double fastest_wall_rate(const arm *a, motion *m, double *state)
 {
     if (motion_wall_is_rigid(m) || !contact_state_of(state).contact) {
         const wall_model wall = wall_at(&a->wall, state[SLOT_TIME]);
         return state_face_swings(m, state) ? wall_face_rate(&wall, state_face(state)) : 0;
     }
-    return wall_rate(&a->wall, motion_wall_compliance(a, m, state), fmax(-state[SLOT_GAP], 0),
+    return wall_rate(&a->wall, wall_compliance(a, m, state), fmax(-state[SLOT_GAP], 0),
                      -state[SLOT_GAP_VELOCITY]);
 }
 
@@ -156,7 +159,7 @@ double motion_vibration(const arm *a, motion *m, double *state)
     if (motion_wall_is_rigid(m) && a->stiffening == 0 && a->motor.inductance == 0) {
         return a->highest_frequency;
     }
-    const double wall = motion_wall_rate(a, m, state);
+    const double wall = fastest_wall_rate(a, m, state);
     const double current = a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
     const double own = a->highest_frequency * chain_stiffened(a, state_angles(m, state));
     return wall > 0 || current > 0 ? sqrt(own * own + wall * wall + current * current) : own;

@@ -369,14 +369,8 @@ static inline double motion_motor_work(const motion *m, double *state)
     return state[SLOT_MOTOR_WORK] + state_quadratures(m, state)[QUADRATURE_MOTOR];
 }
 
-// Fastest rate (frequency or decay) of the arm on a wall that gives, or of a face left alone, in a
-// state of this motion [1/s]; 0 for other walls.
-double motion_wall_rate(const arm *a, motion *m, double *state);
-// How much a unit force of that wall accelerates the gap in contact [1/kg].
-double motion_wall_compliance(const arm *a, motion *m, double *state);
-
 // Fastest rate at which the force can change in a state of this motion [1/s]: by the arm's fastest
-// vibration, the wall (motion_wall_rate) or the motor's inductance. Decays of the arm are left out.
+// vibration, the wall or the motor's inductance. Decays of the arm are left out.
 double motion_vibration(const arm *a, motion *m, double *state);
 
 // Length [s] over which a parabola represents the decaying part of the force on a damped chain,

@@ -91,9 +91,9 @@ pace pace_begin(void)
     return (pace){.checked_at = -1};
 }
 
-long pace_strides(const arm *a)
+// Strides between two checks.
+static long strides_between(const arm *a)
 {
-    assert(a != NULL);
     long strides = PACE_STRIDES;
     if (a->dof > FEW_LINKS) {
         strides = strides * FEW_LINKS / a->dof;
@@ -109,7 +109,7 @@ status pace_check(pace *p, const arm *a, const motion *m, double duration, doubl
 
     // the first stride only begins to count
     const double slowest = is_damped(a, m) ? DAMPED_PACE : SLOWEST_PACE;
-    const long strides = pace_strides(a);
+    const long strides = strides_between(a);
     const double least = (double)strides * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
     const bool passes = from < 0 || now - from >= least;
     const bool meets_wall = p->touching * FEW_TOUCHING > p->strides;

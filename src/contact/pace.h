@@ -30,11 +30,8 @@ status pace_check(pace *p, const arm *a, const motion *m, double duration, doubl
 // has just had, MOTION_REACHED if none.
 void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *text, size_t size);
 
-// Strides between two checks: fewer of arms whose strides are expensive, so that a run without
-// progress ends after some seconds of processor time.
-long pace_strides(const arm *a);
-
-// Counts a stride that was just made, and checks the pace every pace_strides() of them.
+// Counts a stride that was just made, and checks the pace every so many of them: fewer of arms
+// whose strides are expensive, so that a run without progress ends after some seconds.
 static inline status pace_keep(pace *p, const arm *a, const motion *m, double duration,
                                double asked, fault *f)
 {

@@ -12,7 +12,8 @@ enum {
     ROWS_PER_RESERVED = 64 // address space is for one checkpoint in so many rows
 };
 
-checkpoint *checkpoint_at(const run_history *h, size_t index)
+// The checkpoint of a number, oldest first.
+static checkpoint *checkpoint_at(const run_history *h, size_t index)
 {
     assert(h != NULL && index < h->checkpoint_count);
     return (checkpoint *)((char *)h->checkpoints.base + index * h->checkpoints.size);
@@ -24,7 +25,9 @@ static bool keeps_history(const recording *r)
     return r->options->rows_expected > 0 && r->rig == NULL;
 }
 
-bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected)
+// Reserves address space for the forces and checkpoints (of `size` bytes each) of a run of so many
+// rows. False if it cannot be had.
+static bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected)
 {
     assert(h != NULL && size >= sizeof(checkpoint));
     const size_t most = recording_most_rows(rows_expected);

@@ -20,13 +20,6 @@ typedef struct checkpoint {
     double motion[]; // motion_saved_size bytes
 } checkpoint;
 
-// The checkpoint of a number, oldest first.
-checkpoint *checkpoint_at(const run_history *h, size_t index);
-
-// Reserves address space for the forces and checkpoints (of `size` bytes each) of a run of so many
-// rows. False if it cannot be had.
-bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected);
-
 // Prepares the history of a run that keeps one (options.rows_expected, and no rig), or else one of
 // the forces alone. STATUS_NO_MEMORY, with a sentence in f.
 status checkpoint_open_history(recording *r, const motion *m, fault *f);

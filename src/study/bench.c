@@ -113,19 +113,17 @@ enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
 json_t *bench_export(const bench_result *results, int count)
 {
     assert(results != NULL || count == 0);
-    json_t *object = json_object(), *array = json_array();
+    json_t *array = json_array();
     for (int i = 0; i < count; i++) {
-        json_t *entry = json_object();
-        json_put(entry, "name", json_string(results[i].name));
-        json_put(entry, "unit", json_string(results[i].unit));
+        json_t *entry =
+            json_members(json_object(), "name:t unit:t", results[i].name, results[i].unit);
         for (int k = 0; k < NUMBERS; k++) {
             const char *value = (const char *)&results[i] + numbers[k].place;
             json_put(entry, numbers[k].key, json_number(*(const double *)value));
         }
         json_add(array, entry);
     }
-    json_put(object, "bench", array);
-    return object;
+    return json_members(json_object(), "bench:o", array);
 }
 
 static bool read_entry(json_t *entry, bench_result *result)

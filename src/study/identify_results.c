@@ -53,16 +53,14 @@ json_t *identify_traces_json(const identification *id)
         for (int own = 0; own < OWNS; own++) {
             json_put(line, own_keys[own], json_number(t->own[own]));
         }
-        json_put(line, "contacts", json_integer(t->contact_count));
-        json_put(line, "contact_error_s", json_number(t->contact_error));
-        json_put(line, "peak_error_percent", json_number(100 * t->peak_error));
+        json_members(line, "contacts:i contact_error_s:n peak_error_percent:n", t->contact_count,
+                     t->contact_error, 100 * t->peak_error);
         for (int c = 0; c < CHANNELS; c++) {
             if (t->reading[c] != NULL) {
-                json_t *channel = json_object();
-                json_put(channel, "signal", json_text(signal_table[identify_signals[c]].name));
-                json_put(channel, "rms_over_deviation", json_number(t->rms[c]));
-                json_put(channel, "whiteness", json_number(t->whiteness[c]));
-                json_add(channels, channel);
+                json_add(channels,
+                         json_members(json_object(), "signal:t rms_over_deviation:n whiteness:n",
+                                      signal_table[identify_signals[c]].name, t->rms[c],
+                                      t->whiteness[c]));
             }
         }
         json_put(line, "residuals", channels);
@@ -73,22 +71,16 @@ json_t *identify_traces_json(const identification *id)
 
 json_t *identify_json(const identification *id)
 {
-    json_t *object = json_object(), *fit = json_array(), *rows = json_array(),
-           *words = json_array();
+    json_t *fit = json_array(), *rows = json_array(), *words = json_array();
     const int p = id->count;
-    json_put(object, "scenario", json_text(id->base->name));
     for (int i = 0; i < p; i++) {
         const fitted_parameter *of = &id->fit[i];
-        json_t *line = json_object();
         double row[IDENTIFY_PATHS];
-        json_put(line, "path", json_text(of->axis.name));
-        json_put(line, "value", json_number(of->value));
-        json_put(line, "standard_error", json_number(of->standard_error));
-        json_put(line, "low", json_number(of->low));
-        json_put(line, "high", json_number(of->high));
-        json_put(line, "determined", json_boolean(of->determined));
-        json_put(line, "at_end_of_range", json_boolean(identify_at_end(of)));
-        json_add(fit, line);
+        json_add(fit, json_members(json_object(),
+                                   "path:t value:n standard_error:n low:n high:n determined:b "
+                                   "at_end_of_range:b",
+                                   of->axis.name, of->value, of->standard_error, of->low, of->high,
+                                   of->determined, identify_at_end(of)));
         for (int j = 0; j < p; j++) {
             const double size = sqrt(id->covariance[i * p + i]) * sqrt(id->covariance[j * p + j]);
             row[j] = of->determined && id->fit[j].determined ? id->covariance[i * p + j] / size
@@ -100,16 +92,12 @@ json_t *identify_json(const identification *id)
         char text[1024];
         json_add(words, json_text(identify_words(id, k, text, sizeof text)));
     }
-    json_put(object, "fit", fit);
-    json_put(object, "correlation", rows);
-    json_put(object, "singular_values", json_numbers(id->singular, p));
-    json_put(object, "undetermined", words);
-    json_put(object, "chi_square", json_number(id->chi_square));
-    json_put(object, "residuals", json_integer((json_int_t)id->residuals - p));
-    json_put(object, "aic", json_number(id->aic));
-    json_put(object, "white", json_boolean(id->white));
-    json_put(object, "traces", identify_traces_json(id));
-    return object;
+    return json_members(json_object(),
+                        "scenario:t fit:o correlation:o singular_values:o undetermined:o "
+                        "chi_square:n residuals:i aic:n white:b traces:o",
+                        id->base->name, fit, rows, json_numbers(id->singular, p), words,
+                        id->chi_square, (int)id->residuals - p, id->aic, id->white,
+                        identify_traces_json(id));
 }
 
 // An arm of the covariance, whose eigenvectors and -values these are: along each a normal number.
