@@ -199,8 +199,13 @@ static prediction of_one_link(const char *const *settings, const voltage_profile
     parameters p = fixture_parameters(settings);
     arm a = arm_of(&p);
     const double q[1] = {0.1}, w[1] = {0.6};
-    prediction out;
+    prediction out, plain;
     assert_int_equal(predict_pulse(&a, &p.method, q, w, command, true, &out), STATUS_OK);
+
+    // whether energies are looked at changes nothing
+    assert_int_equal(predict_pulse(&a, &p.method, q, w, command, false, &plain), STATUS_OK);
+    assert_int_equal(plain.doubt, out.doubt);
+    check_relative(plain.force, out.force, 1e-9);
     return out;
 }
 

@@ -61,7 +61,8 @@ static bool touch(const arm *a, motion *m, const double *q, const double *w, dou
 static status follow(arm *a, motion *m, const voltage_profile *command, seen_energies *seen,
                      prediction *out)
 {
-    double before = 0; // the peak some time before the horizon [N]
+    const double settled = SETTLED_FROM * PULSE_HORIZON;
+    double before = 0; // the peak then [N]
     int next = 0, steps = 0;
     while (m->state[SLOT_TIME] < PULSE_HORIZON) {
         double until = fmin(give_commands(a, m, command, &next), PULSE_HORIZON);
@@ -69,8 +70,9 @@ static status follow(arm *a, motion *m, const voltage_profile *command, seen_ene
             see_energies(a, m, seen);
             until = fmin(until, m->state[SLOT_TIME] + ENERGY_ROW);
         }
-        if (m->state[SLOT_TIME] < SETTLED_FROM * PULSE_HORIZON) {
+        if (m->state[SLOT_TIME] <= settled) {
             before = m->record.pulse_peak;
+            until = m->state[SLOT_TIME] < settled ? fmin(until, settled) : until;
         }
 
         // a step, and the event at its end; a command may end the contact, too

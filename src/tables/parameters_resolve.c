@@ -50,11 +50,10 @@ static status resolve_motor(parameters *p, fault *f)
 #define LEAST_FACE 1e-9 // mass of a wall's face that is not none [kg]
 
 // Walls nobody has measured: docs/explanation/model.md says where these come from.
-#define SOFT_STIFFNESS  75e3 // Kelvin-Voigt [N/m]
-#define SOFT_DAMPING    20.0 // [N s/m]
-#define HERTZ_STIFFNESS 1e6  // Hunt-Crossley [N/m^1.5]
-#define RESTITUTION_LOSS                                                                           \
-    0.2 // by which restitution falls per approach speed, Hunt-Crossley's alpha [s/m]
+#define SOFT_STIFFNESS   75e3 // Kelvin-Voigt [N/m]
+#define SOFT_DAMPING     20.0 // [N s/m]
+#define HERTZ_STIFFNESS  1e6  // Hunt-Crossley [N/m^1.5]
+#define RESTITUTION_LOSS 0.2  // restitution lost by speed, Hunt-Crossley's alpha [s/m]
 
 static status resolve_wall(parameters *p, fault *f)
 {

@@ -10,14 +10,13 @@
 #define PI 3.14159265358979323846
 
 // The numbers of the design, derived in docs/explanation/control-design.md.
-#define TRAVEL_TIME 0.05 // in which the arm takes up a wanted speed [s],
-#define LAND_TIME   0.02 // and after a bounce [s]
-#define SOFT_SPEED  0.2  // of a soft touch, for every newton wanted [rad/s/N],
-#define MOST_SPEED  0.45 // at most [rad/s],
-#define LEAST_SPEED 0.12 // and no less, so as to come in time [rad/s],
-#define LEAST_LINKS 0.33 // nor than this with more than two links [rad/s]
-#define GIVING_EFFORT                                                                              \
-    0.25 // share of the effort that it may cost to damp the tip on a wall that gives
+#define TRAVEL_TIME  0.05 // in which the arm takes up a wanted speed [s],
+#define LAND_TIME    0.02 // and after a bounce [s]
+#define SOFT_SPEED   0.2  // of a soft touch, for every newton wanted [rad/s/N],
+#define MOST_SPEED   0.45 // at most [rad/s],
+#define LEAST_SPEED  0.12 // and no less, so as to come in time [rad/s],
+#define LEAST_LINKS  0.33 // nor than this with more than two links [rad/s]
+#define SOFT_EFFORT  0.25 // share of the effort that damping the tip may cost on a wall that gives
 #define LEAST_MARGIN 0.05 // of p h over 1, below which the force does not run away with the motion
 
 // Modal coordinates and rates of one state over a period, under a command that gives so much torque
@@ -109,7 +108,7 @@ static bool find_press_gain(observer_design *d, const controller_setup *setup, b
         quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
     }
     double drive = set->hub[0] * setup->torque_per_volt;
-    cost.effort = (gives ? GIVING_EFFORT : 1) * drive * drive / (4 * set->square[0]);
+    cost.effort = (gives ? SOFT_EFFORT : 1) * drive * drive / (4 * set->square[0]);
     return quadratic_gain(&model, &cost, d->press_gain);
 }
 
@@ -175,9 +174,7 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
 #define AS_STIFF  1.25      // ratio of stiffnesses up to which an arm is one with that told of
 #define HUB_GIVES (1.0 / 6) // of the beam's compliance at the wall, that of a hub on a spring
 #define NO_DOUBT  28        // of -2 log likelihood, 2 log(1e6),
-#define NO_MORE                                                                                    \
-    30 // more of it for a wall that gives, which a tip that bounces looks like,
-       // and for a mass at the tip, which a wrong inertia looks like
+#define HANDICAP  30        // more of it where bounces or a wrong inertia look like the arm
 
 const observer_design *observer_arms_design(const observer_arms *a)
 {
@@ -283,7 +280,7 @@ bool observer_arms_choose(observer_arms *a)
     double least = observer_arms_observer(a)->missed - NO_DOUBT;
     for (int i = 0; i < count; i++) {
         const bool gives = i >= a->giving && i < a->loaded;
-        const double missed = a->arms[i].observer.missed + (i >= a->giving ? NO_MORE : 0);
+        const double missed = a->arms[i].observer.missed + (i >= a->giving ? HANDICAP : 0);
         if (missed < least && !(gives && a->thrown)) {
             best = i;
             least = missed;
