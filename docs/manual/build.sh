@@ -45,9 +45,10 @@ escaped() {
 
 # chapters from the program's tables and the library's headers; results, where they have been made
 tables() {
-    for page in parameters signals quantities laws events; do
+    for page in parameters signals quantities events; do
         "$program" help --reference "$page" >"$work/table-of-$page.md"
     done
+    bash "$source/docs/manual/laws.sh" "$program" "$source" >"$work/table-of-laws.md"
     awk -F '\t' 'NR == 1 { print "# The claims of the thesis"; next }
         $1 != chapter { print "\n## Claims of chapter " $1 "\n\n| thesis | what it says | place | command | verdict |"
                         print "|---|---|---|---|---|"; chapter = $1 }

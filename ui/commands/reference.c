@@ -318,8 +318,10 @@ static void put_law_parameters(FILE *stream, const controller *c)
         char path[80];
 
         snprintf(path, sizeof path, "control.%s", c->parameters[i].name);
-        if (parameter_find(path) >= 0 && c->parameters[i].description == NULL) {
-            put(stream, "- `%s`\n", path);
+        const int known = parameter_find(path);
+        if (known >= 0 && c->parameters[i].description == NULL) {
+            put(stream, "- `%s`, by default %s: %t\n", path, words_of(known).initial,
+                parameter_table[known].description);
         } else {
             put(stream, "- in `control.settings`: `%s`, %g %s (%g to %g), %t\n", p.name, p.initial,
                 p.unit != NULL ? p.unit : "", p.minimum, p.maximum,
