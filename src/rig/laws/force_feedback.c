@@ -1,5 +1,10 @@
 // What the laws share that close the loop over the force reading alone (force-pd, force-integral,
 // discontinuous), and the one that closes none (open-loop): modes, parameters and memory.
+//
+// With the static torque 2 f l of the wanted force f, the hub's velocity w and K the torque per
+// volt, force-pd and discontinuous send in contact
+//
+//     u = (2 f l - kv w)/K + force_gain (f - reading)
 #include <assert.h>
 #include <math.h>
 
@@ -64,8 +69,7 @@ static void force_feedback_choose_mode(force_memory *m, const controller_input *
     m->mode = in->wanted_mode >= 0 ? in->wanted_mode : contact ? CONTACT : APPROACH;
 }
 
-// Static torque of the wanted force f, 2 f l, damped by the hub's velocity, and feedback of the
-// force's error: ((2 f l - kv w)/K + force_gain (f - reading)) with K the torque per volt [V].
+// The law of force-pd, with the torque and the turn of a set-point that moves [V].
 static double force_feedback_command(const force_memory *m, const controller_input *in)
 {
     // a set-point that moves turns the hub
