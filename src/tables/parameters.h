@@ -1,7 +1,7 @@
-// Every parameter of a run, and the one table that describes them.
+// Every parameter of a run, and the one table that describes them: parameters.inc.
 //
 // The table feeds scenario files, --set, sweeps, `show`, validation messages, the terminal's
-// sliders and the manual. A parameter is added here and nowhere else.
+// sliders and the manual.
 #pragma once
 
 #include <stdbool.h>
@@ -39,131 +39,6 @@ enum {
 
 typedef enum playback_hold { PLAYBACK_HOLD, PLAYBACK_LINEAR } playback_hold;
 
-typedef struct arm_parameters {
-    int model;            // arm_model_kind
-    int links;            // number of links of the beam, N
-    int hub_joint;        // hub_joint_kind
-    double length;        // beam length, N links together [m]
-    double mass;          // beam mass, N links together [kg]
-    double hub_inertia;   // I1 [kg m2]
-    double link_inertia;  // I2 = I3 about the centre of mass, N = 2 only [kg m2]
-    double k1;            // hub joint spring; of a beam k2 N [N m/rad]
-    double k2;            // joint spring of the two-link beam [N m/rad]; N links: k2 N/2 each
-    double EI;            // bending stiffness of the beam, k2 length/2 [N m2]
-    double damping_ratio; // structural damping ratio of the first clamped-free mode [-]
-    double tilt;          // of the plane to the level [rad]
-    double tip_mass;      // of what the tip carries, a sensor [kg]
-    double stiffening;    // share by which k2 grows with the square of its bend [1/rad2]
-    double air_drag;      // force per length and velocity of the beam [N s/m2]
-    char modal_ratios[PARAMETER_TEXT_SIZE];    // list: damping ratios of the first modes [-]
-    char joint_stiffness[PARAMETER_TEXT_SIZE]; // list: each inner joint, of a beam the root too,
-                                               // from the hub outwards [N m/rad]
-    char link_lengths[PARAMETER_TEXT_SIZE];    // list: of each link, from the hub outwards [m]
-} arm_parameters;
-
-typedef struct motor_parameters {
-    int drive;               // motor_drive: what the amplifier gives for a command
-    double voltage;          // command before the amplifier [V]
-    double voltage_limit;    // largest command the D/A gives [V]
-    double amplifier_gain;   // [-]
-    double transconductance; // of a current drive, amperes per volt of command [A/V]
-    double current_limit;    // of the amplifier, 0: none [A]
-    double torque_constant;  // kT [N m/A]
-    double back_emf;         // kB [V s/rad]
-    double resistance;       // Ra [ohm]
-    double inductance;       // of the armature, 0: its current follows at once [H]
-    double viscous_friction; // kfr [N m s/rad]
-    double stiction;         // kst, Coulomb friction torque [N m]
-} motor_parameters;
-
-typedef struct wall_parameters {
-    int kind;                // wall_kind
-    double angle;            // direction of the contact point (or the flat wall) from the hub [rad]
-    double restitution;      // coefficient of restitution e of rigid wall or face [-]
-    int contact;             // wall_law
-    double stiffness;        // k of the wall that gives [N/m], Hunt-Crossley [N/m^n]
-    double damping;          // its c [N s/m], Hunt-Crossley [N s/m^(n+1)]
-    double exponent;         // n, Hunt-Crossley [-]
-    double mass;             // of the face of a Kelvin-Voigt wall, 0: none [kg]
-    int motion;              // wall_motion_kind
-    double motion_amplitude; // towards the arm [m]
-    double motion_frequency; // [Hz]
-    double motion_time;      // [s]
-    char motion_file[PARAMETER_TEXT_SIZE]; // CSV with time [s] and place [m]
-} wall_parameters;
-
-typedef struct method_parameters {
-    int name;               // method_kind
-    double step;            // h [s]
-    double beta;            // Newmark's beta [-]
-    double gamma;           // Newmark's gamma [-]
-    double spectral_radius; // generalised-alpha's rho at infinite frequency [-]
-    double rest_speed;      // approach speed below which an impact is plastic (rest rule) [m/s]
-    double residual_bound;  // largest residual of the energy balance, as a share of the energy put
-                            // in [-]
-    int engine;             // engine_kind, of the event method
-    double tolerance;       // of the stiff engine's steps, as a share of the momentum [-]
-} method_parameters;
-
-typedef struct printed_parameters {
-    bool spring_counted_twice;      // (2.16) carries k2 (errata B1)
-    bool force_at_link_end;         // contact force acts at l, not at the contact point (B5)
-    bool sign_dead_band;            // sign() uses -1e-2 where it means -1e-5 (C1)
-    bool energy_cross_term;         // energy predictor uses E2 w2 w3 for 2 l e w2 w3 (C2)
-    int reevaluation;               // listing_reevaluation: where C3's term stands, or none at all
-    bool clamp_force;               // a re-evaluated force below zero becomes zero
-    bool force_after_release;       // re-evaluates the force after release (C4)
-    bool feed_newmark_acceleration; // next step starts from Newmark's own acceleration (C5)
-    int newton_iterations;          // Newton solves per step
-} printed_parameters;
-
-typedef struct initial_parameters {
-    double angle;    // all bodies [rad]
-    double velocity; // all bodies [rad/s]
-} initial_parameters;
-
-typedef struct run_parameters {
-    double duration; // [s]
-} run_parameters;
-
-typedef struct control_parameters {
-    int law;                                   // control_law
-    char plugin[PARAMETER_TEXT_SIZE];          // file of a shared object
-    char command[PARAMETER_TEXT_SIZE];         // of a program, as a shell takes it
-    double answer_time;                        // that the program has for each answer [s]
-    char playback_file[PARAMETER_TEXT_SIZE];   // CSV with the command to play back
-    char playback_column[PARAMETER_TEXT_SIZE]; // heading of its column
-    double playback_shift;                     // by which it comes later than recorded [s]
-    int playback_hold;                         // playback_hold: between rows
-    char settings[PARAMETER_TEXT_SIZE]; // "name=value name=value", a plug-in's own parameters
-    char lock[PARAMETER_TEXT_SIZE];     // mode in which the law is held, "none" if free
-    double rate;                        // samples a second [Hz]
-    double delay;                       // from sampling to the command's effect [s]
-    double delay_periods;               // the same in sampling periods, on top of it
-    double jitter;                      // of the sampling instants, whole width [s]
-    int seed;                           // of every random number of the rig
-    double force;                       // commanded force [N]
-    double force_rate;                  // ramp when `force` changes, 0: a jump [N/s]
-    double force_amplitude;             // amplitude of a sine added to the commanded force [N]
-    double force_frequency;             // of that sine [Hz]
-    double approach_voltage;            // [V]
-    double kp, kv;                      // gains of (5.24), (5.25), in N m/rad or V/rad, and s
-    int gains;                          // 0 torque, 1 volts, 2 printed (errata B7)
-    int coefficients;                   // 0 corrected, 1 printed (errata B2)
-    double transition_time;             // t_f [s]
-    double contact_threshold;           // force reading that means contact [N]
-    char k2_table[PARAMETER_TEXT_SIZE]; // "FORCE:K2 ...", takes the place of the arm's k2 there
-    double force_gain;                  // of force errors [V/N]
-    double integral_gain;               // of their integral [V/(N s)]
-    double speed_limit;                 // hub velocity of a limited approach [rad/s]
-    double reverse_time;                // how long reverse-torque brakes [s]
-    double force_limit;                 // that a predictive approach keeps to [N]
-    double switch_share;                // where bang-bang switches, share of the way to the wall
-    double travel_time;                 // of the tip to the wall under inverse-dynamics [s]
-    double arrival_speed;               // of the tip at the wall under inverse-dynamics [m/s]
-    int impact_angle;                   // impact_angle_source: where hybrid has theta_imp from
-} control_parameters;
-
 // In the order of the choices of control.impact_angle.
 typedef enum impact_angle_source {
     IMPACT_ANGLE_TOLD,
@@ -171,68 +46,33 @@ typedef enum impact_angle_source {
     IMPACT_ANGLE_BY_ACCELEROMETER
 } impact_angle_source;
 
-// The nominal model that a controller is told of the arm on the rig (belief.*), as factors of the
-// truth and differences from it.
-typedef struct nominal_model_parameters {
-    int links;                // number of links its model of the beam has
-    double mass_factor;       // of the beam's mass and its moments of inertia
-    double inertia_factor;    // of the hub's moment of inertia
-    double friction_factor;   // of Coulomb and viscous friction
-    double torque_factor;     // of kT
-    double k2_factor;         // of k2 (of that of control.k2_table)
-    double hub_spring_factor; // of k1, where the hub has a spring
-    double wall_error;        // nominal wall angle minus the wall's [rad]
-    double delay_error;       // nominal delay of commands minus the true one [s]
-} nominal_model_parameters;
-
 // In the order of the choices of sensor.force.
 typedef enum force_sensor { FORCE_BY_FSR, FORCE_BY_PIEZO } force_sensor;
 
 enum { CONTROL_MOST_DELAY = 5 }; // from a sample to its command [periods]
 
-typedef struct sensor_parameters {
-    bool ideal;                     // all imperfections of sensors and converters are off
-    int force;                      // force_sensor: whose reading a controller gets as the force
-    int encoder_counts;             // per revolution, 0: continuous
-    double encoder_gain_error;      // share by which it shows more than there is
-    double encoder_offset;          // [rad]
-    double tachometer_gain;         // [V s/rad]
-    double tachometer_ripple;       // amplitude as a share of the reading
-    int tachometer_ripple_count;    // ripples a revolution
-    double tachometer_noise;        // standard deviation [V]
-    double tachometer_gain_error;   // share by which it shows more than there is
-    double tachometer_offset;       // [rad/s]
-    double fsr_rise_time;           // 10 % to 90 % [s]
-    double fsr_resistance;          // at 1 N [ohm]
-    double fsr_exponent;            // of the power law
-    double fsr_divider;             // measuring resistor [ohm]
-    double fsr_supply;              // across the divider [V]
-    double fsr_gain;                // of the stage behind it
-    double fsr_saturation;          // force beyond which the resistance falls no further [N]
-    double fsr_noise;               // standard deviation [V]
-    double fsr_gain_error;          // share by which it shows more than there is
-    double fsr_offset;              // [N]
-    double fsr_hysteresis;          // share by which it lags behind a force that turns
-    bool piezo;                     // piezoelectric force sensor fitted
-    double piezo_gain;              // [V/N]
-    double piezo_rise_time;         // 10 % to 90 % [s]
-    double piezo_leak_time;         // time constant with which its charge leaks, 0: it stays [s]
-    double piezo_range;             // largest force it shows either way, 0: any [N]
-    double piezo_noise;             // standard deviation [V]
-    double piezo_gain_error;        // share by which it shows more than there is
-    double piezo_offset;            // [N]
-    bool film;                      // piezo film along the beam fitted
-    double film_gain;               // [V/rad]
-    double film_leak_time;          // time constant with which its charge leaks, 0: it stays [s]
-    double film_noise;              // standard deviation [V]
-    bool accelerometer;             // on the hub, fitted
-    double accelerometer_gain;      // [V s2/rad]
-    double accelerometer_rise_time; // 10 % to 90 % [s]
-    double accelerometer_range;     // largest acceleration it shows either way, 0: any [rad/s2]
-    double accelerometer_noise;     // standard deviation [V]
-    int adc_bits, dac_bits;         // 0: continuous
-    double adc_range;               // either way [V]
-} sensor_parameters;
+// arm_parameters, motor_parameters and so on: a field for each row of the list. A choice is an
+// index of its words, a list a text of numbers. belief.*, the nominal model that a controller is
+// told of the arm on the rig, has factors of the truth and differences from it.
+#define GROUP(name)                typedef struct name {
+#define REAL(group, field, ...)    double field;
+#define INTEGER(group, field, ...) int field;
+#define CHOICE(group, field, ...)  int field;
+#define BOOLEAN(group, field, ...) bool field;
+#define TEXT(group, field, ...)    char field[PARAMETER_TEXT_SIZE];
+#define LIST(group, field, ...)    char field[PARAMETER_TEXT_SIZE];
+#define END_GROUP(name)                                                                            \
+    }                                                                                              \
+    name;
+#include "src/tables/parameters.inc"
+#undef GROUP
+#undef REAL
+#undef INTEGER
+#undef CHOICE
+#undef BOOLEAN
+#undef TEXT
+#undef LIST
+#undef END_GROUP
 
 typedef struct parameters {
     arm_parameters arm;

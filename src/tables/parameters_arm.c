@@ -8,6 +8,10 @@
 #include "src/base/numbers.h"
 #include "src/tables/parameters.h"
 
+#define ROOT_SPRING                                                                                \
+    "arm.k1 is for arm.hub_joint = spring, but with beam the root has the spring k2 N = %g N "     \
+    "m/rad"
+
 int parameter_list_numbers(const char *list, double numbers[PARAMETER_LIST_MOST])
 {
     assert(list != NULL && numbers != NULL);
@@ -123,27 +127,18 @@ void parameters_follow(parameters *p, int index)
 
 status parameter_may_change(const parameters *p, int index, fault *f)
 {
-    assert(p != NULL && index >= 0 && index < parameter_count);
+    assert(index >= 0 && index < parameter_count);
     const char *path = parameter_table[index].path;
     const bool bending = index == PARAMETER_INDEX(arm.k2) || index == PARAMETER_INDEX(arm.EI);
-    if (p->arm.model == ARM_PRINTED) {
-        return index != PARAMETER_INDEX(wall.angle)
-                   ? STATUS_OK
-                   : fault_set_at(f, STATUS_BAD_SCENARIO, path,
-                                  "the wall of the printed model does not move during a run");
-    }
-    if (index == PARAMETER_INDEX(arm.k1) && p->arm.hub_joint == HUB_BEAM) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, path,
-                            "arm.k1 is for arm.hub_joint = spring, but with beam the root has the "
-                            "spring k2 N = %g N m/rad",
-                            p->arm.k1);
-    }
-    if (bending && p->arm.joint_stiffness[0] != '\0') {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, path,
-                            "%s follows from arm.joint_stiffness, which is given and does not "
-                            "change during a run",
-                            path);
-    }
+    const bool printed = p->arm.model == ARM_PRINTED;
+    REFUSE_IF(printed && index == PARAMETER_INDEX(wall.angle), path, f,
+              "the wall of the printed model does not move during a run");
+    REFUSE_IF(!printed && index == PARAMETER_INDEX(arm.k1) && p->arm.hub_joint == HUB_BEAM, path, f,
+              ROOT_SPRING, p->arm.k1);
+    REFUSE_IF(
+        !printed && bending && p->arm.joint_stiffness[0] != '\0', path, f,
+        "%s follows from arm.joint_stiffness, which is given and does not change during a run",
+        path);
     return STATUS_OK;
 }
 
@@ -160,36 +155,27 @@ static status check_lists(const parameters *p, fault *f)
     double numbers[PARAMETER_LIST_MOST];
     const int stiffnesses = parameter_list_numbers(a->joint_stiffness, numbers);
     const int lengths = parameter_list_numbers(a->link_lengths, numbers);
-    const int joints = a->links - (a->hub_joint != HUB_BEAM);
-    if (stiffnesses > 0 && stiffnesses != joints) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.joint_stiffness, arm.links),
-                            "arm.joint_stiffness has %d number%s, expected %d: arm.links = %d "
-                            "have %s",
-                            stiffnesses, plural(stiffnesses), joints, a->links,
-                            a->hub_joint == HUB_BEAM ? "a joint before each (arm.hub_joint = beam)"
-                                                     : "a joint between each two");
-    }
-    if (lengths > 0 && lengths != a->links) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.link_lengths, arm.links),
-                            "arm.link_lengths has %d number%s, but arm.links = %d", lengths,
-                            plural(lengths), a->links);
-    }
+    const bool beam = a->hub_joint == HUB_BEAM;
+    const int joints = a->links - !beam;
+    REFUSE_IF(stiffnesses > 0 && stiffnesses != joints, BLAME2(p, arm.joint_stiffness, arm.links),
+              f, "arm.joint_stiffness has %d number%s, expected %d: arm.links = %d have %s",
+              stiffnesses, plural(stiffnesses), joints, a->links,
+              beam ? "a joint before each (arm.hub_joint = beam)" : "a joint between each two");
+    REFUSE_IF(lengths > 0 && lengths != a->links, BLAME2(p, arm.link_lengths, arm.links), f,
+              "arm.link_lengths has %d number%s, but arm.links = %d", lengths, plural(lengths),
+              a->links);
 
     // what a list takes the place of
-    if (stiffnesses > 0 && (IS_SET(p, arm.k2) || IS_SET(p, arm.EI))) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME3(p, arm.joint_stiffness, arm.k2, arm.EI),
-                            "arm.joint_stiffness and %s are both given, expected one of them",
-                            IS_SET(p, arm.k2) ? "arm.k2" : "arm.EI");
-    }
-    if (lengths > 0 && IS_SET(p, arm.length)) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.link_lengths),
-                            "arm.link_lengths and arm.length are both given, expected one of them");
-    }
-    if (lengths > 0 && IS_SET(p, arm.link_inertia)) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.link_inertia, arm.link_lengths),
-                            "arm.link_inertia is for two equal links; those of arm.link_lengths "
-                            "take the inertia of a uniform rod");
-    }
+    REFUSE_IF(stiffnesses > 0 && (IS_SET(p, arm.k2) || IS_SET(p, arm.EI)),
+              BLAME3(p, arm.joint_stiffness, arm.k2, arm.EI), f,
+              "arm.joint_stiffness and %s are both given, expected one of them",
+              IS_SET(p, arm.k2) ? "arm.k2" : "arm.EI");
+    REFUSE_IF(lengths > 0 && IS_SET(p, arm.length), BLAME1(p, arm.link_lengths), f,
+              "arm.link_lengths and arm.length are both given, expected one of them");
+    REFUSE_IF(lengths > 0 && IS_SET(p, arm.link_inertia),
+              BLAME2(p, arm.link_inertia, arm.link_lengths), f,
+              "arm.link_inertia is for two equal links; those of arm.link_lengths take the inertia "
+              "of a uniform rod");
     return STATUS_OK;
 }
 
@@ -200,24 +186,17 @@ static status check_damping(const parameters *p, fault *f)
     double numbers[PARAMETER_LIST_MOST];
     const int ratios = parameter_list_numbers(a->modal_ratios, numbers);
     const int modes = a->links - (a->hub_joint == HUB_RIGID);
-    if (ratios > 0 && a->damping_ratio > 0) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.modal_ratios, arm.damping_ratio),
-                            "arm.modal_ratios and arm.damping_ratio are both given, expected one "
-                            "of them");
-    }
-    if (ratios > 0 && a->links > PARAMETER_LIST_MOST) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.modal_ratios, arm.links),
-                            "arm.modal_ratios is for at most %d links, but arm.links = %d",
-                            PARAMETER_LIST_MOST, a->links);
-    }
-    if (ratios > modes || ratios > PARAMETER_MODES_MOST) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.modal_ratios, arm.links),
-                            "arm.modal_ratios has %d number%s, expected at most %d: arm.links = %d "
-                            "have %d mode%s with the hub held",
-                            ratios, plural(ratios),
-                            modes < PARAMETER_MODES_MOST ? modes : PARAMETER_MODES_MOST, a->links,
-                            modes, plural(modes));
-    }
+    const int most = modes < PARAMETER_MODES_MOST ? modes : PARAMETER_MODES_MOST;
+    REFUSE_IF(ratios > 0 && a->damping_ratio > 0, BLAME2(p, arm.modal_ratios, arm.damping_ratio), f,
+              "arm.modal_ratios and arm.damping_ratio are both given, expected one of them");
+    REFUSE_IF(ratios > 0 && a->links > PARAMETER_LIST_MOST, BLAME2(p, arm.modal_ratios, arm.links),
+              f, "arm.modal_ratios is for at most %d links, but arm.links = %d",
+              PARAMETER_LIST_MOST, a->links);
+    REFUSE_IF(
+        ratios > most, BLAME2(p, arm.modal_ratios, arm.links), f,
+        "arm.modal_ratios has %d number%s, expected at most %d: arm.links = %d have %d mode%s "
+        "with the hub held",
+        ratios, plural(ratios), most, a->links, modes, plural(modes));
     return STATUS_OK;
 }
 
@@ -230,50 +209,40 @@ static status check_beam_method(const parameters *p, fault *f)
     for (size_t i = 0; p->method.name != METHOD_EVENT && i < sizeof special / sizeof *special;
          i++) {
         char value[PARAMETER_TEXT_SIZE];
+        const char *path = parameter_table[special[i]].path;
         parameter_format(p, special[i], value, sizeof value);
-        if (p->set[special[i]] && value[0] != '\0' && strcmp(value, "0") != 0) {
-            const char *path = parameter_table[special[i]].path;
-            return fault_set_at(
-                f, STATUS_BAD_SCENARIO, path, "%s runs with method.name = event only%s", path,
-                p->arm.model == ARM_PRINTED ? ", which the printed model has not" : "");
-        }
+        REFUSE_IF(p->set[special[i]] && value[0] != '\0' && strcmp(value, "0") != 0, path, f,
+                  "%s runs with method.name = event only%s", path,
+                  p->arm.model == ARM_PRINTED ? ", which the printed model has not" : "");
     }
 
     // each spring of a list is known as it is
-    if (p->arm.stiffening > 0 && (p->arm.joint_stiffness[0] || p->arm.link_lengths[0])) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO,
-                            BLAME3(p, arm.stiffening, arm.joint_stiffness, arm.link_lengths),
-                            "arm.stiffening is for equal links and joints, but %s is given",
-                            p->arm.joint_stiffness[0] ? "arm.joint_stiffness" : "arm.link_lengths");
-    }
+    const bool stiffnesses = p->arm.joint_stiffness[0] != '\0';
+    REFUSE_IF(p->arm.stiffening > 0 && (stiffnesses || p->arm.link_lengths[0]),
+              BLAME3(p, arm.stiffening, arm.joint_stiffness, arm.link_lengths), f,
+              "arm.stiffening is for equal links and joints, but %s is given",
+              stiffnesses ? "arm.joint_stiffness" : "arm.link_lengths");
     return STATUS_OK;
 }
 
 // Length, stiffness of the beam and its root, as the lists have them.
 static status resolve_lists(parameters *p, fault *f)
 {
-    arm_parameters *a = &p->arm;
-    if (check_lists(p, f) != STATUS_OK) {
-        return STATUS_BAD_SCENARIO;
+    double numbers[PARAMETER_LIST_MOST], length = 0;
+    TRY(check_lists(p, f));
+    const int lengths = parameter_list_numbers(p->arm.link_lengths, numbers);
+    for (int k = 0; k < lengths; k++) {
+        length += numbers[k];
     }
-    double numbers[PARAMETER_LIST_MOST];
-    const int lengths = parameter_list_numbers(a->link_lengths, numbers);
-    if (lengths > 0) {
-        a->length = 0;
-        for (int k = 0; k < lengths; k++) {
-            a->length += numbers[k];
-        }
-    }
+    p->arm.length = lengths > 0 ? length : p->arm.length;
     return STATUS_OK;
 }
 
 // The beam's stiffness is given once, and with it that of its root.
 static status resolve_stiffness(parameters *p, fault *f)
 {
-    if (IS_SET(p, arm.EI) && IS_SET(p, arm.k2)) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.EI),
-                            "arm.EI and arm.k2 = 2 EI/length are both given, expected one of them");
-    }
+    REFUSE_IF(IS_SET(p, arm.EI) && IS_SET(p, arm.k2), BLAME1(p, arm.EI), f,
+              "arm.EI and arm.k2 = 2 EI/length are both given, expected one of them");
 
     // what was given says the rest
     if (p->arm.joint_stiffness[0] != '\0') {
@@ -282,55 +251,44 @@ static status resolve_stiffness(parameters *p, fault *f)
     parameters_follow(p, IS_SET(p, arm.EI) ? PARAMETER_INDEX(arm.EI) : PARAMETER_INDEX(arm.k2));
 
     // a beam has its root's too
-    if (p->arm.hub_joint == HUB_BEAM && IS_SET(p, arm.k1)) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.k1),
-                            "arm.k1 is for arm.hub_joint = spring, but with beam the root has the "
-                            "spring k2 N = %g N m/rad",
-                            p->arm.k1);
-    }
+    REFUSE_IF(p->arm.hub_joint == HUB_BEAM && IS_SET(p, arm.k1), BLAME1(p, arm.k1), f, ROOT_SPRING,
+              p->arm.k1);
     return STATUS_OK;
 }
 
 status parameters_resolve_arm(parameters *p, fault *f)
 {
-    assert(p != NULL);
-    if (resolve_lists(p, f) != STATUS_OK || check_damping(p, f) != STATUS_OK ||
-        check_beam_method(p, f) != STATUS_OK) {
-        return STATUS_BAD_SCENARIO;
-    }
-    if (IS_SET(p, arm.link_inertia) && p->arm.links != 2) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.link_inertia, arm.links),
-                            "arm.link_inertia is for two links only, but arm.links = %d (other N "
-                            "take the inertia of a uniform rod)",
-                            p->arm.links);
-    }
+    arm_parameters *a = &p->arm;
+    TRY(resolve_lists(p, f));
+    TRY(check_damping(p, f));
+    TRY(check_beam_method(p, f));
+    REFUSE_IF(
+        IS_SET(p, arm.link_inertia) && a->links != 2, BLAME2(p, arm.link_inertia, arm.links), f,
+        "arm.link_inertia is for two links only, but arm.links = %d (other N take the inertia "
+        "of a uniform rod)",
+        a->links);
 
     // a uniform rod's moment of inertia about its centre, m l^2 / 12 (errata B3)
-    if (isnan(p->arm.link_inertia)) {
-        double m = p->arm.mass / p->arm.links, l = p->arm.length / p->arm.links;
-        p->arm.link_inertia = m * l * l / 12;
+    if (isnan(a->link_inertia)) {
+        const double m = a->mass / a->links, l = a->length / a->links;
+        a->link_inertia = m * l * l / 12;
     }
-
-    if (resolve_stiffness(p, f) != STATUS_OK) {
-        return STATUS_BAD_SCENARIO;
-    }
+    TRY(resolve_stiffness(p, f));
 
     // behind a spring the hub is a body of its own
-    if (p->arm.hub_joint != HUB_RIGID && p->arm.hub_inertia == 0) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME2(p, arm.hub_inertia, arm.hub_joint),
-                            "arm.hub_inertia = 0 kg m2 leaves a hub on a spring nothing to move, "
-                            "expected above 0 or arm.hub_joint = rigid");
-    }
+    REFUSE_IF(
+        a->hub_joint != HUB_RIGID && a->hub_inertia == 0, BLAME2(p, arm.hub_inertia, arm.hub_joint),
+        f,
+        "arm.hub_inertia = 0 kg m2 leaves a hub on a spring nothing to move, expected above 0 "
+        "or arm.hub_joint = rigid");
 
     // the straight arm starts in front of the wall, whose gap is length sin(ahead) for any kind
     const double ahead = p->wall.angle - p->initial.angle;
-    const bool in_front = ahead >= -START_ROUNDING && ahead <= M_PI + START_ROUNDING;
-    if (p->wall.kind != WALL_NONE && !in_front) {
-        return fault_set_at(
-            f, STATUS_BAD_SCENARIO, BLAME2(p, initial.angle, wall.angle),
-            "initial.angle = %.10g rad lies behind the wall, expected from wall.angle - pi = "
-            "%.10g to wall.angle = %.10g rad",
-            p->initial.angle, p->wall.angle - M_PI, p->wall.angle);
-    }
+    REFUSE_IF(
+        p->wall.kind != WALL_NONE && !(ahead >= -START_ROUNDING && ahead <= M_PI + START_ROUNDING),
+        BLAME2(p, initial.angle, wall.angle), f,
+        "initial.angle = %.10g rad lies behind the wall, expected from wall.angle - pi = %.10g "
+        "to wall.angle = %.10g rad",
+        p->initial.angle, p->wall.angle - M_PI, p->wall.angle);
     return STATUS_OK;
 }

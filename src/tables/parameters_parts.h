@@ -24,6 +24,11 @@ static inline const char *first_given(const parameters *p, const int *indices)
 #define BLAME3(p, a, b, c)                                                                         \
     first_given(p, (const int[]){PARAMETER_INDEX(a), PARAMETER_INDEX(b), PARAMETER_INDEX(c), -1})
 
+// Ends the calling function with STATUS_BAD_SCENARIO and a sentence, printf-like, where parameters
+// contradict one another.
+#define REFUSE_IF(contradiction, blamed, f, ...)                                                   \
+    TRY((contradiction) ? fault_set_at(f, STATUS_BAD_SCENARIO, blamed, __VA_ARGS__) : STATUS_OK)
+
 // The shape of the arm and where it starts, all else being given. STATUS_BAD_SCENARIO with a
 // sentence and the path to blame.
 status parameters_resolve_arm(parameters *p, fault *f);
