@@ -10,23 +10,8 @@
 #include "src/base/words.h"
 
 // The public numbers are those of the program.
-#define SAME_CODE(code) _Static_assert((int)IMPACTLAB_##code == (int)STATUS_##code, #code)
-SAME_CODE(OK);
-SAME_CODE(BAD_ARGUMENT);
-SAME_CODE(BAD_SCENARIO);
-SAME_CODE(NOT_FINITE);
-SAME_CODE(UNSTABLE);
-SAME_CODE(NEWTON_FAILED);
-SAME_CODE(NO_PROGRESS);
-SAME_CODE(SINGULAR);
-SAME_CODE(NO_MEMORY);
-SAME_CODE(CANNOT_WRITE);
-SAME_CODE(CANNOT_READ);
-SAME_CODE(EXPECTATION_FAILED);
-SAME_CODE(STOPPED);
-SAME_CODE(FOLDED);
-SAME_CODE(CONTROLLER_FAILED);
-SAME_CODE(NOT_ALLOWED);
+#define SAME_CODE(code, text) _Static_assert((int)IMPACTLAB_##code == (int)STATUS_##code, text);
+STATUS_LIST(SAME_CODE)
 
 const char *impactlab_status_text(int code)
 {

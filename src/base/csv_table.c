@@ -3,12 +3,14 @@
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "src/base/numbers.h"
+#include "src/base/whole_file.h"
 
 enum { MOST_COLUMNS = 4096, SHOWN = 60 };
 
@@ -17,37 +19,19 @@ enum { MOST_COLUMNS = 4096, SHOWN = 60 };
 // The whole file as a text on the heap.
 static status read_text(const char *path, char **text, fault *f)
 {
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        return fault_set(f, STATUS_CANNOT_READ, "'%.300s' cannot be opened: %s", path,
-                         strerror(errno));
+    size_t length;
+    const char *failed;
+    *text = whole_file_read(path, SIZE_MAX / 4, &length, &failed);
+    if (*text == NULL) {
+        return errno == ENOMEM ? fault_no_memory(f)
+                               : fault_set(f, STATUS_CANNOT_READ, "'%.300s' cannot be %s: %s", path,
+                                           failed, strerror(errno));
     }
-
-    size_t room = 0, length = 0;
-    char *bytes = NULL;
-    do {
-        char *more = realloc(bytes, (room = 2 * room + 65536));
-        if (more == NULL) {
-            free(bytes);
-            fclose(file);
-            return fault_no_memory(f);
-        }
-        bytes = more;
-        length += fread(bytes + length, 1, room - length - 1, file);
-    } while (length + 1 == room);
-
-    const int reason = ferror(file) != 0 ? errno : 0;
-    fclose(file);
-    bytes[length] = '\0';
-    if (reason != 0 || strlen(bytes) != length) {
-        free(bytes);
-        return reason != 0
-                   ? fault_set(f, STATUS_CANNOT_READ, "'%.300s' cannot be read: %s", path,
-                               strerror(reason))
-                   : fault_set(f, STATUS_BAD_ARGUMENT,
-                               "'%.300s' is no text, expected a table of numbers (CSV)", path);
+    if (strlen(*text) != length) {
+        free(*text);
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%.300s' is no text, expected a table of numbers (CSV)", path);
     }
-    *text = bytes;
     return STATUS_OK;
 }
 

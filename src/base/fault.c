@@ -10,7 +10,7 @@ const char *status_text(status code)
 {
     switch (code) {
 #define STATUS_CASE(name, text)                                                                    \
-    case name:                                                                                     \
+    case STATUS_##name:                                                                            \
         return text;
         STATUS_LIST(STATUS_CASE)
 #undef STATUS_CASE

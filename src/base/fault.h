@@ -3,25 +3,25 @@
 
 // One list, two uses: the enumeration and the text of each code.
 #define STATUS_LIST(X)                                                                             \
-    X(STATUS_OK, "done")                                                                           \
-    X(STATUS_BAD_ARGUMENT, "bad argument")                                                         \
-    X(STATUS_BAD_SCENARIO, "bad scenario")                                                         \
-    X(STATUS_NOT_FINITE, "a state became infinite or not a number")                                \
-    X(STATUS_UNSTABLE, "the energy ledger does not close, the integration is unstable")            \
-    X(STATUS_NEWTON_FAILED, "Newton's iteration did not converge")                                 \
-    X(STATUS_NO_PROGRESS, "events or strides follow one another without time passing")             \
-    X(STATUS_SINGULAR, "the system of equations is singular")                                      \
-    X(STATUS_NO_MEMORY, "out of memory")                                                           \
-    X(STATUS_CANNOT_WRITE, "a file could not be written")                                          \
-    X(STATUS_CANNOT_READ, "a file could not be read")                                              \
-    X(STATUS_EXPECTATION_FAILED, "an expected value was not met")                                  \
-    X(STATUS_STOPPED, "stopped before its end")                                                    \
-    X(STATUS_FOLDED, "the arm is folded across the hub's axis on a flat wall")                     \
-    X(STATUS_CONTROLLER_FAILED, "the controller failed")                                           \
-    X(STATUS_NOT_ALLOWED, "a program or plug-in was not allowed")
+    X(OK, "done")                                                                                  \
+    X(BAD_ARGUMENT, "bad argument")                                                                \
+    X(BAD_SCENARIO, "bad scenario")                                                                \
+    X(NOT_FINITE, "a state became infinite or not a number")                                       \
+    X(UNSTABLE, "the energy ledger does not close, the integration is unstable")                   \
+    X(NEWTON_FAILED, "Newton's iteration did not converge")                                        \
+    X(NO_PROGRESS, "events or strides follow one another without time passing")                    \
+    X(SINGULAR, "the system of equations is singular")                                             \
+    X(NO_MEMORY, "out of memory")                                                                  \
+    X(CANNOT_WRITE, "a file could not be written")                                                 \
+    X(CANNOT_READ, "a file could not be read")                                                     \
+    X(EXPECTATION_FAILED, "an expected value was not met")                                         \
+    X(STOPPED, "stopped before its end")                                                           \
+    X(FOLDED, "the arm is folded across the hub's axis on a flat wall")                            \
+    X(CONTROLLER_FAILED, "the controller failed")                                                  \
+    X(NOT_ALLOWED, "a program or plug-in was not allowed")
 
 typedef enum status {
-#define STATUS_ENUM(code, text) code,
+#define STATUS_ENUM(name, text) STATUS_##name,
     STATUS_LIST(STATUS_ENUM)
 #undef STATUS_ENUM
 } status;
@@ -64,3 +64,11 @@ status fault_no_memory(fault *f);
 
 // The same with STATUS_NO_MEMORY where there is not what memory was asked for.
 #define TRY_MEMORY(given, f) TRY((given) ? STATUS_OK : fault_no_memory(f))
+
+// Ends it with a fault, FAIL_IF(count > MOST, fault_set(f, ...)), where something is wrong.
+#define FAIL_IF(wrong, fault)                                                                      \
+    do {                                                                                           \
+        if (wrong) {                                                                               \
+            return fault;                                                                          \
+        }                                                                                          \
+    } while (0)

@@ -423,3 +423,45 @@ void whole_file_abandon(whole_file *w)
 {
     (void)!whole_file_close(w, STATUS_STOPPED, NULL);
 }
+
+// --- reading ----------------------------------------------------------------------------------
+
+char *whole_file_read(const char *path, size_t most, size_t *length, const char **failed)
+{
+    assert(most > 0);
+    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    char *bytes = NULL;
+    size_t room = 0;
+    ssize_t count = 0;
+    *length = 0;
+    *failed = file < 0 ? "opened" : "read";
+    while (file >= 0 && *length < most) {
+        if (*length == room) {
+            room = room > most / 2 ? most : room + (room > 0 ? room : most < 65536 ? most : 65536);
+            char *more = realloc(bytes, room + 1);
+            count = more != NULL ? 0 : -1;
+            if (count < 0) {
+                break;
+            }
+            bytes = more;
+        }
+        count = read(file, bytes + *length, room - *length);
+        if (count == 0 || (count < 0 && errno != EINTR)) {
+            break;
+        }
+        *length += count > 0 ? (size_t)count : 0;
+    }
+
+    // what became of it, whatever closing says
+    const int reason = errno;
+    if (file >= 0) {
+        close(file);
+    }
+    if (file < 0 || count < 0) {
+        free(bytes);
+        errno = reason;
+        return NULL;
+    }
+    bytes[*length] = '\0';
+    return bytes;
+}

@@ -47,6 +47,11 @@ void whole_file_abandon(whole_file *w);
 status whole_file_close(whole_file *w, status written, fault *f)
     __attribute__((warn_unused_result));
 
+// The bytes of a file on the heap, a 0 behind them, or its first `most`; *length is without the 0.
+// NULL where they cannot be had: *failed, "opened" or "read", says what failed, and errno why.
+char *whole_file_read(const char *path, size_t most, size_t *length, const char **failed)
+    __attribute__((warn_unused_result));
+
 // Removes what runs that were killed left in a folder. Opening a file does so by itself; this is
 // for who asks beforehand what the folder holds. One that cannot be read is left alone.
 void whole_file_clean_folder(const char *path);

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "src/base/shipped.h"
+#include "src/base/whole_file.h"
 #include "src/scenario/scenario.h"
 #include "src/scenario/yaml_tree.h"
 #include "src/base/words.h"
@@ -90,37 +91,19 @@ status scenario_read(scenario *s, const char *path, const char *name, fault_hand
     if (is_folder(path)) {
         return report_file(s, path, "it is a folder", report, context);
     }
-    FILE *file = fopen(path, "rb");
-    if (file == NULL && errno == ENOMEM) {
-        return report_no_memory(report, context);
-    }
-    if (file == NULL) {
-        snprintf(what, sizeof what, "cannot be opened (%s)", strerror(errno));
-        return report_file(s, path, what, report, context);
-    }
 
     // one byte more than is allowed, so that the parser sees what is too long
-    size_t room = (size_t)TREE_MAX_BYTES + 1;
-    char *text = malloc(room);
-    size_t length = 0;
-    bool failed = false;
-    do {
-        clearerr(file);
-        length += text != NULL ? fread(text + length, 1, room - length, file) : 0;
-        failed = ferror(file) != 0;
-    } while (failed && errno == EINTR);
-    const int reason = errno;
-    fclose(file);
-
-    status result;
-    if (text == NULL) {
-        result = report_no_memory(report, context);
-    } else if (failed) {
-        snprintf(what, sizeof what, "cannot be read (%s)", strerror(reason));
-        result = report_file(s, path, what, report, context);
-    } else {
-        result = scenario_parse(s, text, length, path, name, report, context);
+    size_t length;
+    const char *failed;
+    char *text = whole_file_read(path, (size_t)TREE_MAX_BYTES + 1, &length, &failed);
+    if (text == NULL && errno == ENOMEM) {
+        return report_no_memory(report, context);
     }
+    if (text == NULL) {
+        snprintf(what, sizeof what, "cannot be %s (%s)", failed, strerror(errno));
+        return report_file(s, path, what, report, context);
+    }
+    const status result = scenario_parse(s, text, length, path, name, report, context);
     free(text);
     return result;
 }

@@ -73,10 +73,9 @@ static status assign(parameters *p, const char *assignment, fault *f)
     char path[128], room[PARAMETER_TEXT_SIZE];
     const char *value;
     size_t length = strcspn(assignment, "=");
-    if (assignment[length] == '\0' || length == 0 || length >= sizeof path) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "not an assignment, expected PATH=VALUE such as arm.k2=49.2");
-    }
+    FAIL_IF(assignment[length] == '\0' || length == 0 || length >= sizeof path,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "not an assignment, expected PATH=VALUE such as arm.k2=49.2"));
 
     snprintf(path, sizeof path, "%.*s", (int)length, assignment);
     value = assignment + length + 1;

@@ -84,9 +84,8 @@ status session_change(session *s, int parameter, const char *text, fault *f)
         .kind = SESSION_INPUT_START, .time = effect_time(s), .parameter = parameter};
     remember_cursor(s, &in);
     const parameter_info *info = &parameter_table[parameter];
-    if (strlen(text) >= sizeof in.text) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "the value of %s is too long", info->path);
-    }
+    FAIL_IF(strlen(text) >= sizeof in.text,
+            fault_set(f, STATUS_BAD_ARGUMENT, "the value of %s is too long", info->path));
     snprintf(in.text, sizeof in.text, "%s", text);
 
     // a copy of the parameters checks the value
@@ -201,12 +200,10 @@ status session_pull(session *s, double impulse, unsigned gesture, fault *f)
                         .before = (double)NAN};
     remember_cursor(s, &in);
 
-    if (!isfinite(impulse)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "a push is a finite impulse in N s");
-    }
-    if (s->effective.parameters.arm.model == ARM_PRINTED) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "the printed model knows no pushes");
-    }
+    FAIL_IF(!isfinite(impulse),
+            fault_set(f, STATUS_BAD_ARGUMENT, "a push is a finite impulse in N s"));
+    FAIL_IF(s->effective.parameters.arm.model == ARM_PRINTED,
+            fault_set(f, STATUS_BAD_ARGUMENT, "the printed model knows no pushes"));
     return add_input(s, &in, f);
 }
 
@@ -234,9 +231,7 @@ static status move_inputs(session *s, int step, fault *f)
 status session_undo(session *s, fault *f)
 {
     assert(s != NULL);
-    if (s->input_count == 0) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to undo");
-    }
+    FAIL_IF(s->input_count == 0, fault_set(f, STATUS_BAD_ARGUMENT, "nothing to undo"));
     TRY(move_inputs(s, -1, f));
     restore_cursor(s, &s->inputs[s->input_count]);
     return STATUS_OK;
@@ -245,9 +240,7 @@ status session_undo(session *s, fault *f)
 status session_redo(session *s, fault *f)
 {
     assert(s != NULL);
-    if (s->input_count == s->input_total) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "nothing to redo");
-    }
+    FAIL_IF(s->input_count == s->input_total, fault_set(f, STATUS_BAD_ARGUMENT, "nothing to redo"));
     TRY(move_inputs(s, 1, f));
 
     // to where it takes effect
@@ -262,16 +255,13 @@ status session_change_input(session *s, int index, const char *text, fault *f)
 {
     assert(s != NULL && text != NULL && index >= 0 && index < s->input_count);
     const session_input *old = &s->inputs[index];
-    if (old->kind == SESSION_INPUT_PUSH) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "a push has no other value: drop it and push again");
-    }
+    FAIL_IF(old->kind == SESSION_INPUT_PUSH,
+            fault_set(f, STATUS_BAD_ARGUMENT, "a push has no other value: drop it and push again"));
 
     // a copy with the new text, which a scratch copy of the parameters checks
     session_input in = *old;
-    if (strlen(text) >= sizeof in.text) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "the value is too long");
-    }
+    FAIL_IF(strlen(text) >= sizeof in.text,
+            fault_set(f, STATUS_BAD_ARGUMENT, "the value is too long"));
     remember_cursor(s, &in);
     snprintf(in.text, sizeof in.text, "%s", text);
     parameters scratch = session_parameters_at(s, in.time);

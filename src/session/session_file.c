@@ -117,9 +117,7 @@ static status end_base(session_reader *r)
         scenario_parse(&fresh, r->text, r->length, r->path, r->name, keep_first, &first);
     free(r->text);
     r->text = NULL;
-    if (code != STATUS_OK) {
-        return refuse(r, first.text[0] ? first.text : status_text(code));
-    }
+    FAIL_IF(code != STATUS_OK, refuse(r, first.text[0] ? first.text : status_text(code)));
     if (r->has_base) {
         scenario_finish(&r->base);
     }
@@ -132,9 +130,7 @@ static status begin_run(session_reader *r, const char *name)
 {
     session_file *file = r->file;
     TRY(end_base(r));
-    if (file->run_count == SESSION_FILE_RUNS) {
-        return refuse(r, "one run more than a session holds");
-    }
+    FAIL_IF(file->run_count == SESSION_FILE_RUNS, refuse(r, "one run more than a session holds"));
     kept_run *k = &file->runs[file->run_count];
     *k = (kept_run){0};
     if (scenario_copy(&k->from.base, &r->base) != STATUS_OK) {
@@ -161,9 +157,8 @@ static status read_change(const session_reader *r, const run_origin *from, sessi
     const size_t length = strcspn(text, " ");
     snprintf(path, sizeof path, "%.*s", (int)length, text);
     in->parameter = parameter_find(path);
-    if (in->parameter < 0 || strlen(text + length) >= sizeof in->text) {
-        return refuse(r, "no change, expected an instant, a parameter and a value");
-    }
+    FAIL_IF(in->parameter < 0 || strlen(text + length) >= sizeof in->text,
+            refuse(r, "no change, expected an instant, a parameter and a value"));
     snprintf(in->text, sizeof in->text, "%s", text + length + (text[length] == ' '));
     const bool timed = in->kind == SESSION_INPUT_TIMED;
 
@@ -177,10 +172,9 @@ static status read_change(const session_reader *r, const run_origin *from, sessi
 
     // values that others must go with are checked with all of them, when the run is computed
     fault f = {0};
-    if ((timed && !rig_can_change(&scratch, in->parameter)) ||
-        parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK) {
-        return refuse(r, f.text[0] ? f.text : "a parameter that does not change during a run");
-    }
+    FAIL_IF((timed && !rig_can_change(&scratch, in->parameter)) ||
+                parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK,
+            refuse(r, f.text[0] ? f.text : "a parameter that does not change during a run"));
     in->value = parameter_get(&scratch, in->parameter);
     return STATUS_OK;
 }
@@ -192,9 +186,8 @@ static status add_input(session_reader *r, session_input_kind kind, const char *
     const char *rest;
     run_origin *from = file->run_count > 0 ? &file->runs[file->run_count - 1].from : NULL;
     status code = STATUS_OK;
-    if (from == NULL || from->input_count == MOST_INPUTS) {
-        return refuse(r, from == NULL ? "a change, expected a run before it" : "too many changes");
-    }
+    FAIL_IF(from == NULL || from->input_count == MOST_INPUTS,
+            refuse(r, from == NULL ? "a change, expected a run before it" : "too many changes"));
     if (kind == SESSION_INPUT_PUSH) {
         const bool good = read_pair(text, &in.time, &in.value, &rest) && *rest == '\0' &&
                           from->base.parameters.arm.model != ARM_PRINTED;
@@ -238,9 +231,7 @@ static status take_line(session_reader *r, char *line)
     if (strncmp(line, "| ", 2) == 0) {
         return add_text(r, line + 2);
     }
-    if (rest == NULL) {
-        return refuse(r, "no line of a session, expected 'word: rest'");
-    }
+    FAIL_IF(rest == NULL, refuse(r, "no line of a session, expected 'word: rest'"));
     *rest++ = '\0';
     rest += *rest == ' ';
 
@@ -314,9 +305,8 @@ status session_file_read(session_file *file, const char *path, fault *f)
     assert(file != NULL && path != NULL);
     *file = (session_file){.baseline = -1};
     FILE *stream = fopen(path, "r");
-    if (stream == NULL) {
-        return fault_set(f, STATUS_CANNOT_READ, "%s cannot be opened: %s", path, strerror(errno));
-    }
+    FAIL_IF(stream == NULL,
+            fault_set(f, STATUS_CANNOT_READ, "%s cannot be opened: %s", path, strerror(errno)));
     fault own = {0};
     session_reader r = {.file = file, .path = path, .fault = &own};
     const status code = read_lines(&r, stream);

@@ -148,11 +148,10 @@ status bench_read(const char *path, bench_result **results, int *count, fault *f
     json_t *root = json_load_file(path, 0, &error), *array = json_object_get(root, "bench");
     *results = NULL;
     *count = (int)json_array_size(array);
-    if (root == NULL) {
-        return fault_set(f, STATUS_CANNOT_READ, "%s:%d:%d: %s, expected what bench --json writes",
-                         path, error.line > 0 ? error.line : 1, error.column > 0 ? error.column : 1,
-                         error.text);
-    }
+    FAIL_IF(root == NULL,
+            fault_set(f, STATUS_CANNOT_READ, "%s:%d:%d: %s, expected what bench --json writes",
+                      path, error.line > 0 ? error.line : 1, error.column > 0 ? error.column : 1,
+                      error.text));
 
     // its entries
     bench_result *read = calloc((size_t)*count + 1, sizeof *read);

@@ -137,23 +137,20 @@ status calibrate(const scenario *s, const double *commands, int count, run_monit
     *c = (calibration){0};
 
     // a force at rest needs a wall
-    if (s->parameters.wall.kind == WALL_NONE) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "there is nothing to press against, wall.kind is none");
-    }
+    FAIL_IF(
+        s->parameters.wall.kind == WALL_NONE,
+        fault_set(f, STATUS_BAD_ARGUMENT, "there is nothing to press against, wall.kind is none"));
 
-    if (s->parameters.wall.motion != MOTION_NONE) {
-        return fault_set_at(f, STATUS_BAD_ARGUMENT, "wall.motion",
-                            "force and angle come to rest on a wall at rest only: calibrate with "
-                            "wall.motion = none");
-    }
+    FAIL_IF(s->parameters.wall.motion != MOTION_NONE,
+            fault_set_at(f, STATUS_BAD_ARGUMENT, "wall.motion",
+                         "force and angle come to rest on a wall at rest only: calibrate with "
+                         "wall.motion = none"));
 
     // K2 says how the wall's force alone bends the beam
-    if (s->parameters.arm.tilt != 0) {
-        return fault_set_at(f, STATUS_BAD_ARGUMENT, "arm.tilt",
-                            "the weight bends the beam, too, so that force and angle say nothing "
-                            "of its stiffness alone: calibrate in a level plane, arm.tilt = 0");
-    }
+    FAIL_IF(s->parameters.arm.tilt != 0,
+            fault_set_at(f, STATUS_BAD_ARGUMENT, "arm.tilt",
+                         "the weight bends the beam, too, so that force and angle say nothing "
+                         "of its stiffness alone: calibrate in a level plane, arm.tilt = 0"));
 
     // up to the first fault; what was measured before is kept
     status code = STATUS_OK;
@@ -189,12 +186,11 @@ status calibration_table(const calibration *c, k2_table *t, fault *f)
     // a table gives one stiffness for a force
     for (int i = 1; i < t->count; i++) {
         // to the digits that the table is written with
-        if (t->force[i] - t->force[i - 1] < 2e-3 * t->force[i]) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "two commands press alike, with %.4g N, so there is no table by "
-                             "force; expected commands further apart",
-                             t->force[i]);
-        }
+        FAIL_IF(t->force[i] - t->force[i - 1] < 2e-3 * t->force[i],
+                fault_set(f, STATUS_BAD_ARGUMENT,
+                          "two commands press alike, with %.4g N, so there is no table by "
+                          "force; expected commands further apart",
+                          t->force[i]));
     }
     return STATUS_OK;
 }

@@ -147,11 +147,9 @@ status compare_choose(compare_table *t, const char *keys, fault *f)
             nearest_try(&near, compare_quantities[k].key);
             found = strcmp(word, compare_quantities[k].key) == 0 ? k : found;
         }
-        if (found < 0) {
-            return fault_set(f, STATUS_BAD_ARGUMENT, "there is no column '%s'%s%s%s", word,
-                             near.best ? ", did you mean '" : ", expected keys of --json",
-                             near.best ? near.best : "", near.best ? "'?" : "");
-        }
+        FAIL_IF(found < 0, fault_set(f, STATUS_BAD_ARGUMENT, "there is no column '%s'%s%s%s", word,
+                                     near.best ? ", did you mean '" : ", expected keys of --json",
+                                     near.best ? near.best : "", near.best ? "'?" : ""));
 
         t->hidden[found] = false;
         key += length;

@@ -266,9 +266,8 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
         add_contacts(id, alone, id->direction, scatter);
     }
     free(alone);
-    if (!done || !symmetric_eigen(p, id->direction, values, scratch)) {
-        return fault_set(f, STATUS_SINGULAR, "the parameters' errors cannot be computed");
-    }
+    FAIL_IF(!done || !symmetric_eigen(p, id->direction, values, scratch),
+            fault_set(f, STATUS_SINGULAR, "the parameters' errors cannot be computed"));
 
     // what the model does not explain makes errors larger, by as much
     double most;

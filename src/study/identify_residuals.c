@@ -38,12 +38,11 @@ static status read_column(const csv_table *t, const char *signal, const char *un
     if (!needed && missing) {
         return STATUS_OK;
     }
-    if (missing && strcmp(heading, "command") == 0) {
-        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
-                               "%.300s:1:1: there is no column 'command', the voltage [V] with "
-                               "which each trial run is driven: record it, or rename its heading",
-                               t->file);
-    }
+    FAIL_IF(missing && strcmp(heading, "command") == 0,
+            fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
+                            "%.300s:1:1: there is no column 'command', the voltage [V] with "
+                            "which each trial run is driven: record it, or rename its heading",
+                            t->file));
     return strcmp(signal, "time") == 0 ? csv_table_times(t, heading, values, f)
                                        : csv_table_numbers(t, heading, unit, values, f);
 }
@@ -200,9 +199,8 @@ status identify_add_trace(identification *id, const char *file, char *const *col
                           fault *f)
 {
     assert(id != NULL && file != NULL && id->trace_count <= IDENTIFY_TRACES);
-    if (id->trace_count == IDENTIFY_TRACES) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "more than %d traces", IDENTIFY_TRACES);
-    }
+    FAIL_IF(id->trace_count == IDENTIFY_TRACES,
+            fault_set(f, STATUS_BAD_ARGUMENT, "more than %d traces", IDENTIFY_TRACES));
     const parameters *p = &id->base->parameters;
     recorded_trace *t = &id->traces[id->trace_count++];
     csv_table table;

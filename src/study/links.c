@@ -289,11 +289,10 @@ status links_study_compute(const scenario *s, run_monitor *monitor, links_study 
     assert(s != NULL && study != NULL);
     double speed = (double)NAN;
     *study = (links_study){0};
-    if (s->parameters.arm.model == ARM_PRINTED) {
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "%s: the printed model has two links only, expected arm.model = corrected",
-                         s->name);
-    }
+    FAIL_IF(s->parameters.arm.model == ARM_PRINTED,
+            fault_set(f, STATUS_BAD_SCENARIO,
+                      "%s: the printed model has two links only, expected arm.model = corrected",
+                      s->name));
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         study->rows[k] = blank_rows[k];
         study->rows[k].order = study->rows[k].limit = study->rows[k].error = (double)NAN;

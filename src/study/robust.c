@@ -8,45 +8,29 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
+#include "src/base/whole_file.h"
 
 // --- the sets of arms ------------------------------------------------------------------------
 
 enum { MOST_SET_BYTES = 65536 };
 
-// The whole file as a text on the heap; nothing is handed over on failure.
+// The whole file as a text on the heap, the caller's in any case.
 static status read_text(const char *path, char **text, fault *f)
 {
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        return fault_set(f, STATUS_CANNOT_READ, "the set '%s' cannot be opened: %s", path,
-                         strerror(errno));
+    size_t length;
+    const char *failed;
+    *text = whole_file_read(path, MOST_SET_BYTES + 1, &length, &failed);
+    if (*text == NULL) {
+        return errno == ENOMEM ? fault_no_memory(f)
+                               : fault_set(f, STATUS_CANNOT_READ, "the set '%s' cannot be %s: %s",
+                                           path, failed, strerror(errno));
     }
-
-    // all of it, if it is not too long
-    char *bytes = calloc(1, MOST_SET_BYTES + 1);
-    const size_t length = bytes != NULL ? fread(bytes, 1, MOST_SET_BYTES, file) : 0;
-    const bool whole = bytes != NULL && ferror(file) == 0 && fgetc(file) == EOF;
-    const int reason = ferror(file) != 0 ? errno : 0;
-    fclose(file);
-
-    status code = STATUS_OK;
-    if (bytes == NULL) {
-        code = fault_no_memory(f);
-    } else if (reason != 0) {
-        code = fault_set(f, STATUS_CANNOT_READ, "the set '%s' cannot be read: %s", path,
-                         strerror(reason));
-    } else if (!whole || strlen(bytes) != length) {
-        code =
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%s' is no set, expected lines PATH=a:b or PATH=v1,v2 of at most %d bytes",
-                      path, MOST_SET_BYTES);
-    }
-    if (code != STATUS_OK) {
-        free(bytes);
-        return code;
-    }
-    *text = bytes;
-    return STATUS_OK;
+    return length <= MOST_SET_BYTES && strlen(*text) == length
+               ? STATUS_OK
+               : fault_set(f, STATUS_BAD_ARGUMENT,
+                           "'%s' is no set, expected lines PATH=a:b or PATH=v1,v2 of at most %d "
+                           "bytes",
+                           path, MOST_SET_BYTES);
 }
 
 // The text without the blanks at both ends, which are cut off.
@@ -125,12 +109,11 @@ static status read_lines(robust_set *set, fault *f)
 
         robust_case *c = &set->cases[set->case_count++];
         *c = (robust_case){.file = set->file, .line = number};
-        if (!read_case(c, line + strlen(word), settings)) {
-            return fault_set_place(f, STATUS_BAD_ARGUMENT, number, 1,
-                                   "%s:%d: no case, expected 'case TITLE: PATH=VALUE; PATH=VALUE', "
-                                   "or push=IMPULSE@TIME for a value",
-                                   set->file, number);
-        }
+        FAIL_IF(!read_case(c, line + strlen(word), settings),
+                fault_set_place(f, STATUS_BAD_ARGUMENT, number, 1,
+                                "%s:%d: no case, expected 'case TITLE: PATH=VALUE; PATH=VALUE', "
+                                "or push=IMPULSE@TIME for a value",
+                                set->file, number));
         settings += c->setting_count;
     }
     return STATUS_OK;

@@ -32,12 +32,11 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
     assert(text != NULL && c != NULL);
     const char *sign = strpbrk(text, "<>"), *rest;
     char key[128];
-    if (sign == NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%.100s' is no condition, expected KEY<VALUE or KEY>VALUE, such as "
-                         "'peak_force_N<2'",
-                         text);
-    }
+    FAIL_IF(sign == NULL,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%.100s' is no condition, expected KEY<VALUE or KEY>VALUE, such as "
+                      "'peak_force_N<2'",
+                      text));
 
     // the quantity
     copy_trimmed(text, sign, key, sizeof key);
@@ -48,23 +47,20 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
                          near ? ", did you mean '" : "; expected a key of run --json",
                          near ? near : "", near ? "'?" : "");
     }
-    if (summary_table[c->quantity].timing) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%s depends on the machine, not on the scenario: no parameter has a limit "
-                         "for it",
-                         key);
-    }
+    FAIL_IF(summary_table[c->quantity].timing,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "%s depends on the machine, not on the scenario: no parameter has a limit "
+                      "for it",
+                      key));
 
     // and its bound
     c->equal = sign[1] == '=';
     char bound[128];
     copy_trimmed(sign + 1 + c->equal, text + strlen(text), bound, sizeof bound);
-    if (!decimal_read(bound, &c->bound, &rest) || *rest != '\0') {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%.100s' is no bound of %s, expected a number%s%s", sign + 1 + c->equal,
-                         key, summary_table[c->quantity].unit[0] ? " in " : "",
-                         summary_table[c->quantity].unit);
-    }
+    FAIL_IF(!decimal_read(bound, &c->bound, &rest) || *rest != '\0',
+            fault_set(f, STATUS_BAD_ARGUMENT, "'%.100s' is no bound of %s, expected a number%s%s",
+                      sign + 1 + c->equal, key, summary_table[c->quantity].unit[0] ? " in " : "",
+                      summary_table[c->quantity].unit));
     return STATUS_OK;
 }
 
@@ -78,12 +74,10 @@ status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f)
 {
     assert(axis != NULL && s != NULL);
     double value = sweep_axis_get(axis, &s->parameters);
-    if (sweep_axis_parameter(axis) == &setting_info || axis->element > 0 ||
-        !parameter_usual_range(axis->parameter, value, &axis->low, &axis->high,
-                               &axis->logarithmic)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "%s needs a range, %s=a:b", axis->name,
-                         axis->name);
-    }
+    FAIL_IF(sweep_axis_parameter(axis) == &setting_info || axis->element > 0 ||
+                !parameter_usual_range(axis->parameter, value, &axis->low, &axis->high,
+                                       &axis->logarithmic),
+            fault_set(f, STATUS_BAD_ARGUMENT, "%s needs a range, %s=a:b", axis->name, axis->name));
     axis->is_range = true;
     return STATUS_OK;
 }
@@ -219,9 +213,7 @@ static status locate(const search *s, trial *in, trial *out, fault *f)
         trial t;
         const double width = fabs(in->value - out->value);
         const status code = run_trial(s, next_value(s, in, out, secant), &t, NULL);
-        if (code != STATUS_OK) {
-            return fault_set(f, code, "%s", status_text(code));
-        }
+        FAIL_IF(code != STATUS_OK, fault_set(f, code, "%s", status_text(code)));
         *(holds(s, &t) ? in : out) = t;
         secant = fabs(in->value - out->value) <= width / 2 || !secant;
     }

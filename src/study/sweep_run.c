@@ -109,9 +109,8 @@ static bool must_be_repeated(status ended)
 
 static status store_run(sweep_execution *e, size_t run, const summary *s, fault *f)
 {
-    if (must_be_repeated(s->status)) {
-        return fault_set(f, s->status, "run %zu: %s", run + 1, s->message);
-    }
+    FAIL_IF(must_be_repeated(s->status),
+            fault_set(f, s->status, "run %zu: %s", run + 1, s->message));
 
     // stored, and counted once it is
     status code = e->store->put(e->store, run, s, f);

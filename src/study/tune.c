@@ -66,10 +66,9 @@ static status read_subject(const char *text, judged *of, double *excess, fault *
     const char *sign = strpbrk(text, "<>");
     char left[512];
     double a = 0, b = 0;
-    if (sign == NULL || sign[1] != '=' || sign - text >= (long)sizeof left) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%.100s' is no condition, expected EXPR<=X or EXPR>=X", text);
-    }
+    FAIL_IF(sign == NULL || sign[1] != '=' || sign - text >= (long)sizeof left,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%.100s' is no condition, expected EXPR<=X or EXPR>=X", text));
     snprintf(left, sizeof left, "%.*s", (int)(sign - text), text);
     status code = evaluate(left, of, &a, f);
     code = code == STATUS_OK ? evaluate(sign + 2, of, &b, f) : code;
@@ -88,9 +87,7 @@ static status judge(const tune_request *asked, judged *of, tune_result *out, fau
         option = "subject";
         code = read_subject(asked->subject, of, &excess, &why);
     }
-    if (code != STATUS_OK) {
-        return fault_set(f, code, "--%s %.900s", option, why.text);
-    }
+    FAIL_IF(code != STATUS_OK, fault_set(f, code, "--%s %.900s", option, why.text));
     out->rank = !isfinite(out->value) || isnan(excess)
                     ? TUNE_REFUSED * 1e100 * (2 - (of->law != NULL ? of->law->settled : 0))
                 : excess > 0 ? TUNE_REFUSED * (1 + fmin(excess, 1e90))
@@ -179,16 +176,14 @@ static status check(const tune_request *asked, fault *f)
     return fault_set(f, STATUS_BAD_ARGUMENT,
                      "this program was built without NLopt, whose minimisers tune needs");
 #endif
-    if (over != NULL && over->case_count > 0) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%.200s' has cases, expected lines PATH=a:b or PATH=v1,v2 only",
-                         over->file);
-    }
-    if (over != NULL && asked->base->parameters.control.law == LAW_NONE) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%s has no control law, and runs over a set are judged by one",
-                         asked->base->name);
-    }
+    FAIL_IF(over != NULL && over->case_count > 0,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%.200s' has cases, expected lines PATH=a:b or PATH=v1,v2 only",
+                      over->file));
+    FAIL_IF(over != NULL && asked->base->parameters.control.law == LAW_NONE,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "%s has no control law, and runs over a set are judged by one",
+                      asked->base->name));
     const status code = judge(asked, &of, &unused, f);
     return code == STATUS_OK ? find_growth(asked, asked->base, &of.growth, f) : code;
 }
@@ -206,10 +201,9 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
                              .sampling = SWEEP_LATIN,
                              .runs = t->each * t->most,
                              .seed = seed};
-    if (varied > SWEEP_MOST_AXES || drawn > SWEEP_MOST_AXES) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "at most %d parameters can be varied",
-                         SWEEP_MOST_AXES);
-    }
+    FAIL_IF(
+        varied > SWEEP_MOST_AXES || drawn > SWEEP_MOST_AXES,
+        fault_set(f, STATUS_BAD_ARGUMENT, "at most %d parameters can be varied", SWEEP_MOST_AXES));
     memcpy(lines, asked->vary, (size_t)varied * sizeof *lines);
     if (drawn > 0) {
         const sweep_request set = {

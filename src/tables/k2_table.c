@@ -24,25 +24,22 @@ status k2_table_read(k2_table *t, const char *text, fault *f)
         int i = t->count, length = (int)strcspn(entry, " ");
 
         // a pair of numbers, as long as there is room
-        if (i == K2_TABLE_MOST) {
-            return fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
-                                "control.k2_table has more than %d entries of FORCE:K2",
-                                K2_TABLE_MOST);
-        }
-        if (!read_entry(entry, &t->force[i], &t->k2[i], &rest)) {
-            return fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
-                                "control.k2_table: '%.*s' is wrong, expected FORCE:K2 such as "
-                                "1.5:4.92, a force from 0 N and a stiffness above 0 N m/rad",
-                                length, entry);
-        }
+        FAIL_IF(i == K2_TABLE_MOST,
+                fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
+                             "control.k2_table has more than %d entries of FORCE:K2",
+                             K2_TABLE_MOST));
+        FAIL_IF(!read_entry(entry, &t->force[i], &t->k2[i], &rest),
+                fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
+                             "control.k2_table: '%.*s' is wrong, expected FORCE:K2 such as "
+                             "1.5:4.92, a force from 0 N and a stiffness above 0 N m/rad",
+                             length, entry));
 
         // in growing order, so that there is one k2 between any two of them
-        if (i > 0 && !(t->force[i] > t->force[i - 1])) {
-            return fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
-                                "control.k2_table: the force of '%.*s' is not above the one before "
-                                "it, expected growing forces",
-                                length, entry);
-        }
+        FAIL_IF(i > 0 && !(t->force[i] > t->force[i - 1]),
+                fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
+                             "control.k2_table: the force of '%.*s' is not above the one before "
+                             "it, expected growing forces",
+                             length, entry));
         t->count++;
     }
     return STATUS_OK;

@@ -27,7 +27,7 @@ static inline const char *first_given(const parameters *p, const int *indices)
 // Ends the calling function with STATUS_BAD_SCENARIO and a sentence, printf-like, where parameters
 // contradict one another.
 #define REFUSE_IF(contradiction, blamed, f, ...)                                                   \
-    TRY((contradiction) ? fault_set_at(f, STATUS_BAD_SCENARIO, blamed, __VA_ARGS__) : STATUS_OK)
+    FAIL_IF(contradiction, fault_set_at(f, STATUS_BAD_SCENARIO, blamed, __VA_ARGS__))
 
 // The shape of the arm and where it starts, all else being given. STATUS_BAD_SCENARIO with a
 // sentence and the path to blame.

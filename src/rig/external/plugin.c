@@ -18,10 +18,9 @@ status plugin_open(plugin *p, const char *file, fault *f)
 {
     assert(p != NULL && file != NULL);
     *p = (plugin){.library = dlopen(file, RTLD_NOW | RTLD_LOCAL)};
-    if (p->library == NULL) {
-        return fault_set(f, STATUS_CANNOT_READ, "control.plugin = %s cannot be loaded: %.600s",
-                         file, dlerror());
-    }
+    FAIL_IF(p->library == NULL,
+            fault_set(f, STATUS_CANNOT_READ, "control.plugin = %s cannot be loaded: %.600s", file,
+                      dlerror()));
 
     // nothing behind `interface` can be read before the version is known
     status s = STATUS_OK;

@@ -159,13 +159,12 @@ static status learn(linear_law *law, const linear_arm *arm, const parameters *p,
     while (code == STATUS_OK && order <= MOST_ORDER && !fit_recurrence(law, order)) {
         order++;
     }
-    if (code == STATUS_UNSTABLE || order > MOST_ORDER ||
-        (code == STATUS_OK && arm->force > 0 && silent)) {
-        return fault_set(f, STATUS_UNSTABLE,
-                         "the law '%s' has no linear form where the arm rests: its answers to "
-                         "small readings do not scale or settle, or there are none",
-                         control_law_table[p->control.law].word);
-    }
+    FAIL_IF(code == STATUS_UNSTABLE || order > MOST_ORDER ||
+                (code == STATUS_OK && arm->force > 0 && silent),
+            fault_set(f, STATUS_UNSTABLE,
+                      "the law '%s' has no linear form where the arm rests: its answers to "
+                      "small readings do not scale or settle, or there are none",
+                      control_law_table[p->control.law].word));
     return code;
 }
 

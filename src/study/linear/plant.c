@@ -262,9 +262,7 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
     *out = (linear_arm){.force = 0};
     const bool touches = place != LINEAR_FREE, held = touches && p->control.law != LAW_NONE;
     const char *why = refusal(p, place, held ? p->control.force : p->motor.voltage);
-    if (why != NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "%s", why);
-    }
+    FAIL_IF(why != NULL, fault_set(f, STATUS_BAD_ARGUMENT, "%s", why));
     workshop *w = calloc(1, sizeof *w);
     TRY_MEMORY(w != NULL, f);
 

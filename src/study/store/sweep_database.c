@@ -24,21 +24,17 @@ status database_fault(const sweep_database *store, fault *f)
     if (code == SQLITE_NOMEM) {
         return fault_no_memory(f);
     }
-    if (code == SQLITE_NOTADB) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database", path);
-    }
-    if (code == SQLITE_CORRUPT) {
-        return fault_set(f, STATUS_CANNOT_READ, "'%s' is damaged: %s", path, why);
-    }
+    FAIL_IF(code == SQLITE_NOTADB,
+            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database", path));
+    FAIL_IF(code == SQLITE_CORRUPT,
+            fault_set(f, STATUS_CANNOT_READ, "'%s' is damaged: %s", path, why));
 
     // what is asked of it is always the same, so that tables of others are at fault
-    if (code == SQLITE_ERROR || code == SQLITE_TOOBIG) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is not laid out as this program does it: %s",
-                         path, why);
-    }
-    if (code != SQLITE_READONLY && sqlite3_db_readonly(store->database, "main") == 1) {
-        return fault_set(f, STATUS_CANNOT_READ, "'%s' cannot be read: %s", path, why);
-    }
+    FAIL_IF(code == SQLITE_ERROR || code == SQLITE_TOOBIG,
+            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is not laid out as this program does it: %s",
+                      path, why));
+    FAIL_IF(code != SQLITE_READONLY && sqlite3_db_readonly(store->database, "main") == 1,
+            fault_set(f, STATUS_CANNOT_READ, "'%s' cannot be read: %s", path, why));
     if (sqlite3_extended_errcode(store->database) == SQLITE_READONLY_DBMOVED) {
         return database_moved_fault(store, f);
     }
@@ -227,14 +223,12 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned
 {
     const sweep *s = store->sweep;
     const long long run = sqlite3_column_int64(row, 0);
-    if (sqlite3_column_type(row, 0) != SQLITE_INTEGER || run < 1 ||
-        (unsigned long long)run > s->run_count) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu",
-                         store->path, run, s->run_count);
-    }
-    if (seen[run - 1]++) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld twice", store->path, run);
-    }
+    FAIL_IF(sqlite3_column_type(row, 0) != SQLITE_INTEGER || run < 1 ||
+                (unsigned long long)run > s->run_count,
+            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu", store->path,
+                      run, s->run_count));
+    FAIL_IF(seen[run - 1]++,
+            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld twice", store->path, run));
 
     // what was put in, as planned
     int column = RUN_FIRST_VALUE;
@@ -253,12 +247,11 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned
     const char *ended = text_at(row, column);
     const bool failed = ended != NULL && strcmp(ended, "failed") == 0;
     for (int i = 0; i < RUN_OUTCOME_COLUMNS + summary_count; i++, column++) {
-        if (!is_outcome(i, failed, row, column)) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "'%s' has values of another kind in run %lld than this program "
-                             "writes, under %s",
-                             store->path, run, sqlite3_column_name(row, column));
-        }
+        FAIL_IF(!is_outcome(i, failed, row, column),
+                fault_set(f, STATUS_BAD_ARGUMENT,
+                          "'%s' has values of another kind in run %lld than this program "
+                          "writes, under %s",
+                          store->path, run, sqlite3_column_name(row, column)));
     }
     return STATUS_OK;
 }
@@ -318,17 +311,15 @@ static status read_line(definition *d, const char *path, sqlite3_stmt *row, faul
     if (sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM) {
         return fault_no_memory(f);
     }
-    if (key == NULL || value == NULL || strlen(key) >= sizeof d->lines[0].key ||
-        strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
-        strlen(value) != (size_t)sqlite3_column_bytes(row, 1)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%s' has a line without text in what defines its sweep", path);
-    }
-    if (d->count == DEFINITION_LINES || definition_value(d, key) != NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%s' has more lines in what defines its sweep than this program writes",
-                         path);
-    }
+    FAIL_IF(key == NULL || value == NULL || strlen(key) >= sizeof d->lines[0].key ||
+                strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
+                strlen(value) != (size_t)sqlite3_column_bytes(row, 1),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%s' has a line without text in what defines its sweep", path));
+    FAIL_IF(d->count == DEFINITION_LINES || definition_value(d, key) != NULL,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%s' has more lines in what defines its sweep than this program writes",
+                      path));
     definition_add(d, key, "%s", value);
     return d->code == STATUS_OK ? STATUS_OK : fault_no_memory(f);
 }

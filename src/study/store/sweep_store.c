@@ -86,15 +86,12 @@ static status check_outside(sweep_database *store, fault *f)
 static status lock_file(sweep_database *store, fault *f)
 {
     store->lock = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (store->lock < 0) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", store->path,
-                         strerror(errno));
-    }
+    FAIL_IF(store->lock < 0, fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s",
+                                       store->path, strerror(errno)));
 
-    if (flock(store->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "another sweep is writing to '%s' just now",
-                         store->path);
-    }
+    FAIL_IF(flock(store->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK,
+            fault_set(f, STATUS_CANNOT_WRITE, "another sweep is writing to '%s' just now",
+                      store->path));
     return STATUS_OK;
 }
 

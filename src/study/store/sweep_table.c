@@ -25,10 +25,9 @@ static status read_rows(const sweep_database *store, sqlite3_stmt *rows, int key
 
         for (int k = 0; k < key_count; k++) {
             columns[k][*count] = sqlite3_column_double(rows, k);
-            if (!isfinite(columns[k][*count])) {
-                return fault_set(f, STATUS_CANNOT_READ, "'%s' has an infinite %s, expected numbers",
-                                 store->path, sqlite3_column_name(rows, k));
-            }
+            FAIL_IF(!isfinite(columns[k][*count]),
+                    fault_set(f, STATUS_CANNOT_READ, "'%s' has an infinite %s, expected numbers",
+                              store->path, sqlite3_column_name(rows, k)));
         }
         (*count)++;
     }
