@@ -1,42 +1,40 @@
 #include "src/scenario/yaml_tree.h"
 
-#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <yaml.h>
+
+// A map or list whose end is yet to come, the key that waits for its value, and where the next
+// child goes.
+typedef struct open_node {
+    tree_node *node, *key, **link;
+} open_node;
 
 typedef struct builder {
     yaml_parser_t parser;
     const char *text; // without a byte order mark
     size_t length;
     int nodes;
+    tree_node *root;
+    open_node open[TREE_MAX_DEPTH];
+    int depth; // of them
     fault *fault;
 } builder;
 
-static tree_node *no_node(status code)
-{
-    (void)code;
-    return NULL;
-}
-
-// Records a fault and returns NULL, so that it can end any function that makes a node; printf-like.
+// Records a fault; printf-like. Always false.
 #define refuse(b, line, column, ...)                                                               \
-    no_node(fault_set_place((b)->fault, STATUS_BAD_SCENARIO, line, column, __VA_ARGS__))
+    (fault_set_place((b)->fault, STATUS_BAD_SCENARIO, line, column, __VA_ARGS__) == STATUS_OK)
+#define refuse_at(b, mark, ...) refuse(b, (int)(mark).line + 1, (int)(mark).column + 1, __VA_ARGS__)
 
-static tree_node *refuse_at(builder *b, yaml_mark_t mark, const char *sentence)
-{
-    return refuse(b, (int)mark.line + 1, (int)mark.column + 1, "%s", sentence);
-}
-
-static tree_node *refuse_for_memory(builder *b)
+static bool refuse_for_memory(const builder *b)
 {
     fault_set_place(b->fault, STATUS_NO_MEMORY, 1, 1, "%s", status_text(STATUS_NO_MEMORY));
-    return NULL;
+    return false;
 }
 
 // Refuses at a byte of the text; a column counts characters, that is, bytes that begin one.
-static tree_node *refuse_at_byte(builder *b, size_t offset, const char *sentence)
+static bool refuse_at_byte(const builder *b, size_t offset, const char *sentence)
 {
     int line = 1, column = 1;
     for (size_t i = 0; i < offset && i < b->length; i++) {
@@ -65,7 +63,7 @@ static char byte_at(const builder *b, yaml_mark_t mark)
 }
 
 // Turns the parser's own error into a fault.
-static tree_node *refuse_syntax(builder *b)
+static bool refuse_syntax(const builder *b)
 {
     const yaml_parser_t *p = &b->parser;
     const char *problem = p->problem != NULL ? p->problem : "unknown problem";
@@ -91,16 +89,6 @@ static tree_node *refuse_syntax(builder *b)
                       p->context, (int)p->context_mark.line + 1);
     }
     return refuse(b, line, column, "not valid YAML: %s", problem);
-}
-
-// The next event; false (and nothing to delete) after an error.
-static bool next_event(builder *b, yaml_event_t *event)
-{
-    if (!yaml_parser_parse(&b->parser, event)) {
-        refuse_syntax(b);
-        return false;
-    }
-    return true;
 }
 
 // What a scenario may not use although YAML has it, as a sentence, or NULL.
@@ -137,159 +125,125 @@ static const char *forbidden(const yaml_event_t *event)
     return NULL;
 }
 
-// An empty node; NULL, after a fault, if there are too many or there is no memory.
-static tree_node *new_node(builder *b, tree_kind kind, yaml_mark_t mark)
+// Makes the node that begins with an event, with nothing below it yet. False after a fault.
+static bool make_node(builder *b, const yaml_event_t *event, tree_node **made)
 {
-    if (++b->nodes > TREE_MAX_NODES) {
-        char sentence[96];
-        snprintf(sentence, sizeof sentence, "too many keys and values, expected at most %d",
-                 TREE_MAX_NODES);
-        return refuse_at(b, mark, sentence);
+    const bool scalar = event->type == YAML_SCALAR_EVENT;
+    const char *value = scalar ? (const char *)event->data.scalar.value : "";
+    const size_t length = scalar ? event->data.scalar.length : 0;
+    const char *reason = forbidden(event);
+    if (reason != NULL) {
+        return refuse_at(b, event->start_mark, "%s", reason);
     }
-
-    tree_node *node = calloc(1, sizeof *node);
-    if (node == NULL) {
-        return refuse_for_memory(b);
-    }
-    node->kind = kind;
-    node->line = (int)mark.line + 1;
-    node->column = (int)mark.column + 1;
-    return node;
-}
-
-static tree_node *build_scalar(builder *b, const yaml_event_t *event)
-{
-    const char *value = (const char *)event->data.scalar.value;
-    size_t length = event->data.scalar.length;
     if (memchr(value, '\0', length) != NULL) {
         return refuse_at(b, event->start_mark, "a NUL character, expected text without it");
     }
-
-    tree_node *node = new_node(b, TREE_SCALAR, event->start_mark);
-    if (node == NULL) {
-        return NULL;
+    if (!scalar && b->depth >= TREE_MAX_DEPTH) {
+        return refuse_at(b, event->start_mark, "nested too deeply, expected at most %d levels",
+                         TREE_MAX_DEPTH);
     }
-    node->plain = event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
-    node->text = strndup(value, length);
-    if (node->text == NULL) {
-        tree_free(node);
+    if (++b->nodes > TREE_MAX_NODES) {
+        return refuse_at(b, event->start_mark, "too many keys and values, expected at most %d",
+                         TREE_MAX_NODES);
+    }
+
+    tree_node *node = calloc(1, sizeof *node);
+    char *text = node != NULL && scalar ? strndup(value, length) : NULL;
+    if (node == NULL || (scalar && text == NULL)) {
+        free(node);
         return refuse_for_memory(b);
     }
-    return node;
+    *node = (tree_node){.kind = scalar                                    ? TREE_SCALAR
+                                : event->type == YAML_MAPPING_START_EVENT ? TREE_MAP
+                                                                          : TREE_LIST,
+                        .line = (int)event->start_mark.line + 1,
+                        .column = (int)event->start_mark.column + 1,
+                        .plain = scalar && event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE,
+                        .text = text};
+    *made = node;
+    return true;
 }
 
-static tree_node *build(builder *b, const yaml_event_t *event, int depth);
-
-// Reads the children of a map or list up to its end event.
-static bool build_children(builder *b, tree_node *parent, int depth)
+// Puts a node where it belongs; what follows goes below it if it is a map or list.
+static void add_node(builder *b, tree_node *node)
 {
-    tree_node **link = &parent->first;
-    tree_node *key = NULL;
-    for (;;) {
-        yaml_event_t event;
-        if (!next_event(b, &event)) {
-            break;
-        }
-
-        // the end, or a child with all that is below it
-        if (event.type == YAML_MAPPING_END_EVENT || event.type == YAML_SEQUENCE_END_EVENT) {
-            yaml_event_delete(&event);
-            return true;
-        }
-        tree_node *child = build(b, &event, depth);
-        yaml_event_delete(&event);
-        if (child == NULL) {
-            break;
-        }
-
+    open_node *parent = b->depth > 0 ? &b->open[b->depth - 1] : NULL;
+    if (parent == NULL) {
+        b->root = node;
+    } else if (parent->node->kind == TREE_MAP && parent->key == NULL) {
         // in a map every other node is the key of the one that follows
-        if (parent->kind == TREE_MAP && key == NULL) {
-            key = child;
-            continue;
-        }
-        child->key = key;
-        key = NULL;
-        *link = child;
-        link = &child->next;
+        parent->key = node;
+    } else {
+        node->key = parent->key;
+        parent->key = NULL;
+        *parent->link = node;
+        parent->link = &node->next;
     }
-    tree_free(key);
-    return false;
+    if (node->kind != TREE_SCALAR) {
+        b->open[b->depth++] = (open_node){.node = node, .link = &node->first};
+    }
 }
 
-// The node that begins with an event, and what is below it.
-static tree_node *build(builder *b, const yaml_event_t *event, int depth)
+// False after a fault.
+static bool take_event(builder *b, const yaml_event_t *event)
 {
-    const char *reason = forbidden(event);
-    if (reason != NULL) {
-        return refuse_at(b, event->start_mark, reason);
+    tree_node *node = NULL;
+    switch (event->type) {
+    case YAML_STREAM_START_EVENT:
+    case YAML_DOCUMENT_END_EVENT:
+        return true;
+    case YAML_DOCUMENT_START_EVENT:
+        return b->root == NULL ||
+               refuse_at(b, event->start_mark, "a second document, expected one per file");
+    case YAML_STREAM_END_EVENT:
+        return b->root != NULL ||
+               refuse(b, 1, 1, "the file is empty, expected keys such as 'title: ...'");
+    case YAML_SEQUENCE_END_EVENT:
+    case YAML_MAPPING_END_EVENT:
+        b->depth--;
+        return true;
+    default:
+        if (!make_node(b, event, &node)) {
+            return false;
+        }
+        add_node(b, node);
+        return true;
     }
-    if (event->type == YAML_SCALAR_EVENT) {
-        return build_scalar(b, event);
-    }
-
-    // a list or a map, not so deep that the recursion exhausts the stack
-
-    if (depth >= TREE_MAX_DEPTH) {
-        char sentence[96];
-        snprintf(sentence, sizeof sentence, "nested too deeply, expected at most %d levels",
-                 TREE_MAX_DEPTH);
-        return refuse_at(b, event->start_mark, sentence);
-    }
-
-    tree_kind kind = event->type == YAML_MAPPING_START_EVENT ? TREE_MAP : TREE_LIST;
-    tree_node *node = new_node(b, kind, event->start_mark);
-    if (node != NULL && !build_children(b, node, depth + 1)) {
-        tree_free(node);
-        return NULL;
-    }
-    return node;
 }
 
-// Reads stream start, document start, the root, and makes sure that nothing follows.
+// Reads all events; NULL after a fault.
 static tree_node *build_document(builder *b)
 {
-    tree_node *root = NULL;
-    for (;;) {
+    bool good = true, ended = false;
+    while (good && !ended) {
         yaml_event_t event;
-        if (!next_event(b, &event)) {
-            break;
-        }
-
-        // one document with one root
-        yaml_event_type_t type = event.type;
-        bool good = true;
-        if (type == YAML_DOCUMENT_START_EVENT && root != NULL) {
-            refuse_at(b, event.start_mark, "a second document, expected one per file");
-            good = false;
-        } else if (type == YAML_STREAM_END_EVENT && root == NULL) {
-            refuse(b, 1, 1, "the file is empty, expected keys such as 'title: ...'");
-            good = false;
-        } else if (type != YAML_STREAM_START_EVENT && type != YAML_STREAM_END_EVENT &&
-                   type != YAML_DOCUMENT_START_EVENT && type != YAML_DOCUMENT_END_EVENT) {
-            root = build(b, &event, 0);
-            good = root != NULL;
-        }
-        yaml_event_delete(&event);
-
-        if (!good) {
-            break;
-        }
-        if (type == YAML_STREAM_END_EVENT) {
-            return root;
+        if (yaml_parser_parse(&b->parser, &event)) {
+            good = take_event(b, &event);
+            ended = event.type == YAML_STREAM_END_EVENT;
+            yaml_event_delete(&event);
+        } else {
+            good = refuse_syntax(b);
         }
     }
+    if (good) {
+        return b->root;
+    }
 
-    tree_free(root);
+    // keys without a value hang on nothing
+    for (int i = 0; i < b->depth; i++) {
+        tree_free(b->open[i].key);
+    }
+    tree_free(b->root);
     return NULL;
 }
 
 tree_node *tree_parse(const char *text, size_t length, fault *f)
 {
-    assert(text != NULL && f != NULL);
     builder b = {.text = text, .length = length, .fault = f};
     if (length > TREE_MAX_BYTES) {
-        return refuse(&b, 1, 1, "the file is larger than %d bytes, expected a scenario",
-                      TREE_MAX_BYTES);
+        (void)refuse(&b, 1, 1, "the file is larger than %d bytes, expected a scenario",
+                     TREE_MAX_BYTES);
+        return NULL;
     }
 
     // a byte order mark would shift every column of the first line
@@ -300,7 +254,8 @@ tree_node *tree_parse(const char *text, size_t length, fault *f)
 
     // the parser looks for nothing but UTF-8
     if (!yaml_parser_initialize(&b.parser)) {
-        return refuse_for_memory(&b);
+        refuse_for_memory(&b);
+        return NULL;
     }
     yaml_parser_set_encoding(&b.parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&b.parser, (const unsigned char *)b.text, b.length);
