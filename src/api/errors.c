@@ -1,6 +1,5 @@
 #include "src/api/handles.h"
 
-#include <assert.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,7 +28,6 @@ static void copy_text(char *to, size_t size, const char *from)
 
 int api_error(impactlab_error *error, const fault *f)
 {
-    assert(f->path != NULL);
     if (error != NULL) {
         *error = (impactlab_error){.status = (int)f->code, .line = f->line, .column = f->column};
         copy_text(error->parameter, sizeof error->parameter, f->path);

@@ -35,7 +35,6 @@ static size_t rounded(size_t size)
 
 void mat_file_begin(FILE *stream)
 {
-    assert(stream != NULL);
     fprintf(stream, "%-124s", "MATLAB 5.0 MAT-file, written by impactlab");
     const uint16_t version = 0x0100, order = 'M' << 8 | 'I';
     fwrite(&version, sizeof version, 1, stream);

@@ -32,7 +32,7 @@ static bool has_only_a_name(const controller_parameter *c)
 
 controller_parameter controller_parameter_at(const controller *law, int index)
 {
-    assert(law != NULL && index >= 0 && index < law->parameter_count);
+    assert(index >= 0 && index < law->parameter_count);
     const controller_parameter *own = &law->parameters[index];
     if (!has_only_a_name(own)) {
         return *own;
@@ -74,7 +74,6 @@ static int find_named(const controller *law, const char *name)
 
 bool controller_has_parameter(const controller *law, const char *name)
 {
-    assert(law != NULL && name != NULL);
     return find_named(law, name) >= 0;
 }
 
@@ -111,7 +110,7 @@ static status read_setting(const controller *law, const setting *s, double *valu
 
 status controller_values(const controller *law, const parameters *p, double *values, fault *f)
 {
-    assert(law != NULL && p != NULL && (values != NULL || law->parameter_count == 0));
+    assert(values != NULL || law->parameter_count == 0);
 
     // the scenario's values, or the law's own
     for (int i = 0; i < law->parameter_count; i++) {

@@ -134,7 +134,7 @@ status rig_create(rig **created, const parameters *p, const rig_options *o, faul
 {
     static const rig_options none = {.law = NULL};
     o = o != NULL ? o : &none;
-    assert(created != NULL && p != NULL && p->control.rate > 0);
+    assert(p->control.rate > 0);
     const given_law *given = o->law;
     assert(given != NULL || p->control.law != LAW_NONE);
     rig *r = calloc(1, sizeof *r);
@@ -282,7 +282,6 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
 
 void rig_read(rig *r, double time, const sensed_motion *now)
 {
-    assert(r != NULL && now != NULL);
     if (!instant_after(r->sample_time, time) && r->read_time != time) {
         r->reading = sensors_read(&r->sensors, now);
         r->read_time = time;

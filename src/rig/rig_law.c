@@ -40,7 +40,6 @@ static void list_modes(const controller *law, char *text, size_t size)
 
 status rig_find_mode(const controller *law, const char *lock, int *mode, fault *f)
 {
-    assert(law != NULL && lock != NULL && mode != NULL);
     *mode = -1;
     if (lock[0] == '\0' || strcmp(lock, "none") == 0) {
         return STATUS_OK;
@@ -69,7 +68,6 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
 
 status rig_lock(rig *r, const char *lock, fault *f)
 {
-    assert(r != NULL);
     int mode;
     status s = rig_find_mode(r->law, lock, &mode, f);
     r->lock = s == STATUS_OK ? mode : r->lock;
@@ -78,7 +76,6 @@ status rig_lock(rig *r, const char *lock, fault *f)
 
 int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, bool *lockable)
 {
-    assert(p != NULL && names != NULL && lockable != NULL);
     fault ignored;
     plugin opened = {0};
     const controller *law = controller_of(p->control.law);
@@ -140,7 +137,6 @@ controller_setup rig_nominal_setup(const rig *r, const parameters *p)
 
 void rig_take_delay(rig *r, const parameters *p)
 {
-    assert(r != NULL && p != NULL);
     r->delay = p->control.delay + p->control.delay_periods * r->period;
     const double periods = r->delay / r->period;
     r->pending_most = (int)larger(ceil(periods - 1e-9) - 1, 0);
@@ -173,7 +169,6 @@ static bool tells_anew(const rig *r, const parameters *p)
 
 status rig_takes(const rig *r, const parameters *p, fault *f)
 {
-    assert(r != NULL && p != NULL);
     return r->law->tune != NULL || !tells_anew(r, p)
                ? STATUS_OK
                : fault_set(f, STATUS_BAD_SCENARIO,
@@ -208,7 +203,6 @@ static status tell_controller(rig *r, const parameters *p, double time, fault *f
 
 status rig_retune(rig *r, const parameters *p, double time, fault *f)
 {
-    assert(r != NULL && p != NULL);
     parameters *told = &r->told;
     const bool changes = tells_anew(r, p);
     const status taken = rig_takes(r, p, f);
@@ -277,7 +271,7 @@ status rig_follow_setpoint(rig *r, double time, fault *f)
 
 bool rig_can_change(const parameters *p, int parameter)
 {
-    assert(p != NULL && parameter >= 0 && parameter < parameter_count);
+    assert(parameter >= 0 && parameter < parameter_count);
     const char *path = parameter_table[parameter].path;
     const controller *law = controller_of(p->control.law);
     const bool told = strncmp(path, "control.", 8) == 0 || strncmp(path, "belief.", 7) == 0 ||

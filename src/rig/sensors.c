@@ -88,7 +88,6 @@ static void set_lag(first_order_lag *y, double time_constant)
 
 void sensors_retune(sensors *s, const sensor_parameters *p)
 {
-    assert(s != NULL && p != NULL);
     s->p = *p;
     if (p->ideal) {
         idealise(&s->p);
@@ -111,8 +110,6 @@ void sensors_retune(sensors *s, const sensor_parameters *p)
 
 void sensors_init(sensors *s, const sensor_parameters *p, int seed)
 {
-    assert(s != NULL && p != NULL);
-
     // lags and leaks, all at rest
     *s = (sensors){.seen_velocity = (double)NAN};
     sensors_retune(s, p);

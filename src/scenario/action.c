@@ -10,7 +10,6 @@
 
 void scenario_insert_action(scenario *s, action a)
 {
-    assert(s != NULL && s->actions != NULL);
     int i = s->action_count++;
     for (; i > 0 && s->actions[i - 1].time > a.time; i--) {
         s->actions[i] = s->actions[i - 1];
@@ -26,7 +25,6 @@ static bool is_setting(const action *a)
 
 action action_of(double time, const parameters *p, int parameter, const char *text)
 {
-    assert(p != NULL && text != NULL);
     action a = {.time = time, .kind = ACTION_SET, .parameter = parameter};
     a.value = parameter_get(p, parameter);
     if (parameter_is_text(&parameter_table[parameter])) {
@@ -47,7 +45,7 @@ action action_of(double time, const parameters *p, int parameter, const char *te
 
 const char *action_path(const action *a, char path[ACTION_PATH])
 {
-    assert(a != NULL && a->kind == ACTION_SET && path != NULL);
+    assert(a->kind == ACTION_SET);
     snprintf(path, ACTION_PATH, "%s%.*s", parameter_table[a->parameter].path,
              is_setting(a) ? (int)strcspn(a->text, "=") : 0, a->text);
     return path;
@@ -55,14 +53,12 @@ const char *action_path(const action *a, char path[ACTION_PATH])
 
 bool action_is_text(const action *a)
 {
-    assert(a != NULL && a->kind == ACTION_SET);
+    assert(a->kind == ACTION_SET);
     return parameter_is_text(&parameter_table[a->parameter]) && !is_setting(a);
 }
 
 status action_apply(const action *a, parameters *p, fault *f)
 {
-    assert(a != NULL && p != NULL);
-
     // other actions change no parameter
     if (a->kind != ACTION_SET) {
         return STATUS_OK;
@@ -81,7 +77,7 @@ status action_apply(const action *a, parameters *p, fault *f)
 
 void action_format_value(const action *a, char *text, size_t size)
 {
-    assert(a != NULL && a->kind == ACTION_SET && text != NULL && size > 0);
+    assert(a->kind == ACTION_SET && size > 0);
 
     if (is_setting(a)) {
         snprintf(text, size, "%s", strchr(a->text, '=') + 1);
@@ -97,13 +93,12 @@ void action_format_value(const action *a, char *text, size_t size)
 
 bool expectation_is_met(const expectation *e, double value)
 {
-    assert(e != NULL);
     return e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance;
 }
 
 parameters scenario_parameters_at(const scenario *s, double time)
 {
-    assert(s != NULL && !isnan(time));
+    assert(!isnan(time));
     parameters p = s->parameters;
     for (int i = 0; i < s->action_count && s->actions[i].time <= time; i++) {
         action_apply(&s->actions[i], &p, NULL);
@@ -113,7 +108,6 @@ parameters scenario_parameters_at(const scenario *s, double time)
 
 status scenario_check_locks(const scenario *s, const controller *law, fault *f)
 {
-    assert(s != NULL);
     const int lock = PARAMETER_INDEX(control.lock);
     int mode;
     if (law == NULL) {

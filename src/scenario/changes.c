@@ -47,7 +47,7 @@ const char *scenario_changes(const scenario *s, char text[SCENARIO_CHANGES])
 
 const char *scenario_changes_within(const scenario *s, char *text, size_t room)
 {
-    assert(s != NULL && text != NULL && room > 0);
+    assert(room > 0);
     size_t used = 0;
     int more = 0;
     text[0] = '\0';

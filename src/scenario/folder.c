@@ -1,6 +1,5 @@
 // Scenarios as files: reading one, finding one by name, listing the folder of those that ship.
 
-#include <assert.h>
 #include <dirent.h>
 #include <errno.h>
 #include <stdarg.h>
@@ -86,7 +85,6 @@ static status report_file(scenario *s, const char *path, const char *what, fault
 status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
                      void *context)
 {
-    assert(s != NULL && path != NULL);
     char what[256];
     if (is_folder(path)) {
         return report_file(s, path, "it is a folder", report, context);
@@ -190,7 +188,6 @@ static char *find_file(const char *name, const char *ending)
 
 char *scenario_folder_file(const char *name)
 {
-    assert(name != NULL);
     return find_file(name, "");
 }
 
@@ -290,7 +287,6 @@ static void sort_once(name_list *list)
 
 status scenario_list(char ***names, int *count, fault *f)
 {
-    assert(names != NULL && count != NULL);
     name_list list = {0};
     *names = NULL;
     *count = 0;
@@ -400,8 +396,6 @@ static status find_name(const char *wanted, char **path)
 
 status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context)
 {
-    assert(s != NULL && name_or_file != NULL);
-
     // a scenario of the folder
     char *path;
     status result = find_name(name_or_file, &path);

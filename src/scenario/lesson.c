@@ -24,7 +24,6 @@ static void text_places(lesson_step *step, char **places[STEP_TEXTS])
 
 void lesson_finish(lesson *l)
 {
-    assert(l != NULL);
     char **places[STEP_TEXTS];
     for (int i = 0; i < l->step_count; i++) {
         text_places(&l->steps[i], places);
@@ -40,7 +39,6 @@ void lesson_finish(lesson *l)
 
 bool lesson_copy(lesson *copy, const lesson *l)
 {
-    assert(copy != NULL && l != NULL);
     const size_t count = (size_t)l->step_count;
     lesson_step *steps = count > 0 ? calloc(count, sizeof *steps) : NULL;
     *copy = *l;

@@ -25,7 +25,6 @@ typedef enum reading { CONTENT, STAMP } reading;
 
 bool outside_is_read(const outside_source *source, const parameters *p)
 {
-    assert(source != NULL && p != NULL);
     return parameter_get(p, parameter_at(source->chooser)) == source->choice;
 }
 
@@ -151,7 +150,6 @@ bool outside_is_told(const outside_source *source, const parameters *p)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                                 " ./_+-:,@=%";
-    assert(source != NULL && p != NULL);
     char value[PARAMETER_TEXT_SIZE];
     parameter_format(p, parameter_at(source->parameter), value, sizeof value);
     return source->kind == OUTSIDE_COMMAND   ? value[strspn(value, plain)] == '\0'
@@ -162,7 +160,7 @@ bool outside_is_told(const outside_source *source, const parameters *p)
 status outside_digest(const outside_source *source, const parameters *p, char digest[SHA256_TEXT],
                       fault *f)
 {
-    assert(outside_is_told(source, p) && digest != NULL);
+    assert(outside_is_told(source, p));
     const int parameter = parameter_at(source->parameter);
     const char *path = parameter_table[parameter].path;
     char value[PARAMETER_TEXT_SIZE];
@@ -180,7 +178,6 @@ status outside_digest(const outside_source *source, const parameters *p, char di
 
 void outside_stamp(unsigned sources, const parameters *p, char stamp[SHA256_TEXT])
 {
-    assert(p != NULL && stamp != NULL);
     sha256 h;
     sha256_init(&h);
     for (int i = 0; i < outside_count; i++) {

@@ -10,7 +10,6 @@
 
 void scenario_finish(scenario *s)
 {
-    assert(s != NULL);
     free(s->name);
     free(s->file);
     free(s->title);
@@ -43,7 +42,6 @@ static bool copy_array(void **copy, const void *array, size_t size)
 
 status scenario_copy(scenario *copy, const scenario *s)
 {
-    assert(copy != NULL && s != NULL);
     void *actions = NULL, *expectations = NULL;
     *copy = *s;
 
@@ -111,7 +109,6 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
 
 status scenario_take_parameters(scenario *s, const parameters *changed, fault *f)
 {
-    assert(s != NULL && changed != NULL);
     parameters p = *changed;
     status result = resolve_changed(s, &p, f);
     if (result == STATUS_OK) {
@@ -123,7 +120,7 @@ status scenario_take_parameters(scenario *s, const parameters *changed, fault *f
 status scenario_with(const scenario *base, const parameter_change *changes, size_t count,
                      scenario *changed, fault *f)
 {
-    assert(base != NULL && (changes != NULL || count == 0) && changed != NULL);
+    assert(changes != NULL || count == 0);
     parameters p = base->parameters;
     *changed = *base;
     for (const parameter_change *c = changes; c < changes + count; c++) {
@@ -135,7 +132,6 @@ status scenario_with(const scenario *base, const parameter_change *changes, size
 
 status scenario_override(scenario *s, const char *assignment, fault *f)
 {
-    assert(s != NULL && assignment != NULL);
     fault inner;
     parameters p = s->parameters;
     status result = assign(&p, assignment, &inner);
@@ -213,7 +209,7 @@ static bool settings_twice(char *const *assignments, int count)
 status scenario_override_all(scenario *s, char *const *assignments, int count, fault_handler report,
                              void *context)
 {
-    assert(s != NULL && count >= 0 && (count == 0 || assignments != NULL));
+    assert(count >= 0 && (count == 0 || assignments != NULL));
     if (settings_twice(assignments, count)) {
         s->refused = (fault_place){.path = setting_info.path};
         if (report != NULL) {

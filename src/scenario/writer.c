@@ -1,5 +1,4 @@
 // Writing a scenario as a file that gives it again.
-#include <assert.h>
 #include <string.h>
 
 #include "src/tables/signals.h"
@@ -218,8 +217,6 @@ static void write_lesson(FILE *stream, const scenario *s)
 
 void scenario_write(FILE *stream, const scenario *s)
 {
-    assert(stream != NULL && s != NULL && s->title != NULL && s->description != NULL);
-
     // prose; the title goes on with what was changed, as far as a title may
     char changes[SCENARIO_TITLE + 1];
     const size_t length = strlen(s->title);

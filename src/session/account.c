@@ -190,7 +190,7 @@ static void say_end(account *a)
 int run_account(const scenario *s, const run_result *run,
                 char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE])
 {
-    assert(s != NULL && run != NULL && run->trace.row_count > 0 && sentences != NULL);
+    assert(run->trace.row_count > 0);
     account a = {.scenario = s, .run = run, .sentences = sentences};
     if (run->summary.status != STATUS_OK) {
         say(&a, "The run stops at %.4g s: %.200s.", run->trace.rows[run->trace.row_count - 1].time,

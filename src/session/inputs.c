@@ -79,7 +79,7 @@ static status add_input(session *s, const session_input *in, fault *f)
 
 status session_change(session *s, int parameter, const char *text, fault *f)
 {
-    assert(s != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
+    assert(parameter >= 0 && parameter < parameter_count);
     session_input in = {
         .kind = SESSION_INPUT_START, .time = effect_time(s), .parameter = parameter};
     remember_cursor(s, &in);
@@ -142,7 +142,7 @@ static bool gave_value(const session_input *in, int parameter, const char *text)
 
 status session_adjust(session *s, int parameter, const char *text, fault *f)
 {
-    assert(s != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
+    assert(parameter >= 0 && parameter < parameter_count);
     const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
     if (last == NULL || !gave_value(last, parameter, text) || last->time != s->now) {
         return begin_adjusting(s, parameter, text, f);
@@ -176,7 +176,6 @@ status session_adjust(session *s, int parameter, const char *text, fault *f)
 
 unsigned session_new_gesture(const session *s)
 {
-    assert(s != NULL);
     unsigned highest = 0;
     for (int i = 0; i < s->input_total; i++) {
         highest = s->inputs[i].gesture > highest ? s->inputs[i].gesture : highest;
@@ -191,7 +190,6 @@ status session_push(session *s, double impulse, fault *f)
 
 status session_pull(session *s, double impulse, unsigned gesture, fault *f)
 {
-    assert(s != NULL);
     session_input in = {.kind = SESSION_INPUT_PUSH,
                         .time = effect_time(s),
                         .parameter = -1,
@@ -230,7 +228,6 @@ static status move_inputs(session *s, int step, fault *f)
 
 status session_undo(session *s, fault *f)
 {
-    assert(s != NULL);
     FAIL_IF(s->input_count == 0, fault_set(f, STATUS_BAD_ARGUMENT, "nothing to undo"));
     TRY(move_inputs(s, -1, f));
     restore_cursor(s, &s->inputs[s->input_count]);
@@ -239,7 +236,6 @@ status session_undo(session *s, fault *f)
 
 status session_redo(session *s, fault *f)
 {
-    assert(s != NULL);
     FAIL_IF(s->input_count == s->input_total, fault_set(f, STATUS_BAD_ARGUMENT, "nothing to redo"));
     TRY(move_inputs(s, 1, f));
 
@@ -253,7 +249,7 @@ status session_redo(session *s, fault *f)
 
 status session_change_input(session *s, int index, const char *text, fault *f)
 {
-    assert(s != NULL && text != NULL && index >= 0 && index < s->input_count);
+    assert(index >= 0 && index < s->input_count);
     const session_input *old = &s->inputs[index];
     FAIL_IF(old->kind == SESSION_INPUT_PUSH,
             fault_set(f, STATUS_BAD_ARGUMENT, "a push has no other value: drop it and push again"));
@@ -276,7 +272,7 @@ status session_change_input(session *s, int index, const char *text, fault *f)
 
 status session_drop_input(session *s, int index, fault *f)
 {
-    assert(s != NULL && index >= 0 && index < s->input_count);
+    assert(index >= 0 && index < s->input_count);
     const session_input dropped = s->inputs[index];
     const int last = s->input_count - 1;
     memmove(&s->inputs[index], &s->inputs[index + 1], (size_t)(last - index) * sizeof *s->inputs);
@@ -296,7 +292,7 @@ status session_drop_input(session *s, int index, fault *f)
 
 status session_take_inputs(session *s, const session_input *inputs, int count, fault *f)
 {
-    assert(s != NULL && count >= 0 && (inputs != NULL || count == 0));
+    assert(count >= 0 && (inputs != NULL || count == 0));
     session_input *taken = calloc((size_t)count + 1, sizeof *taken);
     TRY_MEMORY(taken != NULL, f);
     if (count > 0) {

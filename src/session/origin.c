@@ -1,13 +1,11 @@
 #include "src/session/origin.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 status run_origin_take(run_origin *o, const session *s, fault *f)
 {
-    assert(o != NULL && s != NULL);
     *o = (run_origin){.input_count = s->input_count, .now = s->now, .seen = s->seen};
     o->inputs = calloc((size_t)s->input_count + 1, sizeof *o->inputs);
     if (o->inputs == NULL || scenario_copy(&o->base, &s->base) != STATUS_OK) {
@@ -22,7 +20,6 @@ status run_origin_take(run_origin *o, const session *s, fault *f)
 
 void run_origin_finish(run_origin *o)
 {
-    assert(o != NULL);
     free(o->inputs);
     scenario_finish(&o->base);
     *o = (run_origin){0};
@@ -36,7 +33,6 @@ static bool same_action(const action *a, const action *b)
 
 bool same_base(const scenario *a, const scenario *b)
 {
-    assert(a != NULL && b != NULL);
     bool same = strcmp(a->name, b->name) == 0 && a->action_count == b->action_count;
     for (int i = 0; same && i < parameter_count; i++) {
         char one[PARAMETER_TEXT_SIZE], other[PARAMETER_TEXT_SIZE];
@@ -52,14 +48,12 @@ bool same_base(const scenario *a, const scenario *b)
 
 bool session_same_input(const session_input *a, const session_input *b)
 {
-    assert(a != NULL && b != NULL);
     return a->kind == b->kind && a->parameter == b->parameter && a->value == b->value &&
            (a->kind == SESSION_INPUT_START || a->time == b->time) && strcmp(a->text, b->text) == 0;
 }
 
 bool run_origin_is_of(const run_origin *o, const session *s)
 {
-    assert(o != NULL && s != NULL);
     bool same = o->input_count == s->input_count;
     for (int i = 0; same && i < o->input_count; i++) {
         same = session_same_input(&o->inputs[i], &s->inputs[i]);
@@ -69,7 +63,6 @@ bool run_origin_is_of(const run_origin *o, const session *s)
 
 status session_reopen(session *s, const run_origin *o, double patience, fault *f)
 {
-    assert(s != NULL && o != NULL);
     scenario base;
     if (scenario_copy(&base, &o->base) != STATUS_OK) {
         return fault_no_memory(f);

@@ -22,13 +22,13 @@ static void note_seen(session *s)
 
 const sample *session_sample(const session *s)
 {
-    assert(s != NULL && s->row < s->run.trace.row_count);
+    assert(s->row < s->run.trace.row_count);
     return &s->run.trace.rows[s->row];
 }
 
 double session_end(const session *s)
 {
-    assert(s != NULL && s->run.trace.row_count > 0);
+    assert(s->run.trace.row_count > 0);
     return s->run.trace.rows[s->run.trace.row_count - 1].time;
 }
 
@@ -62,7 +62,6 @@ bool session_step(session *s, long rows)
 
 const event *session_event(const session *s)
 {
-    assert(s != NULL);
     for (size_t i = 0; i < s->run.trace.event_count; i++) {
         if (s->run.trace.events[i].time == s->now) {
             return &s->run.trace.events[i];
@@ -237,8 +236,6 @@ static status start_run(session *s, const scenario *effective, fault *f)
 
 status session_compute(session *s, fault *f)
 {
-    assert(s != NULL);
-
     // what it would be
     scenario effective;
     status code = build_effective(s, &effective, f);
@@ -277,7 +274,6 @@ status session_compute(session *s, fault *f)
 
 bool session_follow(session *s)
 {
-    assert(s != NULL);
     if (s->computing == NULL) {
         return false;
     }
@@ -299,7 +295,6 @@ bool session_follow(session *s)
 
 bool session_stop(session *s)
 {
-    assert(s != NULL);
     bool stopped = end_computing(s);
     if (s->run.trace.row_count > 0) {
         session_seek(s, s->now);
@@ -309,7 +304,6 @@ bool session_stop(session *s)
 
 status session_go_on(session *s, fault *f)
 {
-    assert(s != NULL);
     FAIL_IF(s->computing != NULL || s->run.summary.status != STATUS_STOPPED,
             fault_set(f, STATUS_BAD_ARGUMENT, "the run was not stopped"));
 
@@ -325,13 +319,11 @@ status session_go_on(session *s, fault *f)
 
 parameters session_parameters_at(const session *s, double time)
 {
-    assert(s != NULL);
     return scenario_parameters_at(&s->effective, time);
 }
 
 status session_keep_beside(session *s, const run_result *run, fault *f)
 {
-    assert(s != NULL && run != NULL);
     run_result kept;
     if (run_share(run, run->trace.row_count, &kept) != STATUS_OK) {
         return fault_no_memory(f);
@@ -345,7 +337,6 @@ status session_keep_beside(session *s, const run_result *run, fault *f)
 
 status session_allow_code(session *s, fault *f)
 {
-    assert(s != NULL);
     const bool before = s->base.parameters.code_allowed;
     s->base.parameters.code_allowed = true;
     status code = session_compute(s, f);
@@ -357,7 +348,6 @@ status session_allow_code(session *s, fault *f)
 
 process_replay session_take_replay(session *s)
 {
-    assert(s != NULL);
     process_replay taken = {.restarted = false};
     if (s->computing == NULL && s->transcript != NULL) {
         taken = s->transcript->replay;
@@ -368,7 +358,6 @@ process_replay session_take_replay(session *s)
 
 void session_forget_other(session *s)
 {
-    assert(s != NULL);
     if (s->has_other) {
         run_finish(&s->other);
         s->has_other = false;
@@ -388,7 +377,7 @@ void session_forget_ghost(session *s)
 
 status session_open(session *s, scenario *base, double patience, fault *f)
 {
-    assert(s != NULL && base != NULL && patience >= 0);
+    assert(patience >= 0);
     memset(s, 0, sizeof *s);
     s->base = *base;
     s->patience = patience;
@@ -401,7 +390,6 @@ status session_open(session *s, scenario *base, double patience, fault *f)
 
 void session_finish(session *s)
 {
-    assert(s != NULL);
     session_stop(s);
     session_forget_other(s);
     session_forget_ghost(s);

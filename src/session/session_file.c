@@ -55,7 +55,7 @@ static void write_input(FILE *stream, const session_input *in)
 
 void session_file_write(FILE *stream, const session_file *file)
 {
-    assert(stream != NULL && file != NULL && file->run_count > 0);
+    assert(file->run_count > 0);
     fprintf(stream, "%s\n", head);
     for (int i = 0; i < file->run_count; i++) {
         const kept_run *r = &file->runs[i];
@@ -302,7 +302,6 @@ static status read_lines(session_reader *r, FILE *stream)
 
 status session_file_read(session_file *file, const char *path, fault *f)
 {
-    assert(file != NULL && path != NULL);
     *file = (session_file){.baseline = -1};
     FILE *stream = fopen(path, "r");
     FAIL_IF(stream == NULL,
@@ -324,7 +323,6 @@ status session_file_read(session_file *file, const char *path, fault *f)
 
 void session_file_finish(session_file *file)
 {
-    assert(file != NULL);
     for (int i = 0; i < file->run_count; i++) {
         run_origin_finish(&file->runs[i].from);
     }

@@ -132,7 +132,6 @@ static status press(const scenario *s, double command, int number, run_monitor *
 status calibrate(const scenario *s, const double *commands, int count, run_monitor *monitor,
                  calibration *c, fault *f)
 {
-    assert(s != NULL && c != NULL && commands != NULL);
     assert(count > 0 && count <= K2_TABLE_MOST);
     *c = (calibration){0};
 
@@ -168,7 +167,6 @@ status calibrate(const scenario *s, const double *commands, int count, run_monit
 
 status calibration_table(const calibration *c, k2_table *t, fault *f)
 {
-    assert(c != NULL && t != NULL);
     *t = (k2_table){0};
 
     // by growing force, whatever the commands' order
@@ -219,7 +217,6 @@ static void fill_cells(const calibration_point *p, const scenario *s, result_cel
 
 json_t *calibration_json(const calibration *c, const scenario *s, const char *table)
 {
-    assert(c != NULL && s != NULL && table != NULL);
     json_t *object = json_object(), *points = json_array();
     result_cell cells[COLUMNS];
     for (int i = 0; i < c->count; i++) {
@@ -236,7 +233,6 @@ json_t *calibration_json(const calibration *c, const scenario *s, const char *ta
 
 void calibration_csv(FILE *stream, const calibration *c, const scenario *s)
 {
-    assert(stream != NULL && c != NULL && s != NULL);
     csv_writer csv = csv_begin(stream);
     result_cell cells[COLUMNS];
     result_headings(&csv, columns, COLUMNS);

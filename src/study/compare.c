@@ -1,6 +1,5 @@
 #include "src/study/compare.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -85,7 +84,6 @@ static double find_least_time(const scenario *s, const run_result *result)
 
 compare_row compare_row_of(const scenario *s, const run_result *result)
 {
-    assert(s != NULL && result != NULL);
     const summary *m = &result->summary;
     double command = m->force_command_N, peak, settling;
     bool commanded = !isnan(command) && command > 0;
@@ -130,7 +128,6 @@ static bool marked(const compare_table *t, int i, int k)
 
 status compare_choose(compare_table *t, const char *keys, fault *f)
 {
-    assert(t != NULL && keys != NULL);
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {
         t->hidden[k] = true;
     }
@@ -220,7 +217,6 @@ static void format_result(double value, bool page, char *text, size_t size)
 // The table in columns of blanks, results marked where they differ, or of a Markdown page.
 static void write_table(FILE *stream, const compare_table *t, bool page)
 {
-    assert(stream != NULL && t != NULL);
     const int width = -longest(t, false), law = -longest(t, true);
     char text[PARAMETER_TEXT_SIZE];
 
@@ -319,7 +315,6 @@ static json_t *row_object(const compare_table *t, int i)
 
 json_t *compare_json(const compare_table *t)
 {
-    assert(t != NULL);
     json_t *whole = json_object(), *array = json_array();
     for (int i = 0; i < t->count; i++) {
         json_add(array, row_object(t, i));
@@ -335,8 +330,6 @@ json_t *compare_json(const compare_table *t)
 
 void compare_csv(FILE *stream, const compare_table *t)
 {
-    assert(stream != NULL && t != NULL);
-
     // headings
     csv_writer csv = csv_begin(stream);
     csv_heading(&csv, "scenario", "");

@@ -48,7 +48,6 @@ static status run_with(const scenario *s, const parameters *p, run_monitor *moni
 status convergence_compute(const scenario *s, run_monitor *monitor, convergence_panel *panel,
                            fault *f)
 {
-    assert(s != NULL && panel != NULL);
     summary results[PANEL_STEPS];
     status code = STATUS_OK;
     panel->done = 0;
@@ -80,7 +79,6 @@ status convergence_compute(const scenario *s, run_monitor *monitor, convergence_
 
 size_t convergence_difference(const trace *coarse, const trace *fine, double *x, double *y)
 {
-    assert(coarse != NULL && fine != NULL && x != NULL && y != NULL);
     size_t count = 0, j = 0;
 
     // both ascend, so each is gone through once; equal instants are equal to the last bit, since
@@ -163,7 +161,6 @@ static void prepare_points(method_study *study)
 
 status method_study_compute(const scenario *s, run_monitor *monitor, method_study *study, fault *f)
 {
-    assert(s != NULL && study != NULL);
     _Static_assert(STUDY_QUANTITIES == 3, "an error each");
     parameters p = s->parameters;
     summary reference;
@@ -196,8 +193,8 @@ status method_study_compute(const scenario *s, run_monitor *monitor, method_stud
 
 double method_study_cost(const method_study *study, int method, int k, double error, double *step)
 {
-    assert(study != NULL && method >= 0 && method < STUDY_METHODS);
-    assert(k >= 0 && k < STUDY_QUANTITIES && step != NULL);
+    assert(method >= 0 && method < STUDY_METHODS);
+    assert(k >= 0 && k < STUDY_QUANTITIES);
     double least = (double)NAN;
 
     // from the shortest step up, as long as the error stays below

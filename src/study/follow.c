@@ -1,6 +1,5 @@
 #include "src/study/follow.h"
 
-#include <assert.h>
 #include <complex.h>
 #include <math.h>
 
@@ -103,7 +102,6 @@ static void find_bound(const parameters *p, follow_study *study)
 
 status follow_study_compute(const scenario *s, run_monitor *monitor, follow_study *study, fault *f)
 {
-    assert(s != NULL && study != NULL);
     *study = (follow_study){0};
     const parameters *p = &s->parameters;
     FAIL_IF(p->control.law == LAW_NONE || p->wall.kind == WALL_NONE || !(p->control.force > 0),

@@ -45,7 +45,6 @@ static double within_range(const fitted_parameter *fit, double value)
 
 status identify_add_path(identification *id, const char *text, fault *f)
 {
-    assert(id != NULL && text != NULL);
     FAIL_IF(id->count == IDENTIFY_PATHS,
             fault_set(f, STATUS_BAD_ARGUMENT, "more than %d parameters to fit", IDENTIFY_PATHS));
     fitted_parameter *p = &id->fit[id->count++];
@@ -435,7 +434,7 @@ static status fit_with(identification *id, double *x, double *rest, double *resi
 
 status identify_fit(identification *id, fault *f)
 {
-    assert(id != NULL && id->trace_count > 0);
+    assert(id->trace_count > 0);
     list_unknowns(id);
     id->residuals = (size_t)id->count;
     for (int k = 0; k < id->trace_count; k++) {

@@ -1,5 +1,4 @@
 // How well parameters are known, and whether the model is one.
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -243,7 +242,6 @@ static void find_covariance(identification *id, const double *values, const doub
 
 status identify_judge(identification *id, const double *jacobian, fault *f)
 {
-    assert(id != NULL && jacobian != NULL);
     const int p = id->count;
     double scratch[2 * IDENTIFY_PATHS], values[IDENTIFY_PATHS];
     double scatter[IDENTIFY_PATHS * IDENTIFY_PATHS] = {0};
@@ -297,7 +295,6 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
 // gives it the mean n and the standard deviation sqrt(2 n).
 double identify_misfit(const identification *id, double *most)
 {
-    assert(id != NULL && most != NULL);
     const double freedoms = (double)(id->residuals - (size_t)(id->unknowns + id->count));
     *most = NOISE_KNOWN * NOISE_KNOWN * (1 + CHANCE * sqrt(2 / freedoms));
     return id->chi_square / freedoms;

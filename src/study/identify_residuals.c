@@ -198,7 +198,7 @@ static void guess_start(recorded_trace *t, const parameters *p)
 status identify_add_trace(identification *id, const char *file, char *const *columns, int count,
                           fault *f)
 {
-    assert(id != NULL && file != NULL && id->trace_count <= IDENTIFY_TRACES);
+    assert(id->trace_count <= IDENTIFY_TRACES);
     FAIL_IF(id->trace_count == IDENTIFY_TRACES,
             fault_set(f, STATUS_BAD_ARGUMENT, "more than %d traces", IDENTIFY_TRACES));
     const parameters *p = &id->base->parameters;

@@ -1,6 +1,5 @@
 #include "src/study/links.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -272,7 +271,6 @@ static void compute_beam(const parameters *p, double speed, links_row *rows)
 
 int links_enough(const links_row *row)
 {
-    assert(row != NULL);
     const double aim = isnan(row->beam) ? row->limit : row->beam;
     int enough = 0;
     for (int i = LINKS_LENGTHS - 1; i >= 0; i--) {
@@ -286,7 +284,6 @@ int links_enough(const links_row *row)
 
 status links_study_compute(const scenario *s, run_monitor *monitor, links_study *study, fault *f)
 {
-    assert(s != NULL && study != NULL);
     double speed = (double)NAN;
     *study = (links_study){0};
     FAIL_IF(s->parameters.arm.model == ARM_PRINTED,

@@ -220,7 +220,6 @@ static void init_locks(pool *p)
 
 status pool_run(const pool_work *work, int threads, fault *f)
 {
-    assert(work != NULL && work->compute != NULL && work->collect != NULL);
     assert(work->result_size > 0 && threads >= 1 && threads <= POOL_MOST_THREADS);
     pool p = {.work = work};
     pool_thread each[POOL_MOST_THREADS] = {0};

@@ -7,7 +7,6 @@
 
 void result_headings(csv_writer *w, const result_column *columns, int count)
 {
-    assert(w != NULL && columns != NULL);
     for (int k = 0; k < count; k++) {
         csv_heading(w, columns[k].name, columns[k].unit);
     }
@@ -16,7 +15,6 @@ void result_headings(csv_writer *w, const result_column *columns, int count)
 
 void result_row(csv_writer *w, const result_cell *cells, int count)
 {
-    assert(w != NULL && cells != NULL);
     for (int k = 0; k < count; k++) {
         if (cells[k].text != NULL) {
             csv_text(w, cells[k].text);
@@ -29,7 +27,6 @@ void result_row(csv_writer *w, const result_cell *cells, int count)
 
 void result_put(json_t *object, const result_column *columns, const result_cell *cells, int count)
 {
-    assert(columns != NULL && cells != NULL);
     for (int k = 0; k < count; k++) {
         json_put(object, columns[k].key,
                  cells[k].text != NULL ? json_text(cells[k].text) : json_number(cells[k].number));
@@ -38,7 +35,6 @@ void result_put(json_t *object, const result_column *columns, const result_cell 
 
 void result_print(FILE *stream, bool page, int column, int width, const char *text)
 {
-    assert(stream != NULL && text != NULL);
     if (page) {
         print_printable(stream, "%s %s |", column == 0 ? "|" : "", text);
     } else {
@@ -48,7 +44,7 @@ void result_print(FILE *stream, bool page, int column, int width, const char *te
 
 void result_page_rule(FILE *stream, int columns)
 {
-    assert(stream != NULL && columns > 0);
+    assert(columns > 0);
     for (int k = 0; k < columns; k++) {
         fputs(k == 0 ? "|---|" : "---|", stream);
     }

@@ -138,7 +138,6 @@ static bool make_room(robust_set *set)
 
 status robust_set_read(robust_set *set, const char *path, fault *f)
 {
-    assert(set != NULL && path != NULL);
     *set = (robust_set){.file = strdup(path)};
     status code = set->file != NULL ? read_text(path, &set->text, f) : fault_no_memory(f);
     if (code == STATUS_OK) {
@@ -179,7 +178,6 @@ static void keep_first(void *context, const char *sentence)
 
 status robust_case_fault(const robust_case *c, const fault *why, fault *f)
 {
-    assert(c != NULL && why != NULL);
     return why->code == STATUS_NO_MEMORY
                ? fault_no_memory(f)
                : fault_set_place(f, why->code, c->line, 1, "%.200s:%d: case '%.60s': %.600s",
@@ -209,7 +207,6 @@ static status apply_case(scenario *derived, const robust_case *c, fault *f)
 
 status robust_case_scenario(scenario *derived, const scenario *base, const robust_case *c, fault *f)
 {
-    assert(derived != NULL && base != NULL);
     *derived = *base;
     int pushes = c != NULL ? c->push_count : 0;
     derived->actions = calloc((size_t)(base->action_count + pushes + 1), sizeof(action));
@@ -346,7 +343,7 @@ static void judge(robust_law *out, const sweep *s, sweep_share share, double *va
 status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_share share,
                      sweep_store *store, fault *f)
 {
-    assert(out != NULL && law != NULL && s != NULL && store != NULL && s->run_count > 0);
+    assert(s->run_count > 0);
     const size_t n = sweep_share_count(share, s->run_count);
     *out = (robust_law){.law = law, .runs = n, .against = (double)NAN};
 
@@ -373,7 +370,6 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sha
 
 const char *robust_overshoot_of(const robust_law *law)
 {
-    assert(law != NULL);
     return law->by_smoothed == 0           ? "peak"
            : law->by_smoothed == law->runs ? "smoothed"
                                            : "peak and smoothed";

@@ -141,7 +141,7 @@ const char *robust_key(int i)
 double robust_value(const robust_law *law, int i)
 {
     result_cell cells[COLUMNS];
-    assert(law != NULL && i >= 0 && column_of(i) < COLUMNS);
+    assert(i >= 0 && column_of(i) < COLUMNS);
     fill_cells(law, cells);
     return cells[column_of(i)].number;
 }
@@ -160,7 +160,7 @@ static int case_width(const robust_table *t)
 // The table in columns of blanks, or of a Markdown page.
 static void write_table(FILE *stream, const robust_table *t, bool page)
 {
-    assert(stream != NULL && t != NULL && t->count > 0);
+    assert(t->count > 0);
     const bool cases = first_column(t) == CASE;
     const shown_column *shown = cases ? of_cases : of_laws;
     const int count = cases ? (int)(sizeof of_cases / sizeof of_cases[0]) - (t->against == NULL)
@@ -216,7 +216,7 @@ void robust_markdown(FILE *stream, const robust_table *t)
 
 void robust_csv(FILE *stream, const robust_table *t)
 {
-    assert(stream != NULL && t != NULL && t->count > 0);
+    assert(t->count > 0);
     const int first = first_column(t);
     csv_writer csv = csv_begin(stream);
     result_headings(&csv, columns + first, COLUMNS - first);
@@ -229,7 +229,6 @@ void robust_csv(FILE *stream, const robust_table *t)
 
 json_t *robust_json(const robust_table *t)
 {
-    assert(t != NULL);
     json_t *whole = json_object(), *laws = json_array();
     for (int i = 0; i < t->count; i++) {
         result_cell cells[COLUMNS];

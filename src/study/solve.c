@@ -29,7 +29,6 @@ static void copy_trimmed(const char *start, const char *end, char *copy, size_t 
 
 status solve_condition_read(const char *text, solve_condition *c, fault *f)
 {
-    assert(text != NULL && c != NULL);
     const char *sign = strpbrk(text, "<>"), *rest;
     char key[128];
     FAIL_IF(sign == NULL,
@@ -66,13 +65,12 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
 
 bool solve_condition_holds(const solve_condition *c, double value)
 {
-    assert(c != NULL && !isnan(value));
+    assert(!isnan(value));
     return c->equal && value == c->bound ? true : c->below ? value < c->bound : value > c->bound;
 }
 
 status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f)
 {
-    assert(axis != NULL && s != NULL);
     double value = sweep_axis_get(axis, &s->parameters);
     FAIL_IF(sweep_axis_parameter(axis) == &setting_info || axis->element > 0 ||
                 !parameter_usual_range(axis->parameter, value, &axis->low, &axis->high,
@@ -84,7 +82,6 @@ status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f)
 
 status solve_axis_read(sweep_axis *axis, const char *text, const scenario *s, fault *f)
 {
-    assert(axis != NULL && text != NULL && s != NULL);
     const char *range = strchr(text, '=');
     TRY(sweep_axis_find(axis, text, f));
     return range != NULL ? sweep_axis_parse_range(axis, range + 1, f)
@@ -273,7 +270,7 @@ static void count_points(search *s)
 status solve(const scenario *s, const sweep_axis *axis, const solve_condition *condition,
              int points, int jobs, run_monitor *monitor, solution *found, fault *f)
 {
-    assert(s != NULL && axis != NULL && axis->is_range && condition != NULL && found != NULL);
+    assert(axis->is_range);
     assert(points >= 2 && points <= SOLVE_MOST_POINTS);
     search here = {
         .base = s, .axis = axis, .condition = condition, .monitor = monitor, .found = found};

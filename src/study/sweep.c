@@ -149,7 +149,6 @@ static status draw_values(sweep *s, fault *f)
 
 double sweep_value(const sweep *s, size_t run, int axis)
 {
-    assert(s != NULL);
     assert(run < s->run_count && axis >= 0 && axis < s->axis_count);
     if (s->drawn != NULL) {
         return s->drawn[run * (size_t)s->axis_count + (size_t)axis];
@@ -164,13 +163,12 @@ double sweep_value(const sweep *s, size_t run, int axis)
 
 void sweep_value_text(const sweep *s, size_t run, int axis, char *text, size_t size)
 {
-    assert(s != NULL && text != NULL && size > 0);
+    assert(size > 0);
     sweep_axis_format(&s->axes[axis], sweep_value(s, run, axis), text, size);
 }
 
 status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f)
 {
-    assert(s != NULL && s->base != NULL && derived != NULL);
     double values[SWEEP_MOST_AXES];
     for (int i = 0; i < s->axis_count; i++) {
         values[i] = sweep_value(s, run, i);
@@ -206,8 +204,6 @@ static status check_combinations(const sweep *s, fault *f)
 
 status sweep_plan(sweep *s, const sweep_request *request, fault *f)
 {
-    assert(s != NULL && request != NULL);
-
     status code = STATUS_OK;
     memset(s, 0, sizeof *s);
     s->sampling = request->sampling;
@@ -242,7 +238,6 @@ status sweep_plan(sweep *s, const sweep_request *request, fault *f)
 
 status sweep_init(sweep *s, const scenario *base, const sweep_request *request, fault *f)
 {
-    assert(s != NULL && base != NULL && request != NULL);
     TRY(sweep_plan(s, request, f));
 
     // whether each run can be begun
@@ -256,7 +251,6 @@ status sweep_init(sweep *s, const scenario *base, const sweep_request *request, 
 
 void sweep_finish(sweep *s)
 {
-    assert(s != NULL);
     for (int i = 0; i < s->axis_count; i++) {
         sweep_axis_finish(&s->axes[i]);
     }

@@ -12,7 +12,6 @@
 
 const parameter_info *sweep_axis_parameter(const sweep_axis *axis)
 {
-    assert(axis != NULL);
     assert(axis->parameter >= 0 && axis->parameter < parameter_count);
     return settings_name(axis->name) ? &setting_info : &parameter_table[axis->parameter];
 }
@@ -25,7 +24,6 @@ bool sweep_axis_has_words(const sweep_axis *axis)
 
 status sweep_axis_find(sweep_axis *axis, const char *text, fault *f)
 {
-    assert(axis != NULL && text != NULL);
     char name[SWEEP_VALUE_TEXT], path[SWEEP_NAME];
     const char *own;
     snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
@@ -67,7 +65,6 @@ status sweep_axis_find(sweep_axis *axis, const char *text, fault *f)
 
 status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fault *f)
 {
-    assert(axis != NULL && p != NULL);
     const char *own = settings_name(axis->name);
     if (own != NULL) {
         return settings_set(p, own, value, f);
@@ -96,7 +93,7 @@ status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fau
 status sweep_axes_scenario(const sweep_axis *axes, int count, const double *values,
                            const scenario *base, scenario *derived, fault *f)
 {
-    assert((count == 0 || (axes != NULL && values != NULL)) && base != NULL && derived != NULL);
+    assert(count == 0 || (axes != NULL && values != NULL));
     parameters p = base->parameters;
     *derived = *base;
     for (int i = 0; i < count; i++) {
@@ -107,7 +104,6 @@ status sweep_axes_scenario(const sweep_axis *axes, int count, const double *valu
 
 double sweep_axis_get(const sweep_axis *axis, const parameters *p)
 {
-    assert(axis != NULL && p != NULL);
     const char *own = settings_name(axis->name);
     double value = (double)NAN, numbers[PARAMETER_LIST_MOST];
     if (own != NULL) {
@@ -164,7 +160,7 @@ static status read_value(const sweep_axis *axis, const char *text, double *value
 
 void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t size)
 {
-    assert(axis != NULL && text != NULL && size > 0);
+    assert(size > 0);
     parameters scratch = {0};
     if (axis->element > 0 || settings_name(axis->name) != NULL) {
         char digits[NUMBER_TEXT];
@@ -198,7 +194,7 @@ static size_t split(char *text, char separator, char **pieces, size_t most)
 
 double sweep_axis_point(const sweep_axis *axis, size_t i, size_t n)
 {
-    assert(axis != NULL && n >= 2 && i < n);
+    assert(n >= 2 && i < n);
     const double low = axis->low, high = axis->high, x = (double)i, last = (double)(n - 1);
     return i == 0              ? low
            : i == n - 1        ? high
@@ -346,7 +342,6 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
 
 status sweep_axis_parse(sweep_axis *axis, const char *values, bool drawn, fault *f)
 {
-    assert(axis != NULL && values != NULL);
     char *text = strdup(values);
     TRY_MEMORY(text != NULL, f);
 
@@ -360,7 +355,6 @@ status sweep_axis_parse(sweep_axis *axis, const char *values, bool drawn, fault 
 
 status sweep_axis_parse_range(sweep_axis *axis, const char *text, fault *f)
 {
-    assert(axis != NULL && text != NULL);
     TRY(sweep_axis_parse(axis, text, true, f));
     return axis->is_range
                ? STATUS_OK
@@ -369,14 +363,13 @@ status sweep_axis_parse_range(sweep_axis *axis, const char *text, fault *f)
 
 void sweep_axis_finish(sweep_axis *axis)
 {
-    assert(axis != NULL);
     free(axis->values);
     free(axis->text);
 }
 
 double sweep_axis_value_at(const sweep_axis *axis, double share)
 {
-    assert(axis != NULL && share >= 0 && share < 1);
+    assert(share >= 0 && share < 1);
     double low = fmin(axis->low, axis->high), high = fmax(axis->low, axis->high);
 
     if (!axis->is_range) {

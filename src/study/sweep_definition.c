@@ -19,7 +19,7 @@ static const char untold[] = "cannot be told"; // in place of a digest
 void definition_add(definition *d, const char *key, const char *format, ...)
 {
     va_list list;
-    assert(d != NULL && key != NULL && d->count < DEFINITION_LINES);
+    assert(d->count < DEFINITION_LINES);
     definition_line *line = &d->lines[d->count];
 
     // a value may be long: it has memory of its own
@@ -141,13 +141,11 @@ static void define_outside(definition *d, const sweep *s, fault *f)
 
 void definition_stamp(const sweep *s, char stamp[SHA256_TEXT])
 {
-    assert(s != NULL && stamp != NULL);
     outside_stamp(read_outside(s), &s->base->parameters, stamp);
 }
 
 status definition_init(definition *d, const sweep *s, fault *f)
 {
-    assert(d != NULL && s != NULL);
     memset(d, 0, sizeof *d);
 
     // what is varied, and how
@@ -178,7 +176,6 @@ status definition_init(definition *d, const sweep *s, fault *f)
 
 void definition_finish(definition *d)
 {
-    assert(d != NULL);
     for (int i = 0; i < d->count; i++) {
         free(d->lines[i].value);
     }
@@ -187,7 +184,6 @@ void definition_finish(definition *d)
 
 const char *definition_value(const definition *d, const char *key)
 {
-    assert(d != NULL && key != NULL);
     for (int i = 0; i < d->count; i++) {
         if (strcmp(d->lines[i].key, key) == 0) {
             return d->lines[i].value;
@@ -208,7 +204,6 @@ static bool read_number(const definition *d, const char *key, unsigned long long
 
 status definition_plan(const definition *d, const char *path, sweep *plan, fault *f)
 {
-    assert(d != NULL && path != NULL && plan != NULL);
     char *vary[SWEEP_MOST_AXES];
     const char *sample = definition_value(d, "sample");
     unsigned long long runs = 0, seed = 0;
@@ -284,7 +279,6 @@ static void add_difference(char *text, size_t size, int *count, const char *key,
 
 status definition_compare(const char *path, const definition *was, const definition *now, fault *f)
 {
-    assert(path != NULL && was != NULL && now != NULL);
     char text[900] = "";
     int count = 0;
 

@@ -240,8 +240,7 @@ static status run_missing(sweep_execution *e, const unsigned char *present, faul
 status sweep_run(const sweep *s, sweep_store *store, const sweep_options *options,
                  sweep_progress *progress, fault *f)
 {
-    assert(s != NULL && store != NULL && progress != NULL);
-    assert(options != NULL && options->jobs >= 1 && options->jobs <= SWEEP_MOST_JOBS);
+    assert(options->jobs >= 1 && options->jobs <= SWEEP_MOST_JOBS);
     assert(options->share.part >= (options->share.parts > 0) &&
            options->share.part <= options->share.parts);
     double now = clock_seconds(CLOCK_MONOTONIC);

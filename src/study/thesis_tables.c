@@ -113,7 +113,6 @@ static status simulate_corrected(const parameters *p, cell *c, fault *f)
 
     if (outcome == STATUS_OK) {
         const sample *before = row_before_landing(&result);
-        assert(before != NULL);
         c->touched = true;
         c->at_touch = row_bodies(before);
         c->peak = result.summary.first_pulse_peak_N;
@@ -199,7 +198,6 @@ status tables_compute(thesis_tables *t, fault *f)
         arm_model_kind kind;
         const char *name;
     } models[MODELS] = {{ARM_PRINTED, "printed"}, {ARM_CORRECTED, "corrected"}};
-    assert(t != NULL);
     memset(t, 0, sizeof *t);
     memcpy(t->voltage, voltages, sizeof t->voltage);
 
@@ -241,7 +239,6 @@ void tables_compute_fitted(thesis_tables *t)
         {"printed.feed_newmark_acceleration", "true"},
         {"printed.newton_iterations", "3"},
     };
-    assert(t != NULL);
     memset(t, 0, sizeof *t);
     memcpy(t->voltage, voltages, sizeof t->voltage);
 
@@ -266,7 +263,6 @@ void tables_compute_fitted(thesis_tables *t)
 
 bool tables_printed(const char *table, const char *quantity, double *values)
 {
-    assert(table != NULL && quantity != NULL && values != NULL);
     for (int t = 0; t < STIFFNESSES; t++) {
         for (int q = 0; q < QUANTITIES; q++) {
             if (strcmp(thesis[t].name, table) == 0 && strcmp(quantity_names[q], quantity) == 0) {
@@ -280,7 +276,6 @@ bool tables_printed(const char *table, const char *quantity, double *values)
 
 double tables_mean_error(const thesis_tables *t, const char *model, const char *quantity)
 {
-    assert(t != NULL && model != NULL && quantity != NULL);
     double sum = 0;
     int count = 0;
     for (int r = 0; r < t->row_count; r++) {

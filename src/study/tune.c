@@ -114,7 +114,7 @@ static status find_growth(const tune_request *asked, const scenario *s, double *
 status tune_evaluate(tuning *t, size_t evaluation, const double *values, const char *name,
                      sweep_store *store, const sweep_options *options, tune_result *out, fault *f)
 {
-    assert(t != NULL && evaluation < t->most && values != NULL && out != NULL);
+    assert(evaluation < t->most);
     const tune_request *asked = &t->asked;
     char word[48];
     sweep_options only = *options;
@@ -238,7 +238,6 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
 
 status tune_init(tuning *t, const tune_request *asked, fault *f)
 {
-    assert(t != NULL && asked != NULL && asked->base != NULL && asked->minimise != NULL);
     assert(asked->runs >= 1 && asked->runs <= TUNE_MOST_RUNS);
     int version[3] = {0};
     *t = (tuning){.asked = *asked, .best.rank = (double)INFINITY};
@@ -267,7 +266,7 @@ status tune_init(tuning *t, const tune_request *asked, fault *f)
 
 status tune_unseen(tuning *unseen, const tuning *t, size_t evaluations, fault *f)
 {
-    assert(unseen != NULL && t != NULL && evaluations > 0);
+    assert(evaluations > 0);
     *unseen = (tuning){.asked = t->asked, .most = evaluations, .each = 1};
     if (t->asked.over != NULL) {
         unseen->each = TUNE_UNSEEN;
@@ -366,7 +365,7 @@ static void minimise(search *s, nlopt_algorithm method, double step, size_t most
 
 status tune_run(tuning *t, sweep_store *store, const sweep_options *options, fault *f)
 {
-    assert(t != NULL && store != NULL && options != NULL && t->done == 0);
+    assert(t->done == 0);
     search s = {.t = t, .store = store, .options = options, .fault = f};
 
     // from the scenario as it is

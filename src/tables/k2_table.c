@@ -16,7 +16,6 @@ static bool read_entry(const char *text, double *force, double *k2, const char *
 
 status k2_table_read(k2_table *t, const char *text, fault *f)
 {
-    assert(t != NULL && text != NULL);
     const char *rest = text + strspn(text, " ");
     *t = (k2_table){0};
     while (*rest != '\0') {
@@ -47,7 +46,7 @@ status k2_table_read(k2_table *t, const char *text, fault *f)
 
 bool k2_table_write(const k2_table *t, char *text, size_t size)
 {
-    assert(t != NULL && text != NULL && size > 0);
+    assert(size > 0);
     size_t length = 0;
     text[0] = '\0';
     for (int i = 0; i < t->count && length < size; i++) {
@@ -59,7 +58,7 @@ bool k2_table_write(const k2_table *t, char *text, size_t size)
 
 double k2_table_at(const k2_table *t, double force)
 {
-    assert(t != NULL && t->count > 0);
+    assert(t->count > 0);
     int above = 0;
     while (above < t->count && t->force[above] <= force) {
         above++;

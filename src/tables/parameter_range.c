@@ -52,7 +52,6 @@ bool parameter_usual_range(int parameter, double value, double *range_low, doubl
                            bool *logarithmic)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    assert(range_low != NULL && range_high != NULL && logarithmic != NULL);
     const parameter_info *info = &parameter_table[parameter];
     if ((info->type != PARAMETER_REAL && info->type != PARAMETER_INTEGER) || !isfinite(value)) {
         return false;

@@ -50,7 +50,6 @@ static void store(parameters *p, const parameter_info *info, double value)
 
 double parameter_get(const parameters *p, int index)
 {
-    assert(p != NULL);
     const parameter_info *info = row_of(index);
     const char *at = (const char *)p + info->offset;
     double real;
@@ -78,7 +77,6 @@ double parameter_get(const parameters *p, int index)
 
 void parameters_restore_defaults(parameters *p)
 {
-    assert(p != NULL);
     const bool printed = p->arm.model == ARM_PRINTED;
     const int model = PARAMETER_INDEX(arm.model);
 
@@ -99,7 +97,6 @@ void parameters_restore_defaults(parameters *p)
 
 void parameters_defaults(parameters *p, arm_model_kind model)
 {
-    assert(p != NULL);
     memset(p, 0, sizeof *p);
     p->arm.model = (int)model;
     parameters_restore_defaults(p);
@@ -128,7 +125,6 @@ static status check_number(const parameter_info *info, double value, fault *f)
 
 status parameter_set_number(parameters *p, int index, double value, fault *f)
 {
-    assert(p != NULL);
     const parameter_info *info = row_of(index);
     FAIL_IF(parameter_is_text(info),
             fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s is a %s and takes no number",
@@ -292,7 +288,6 @@ static status set_setting(parameters *p, const char *text, fault *f)
 
 status parameter_set_text(parameters *p, int index, const char *text, fault *f)
 {
-    assert(p != NULL && text != NULL);
     const parameter_info *info = row_of(index);
 
     // what counts is what stands between the blanks
@@ -325,7 +320,7 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
 
 void parameter_format(const parameters *p, int index, char *text, size_t size)
 {
-    assert(p != NULL && text != NULL && size > 0);
+    assert(size > 0);
     const parameter_info *info = row_of(index);
     const double value = parameter_get(p, index);
     const char *choice = info->choices;

@@ -83,7 +83,6 @@ int parameter_at(size_t offset)
 
 int parameter_find(const char *path)
 {
-    assert(path != NULL);
     for (int i = 0; i < parameter_count; i++) {
         if (strcmp(parameter_table[i].path, path) == 0) {
             return i;

@@ -14,7 +14,6 @@
 
 int parameter_list_numbers(const char *list, double numbers[PARAMETER_LIST_MOST])
 {
-    assert(list != NULL && numbers != NULL);
     int count = 0;
 
     // the text is canonical: numbers with commas between them
@@ -30,7 +29,7 @@ int parameter_list_numbers(const char *list, double numbers[PARAMETER_LIST_MOST]
 
 void parameters_link_lengths(const arm_parameters *a, double *lengths)
 {
-    assert(a != NULL && a->links > 0 && lengths != NULL);
+    assert(a->links > 0);
     double listed[PARAMETER_LIST_MOST];
     const int count = parameter_list_numbers(a->link_lengths, listed);
     for (int k = 0; k < a->links; k++) {
@@ -40,7 +39,7 @@ void parameters_link_lengths(const arm_parameters *a, double *lengths)
 
 void parameters_joint_stiffness(const arm_parameters *a, double *stiffness)
 {
-    assert(a != NULL && a->links > 0 && stiffness != NULL);
+    assert(a->links > 0);
     double listed[PARAMETER_LIST_MOST], length[PARAMETER_LIST_MOST];
     const bool beam = a->hub_joint == HUB_BEAM;
     const int count = parameter_list_numbers(a->joint_stiffness, listed);
@@ -59,7 +58,7 @@ void parameters_joint_stiffness(const arm_parameters *a, double *stiffness)
 
 bool parameters_even_links(const arm_parameters *a)
 {
-    assert(a != NULL && a->links > 0);
+    assert(a->links > 0);
     double length[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST];
     if (a->joint_stiffness[0] == '\0' && a->link_lengths[0] == '\0') {
         return true;
@@ -115,7 +114,6 @@ static double equivalent_k2(const arm_parameters *a)
 
 void parameters_follow(parameters *p, int index)
 {
-    assert(p != NULL);
     arm_parameters *a = &p->arm;
     if (index == PARAMETER_INDEX(arm.k2)) {
         a->EI = a->k2 * a->length / 2;

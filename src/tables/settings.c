@@ -25,14 +25,12 @@ const parameter_info setting_info = {
 
 const char *settings_name(const char *path)
 {
-    assert(path != NULL);
     const size_t length = sizeof group - 1;
     return strncmp(path, group, length) == 0 ? path + length : NULL;
 }
 
 int settings_look_up(const char *path, const char **name, fault *f)
 {
-    assert(name != NULL);
     *name = settings_name(path);
     if (*name == NULL) {
         return parameter_look_up(path, f);
@@ -57,7 +55,6 @@ int settings_look_up(const char *path, const char **name, fault *f)
 int settings_look_up_value(const char *path, const char **value, char room[PARAMETER_TEXT_SIZE],
                            fault *f)
 {
-    assert(value != NULL && *value != NULL && room != NULL);
     const char *name;
     const int index = settings_look_up(path, &name, f);
     if (index < 0 || name == NULL) {
@@ -77,7 +74,6 @@ int settings_look_up_value(const char *path, const char **value, char room[PARAM
 
 bool settings_next(const char **rest, setting *s)
 {
-    assert(rest != NULL && *rest != NULL && s != NULL);
     const char *word = *rest + strspn(*rest, " ");
     const size_t length = strcspn(word, " "), name_length = strcspn(word, " =");
     assert(length < PARAMETER_TEXT_SIZE);
@@ -93,14 +89,12 @@ bool settings_next(const char **rest, setting *s)
 
 bool setting_number(const setting *s, double *value)
 {
-    assert(s != NULL && value != NULL);
     const char *end;
     return decimal_read(s->value, value, &end) && *end == '\0' && isfinite(*value);
 }
 
 bool settings_get(const parameters *p, const char *name, double *value)
 {
-    assert(p != NULL && name != NULL && value != NULL);
     const char *rest = p->control.settings;
     bool found = false;
     setting s;
@@ -116,7 +110,6 @@ bool settings_get(const parameters *p, const char *name, double *value)
 
 status settings_set(parameters *p, const char *name, double value, fault *f)
 {
-    assert(p != NULL && name != NULL);
     char number[NUMBER_TEXT], text[2 * PARAMETER_TEXT_SIZE] = "";
     FAIL_IF(!isfinite(value), fault_set_at(f, STATUS_BAD_SCENARIO, setting_info.path,
                                            "%s%s is not a finite number", group, name));
@@ -154,7 +147,6 @@ status settings_set(parameters *p, const char *name, double value, fault *f)
 
 status settings_set_text(parameters *p, const char *name, const char *text, fault *f)
 {
-    assert(text != NULL);
     const char *end;
     double value;
     text += strspn(text, " \t\n\v\f\r");

@@ -17,14 +17,12 @@ const int signal_count = SIGNALS_AT_MOST;
 
 int signal_find(const char *name)
 {
-    assert(name != NULL);
     const int found = signal_find_any(name);
     return found < signal_count ? found : -1;
 }
 
 int signal_find_any(const char *name)
 {
-    assert(name != NULL);
     for (int i = 0; i < SIGNALS_AT_MOST + DERIVED_SIGNALS; i++) {
         if (table[i].name != NULL && strcmp(table[i].name, name) == 0) {
             return i;
@@ -100,7 +98,7 @@ static const char *unit_of(const expression *e)
 
 int signal_derive(int place, const char *text, fault *f)
 {
-    assert(place >= 0 && place < DERIVED_SIGNALS && text != NULL);
+    assert(place >= 0 && place < DERIVED_SIGNALS);
     expression e;
     char name[DERIVED_NAME];
     size_t length = 0;
@@ -143,7 +141,7 @@ static double recorded_value(const void *row, int index)
 
 double signal_value(const sample *row, int index)
 {
-    assert(row != NULL && index >= 0 && index < SIGNALS_AT_MOST + DERIVED_SIGNALS);
+    assert(index >= 0 && index < SIGNALS_AT_MOST + DERIVED_SIGNALS);
     return signal_is_derived(index)
                ? expression_evaluate(&derived[index - SIGNALS_AT_MOST].expression, recorded_value,
                                      row)

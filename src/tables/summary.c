@@ -13,7 +13,6 @@ const int summary_count = (int)(sizeof summary_table / sizeof summary_table[0]);
 
 int summary_find(const char *key)
 {
-    assert(key != NULL);
     for (int i = 0; i < summary_count; i++) {
         if (strcmp(summary_table[i].key, key) == 0) {
             return i;
@@ -46,7 +45,6 @@ static size_t offset_of(int index)
 
 double summary_value(const summary *s, int index)
 {
-    assert(s != NULL);
     double value;
     memcpy(&value, (const char *)s + offset_of(index), sizeof value);
     return value;
@@ -59,13 +57,12 @@ const char *summary_status(const summary *s)
 
 status summary_fault(const summary *s, fault *f)
 {
-    assert(s != NULL && s->status != STATUS_OK);
+    assert(s->status != STATUS_OK);
     return fault_set_at(f, s->status, s->path, "%s", s->message);
 }
 
 void summary_init(summary *s)
 {
-    assert(s != NULL);
     const double none = (double)NAN;
     memset(s, 0, sizeof *s);
     s->path = "";

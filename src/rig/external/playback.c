@@ -1,6 +1,5 @@
 #include "src/rig/external/process.h"
 
-#include <assert.h>
 #include <stdlib.h>
 
 #include "src/base/csv_table.h"
@@ -16,7 +15,6 @@ struct recorded_command {
 
 status playback_create(recorded_command **created, const control_parameters *control, fault *f)
 {
-    assert(created != NULL && control != NULL);
     csv_table table = {0};
     recorded_command *p = calloc(1, sizeof *p);
     *created = NULL;

@@ -1,6 +1,5 @@
 #include "src/rig/external/process.h"
 
-#include <assert.h>
 #include <dlfcn.h>
 #include <string.h>
 
@@ -16,7 +15,6 @@ static const controller *exported_controller(void *library)
 
 status plugin_open(plugin *p, const char *file, fault *f)
 {
-    assert(p != NULL && file != NULL);
     *p = (plugin){.library = dlopen(file, RTLD_NOW | RTLD_LOCAL)};
     FAIL_IF(p->library == NULL,
             fault_set(f, STATUS_CANNOT_READ, "control.plugin = %s cannot be loaded: %.600s", file,
@@ -48,7 +46,6 @@ status plugin_open(plugin *p, const char *file, fault *f)
 
 void plugin_close(plugin *p)
 {
-    assert(p != NULL);
     if (p->library != NULL) {
         dlclose(p->library);
     }

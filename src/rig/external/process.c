@@ -1,6 +1,5 @@
 #include "src/rig/external/process.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -56,7 +55,6 @@ typedef struct process_memory {
 process *process_create(const control_parameters *control, process_transcript *transcript,
                         process_ends ends)
 {
-    assert(control != NULL);
     process *p = calloc(1, sizeof *p);
     if (p != NULL) {
         p->transcript = transcript;
@@ -76,13 +74,11 @@ void process_destroy(process *p)
 
 void process_tell(void *memory, const control_parameters *control)
 {
-    assert(memory != NULL && control != NULL);
     ((process_memory *)memory)->control = *control;
 }
 
 status process_failure(const process *p, const char **why)
 {
-    assert(p != NULL && why != NULL);
     *why = p->failure;
     return p->code;
 }

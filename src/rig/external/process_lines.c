@@ -1,6 +1,5 @@
 #include "src/rig/external/process_lines.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>
@@ -94,7 +93,6 @@ static json_t *settings_object(const control_parameters *control)
 char *process_question(const controller_setup *setup, const control_parameters *control,
                        const controller_input *in)
 {
-    assert(control != NULL && in != NULL);
     const bool lost_before = loss_noted(); // of other output on this thread
     json_t *object = json_object();
     if (setup != NULL) {
@@ -135,7 +133,6 @@ enum { ANSWERS = sizeof answers / sizeof answers[0] };
 
 status process_read_answer(const char *line, size_t length, controller_output *out)
 {
-    assert(line != NULL && out != NULL);
     json_error_t ignored;
     errno = 0;
     json_t *object = json_loadb(line, length, 0, &ignored);
@@ -173,7 +170,6 @@ static const size_t most_text = (size_t)64 << 20; // of all questions [bytes]
 
 transcript_node *process_transcript_find(const transcript_node *before, const char *question)
 {
-    assert(question != NULL);
     transcript_node *after = before != NULL ? before->first_after : NULL;
     while (after != NULL && strcmp(after->question, question) != 0) {
         after = after->next_beside;
@@ -219,7 +215,6 @@ void process_transcript_destroy(process_transcript *t)
 transcript_node *process_transcript_add(process_transcript *t, transcript_node *before,
                                         const char *question, const controller_output *answer)
 {
-    assert(question != NULL && answer != NULL);
     transcript_node *node = before != NULL ? new_node(t, question) : NULL;
     if (node != NULL) {
         node->before = before;

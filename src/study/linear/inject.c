@@ -207,7 +207,7 @@ static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f
 
 status linear_inject(const scenario *s, linear_response *r, fault *f)
 {
-    assert(s != NULL && r != NULL && s->parameters.control.law != LAW_NONE);
+    assert(s->parameters.control.law != LAW_NONE);
     *r = (linear_response){0};
     injector i = {.awake = (double)INFINITY};
     run_loop *l = NULL;
@@ -271,7 +271,6 @@ static status least_push(run_loop *l, const void *kept, double direction, double
 
 status linear_contact_margin(const scenario *s, double *impulse, fault *f)
 {
-    assert(s != NULL && impulse != NULL);
     run_loop *l = NULL;
     *impulse = (double)NAN;
     status code = begin(&l, s, &(loop_options){.keep_trace = false}, f);

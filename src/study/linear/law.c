@@ -170,7 +170,7 @@ static status learn(linear_law *law, const linear_arm *arm, const parameters *p,
 
 status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f)
 {
-    assert(loop != NULL && arm != NULL && p != NULL && p->control.law != LAW_NONE);
+    assert(p->control.law != LAW_NONE);
     linear_system plant;
     linear_law law = {.order = 0};
     *loop = (linear_system){0};

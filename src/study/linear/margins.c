@@ -51,7 +51,7 @@ static int choose_frequencies(const double complex *poles, int states, double pe
 status linear_respond(const linear_system *s, int output, double period, linear_response *r,
                       fault *f)
 {
-    assert(s != NULL && period >= 0 && r != NULL);
+    assert(period >= 0);
     const size_t n = (size_t)s->states;
     *r = (linear_response){0};
     double *block = calloc(3 * MOST_FREQUENCIES, sizeof *block);
@@ -94,7 +94,6 @@ static void cross_gain(linear_margins *m, double complex gain, double w)
 
 linear_margins linear_margins_of(const linear_response *r)
 {
-    assert(r != NULL);
     linear_margins m = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
     for (int i = 0; i < r->count; i++) {
         const double complex here = r->gain[i];
@@ -153,7 +152,6 @@ static status growth_of(const scenario *s, linear_place place, double *growth, f
 status linear_stability(const scenario *s, linear_place place, bool by_runs, double *number,
                         bool *stable, fault *f)
 {
-    assert(s != NULL && number != NULL && stable != NULL);
     status code;
     *number = (double)NAN;
     if (by_runs) {
@@ -181,7 +179,7 @@ status linear_growth(const scenario *s, double *growth, fault *f)
 status linear_limit(const sweep *s, linear_place place, bool by_runs, double from, double to,
                     double *limit, fault *f)
 {
-    assert(s != NULL && s->axis_count == 1 && limit != NULL);
+    assert(s->axis_count == 1);
     bool at_start = false, here;
     status code = STATUS_OK;
     for (int i = -1; i < (by_runs ? RUN_BISECTIONS : BISECTIONS) && code == STATUS_OK; i++) {

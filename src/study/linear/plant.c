@@ -3,7 +3,6 @@
 // Rates are the derivatives of chain_accelerations by differences of sixth order, which are good to
 // some 1e-12 of a row. A rigid wall leaves angles with J q = 0: the last link's follows from the
 // others.
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -258,7 +257,6 @@ static status linearise_at(workshop *w, linear_arm *out, const parameters *p, li
 
 status linear_arm_init(linear_arm *out, const parameters *p, linear_place place, fault *f)
 {
-    assert(out != NULL && p != NULL);
     *out = (linear_arm){.force = 0};
     const bool touches = place != LINEAR_FREE, held = touches && p->control.law != LAW_NONE;
     const char *why = refusal(p, place, held ? p->control.force : p->motor.voltage);

@@ -93,7 +93,7 @@ status linear_poles(const linear_system *s, double complex *values, fault *f)
 status linear_zeros(const linear_system *s, int output, int *count, double complex *values,
                     fault *f)
 {
-    assert(s != NULL && output >= 0 && output < s->outputs && count != NULL);
+    assert(output >= 0 && output < s->outputs);
     const int n = s->states;
     double *row = calloc((size_t)(n * n + 2 * n) + 1, sizeof *row), *next = row + n,
            *matrix = next + n;

@@ -119,7 +119,7 @@ static status fill(linear_system *out, const linear_system *s, int n, int held, 
 
 status linear_sample(linear_system *sampled, const linear_arm *arm, const parameters *p, fault *f)
 {
-    assert(sampled != NULL && arm != NULL && p != NULL && p->control.rate > 0);
+    assert(p->control.rate > 0);
     lagged_arm l = {.arm = &arm->system, .states = arm->system.states};
     *sampled = (linear_system){0};
     TRY(linear_system_init(&l.system, l.states + MOST_LAGS, LINEAR_READINGS, f));

@@ -1,6 +1,5 @@
 #include "src/study/store/sweep_database.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,7 +88,6 @@ static status database_query_number(sweep_database *store, const char *sql, long
 
 status database_recognise(sweep_database *store, bool *empty, fault *f)
 {
-    assert(store != NULL && empty != NULL);
     long long tables, mark = 0, layout = 0;
     TRY(database_query_number(store, "SELECT count(*) FROM sqlite_master", &tables, f));
     *empty = tables == 0;
@@ -136,7 +134,6 @@ static status use_text(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **s
 
 status database_create_tables(sweep_database *store, fault *f)
 {
-    assert(store != NULL && store->sweep != NULL);
     TRY(database_execute(store,
                          "PRAGMA application_id = " APPLICATION_ID ";"
                          "PRAGMA user_version = " LAYOUT ";"
@@ -156,7 +153,6 @@ status database_create_tables(sweep_database *store, fault *f)
 
 status database_prepare_insert(sweep_database *store, sqlite3_stmt **insert, fault *f)
 {
-    assert(store != NULL && store->sweep != NULL && insert != NULL);
     run_column columns[RUN_MOST_COLUMNS];
     sqlite3_str *sql = sqlite3_str_new(store->database);
     for (int i = database_columns(store->sweep, columns); i > 0; i--) {
@@ -275,7 +271,6 @@ static status check_rows(sweep_database *store, fault *f)
 
 status database_check_runs(sweep_database *store, fault *f)
 {
-    assert(store != NULL && store->sweep != NULL);
     run_column expected[RUN_MOST_COLUMNS];
     const int columns = database_columns(store->sweep, expected);
     sqlite3_stmt *rows;
@@ -326,7 +321,6 @@ static status read_line(definition *d, const char *path, sqlite3_stmt *row, faul
 
 status definition_read(sweep_database *store, definition *d, fault *f)
 {
-    assert(store != NULL && d != NULL);
     sqlite3_stmt *rows;
     memset(d, 0, sizeof *d);
 
@@ -340,7 +334,6 @@ status definition_read(sweep_database *store, definition *d, fault *f)
 
 status definition_write(sweep_database *store, const definition *d, fault *f)
 {
-    assert(store != NULL && d != NULL);
     sqlite3_stmt *insert;
 
     // in the order in which they were defined
@@ -389,7 +382,6 @@ static status check_journal(const sweep_database *store, fault *f)
 
 status database_open(sweep_database *store, int flags, fault *f)
 {
-    assert(store != NULL);
     // a store is one thread's at a time: no locks round every value
     flags |= SQLITE_OPEN_NOMUTEX;
     if (sqlite3_open_v2(store->path ? store->path : ":memory:", &store->database, flags, NULL) !=

@@ -119,7 +119,7 @@ static status write_database(merging *m, const char *output, fault *f)
 status sweep_merge(char *const *files, int count, const char *output, sweep_merged *merged,
                    fault *f)
 {
-    assert(files != NULL && count > 0 && output != NULL && merged != NULL);
+    assert(count > 0);
     merging m = {.merged = merged};
     status code = STATUS_OK;
     *merged = (sweep_merged){0};

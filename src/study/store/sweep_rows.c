@@ -10,7 +10,6 @@
 
 status sweep_store_present(sweep_store *of, unsigned char *present, size_t *count, fault *f)
 {
-    assert(present != NULL && count != NULL);
     sweep_database *store = database_of(of);
     sqlite3_stmt *rows;
     size_t total = store->sweep->run_count;
@@ -63,7 +62,7 @@ static void bind_row(sweep_database *store, size_t run, const summary *result)
 status sweep_store_put(sweep_store *of, size_t run, const summary *result, fault *f)
 {
     sweep_database *store = database_of(of);
-    assert(result != NULL && run < store->sweep->run_count);
+    assert(run < store->sweep->run_count);
     if (!store->in_transaction) {
         TRY(database_execute(store, "BEGIN IMMEDIATE", f));
         store->in_transaction = true;
@@ -80,7 +79,6 @@ status sweep_store_put(sweep_store *of, size_t run, const summary *result, fault
 status sweep_store_quantity(sweep_store *of, const char *key, double *values, size_t *failed,
                             fault *f)
 {
-    assert(key != NULL && values != NULL);
     sweep_database *store = database_of(of);
     size_t total = store->sweep->run_count, failures = 0;
     sqlite3_stmt *rows = NULL;
@@ -138,7 +136,6 @@ static void begin_json(const sweep *s, FILE *stream)
 // Writes all rows one by one, as there may be millions.
 static status write_rows(sweep_database *store, FILE *stream, bool json, fault *f)
 {
-    assert(stream != NULL);
     sqlite3_stmt *rows;
     csv_writer csv = csv_begin(stream);
     run_column all[RUN_MOST_COLUMNS];

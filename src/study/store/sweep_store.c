@@ -1,6 +1,5 @@
 #include "src/study/store/sweep_store.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -111,7 +110,6 @@ static status open_database(sweep_database *store, fault *f)
 
 status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, fault *f)
 {
-    assert(opened != NULL && s != NULL);
     sweep_database *store = calloc(1, sizeof *store);
     *opened = NULL;
     TRY_MEMORY(store != NULL, f);

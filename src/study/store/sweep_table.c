@@ -87,7 +87,6 @@ static status query(sweep_database *store, const char *const *keys, int key_coun
 status sweep_table_read(const char *path, const char *const *keys, int key_count, double **columns,
                         size_t *count, fault *f)
 {
-    assert(path != NULL && keys != NULL && columns != NULL && count != NULL);
     assert(key_count >= 1 && key_count <= SWEEP_TABLE_COLUMNS);
     sweep_database store = {.path = (char *)path, .lock = -1};
     sqlite3_stmt *rows = NULL;
