@@ -7,14 +7,6 @@
 
 // ---- scenarios run for figures
 
-void keep_first_fault(void *context, const char *sentence)
-{
-    fault *f = context;
-    if (f->code == STATUS_OK) {
-        fault_set(f, STATUS_BAD_SCENARIO, "%s", sentence);
-    }
-}
-
 void run_end(opened_run *r)
 {
     run_finish(&r->result);

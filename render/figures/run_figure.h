@@ -18,9 +18,6 @@ typedef struct opened_run {
 status run_begin(opened_run *r, const char *name, const char *change, fault *f);
 void run_end(opened_run *r);
 
-// A fault_handler: keeps the first sentence in the fault that is its context.
-void keep_first_fault(void *context, const char *sentence);
-
 // The recorded signal whose name is nearest to a misspelt one.
 const char *nearest_signal(const char *name);
 

@@ -1,7 +1,6 @@
 // Loops of libimpactlab: a run that a program steps.
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "src/api/handles.h"
 #include "src/base/numbers.h"

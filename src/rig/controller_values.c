@@ -77,6 +77,12 @@ bool controller_has_parameter(const controller *law, const char *name)
     return find_named(law, name) >= 0;
 }
 
+const char *controller_takes_anything(void *memory, const controller_setup *setup)
+{
+    (void)memory, (void)setup;
+    return NULL;
+}
+
 static status refuse_name(const controller *law, const char *name, fault *f)
 {
     nearest_word near = nearest_begin(name);

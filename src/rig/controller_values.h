@@ -17,5 +17,8 @@ controller_parameter controller_parameter_at(const controller *law, int index);
 // or a value out of its range.
 status controller_values(const controller *law, const parameters *p, double *values, fault *f);
 
+// A controller's `start` or `tune` that takes whatever it is told.
+const char *controller_takes_anything(void *memory, const controller_setup *setup);
+
 // Whether the controller has a parameter of that name.
 bool controller_has_parameter(const controller *law, const char *name);

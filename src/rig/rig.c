@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/arm/arm.h"
-#include "src/tables/k2_table.h"
+#include "src/arm/motor.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/laws/laws.h"
 #include "src/rig/estimation/reduced_arm.h"
@@ -26,10 +25,7 @@ static status start_controller(rig *r, const parameters *p, const given_law *giv
             fault_set(f, STATUS_NO_MEMORY, "no memory for the controller '%s'", r->law->name));
 
     // one that is withheld has no use for settings
-    status s = r->withheld ? STATUS_OK : controller_values(r->law, p, r->values, f);
-    if (s != STATUS_OK) {
-        return s;
-    }
+    TRY(r->withheld ? STATUS_OK : controller_values(r->law, p, r->values, f));
     if (given != NULL) {
         assert(r->law->memory_size >= sizeof given->context);
         memcpy(r->memory, &given->context, sizeof given->context);
@@ -76,19 +72,12 @@ static void give_no_command(void *memory, const controller_input *in, controller
     out->command = (double)NAN;
 }
 
-static const char *take_anything(void *memory, const controller_setup *setup)
-{
-    (void)memory;
-    (void)setup;
-    return NULL;
-}
-
 // Stands where a controller from outside would.
 static const controller withheld_law = {.interface = CONTROLLER_INTERFACE,
                                         .name = "withheld",
                                         .modes = (const char *const[]){"withheld", NULL},
                                         .sample = give_no_command,
-                                        .tune = take_anything};
+                                        .tune = controller_takes_anything};
 
 static status explain_withheld(const rig *r, fault *f)
 {
@@ -239,10 +228,7 @@ static controller_input input_of(const rig *r, double time)
 // One sample: sensors, controller, D/A; the command is pending for the delay.
 static status take_sample(rig *r, double time, const sensed_motion *now, fault *f)
 {
-    status followed = rig_follow_setpoint(r, time, f);
-    if (followed != STATUS_OK) {
-        return followed;
-    }
+    TRY(rig_follow_setpoint(r, time, f));
     if (r->read_time != time) {
         r->reading = sensors_read(&r->sensors, now);
         r->read_time = time;

@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/rig/rig.h"
@@ -182,10 +181,7 @@ status rig_takes(const rig *r, const parameters *p, fault *f)
 static status tell_controller(rig *r, const parameters *p, double time, fault *f)
 {
     // its parameters, and the nominal model
-    status s = controller_values(r->law, p, r->values, f);
-    if (s != STATUS_OK) {
-        return s;
-    }
+    TRY(controller_values(r->law, p, r->values, f));
     if (r->process != NULL) {
         process_tell(r->memory, &p->control);
     }
@@ -205,10 +201,7 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
 {
     parameters *told = &r->told;
     const bool changes = tells_anew(r, p);
-    const status taken = rig_takes(r, p, f);
-    if (taken != STATUS_OK) {
-        return taken;
-    }
+    TRY(rig_takes(r, p, f));
     if (group_differs(told, p, "sensor.")) {
         told->sensor = p->sensor;
         sensors_retune(&r->sensors, &p->sensor);

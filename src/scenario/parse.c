@@ -1,5 +1,4 @@
 // A scenario file from its first key to its last: what each is, and in which order they are read.
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/scenario/reader.h"

@@ -20,6 +20,14 @@ void scenario_finish(scenario *s)
     *s = (scenario){0};
 }
 
+void keep_first_fault(void *context, const char *sentence)
+{
+    fault *f = context;
+    if (f->code == STATUS_OK) {
+        fault_set(f, STATUS_BAD_SCENARIO, "%s", sentence);
+    }
+}
+
 // A text of one's own; one that is not there stays so. False without memory.
 static bool copy_text(char **copy, const char *text)
 {

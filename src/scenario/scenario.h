@@ -135,6 +135,9 @@ status scenario_check_locks(const scenario *s, const controller *law, fault *f);
 // Called once for each fault in a file, with a whole sentence "file:line:column: what, expected".
 typedef void (*fault_handler)(void *context, const char *sentence);
 
+// One that keeps the first sentence in a fault of zeroes, its context.
+void keep_first_fault(void *context, const char *sentence);
+
 // Reads and validates the file (layout: docs/reference/scenario.md). Every fault is reported
 // through `report`; STATUS_BAD_SCENARIO if there was any (STATUS_CANNOT_READ if the file cannot be
 // opened), and then nothing is to be freed; s->refused is the place of the first one. `name` is the

@@ -97,14 +97,6 @@ static status refuse(const session_reader *r, const char *what)
     return fault_set(r->fault, STATUS_BAD_ARGUMENT, "%s:%d:1: %s", r->path, r->line, what);
 }
 
-static void keep_first(void *context, const char *sentence)
-{
-    fault *f = context;
-    if (f->code == STATUS_OK) {
-        fault_set(f, STATUS_BAD_ARGUMENT, "%s", sentence);
-    }
-}
-
 // The scenario whose text is complete.
 static status end_base(session_reader *r)
 {
@@ -114,7 +106,7 @@ static status end_base(session_reader *r)
     fault first = {0};
     scenario fresh;
     const status code =
-        scenario_parse(&fresh, r->text, r->length, r->path, r->name, keep_first, &first);
+        scenario_parse(&fresh, r->text, r->length, r->path, r->name, keep_first_fault, &first);
     free(r->text);
     r->text = NULL;
     FAIL_IF(code != STATUS_OK, refuse(r, first.text[0] ? first.text : status_text(code)));

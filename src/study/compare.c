@@ -12,35 +12,24 @@
 #include "src/predict/least_time.h"
 #include "src/tables/settings.h"
 
-enum {
-    PEAK,
-    BEST_PEAK,
-    OVERSHOOT,
-    SETTLING,
-    BEST_SETTLING,
-    FROM_START,
-    LEAST_TIME,
-    IMPACTS,
-    SEPARATIONS,
-    STEADY_ERROR,
-    COMMAND,
-    ENERGY
-};
-
-const compare_quantity compare_quantities[COMPARE_QUANTITIES] = {
-    [PEAK] = {"peak_force_N", "peak_force", "peak", "N"},
-    [BEST_PEAK] = {"best_peak_N", "best_peak", "best peak", "N"},
-    [OVERSHOOT] = {"overshoot_percent", "overshoot", "over", "%"},
-    [SETTLING] = {"settling_time_s", "settling_time", "settled", "s"},
-    [BEST_SETTLING] = {"best_settling_s", "best_settling", "best time", "s"},
-    [FROM_START] = {"from_start_s", "from_start", "from start", "s"},
-    [LEAST_TIME] = {"least_time_s", "least_time", "least time", "s"},
-    [IMPACTS] = {"impacts", "impacts", "impacts", ""},
-    [SEPARATIONS] = {"separations", "separations", "separations", ""},
-    [STEADY_ERROR] = {"steady_error_N", "steady_error", "error", "N"},
-    [COMMAND] = {"largest_command_V", "largest_command", "command", "V"},
-    [ENERGY] = {"electrical_energy_J", "electrical_energy", "energy", "J"},
-};
+// Number, key, name, heading and unit of each.
+#define COMPARED(QUANTITY)                                                                         \
+    QUANTITY(PEAK, "peak_force_N", "peak_force", "peak", "N")                                      \
+    QUANTITY(BEST_PEAK, "best_peak_N", "best_peak", "best peak", "N")                              \
+    QUANTITY(OVERSHOOT, "overshoot_percent", "overshoot", "over", "%")                             \
+    QUANTITY(SETTLING, "settling_time_s", "settling_time", "settled", "s")                         \
+    QUANTITY(BEST_SETTLING, "best_settling_s", "best_settling", "best time", "s")                  \
+    QUANTITY(FROM_START, "from_start_s", "from_start", "from start", "s")                          \
+    QUANTITY(LEAST_TIME, "least_time_s", "least_time", "least time", "s")                          \
+    QUANTITY(IMPACTS, "impacts", "impacts", "impacts", "")                                         \
+    QUANTITY(SEPARATIONS, "separations", "separations", "separations", "")                         \
+    QUANTITY(STEADY_ERROR, "steady_error_N", "steady_error", "error", "N")                         \
+    QUANTITY(COMMAND, "largest_command_V", "largest_command", "command", "V")                      \
+    QUANTITY(ENERGY, "electrical_energy_J", "electrical_energy", "energy", "J")
+#define NUMBER(number, ...) number,
+#define ROW(number, ...)    {__VA_ARGS__},
+enum { COMPARED(NUMBER) };
+const compare_quantity compare_quantities[COMPARE_QUANTITIES] = {COMPARED(ROW)};
 
 // --- rows -----------------------------------------------------------------------------------
 

@@ -8,7 +8,6 @@
 #include "src/base/build_config.h"
 #include "src/base/random.h"
 #include "src/study/pool.h"
-#include "src/study/solve.h"
 
 #ifdef IMPACTLAB_MINPACK
 #include <cminpack.h>
@@ -163,12 +162,10 @@ static void from_unknowns(identification *id, const double *x)
 
 // --- batches of runs --------------------------------------------------------------------------
 
-// A piece: a trace under unknowns of which one is moved, to `out`.
+// A piece: a trace under a set of unknowns, to `out`.
 typedef struct piece {
     int trace;
     const double *x;
-    int moved;
-    double by;
     double *out;
     bool judge;
     fault why; // the run failed
@@ -192,7 +189,7 @@ static void compute_piece(void *context, size_t i, void *scratch, void *result)
     (void)scratch;
     memcpy(own, t->own, sizeof own);
     for (int n = 0; n < id->unknowns; n++) {
-        const double x = here->x[n] + (n == here->moved ? here->by : 0);
+        const double x = here->x[n];
         if (n < id->count) {
             const fitted_parameter *fit = &id->fit[n];
             (void)sweep_axis_apply(&fit->axis, within_range(fit, x * fit->scale), &p, &ignored);
@@ -240,24 +237,25 @@ static double draw_back(const fitted_parameter *fit, double x, double *slope)
     return beyond / fmin(width, fit->scale) * OUTSIDE;
 }
 
-// Residuals of `sets` sets of unknowns, one behind the other: of each trace, then what draws
-// parameters back. `why` (may be NULL) receives what stopped the first run that failed.
-static status residuals_of(identification *id, const double *x, int sets, bool judge, double *out,
-                           fault *why, fault *f)
+// Residuals of `sets` sets of unknowns, one behind the other: of each trace, or for set s of trace
+// only[s] alone (-1: of each; NULL: each of all), then what draws parameters back. `why` (may be
+// NULL) receives what stopped the first run that failed.
+static status residuals_of(identification *id, const double *x, int sets, const int *only,
+                           bool judge, double *out, fault *why, fault *f)
 {
-    batch_of_runs b = {.id = id, .count = (size_t)(sets * id->trace_count)};
-    b.pieces = calloc(b.count, sizeof *b.pieces);
+    batch_of_runs b = {.id = id};
+    double slope;
+    b.pieces = calloc((size_t)(sets * id->trace_count), sizeof *b.pieces);
     TRY_MEMORY(b.pieces != NULL, f);
-    for (size_t i = 0; i < b.count; i++) {
-        const int k = (int)(i % (size_t)id->trace_count);
-        b.pieces[i] = (piece){.trace = k, .x = x, .out = out, .judge = judge};
-        out += id->traces[k].residuals;
-        if (k == id->trace_count - 1) {
-            for (int j = 0; j < id->count; j++) {
-                double slope;
-                *out++ = draw_back(&id->fit[j], x[j], &slope);
+    for (int s = 0; s < sets; s++, x += id->unknowns) {
+        for (int k = 0; k < id->trace_count; k++) {
+            if (only == NULL || only[s] < 0 || only[s] == k) {
+                b.pieces[b.count++] = (piece){.trace = k, .x = x, .out = out, .judge = judge};
             }
-            x += id->unknowns;
+            out += id->traces[k].residuals;
+        }
+        for (int j = 0; j < id->count; j++) {
+            *out++ = draw_back(&id->fit[j], x[j], &slope);
         }
     }
     const status code = run_pieces(&b, f);
@@ -272,36 +270,25 @@ static status residuals_of(identification *id, const double *x, int sets, bool j
 // has a say in, all in one batch.
 static status jacobian_of(identification *id, const double *x, double *jacobian, fault *f)
 {
-    const int n = id->unknowns;
-    const size_t m = id->residuals;
-    batch_of_runs b = {.id = id};
-    double *other = calloc(m * (size_t)n, sizeof *other);
-    b.pieces = calloc(2 * (size_t)n * (size_t)id->trace_count, sizeof *b.pieces);
-    status code = b.pieces != NULL && other != NULL ? STATUS_OK : fault_no_memory(f);
-    memset(jacobian, 0, m * (size_t)n * sizeof *jacobian);
-    for (int j = 0; j < n && code == STATUS_OK; j++) {
-        const int only = j < id->count ? -1 : id->own[j - id->count].trace;
-        size_t from = (size_t)j * m;
-        for (int k = 0; k < id->trace_count; k++) {
-            for (int side = -1; side <= 1 && (only < 0 || only == k); side += 2) {
-                b.pieces[b.count++] = (piece){.trace = k,
-                                              .x = x,
-                                              .moved = j,
-                                              .by = side * DIFFERENCE,
-                                              .out = (side < 0 ? other : jacobian) + from};
-            }
-            from += id->traces[k].residuals;
-        }
+    const size_t n = (size_t)id->unknowns, m = id->residuals;
+    double *moved = calloc(2 * n * (n + m), sizeof *moved), *out = moved + 2 * n * n;
+    int only[2 * IDENTIFY_UNKNOWNS];
+    TRY_MEMORY(moved != NULL, f);
+    for (size_t s = 0; s < 2 * n; s++) {
+        const int j = (int)(s / 2);
+        memcpy(moved + s * n, x, n * sizeof *x);
+        moved[s * n + s / 2] += s % 2 == 0 ? -DIFFERENCE : DIFFERENCE;
+        only[s] = j < id->count ? -1 : id->own[j - id->count].trace;
     }
-    code = code == STATUS_OK ? run_pieces(&b, f) : code;
-    for (size_t i = 0; i < m * (size_t)n && code == STATUS_OK; i++) {
-        jacobian[i] = (jacobian[i] - other[i]) / (2 * DIFFERENCE);
+    const status code = residuals_of(id, moved, (int)(2 * n), only, false, out, NULL, f);
+    for (size_t i = 0; i < m * n && code == STATUS_OK; i++) {
+        const double *lower = out + (i / m * 2 * m) + i % m;
+        jacobian[i] = (lower[m] - lower[0]) / (2 * DIFFERENCE);
     }
     for (int j = 0; j < id->count && code == STATUS_OK; j++) {
         draw_back(&id->fit[j], x[j], &jacobian[(size_t)(j + 1) * m - (size_t)(id->count - j)]);
     }
-    free(b.pieces);
-    free(other);
+    free(moved);
     return code;
 }
 
@@ -319,7 +306,7 @@ static int evaluate(void *context, int m, int n, const double *x, double *residu
 {
     least_squares *l = context;
     (void)m, (void)n, (void)rows;
-    l->code = asked == 1 ? residuals_of(l->id, x, 1, false, residual, NULL, l->f)
+    l->code = asked == 1 ? residuals_of(l->id, x, 1, NULL, false, residual, NULL, l->f)
                          : jacobian_of(l->id, x, jacobian, l->f);
     return l->code == STATUS_OK ? 0 : -1;
 }
@@ -391,7 +378,7 @@ static status draw_beginnings(identification *id, double *x, double *rest, fault
                                          : here[i] * (u < 0.5 ? 0.5 + u : 2 * u);
         }
     }
-    const status code = residuals_of(id, x, id->starts, false, out, NULL, f);
+    const status code = residuals_of(id, x, id->starts, NULL, false, out, NULL, f);
     for (int s = 0; s < id->starts; s++) {
         rest[s] = sum_of_squares(out + (size_t)s * m, m);
     }
@@ -422,7 +409,7 @@ static status fit_with(identification *id, double *x, double *rest, double *resi
 
     // the best of them, judged
     fault why = {.code = STATUS_OK};
-    TRY(residuals_of(id, best, 1, true, id->residual, &why, f));
+    TRY(residuals_of(id, best, 1, NULL, true, id->residual, &why, f));
     if (why.code != STATUS_OK) {
         *f = why;
         return why.code;

@@ -189,19 +189,14 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor, lin
         rows[STEADY_FORCE].value[i] = result.summary.steady_force_N;
     }
     run_finish(&result);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     // small vibrations and statics
     arm a;
     arm_init(&a, &changed.parameters);
-    code = first_frequency(&a, TIP_FREE, &rows[FREE].value[i], f);
-    if (code == STATUS_OK) {
-        code = first_frequency(&a, TIP_PINNED, &rows[PINNED].value[i], f);
-    }
     rows[COMPLIANCE].value[i] = tip_compliance(&changed.parameters);
-    return code;
+    TRY(first_frequency(&a, TIP_FREE, &rows[FREE].value[i], f));
+    return first_frequency(&a, TIP_PINNED, &rows[PINNED].value[i], f);
 }
 
 // --- the beam -------------------------------------------------------------------------------

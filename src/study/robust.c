@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -167,15 +166,6 @@ void robust_set_finish(robust_set *set)
     }
 }
 
-// Keeps the first sentence of several.
-static void keep_first(void *context, const char *sentence)
-{
-    fault *f = context;
-    if (f->code == STATUS_OK) {
-        fault_set(f, STATUS_BAD_ARGUMENT, "%s", sentence);
-    }
-}
-
 status robust_case_fault(const robust_case *c, const fault *why, fault *f)
 {
     return why->code == STATUS_NO_MEMORY
@@ -187,14 +177,14 @@ status robust_case_fault(const robust_case *c, const fault *why, fault *f)
 // The settings and pushes of a case, which must go together with the scenario.
 static status apply_case(scenario *derived, const robust_case *c, fault *f)
 {
-    status code = scenario_override_all(derived, c->settings, c->setting_count, keep_first, f);
+    f->code = scenario_override_all(derived, c->settings, c->setting_count, keep_first_fault, f);
+    TRY(f->code);
     const double duration = derived->parameters.run.duration;
-    for (int i = 0; i < c->push_count && code == STATUS_OK; i++) {
-        if (c->push_time[i] > duration) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT,
-                             "a push at %g s is outside the run, expected 0 to %g s (run.duration)",
-                             c->push_time[i], duration);
-        }
+    for (int i = 0; i < c->push_count; i++) {
+        FAIL_IF(c->push_time[i] > duration,
+                fault_set(f, STATUS_BAD_ARGUMENT,
+                          "a push at %g s is outside the run, expected 0 to %g s (run.duration)",
+                          c->push_time[i], duration));
         scenario_insert_action(derived, (action){.time = c->push_time[i],
                                                  .kind = ACTION_PUSH,
                                                  .parameter = -1,
@@ -202,7 +192,7 @@ static status apply_case(scenario *derived, const robust_case *c, fault *f)
                                                  .added = true});
     }
     const parameters p = derived->parameters;
-    return code == STATUS_OK ? scenario_take_parameters(derived, &p, f) : code;
+    return scenario_take_parameters(derived, &p, f);
 }
 
 status robust_case_scenario(scenario *derived, const scenario *base, const robust_case *c, fault *f)
@@ -249,34 +239,23 @@ static void find_quantiles(double *values, size_t count, double *quantiles)
     }
 }
 
-// Quantities of every run that a judgement takes.
-enum {
-    COMMAND,
-    OVER,
-    SMOOTHED,
-    PEAK,
-    CONTACT,
-    SETTLING,
-    ERROR,
-    SEPARATIONS,
-    APPROACH,
-    BACK,
-    STEPS, // that every run has which did not fail
-    QUANTITIES
-};
-static const char *const keys[QUANTITIES] = {
-    [COMMAND] = "force_command_N",
-    [OVER] = "force_over_command_N",
-    [SMOOTHED] = "smoothed_over_command_N",
-    [PEAK] = "peak_force_N",
-    [CONTACT] = "first_contact_s",
-    [SETTLING] = "settling_time_s",
-    [ERROR] = "steady_error_N",
-    [SEPARATIONS] = "separations",
-    [APPROACH] = "approach_speed_m_s",
-    [BACK] = "return_speed_m_s",
-    [STEPS] = "steps",
-};
+// Quantities of every run that a judgement takes; every run that did not fail has steps.
+#define JUDGED(QUANTITY)                                                                           \
+    QUANTITY(COMMAND, "force_command_N")                                                           \
+    QUANTITY(OVER, "force_over_command_N")                                                         \
+    QUANTITY(SMOOTHED, "smoothed_over_command_N")                                                  \
+    QUANTITY(PEAK, "peak_force_N")                                                                 \
+    QUANTITY(CONTACT, "first_contact_s")                                                           \
+    QUANTITY(SETTLING, "settling_time_s")                                                          \
+    QUANTITY(ERROR, "steady_error_N")                                                              \
+    QUANTITY(SEPARATIONS, "separations")                                                           \
+    QUANTITY(APPROACH, "approach_speed_m_s")                                                       \
+    QUANTITY(BACK, "return_speed_m_s")                                                             \
+    QUANTITY(STEPS, "steps")
+#define NUMBER(name, key) name,
+#define KEY(name, key)    key,
+enum { JUDGED(NUMBER) QUANTITIES };
+static const char *const keys[QUANTITIES] = {JUDGED(KEY)};
 
 // Instant of the script's last push, 0 without one [s].
 static double last_push(const scenario *s)

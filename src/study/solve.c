@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/plain_math.h"
 #include "src/base/numbers.h"
 #include "src/run/run.h"
 #include "src/study/pool.h"

@@ -210,10 +210,7 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
             asked->over->lines,       drawn, SWEEP_LATIN, t->each, seed, asked->over->file,
             asked->over->line_numbers};
         memcpy(lines + varied, asked->over->lines, (size_t)drawn * sizeof *lines);
-        const status code = sweep_init(&draws, asked->base, &set, f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(sweep_init(&draws, asked->base, &set, f));
     }
 
     status code = sweep_plan(&t->plan, &request, f);

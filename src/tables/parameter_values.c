@@ -20,77 +20,52 @@ static const parameter_info *row_of(int index)
 // Puts a number where the parameter lies; a text gets its default.
 static void store(parameters *p, const parameter_info *info, double value)
 {
-    char *at = (char *)p + info->offset;
-
-    // the field is copied, since the table alone knows its type
+    void *at = (char *)p + info->offset;
     switch (info->type) {
     case PARAMETER_REAL:
-        memcpy(at, &value, sizeof value);
+        *(double *)at = value;
         break;
-    case PARAMETER_BOOLEAN: {
-        bool truth = value != 0;
-        memcpy(at, &truth, sizeof truth);
+    case PARAMETER_BOOLEAN:
+        *(bool *)at = value != 0;
         break;
-    }
     case PARAMETER_INTEGER:
-    case PARAMETER_CHOICE: {
-        int whole = (int)value;
-        memcpy(at, &whole, sizeof whole);
+    case PARAMETER_CHOICE:
+        *(int *)at = (int)value;
         break;
-    }
     case PARAMETER_TEXT:
     case PARAMETER_LIST:
         memset(at, 0, PARAMETER_TEXT_SIZE);
         if (info->choices != NULL) {
             memcpy(at, info->choices, strnlen(info->choices, PARAMETER_TEXT_SIZE - 1));
         }
-        break;
     }
 }
 
 double parameter_get(const parameters *p, int index)
 {
     const parameter_info *info = row_of(index);
-    const char *at = (const char *)p + info->offset;
-    double real;
-    bool truth;
-    int whole;
-
-    // copied, since the type of what lies there is known to the table only
+    const void *at = (const char *)p + info->offset;
     switch (info->type) {
     case PARAMETER_REAL:
-        memcpy(&real, at, sizeof real);
-        return real;
+        return *(const double *)at;
     case PARAMETER_BOOLEAN:
-        memcpy(&truth, at, sizeof truth);
-        return truth;
+        return *(const bool *)at;
     case PARAMETER_INTEGER:
     case PARAMETER_CHOICE:
-        memcpy(&whole, at, sizeof whole);
-        return whole;
-    case PARAMETER_TEXT:
-    case PARAMETER_LIST:
+        return *(const int *)at;
+    default:
         return 0;
     }
-    return (double)NAN;
 }
 
 void parameters_restore_defaults(parameters *p)
 {
     const bool printed = p->arm.model == ARM_PRINTED;
     const int model = PARAMETER_INDEX(arm.model);
-
-    // most are real numbers, which need no look at their type
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
-        const double value = printed ? info->default_printed : info->default_corrected;
-        if (p->set[i] || i == model) {
-            continue;
-        }
-        if (info->type == PARAMETER_REAL) {
-            memcpy((char *)p + info->offset, &value, sizeof value);
-        } else {
-            store(p, info, value);
+        if (!p->set[i] && i != model) {
+            store(p, info, printed ? info->default_printed : info->default_corrected);
         }
     }
 }

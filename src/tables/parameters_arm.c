@@ -1,7 +1,6 @@
 // What of the arm follows from other parameters: lists, stiffnesses, damping, and where it starts.
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/tables/parameters_parts.h"

@@ -4,6 +4,7 @@
 
 #include "src/base/csv_table.h"
 #include "src/base/instant.h"
+#include "src/rig/controller_values.h"
 
 struct recorded_command {
     double *times;   // of the rows [s]
@@ -67,16 +68,9 @@ static void sample(void *memory, const controller_input *in, controller_output *
         csv_table_at(p->times, p->command, p->rows, then + instant_tolerance(then), p->linear);
 }
 
-static const char *tune(void *memory, const controller_setup *setup)
-{
-    (void)memory;
-    (void)setup;
-    return NULL;
-}
-
 const controller playback_law = {.interface = CONTROLLER_INTERFACE,
                                  .name = "playback",
                                  .modes = (const char *const[]){"playback", NULL},
                                  .memory_size = sizeof(recorded_command *),
                                  .sample = sample,
-                                 .tune = tune};
+                                 .tune = controller_takes_anything};

@@ -14,45 +14,16 @@ enum { PROTOCOL = 1 }; // of the lines, told in the first one
 
 // --- a question -------------------------------------------------------------------------------
 
-static void set_number(json_t *object, const char *name, double value)
-{
-    json_put(object, name, json_number(value));
-}
-
-// A number of a struct under its own name.
-typedef struct named_number {
-    const char *name;
-    size_t offset;
-} named_number;
-#define NUMBER(type, field)                                                                        \
-    {                                                                                              \
-#field, offsetof(type, field)                                                              \
-    }
-
-// Puts numbers of a struct into an object.
-static void set_numbers(json_t *object, const void *from, const named_number *numbers, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        const double *value = (const double *)((const char *)from + numbers[i].offset);
-        set_number(object, numbers[i].name, *value);
-    }
-}
-
 // What the program is told about the rig.
 static json_t *setup_object(const controller_setup *s)
 {
-#define TOLD(field) NUMBER(controller_setup, field)
-    static const named_number numbers[] = {
-        TOLD(period),          TOLD(delay),        TOLD(voltage_limit),
-        TOLD(torque_per_volt), TOLD(hub_damping),  TOLD(stiction),
-        TOLD(hub_inertia),     TOLD(link_mass),    TOLD(link_length),
-        TOLD(link_inertia),    TOLD(k2),           TOLD(wall_angle),
-        TOLD(hub_spring),      TOLD(damping_ratio)};
-#undef TOLD
-    json_t *object = json_object();
-    set_numbers(object, s, numbers, sizeof numbers / sizeof numbers[0]);
-    set_number(object, "links", s->links);
-    return object;
+    return json_members(json_object(),
+                        "period:n delay:n voltage_limit:n torque_per_volt:n hub_damping:n "
+                        "stiction:n hub_inertia:n link_mass:n link_length:n link_inertia:n k2:n "
+                        "wall_angle:n hub_spring:n damping_ratio:n links:n",
+                        s->period, s->delay, s->voltage_limit, s->torque_per_volt, s->hub_damping,
+                        s->stiction, s->hub_inertia, s->link_mass, s->link_length, s->link_inertia,
+                        s->k2, s->wall_angle, s->hub_spring, s->damping_ratio, (double)s->links);
 }
 
 // All numbers of control.*, by their names.
@@ -67,12 +38,12 @@ static json_t *control_object(const control_parameters *control, const controlle
         const parameter_info *info = &parameter_table[i];
         const bool number = info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER;
         if (number && strncmp(info->path, group, sizeof group - 1) == 0) {
-            set_number(object, info->path + sizeof group - 1, parameter_get(&all, i));
+            json_put(object, info->path + sizeof group - 1, json_number(parameter_get(&all, i)));
         }
     }
 
     // as ramp and wave have it now, where the controller gets it from its setup
-    set_number(object, "force", setup->parameters != NULL ? setup->parameters[0] : 0);
+    json_put(object, "force", json_number(setup->parameters != NULL ? setup->parameters[0] : 0));
     return object;
 }
 
@@ -103,12 +74,11 @@ char *process_question(const controller_setup *setup, const control_parameters *
     }
 
     // what a controller within the program would see
-#define SEEN(field) NUMBER(controller_input, field)
-    static const named_number seen[] = {SEEN(time),  SEEN(encoder),       SEEN(tachometer),
-                                        SEEN(force), SEEN(voltage),       SEEN(piezo_force),
-                                        SEEN(film),  SEEN(accelerometer), SEEN(predicted_force)};
-#undef SEEN
-    set_numbers(object, in, seen, sizeof seen / sizeof seen[0]);
+    json_members(object,
+                 "time:n encoder:n tachometer:n force:n voltage:n piezo_force:n film:n "
+                 "accelerometer:n predicted_force:n",
+                 in->time, in->encoder, in->tachometer, in->force, in->voltage, in->piezo_force,
+                 in->film, in->accelerometer, in->predicted_force);
 
     // enough digits for every bit
     char *line = NULL, *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
@@ -125,9 +95,15 @@ char *process_question(const controller_setup *setup, const control_parameters *
 // --- an answer --------------------------------------------------------------------------------
 
 // The numbers of an answer.
-#define ANSWERED(field) NUMBER(controller_output, field)
-static const named_number answers[] = {ANSWERED(command), ANSWERED(desired_angle),
-                                       ANSWERED(desired_velocity), ANSWERED(calculated_force)};
+#define ANSWERED(field)                                                                            \
+    {                                                                                              \
+#field, offsetof(controller_output, field)                                                 \
+    }
+static const struct {
+    const char *name;
+    size_t offset;
+} answers[] = {ANSWERED(command), ANSWERED(desired_angle), ANSWERED(desired_velocity),
+               ANSWERED(calculated_force)};
 #undef ANSWERED
 enum { ANSWERS = sizeof answers / sizeof answers[0] };
 

@@ -6,6 +6,7 @@
 
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
+#include "src/rig/controller_values.h"
 #include "src/run/loop.h"
 #include "src/study/linear/linear.h"
 
@@ -54,14 +55,6 @@ static void sample_with_sine(void *memory, const controller_input *in, controlle
     i->mean[0] += out->command;
     i->mean[1] += in->force;
     i->mean[2] += in->force * in->force;
-}
-
-// The inner law was started with its rig, which was told the same.
-static const char *start(void *memory, const controller_setup *setup)
-{
-    (void)memory;
-    (void)setup;
-    return NULL;
 }
 
 static const char *tune(void *memory, const controller_setup *setup)
@@ -222,7 +215,7 @@ status linear_inject(const scenario *s, linear_response *r, fault *f)
         // the law as it is called and tuned, but for what goes out
         controller law = *i.inner->law;
         law.memory_size = sizeof(injector *);
-        law.start = start;
+        law.start = controller_takes_anything; // the inner one was started with its rig
         law.sample = sample_with_sine;
         law.tune = law.tune != NULL ? tune : NULL;
         const loop_options options = {.law = {&law, &i}};

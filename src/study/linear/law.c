@@ -1,7 +1,6 @@
 // The loop of a control law about the arm's place of rest, from the law's answers to pulses.
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/dense.h"
@@ -52,10 +51,7 @@ static status answer(const linear_arm *arm, const parameters *p, int reading, do
                      double *commands, fault *f)
 {
     rig *r;
-    const status code = rig_create(&r, p, NULL, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(rig_create(&r, p, NULL, f));
     if (r->withheld) {
         rig_destroy(r);
         return fault_set(f, STATUS_NOT_ALLOWED,

@@ -2,7 +2,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "src/base/numbers.h"
 #include "src/base/plain_math.h"

@@ -9,15 +9,6 @@
 
 // --- scenarios --------------------------------------------------------------------------------
 
-// Keeps the first fault of a scenario that does not open.
-static void keep_first_fault(void *context, const char *sentence)
-{
-    fault *f = context;
-    if (f->code == STATUS_OK) {
-        fault_set(f, STATUS_BAD_SCENARIO, "%s", sentence);
-    }
-}
-
 bool act_open_scenario(explorer_state *st, const char *name)
 {
     scenario s;
