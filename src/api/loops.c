@@ -11,14 +11,11 @@ int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handl
     API_NEEDS(error, loop);
     *loop = NULL;
     API_NEEDS(error, handle);
-    if ((flags & ~(IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND)) != 0) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "a loop knows no other flags than KEEP_ROWS and COMMAND");
-    }
+    FAIL_IF((flags & ~(IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND)) != 0,
+            api_fail(error, STATUS_BAD_ARGUMENT,
+                     "a loop knows no other flags than KEEP_ROWS and COMMAND"));
     impactlab_loop *made = calloc(1, sizeof *made);
-    if (made == NULL) {
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for a loop");
-    }
+    FAIL_IF(made == NULL, api_fail(error, STATUS_NO_MEMORY, "no memory for a loop"));
 
     fault f = {.text = "", .path = ""};
     const loop_options options = {.keep_trace = (flags & IMPACTLAB_KEEP_ROWS) != 0,
@@ -66,9 +63,8 @@ int impactlab_loop_step_until(impactlab_loop *loop, double time, impactlab_error
 {
     API_NEEDS(error, loop);
     fault f;
-    if (!isfinite(time)) {
-        return api_fail(error, STATUS_BAD_ARGUMENT, "the instant is not finite, expected seconds");
-    }
+    FAIL_IF(!isfinite(time),
+            api_fail(error, STATUS_BAD_ARGUMENT, "the instant is not finite, expected seconds"));
     return came_to(loop_until(loop->loop, time, &f), &f, error);
 }
 
@@ -87,14 +83,12 @@ int impactlab_loop_ended(const impactlab_loop *loop)
 int impactlab_loop_command(impactlab_loop *loop, double volts, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    if (!loop->commanded) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "the loop was created without COMMAND: control.law commands the rig, or "
-                        "motor.voltage the bare arm");
-    }
-    if (!isfinite(volts)) {
-        return api_fail(error, STATUS_BAD_ARGUMENT, "the command is not finite, expected volts");
-    }
+    FAIL_IF(!loop->commanded,
+            api_fail(error, STATUS_BAD_ARGUMENT,
+                     "the loop was created without COMMAND: control.law commands the rig, or "
+                     "motor.voltage the bare arm"));
+    FAIL_IF(!isfinite(volts),
+            api_fail(error, STATUS_BAD_ARGUMENT, "the command is not finite, expected volts"));
     loop_command(loop->loop, volts);
     return came_to(STATUS_OK, NULL, error);
 }
@@ -108,9 +102,7 @@ int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double valu
     const char *text = number;
     number_format_short(number, value);
     const int index = api_parameter(path, &text, room, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
-    }
+    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
     return came_to(text != number ? loop_set_text(loop->loop, index, text, &f)
                                   : loop_set_number(loop->loop, index, value, &f),
                    &f, error);
@@ -123,9 +115,7 @@ int impactlab_loop_set_text(impactlab_loop *loop, const char *path, const char *
     fault f;
     char room[PARAMETER_TEXT_SIZE];
     const int index = api_parameter(path, &text, room, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
-    }
+    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
     return came_to(loop_set_text(loop->loop, index, text, &f), &f, error);
 }
 
@@ -133,9 +123,8 @@ int impactlab_loop_push(impactlab_loop *loop, double impulse, impactlab_error *e
 {
     API_NEEDS(error, loop);
     fault f;
-    if (!isfinite(impulse)) {
-        return api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s");
-    }
+    FAIL_IF(!isfinite(impulse),
+            api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s"));
     return came_to(loop_push(loop->loop, impulse, &f), &f, error);
 }
 
@@ -148,10 +137,9 @@ int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading
 
     // the bare arm has no rig around it
     sensor_reading read;
-    if (!loop_sense(loop->loop, &read)) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "the bare arm has no sensors, expected a control.law or COMMAND");
-    }
+    FAIL_IF(!loop_sense(loop->loop, &read),
+            api_fail(error, STATUS_BAD_ARGUMENT,
+                     "the bare arm has no sensors, expected a control.law or COMMAND"));
 
     // field by field, as the layout within may change and this one not
     *reading = (impactlab_reading){.time = loop_time(loop->loop),
@@ -169,9 +157,7 @@ int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
 {
     API_NEEDS(error, loop, name, value);
     int index = api_signal(name, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
-    }
+    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
     const sample row = loop_row(loop->loop);
     *value = signal_value(&row, index);
     return came_to(STATUS_OK, NULL, error);
@@ -220,11 +206,10 @@ int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t si
                               impactlab_error *error)
 {
     API_NEEDS(error, loop, bytes);
-    if (size < loop_saved_size(loop->loop)) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "a state of this loop has %zu bytes, but there is room for %zu",
-                        loop_saved_size(loop->loop), size);
-    }
+    FAIL_IF(size < loop_saved_size(loop->loop),
+            api_fail(error, STATUS_BAD_ARGUMENT,
+                     "a state of this loop has %zu bytes, but there is room for %zu",
+                     loop_saved_size(loop->loop), size));
     loop_save(loop->loop, bytes);
     return came_to(STATUS_OK, NULL, error);
 }

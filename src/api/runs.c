@@ -11,20 +11,18 @@
 // Whether the rig can call a controller that a program gives.
 static int check_law(const controller *law, impactlab_error *error)
 {
-    if (law->interface != CONTROLLER_INTERFACE) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "the controller was made for version %d of the interface, expected %d",
-                        law->interface, CONTROLLER_INTERFACE);
-    }
+    FAIL_IF(law->interface != CONTROLLER_INTERFACE,
+            api_fail(error, STATUS_BAD_ARGUMENT,
+                     "the controller was made for version %d of the interface, expected %d",
+                     law->interface, CONTROLLER_INTERFACE));
 
     // what the rig calls or relies on without asking again
-    if (law->name == NULL || law->modes == NULL || law->sample == NULL ||
-        law->memory_size < sizeof(void *) || law->parameter_count < 0 ||
-        (law->parameter_count > 0 && law->parameters == NULL)) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "the controller is not whole, expected a name, modes ended by NULL, "
-                        "`sample`, and memory for at least a pointer");
-    }
+    FAIL_IF(law->name == NULL || law->modes == NULL || law->sample == NULL ||
+                law->memory_size < sizeof(void *) || law->parameter_count < 0 ||
+                (law->parameter_count > 0 && law->parameters == NULL),
+            api_fail(error, STATUS_BAD_ARGUMENT,
+                     "the controller is not whole, expected a name, modes ended by NULL, "
+                     "`sample`, and memory for at least a pointer"));
     return IMPACTLAB_OK;
 }
 
@@ -40,9 +38,8 @@ int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *han
     API_NEEDS(error, run);
     *run = NULL;
     API_NEEDS(error, handle);
-    if ((flags & ~IMPACTLAB_KEEP_ROWS) != 0) {
-        return api_fail(error, STATUS_BAD_ARGUMENT, "a run knows no other flag than KEEP_ROWS");
-    }
+    FAIL_IF((flags & ~IMPACTLAB_KEEP_ROWS) != 0,
+            api_fail(error, STATUS_BAD_ARGUMENT, "a run knows no other flag than KEEP_ROWS"));
     if (law != NULL && check_law(law, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
@@ -115,9 +112,7 @@ int impactlab_run_signal(const impactlab_run *run, const char *name, impactlab_s
 {
     API_NEEDS(error, run, name, series);
     int index = api_signal(name, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
-    }
+    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
 
     // values stay where they are, a row apart
     const trace *t = &run->result.trace;
@@ -197,19 +192,15 @@ int impactlab_run_predictions(const impactlab_run *run, impactlab_prediction *pr
     API_NEEDS(error, run, predictions, written);
     prediction_answer answers[PREDICTOR_COUNT];
     *written = 0;
-    if (run->result.trace.row_count == 0) {
-        return api_fail(error, STATUS_BAD_ARGUMENT, "the run kept no rows, expected KEEP_ROWS");
-    }
-    if (predict_first_contact(&run->scenario, &run->result, NULL, answers) == NULL) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "the arm did not touch the wall after a free flight in this run");
-    }
+    FAIL_IF(run->result.trace.row_count == 0,
+            api_fail(error, STATUS_BAD_ARGUMENT, "the run kept no rows, expected KEEP_ROWS"));
+    FAIL_IF(predict_first_contact(&run->scenario, &run->result, NULL, answers) == NULL,
+            api_fail(error, STATUS_BAD_ARGUMENT,
+                     "the arm did not touch the wall after a free flight in this run"));
 
     for (size_t i = 0; i < count && i < PREDICTOR_COUNT; i++) {
         const prediction_answer *a = &answers[i];
-        if (a->fault.code == STATUS_NO_MEMORY) {
-            return api_error(error, &a->fault);
-        }
+        FAIL_IF(a->fault.code == STATUS_NO_MEMORY, api_error(error, &a->fault));
         predictions[i] = (impactlab_prediction){.method = a->name,
                                                 .known = prediction_known(a),
                                                 .holds = a->outcome == PREDICTION_HOLDS,

@@ -15,9 +15,7 @@ int impactlab_scenario_names(char ***names, size_t *count, impactlab_error *erro
     fault f = {.text = "", .path = ""};
     int found = 0;
     *count = 0;
-    if (scenario_list(names, &found, &f) != STATUS_OK) {
-        return api_error(error, &f);
-    }
+    FAIL_IF(scenario_list(names, &found, &f) != STATUS_OK, api_error(error, &f));
     *count = (size_t)found;
     return api_done(error);
 }
@@ -65,9 +63,7 @@ int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_fil
     API_NEEDS(error, handle);
     *handle = NULL;
     API_NEEDS(error, name_or_file);
-    if (new_handle(handle, error) == NULL) {
-        return IMPACTLAB_NO_MEMORY;
-    }
+    FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
     api_first_fault first = {.error = error};
     status code = scenario_open(&(*handle)->scenario, name_or_file, api_keep_first, &first);
     return finish_reading(handle, code, error);
@@ -85,9 +81,7 @@ int impactlab_scenario_parse_named(impactlab_scenario **handle, const char *text
     API_NEEDS(error, handle);
     *handle = NULL;
     API_NEEDS(error, text, name);
-    if (new_handle(handle, error) == NULL) {
-        return IMPACTLAB_NO_MEMORY;
-    }
+    FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
     api_first_fault first = {.error = error};
     status code =
         scenario_parse(&(*handle)->scenario, text, length, "text", name, api_keep_first, &first);
@@ -108,9 +102,7 @@ int impactlab_scenario_copy(impactlab_scenario **handle, const impactlab_scenari
     API_NEEDS(error, from);
 
     // after a fault the caller has nothing to destroy
-    if (new_handle(handle, error) == NULL) {
-        return IMPACTLAB_NO_MEMORY;
-    }
+    FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
     if (scenario_copy(&(*handle)->scenario, &from->scenario) != STATUS_OK) {
         free(*handle);
         *handle = NULL;
@@ -156,10 +148,7 @@ int impactlab_scenario_number(const impactlab_scenario *handle, const char *path
 {
     API_NEEDS(error, handle, path, value);
     sweep_axis axis;
-    const int code = api_axis(path, &axis, error);
-    if (code != IMPACTLAB_OK) {
-        return code;
-    }
+    TRY((status)api_axis(path, &axis, error));
     *value = sweep_axis_get(&axis, &handle->scenario.parameters);
     return api_done(error);
 }
@@ -169,10 +158,7 @@ int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, 
 {
     API_NEEDS(error, handle, path, text);
     sweep_axis axis;
-    const int code = api_axis(path, &axis, error);
-    if (code != IMPACTLAB_OK) {
-        return code;
-    }
+    TRY((status)api_axis(path, &axis, error));
 
     // whole or not at all
     char whole[PARAMETER_TEXT_SIZE];
@@ -187,11 +173,9 @@ int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, 
         parameter_format(&handle->scenario.parameters, axis.parameter, whole, sizeof whole);
     }
     size_t length = strlen(whole) + 1;
-    if (length > size) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "the value of %s takes %zu bytes, but there is room for %zu", path, length,
-                        size);
-    }
+    FAIL_IF(length > size, api_fail(error, STATUS_BAD_ARGUMENT,
+                                    "the value of %s takes %zu bytes, but there is room for %zu",
+                                    path, length, size));
     memcpy(text, whole, length);
     return api_done(error);
 }
@@ -227,9 +211,8 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     }
     API_NEEDS(error, assignments);
     char **given = calloc(count, sizeof *given);
-    if (given == NULL) {
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for %zu assignments", count);
-    }
+    FAIL_IF(given == NULL,
+            api_fail(error, STATUS_NO_MEMORY, "no memory for %zu assignments", count));
     bool whole = true;
     for (size_t i = 0; i < count; i++) {
         given[i] = (char *)assignments[i];
@@ -247,9 +230,7 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
         return retitle(handle, error);
     }
     handle->scenario.parameters = before;
-    if (!whole) {
-        return api_missing(error, "assignments[i]", 0);
-    }
+    FAIL_IF(!whole, api_missing(error, "assignments[i]", 0));
     return api_finish_first(error, &handle->scenario.refused, code);
 }
 
@@ -269,9 +250,7 @@ int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const c
     API_NEEDS(error, text, handle, path);
     char room[PARAMETER_TEXT_SIZE];
     const int index = api_parameter(path, &text, room, error);
-    if (index < 0) {
-        return IMPACTLAB_BAD_ARGUMENT;
-    }
+    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
 
     // on a copy, so that a refused value changes nothing
     parameters p = handle->scenario.parameters;
@@ -284,10 +263,7 @@ int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path, 
 {
     API_NEEDS(error, handle, path);
     sweep_axis axis;
-    const int code = api_axis(path, &axis, error);
-    if (code != IMPACTLAB_OK) {
-        return code;
-    }
+    TRY((status)api_axis(path, &axis, error));
     parameters p = handle->scenario.parameters;
     fault f = {.text = "", .path = ""};
     return take(handle, &p, sweep_axis_apply(&axis, value, &p, &f), &f, error);
@@ -305,11 +281,10 @@ static bool make_room(scenario *s)
 
 static int check_instant(const scenario *s, double time, impactlab_error *error)
 {
-    if (!(time >= 0 && time <= s->parameters.run.duration)) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "the instant %g s is not within the run, expected 0 to %g s", time,
-                        s->parameters.run.duration);
-    }
+    FAIL_IF(!(time >= 0 && time <= s->parameters.run.duration),
+            api_fail(error, STATUS_BAD_ARGUMENT,
+                     "the instant %g s is not within the run, expected 0 to %g s", time,
+                     s->parameters.run.duration));
     return IMPACTLAB_OK;
 }
 
@@ -323,24 +298,20 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
     if (index < 0 || check_instant(s, time, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
-    if (!rig_can_change(&s->parameters, index)) {
-        return api_fail(error, STATUS_BAD_ARGUMENT,
-                        "%s holds from the start and cannot change during a run", path);
-    }
+    FAIL_IF(!rig_can_change(&s->parameters, index),
+            api_fail(error, STATUS_BAD_ARGUMENT,
+                     "%s holds from the start and cannot change during a run", path));
 
     // the value as the parameter takes it
     fault f = {.text = "", .path = ""};
     parameters p = scenario_parameters_at(s, time);
-    if (parameter_may_change(&p, index, &f) != STATUS_OK ||
-        parameter_set_text(&p, index, text, &f) != STATUS_OK) {
-        return api_error(error, &f);
-    }
+    FAIL_IF(parameter_may_change(&p, index, &f) != STATUS_OK ||
+                parameter_set_text(&p, index, text, &f) != STATUS_OK,
+            api_error(error, &f));
     action a = action_of(time, &p, index, text);
     a.added = true;
 
-    if (!make_room(s)) {
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
-    }
+    FAIL_IF(!make_room(s), api_fail(error, STATUS_NO_MEMORY, "no memory for the script"));
     scenario_insert_action(s, a);
     return retitle(handle, error);
 }
@@ -355,17 +326,13 @@ int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double 
     }
 
     // what the arm can be given
-    if (!isfinite(impulse)) {
-        return api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s");
-    }
-    if (s->parameters.arm.model == ARM_PRINTED) {
-        return api_fail(error, STATUS_BAD_SCENARIO, "the printed model takes no pushes");
-    }
+    FAIL_IF(!isfinite(impulse),
+            api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s"));
+    FAIL_IF(s->parameters.arm.model == ARM_PRINTED,
+            api_fail(error, STATUS_BAD_SCENARIO, "the printed model takes no pushes"));
 
     // with room there is nothing left to fail
-    if (!make_room(s)) {
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
-    }
+    FAIL_IF(!make_room(s), api_fail(error, STATUS_NO_MEMORY, "no memory for the script"));
     scenario_insert_action(
         s, (action){.time = time, .kind = ACTION_PUSH, .value = impulse, .added = true});
     return retitle(handle, error);

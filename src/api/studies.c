@@ -62,9 +62,7 @@ static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker
 {
     const size_t turn = (size_t)jobs * RUNS_A_TURN;
     summary *summaries = calloc(count < turn ? count : turn, sizeof *summaries);
-    if (summaries == NULL) {
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for the outcomes");
-    }
+    FAIL_IF(summaries == NULL, api_fail(error, STATUS_NO_MEMORY, "no memory for the outcomes"));
 
     status code = STATUS_OK;
     for (v->first = 0; code == STATUS_OK && v->first < count; v->first += turn) {
@@ -84,9 +82,7 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
                     void *context, impactlab_error *error)
 {
     API_NEEDS(error, handle);
-    if (take == NULL) {
-        return api_missing(error, "take", 0);
-    }
+    FAIL_IF(take == NULL, api_missing(error, "take", 0));
     if (path_count > 0) {
         API_NEEDS(error, paths);
     }
@@ -97,9 +93,7 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
 
     // which parameters
     sweep_axis *axes = calloc(path_count + 1, sizeof *axes);
-    if (axes == NULL) {
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for a batch");
-    }
+    FAIL_IF(axes == NULL, api_fail(error, STATUS_NO_MEMORY, "no memory for a batch"));
     for (size_t k = 0; k < path_count; k++) {
         const int code = paths[k] != NULL ? api_axis(paths[k], &axes[k], error)
                                           : api_missing(error, "paths[i]", 0);
@@ -145,19 +139,16 @@ int impactlab_modes(const impactlab_scenario *handle, int hub_locked, int tip_pi
     API_NEEDS(error, handle, frequencies, count);
     const size_t n = impactlab_freedoms(handle);
     *count = 0;
-    if (n == 0) {
-        return api_fail(error, STATUS_BAD_SCENARIO,
-                        "the printed equations have no symmetric stiffness and so no natural "
-                        "frequencies, expected arm.model = corrected");
-    }
+    FAIL_IF(n == 0, api_fail(error, STATUS_BAD_SCENARIO,
+                             "the printed equations have no symmetric stiffness and so no natural "
+                             "frequencies, expected arm.model = corrected"));
 
     arm a;
     arm_init(&a, &handle->scenario.parameters);
     double *all = calloc(n + n * n, sizeof *all);
     int found = 0;
-    if (all == NULL) {
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for the modes of %zu angles", n);
-    }
+    FAIL_IF(all == NULL,
+            api_fail(error, STATUS_NO_MEMORY, "no memory for the modes of %zu angles", n));
     status code = modes_compute(&a, hub_locked ? HUB_LOCKED : HUB_FREE,
                                 tip_pinned ? TIP_PINNED : TIP_FREE, &found, all, all + n);
 

@@ -141,8 +141,6 @@ void rig_take_delay(rig *r, const parameters *p)
     r->pending_most = (int)larger(ceil(periods - 1e-9) - 1, 0);
 }
 
-static const double turn = 2 * 3.14159265358979323846; // [rad]
-
 // Whether any parameter of a group differs; the lock is the rig's own affair.
 static bool group_differs(const parameters *a, const parameters *b, const char *group)
 {
@@ -248,7 +246,7 @@ status rig_follow_setpoint(rig *r, double time, fault *f)
     r->ramp = c->force_rate > 0 && fabs(way) > most ? r->ramp + copysign(most, way) : c->force;
     r->ramp_time = time;
     const double wave = c->force_amplitude > 0
-                            ? c->force_amplitude * inline_sin(turn * c->force_frequency * time)
+                            ? c->force_amplitude * inline_sin(2 * M_PI * c->force_frequency * time)
                             : 0;
     const double wanted = larger(r->ramp + wave, 0);
 

@@ -14,8 +14,6 @@
 // A stride no longer than this [s] counts as none: its gain of velocity would be rounding only.
 #define SHORTEST_GAIN 1e-9
 
-static const double turn = 2 * 3.14159265358979323846; // [rad]
-
 // Draws numbers of the standard normal distribution by Marsaglia's polar method, some at a time, as
 // their logarithms and roots then need not wait for each other. Apart from the readings that take
 // them, which stay short.
@@ -95,7 +93,7 @@ void sensors_retune(sensors *s, const sensor_parameters *p)
 
     // what follows from them
     s->adc = converter_of(s->p.adc_bits, s->p.ideal ? HUGE_VAL : s->p.adc_range);
-    s->encoder_step = s->p.encoder_counts > 0 ? turn / s->p.encoder_counts : 0;
+    s->encoder_step = s->p.encoder_counts > 0 ? 2 * M_PI / s->p.encoder_counts : 0;
 
     // the curve is another one
     s->felt = (fsr_point){(double)NAN, 0};

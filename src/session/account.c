@@ -13,9 +13,7 @@ typedef struct account {
     int count;
 } account;
 
-static void say(account *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void say(account *a, const char *format, ...)
+__attribute__((format(printf, 2, 3))) static void say(account *a, const char *format, ...)
 {
     assert(a->count < ACCOUNT_SENTENCES);
     va_list list;

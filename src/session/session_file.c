@@ -189,9 +189,7 @@ static status add_input(session_reader *r, session_input_kind kind, const char *
         code = good ? read_change(r, from, &in, rest)
                     : refuse(r, "no change, expected an instant, a parameter and a value");
     }
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     in.seen_at = in.time;
     session_input *more =
         realloc(from->inputs, ((size_t)from->input_count + 1) * sizeof *from->inputs);

@@ -246,9 +246,7 @@ static status measure_batch(const benchmark *b, double *value, fault *f)
 {
     scenario s = timed_scenario(b->settings);
     summary *summaries = malloc(BATCH_RUNS * sizeof *summaries);
-    if (summaries == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(summaries != NULL, f);
 
     // over and over on one thread, as one batch is short
     const bool all = b->number == 0;

@@ -170,9 +170,7 @@ status method_study_compute(const scenario *s, run_monitor *monitor, method_stud
     p.method.step = study->reference_step = REFERENCE_STEP;
     status code = run_with(s, &p, monitor, &reference, f);
     values_of(&reference, study->reference);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     run_monitor_count(monitor);
 
     // every method at every step

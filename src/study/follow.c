@@ -14,8 +14,6 @@ const char *const follow_laws[FOLLOW_LAWS] = {"hybrid",     "force-pd", "impedan
 #define SETTLED 3.0 // when impact and transients are over [s]
 #define WATCHED 2.0 // from then on at least, in whole periods [s]
 
-static const double pi = 3.14159265358979323846;
-
 // exp(i angle).
 static double complex turned(double angle)
 {
@@ -26,7 +24,7 @@ static double complex turned(double angle)
 // times exp(-i w t) over whole periods, by the trapezoidal rule.
 static double complex part_of(const trace *t, double frequency, double until)
 {
-    const double w = 2 * pi * frequency;
+    const double w = 2 * M_PI * frequency;
     double complex sum = 0;
     for (size_t i = 1; i < t->row_count; i++) {
         const sample *a = &t->rows[i - 1], *b = &t->rows[i];
@@ -36,7 +34,7 @@ static double complex part_of(const trace *t, double frequency, double until)
             sum += (b->time - a->time) / 2 * both;
         }
     }
-    const double complex sine = 2 * turned(pi / 2);
+    const double complex sine = 2 * turned(M_PI / 2);
     return sine * sum / (until - SETTLED);
 }
 
@@ -80,7 +78,7 @@ static follow_point point_of(double frequency, double complex answer)
         .frequency = frequency,
         .gain = cabs(answer),
         .phase = (isnan(creal(answer)) ? (double)NAN : plain_atan2(cimag(answer), creal(answer))) *
-                 180 / pi,
+                 180 / M_PI,
         .error = cabs(1 - answer),
         .shaken = (double)NAN};
 }
@@ -92,7 +90,7 @@ static void find_bound(const parameters *p, follow_study *study)
     study->zero = sqrt(2 * p->arm.k2 / (ml2 / 4 - ml2 / 12));
     study->later = p->control.delay + (0.5 + p->control.delay_periods) / p->control.rate;
     for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
-        const double w = 2 * pi * follow_frequencies[i];
+        const double w = 2 * M_PI * follow_frequencies[i];
         const double complex late = turned(-w * study->later);
         const double complex falls = turned(-2 * plain_atan2(w, study->zero)); // (s - p)/(s + p)
         study->bound[i] = point_of(follow_frequencies[i], falls * late);

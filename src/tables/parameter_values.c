@@ -205,9 +205,7 @@ static status store_list(parameters *p, int index, const char *text, size_t leng
                              info->path, count + 1));
         status code = parse_quantity(info, word, &value, f);
         code = code == STATUS_OK ? check_number(info, value, f) : code;
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(code);
 
         // in as few digits as give it back
         number_format_short(number, value);

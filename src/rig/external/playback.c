@@ -19,9 +19,7 @@ status playback_create(recorded_command **created, const control_parameters *con
     csv_table table = {0};
     recorded_command *p = calloc(1, sizeof *p);
     *created = NULL;
-    if (p == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(p != NULL, f);
     p->shift = control->playback_shift;
     p->linear = control->playback_hold == PLAYBACK_LINEAR;
 

@@ -109,9 +109,8 @@ static void forget_old_errors(const process *p)
 }
 
 // Ends the program and says why. Always false.
-static bool fail(process *p, status code, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-static bool fail(process *p, status code, const char *format, ...)
+__attribute__((format(printf, 3, 4))) static bool fail(process *p, status code, const char *format,
+                                                       ...)
 {
     char why[512];
     va_list values;

@@ -23,8 +23,6 @@ enum { FIRST = 28, PASSES = 4, MOST_POINTS = 160, MOST_WINDOWS = 40, PUSHES = 28
 #define FOLLOWED    0.5  // after a push [s]
 #define MOST_PUSHED 10.0 // [N s]
 
-static const double pi = 3.14159265358979323846;
-
 // The law with sines behind it: the one that is measured, and another that keeps the law awake.
 // `inner` holds the law itself, its memory and, of a process, the program.
 typedef struct injector {
@@ -118,8 +116,8 @@ static status measure(run_loop *l, injector *i, double *hertz, double complex *g
     double complex law = 0, command = 0, before;
     status code = STATUS_OK;
     *hertz = cycles / (samples * period);
-    i->turn[0] = 2 * pi * cycles / samples;
-    i->turn[1] = 2 * pi * fmax(1, round(i->awake_hertz * samples * period)) / samples;
+    i->turn[0] = 2 * M_PI * cycles / samples;
+    i->turn[1] = 2 * M_PI * fmax(1, round(i->awake_hertz * samples * period)) / samples;
     i->amplitude[0] = i->first;
     i->amplitude[1] = 0;
     *gain = complex_of((double)NAN, 0);
@@ -159,11 +157,11 @@ static status add(run_loop *l, injector *i, double hertz, linear_response *r, fa
     double complex gain;
     const status code = measure(l, i, &hertz, &gain, f);
     int at = r->count++;
-    for (; at > 0 && r->frequency[at - 1] > 2 * pi * hertz; at--) {
+    for (; at > 0 && r->frequency[at - 1] > 2 * M_PI * hertz; at--) {
         r->frequency[at] = r->frequency[at - 1];
         r->gain[at] = r->gain[at - 1];
     }
-    r->frequency[at] = 2 * pi * hertz;
+    r->frequency[at] = 2 * M_PI * hertz;
     r->gain[at] = gain;
     return code;
 }
@@ -188,7 +186,7 @@ static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f
         int wanted = 0;
         for (int k = 0; k + 1 < r->count && r->count + wanted < MOST_POINTS; k++) {
             if (crosses(r->gain[k], r->gain[k + 1])) {
-                middles[wanted++] = sqrt(r->frequency[k] * r->frequency[k + 1]) / (2 * pi);
+                middles[wanted++] = sqrt(r->frequency[k] * r->frequency[k + 1]) / (2 * M_PI);
             }
         }
         for (int k = 0; k < wanted && code == STATUS_OK; k++) {

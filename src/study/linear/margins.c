@@ -14,12 +14,10 @@
 enum { EVEN = 1500, ABOUT = 40, MOST_FREQUENCIES = 20000, BISECTIONS = 40, RUN_BISECTIONS = 12 };
 #define DECADES 1e4
 
-static const double pi = 3.14159265358979323846;
-
 // Puts frequencies for a system with the given poles in order; returns how many.
 static int choose_frequencies(const double complex *poles, int states, double period, double *w)
 {
-    double low = pi / period / DECADES, high = pi / period;
+    double low = M_PI / period / DECADES, high = M_PI / period;
     int count = 0;
     if (period == 0) {
         low = high = 1;
@@ -87,8 +85,8 @@ static void cross_phase(linear_margins *m, double gain)
 static void cross_gain(linear_margins *m, double complex gain, double w)
 {
     const double left = plain_atan2(-cimag(gain), -creal(gain)); // beyond -180 degrees
-    m->phase_deg = fmin(m->phase_deg, fabs(left) * 180 / pi);
-    m->delay_s = fmin(m->delay_s, (left >= 0 ? left : left + 2 * pi) / w);
+    m->phase_deg = fmin(m->phase_deg, fabs(left) * 180 / M_PI);
+    m->delay_s = fmin(m->delay_s, (left >= 0 ? left : left + 2 * M_PI) / w);
 }
 
 linear_margins linear_margins_of(const linear_response *r)
