@@ -277,6 +277,34 @@ TEST(the_ledger_closes_on_a_shaken_face)
     }
 }
 
+// The same of all walls that move, at every row: what is lacking is a share of what motor and wall
+// did, one way and the other.
+TEST(the_ledger_closes_on_every_wall_that_moves)
+{
+    static const char *const sets[][5] = {
+        {"wall.motion=sine", "wall.contact=hunt-crossley", "wall.damping=300", "arm.links=6",
+         "wall.motion_frequency=743"},
+        {"wall.motion=sine", "wall.contact=hunt-crossley", "wall.damping=0", "arm.links=1",
+         "wall.motion_frequency=986"},
+        {"wall.motion=step", "wall.contact=kelvin-voigt", "wall.stiffness=3000", "arm.links=1",
+         "motor.voltage=5"}};
+    for (EACH(set, sets)) {
+        const char *const *more = *set;
+        const scenario s = {.parameters = fixture_parameters(SETTINGS(
+                                "wall.motion_amplitude=5e-3", "wall.motion_frequency=15", more[0],
+                                more[1], more[2], more[3], more[4], "run.duration=0.6"))};
+        SCOPED(run_finish) run_result r;
+        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+        double worst = 0, done = 0;
+        for (size_t k = 1; k < r.trace.row_count; k++) {
+            const sample *was = &r.trace.rows[k - 1], *is = &r.trace.rows[k];
+            worst = fmax(worst, fabs(is->energy_residual));
+            done += fabs(is->motor_work - was->motor_work) + fabs(is->wall_work - was->wall_work);
+        }
+        check_below(fmax(worst, r.summary.energy_residual_J), 1e-10 * done);
+    }
+}
+
 // --- walls that a script moves -------------------------------------------------------------------
 
 static run_result run_of(const char *wall, double from, double time, double to, status expected)

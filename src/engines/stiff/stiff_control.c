@@ -14,6 +14,7 @@
 #define FAST_DECAY   3e4   // beyond it, where nothing else is faster, the tolerance is larger [1/s]
 #define DECAYING     10    // so many times
 #define BOUNCING     0.1   // and of an arm that bounces undamped, which amplifies errors
+#define DRIVEN       0.1   // of a wall that moves: errors of the work of its many contacts add up
 #define TINY_ENERGY  1e-30 // [J]
 #define LONGEST_TURN 0.25  // in a step, of the way to a fold
 #define FIRST_PHASE  0.1   // of the fastest change, in the first step of a motion
@@ -210,6 +211,9 @@ static double tolerance_of(const arm *a, const motion *m)
     const double others = fmax(fmax(FAST_DECAY, a->highest_frequency), current);
     const bool decays = a->fastest_decay > others;
     const bool bounces = a->wall.restitution > 0 && a->fastest_decay <= a->highest_frequency;
+    if (m->wall_moves) {
+        return m->tolerance * DRIVEN * (decays ? DECAYING : 1);
+    }
     return m->tolerance * (decays ? DECAYING : bounces ? BOUNCING : 1);
 }
 
