@@ -75,6 +75,15 @@ TEST(weights_are_those_of_the_polynomial)
             check_close(once, power(x, n + 1) / (n + 1), 1e-12);
             check_close(twice, power(x, n + 2) / ((n + 1) * (n + 2)), 1e-12);
         }
+
+        // of the degree 7 the integral with the start's value, too
+        double from[RADAU_LANES], start = 0, once = 0;
+        radau_values_at(0, from);
+        for (int j = 0; j < RADAU_STAGES; j++) {
+            start -= from[j] * power(radau_node[j], RADAU_STAGES);
+            once += w.integral[j] * power(radau_node[j], RADAU_STAGES);
+        }
+        check_close(once + start * w.start, power(x, RADAU_LANES) / RADAU_LANES, 1e-12);
     }
 }
 

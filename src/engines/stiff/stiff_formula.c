@@ -167,4 +167,5 @@ void radau_weights_at(double x, radau_weights *w)
     add_up(p, w->value);
     add_up(once, w->integral);
     add_up(twice, w->twice);
+    w->start = (once[RADAU_STAGES - 1] - once[RADAU_STAGES]) / 2;
 }

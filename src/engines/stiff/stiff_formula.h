@@ -45,9 +45,11 @@ extern const _Alignas(32) double radau_bernstein[RADAU_LANES][RADAU_LANES];
 extern const _Alignas(32) double radau_slope[RADAU_LANES + 1];
 
 // Weights of f's values at the stages for the value at x of the polynomial through them, of its
-// integral from 0 and of that one's; 0 in the last lane.
+// integral from 0 and of that one's; 0 in the last lane. `start`: the integral from 0 to x of the
+// polynomial that is 1 at the start and 0 at the stages, (P_6 - P_7)/2; 0 over a whole step.
 typedef struct radau_weights {
     double value[RADAU_LANES], integral[RADAU_LANES], twice[RADAU_LANES];
+    double start;
 } radau_weights;
 void radau_weights_at(double x, radau_weights *w);
 void radau_values_at(double x, double value[RADAU_LANES]); // of these the first alone

@@ -7,6 +7,9 @@
 #include "src/base/extremes.h"
 #include "src/engines/stiff/stiff_stride.h"
 
+// Share of a power's largest value by which it may differ at a start from what the stages say.
+#define LITTLE 1e-2
+
 // --- states --------------------------------------------------------------------------------------
 
 // What numbers at the stages add up to with such weights.
@@ -38,6 +41,21 @@ static inline body_motion body_at(const stiff_stride *s, int k, double x,
     return (body_motion){stiff_angles(s)[k] + h * (x * w0 + h * twice), w0 + h * once, value};
 }
 
+// What the power of a quadrature at the step's start adds there to that by the stages, which have
+// it for a whole step: the next order of the polynomial through them. Nothing where the start shows
+// a transient that they do not.
+static double start_adds(const stiff_stride *s, int of, const radau_weights *weight)
+{
+    const double *course = s->kept + STIFF_COURSE + of * RADAU_LANES;
+    double value[RADAU_LANES], most = 0;
+    radau_values_at(0, value);
+    for (int j = 0; j < RADAU_STAGES; j++) {
+        most = larger(fabs(course[j]), most);
+    }
+    const double more = course[RADAU_STAGES] - weighted(value, course);
+    return fabs(more) < LITTLE * most ? s->kept[STIFF_LENGTH] * weight->start * more : 0;
+}
+
 // A quadrature there.
 static double quadrature_at(const stiff_stride *s, int of, const radau_weights *weight)
 {
@@ -60,6 +78,9 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
     }
     for (int i = 0; i < QUADRATURE_COUNT; i++) {
         state_quadratures(m, state)[i] = quadrature_at(s, i, &weight);
+        if (m->wall_moves && i != QUADRATURE_CURRENT && i != QUADRATURE_FORCE) {
+            state_quadratures(m, state)[i] += start_adds(s, i, &weight);
+        }
     }
     if (a->motor.electric) {
         double *current = state_quadratures(m, state) + QUADRATURE_CURRENT;
