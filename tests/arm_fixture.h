@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/arm/arm.h"
-#include "src/contact/motion.h"
+#include "src/engines/motion_create.h"
 #include "src/scenario/scenario.h"
 #include "tests/check.h"
 

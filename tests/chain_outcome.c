@@ -1,6 +1,7 @@
 #include "tests/chain_outcome.h"
 
 #include "src/contact/contact_machine.h"
+#include "src/engines/motion_create.h"
 #include "tests/check.h"
 
 GIVEN_BACK(motion, motion_destroy)

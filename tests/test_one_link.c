@@ -4,6 +4,7 @@
 #include "src/base/random.h"
 #include "src/run/run.h"
 #include "src/contact/pace.h"
+#include "src/engines/motion_create.h"
 #include "tests/scenario_fixture.h"
 
 GIVEN_BACK(motion, motion_destroy)

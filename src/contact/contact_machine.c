@@ -501,7 +501,6 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
     assert(before != NULL && after != NULL && m != NULL && after->dof == m->dof);
     const double *q = state_angles(m, m->state);
     motion_note_change(m);
-    motion_follow_arm(after, m);
     m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
     const bool turned =
         after->wall.cosine != before->wall.cosine || after->wall.sine != before->wall.sine;

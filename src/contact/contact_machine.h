@@ -87,9 +87,9 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
 // pushed in moving with its wall.
 double motion_gap_with(const arm *a, motion *m);
 
-// To be called after the constants of the arm changed under a motion (`before` is the old arm): the
-// change of strain energy is booked as external work and the contact state found anew. A wall that
-// was moved is in front of the arm.
+// To be called after the constants of the arm changed under a motion (`before` is the old arm) and
+// motion_follow_arm (motion_create.h) chose its engine: the change of strain energy is booked as
+// external work and the contact state found anew. A wall that was moved is in front of the arm.
 void motion_rebind(const arm *before, const arm *after, motion *m);
 
 // To be called after nothing but the motor's torque changed from `before` [N m]: accelerations and

@@ -149,22 +149,14 @@ typedef struct engine {
     // Where there are any, states keep the energy ledger from the stride's start on.
     int kept, kept_for_body;
 
+    bool implicit; // a stepping engine of an implicit method, which takes steps of any length
+
     int parabolas; // that represent the force over a whole stride, 0 if that is not known
 
     // Truncation error of the gap's acceleration at a release, as a multiple of the additional
     // rounding of stiff or fast arms (motion_rounding beyond 1); 0: nothing beyond rounding.
     double left_out;
 } engine;
-
-extern const engine newmark_engine;           // implicit, stepping
-extern const engine generalized_alpha_engine; // the same step with other coefficients
-
-extern const engine taylor_engine; // power series of the two-link arm; dense
-extern const engine stiff_engine;  // Radau IIA of seven stages for every arm; dense
-
-// Whether the two-link power series can integrate the arm: two links, hub joint and damping of any
-// kind, and a rigid wall that is a point, a plane or none.
-bool taylor_engine_suits(const arm *a);
 
 // Whether the engine has dense output: events and peaks are located without further steps.
 static inline bool engine_is_dense(const engine *e)

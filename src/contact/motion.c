@@ -310,29 +310,3 @@ bool motion_between_all(const arm *a, motion *m, const double *times, int count,
     }
     return finite;
 }
-
-// --- copies -----------------------------------------------------------------------------------
-
-size_t motion_saved_size(const motion *m)
-{
-    assert(m != NULL);
-    return sizeof m->record + (size_t)m->most_size * sizeof *m->state;
-}
-
-void motion_save(const motion *m, void *bytes)
-{
-    assert(m != NULL && bytes != NULL);
-    const size_t size = (size_t)m->size * sizeof *m->state;
-    memset(bytes, 0, motion_saved_size(m));
-    memcpy(bytes, &m->record, sizeof m->record);
-    memcpy((char *)bytes + sizeof m->record, m->state, size);
-}
-
-void motion_restore(const arm *a, motion *m, const void *bytes)
-{
-    assert(a != NULL && m != NULL && bytes != NULL);
-    motion_follow_arm(a, m);
-    memcpy(&m->record, bytes, sizeof m->record);
-    memcpy(m->state, (const char *)bytes + sizeof m->record, (size_t)m->size * sizeof *m->state);
-    motion_forget_stride(m);
-}

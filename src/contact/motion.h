@@ -216,32 +216,6 @@ force_bounds motion_held_forces(const arm *a, const motion *m, double *state);
 // hold it both, with any of the forces above. The state's own is that without friction, T/J.
 force_bounds motion_force_bounds(const arm *a, const motion *m, double *state);
 
-// Prepares a motion of the arm with the given method; all storage is allocated here. NULL if out of
-// memory.
-motion *motion_create(const arm *a, const method_parameters *method);
-
-// The same with an engine of the event method chosen by the caller and kept even when the arm
-// changes, so that engines can be compared. The engine must suit the arm.
-motion *motion_create_by(const arm *a, const method_parameters *method, const engine *chosen);
-void motion_destroy(motion *m); // m may be NULL
-
-// A motion as motion_create gives it, in the storage of a finished motion m if that fits (m may be
-// NULL). m must not be used afterwards. NULL if out of memory.
-motion *motion_renew(motion *m, const arm *a, const method_parameters *method);
-
-// To be called after the arm's constants changed: the event method switches to the engine that
-// motion_create would now choose, without a stride in hand. If there is no memory for it, the next
-// step fails with STATUS_NO_MEMORY.
-void motion_follow_arm(const arm *a, motion *m);
-
-// Bytes of a copy of state and record, of any engine that a changed arm may get.
-size_t motion_saved_size(const motion *m);
-// Copies state and record; what the state has no use of is zero.
-void motion_save(const motion *m, void *bytes);
-// Goes on with a copy, with the arm as it was then: chooses its engine, and begins its step anew
-// from what the state keeps of it.
-void motion_restore(const arm *a, motion *m, const void *bytes);
-
 // To be called after m->state was overwritten by a copy of an earlier state, even if the arm
 // changed in between.
 static inline void motion_forget_stride(motion *m)
@@ -354,7 +328,7 @@ double motion_rounding_at(const arm *a, int dof, const double *q, const double *
 // Whether the motion's steps are those of an implicit method.
 static inline bool motion_is_implicit(const motion *m)
 {
-    return m->engine == &newmark_engine || m->engine == &generalized_alpha_engine;
+    return m->engine->implicit;
 }
 
 // Whether the motion's steps are too long to resolve the arm's fastest modes, as with many links.

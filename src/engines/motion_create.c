@@ -1,7 +1,7 @@
 // Which engine takes an arm, and the storage of its motion: one block of the state and one that is
 // the engine's own.
 
-#include "src/contact/motion.h"
+#include "src/engines/motion_create.h"
 
 #include <assert.h>
 #include <math.h>
@@ -21,12 +21,15 @@ static const engine *named_engine(engine_kind name)
     return named[name];
 }
 
-// The event method's engine: series of two equal links on a rigid wall, the stiff engine for all
-// others. It does not depend on the time step.
+// The event method's engine: series of two equal links, hub joint and damping of any kind, on a
+// rigid wall that is a point, a plane or none; the stiff engine for all others. It does not depend
+// on the time step.
 static const engine *event_engine(const arm *a)
 {
-    const bool pair = taylor_engine_suits(a) && a->fastest_decay <= FASTEST_OF_PAIR &&
-                      a->gravity == 0 && !wall_moves(&a->wall);
+    const bool gives = wall_stands(&a->wall) && wall_gives(&a->wall);
+    const bool pair = a->links == 2 && !gives && arm_is_plain(a) &&
+                      a->fastest_decay <= FASTEST_OF_PAIR && a->gravity == 0 &&
+                      !wall_moves(&a->wall);
     return pair ? &taylor_engine : &stiff_engine;
 }
 
@@ -202,4 +205,30 @@ void motion_follow_arm(const arm *a, motion *m)
 
     // it knows nothing yet of the strides to come
     memset(m->state + m->head_size, 0, (size_t)(m->size - m->head_size) * sizeof *m->state);
+}
+
+// --- copies -----------------------------------------------------------------------------------
+
+size_t motion_saved_size(const motion *m)
+{
+    assert(m != NULL);
+    return sizeof m->record + (size_t)m->most_size * sizeof *m->state;
+}
+
+void motion_save(const motion *m, void *bytes)
+{
+    assert(m != NULL && bytes != NULL);
+    const size_t size = (size_t)m->size * sizeof *m->state;
+    memset(bytes, 0, motion_saved_size(m));
+    memcpy(bytes, &m->record, sizeof m->record);
+    memcpy((char *)bytes + sizeof m->record, m->state, size);
+}
+
+void motion_restore(const arm *a, motion *m, const void *bytes)
+{
+    assert(a != NULL && m != NULL && bytes != NULL);
+    motion_follow_arm(a, m);
+    memcpy(&m->record, bytes, sizeof m->record);
+    memcpy(m->state, (const char *)bytes + sizeof m->record, (size_t)m->size * sizeof *m->state);
+    motion_forget_stride(m);
 }

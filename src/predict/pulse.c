@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "src/contact/contact_machine.h"
+#include "src/engines/motion_create.h"
 
 // The peak is known if it grows by no more than this share of it between this share of the horizon
 // and its end.

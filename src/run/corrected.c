@@ -9,6 +9,7 @@
 #include "src/base/instant.h"
 #include "src/base/numbers.h"
 #include "src/base/text_stream.h"
+#include "src/engines/motion_create.h"
 #include "src/run/recording.h"
 #include "src/run/resume.h"
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/run/recording.h"
+#include "src/engines/motion_create.h"
 #include "src/base/instant.h"
 #include "src/base/sincos.h"
 
@@ -340,6 +341,7 @@ static status set_parameter(corrected_run *c, const action *todo, fault *f)
     }
     const arm before = c->arm;
     corrected_bind_arm(c);
+    motion_follow_arm(&c->arm, c->motion);
     motion_rebind(&before, &c->arm, c->motion);
     return failed;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/base/instant.h"
+#include "src/engines/motion_create.h"
 
 enum {
     CHECKPOINT_ROWS = 512, // from one checkpoint to the next

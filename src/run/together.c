@@ -7,6 +7,7 @@
 
 #include "src/run/corrected.h"
 #include "src/run/recording.h"
+#include "src/engines/motion_create.h"
 #include "src/run/run.h"
 #include "src/engines/pair/taylor_lanes.h"
 

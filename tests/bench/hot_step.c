@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "src/contact/contact_machine.h"
+#include "src/engines/motion_create.h"
 
 #define STEP 1e-3 // [s]
 

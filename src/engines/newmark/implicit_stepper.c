@@ -248,6 +248,9 @@ static size_t init(const arm *a, void *memory)
 }
 
 const engine newmark_engine = {
-    .name = "Newmark", .init = init, .advance = advance, .state_at = step};
-const engine generalized_alpha_engine = {
-    .name = "generalised-alpha", .init = init, .advance = advance, .state_at = step};
+    .name = "Newmark", .init = init, .advance = advance, .state_at = step, .implicit = true};
+const engine generalized_alpha_engine = {.name = "generalised-alpha",
+                                         .init = init,
+                                         .advance = advance,
+                                         .state_at = step,
+                                         .implicit = true};

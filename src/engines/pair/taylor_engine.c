@@ -16,6 +16,7 @@
 #include "src/base/extremes.h"
 #include "src/base/sincos.h"
 #include "src/contact/dense_location.h"
+#include "src/engines/motion_create.h"
 #include "src/engines/pair/taylor_stride.h"
 
 // Strides stay below this over the fastest rate and the angular velocities.
@@ -28,14 +29,6 @@
 
 // Less of a stride left than this share of it is rounding.
 #define LEAST_LEFT 1e-9
-
-bool taylor_engine_suits(const arm *a)
-{
-    const bool wall =
-        a->wall.kind == WALL_NONE || a->wall.kind == WALL_POINT || a->wall.kind == WALL_PLANE;
-    const bool gives = wall_stands(&a->wall) && wall_gives(&a->wall);
-    return a->links == 2 && wall && !gives && arm_is_plain(a);
-}
 
 // --- a stride -----------------------------------------------------------------------------------
 
