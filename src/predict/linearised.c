@@ -35,27 +35,6 @@ enum { PIECES = 3 };
 // far from where they are fitted.
 #define MOST_DAMPED 0.5
 
-arm arm_touching_now(const arm *a, const double *q)
-{
-    arm touched = *a;
-    double x, y;
-
-    // a point moves across the last link onto its line, a flat wall turns to the tip
-    if (a->wall.kind == WALL_POINT) {
-        double t_x = -inline_sin(q[a->dof - 1]), t_y = inline_cos(q[a->dof - 1]);
-        chain_node(a, q, a->links - 1, &x, &y);
-        double across = t_x * (a->wall.x - x) + t_y * (a->wall.y - y);
-        touched.wall.x -= across * t_x;
-        touched.wall.y -= across * t_y;
-    } else {
-        chain_node(a, q, a->links, &x, &y);
-        double distance = sqrt(x * x + y * y);
-        touched.wall.cosine = x / distance;
-        touched.wall.sine = y / distance;
-    }
-    return touched;
-}
-
 // --- two links on a rigid hub ---------------------------------------------------------------
 
 // A damped oscillation y(t) with y(0) = 0.

@@ -4,6 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "src/base/sincos.h"
 #include "src/contact/contact_machine.h"
 #include "src/engines/motion_create.h"
 
@@ -16,6 +17,27 @@
 #define COMMAND_DUE  1e-12 // share of its instant by which a command may be early
 
 enum { MOST_STEPS = 60000 };
+
+arm arm_touching_now(const arm *a, const double *q)
+{
+    arm touched = *a;
+    double x, y;
+
+    // a point moves across the last link onto its line, a flat wall turns to the tip
+    if (a->wall.kind == WALL_POINT) {
+        double t_x = -inline_sin(q[a->dof - 1]), t_y = inline_cos(q[a->dof - 1]);
+        chain_node(a, q, a->links - 1, &x, &y);
+        double across = t_x * (a->wall.x - x) + t_y * (a->wall.y - y);
+        touched.wall.x -= across * t_x;
+        touched.wall.y -= across * t_y;
+    } else {
+        chain_node(a, q, a->links, &x, &y);
+        double distance = sqrt(x * x + y * y);
+        touched.wall.cosine = x / distance;
+        touched.wall.sine = y / distance;
+    }
+    return touched;
+}
 
 // What is seen of energies: the kinetic energy where the strain was largest [J].
 typedef struct seen_energies {
