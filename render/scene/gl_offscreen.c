@@ -20,26 +20,16 @@ enum {
     GL_DEPTH_BUFFER_BIT = 0x0100,
     GL_COLOR_BUFFER_BIT = 0x4000,
     GL_RGBA8 = 0x8058,
+    GL_VERTEX_ARRAY = 0x8074,
+    GL_COLOR_ARRAY = 0x8076,
     GL_BGRA = 0x80E1,
     GL_DEPTH_COMPONENT24 = 0x81A6,
     GL_UNSIGNED_INT_8_8_8_8_REV = 0x8367,
-    GL_ARRAY_BUFFER = 0x8892,
-    GL_ELEMENT_ARRAY_BUFFER = 0x8893,
-    GL_STREAM_DRAW = 0x88E0,
-    GL_FRAGMENT_SHADER = 0x8B30,
-    GL_VERTEX_SHADER = 0x8B31,
-    GL_LINK_STATUS = 0x8B82,
     GL_FRAMEBUFFER_COMPLETE = 0x8CD5,
     GL_COLOR_ATTACHMENT0 = 0x8CE0,
     GL_DEPTH_ATTACHMENT = 0x8D00,
     GL_FRAMEBUFFER = 0x8D40,
     GL_RENDERBUFFER = 0x8D41,
-
-    OSMESA_FORMAT = 0x22,
-    OSMESA_PROFILE = 0x33,
-    OSMESA_CORE_PROFILE = 0x34,
-    OSMESA_CONTEXT_MAJOR_VERSION = 0x36,
-    OSMESA_CONTEXT_MINOR_VERSION = 0x37,
 
     EGL_PLATFORM_SURFACELESS = 0x31DD,
     EGL_OPENGL_API = 0x30A2,
@@ -50,10 +40,6 @@ enum {
     EGL_RENDERABLE_TYPE = 0x3040,
     EGL_HEIGHT = 0x3056,
     EGL_WIDTH = 0x3057,
-    EGL_CONTEXT_MAJOR_VERSION = 0x3098,
-    EGL_CONTEXT_MINOR_VERSION = 0x30FB,
-    EGL_CONTEXT_PROFILE_MASK = 0x30FD,
-    EGL_CONTEXT_CORE_PROFILE = 0x0001,
 };
 
 // Every function of OpenGL that is called: result, name, arguments.
@@ -75,24 +61,9 @@ enum {
     X(void, RenderbufferStorage, (unsigned target, unsigned format, int width, int height))        \
     X(void, FramebufferRenderbuffer,                                                               \
       (unsigned target, unsigned attachment, unsigned kind, unsigned name))                        \
-    X(unsigned, CreateShader, (unsigned kind))                                                     \
-    X(void, ShaderSource, (unsigned name, int count, const char *const *text, const int *length))  \
-    X(void, CompileShader, (unsigned name))                                                        \
-    X(void, DeleteShader, (unsigned name))                                                         \
-    X(unsigned, CreateProgram, (void))                                                             \
-    X(void, AttachShader, (unsigned program, unsigned shader))                                     \
-    X(void, LinkProgram, (unsigned program))                                                       \
-    X(void, GetProgramiv, (unsigned program, unsigned what, int *value))                           \
-    X(void, UseProgram, (unsigned program))                                                        \
-    X(void, GenVertexArrays, (int count, unsigned *names))                                         \
-    X(void, BindVertexArray, (unsigned name))                                                      \
-    X(void, GenBuffers, (int count, unsigned *names))                                              \
-    X(void, BindBuffer, (unsigned target, unsigned name))                                          \
-    X(void, BufferData, (unsigned target, ptrdiff_t size, const void *from, unsigned use))         \
-    X(void, EnableVertexAttribArray, (unsigned index))                                             \
-    X(void, VertexAttribPointer,                                                                   \
-      (unsigned index, int size, unsigned type, unsigned char normalised, int stride,              \
-       const void *offset))                                                                        \
+    X(void, EnableClientState, (unsigned what))                                                    \
+    X(void, VertexPointer, (int size, unsigned type, int stride, const void *from))                \
+    X(void, ColorPointer, (int size, unsigned type, int stride, const void *from))                 \
     X(void, DrawElements, (unsigned mode, int count, unsigned type, const void *offset))
 
 typedef void (*any_function)(void);
@@ -105,7 +76,6 @@ struct gl_offscreen {
     char renderer[256];
     void *context, *display, *surface;
     unsigned char *small; // OSMesa's own picture, which nothing is drawn into
-    unsigned program;
     int width, height;
 #define GL_MEMBER(result, name, arguments) result(*name) arguments;
     GL_FUNCTIONS(GL_MEMBER)
@@ -140,15 +110,8 @@ static bool make_current(gl_offscreen *g)
 
 static status open_osmesa(gl_offscreen *g, fault *f)
 {
-    // names with their values
-    static const int wanted[][2] = {{OSMESA_FORMAT, GL_RGBA},
-                                    {OSMESA_PROFILE, OSMESA_CORE_PROFILE},
-                                    {OSMESA_CONTEXT_MAJOR_VERSION, 3},
-                                    {OSMESA_CONTEXT_MINOR_VERSION, 3},
-                                    {0, 0}};
-
     // the library, where it is installed
-    void *(*create)(const int *, void *);
+    void *(*create)(unsigned, int, int, int, void *);
     g->handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
     if (g->handle == NULL) {
         return fault_set(f, STATUS_CANNOT_WRITE,
@@ -156,16 +119,16 @@ static status open_osmesa(gl_offscreen *g, fault *f)
                          "--gl=egl or --gl=cairo");
     }
 
-    // a context of OpenGL 3.3 without a window
-    if (!load(g->handle, "OSMesaCreateContextAttribs", &create) ||
+    // a context without a window
+    if (!load(g->handle, "OSMesaCreateContextExt", &create) ||
         !load(g->handle, "OSMesaGetProcAddress", &g->find)) {
         return fault_set(f, STATUS_CANNOT_WRITE,
                          "libOSMesa.so.8 is too old: expected one of Mesa 17 or later");
     }
     g->small = g_malloc0_n(SMALL * SMALL, 4);
-    g->context = create(wanted[0], NULL);
+    g->context = create(GL_RGBA, 0, 0, 0, NULL);
     if (g->context == NULL || !make_current(g)) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "OSMesa gives no context of OpenGL 3.3");
+        return fault_set(f, STATUS_CANNOT_WRITE, "OSMesa gives no context of OpenGL");
     }
     return STATUS_OK;
 }
@@ -212,9 +175,6 @@ static status open_egl(gl_offscreen *g, fault *f)
     static const int config_wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
                                         EGL_OPENGL_BIT, EGL_NONE};
     static const int surface_wanted[] = {EGL_WIDTH, SMALL, EGL_HEIGHT, SMALL, EGL_NONE};
-    static const int context_wanted[] = {
-        EGL_CONTEXT_MAJOR_VERSION, 3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_PROFILE_MASK,
-        EGL_CONTEXT_CORE_PROFILE,  EGL_NONE};
     unsigned (*bind)(unsigned), (*choose)(void *, const int *, void **, int, int *);
     void *(*create_context)(void *, void *, void *, const int *);
     void *(*create_surface)(void *, void *, const int *), *config;
@@ -240,9 +200,9 @@ static status open_egl(gl_offscreen *g, fault *f)
     }
 
     g->surface = create_surface(g->display, config, surface_wanted);
-    g->context = create_context(g->display, config, NULL, context_wanted);
+    g->context = create_context(g->display, config, NULL, NULL);
     if (g->surface == NULL || g->context == NULL || !make_current(g)) {
-        return complain_egl(f, "gives no context of OpenGL 3.3");
+        return complain_egl(f, "gives no context of OpenGL");
     }
     return STATUS_OK;
 }
@@ -262,43 +222,6 @@ static bool load_functions(gl_offscreen *g)
     return all;
 }
 
-static unsigned compile(gl_offscreen *g, unsigned kind, const char *text)
-{
-    unsigned name = g->CreateShader(kind);
-    g->ShaderSource(name, 1, &text, NULL);
-    g->CompileShader(name);
-    g->AttachShader(g->program, name);
-    return name;
-}
-
-// Colours arrive lit: the program only carries them across the triangles.
-static bool make_program(gl_offscreen *g)
-{
-    int linked = 0;
-
-    // two shaders that hand on
-    g->program = g->CreateProgram();
-    unsigned vertex = compile(g, GL_VERTEX_SHADER,
-                              "#version 330 core\n"
-                              "layout(location = 0) in vec4 place;\n"
-                              "layout(location = 1) in vec4 colour;\n"
-                              "out vec4 shade;\n"
-                              "void main() { gl_Position = place; shade = colour; }\n");
-    unsigned fragment = compile(g, GL_FRAGMENT_SHADER,
-                                "#version 330 core\n"
-                                "in vec4 shade;\n"
-                                "out vec4 pixel;\n"
-                                "void main() { pixel = shade; }\n");
-
-    // once linked the shaders are not needed
-    g->LinkProgram(g->program);
-    g->GetProgramiv(g->program, GL_LINK_STATUS, &linked);
-    g->DeleteShader(vertex);
-    g->DeleteShader(fragment);
-    g->UseProgram(g->program);
-    return linked != 0;
-}
-
 static bool make_framebuffer(gl_offscreen *g)
 {
     // colours of 8 bits, and depths
@@ -316,28 +239,6 @@ static bool make_framebuffer(gl_offscreen *g)
     return g->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
-static void make_buffers(gl_offscreen *g)
-{
-    // vertices and corners of one array
-    unsigned vertex_array, buffers[2];
-    g->GenVertexArrays(1, &vertex_array);
-    g->BindVertexArray(vertex_array);
-    g->GenBuffers(2, buffers);
-    g->BindBuffer(GL_ARRAY_BUFFER, buffers[0]);
-    g->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
-
-    // places and colours alternate
-    g->EnableVertexAttribArray(0);
-    g->EnableVertexAttribArray(1);
-    g->VertexAttribPointer(0, 4, GL_FLOAT, 0, sizeof(gl_vertex), NULL);
-    g->VertexAttribPointer(1, 4, GL_FLOAT, 0, sizeof(gl_vertex),
-                           (const void *)offsetof(gl_vertex, colour));
-
-    g->Enable(GL_DEPTH_TEST);
-    g->Enable(GL_SCISSOR_TEST);
-    g->ClearColor(0, 0, 0, 0);
-}
-
 static status set_up(gl_offscreen *g, fault *f)
 {
     status code = g->library == GL_OSMESA ? open_osmesa(g, f) : open_egl(g, f);
@@ -348,18 +249,22 @@ static status set_up(gl_offscreen *g, fault *f)
         return code;
     }
     if (!load_functions(g)) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3.3", name);
+        return fault_set(f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3", name);
     }
 
     // what draws, as the picture's notes name it
     snprintf(g->renderer, sizeof g->renderer, "%s, %s, OpenGL %s", name,
              (const char *)g->GetString(GL_RENDERER), (const char *)g->GetString(GL_VERSION));
 
-    if (!make_framebuffer(g) || !make_program(g)) {
+    if (!make_framebuffer(g)) {
         return fault_set(f, STATUS_CANNOT_WRITE, "%s cannot draw a picture of %d x %d pixels", name,
                          g->width, g->height);
     }
-    make_buffers(g);
+    g->Enable(GL_DEPTH_TEST);
+    g->Enable(GL_SCISSOR_TEST);
+    g->EnableClientState(GL_VERTEX_ARRAY);
+    g->EnableClientState(GL_COLOR_ARRAY);
+    g->ClearColor(0, 0, 0, 0);
     return STATUS_OK;
 }
 
@@ -431,12 +336,10 @@ status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region regio
     g->Scissor(region.x, region.y, region.width, region.height);
     g->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 
-    // triangles in, pixels out
-    g->BufferData(GL_ARRAY_BUFFER, (ptrdiff_t)(t->vertex_count * sizeof *t->vertices), t->vertices,
-                  GL_STREAM_DRAW);
-    g->BufferData(GL_ELEMENT_ARRAY_BUFFER, (ptrdiff_t)(t->corner_count * sizeof *t->corners),
-                  t->corners, GL_STREAM_DRAW);
-    g->DrawElements(GL_TRIANGLES, (int)t->corner_count, GL_UNSIGNED_INT, NULL);
+    // triangles in, which come lit and in clip coordinates; pixels out
+    g->VertexPointer(4, GL_FLOAT, sizeof *t->vertices, t->vertices->place);
+    g->ColorPointer(4, GL_FLOAT, sizeof *t->vertices, t->vertices->colour);
+    g->DrawElements(GL_TRIANGLES, (int)t->corner_count, GL_UNSIGNED_INT, t->corners);
     g->ReadPixels(region.x, region.y, region.width, region.height, GL_BGRA,
                   GL_UNSIGNED_INT_8_8_8_8_REV, pixels);
 

@@ -101,7 +101,7 @@ typedef struct gl_vertex {
 } gl_vertex;
 
 // A renderer of pictures of up to width by height pixels. STATUS_CANNOT_WRITE if the library is
-// missing or has no OpenGL 3.3, with what to install in f.
+// missing or has no OpenGL 3, with what to install in f.
 status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, int height, fault *f);
 void gl_offscreen_destroy(gl_offscreen *g);
 
