@@ -71,7 +71,7 @@ static void release_table(void *what)
 artwork artwork_of_table(table_page *t)
 {
     assert(t != NULL);
-    artwork a = {.title = t->title,
+    artwork a = {t->title,
                  .caption = t->caption,
                  .parameters = t->parameters,
                  .table = t,
@@ -145,7 +145,7 @@ static char *describe_figure(const figure *fig)
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner))
 {
     assert(fig != NULL);
-    artwork a = {.title = fig->title,
+    artwork a = {fig->title,
                  .caption = fig->caption,
                  .parameters = fig->parameters,
                  .alternative = describe_figure(fig),
@@ -163,91 +163,36 @@ artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *
 
 // ---- LaTeX
 
-typedef struct replacement {
-    const char *from, *to;
-} replacement;
-
-// What is written otherwise in LaTeX; longer beginnings come first.
-static const replacement replacements[] = {
-    {"<i>", "\\textit{"},
-    {"</i>", "}"},
-    {"<b>", "\\textbf{"},
-    {"</b>", "}"},
-    {"<sub>", "\\textsubscript{"},
-    {"</sub>", "}"},
-    {"<sup>", "\\textsuperscript{"},
-    {"</sup>", "}"},
-    {"&amp;", "\\&"},
-    {"&lt;", "$<$"},
-    {"&gt;", "$>$"},
-    {"&quot;", "\""},
-    {"&apos;", "'"},
-    {"&#39;", "'"},
-    {"\u03b8\u0307", "$\\dot\\theta$"},
-    {"\u03b8\u0308", "$\\ddot\\theta$"},
-    {"F\u0302", "$\\hat F$"},
-    {"X\u0302", "$\\hat X$"},
-    {"\u0176", "$\\hat Y$"},
-    {"\u0394", "$\\Delta$"},
-    {"\u03b1", "$\\alpha$"},
-    {"\u03b2", "$\\beta$"},
-    {"\u03b3", "$\\gamma$"},
-    {"\u03b4", "$\\delta$"},
-    {"\u03b5", "$\\varepsilon$"},
-    {"\u03b8", "$\\theta$"},
-    {"\u03bc", "$\\mu$"},
-    {"\u00b5", "$\\mu$"},
-    {"\u03c1", "$\\rho$"},
-    {"\u03c4", "$\\tau$"},
-    {"\u03c9", "$\\omega$"},
-    {"\u03a9", "$\\Omega$"},
-    {"\u2126", "$\\Omega$"},
-    {"\u2212", "$-$"},
-    {"\u00b7", "$\\cdot$"},
-    {"\u00d7", "$\\times$"},
-    {"\u2265", "$\\geq$"},
-    {"\u2264", "$\\leq$"},
-    {"\u221e", "$\\infty$"},
-    {"\u222b", "$\\int$"},
-    {"\u2009", "\\,"},
-    {"\u202f", "\\,"},
-    {"\u00a0", "~"},
-    {"\u2060", ""},
-    {"\u00bd", "$\\frac12$"},
-    {"\u00bc", "$\\frac14$"},
-    {"\u00b2", "\\textsuperscript{2}"},
-    {"\u00b3", "\\textsuperscript{3}"},
-    {"\u207b", "\\textsuperscript{$-$}"},
-    {"\u00b9", "\\textsuperscript{1}"},
-    {"\u2019", "'"},
-    {"\\", "\\textbackslash{}"},
-    {"#", "\\#"},
-    {"$", "\\$"},
-    {"%", "\\%"},
-    {"_", "\\_"},
-    {"{", "\\{"},
-    {"}", "\\}"},
-    {"~", "\\textasciitilde{}"},
-    {"^", "\\textasciicircum{}"},
-};
+// What is written otherwise in LaTeX, and how, by turns; longer beginnings come first.
+static const char replacements[] =
+    "<i>|\\textit{|</i>|}|<b>|\\textbf{|</b>|}|<sub>|\\textsubscript{|</sub>|}|"
+    "<sup>|\\textsuperscript{|</sup>|}|&amp;|\\&|&lt;|$<$|&gt;|$>$|&quot;|\"|&apos;|'|"
+    "&#39;|'|θ\u0307|$\\dot\\theta$|θ\u0308|$\\ddot\\theta$|F\u0302|$\\hat F$|"
+    "X\u0302|$\\hat X$|Ŷ|$\\hat Y$|Δ|$\\Delta$|α|$\\alpha$|β|$\\beta$|γ|$\\gamma$|"
+    "δ|$\\delta$|ε|$\\varepsilon$|θ|$\\theta$|μ|$\\mu$|µ|$\\mu$|ρ|$\\rho$|τ|$\\tau$|"
+    "ω|$\\omega$|Ω|$\\Omega$|Ω|$\\Omega$|−|$-$|·|$\\cdot$|×|$\\times$|≥|$\\geq$|≤|$\\leq$|"
+    "∞|$\\infty$|∫|$\\int$|\u2009|\\,|\u202f|\\,|\u00a0|~|½|$\\frac12$|¼|$\\frac14$|"
+    "²|\\textsuperscript{2}|³|\\textsuperscript{3}|⁻|\\textsuperscript{$-$}|"
+    "¹|\\textsuperscript{1}|’|'|\\|\\textbackslash{}|#|\\#|$|\\$|%|\\%|_|\\_|{|\\{|}|\\}|"
+    "~|\\textasciitilde{}|^|\\textasciicircum{}|\u2060|";
 
 // Pango markup as LaTeX: italics, indices, Greek letters and signs. Free the result with g_free.
 static char *latex_of_markup(const char *markup)
 {
     assert(markup != NULL);
     GString *out = g_string_new(NULL);
+    g_auto(GStrv) words = g_strsplit(replacements, "|", -1);
 
     while (*markup != '\0') {
         // what LaTeX writes otherwise, else the character itself
-        const replacement *found = NULL;
-        for (size_t i = 0; i < G_N_ELEMENTS(replacements) && found == NULL; i++) {
-            size_t length = strlen(replacements[i].from);
-            found = strncmp(markup, replacements[i].from, length) == 0 ? &replacements[i] : NULL;
+        char **found = words;
+        while (found[0] != NULL && !g_str_has_prefix(markup, found[0])) {
+            found += 2;
         }
 
-        if (found != NULL) {
-            g_string_append(out, found->to);
-            markup += strlen(found->from);
+        if (found[0] != NULL) {
+            g_string_append(out, found[1]);
+            markup += strlen(found[0]);
         } else if (strncmp(markup, "<span", 5) == 0 || strncmp(markup, "</span", 6) == 0) {
             // what only sizes letters has no meaning in a caption
             markup += strcspn(markup, ">");
