@@ -2,9 +2,7 @@
 
 #include <assert.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/socket.h>
@@ -16,12 +14,9 @@
 #include "render/page/text.h"
 #include "src/base/whole_file.h"
 
-extern char **environ;
-
 enum {
     FRAME_DPI = 144,
-    FILM_MARKS = 2, // most marks of a kind of film
-    PATIENCE = 200  // longest until a request to stop is seen [ms]
+    PATIENCE = 200 // longest until a request to stop is seen [ms]
 };
 
 // A kind of film.
@@ -29,26 +24,24 @@ typedef struct film_format {
     const char *ending; // of its files' names
     const char *codec;  // ffmpeg's arguments for it
     bool palette;       // the first frame defines the colours of all others and is not shown
-    // bytes of a complete file at these offsets from its beginning or (negative) from its end
-    struct {
-        long offset;
-        const char *bytes; // NULL: end of the list
-    } marks[FILM_MARKS];
+    const char *mark;   // that a complete file has at an offset
+    long offset;
 } film_format;
 
 // Fixed numbers of threads and bitexact keep the bytes alike. Marks: ISO/IEC 14496-12, an ftyp box
-// first; RFC 8794, the EBML mark; GIF89a, a trailer last; RFC 9649, WEBP in a RIFF file.
+// first; RFC 8794, the EBML mark; GIF89a; RFC 9649, WEBP in a RIFF file.
 static const film_format formats[] = {
     {.ending = ".mp4",
      .codec = "-vf scale=out_color_matrix=bt709 -c:v libx264 -preset fast -crf 18 -threads 2 "
               "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc bt709 "
               "-movflags +faststart -f mp4",
-     .marks = {{4, "ftyp"}}},
+     .mark = "ftyp",
+     .offset = 4},
     {.ending = ".webm",
      .codec = "-vf scale=out_color_matrix=bt709 -c:v libvpx-vp9 -b:v 0 -crf 24 -deadline "
               "realtime -cpu-used 7 -row-mt 1 -threads 2 -pix_fmt yuv420p -colorspace bt709 "
               "-color_primaries bt709 -color_trc bt709 -f webm",
-     .marks = {{0, "\x1a\x45\xdf\xa3"}}},
+     .mark = "\x1a\x45\xdf\xa3"},
     // the first frame only gives the palette: no later one has to wait for the film's end
     {.ending = ".gif",
      .codec = "-filter_complex split[a][b];"
@@ -56,10 +49,11 @@ static const film_format formats[] = {
               "setpts=PTS-STARTPTS[c];[c][p]paletteuse=dither=none:diff_mode=rectangle "
               "-loop 0 -f gif",
      .palette = true,
-     .marks = {{0, "GIF8"}, {-1, ";"}}},
+     .mark = "GIF8"},
     {.ending = ".webp",
      .codec = "-c:v libwebp_anim -lossless 0 -q:v 82 -compression_level 4 -loop 0 -f webp",
-     .marks = {{0, "RIFF"}, {8, "WEBP"}}},
+     .mark = "WEBP",
+     .offset = 8},
 };
 
 struct film_file {
@@ -139,16 +133,6 @@ status film_file_check(const char *path, fault *f)
 
 // ---- the encoder
 
-// Words separated by blanks.
-static void add_words(GPtrArray *list, const char *words)
-{
-    char **each = g_strsplit(words, " ", -1);
-    for (int i = 0; each[i] != NULL; i++) {
-        g_ptr_array_add(list, each[i]);
-    }
-    g_free(each);
-}
-
 // The containers know few keys; a comment takes the parameters.
 static const char *key_of(const char *keyword)
 {
@@ -165,14 +149,14 @@ static char **list_arguments(const film_file *film, const char *target)
     GPtrArray *list = g_ptr_array_new();
 
     // raw frames from the pipe
-    add_words(list, "ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo -pix_fmt bgr0 -s");
-    g_ptr_array_add(list, text_printf("%dx%d", facts->width, facts->height));
-    g_ptr_array_add(list, g_strdup("-r"));
-    g_ptr_array_add(list, text_printf("%d", facts->frames_per_second));
-
-    add_words(list, "-i pipe:0 -an");
-    add_words(list, film->format->codec);
-    add_words(list, "-fflags +bitexact -flags:v +bitexact");
+    g_autofree char *words = text_printf(
+        "ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo -pix_fmt bgr0 -s %dx%d -r %d "
+        "-i pipe:0 -an %s -fflags +bitexact -flags:v +bitexact",
+        facts->width, facts->height, facts->frames_per_second, film->format->codec);
+    g_autofree char **each = g_strsplit(words, " ", -1); // the list takes the words themselves
+    for (int i = 0; each[i] != NULL; i++) {
+        g_ptr_array_add(list, each[i]);
+    }
     for (int i = 0; i < facts->note_count; i++) {
         const png_note *note = &facts->notes[i];
         if (note->text != NULL) {
@@ -192,52 +176,40 @@ static const char *target_of(const film_file *film)
     return film->file.temporary != NULL ? film->file.temporary : film->file.path;
 }
 
-// Starts ffmpeg with its input from `input` and its words going to film->words.
-static status spawn(film_file *film, int input, fault *f)
+// In the child: a group of its own, as an interrupt of the terminal reaches us, and we end it in
+// order.
+static void part_from_us(gpointer context)
 {
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-    sigset_t defaults;
-
-    // frames come in, complaints go to a file of ours
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, input, 0);
-    posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, fileno(film->words), 2);
-
-    // a group of its own: an interrupt of the terminal reaches us, and we end it in order
-    posix_spawnattr_init(&attributes);
-    sigemptyset(&defaults);
-    sigaddset(&defaults, SIGPIPE);
-    posix_spawnattr_setsigdefault(&attributes, &defaults);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-
-    g_auto(GStrv) words = list_arguments(film, target_of(film));
-    int failed = posix_spawnp(&film->encoder, words[0], &actions, &attributes, words, environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failed != 0) {
-        film->encoder = 0;
-        return fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
-                         strerror(failed));
-    }
-    whole_file_set_writer(film->encoder);
-    return STATUS_OK;
+    (void)context;
+    setpgid(0, 0);
+    signal(SIGPIPE, SIG_DFL);
 }
 
-// Starts the encoder: raw frames (0xAARRGGBB without the alpha) become the film.
+// Starts the encoder: raw frames (0xAARRGGBB without the alpha) become the film, complaints go to a
+// file of ours.
 static status start_encoder(film_file *film, fault *f)
 {
     int ends[2];
+    g_autoptr(GError) error = NULL;
+    g_auto(GStrv) words = list_arguments(film, target_of(film));
     film->words = tmpfile();
     if (film->words == NULL || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
         return fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
                          strerror(errno));
     }
-    status code = spawn(film, ends[0], f);
+    const bool started = g_spawn_async_with_fds(
+        NULL, words, NULL,
+        G_SPAWN_SEARCH_PATH | G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_STDOUT_TO_DEV_NULL, part_from_us,
+        NULL, &film->encoder, ends[0], -1, fileno(film->words), &error);
     close(ends[0]);
     film->pipe = ends[1];
-    return code;
+    if (!started) {
+        film->encoder = 0;
+        return fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
+                         error->message);
+    }
+    whole_file_set_writer(film->encoder);
+    return STATUS_OK;
 }
 
 static bool is_asked_to_stop(const film_file *film)
@@ -309,24 +281,18 @@ static status send_bytes(const film_file *film, const unsigned char *bytes, size
     return STATUS_OK;
 }
 
-// Whether the finished file has the marks of its format.
+// Whether the finished file has the mark of its format.
 static bool looks_whole(const film_file *film)
 {
+    char found[4];
     FILE *file = fopen(target_of(film), "rb");
-    bool whole = file != NULL;
-
-    for (int i = 0; i < FILM_MARKS && whole && film->format->marks[i].bytes != NULL; i++) {
-        char found[8];
-        const long offset = film->format->marks[i].offset;
-        const char *mark = film->format->marks[i].bytes;
-        const size_t length = strlen(mark);
-        assert(length <= sizeof found);
-        whole = fseek(file, offset, offset < 0 ? SEEK_END : SEEK_SET) == 0 &&
-                fread(found, 1, length, file) == length && memcmp(found, mark, length) == 0;
+    if (file == NULL) {
+        return false;
     }
-    if (file != NULL) {
-        fclose(file);
-    }
+    const bool whole = fseek(file, film->format->offset, SEEK_SET) == 0 &&
+                       fread(found, 1, sizeof found, file) == sizeof found &&
+                       memcmp(found, film->format->mark, sizeof found) == 0;
+    fclose(file);
     return whole;
 }
 

@@ -34,8 +34,8 @@ bool film_file_wants_palette(const film_file *film);
 // STATUS_STOPPED if `stop` became true while it accepted nothing.
 status film_file_add(film_file *film, cairo_surface_t *frame, fault *f);
 
-// Completes the film and moves it to its path if the encoder reported no error and the file begins
-// and ends as its format requires. Otherwise fails and leaves no film (frames in a folder are
-// kept). Frees it in either case.
+// Completes the film and moves it to its path if the encoder reported no error and the file has the
+// mark of its format. Otherwise fails and leaves no film (frames in a folder are kept). Frees it in
+// either case.
 status film_file_commit(film_file *film, fault *f);
 void film_file_abandon(film_file *film);
