@@ -110,7 +110,7 @@ static inline figure_rect record_page(const artwork *a, figure_report *report)
     figure_rect ink;
     cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
     cairo_t *cr = cairo_create(surface);
-    DONE(a->paint(cr, a->what, report, &f));
+    DONE(artwork_paint(a, cr, report, &f));
     assert_int_equal(cairo_status(cr), CAIRO_STATUS_SUCCESS);
     cairo_recording_surface_ink_extents(surface, &ink.x, &ink.y, &ink.width, &ink.height);
     cairo_destroy(cr);
@@ -132,7 +132,7 @@ static inline cairo_surface_t *page_pixels(const artwork *a, double scale, figur
         CAIRO_FORMAT_RGB24, (int)ceil(a->width * scale), (int)ceil(a->height * scale));
     cairo_surface_set_device_scale(surface, scale, scale);
     cairo_t *cr = cairo_create(surface);
-    DONE(a->paint(cr, a->what, report, &f));
+    DONE(artwork_paint(a, cr, report, &f));
     cairo_destroy(cr);
     cairo_surface_flush(surface);
     return surface;

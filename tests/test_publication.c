@@ -201,13 +201,13 @@ TEST(multiples_are_runs_at_their_values)
     DONE(open_recipe("many.yaml", &drawn, &f));
     record_page(&drawn, &r);
     assert_int_equal(r.panel_count, 4);
-    DONE(drawn.write_csv(drawn.what, "many.csv", &f));
+    DONE(artwork_write_csv(&drawn, "many.csv", &f));
     artwork_finish(&drawn);
 
     put_file("one.yaml", "runs: [{name: arm 2 V, scenario: corrected/first-impact, set: "
                          "{motor.voltage: 2}}]\npanels: [{signals: [force]}]\n");
     DONE(open_recipe("one.yaml", &drawn, &f));
-    DONE(drawn.write_csv(drawn.what, "one.csv", &f));
+    DONE(artwork_write_csv(&drawn, "one.csv", &f));
     artwork_finish(&drawn);
 
     // the same rows, for any other contents of the file
@@ -228,7 +228,7 @@ TEST(a_recipe_shows_what_its_runs_give)
     size_t length;
     char *path = g_strdup_printf("%s/recipes/fig-3-4.yaml", getenv("IMPACTLAB_SCENARIOS"));
     DONE(open_recipe(path, &drawn, &f));
-    DONE(drawn.write_csv(drawn.what, "recipe.csv", &f));
+    DONE(artwork_write_csv(&drawn, "recipe.csv", &f));
     artwork_finish(&drawn);
     g_free(path);
     DONE(figure_draw("3.4", &(figure_options){0}, "thesis", "svg", NULL, &f));

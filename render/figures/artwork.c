@@ -17,10 +17,25 @@ status make_folder(const char *folder, fault *f)
     return STATUS_OK;
 }
 
-static status paint_artwork(cairo_t *cr, const void *what, fault *f)
+status artwork_paint(const artwork *a, cairo_t *cr, figure_report *report, fault *f)
 {
-    const artwork *a = what;
-    return a->paint(cr, a->what, NULL, f);
+    assert(a != NULL && cr != NULL);
+    return a->table != NULL     ? table_paint(cr, a->table, report, f)
+           : a->plotted != NULL ? figure_paint(cr, a->plotted, report, f)
+                                : a->paint(cr, a->owner, report, f);
+}
+
+status artwork_write_csv(const artwork *a, const char *path, fault *f)
+{
+    assert(a != NULL && path != NULL);
+    return a->table != NULL     ? table_write_csv(a->table, path, f)
+           : a->plotted != NULL ? figure_write_csv(a->plotted, path, f)
+                                : a->write_csv(a->owner, path, f);
+}
+
+static status paint(cairo_t *cr, const void *what, fault *f)
+{
+    return artwork_paint(what, cr, NULL, f);
 }
 
 picture artwork_picture(const artwork *a, const figure_options *options)
@@ -37,7 +52,7 @@ picture artwork_picture(const artwork *a, const figure_options *options)
                      .title = a->title,
                      .software = picture_software(),
                      .parameters = a->parameters,
-                     .paint = paint_artwork,
+                     .paint = paint,
                      .what = a};
 }
 
@@ -52,16 +67,6 @@ void artwork_finish(artwork *a)
 
 // ---- tables
 
-static status paint_table(cairo_t *cr, const void *what, figure_report *report, fault *f)
-{
-    return table_paint(cr, what, report, f);
-}
-
-static status write_table(const void *what, const char *path, fault *f)
-{
-    return table_write_csv(what, path, f);
-}
-
 static void release_table(void *what)
 {
     table_finish(what);
@@ -71,30 +76,13 @@ static void release_table(void *what)
 artwork artwork_of_table(table_page *t)
 {
     assert(t != NULL);
-    artwork a = {t->title,
-                 .caption = t->caption,
-                 .parameters = t->parameters,
-                 .table = t,
-                 .what = t,
-                 .owner = t,
-                 .paint = paint_table,
-                 .write_csv = write_table,
-                 .release = release_table};
+    artwork a = {t->title,   .caption = t->caption,   .parameters = t->parameters, .table = t,
+                 .owner = t, .release = release_table};
     table_size(t, &a.width, &a.height);
     return a;
 }
 
 // ---- plotted figures
-
-static status paint_plotted(cairo_t *cr, const void *what, figure_report *report, fault *f)
-{
-    return figure_paint(cr, what, report, f);
-}
-
-static status write_plotted(const void *what, const char *path, fault *f)
-{
-    return figure_write_csv(what, path, f);
-}
 
 // Appends a plain text that was given as markup.
 static void append_plain(GString *out, const char *before, const char *markup)
@@ -150,9 +138,6 @@ artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *
                  .parameters = fig->parameters,
                  .alternative = describe_figure(fig),
                  .plotted = fig,
-                 .what = fig,
-                 .paint = paint_plotted,
-                 .write_csv = write_plotted,
                  .owner = owner,
                  .release = release};
     figure_size(fig, &a.width, &a.height);
@@ -261,7 +246,7 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
     status code = picture_write(&p, path, f);
     if (code == STATUS_OK && with_csv) {
         g_autofree char *csv = beside(path, ".csv");
-        code = a->write_csv(a->what, csv, f);
+        code = artwork_write_csv(a, csv, f);
     }
 
     // text of a picture that has none of its own

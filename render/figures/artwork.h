@@ -25,15 +25,17 @@ typedef struct artwork {
     char *alternative;       // plain: alternative text; owned
     const table_page *table; // of a table, else NULL
     const figure *plotted;   // of a plotted figure, else NULL
-    const void *what;        // for the functions below
-    // draws it with the page's top left corner at the origin of cr, in points; *report (may be
-    // NULL) is filled
-    status (*paint)(cairo_t *cr, const void *what, figure_report *report, fault *f);
-    // writes the numbers that are drawn
-    status (*write_csv)(const void *what, const char *path, fault *f);
-    void *owner;                  // holds `what`
+    // of anything else: what the functions below do of its owner
+    status (*paint)(cairo_t *cr, const void *owner, figure_report *report, fault *f);
+    status (*write_csv)(const void *owner, const char *path, fault *f);
+    void *owner;                  // holds all of it
     void (*release)(void *owner); // NULL: nothing to free
 } artwork;
+
+// Draws it with the page's top left corner at the origin of cr, in points; *report (may be NULL) is
+// filled. Writes the numbers that are drawn.
+status artwork_paint(const artwork *a, cairo_t *cr, figure_report *report, fault *f);
+status artwork_write_csv(const artwork *a, const char *path, fault *f);
 
 // The picture of an artwork, valid as long as the artwork.
 picture artwork_picture(const artwork *a, const figure_options *options);

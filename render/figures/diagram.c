@@ -149,7 +149,6 @@ status diagram_open(diagram *d, artwork *out, const char *caption, ...)
     *out = (artwork){.title = d->title,
                      .caption = d->caption,
                      .parameters = d->parameters,
-                     .what = d,
                      .owner = d,
                      .paint = paint_diagram,
                      .write_csv = write_diagram,

@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "render/plot/curve.h"
 #include "render/figures/run_figure.h"
 
 enum { PANELS = 2, ASSUMED_POINTS = 101, MARKS = 2 };
@@ -15,6 +14,7 @@ typedef struct impact_figure {
     figure_mark marks[MARKS];
     figure_interval interval;
     figure_impulse impulse;
+    figure_measure measure;
     opened_run run;
     double contact, peak_time, peak; // first pulse [s], [s], [N]
 } impact_figure;
@@ -75,43 +75,6 @@ static void add_signal(impact_figure *fig, int panel, const char *name, const ch
 
 // ---- the force pulse
 
-// The plot, and T as a measure over the pulse.
-static status paint_profile(cairo_t *cr, const void *what, figure_report *report, fault *f)
-{
-    const impact_figure *fig = what;
-    figure_report *seen = report != NULL ? report : g_new0(figure_report, 1);
-    status code = figure_paint(cr, &fig->plot.figure, seen, f);
-
-    // the measure stands above the peak, from contact to it
-    if (code == STATUS_OK) {
-        const figure *shown = &fig->plot.figure;
-        plane p = {seen->panels[0],
-                   {SCALE_LINEAR, shown->x.low, shown->x.high},
-                   {SCALE_LINEAR, fig->plot.panels[0].y.low, fig->plot.panels[0].y.high}};
-        sketch s = {cr,           text_context_create(), palette_of(shown->theme),
-                    shown->theme, .report = report,      .scale = 1};
-        double y = plane_y(&p, 1.13 * fig->peak), x0 = plane_x(&p, fig->contact);
-        double x1 = plane_x(&p, fig->peak_time);
-        cairo_save(cr);
-        sketch_measure(&s, (point){x0, y}, (point){x1, y});
-        sketch_small(&s, (point){(x0 + x1) / 2, y - 2}, (anchor){0.5, 1}, "<i>T</i> = %.1f\u2009ms",
-                     1e3 * (fig->peak_time - fig->contact));
-        cairo_restore(cr);
-        g_object_unref(s.context);
-    }
-
-    if (report == NULL) {
-        g_free(seen);
-    }
-    return code;
-}
-
-static status write_profile(const void *what, const char *path, fault *f)
-{
-    const impact_figure *fig = what;
-    return figure_write_csv(&fig->plot.figure, path, f);
-}
-
 // An axis of time from low to high, with marks at first contact and at the peak.
 static void show_pulse(impact_figure *fig, double low, double high)
 {
@@ -153,7 +116,7 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
     panel->levels = &fig->peak_level;
     panel->level_count = 1;
 
-    // the contact is shaded; the measure of T stands at the top of the panel
+    // the contact is shaded; its labels stand above the measure of T
     fig->interval = (figure_interval){fig->contact, fig->contact + pulse};
     fig->plot.figure.marks_above = true;
     fig->plot.figure.intervals = &fig->interval;
@@ -166,16 +129,13 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
         "time (arrow, its own axis); the force that follows is finite and grows to its peak while "
         "the beam bends. Shaded: contact.";
 
-    // the figure with the measure of T on top
-    *out = (artwork){.title = fig->plot.figure.title,
-                     .caption = fig->plot.figure.caption,
-                     .parameters = fig->plot.figure.parameters,
-                     .what = fig,
-                     .owner = fig,
-                     .paint = paint_profile,
-                     .write_csv = write_profile,
-                     .release = release_impact};
-    figure_size(&fig->plot.figure, &out->width, &out->height);
+    // T stands above the peak, from contact to it
+    fig->measure = (figure_measure){fig->contact, fig->peak_time, 1.13 * fig->peak,
+                                    owned_figure_printf(&fig->plot, "<i>T</i> = %.1f\u2009ms",
+                                                        1e3 * (fig->peak_time - fig->contact))};
+    fig->plot.figure.measure = &fig->measure;
+    *out = artwork_of_figure(&fig->plot.figure, fig, release_impact);
+    g_clear_pointer(&out->alternative, g_free); // its title says it
     return STATUS_OK;
 }
 

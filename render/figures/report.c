@@ -100,7 +100,7 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
         cairo_save(cr);
         cairo_translate(cr, PAGE_MARGIN, y);
         cairo_scale(cr, scale, scale);
-        code = item->drawn.paint(cr, item->drawn.what, NULL, f);
+        code = artwork_paint(&item->drawn, cr, NULL, f);
         cairo_restore(cr);
         g_autoptr(GString) facts = g_string_new(NULL);
         report_add_facts(facts, item, "  ", "b");

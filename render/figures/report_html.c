@@ -177,7 +177,7 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
         g_autofree figure_report *seen = g_new0(figure_report, 1);
         cairo_surface_t *nowhere = cairo_recording_surface_create(CAIRO_CONTENT_COLOR, NULL);
         cairo_t *cr = cairo_create(nowhere);
-        code = drawn->paint(cr, drawn->what, seen, f);
+        code = artwork_paint(drawn, cr, seen, f);
         code = picture_end_drawing(cr, code, f);
         if (code == STATUS_OK) {
             add_panels(html, drawn->plotted, seen);

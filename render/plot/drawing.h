@@ -203,6 +203,7 @@ void draw_marks(drawing *d);
 void clip_out_labels(const drawing *d);
 // The dots of marks with a point, and the labels at them.
 void draw_points(drawing *d);
+void draw_measure(drawing *d);
 void draw_levels(drawing *d, const panel_layout *l);
 void draw_notes(drawing *d, const panel_layout *l);
 // Adds the ink of levels and marks to the placement.

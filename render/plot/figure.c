@@ -204,6 +204,7 @@ static void draw_all(drawing *d)
         draw_panel(d, i);
     }
     draw_points(d);
+    draw_measure(d);
 }
 
 static status check_description(const figure *fig, fault *f)

@@ -1,6 +1,7 @@
 // Marks at instants and levels, shaded intervals, and where their labels go.
 #include <math.h>
 
+#include "render/page/sketch.h"
 #include "render/plot/drawing.h"
 
 #define LEVEL_ROOM   10.0 // above a level, for its label [pt]
@@ -361,6 +362,21 @@ void draw_points(drawing *d)
         if (at_point(d, i)) {
             draw_label(d, m->label, d->style.small, r->x, r->y, (anchor){0, 0});
         }
+    }
+}
+
+void draw_measure(drawing *d)
+{
+    const figure_measure *m = d->fig->measure;
+    const plane *p = &d->panels[0].plane;
+    if (m != NULL) {
+        sketch s = {d->cr,         d->context,          d->style.colours,
+                    d->fig->theme, .report = d->report, .scale = 1};
+        const point from = {plane_x(p, m->from), plane_y(p, m->y)},
+                    to = {plane_x(p, m->to), from.y};
+        sketch_measure(&s, from, to);
+        sketch_small(&s, (point){(from.x + to.x) / 2, from.y - 2}, (anchor){0.5, 1}, "%s",
+                     m->label);
     }
 }
 

@@ -97,6 +97,12 @@ typedef struct figure_mark {
     double y;
 } figure_mark;
 
+// A horizontal measure from one x to another in the first panel, with its label above.
+typedef struct figure_measure {
+    double from, to, y;
+    const char *label;
+} figure_measure;
+
 // A shaded stretch across all panels.
 typedef struct figure_interval {
     double from, to;
@@ -149,6 +155,7 @@ typedef struct figure {
     const figure_mark *marks;
     int mark_count;
     bool marks_above; // their labels stand above the panels even where they would fit inside
+    const figure_measure *measure;
     const figure_interval *intervals;
     int interval_count;
     double width, height; // of the page [mm]; 0: 170 wide, as high as the panels need

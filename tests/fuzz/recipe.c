@@ -78,7 +78,7 @@ static void draw(const uint8_t *data, size_t size)
 
     cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
     cairo_t *cr = cairo_create(surface);
-    FUZZ_CHECK(art.paint(cr, art.what, NULL, &f) == STATUS_OK || f.text[0] != '\0');
+    FUZZ_CHECK(artwork_paint(&art, cr, NULL, &f) == STATUS_OK || f.text[0] != '\0');
     cairo_destroy(cr);
     cairo_surface_destroy(surface);
     artwork_finish(&art);
