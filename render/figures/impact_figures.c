@@ -169,8 +169,8 @@ static double assumed_at(const assumption *a, double since)
 
 static void add_assumption(impact_figure *fig, int panel, const assumption *a, const char *label)
 {
-    double *x = owned_figure_keep(&fig->plot, g_new(double, ASSUMED_POINTS));
-    double *y = owned_figure_keep(&fig->plot, g_new(double, ASSUMED_POINTS));
+    double *x = owned_figure_numbers(&fig->plot, ASSUMED_POINTS);
+    double *y = owned_figure_numbers(&fig->plot, ASSUMED_POINTS);
 
     // the assumed course, from the contact on
     for (int i = 0; i < ASSUMED_POINTS; i++) {

@@ -89,7 +89,7 @@ static void describe_cells(recipe_figure *fig, int panel, const opened_source *s
 {
     figure_map *map = &fig->maps[panel];
     size_t cells = map->columns * map->rows;
-    double *z = owned_figure_keep(&fig->plot, g_new(double, cells));
+    double *z = owned_figure_numbers(&fig->plot, cells);
 
     // the map goes column by column; cells that no run fills keep no number
     for (size_t i = 0; i < cells; i++) {
@@ -110,8 +110,8 @@ static void add_map(recipe_figure *fig, int panel, int source)
     const opened_source *s = &fig->sources[source];
     const recipe_source *from = &fig->recipe.sources[source];
     figure_panel *p = &fig->plot.panels[panel];
-    double *x = owned_figure_keep(&fig->plot, g_new(double, s->count + 1));
-    double *y = owned_figure_keep(&fig->plot, g_new(double, s->count + 1));
+    double *x = owned_figure_numbers(&fig->plot, s->count + 1);
+    double *y = owned_figure_numbers(&fig->plot, s->count + 1);
     size_t columns = different_values(s->columns[0], s->count, x);
     size_t rows = different_values(s->columns[1], s->count, y);
 

@@ -77,10 +77,13 @@ colour palette_shade(figure_theme theme, double share)
     // between the two nearest points
     double at = fmin(fmax(share, 0), 1) * LAST;
     int i = at >= LAST ? LAST - 1 : (int)at;
-    const colour *a = &points[i], *b = &points[i + 1];
-    return (colour){a->red + (at - i) * (b->red - a->red),
-                    a->green + (at - i) * (b->green - a->green),
-                    a->blue + (at - i) * (b->blue - a->blue)};
+    return colour_between(points[i], points[i + 1], at - i);
+}
+
+colour colour_between(colour a, colour b, double share)
+{
+    return (colour){a.red + share * (b.red - a.red), a.green + share * (b.green - a.green),
+                    a.blue + share * (b.blue - a.blue)};
 }
 
 void set_colour(cairo_t *cr, colour c)

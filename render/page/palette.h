@@ -29,6 +29,9 @@ int palette_slot(int index);
 // that it is readable when printed in grey.
 colour palette_shade(figure_theme theme, double share);
 
+// The colour at a share of the way from a to b.
+colour colour_between(colour a, colour b, double share);
+
 void set_colour(cairo_t *cr, colour c);
 
 // Sets the dash pattern for a line of the given width.

@@ -27,6 +27,17 @@ void owned_figure_finish(owned_figure *o)
     g_ptr_array_free(o->kept, TRUE);
 }
 
+owned_figure *owned_figure_create(int panels, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    g_autofree char *title = text_vprintf(format, list);
+    va_end(list);
+    owned_figure *o = g_new(owned_figure, 1);
+    owned_figure_init(o, title, panels);
+    return o;
+}
+
 void owned_figure_destroy(owned_figure *o)
 {
     if (o != NULL) {
@@ -39,6 +50,11 @@ void *owned_figure_keep(owned_figure *o, void *block)
 {
     g_ptr_array_add(o->kept, block);
     return block;
+}
+
+double *owned_figure_numbers(owned_figure *o, size_t count)
+{
+    return owned_figure_keep(o, g_new(double, count + 1));
 }
 
 const char *owned_figure_printf(owned_figure *o, const char *format, ...)

@@ -8,8 +8,10 @@
 owned_figure *identify_figure_create(const identification *id)
 {
     assert(id != NULL && id->trace_count > 0 && id->trace_count <= FIGURE_PANELS);
-    owned_figure *o = g_new(owned_figure, 1);
-    owned_figure_init(o, NULL, id->trace_count);
+    char changes[SCENARIO_CHANGES];
+    owned_figure *o =
+        owned_figure_create(id->trace_count, "%s: what the fit leaves of the readings%s",
+                            id->base->name, scenario_changes(id->base, changes));
     const double *residual = id->residual;
     for (int k = 0; k < id->trace_count; k++) {
         const recorded_trace *t = &id->traces[k];
@@ -21,8 +23,7 @@ owned_figure *identify_figure_create(const identification *id)
             if (t->reading[c] == NULL) {
                 continue;
             }
-            double *x = owned_figure_keep(o, g_new(double, t->rows)),
-                   *y = owned_figure_keep(o, g_new(double, t->rows));
+            double *x = owned_figure_numbers(o, t->rows), *y = owned_figure_numbers(o, t->rows);
             size_t count = 0;
             for (size_t i = 0; i < t->rows; i++) {
                 if (t->deviation[c][i] > 0) {
@@ -46,10 +47,6 @@ owned_figure *identify_figure_create(const identification *id)
             (figure_axis){"residual", "Residual over its deviation", .symbol = "r/σ", .room = 0.05};
     }
 
-    char changes[SCENARIO_CHANGES];
-    o->figure.title =
-        owned_figure_keep(o, text_printf("%s: what the fit leaves of the readings%s",
-                                         id->base->name, scenario_changes(id->base, changes)));
     o->figure.x = (figure_axis){.name = "time", .label = "Time", .symbol = "t", .unit = "s"};
     return o;
 }

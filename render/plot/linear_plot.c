@@ -13,32 +13,17 @@
 
 enum { CIRCLE = 121 };
 
-// An empty figure of panels, with room for `count` numbers in *x.
-static owned_figure *begin(const scenario *s, const char *what, int panels, size_t count,
-                           double **x)
-{
-    char changes[SCENARIO_CHANGES];
-    owned_figure *o = g_new(owned_figure, 1);
-    owned_figure_init(o, NULL, panels);
-    o->figure.title =
-        owned_figure_keep(o, text_printf("%s: %s%s", s->name, what, scenario_changes(s, changes)));
-    *x = owned_figure_keep(o, g_new(double, count + 1));
-    return o;
-}
-
 owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, int count)
 {
     assert(s != NULL && curves != NULL && count >= 1 && count <= FIGURE_PANELS);
-    size_t points = 0;
-    double *x;
-    for (int k = 0; k < count; k++) {
-        points += (size_t)curves[k].response.count;
-    }
-    owned_figure *o = begin(s, "frequency response", 2, 3 * points, &x);
+    char changes[SCENARIO_CHANGES];
+    owned_figure *o =
+        owned_figure_create(2, "%s: frequency response%s", s->name, scenario_changes(s, changes));
     for (int k = 0; k < count; k++) {
         const linear_response *r = &curves[k].response;
         const size_t n = (size_t)r->count;
-        double *y[2] = {x + n, x + 2 * n}; // gain, phase
+        double *x = owned_figure_numbers(o, n);
+        double *y[2] = {owned_figure_numbers(o, n), owned_figure_numbers(o, n)}; // gain, phase
 
         // the phase goes on where it turns beyond half a revolution
         double turns = 0, before = 0;
@@ -56,7 +41,6 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
             o->panels[panel].series_count = count;
             o->panels[panel].weight = 1.2;
         }
-        x += 3 * n;
     }
     o->panels[0].y = (figure_axis){.name = "gain", .label = "Gain", .unit = "dB"};
     o->panels[1].y = (figure_axis){.name = "phase", .label = "Phase", .unit = "°"};
@@ -70,9 +54,11 @@ owned_figure *nyquist_figure_create(const scenario *s, const linear_response *lo
     assert(s != NULL && loop != NULL);
     static const double critical[] = {-1, 0};
     const size_t n = (size_t)loop->count;
-    double *x;
-    owned_figure *o = begin(s, "loop gain in the plane", 1, 2 * (n + CIRCLE), &x);
-    double *y = x + n, *circle_x = y + n, *circle_y = circle_x + CIRCLE;
+    char changes[SCENARIO_CHANGES];
+    owned_figure *o = owned_figure_create(1, "%s: loop gain in the plane%s", s->name,
+                                          scenario_changes(s, changes));
+    double *x = owned_figure_numbers(o, n), *y = owned_figure_numbers(o, n);
+    double *circle_x = owned_figure_numbers(o, CIRCLE), *circle_y = owned_figure_numbers(o, CIRCLE);
     for (size_t i = 0; i < n; i++) {
         const bool near = cabs(loop->gain[i]) < FAR;
         x[i] = near ? creal(loop->gain[i]) : (double)NAN;

@@ -16,14 +16,14 @@
 owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 {
     assert(t != NULL && t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
-    owned_figure *o = g_new(owned_figure, 1);
-    owned_figure_init(o, NULL, 1);
+    owned_figure *o = owned_figure_create(1, "%s: what the laws make of what they were not told%s",
+                                          t->scenario, changes);
 
     // a curve for each law: of the same runs, run i of n, in the order of their overshoots, is at
     // (i + 1)/n
     for (int i = 0; i < t->count; i++) {
         const robust_law *law = &t->laws[i];
-        double *share = owned_figure_keep(o, g_new(double, law->runs));
+        double *share = owned_figure_numbers(o, law->runs);
         for (size_t k = 0; k < law->runs; k++) {
             share[k] = 100 * (double)(k + 1) / (double)law->runs;
         }
@@ -37,13 +37,10 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
                                    .low = 0, .high = 100};
 
     // the page
-    o->figure.title =
-        owned_figure_keep(o, text_printf("%s: what the laws make of what they were not told%s",
-                                         t->scenario, changes));
-    o->figure.caption = owned_figure_keep(
-        o, text_printf("%zu runs a law. Overshoot of the force: %s%s. impactlab %s.",
-                       t->laws[0].runs, robust_overshoot_of(&t->laws[0]),
-                       t->laws[0].by_smoothed > 0 ? " (mean over 5 ms)" : "", lab_version()));
+    o->figure.caption =
+        owned_figure_printf(o, "%zu runs a law. Overshoot of the force: %s%s. impactlab %s.",
+                            t->laws[0].runs, robust_overshoot_of(&t->laws[0]),
+                            t->laws[0].by_smoothed > 0 ? " (mean over 5 ms)" : "", lab_version());
     o->figure.x =
         (figure_axis){"overshoot", "Overshoot over the commanded force", .unit = "%", .room = 0.02};
     return o;
@@ -66,7 +63,6 @@ typedef struct varied {
     size_t count;
 } varied;
 
-// A figure with everything it borrows.
 // A picture in the making.
 typedef struct sweep_drawing {
     owned_figure *drawn;
@@ -91,7 +87,7 @@ static void order_points(sweep_drawing *s, varied *v)
 {
     const sweep_axis *axis = v->axis;
     v->count = axis->count;
-    v->place = own(s, g_new(double, v->count));
+    v->place = owned_figure_numbers(s->drawn, v->count);
     v->order = own(s, g_new(size_t, v->count));
 
     for (size_t i = 0; i < v->count; i++) {
@@ -191,7 +187,7 @@ static double place_of(const varied *v, double value)
 // Places of all runs along an axis of drawn values.
 static double *drawn_places(sweep_drawing *s, const sweep *from, int axis)
 {
-    double *places = own(s, g_new(double, from->run_count));
+    double *places = owned_figure_numbers(s->drawn, from->run_count);
     for (size_t run = 0; run < from->run_count; run++) {
         places[run] = place_of(&s->varied[axis], sweep_value(from, run, axis));
     }
@@ -225,7 +221,7 @@ static void describe_line(sweep_drawing *s, const sweep_picture *p)
     size_t count = from->run_count;
     bool grid = from->sampling == SWEEP_GRID;
 
-    double *y = own(s, g_new(double, count));
+    double *y = owned_figure_numbers(s->drawn, count);
     for (size_t i = 0; i < count; i++) {
         y[i] = p->values[grid ? v->order[i] : i];
     }
@@ -256,7 +252,7 @@ static void describe_words(sweep_drawing *s, const sweep_picture *p, int words, 
 
     // a curve for each word
     for (size_t k = 0; k < word->count; k++) {
-        double *y = own(s, g_new(double, number->count));
+        double *y = owned_figure_numbers(s->drawn, number->count);
         for (size_t i = 0; i < number->count; i++) {
             size_t w = word->order[k], n = number->order[i];
             y[i] = p->values[words == 0 ? w * inner + n : n * inner + w];
@@ -315,7 +311,7 @@ static void describe_map(sweep_drawing *s, const sweep_picture *p)
     }
 
     // a grid is a map
-    double *z = own(s, g_new(double, x->count * y->count));
+    double *z = owned_figure_numbers(s->drawn, x->count * y->count);
     for (size_t i = 0; i < x->count; i++) {
         for (size_t j = 0; j < y->count; j++) {
             z[i * y->count + j] = p->values[x->order[i] * y->count + y->order[j]];
@@ -353,8 +349,6 @@ static char *caption_of(const sweep_picture *p, size_t missing)
 
 static void describe(sweep_drawing *s, const sweep_picture *p)
 {
-    static const char *const how[] = {
-        [SWEEP_GRID] = "", [SWEEP_RANDOM] = " at random", [SWEEP_LATIN] = " of a Latin hypercube"};
     const sweep *from = p->sweep;
     size_t missing = 0;
     for (size_t i = 0; i < from->run_count; i++) {
@@ -382,10 +376,6 @@ static void describe(sweep_drawing *s, const sweep_picture *p)
 
     // the page
     figure *fig = &s->drawn->figure;
-    char changes[SCENARIO_CHANGES];
-    fig->title = owned_figure_printf(s->drawn, "%s: %s of %zu runs%s%s", from->base->name,
-                                     info_of(p)->label, from->run_count, how[from->sampling],
-                                     scenario_changes(from->base, changes));
     fig->caption = own(s, caption_of(p, missing));
     s->drawn->panels[0].weight = PANEL_WEIGHT;
 
@@ -413,9 +403,14 @@ status sweep_plot_check(const sweep *s, const char *path, fault *f)
 
 owned_figure *sweep_figure_create(const sweep_picture *p)
 {
-    assert(p != NULL && p->sweep->axis_count >= 1 && p->sweep->axis_count <= 2);
-    sweep_drawing s = {.drawn = g_new(owned_figure, 1)};
-    owned_figure_init(s.drawn, NULL, 1);
+    static const char *const how[] = {
+        [SWEEP_GRID] = "", [SWEEP_RANDOM] = " at random", [SWEEP_LATIN] = " of a Latin hypercube"};
+    const sweep *from = p->sweep;
+    char changes[SCENARIO_CHANGES];
+    assert(from->axis_count >= 1 && from->axis_count <= 2);
+    sweep_drawing s = {owned_figure_create(1, "%s: %s of %zu runs%s%s", from->base->name,
+                                           info_of(p)->label, from->run_count, how[from->sampling],
+                                           scenario_changes(from->base, changes))};
     describe(&s, p);
     return s.drawn;
 }
@@ -425,11 +420,9 @@ owned_figure *sweep_figure_create(const sweep_picture *p)
 owned_figure *tune_figure_create(const tuning *t, const char *changes)
 {
     assert(t != NULL);
-    owned_figure *o = g_new(owned_figure, 1);
-    owned_figure_init(o, NULL, 1);
-    double *number = owned_figure_keep(o, g_new(double, t->done + 1)),
-           *value = owned_figure_keep(o, g_new(double, t->done + 1)),
-           *least = owned_figure_keep(o, g_new(double, t->done + 1));
+    owned_figure *o = owned_figure_create(1, "%s: tuned%s", t->asked.base->name, changes);
+    double *number = owned_figure_numbers(o, t->done), *value = owned_figure_numbers(o, t->done);
+    double *least = owned_figure_numbers(o, t->done);
     for (size_t i = 0; i < t->done; i++) {
         number[i] = (double)i + 1;
         value[i] = t->ranks[i] < TUNE_REFUSED ? t->ranks[i] : (double)NAN;
@@ -453,11 +446,9 @@ owned_figure *tune_figure_create(const tuning *t, const char *changes)
                                    .label = owned_figure_keep(o, text_escape(t->asked.minimise)),
                                    .room = 0.05};
     o->figure.x = (figure_axis){.name = "evaluation", .label = "Evaluation", .room = 0.02};
-    o->figure.title =
-        owned_figure_keep(o, text_printf("%s: tuned%s", t->asked.base->name, changes));
-    o->figure.caption = owned_figure_keep(
-        o, text_printf("%zu evaluations of %zu runs. What fails, or is not allowed, has no "
-                       "point. impactlab %s.",
-                       t->done, t->each, lab_version()));
+    o->figure.caption = owned_figure_printf(
+        o,
+        "%zu evaluations of %zu runs. What fails, or is not allowed, has no point. impactlab %s.",
+        t->done, t->each, lab_version());
     return o;
 }

@@ -163,8 +163,8 @@ static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
 {
     located_point peaks[2];
     int count = located_peaks(m, peaks), next = 0;
-    double *x = owned_figure_keep(o, g_new(double, s->count + 2));
-    double *y = owned_figure_keep(o, g_new(double, s->count + 2));
+    double *x = owned_figure_numbers(o, s->count + 2);
+    double *y = owned_figure_numbers(o, s->count + 2);
 
     // a peak goes between the rows that it lies between
     size_t out = 0;
@@ -238,8 +238,8 @@ static double value_at(const trace *t, int index, double time)
 
 figure_series trace_difference(const trace *of, const trace *less, int index, owned_figure *o)
 {
-    double *x = owned_figure_keep(o, g_new(double, of->row_count + 1));
-    double *y = owned_figure_keep(o, g_new(double, of->row_count + 1));
+    double *x = owned_figure_numbers(o, of->row_count + 1);
+    double *y = owned_figure_numbers(o, of->row_count + 1);
     for (size_t i = 0; i < of->row_count; i++) {
         x[i] = of->rows[i].time;
         y[i] = signal_value(&of->rows[i], index) - value_at(less, index, x[i]);

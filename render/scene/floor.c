@@ -25,12 +25,6 @@ static double line_cover(double place, double grid, double across)
     return cover < 0 ? 0 : cover > 1 ? 1 : cover;
 }
 
-static colour mixed(colour a, colour b, double share)
-{
-    return (colour){a.red + share * (b.red - a.red), a.green + share * (b.green - a.green),
-                    a.blue + share * (b.blue - a.blue)};
-}
-
 // What decides at a pixel whether a value between two levels goes to the upper one: Bayer's matrix
 // of 8 x 8 (1973), 1/128 to 127/128. Gradients of few levels show no bands then.
 static double threshold_at(int column, int row)
@@ -61,8 +55,8 @@ static colour floor_colour(const scene_floor *floor, double x, double y, double 
     double dense = fmin(1, fmax(0, floor->grid / fmax(wide, deep) / 6 - 0.5));
     double cover = dense * (1 - (1 - over_x) * (1 - over_y));
 
-    colour c = mixed(floor->ground_colour, floor->line, cover);
-    return mixed(floor->page, c, fade);
+    colour c = colour_between(floor->ground_colour, floor->line, cover);
+    return colour_between(floor->page, c, fade);
 }
 
 // Rays through pixels: of the first one's centre, and how they change to the right and downwards.

@@ -65,10 +65,7 @@ static void pen(const painter *g, colour c, double width)
 // A colour on its way to the ground.
 static colour paler(const painter *g, colour c, double share)
 {
-    const colour ground = g->plan->colours.ground;
-    return (colour){c.red + share * (ground.red - c.red),
-                    c.green + share * (ground.green - c.green),
-                    c.blue + share * (ground.blue - c.blue)};
+    return colour_between(c, g->plan->colours.ground, share);
 }
 
 static void stroke_line(const painter *g, double x0, double y0, double x1, double y1)

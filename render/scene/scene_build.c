@@ -157,10 +157,7 @@ static const material trail_paint = {{0.902, 0.624, 0.0}, 0.1};
 
 material scene_paler(const scene *sc, material m, double share)
 {
-    const colour *far = &sc->around->far;
-    m.colour.red = between(m.colour.red, far->red, share);
-    m.colour.green = between(m.colour.green, far->green, share);
-    m.colour.blue = between(m.colour.blue, far->blue, share);
+    m.colour = colour_between(m.colour, sc->around->far, share);
     m.shine *= 1 - share;
     return m;
 }
