@@ -113,7 +113,7 @@ static void describe(recipe_figure *fig, const figure_options *o)
     shown->caption = r->caption;
     shown->x = horizontal_axis(fig);
     shown->panel_count = r->panel_count;
-    shown->columns = r->columns;
+    shown->columns = (int)r->columns;
     shown->shared_y = r->shared;
     shown->marks = r->marks;
     shown->mark_count = r->mark_count;

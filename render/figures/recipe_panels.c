@@ -213,12 +213,12 @@ static void describe_axis(recipe_figure *fig, int panel)
 
         y->name = signal->name;
         y->unit = signal->unit;
-        y->symbol =
-            from->signal_count == 1
-                ? owned_figure_keep(&fig->plot, g_strconcat(from->of >= 0 ? "Δ" : "", symbol, NULL))
-                : NULL;
+        y->symbol = from->signal_count == 1
+                        ? owned_figure_keep(&fig->plot,
+                                            g_strconcat(from->compared ? "Δ" : "", symbol, NULL))
+                        : NULL;
         y->label = owned_figure_keep(
-            &fig->plot, from->of >= 0             ? text_printf("Difference of %s", symbol)
+            &fig->plot, from->compared            ? text_printf("Difference of %s", symbol)
                         : from->signal_count == 1 ? text_printf("%s %s", signal->quantity, symbol)
                                                   : g_strdup(signal->quantity));
     } else if (from->source_count > 0) {
@@ -250,7 +250,7 @@ void recipe_describe_panel(recipe_figure *fig, int panel)
     p->note_count = from->note_count;
 
     // curves
-    if (from->of >= 0) {
+    if (from->compared) {
         add_difference(fig, panel);
     }
     for (int i = 0; i < from->source_count; i++) {

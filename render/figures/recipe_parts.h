@@ -34,13 +34,13 @@ typedef struct recipe_panel {
     int signal_count;
     int sources[RECIPE_SOURCES]; // indices, in the order of the recipe
     int source_count;
-    int of, less; // indices of a difference; -1: none
+    bool compared; // shows a difference, of two sources
+    int of, less;
     const char *heading, *label;
     double weight, low, high; // 0; low >= high: from the data
     bool zero, logarithmic;
     figure_note notes[RECIPE_NOTES];
     int note_count;
-    place at;
 } recipe_panel;
 
 typedef struct recipe {
@@ -54,7 +54,7 @@ typedef struct recipe {
     const char *x_label, *x_unit;
     double from, to; // of the horizontal axis; from >= to: from the data
     bool logarithmic;
-    int columns;
+    double columns;
     bool shared;      // all panels have one vertical axis
     bool contact;     // the first run's contact is shaded
     GPtrArray *owned; // texts
@@ -73,35 +73,49 @@ typedef struct recipe_context {
     recipe *recipe;
 } recipe_context;
 
-// Reads a value, or an item of a list, into the object to which the map or the list belongs.
+// Reads a value into the object to which the map belongs; and looks at one that was read.
 typedef void recipe_taker(recipe_context *c, const tree_node *node, void *into);
 
 // The type of a key's value.
 typedef enum value_kind {
     VALUE_OWN,    // read by a function of its own
-    VALUE_LIST,   // of items that the function reads
+    VALUE_ITEMS,  // a list of maps of a form
+    VALUE_MAP,    // a map of a form, into the same object
     VALUE_TEXT,   // const char *
     VALUE_TRUTH,  // bool
     VALUE_NUMBER, // double
-    VALUE_PAIR,   // two doubles, [a, b]
-    VALUE_TAKEN   // read already
+    VALUE_PAIR    // two doubles, [a, b]
 } value_kind;
+
+typedef struct recipe_form recipe_form;
 
 // A key of a map.
 typedef struct recipe_key {
     const char *key;
     value_kind kind;
-    size_t offset, second; // of its field, or of both fields of a pair, in the object of the map
-    recipe_taker *take;    // VALUE_OWN, VALUE_LIST
+    size_t offset;           // of its field, or of the array of items, in the object of the map
+    size_t second;           // of a pair's second number, or of the number of items
+    recipe_taker *take;      // VALUE_OWN
+    const recipe_form *form; // VALUE_ITEMS, VALUE_MAP
+    // of a number: its unit (NULL: none), and between what it must lie (NULL: anywhere)
+    const char *unit, *expected;
+    double low, high;
+    bool whole;
 } recipe_key;
 
 enum { RECIPE_KEYS = 13 }; // most keys of a map, with one that is NULL after the last
 
-// A map: what sentences call it, an example of a line, and its keys.
-typedef struct recipe_form {
+// A map: what sentences call it, an example of a line, and its keys, which are read in this order.
+struct recipe_form {
     const char *what, *example;
     recipe_key keys[RECIPE_KEYS];
-} recipe_form;
+    // of the items of a list: "a figure" and its "panels", their size and most, and what looks at
+    // one as a whole (NULL: nothing)
+    const char *holder, *things;
+    size_t size;
+    int most;
+    recipe_taker *end;
+};
 
 #define FIELD_KEY(name, value, type, field)                                                        \
     {                                                                                              \
@@ -111,16 +125,16 @@ typedef struct recipe_form {
     {                                                                                              \
         name, VALUE_PAIR, offsetof(type, one), offsetof(type, other)                               \
     }
+#define ITEMS_KEY(name, items, type, array, count)                                                 \
+    {                                                                                              \
+        name, VALUE_ITEMS, offsetof(type, array), offsetof(type, count), .form = items             \
+    }
 #define OWN_KEY(name, taker)                                                                       \
     {                                                                                              \
-        name, VALUE_OWN, .take = taker                                                             \
-    }
-#define LIST_KEY(name, taker)                                                                      \
-    {                                                                                              \
-        name, VALUE_LIST, .take = taker                                                            \
+        name, .take = taker                                                                        \
     }
 
-// A function that reads a value; its object gets a name for readability.
+// A function that reads or looks at a value; its object gets a name for readability.
 #define TAKE(name, what) static void name(recipe_context *c, const tree_node *node, void *into)
 
 // Keeps a text from g_malloc with the recipe, and returns it.
@@ -128,27 +142,20 @@ const char *recipe_keep(recipe_context *c, char *text);
 
 // A text, kept by the recipe; NULL after a fault.
 const char *recipe_text(recipe_context *c, const tree_node *node, const char *what);
-void recipe_number(recipe_context *c, const tree_node *node, const char *what, double *value);
+
+// The first item of a list; NULL if there is none, or after a fault.
+const tree_node *recipe_first(recipe_context *c, const tree_node *list, const char *what);
 
 // Reads every key of a map by its form; unknown keys are reported with the most similar one.
 void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form, void *into);
-
-// Room for the items that a list is read into.
-typedef struct recipe_room {
-    const char *holder, *things; // "a figure", "panels"
-    int most;
-} recipe_room;
-
-// Adds one and returns its index; -1 after a fault if there is no room.
-int recipe_add(recipe_context *c, const tree_node *node, int *count, recipe_room room);
 
 // The node under a key of a map, or NULL.
 const tree_node *recipe_child(const tree_node *map, const char *key);
 
 // --- sources: recipe_sources.c
 
-// Reads the lists of runs, data and tables, in any position in the recipe.
-void recipe_take_sources(recipe_context *c, const tree_node *root);
+// The items of the lists of runs, data and tables.
+extern const recipe_form recipe_runs, recipe_data, recipe_tables;
 
 // Whether a parameter has that path; reports if none has.
 bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char *path);

@@ -1,5 +1,6 @@
 // Recipes: from YAML to what a figure shows.
 #include <assert.h>
+#include <float.h>
 #include <string.h>
 
 #include "render/figures/recipe_parts.h"
@@ -121,8 +122,8 @@ static bool repeat_panels(recipe_context *c, const multiples *m, int at[][RECIPE
             for (int i = 0; i < panel.source_count; i++) {
                 panel.sources[i] = at[k][panel.sources[i]];
             }
-            panel.of = panel.of >= 0 ? at[k][panel.of] : -1;
-            panel.less = panel.less >= 0 ? at[k][panel.less] : -1;
+            panel.of = at[k][panel.of];
+            panel.less = at[k][panel.less];
             panel.heading = p == 0 ? heading_of(c, m, k) : panel.heading;
             r->panels[r->panel_count++] = panel;
         }
@@ -131,15 +132,17 @@ static bool repeat_panels(recipe_context *c, const multiples *m, int at[][RECIPE
 }
 
 // Reads `multiples` and repeats runs and panels for each of its values, after both are read.
-static void take_multiples(recipe_context *c, const tree_node *node)
+TAKE(take_multiples, recipe)
 {
     static const recipe_form form = {"multiples",
                                      "vary: motor.voltage",
                                      {OWN_KEY("vary", take_vary), OWN_KEY("values", take_values)}};
-    recipe *r = c->recipe;
+    recipe *r = into;
     multiples m = {0};
     int at[MULTIPLES_MOST][RECIPE_SOURCES];
-    recipe_map(c, node, &form, &m);
+    if (c->reader.faults == 0) {
+        recipe_map(c, node, &form, &m);
+    }
     if (c->reader.faults > 0) {
         return;
     }
@@ -150,10 +153,7 @@ static void take_multiples(recipe_context *c, const tree_node *node)
 
     // the first run's contact is not that of the others
     r->contact = false;
-    r->columns = r->panel_count > 1 ? m.count
-                 : r->columns > 1   ? r->columns
-                 : m.count < 3      ? m.count
-                                    : 3;
+    r->columns = r->panel_count > 1 ? m.count : r->columns > 1 ? r->columns : MIN(m.count, 3);
     if (!repeat_runs(c, &m, at)) {
         report_node(&c->reader, node, "%d values make more than %d runs, or more than %d changes",
                     m.count, RECIPE_SOURCES, RECIPE_CHANGES);
@@ -164,8 +164,6 @@ static void take_multiples(recipe_context *c, const tree_node *node)
 }
 
 // ==== the recipe
-
-#define PANEL ((recipe_panel *)into)
 
 // ---- panels
 
@@ -200,12 +198,14 @@ TAKE(take_signals, panel)
     }
 }
 
-TAKE(take_source, panel)
+TAKE(take_from, panel)
 {
     recipe_panel *p = into;
-    int index = recipe_find_source(c, node);
-    if (index >= 0 && p->source_count < RECIPE_SOURCES) {
-        p->sources[p->source_count++] = index;
+    for (const tree_node *i = recipe_first(c, node, "from"); i != NULL; i = i->next) {
+        int index = recipe_find_source(c, i);
+        if (index >= 0 && p->source_count < RECIPE_SOURCES) {
+            p->sources[p->source_count++] = index;
+        }
     }
 }
 
@@ -218,53 +218,30 @@ TAKE(take_difference, panel)
                     node_kind_name(node));
         return;
     }
+    p->compared = true;
     p->of = recipe_find_source(c, first);
     p->less = recipe_find_source(c, first->next);
 }
 
-TAKE(take_weight, panel)
+TAKE(end_note, note)
 {
-    recipe_number(c, node, "weight", &PANEL->weight);
-    if (!(PANEL->weight > 0 && PANEL->weight <= 20)) {
-        report_node(&c->reader, node, "weight is %g, expected a number above 0, up to 20",
-                    PANEL->weight);
-    }
-}
-
-TAKE(take_note, panel)
-{
-    static const recipe_form form = {
-        "a note",
-        "text: here",
-        {FIELD_KEY("text", VALUE_TEXT, figure_note, text), PAIR_KEY("at", figure_note, x, y)}};
-    recipe_panel *p = into;
-    int index =
-        recipe_add(c, node, &p->note_count, (recipe_room){"a panel", "notes", RECIPE_NOTES});
-    if (index < 0) {
-        return;
-    }
-
-    figure_note *note = &p->notes[index];
-    *note = (figure_note){0};
-    recipe_map(c, node, &form, note);
-    if (note->text == NULL) {
-        p->note_count--;
-        if (node->kind == TREE_MAP && recipe_child(node, "text") == NULL) {
-            report_node(&c->reader, node, "a note needs 'text'");
-        }
+    if (((figure_note *)into)->text == NULL && node->kind == TREE_MAP &&
+        recipe_child(node, "text") == NULL) {
+        report_node(&c->reader, node, "a note needs 'text'");
     }
 }
 
 // Fills in what a panel does not say, and looks whether its parts go together.
-static void complete_panel(recipe_context *c, const tree_node *node, recipe_panel *p)
+TAKE(end_panel, panel)
 {
+    recipe_panel *p = into;
     const recipe *r = c->recipe;
 
     // nothing named: all there is
-    for (int i = 0; p->source_count == 0 && p->of < 0 && i < r->source_count; i++) {
-        p->sources[i] = i;
+    const bool all = p->source_count == 0 && !p->compared;
+    for (int i = 0; all && i < r->source_count; i++) {
+        p->sources[p->source_count++] = i;
     }
-    p->source_count = p->source_count == 0 && p->of < 0 ? r->source_count : p->source_count;
 
     // runs and data need a signal, a difference only one
     bool tables = p->source_count > 0;
@@ -274,113 +251,85 @@ static void complete_panel(recipe_context *c, const tree_node *node, recipe_pane
     if (p->signal_count == 0 && !tables) {
         report_node(&c->reader, node, "a panel of runs or data needs 'signals', such as [force]");
     }
-    if (p->signal_count > 1 && p->of >= 0) {
+    if (p->signal_count > 1 && p->compared) {
         report_node(&c->reader, node, "a difference is that of one signal");
     }
 }
 
-TAKE(take_panel, recipe)
-{
-    static const recipe_form form = {
-        "a panel",
-        "signals: [force]",
-        {OWN_KEY("signals", take_signals), LIST_KEY("from", take_source),
-         OWN_KEY("difference", take_difference),
-         FIELD_KEY("heading", VALUE_TEXT, recipe_panel, heading),
-         FIELD_KEY("label", VALUE_TEXT, recipe_panel, label), OWN_KEY("weight", take_weight),
-         FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, zero),
-         FIELD_KEY("log", VALUE_TRUTH, recipe_panel, logarithmic),
-         PAIR_KEY("range", recipe_panel, low, high), LIST_KEY("notes", take_note)}};
-    recipe *r = into;
-    int index =
-        recipe_add(c, node, &r->panel_count, (recipe_room){"a figure", "panels", FIGURE_PANELS});
-    if (index < 0) {
-        return;
-    }
+// ---- the forms
 
-    recipe_panel *p = &r->panels[index];
-    *p = (recipe_panel){.of = -1, .less = -1, .at = {node->line, node->column}};
-    recipe_map(c, node, &form, p);
-    complete_panel(c, node, p);
-}
+static const recipe_form notes = {
+    "a note",
+    "text: here",
+    {FIELD_KEY("text", VALUE_TEXT, figure_note, text), PAIR_KEY("at", figure_note, x, y)},
+    "a panel",
+    "notes",
+    sizeof(figure_note),
+    RECIPE_NOTES,
+    end_note};
 
-// ---- the top
+static const recipe_form panels = {
+    "a panel",
+    "signals: [force]",
+    {OWN_KEY("signals", take_signals),
+     OWN_KEY("from", take_from),
+     OWN_KEY("difference", take_difference),
+     FIELD_KEY("heading", VALUE_TEXT, recipe_panel, heading),
+     FIELD_KEY("label", VALUE_TEXT, recipe_panel, label),
+     {"weight", VALUE_NUMBER, offsetof(recipe_panel, weight), .low = DBL_MIN, .high = 20,
+      .expected = "a number above 0, up to 20"},
+     FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, zero),
+     FIELD_KEY("log", VALUE_TRUTH, recipe_panel, logarithmic),
+     PAIR_KEY("range", recipe_panel, low, high),
+     ITEMS_KEY("notes", &notes, recipe_panel, notes, note_count)},
+    "a figure",
+    "panels",
+    sizeof(recipe_panel),
+    FIGURE_PANELS,
+    end_panel};
 
-TAKE(take_x, recipe)
-{
-    static const recipe_form form = {"x",
-                                     "range: [0, 1]",
-                                     {PAIR_KEY("range", recipe, from, to),
-                                      FIELD_KEY("label", VALUE_TEXT, recipe, x_label),
-                                      FIELD_KEY("unit", VALUE_TEXT, recipe, x_unit),
-                                      FIELD_KEY("log", VALUE_TRUTH, recipe, logarithmic)}};
-    recipe_map(c, node, &form, into);
-}
+static const recipe_form horizontal = {"x",
+                                       "range: [0, 1]",
+                                       {PAIR_KEY("range", recipe, from, to),
+                                        FIELD_KEY("label", VALUE_TEXT, recipe, x_label),
+                                        FIELD_KEY("unit", VALUE_TEXT, recipe, x_unit),
+                                        FIELD_KEY("log", VALUE_TRUTH, recipe, logarithmic)}};
 
-TAKE(take_columns, recipe)
-{
-    double columns = 1;
-    recipe_number(c, node, "columns", &columns);
-    if (!(columns >= 1 && columns <= 8 && columns == (int)columns)) {
-        report_node(&c->reader, node, "columns is %g, expected a whole number from 1 to 8",
-                    columns);
-        columns = 1;
-    }
-    ((recipe *)into)->columns = (int)columns;
-}
+static const recipe_form marks = {"a mark",
+                                  "at: 0.36",
+                                  {FIELD_KEY("at", VALUE_NUMBER, figure_mark, x),
+                                   FIELD_KEY("label", VALUE_TEXT, figure_mark, label)},
+                                  "a figure",
+                                  "marks",
+                                  sizeof(figure_mark),
+                                  RECIPE_MARKS};
 
-TAKE(take_mark, recipe)
-{
-    static const recipe_form form = {"a mark",
-                                     "at: 0.36",
-                                     {FIELD_KEY("at", VALUE_NUMBER, figure_mark, x),
-                                      FIELD_KEY("label", VALUE_TEXT, figure_mark, label)}};
-    recipe *r = into;
-    int index =
-        recipe_add(c, node, &r->mark_count, (recipe_room){"a figure", "marks", RECIPE_MARKS});
-    if (index >= 0) {
-        recipe_map(c, node, &form, &r->marks[index]);
-    }
-}
+// What panels name comes first, and last what repeats all of it.
+static const recipe_form whole = {
+    "a recipe",
+    "panels:",
+    {ITEMS_KEY("runs", &recipe_runs, recipe, sources, source_count),
+     ITEMS_KEY("data", &recipe_data, recipe, sources, source_count),
+     ITEMS_KEY("tables", &recipe_tables, recipe, sources, source_count),
+     ITEMS_KEY("panels", &panels, recipe, panels, panel_count),
+     FIELD_KEY("title", VALUE_TEXT, recipe, title),
+     FIELD_KEY("caption", VALUE_TEXT, recipe, caption),
+     {"x", VALUE_MAP, .form = &horizontal},
+     {"columns", VALUE_NUMBER, offsetof(recipe, columns), .low = 1, .high = 8, .whole = true,
+      .expected = "a whole number from 1 to 8"},
+     FIELD_KEY("shared", VALUE_TRUTH, recipe, shared),
+     FIELD_KEY("contact", VALUE_TRUTH, recipe, contact),
+     ITEMS_KEY("marks", &marks, recipe, marks, mark_count),
+     OWN_KEY("multiples", take_multiples)}};
 
 static void take_recipe(recipe_context *c, const tree_node *root)
 {
-    static const recipe_form form = {"a recipe",
-                                     "panels:",
-                                     {LIST_KEY("panels", take_panel),
-                                      FIELD_KEY("title", VALUE_TEXT, recipe, title),
-                                      FIELD_KEY("caption", VALUE_TEXT, recipe, caption),
-                                      OWN_KEY("x", take_x),
-                                      OWN_KEY("columns", take_columns),
-                                      FIELD_KEY("shared", VALUE_TRUTH, recipe, shared),
-                                      FIELD_KEY("contact", VALUE_TRUTH, recipe, contact),
-                                      LIST_KEY("marks", take_mark),
-                                      {"multiples", VALUE_TAKEN},
-                                      {"runs", VALUE_TAKEN},
-                                      {"data", VALUE_TAKEN},
-                                      {"tables", VALUE_TAKEN}}};
-
-    if (!reader_expect_map(&c->reader, root, form.what, form.example)) {
-        return;
-    }
-
-    // what panels name comes first, wherever it stands
-    recipe_take_sources(c, root);
-
-    // the rest, in any order
-    recipe_map(c, root, &form, c->recipe);
-
+    recipe_map(c, root, &whole, c->recipe);
     if (c->recipe->panel_count == 0 && c->reader.faults == 0) {
         report_node(&c->reader, root, "there are no panels here");
     }
     if (c->recipe->source_count == 0 && c->reader.faults == 0) {
         report_node(&c->reader, root, "there are no runs, data or tables here");
-    }
-
-    // and last what repeats all of it
-    const tree_node *repeated = recipe_child(root, "multiples");
-    if (repeated != NULL && c->reader.faults == 0) {
-        take_multiples(c, repeated);
     }
 }
 

@@ -22,11 +22,6 @@ const char *recipe_text(recipe_context *c, const tree_node *node, const char *wh
     return recipe_keep(c, g_strdup(node->text));
 }
 
-void recipe_number(recipe_context *c, const tree_node *node, const char *what, double *value)
-{
-    reader_quantity(&c->reader, node, what, "", value);
-}
-
 static void read_pair(recipe_context *c, const tree_node *node, const char *what, double *a,
                       double *b)
 {
@@ -37,11 +32,11 @@ static void read_pair(recipe_context *c, const tree_node *node, const char *what
                     node_kind_name(node));
         return;
     }
-    recipe_number(c, node->first, what, a);
-    recipe_number(c, node->first->next, what, b);
+    reader_quantity(&c->reader, node->first, what, "", a);
+    reader_quantity(&c->reader, node->first->next, what, "", b);
 }
 
-static const tree_node *first_item(recipe_context *c, const tree_node *list, const char *what)
+const tree_node *recipe_first(recipe_context *c, const tree_node *list, const char *what)
 {
     if (list->kind != TREE_LIST) {
         report_node(&c->reader, list, "%s is %s, expected a list", what, node_kind_name(list));
@@ -50,7 +45,34 @@ static const tree_node *first_item(recipe_context *c, const tree_node *list, con
     return list->first;
 }
 
-// Takes the value under a key that was found.
+static void read_number(recipe_context *c, const tree_node *node, const recipe_key *key,
+                        double *value)
+{
+    const char *unit = key->unit != NULL ? key->unit : "";
+    if (reader_quantity(&c->reader, node, key->key, unit, value) && key->expected != NULL &&
+        !(*value >= key->low && *value <= key->high && (!key->whole || *value == (int)*value))) {
+        report_node(&c->reader, node, "%s is %g, expected %s", key->key, *value, key->expected);
+    }
+}
+
+// Reads an item of a list into the next place of its array.
+static void take_item(recipe_context *c, const tree_node *node, const recipe_key *key, void *into)
+{
+    const recipe_form *form = key->form;
+    int *count = (int *)(void *)((char *)into + key->second);
+    if (*count >= form->most) {
+        report_node(&c->reader, node, "%s has more than %d %s", form->holder, form->most,
+                    form->things);
+        return;
+    }
+    void *item = (char *)into + key->offset + (size_t)(*count)++ * form->size;
+    recipe_map(c, node, form, item);
+    if (form->end != NULL) {
+        form->end(c, node, item);
+    }
+}
+
+// Takes the value under a key.
 static void take_value(recipe_context *c, const tree_node *node, const recipe_key *key, void *into)
 {
     void *field = (char *)into + key->offset;
@@ -58,10 +80,13 @@ static void take_value(recipe_context *c, const tree_node *node, const recipe_ke
     case VALUE_OWN:
         key->take(c, node, into);
         break;
-    case VALUE_LIST:
-        for (const tree_node *i = first_item(c, node, key->key); i != NULL; i = i->next) {
-            key->take(c, i, into);
+    case VALUE_ITEMS:
+        for (const tree_node *i = recipe_first(c, node, key->key); i != NULL; i = i->next) {
+            take_item(c, i, key, into);
         }
+        break;
+    case VALUE_MAP:
+        recipe_map(c, node, key->form, into);
         break;
     case VALUE_TEXT:
         *(const char **)field = recipe_text(c, node, key->key);
@@ -73,12 +98,10 @@ static void take_value(recipe_context *c, const tree_node *node, const recipe_ke
         }
         break;
     case VALUE_NUMBER:
-        recipe_number(c, node, key->key, field);
+        read_number(c, node, key, field);
         break;
     case VALUE_PAIR:
-        read_pair(c, node, key->key, field, (double *)((char *)into + key->second));
-        break;
-    case VALUE_TAKEN:
+        read_pair(c, node, key->key, field, (double *)(void *)((char *)into + key->second));
         break;
     }
 }
@@ -90,32 +113,28 @@ void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form
         return;
     }
 
+    // what is not known, with the most similar key
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(&c->reader, map, child);
-        const recipe_key *found = NULL;
         nearest_word near = key != NULL ? nearest_begin(key) : (nearest_word){0};
-        for (int i = 0; key != NULL && keys[i].key != NULL; i++) {
+        bool found = key == NULL;
+        for (int i = 0; !found && keys[i].key != NULL; i++) {
             nearest_try(&near, keys[i].key);
-            found = strcmp(keys[i].key, key) == 0 ? &keys[i] : found;
+            found = strcmp(keys[i].key, key) == 0;
         }
-
-        if (found != NULL) {
-            take_value(c, child, found, into);
-        } else if (key != NULL) {
+        if (!found) {
             report_node(&c->reader, child->key, "unknown key '%.60s' in %s, did you mean '%s'?",
                         key, form->what, near.best != NULL ? near.best : keys[0].key);
         }
     }
-}
 
-int recipe_add(recipe_context *c, const tree_node *node, int *count, recipe_room room)
-{
-    if (*count >= room.most) {
-        report_node(&c->reader, node, "%s has more than %d %s", room.holder, room.most,
-                    room.things);
-        return -1;
+    // the rest in the form's order, whatever the recipe's
+    for (int i = 0; keys[i].key != NULL; i++) {
+        const tree_node *child = recipe_child(map, keys[i].key);
+        if (child != NULL) {
+            take_value(c, child, &keys[i], into);
+        }
     }
-    return (*count)++;
 }
 
 const tree_node *recipe_child(const tree_node *map, const char *key)
@@ -129,11 +148,6 @@ const tree_node *recipe_child(const tree_node *map, const char *key)
 }
 
 // ==== sources: runs, measured data, tables
-
-TAKE(take_shift, source)
-{
-    reader_quantity(&c->reader, node, "shift", "s", &((recipe_source *)into)->shift);
-}
 
 bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char *path)
 {
@@ -177,9 +191,12 @@ TAKE(take_set, source)
     }
 }
 
-// What every source has, and what each kind needs.
-static void check_source(recipe_context *c, const tree_node *node, recipe_source *s)
+// What every source has, and what each kind needs: what is missing shows only at its end.
+static void check_source(recipe_context *c, const tree_node *node, recipe_source *s,
+                         source_kind kind)
 {
+    s->kind = kind;
+    s->at = (place){node->line, node->column};
     const char *needed = s->kind == SOURCE_RUN ? s->scenario : s->file;
 
     if (needed == NULL) {
@@ -210,45 +227,46 @@ static void check_source(recipe_context *c, const tree_node *node, recipe_source
     }
 }
 
-#define SOURCE_TEXT(name, field) FIELD_KEY(name, VALUE_TEXT, recipe_source, field)
-
-// The list of each kind of source, and one of them.
-static const struct {
-    const char *key;
-    recipe_form form;
-} lists[] = {
-    [SOURCE_RUN] = {"runs",
-                    {"a run",
-                     "scenario: thesis/fig-3-4",
-                     {SOURCE_TEXT("scenario", scenario), SOURCE_TEXT("name", name),
-                      SOURCE_TEXT("label", label), OWN_KEY("set", take_set)}}},
-    [SOURCE_DATA] = {"data",
-                     {"data",
-                      "file: bench.csv",
-                      {SOURCE_TEXT("file", file), SOURCE_TEXT("name", name),
-                       SOURCE_TEXT("label", label), SOURCE_TEXT("column", column),
-                       OWN_KEY("shift", take_shift)}}},
-    [SOURCE_TABLE] = {"tables",
-                      {"a table",
-                       "file: sweep.sqlite",
-                       {SOURCE_TEXT("file", file), SOURCE_TEXT("name", name),
-                        SOURCE_TEXT("label", label), SOURCE_TEXT("x", x), SOURCE_TEXT("y", y),
-                        SOURCE_TEXT("z", z)}}},
-};
-
-// A source, checked as a whole, as what is missing shows only at its end.
-static void take_source(recipe_context *c, const tree_node *node, source_kind kind)
+TAKE(end_run, source)
 {
-    recipe *r = c->recipe;
-    const recipe_room room = {"a recipe", "runs, data and tables", RECIPE_SOURCES};
-    int index = recipe_add(c, node, &r->source_count, room);
-    if (index >= 0) {
-        recipe_source *s = &r->sources[index];
-        *s = (recipe_source){.kind = kind, .at = {node->line, node->column}};
-        recipe_map(c, node, &lists[kind].form, s);
-        check_source(c, node, s);
-    }
+    check_source(c, node, into, SOURCE_RUN);
 }
+
+TAKE(end_data, source)
+{
+    check_source(c, node, into, SOURCE_DATA);
+}
+
+TAKE(end_table, source)
+{
+    check_source(c, node, into, SOURCE_TABLE);
+}
+
+#define SOURCE_TEXT(name) FIELD_KEY(#name, VALUE_TEXT, recipe_source, name)
+#define SOURCE_ROOM       "a recipe", "runs, data and tables", sizeof(recipe_source), RECIPE_SOURCES
+
+const recipe_form recipe_runs = {
+    "a run",
+    "scenario: thesis/fig-3-4",
+    {SOURCE_TEXT(scenario), SOURCE_TEXT(name), SOURCE_TEXT(label), OWN_KEY("set", take_set)},
+    SOURCE_ROOM,
+    end_run};
+const recipe_form recipe_data = {
+    "data",
+    "file: bench.csv",
+    {SOURCE_TEXT(file),
+     SOURCE_TEXT(name),
+     SOURCE_TEXT(label),
+     SOURCE_TEXT(column),
+     {"shift", VALUE_NUMBER, offsetof(recipe_source, shift), .unit = "s"}},
+    SOURCE_ROOM,
+    end_data};
+const recipe_form recipe_tables = {"a table",
+                                   "file: sweep.sqlite",
+                                   {SOURCE_TEXT(file), SOURCE_TEXT(name), SOURCE_TEXT(label),
+                                    SOURCE_TEXT(x), SOURCE_TEXT(y), SOURCE_TEXT(z)},
+                                   SOURCE_ROOM,
+                                   end_table};
 
 int recipe_find_source(recipe_context *c, const tree_node *node)
 {
@@ -264,16 +282,4 @@ int recipe_find_source(recipe_context *c, const tree_node *node)
                 node_is_scalar(node) ? node->text : "", near.best ? ", did you mean '" : "",
                 near.best ? near.best : "", near.best ? "'?" : "");
     return -1;
-}
-
-void recipe_take_sources(recipe_context *c, const tree_node *root)
-{
-    // in this order, whatever the recipe's
-    for (size_t kind = 0; kind < G_N_ELEMENTS(lists); kind++) {
-        const tree_node *list = recipe_child(root, lists[kind].key);
-        const tree_node *item = list != NULL ? first_item(c, list, lists[kind].key) : NULL;
-        for (; item != NULL; item = item->next) {
-            take_source(c, item, (source_kind)kind);
-        }
-    }
 }
