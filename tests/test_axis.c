@@ -1,8 +1,9 @@
-// Figures over logarithmic axes, judged by the pixels of an image.
+// Axes: ticks by a published example and by what must hold for any axis, logarithmic ones by the
+// pixels of an image; contour lines and the colour scale of maps.
 #include "tests/plot_fixture.h"
 
 #include "render/page/palette.h"
-#include "render/plot/axis.h"
+#include "render/plot/drawing.h"
 
 // Middle of the pixels of a series' colour between two columns; false if there is none.
 static bool middle_of(cairo_surface_t *image, int slot, int from, int to, double *x, double *y)
@@ -90,23 +91,6 @@ TEST(points_at_or_below_zero_are_left_out)
     cairo_surface_destroy(image);
 }
 
-TEST(file_and_data_are_written)
-{
-    static const double x[] = {2, 20}, y[] = {0.5, 0.25};
-    const figure_series s = {.name = "cost", .label = "cost", .x = x, .y = y, .count = 2};
-    const figure_panel panel = {.y = {.name = "step", .unit = "s", .scale = SCALE_LOGARITHMIC},
-                                .series = &s,
-                                .series_count = 1};
-    const figure fig = figure_of(&panel);
-    size_t length;
-    DONE(figure_write(&fig, "a.svg", &f));
-    DONE(figure_write_csv(&fig, "a.csv", &f));
-    SCOPED(free_kept) char *text = read_file("a.csv", &length);
-    assert_non_null(strstr(text, "cost"));
-    assert_non_null(strstr(text, "20,0.25"));
-    REFUSED(STATUS_BAD_ARGUMENT, "a.txt", figure_write(&fig, "a.txt", &f));
-}
-
 // However narrow, an axis of two decades or more has two labels: one alone gives no scale.
 TEST(a_narrow_axis_has_two_labels)
 {
@@ -118,6 +102,317 @@ TEST(a_narrow_axis_has_two_labels)
             assert_true(a.count >= 2);
             assert_true(a.count <= 4);
         }
+    }
+}
+
+// ---- labels of marks
+
+// The text of a mark as it was drawn, with an arrow or not; fails if it is not there.
+static const figure_text *text_of_mark(const figure_report *r, const figure_mark *m)
+{
+    const figure_text *found = NULL;
+    g_autofree char *wanted = text_plain(m->label);
+    for (int i = 0; i < r->text_count; i++) {
+        found = g_str_has_prefix(r->texts[i].text, wanted) ? &r->texts[i] : found;
+    }
+    fail_if(found == NULL, "'%s' is not drawn", wanted);
+    return found;
+}
+
+// What begins at a line stands on that side of it, or points there where the page ends; the label
+// of a peak stands at its point. Returns the number of labels that point.
+static int check_labels(const figure *fig)
+{
+    static figure_report r;
+    int arrows = 0;
+    record(fig, &r);
+    expect_tidy(fig);
+    assert_true(fig->mark_count > 0);
+    for (int i = 0; i < fig->mark_count; i++) {
+        const figure_mark *m = &fig->marks[i];
+        const figure_range *range = &r.ranges[0];
+        const figure_rect *box = &r.panels[0];
+        if (m->x < range->x_low || m->x > range->x_high) {
+            continue;
+        }
+        const figure_text *t = text_of_mark(&r, m);
+        const figure_rect *at = &t->place;
+        double x = box->x + box->width * (m->x - range->x_low) / (range->x_high - range->x_low);
+        double y = box->y + box->height * (range->y_high - m->y) / (range->y_high - range->y_low);
+        if (m->onwards) {
+            const bool arrow = g_str_has_suffix(t->text, "\u2192");
+            arrows += arrow;
+            assert_true(arrow ? at->x + at->width < x : at->x > x);
+        } else if (g_str_has_prefix(m->label, "peak")) {
+            check_below(hypot(fmax(0, fmax(at->x - x, x - at->x - at->width)),
+                              fmax(0, fmax(at->y - y, y - at->y - at->height))),
+                        5);
+        }
+    }
+    return arrows;
+}
+
+// Wherever there is room for a word; no text meets another, not in the insets of short pulses
+// either.
+TEST(labels_stand_where_they_belong)
+{
+    static const struct {
+        const char *name;
+        double from, to;
+        int arrows; // on both widths
+    } cases[] = {{"compare/hybrid", 0, 0, 0},         {"compare/bang-bang", 0, 0, 0},
+                 {"compare/reverse-torque", 0, 0, 0}, {"compare/hybrid", 0.2, 0.66, 2},
+                 {"corrected/first-impact", 0, 0, 0}, {"corrected/stiff-beam", 0, 0, 0},
+                 {"corrected/five-links", 0, 0, 0},   {"corrected/spring-hub", 0, 0, 0},
+                 {"corrected/plane-wall", 0, 0, 0},   {"corrected/fast-impact", 0, 0, 0},
+                 {"thesis/fig-3-4", 0, 0, 0}};
+    for (EACH(c, cases)) {
+        SCOPED(scenario_finish) scenario s = shipped(c->name);
+        SCOPED(run_finish) run_result result;
+        DONE(run_scenario(&s, true, &result));
+        const trace_run run = {&s, &result, NULL};
+        int arrows = 0;
+        for (EACH_OF(double, width, 85, 170)) {
+            SCOPED(trace_figure_finish) trace_figure t;
+            DONE(trace_figure_init(&t, NULL, usual_panels, USUAL_PANELS, &run, 1, &f));
+            t.plot.figure.width = *width;
+            t.plot.figure.x.low = c->from;
+            t.plot.figure.x.high = c->to;
+            arrows += check_labels(&t.plot.figure);
+        }
+        assert_int_equal(arrows, c->arrows);
+    }
+}
+
+// ---- ticks
+
+static void expect_ticks(const ticks *t, int count, const double *expected)
+{
+    assert_int_equal(t->count, count);
+    for (int i = 0; i < count; i++) {
+        check_close(t->value[i], expected[i], 0);
+    }
+}
+
+static void expect_labels(const ticks *t, int count, const char *const *expected)
+{
+    char label[TICK_TEXT];
+    assert_int_equal(t->count, count);
+    for (int i = 0; i < count; i++) {
+        tick_label(t, i, label);
+        assert_string_equal(label, expected[i]);
+    }
+}
+
+// 8, 10, 12, 14 are the ticks of extended(8.1, 14.1, 4) of the R package labeling; on an axis that
+// ends at the outermost of them none is left out
+TEST(published_example)
+{
+    ticks t;
+    ticks_between(&t, 8, 14, 4);
+    expect_ticks(&t, 4, (double[]){8, 10, 12, 14});
+    check_close(t.step, 2, 0);
+    ticks_between(&t, 14, 8, 4);
+    expect_ticks(&t, 4, (double[]){8, 10, 12, 14});
+}
+
+TEST(round_ranges)
+{
+    ticks t;
+    ticks_between(&t, 0, 1, 6);
+    expect_ticks(&t, 6, (double[]){0, 0.2, 0.4, 0.6, 0.8, 1});
+    ticks_between(&t, -100, 100, 5);
+    expect_ticks(&t, 5, (double[]){-100, -50, 0, 50, 100});
+}
+
+// 0.04, 0.06 and never 0.045, 0.055: a reader looks for whole multiples of the step
+TEST(ticks_are_multiples_of_their_step)
+{
+    for (double low = 0.031; low < 0.06; low += 0.0013) {
+        for (int wanted = 2; wanted < 9; wanted++) {
+            ticks t;
+            ticks_between(&t, low, low + 0.0431, wanted);
+            for (int i = 0; i < t.count && t.step > 0; i++) {
+                double share = t.value[i] / t.step;
+                check_close(share, round(share), 1e-9);
+            }
+        }
+    }
+}
+
+// every tick is the double nearest to its decimal number, so that printing shows no noise
+TEST(values_are_decimal)
+{
+    for (int power = -12; power <= 12; power++) {
+        ticks t;
+        double scale = pow(10, power);
+        ticks_between(&t, -0.31 * scale, 0.94 * scale, 6);
+        assert_true(t.count >= 3);
+        for (int i = 0; i < t.count; i++) {
+            char text[64];
+            snprintf(text, sizeof text, "%.10g", t.value[i]);
+            check_close(t.value[i], strtod(text, NULL), 0);
+            assert_false(signbit(t.value[i]) && t.value[i] == 0);
+        }
+    }
+}
+
+// a cheap source of numbers that is the same everywhere
+static double next_random(unsigned long long *seed)
+{
+    *seed = *seed * 6364136223846793005ULL + 1442695040888963407ULL;
+    return (double)(*seed >> 11) / 9007199254740992.0;
+}
+
+TEST(between_stays_inside_and_misses_none)
+{
+    unsigned long long seed = 7;
+    for (int trial = 0; trial < 3000; trial++) {
+        ticks t;
+        double centre = (next_random(&seed) - 0.5) * pow(10, 6 * next_random(&seed) - 3);
+        double width = pow(10, 8 * next_random(&seed) - 4);
+        double low = centre - width * next_random(&seed), high = low + width;
+        int wanted = 2 + (int)(8 * next_random(&seed));
+        ticks_between(&t, low, high, wanted);
+        assert_true(t.count >= 2);
+        assert_true(t.count <= 2 * wanted + 1);
+        assert_true(t.value[0] >= low - 1e-8 * width);
+        assert_true(t.value[t.count - 1] <= high + 1e-8 * width);
+        assert_true(t.value[0] - t.step < low + 1e-8 * width);
+        assert_true(t.value[t.count - 1] + t.step > high - 1e-8 * width);
+        for (int i = 1; i < t.count; i++) {
+            check_close(t.value[i] - t.value[i - 1], t.step, 1e-9 * fmax(fabs(centre), width));
+        }
+    }
+}
+
+TEST(about_as_many_as_wanted)
+{
+    unsigned long long seed = 11;
+    for (int wanted = 3; wanted <= 10; wanted++) {
+        double total = 0;
+        for (int trial = 0; trial < 300; trial++) {
+            ticks t;
+            double low = 100 * next_random(&seed) - 50;
+            ticks_between(&t, low, low + 1 + 100 * next_random(&seed), wanted);
+            total += t.count;
+        }
+        check_close(total / 300, wanted, 0.35 * wanted);
+    }
+}
+
+TEST(labels_are_short_and_have_a_true_minus)
+{
+    ticks t;
+    ticks_between(&t, -1.2, 1.2, 5);
+    expect_labels(&t, 5, (const char *[]){"\u22121.0", "\u22120.5", "0.0", "0.5", "1.0"});
+    ticks_between(&t, 8, 14, 4);
+    expect_labels(&t, 4, (const char *[]){"8", "10", "12", "14"});
+}
+
+TEST(small_and_large_numbers_get_a_factor)
+{
+    ticks t;
+    char factor[64];
+    ticks_between(&t, 0, 4e-6, 5);
+    tick_factor(&t, factor, sizeof factor);
+    assert_string_equal(factor, "\u00d710<sup>\u22126</sup>");
+    expect_labels(&t, 5, (const char *[]){"0", "1", "2", "3", "4"});
+    ticks_between(&t, 0, 2e6, 3);
+    tick_factor(&t, factor, sizeof factor);
+    assert_string_equal(factor, "\u00d710<sup>6</sup>");
+    ticks_between(&t, 0, 1, 5);
+    tick_factor(&t, factor, sizeof factor);
+    assert_string_equal(factor, "");
+}
+
+TEST(narrow_range_far_from_zero)
+{
+    ticks t;
+    char first[TICK_TEXT], second[TICK_TEXT];
+    ticks_between(&t, 0.293412, 0.293462, 4);
+    assert_true(t.count >= 2);
+    tick_label(&t, 0, first);
+    tick_label(&t, 1, second);
+    assert_string_not_equal(first, second);
+    check_close(strtod(first, NULL), t.value[0], 1e-12);
+}
+
+TEST(hopeless_limits)
+{
+    ticks t;
+    for (EACH_OF(double, c, (double)NAN, (double)INFINITY, -(double)INFINITY)) {
+        ticks_between(&t, 0, *c, 5);
+        assert_int_equal(t.count, 0);
+        ticks_between(&t, *c, 0, 5);
+        assert_int_equal(t.count, 0);
+    }
+    ticks_between(&t, 3, 3, 5);
+    assert_true(t.count >= 2);
+    ticks_between(&t, 0, 0, 5);
+    assert_true(t.count >= 2);
+    ticks_between(&t, -1e308, 1e308, 5);
+    assert_int_equal(t.count, 0);
+    ticks_between(&t, 0, 1, -5);
+    assert_true(t.count >= 2);
+}
+
+TEST(minor_ticks_are_round)
+{
+    unsigned long long seed = 3;
+    for (int trial = 0; trial < 300; trial++) {
+        ticks t;
+        ticks_between(&t, 0, pow(10, 4 * next_random(&seed)), 5);
+        // a minor step has one digit, or is 25, or is no minor step at all
+        double part = t.step / t.minor, digits = part / pow(10, floor(log10(part * (1 + 1e-12))));
+        bool round_number = fabs(digits - round(digits)) < 1e-9 || fabs(digits - 2.5) < 1e-9;
+        assert_true(round_number || t.minor == 1);
+    }
+}
+
+// ---- maps
+
+TEST(contours_lie_where_a_plane_has_the_level)
+{
+    contour_piece pieces[2];
+    // z = 1 + 2 x + 4 y at the corners
+    const double tilted[4] = {1, 3, 5, 7};
+    assert_int_equal(contour_square(tilted, 0, pieces), 0);
+    assert_int_equal(contour_square(tilted, 8, pieces), 0);
+    for (double level = 1.5; level < 7; level += 1) {
+        assert_int_equal(contour_square(tilted, level, pieces), 1);
+        check_close(1 + 2 * pieces[0].x0 + 4 * pieces[0].y0, level, 1e-14);
+        check_close(1 + 2 * pieces[0].x1 + 4 * pieces[0].y1, level, 1e-14);
+    }
+    const double hole[4] = {1, 3, (double)NAN, 7};
+    assert_int_equal(contour_square(hole, 2, pieces), 0);
+}
+
+TEST(a_saddle_is_cut_by_its_middle)
+{
+    contour_piece pieces[2];
+    // high at (0, 0) and (1, 1); the middle is at 5
+    const double saddle[4] = {10, 0, 0, 10};
+    for (double level = 4; level < 7; level += 2) {
+        assert_int_equal(contour_square(saddle, level, pieces), 2);
+        for (int i = 0; i < 2; i++) {
+            // below the middle the low corners are cut off, where x - y is far from 0; above it the
+            // high ones, where x + y is far from 1
+            double x = (pieces[i].x0 + pieces[i].x1) / 2, y = (pieces[i].y0 + pieces[i].y1) / 2;
+            check_close(level < 5 ? x + y : x - y, level < 5 ? 1 : 0, 1e-14);
+        }
+    }
+}
+
+TEST(the_colour_scale_grows_lighter_all_the_way)
+{
+    double before = -1;
+    for (int i = 0; i <= 100; i++) {
+        colour c = palette_shade(THEME_COLOUR, i / 100.0);
+        double light =
+            0.2126 * pow(c.red, 2.2) + 0.7152 * pow(c.green, 2.2) + 0.0722 * pow(c.blue, 2.2);
+        check_below(before, light);
+        before = light;
     }
 }
 

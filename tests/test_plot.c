@@ -1,78 +1,6 @@
 // Figures, judged by their drawing: texts and their places, pixels.
 #include "tests/plot_fixture.h"
 
-// ---- text
-
-// comes first: fontconfig reads its configuration once
-TEST(missing_font_is_reported)
-{
-    pid_t child = fork();
-    if (child == 0) {
-        char whole[64];
-        snprintf(whole, sizeof whole, "%s/fonts.conf", test_folder);
-        put_file(whole, "<fontconfig><dir>/nowhere</dir></fontconfig>");
-        setenv("FONTCONFIG_FILE", whole, 1);
-        fault f = {0};
-        double x[] = {0, 1};
-        figure_series series = {.x = x, .y = x, .count = 2, .label = "a<sub>1</sub>"};
-        figure_panel panel = {.series = &series, .series_count = 1};
-        figure fig = {.panels = &panel, .panel_count = 1};
-        status code = figure_write(&fig, "no-font.png", &f);
-        bool named = strstr(f.text, "fonts-dejavu-core") != NULL;
-        bool nothing_written = access("no-font.png", F_OK) != 0;
-        _exit(code == STATUS_CANNOT_READ && named && nothing_written ? 0 : 1);
-    }
-    int result;
-    assert_int_equal(waitpid(child, &result, 0), child);
-    assert_true(WIFEXITED(result));
-    assert_int_equal(WEXITSTATUS(result), 0);
-}
-
-TEST(indices_are_small_and_scale_with_the_letters)
-{
-    PangoContext *context = text_context_create();
-    double plain, lowered, twice, height, narrow;
-    text_measure(context, &(text_block){.markup = "x111", .size = 12}, &plain, &height);
-    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 12}, &lowered,
-                 &height);
-    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 24}, &twice, &height);
-    text_measure(context, &(text_block){.markup = "x", .size = 12}, &narrow, &height);
-    check_close(lowered - narrow, 0.72 * (plain - narrow), 0.1);
-    check_close(twice, 2 * lowered, 0.1);
-    g_object_unref(context);
-}
-
-TEST(markup_that_is_none_is_shown_as_it_stands)
-{
-    PangoContext *context = text_context_create();
-    PangoLayout *layout =
-        text_layout_create(context, &(text_block){.markup = "a < b & c", .size = 8});
-    assert_string_equal(pango_layout_get_text(layout), "a < b & c");
-    g_object_unref(layout);
-    layout = text_layout_create(context, &(text_block){.markup = "\xff\xfe", .size = 8});
-    assert_true(g_utf8_validate(pango_layout_get_text(layout), -1, NULL));
-    g_object_unref(layout);
-    g_object_unref(context);
-}
-
-TEST(units_are_set_as_the_si_brochure_has_them)
-{
-    static const char *const units[][2] = {{"rad/s2", "rad/s\u00b2"},
-                                           {"kg m2", "kg\u00b7m\u00b2"},
-                                           {"N m", "N\u00b7m"},
-                                           {"N m/rad", "N\u00b7m/rad"},
-                                           {"N s", "N\u00b7s"},
-                                           {"s-1", "s\u207b\u00b9"},
-                                           {"", ""}};
-    for (size_t i = 0; i < G_N_ELEMENTS(units); i++) {
-        char shown[64];
-        text_unit(units[i][0], shown, sizeof shown);
-        assert_string_equal(shown, units[i][1]);
-    }
-}
-
-// ---- layout
-
 TEST(all_texts_of_a_run_are_drawn)
 {
     static figure_report r;
@@ -140,16 +68,24 @@ TEST(layout_is_the_same_on_every_surface)
     }
 }
 
+// A run with one impulse of a size, as pixels of a quarter of a point.
+enum { FINE = 4 };
+
+static cairo_surface_t *paint_impulse(double size, figure_report *r)
+{
+    SCOPED(synthetic_finish) synthetic s;
+    synthetic_init(&s, run_panels, 1);
+    s.figure.plot.panels[0].impulses = &(figure_impulse){0.31, size};
+    s.figure.plot.panels[0].impulse_count = 1;
+    cairo_surface_t *image = paint_pixels(&s.figure.plot.figure, FINE, r);
+    return image;
+}
+
 // An impulse has no place on the force axis: a huge one changes nothing there.
 TEST(impulses_do_not_touch_the_force_axis)
 {
     static figure_report r;
-    SCOPED(synthetic_finish) synthetic s;
-    synthetic_init(&s, run_panels, 1);
-    figure_impulse huge[] = {{0.31, 5000}};
-    s.figure.plot.panels[0].impulses = huge;
-    s.figure.plot.panels[0].impulse_count = 1;
-    record(&s.figure.plot.figure, &r);
+    cairo_surface_destroy(paint_impulse(5000, &r));
     expect_text(&r, "5\u00b7103");
     expect_text(&r, "2");
     expect_inside(&r.panels[0], &r.page, "the panel");
@@ -161,42 +97,24 @@ TEST(impulses_do_not_touch_the_force_axis)
 }
 
 // The unit of small impulses, a power of ten and all, is wider than their name: it has its place.
-TEST(the_unit_of_small_impulses_is_on_the_page)
-{
-    static figure_report r;
-    SCOPED(synthetic_finish) synthetic s;
-    synthetic_init(&s, run_panels, 1);
-    figure_impulse small[] = {{0.31, 4.02e-3}};
-    s.figure.plot.panels[0].impulses = small;
-    s.figure.plot.panels[0].impulse_count = 1;
-    record(&s.figure.plot.figure, &r);
-    expect_text(&r, "4.02");
-    for (int i = 0; i < r.text_count; i++) {
-        expect_inside(&r.texts[i].place, &r.page, r.texts[i].text);
-    }
-}
-
 // Its raised exponent does not reach the letters of the name above: an empty row is between them.
-TEST(the_exponent_of_small_impulses_stands_clear_of_their_name)
+TEST(the_unit_of_small_impulses_has_its_place)
 {
     static figure_report r;
-    enum { SCALE = 4, DARK = 128 };
-    SCOPED(synthetic_finish) synthetic s;
-    synthetic_init(&s, run_panels, 1);
-    figure_impulse small[] = {{0.31, 4.02e-3}};
-    s.figure.plot.panels[0].impulses = small;
-    s.figure.plot.panels[0].impulse_count = 1;
-    cairo_surface_t *image = paint_pixels(&s.figure.plot.figure, SCALE, &r);
+    enum { DARK = 128 };
+    cairo_surface_t *image = paint_impulse(4.02e-3, &r);
+    expect_text(&r, "4.02");
 
     // lines of letters, counted down the text's place
     int lines = 0;
     for (int i = 0; i < r.text_count; i++) {
         const figure_rect p = r.texts[i].place;
         bool inked = false;
-        for (int y = (int)(SCALE * p.y);
-             strstr(r.texts[i].text, "Impulse") != NULL && y < SCALE * (p.y + p.height); y++) {
+        expect_inside(&p, &r.page, r.texts[i].text);
+        for (int y = (int)(FINE * p.y);
+             strstr(r.texts[i].text, "Impulse") != NULL && y < FINE * (p.y + p.height); y++) {
             bool ink = false;
-            for (int x = (int)(SCALE * p.x); x < SCALE * (p.x + p.width); x++) {
+            for (int x = (int)(FINE * p.x); x < FINE * (p.x + p.width); x++) {
                 ink = ink || pixel_at(image, x, y).green < DARK;
             }
             lines += ink && !inked;
@@ -383,7 +301,7 @@ TEST(legend_leaves_a_full_panel)
     figure_series series[] = {{.x = x, .y = y, .count = COUNT, .label = "one"},
                               {.x = x, .y = z, .count = COUNT, .label = "two", .colour = 1}};
     figure_panel panels[] = {{.series = series, .series_count = 2, .zoom_from = 3, .zoom_to = 9},
-                             {.series = series, .series_count = 2}};
+                             {.heading = "heading", .series = series, .series_count = 2}};
     figure fig = {.panels = panels, .panel_count = 2};
     static figure_report r;
     record(&fig, &r);
@@ -391,8 +309,24 @@ TEST(legend_leaves_a_full_panel)
         assert_true(r.legends[i].width > 0);
         check_below(r.legends[i].y + r.legends[i].height, r.panels[i].y + 0.01);
     }
+    // a heading stands below it
+    for (int i = 0; i < r.text_count; i++) {
+        if (strcmp(r.texts[i].text, "heading") == 0) {
+            check_below(r.legends[1].y + r.legends[1].height, r.texts[i].place.y + 2);
+        }
+    }
     assert_true(r.insets[0].width == 0);
     expect_tidy(&fig);
+}
+
+static void expect_grey(cairo_surface_t *surface)
+{
+    for (int y = 0; y < cairo_image_surface_get_height(surface); y++) {
+        for (int x = 0; x < cairo_image_surface_get_width(surface); x++) {
+            assert_int_equal(saturation(pixel_at(surface, x, y)), 0);
+        }
+    }
+    cairo_surface_destroy(surface);
 }
 
 TEST(mono_has_no_colour)
@@ -402,15 +336,61 @@ TEST(mono_has_no_colour)
     synthetic_init(&s, run_panels, RUN_PANELS);
     cairo_surface_t *coloured = paint_pixels(&s.figure.plot.figure, 1.5, &r);
     assert_true(coloured_pixels(coloured, 1.5, r.page) > 1000);
-    s.figure.plot.figure.theme = THEME_MONO;
-    cairo_surface_t *mono = paint_pixels(&s.figure.plot.figure, 1.5, &r);
-    for (int y = 0; y < cairo_image_surface_get_height(mono); y++) {
-        for (int x = 0; x < cairo_image_surface_get_width(mono); x++) {
-            assert_int_equal(saturation(pixel_at(mono, x, y)), 0);
-        }
-    }
     cairo_surface_destroy(coloured);
-    cairo_surface_destroy(mono);
+    s.figure.plot.figure.theme = THEME_MONO;
+    expect_grey(paint_pixels(&s.figure.plot.figure, 1.5, &r));
+
+    // a map neither
+    double x[] = {0, 1, 2}, y[] = {0, 1}, z[] = {1, 2, 3, 4, 5, 6};
+    figure_map map = {.x = x, .y = y, .columns = 3, .rows = 2, .z = z, .contours = true};
+    figure_colours colours = {.axis = {.label = "z"}, .bar = true};
+    figure_panel panel = {.map = &map, .colours = &colours};
+    figure fig = {.panels = &panel, .panel_count = 1, .theme = THEME_MONO};
+    expect_grey(paint_pixels(&fig, 1.5, &r));
+}
+
+enum { STAIRS = 1200 };
+
+// Pixels of a grey between black and the page's own greys in the legend's swatch.
+TEST(a_busy_line_has_no_dashes)
+{
+    static figure_report r;
+    static double x[STAIRS], stairs[STAIRS], smooth[STAIRS];
+    for (int i = 0; i < STAIRS; i++) {
+        x[i] = i;
+        smooth[i] = 10;
+        stairs[i] = 10 + (i / 4 % 2 ? 1 : -1);
+    }
+    figure_series series[] = {
+        {.label = "stairs", .x = x, .y = stairs, .count = STAIRS, .style = LINE_DASHED},
+        {.label = "smooth", .x = x, .y = smooth, .count = STAIRS}};
+    figure_panel panel = {.series = series, .series_count = 2, .y = {.low = 0, .high = 30}};
+    figure fig = {.panels = &panel, .panel_count = 1, .theme = THEME_MONO};
+    const double scale = 6;
+    cairo_surface_t *surface = paint_pixels(&fig, scale, &r);
+
+    // the first entry's swatch: an unbroken line, lighter than the second one's
+    const figure_rect *legend = &r.legends[0];
+    assert_true(legend->width > 0);
+    int lightness[2];
+    for (int entry = 0; entry < 2; entry++) {
+        double y = legend->y + legend->height / 2 * (entry + 0.55);
+        int lightest = 0;
+        for (double along = 2; along < 16; along += 0.25) {
+            int darkest = 255;
+            for (double off = -2; off <= 2; off += 0.25) {
+                pixel p =
+                    pixel_at(surface, (int)((legend->x + along) * scale), (int)((y + off) * scale));
+                darkest = p.red < darkest ? p.red : darkest;
+            }
+            lightest = darkest > lightest ? darkest : lightest;
+        }
+        lightness[entry] = lightest;
+    }
+    assert_true(lightness[0] < 200);
+    assert_true(lightness[1] < 40);
+    assert_true(lightness[0] > lightness[1] + 60);
+    cairo_surface_destroy(surface);
 }
 
 // ---- runs side by side
@@ -497,6 +477,20 @@ TEST(each_curve_of_a_comparison_says_run_and_signal)
 }
 
 // ---- runs and the thesis's figures
+
+TEST(the_last_of_twenty_links_is_body_21)
+{
+    static figure_report r;
+    SCOPED(synthetic_finish) synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    const trace_run run = {&s.scenario, &s.result, NULL};
+    trace_figure_finish(&s.figure);
+    s.scenario.parameters.arm.links = 20;
+    DONE(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f));
+    record(&s.figure.plot.figure, &r);
+    expect_text(&r, "\u03b821  last link");
+    assert_false(has_text(&r, "\u03b83  last link"));
+}
 
 TEST(a_scenario_is_plotted)
 {

@@ -1,10 +1,19 @@
-// Pictures for publications: sizes of letters, the files of a bare picture, LaTeX.
+// Figures as files, for publications too: bytes, fonts, data, captions beside them, LaTeX, recipes.
 #include "tests/plot_fixture.h"
 
 #include "render/figures/figures.h"
 #include "render/figures/artwork.h"
 #include "render/figures/recipe.h"
 #include "render/figures/run_figure.h"
+
+// ---- files
+
+static void expect_contents(const char *path, const char *contents)
+{
+    size_t length;
+    SCOPED(free_kept) char *text = read_file(path, &length);
+    assert_string_equal(text, contents);
+}
 
 TEST(bare_pages_have_no_title_and_no_caption)
 {
@@ -41,11 +50,8 @@ static void publish(const figure_options *o, const char *path)
 
 TEST(a_bare_picture_has_its_caption_beside_it)
 {
-    size_t length;
     publish(&(figure_options){.look.bare = true}, "bare.svg");
-    char *text = read_file("bare.txt", &length);
-    assert_string_equal(text, "A title & more\n\nWith β = 0.4, 5 % off, θ1\n");
-    free(text);
+    expect_contents("bare.txt", "A title & more\n\nWith β = 0.4, 5 % off, θ1\n");
     publish(&(figure_options){0}, "dressed.svg");
     assert_int_not_equal(access("dressed.txt", F_OK), 0);
 }
@@ -106,6 +112,177 @@ TEST(serif_pictures_have_serif_letters)
     assert_null(memmem(pdf, length, "DejaVuSans", 10));
     free(pdf);
     REFUSED(STATUS_BAD_ARGUMENT, "No Such Font", text_check_family("No Such Font", &f));
+}
+
+// All bytes of a PDF with its packed streams unpacked behind them.
+static GString *unpack_pdf(const char *path)
+{
+    size_t length;
+    SCOPED(free_kept) char *bytes = read_file(path, &length);
+    GString *all = g_string_new_len(bytes, (gssize)length);
+    for (size_t at = 0; at + 7 < length; at++) {
+        if (memcmp(bytes + at, "stream\n", 7) != 0) {
+            continue;
+        }
+        static unsigned char out[1 << 20];
+        z_stream z = {.next_in = (Bytef *)bytes + at + 7,
+                      .avail_in = (uInt)(length - at - 7),
+                      .next_out = out,
+                      .avail_out = sizeof out};
+        if (inflateInit(&z) == Z_OK) {
+            inflate(&z, Z_FINISH);
+            g_string_append_len(all, (const char *)out, (gssize)z.total_out);
+            inflateEnd(&z);
+        }
+    }
+    return all;
+}
+
+static bool contains(const GString *bytes, const char *wanted)
+{
+    return memmem(bytes->str, bytes->len, wanted, strlen(wanted)) != NULL;
+}
+
+TEST(pdf_embeds_fonts_and_has_no_type_3)
+{
+    SCOPED(synthetic_finish) synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    write_figure(&s.figure.plot.figure, "fonts.pdf");
+    GString *pdf = unpack_pdf("fonts.pdf");
+    assert_true(contains(pdf, "/FontFile2"));
+    assert_true(contains(pdf, "DejaVuSans"));
+    assert_false(contains(pdf, "/Type3"));
+    assert_true(contains(pdf, "Synthetic run & <more>"));
+    assert_true(contains(pdf, "arm.model=printed"));
+    // cairo 1.16 leaves out the D:
+    assert_true(contains(pdf, "(20000101") || contains(pdf, "(D:20000101"));
+    // curves are lines, not pictures
+    assert_false(contains(pdf, "/Subtype /Image"));
+    g_string_free(pdf, TRUE);
+}
+
+TEST(png_knows_its_resolution_and_origin)
+{
+    SCOPED(synthetic_finish) synthetic s;
+    synthetic_init(&s, run_panels, 2);
+    s.figure.plot.figure.width = 127;
+    s.figure.plot.figure.height = 101.6;
+    s.figure.plot.figure.dpi = 300;
+    write_figure(&s.figure.plot.figure, "notes.png");
+    FILE *file = fopen("notes.png", "rb");
+    assert_non_null(file);
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, file);
+    png_read_info(png, info);
+    assert_int_equal(png_get_image_width(png, info), 1500);
+    assert_int_equal(png_get_image_height(png, info), 1200);
+    assert_int_equal(png_get_pixels_per_meter(png, info), 11811);
+    png_textp notes;
+    int count = 0, found = 0;
+    png_get_text(png, info, &notes, &count);
+    for (int i = 0; i < count; i++) {
+        found += strcmp(notes[i].key, "Title") == 0 &&
+                 strcmp(notes[i].text, "Synthetic run & <more>") == 0;
+        found +=
+            strcmp(notes[i].key, "Software") == 0 && strncmp(notes[i].text, "impactlab ", 10) == 0;
+        found += strcmp(notes[i].key, "Parameters") == 0 &&
+                 strstr(notes[i].text, "motor.voltage=1") != NULL;
+    }
+    assert_int_equal(found, 3);
+    png_destroy_read_struct(&png, &info, NULL);
+    fclose(file);
+}
+
+TEST(svg_ids_are_unique_and_all_references_resolve)
+{
+    SCOPED(synthetic_finish) synthetic s;
+    size_t length;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    write_figure(&s.figure.plot.figure, "ids.svg");
+    SCOPED(free_kept) char *svg = read_file("ids.svg", &length);
+    assert_non_null(strstr(svg, "<metadata>"));
+    assert_non_null(strstr(svg, "<title>Synthetic run &amp; &lt;more&gt;</title>"));
+    GHashTable *ids = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    for (char *c = strstr(svg, " id=\""); c != NULL; c = strstr(c, " id=\"")) {
+        c += 5;
+        assert_true(g_hash_table_add(ids, g_strndup(c, strcspn(c, "\""))));
+    }
+    int references = 0;
+    for (EACH_TEXT(each, "href=\"#", "url(#")) {
+        for (char *c = strstr(svg, *each); c != NULL; c = strstr(c, *each)) {
+            c += strlen(*each);
+            char *id = g_strndup(c, strcspn(c, "\")"));
+            assert_true(g_hash_table_contains(ids, id));
+            g_free(id);
+            references++;
+        }
+    }
+    assert_true(references > 100);
+    g_hash_table_destroy(ids);
+}
+
+// The CSV of a figure is headed by the axes' names and units, those of different quantities by
+// each.
+TEST(csv_holds_what_is_drawn)
+{
+    double x[] = {0, 0.1, 0.2}, y[] = {1, (double)NAN, -2.5};
+    figure_series series = {.name = "force, \"raw\"", .x = x, .y = y, .count = 3};
+    figure_impulse impulse = {0.1, 0.04};
+    figure_panel panels[] = {{.y = {.name = "force", .unit = "N"},
+                              .series = &series,
+                              .series_count = 1,
+                              .impulses = &impulse,
+                              .impulse_unit = "N s"},
+                             {.y = {.name = "angle", .unit = "rad"}}};
+    figure_mark mark = {0.1, "<i>contact</i>"};
+    figure fig = {.x = {.name = "time", .unit = "s"}, .panels = panels, .panel_count = 1};
+    DONE(figure_write_csv(&fig, "data.csv", &f));
+    expect_contents("data.csv", "panel,series,time[s],force[N]\n"
+                                "force[N],\"force, \"\"raw\"\"\",0,1\n"
+                                "force[N],\"force, \"\"raw\"\"\",0.1,\n"
+                                "force[N],\"force, \"\"raw\"\"\",0.2,-2.5\n");
+    series.count = panels[0].impulse_count = fig.mark_count = 1;
+    fig.marks = &mark;
+    fig.panel_count = 2;
+    fig.x = (figure_axis){0};
+    DONE(figure_write_csv(&fig, "data.csv", &f));
+    expect_contents("data.csv", "panel,series,x,value\n"
+                                "force[N],\"force, \"\"raw\"\"\",0,1\n"
+                                "force[N],impulse[N s],0.1,0.04\n"
+                                "mark,contact,0.1,\n");
+}
+
+TEST(faults_are_sentences)
+{
+    SCOPED(synthetic_finish) synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    figure *fig = &s.figure.plot.figure;
+    REFUSED(STATUS_BAD_ARGUMENT, ".svg", figure_write(fig, "x.gif", &f));
+    REFUSED(STATUS_BAD_ARGUMENT, "", figure_write(fig, "png", &f));
+    REFUSED(STATUS_CANNOT_WRITE, "nowhere/x.png", figure_write(fig, "nowhere/x.png", &f));
+    fig->dpi = 1e6;
+    REFUSED(STATUS_BAD_ARGUMENT, "", figure_write(fig, "x.png", &f));
+    fig->dpi = 0;
+    fig->width = 20;
+    REFUSED(STATUS_BAD_ARGUMENT, "larger page", figure_write(fig, "x.png", &f));
+    fig->panel_count = 0;
+    REFUSED(STATUS_BAD_ARGUMENT, "", figure_write(fig, "x.pdf", &f));
+    // nothing was left behind
+    assert_int_not_equal(access("x.png", F_OK), 0);
+    assert_int_not_equal(access("x.pdf", F_OK), 0);
+}
+
+TEST(a_full_disk_is_noticed)
+{
+    SCOPED(synthetic_finish) synthetic s;
+    synthetic_init(&s, run_panels, RUN_PANELS);
+    for (EACH_TEXT(c, "full.png", "full.pdf", "full.svg")) {
+        fault f = {0};
+        assert_int_equal(symlink("/dev/full", *c), 0);
+        assert_int_equal(figure_write(&s.figure.plot.figure, *c, &f), STATUS_CANNOT_WRITE);
+        assert_true(strlen(f.text) > 10);
+    }
 }
 
 // ---- measured data over runs

@@ -1,0 +1,154 @@
+// Texts of figures: letters, words and lines.
+#include "tests/plot_fixture.h"
+
+// comes first: fontconfig reads its configuration once
+TEST(missing_font_is_reported)
+{
+    pid_t child = fork();
+    if (child == 0) {
+        char whole[64];
+        snprintf(whole, sizeof whole, "%s/fonts.conf", test_folder);
+        put_file(whole, "<fontconfig><dir>/nowhere</dir></fontconfig>");
+        setenv("FONTCONFIG_FILE", whole, 1);
+        fault f = {0};
+        double x[] = {0, 1};
+        figure_series series = {.x = x, .y = x, .count = 2, .label = "a<sub>1</sub>"};
+        figure_panel panel = {.series = &series, .series_count = 1};
+        figure fig = {.panels = &panel, .panel_count = 1};
+        status code = figure_write(&fig, "no-font.png", &f);
+        bool named = strstr(f.text, "fonts-dejavu-core") != NULL;
+        bool nothing_written = access("no-font.png", F_OK) != 0;
+        _exit(code == STATUS_CANNOT_READ && named && nothing_written ? 0 : 1);
+    }
+    int result;
+    assert_int_equal(waitpid(child, &result, 0), child);
+    assert_true(WIFEXITED(result));
+    assert_int_equal(WEXITSTATUS(result), 0);
+}
+
+TEST(indices_are_small_and_scale_with_the_letters)
+{
+    PangoContext *context = text_context_create();
+    double plain, lowered, twice, height, narrow;
+    text_measure(context, &(text_block){.markup = "x111", .size = 12}, &plain, &height);
+    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 12}, &lowered,
+                 &height);
+    text_measure(context, &(text_block){.markup = "x<sub>111</sub>", .size = 24}, &twice, &height);
+    text_measure(context, &(text_block){.markup = "x", .size = 12}, &narrow, &height);
+    check_close(lowered - narrow, 0.72 * (plain - narrow), 0.1);
+    check_close(twice, 2 * lowered, 0.1);
+    g_object_unref(context);
+}
+
+TEST(markup_that_is_none_is_shown_as_it_stands)
+{
+    PangoContext *context = text_context_create();
+    PangoLayout *layout =
+        text_layout_create(context, &(text_block){.markup = "a < b & c", .size = 8});
+    assert_string_equal(pango_layout_get_text(layout), "a < b & c");
+    g_object_unref(layout);
+    layout = text_layout_create(context, &(text_block){.markup = "\xff\xfe", .size = 8});
+    assert_true(g_utf8_validate(pango_layout_get_text(layout), -1, NULL));
+    g_object_unref(layout);
+    g_object_unref(context);
+}
+
+// Units as the SI brochure has them, quantities of three digits, apostrophes.
+TEST(words_are_set_as_printers_set_them)
+{
+    static const struct {
+        char kind;
+        const char *plain, *set;
+    } cases[] = {{'u', "rad/s2", "rad/s\u00b2"},
+                 {'u', "kg m2", "kg\u00b7m\u00b2"},
+                 {'u', "N m", "N\u00b7m"},
+                 {'u', "N m/rad", "N\u00b7m/rad"},
+                 {'u', "s-1", "s\u207b\u00b9"},
+                 {'u', "", ""},
+                 {'q', "5.4", "5.40\u2009N"},
+                 {'q', "1.752", "1.75\u2009N"},
+                 {'q', "123", "123\u2009N"},
+                 {'q', "-0.5", "\u22120.500\u2009N"},
+                 {'t', "Newmark's", "Newmark\u2019s"},
+                 {'t', "Newmark&apos;s", "Newmark\u2019s"},
+                 {'t', "Newmark&#39;s", "Newmark\u2019s"},
+                 {'t', "named 'a'", "named 'a'"}};
+    for (EACH(c, cases)) {
+        char unit[64];
+        text_unit(c->plain, unit, sizeof unit);
+        g_autofree char *shown = c->kind == 'u'   ? g_strdup(unit)
+                                 : c->kind == 'q' ? text_quantity(atof(c->plain), 3, "N")
+                                                  : text_translate(c->plain, 8, 1);
+        assert_string_equal(shown, c->set);
+    }
+}
+
+// However narrow the page, no line begins with what belongs to the end of the one before.
+TEST(numbers_keep_their_units)
+{
+    const char *caption = "At 1 V and 10 ms, <i>β</i> = 0.4, <i>h</i> = 10\u2009ms, a peak of "
+                          "5.40\u2009N after 12.5 ms, <i>k</i><sub>1</sub> = 0.4 at "
+                          "4.92\u2009N·m/rad, 3\u2009V·s/rad. impactlab 0.1.0.";
+    PangoContext *context = text_context_create();
+    for (double width = 60; width < 300; width += 7) {
+        PangoLayout *layout = text_layout_create(
+            context, &(text_block){.markup = caption, .size = 8, .width = width});
+        const char *text = pango_layout_get_text(layout);
+        for (int i = 1; i < pango_layout_get_line_count(layout); i++) {
+            const char *line =
+                text + pango_layout_line_get_start_index(pango_layout_get_line_readonly(layout, i));
+            for (EACH_TEXT(c, "V", "ms", "= ", "=\u00a0", "rad", "0.4", "N", "0.1.0", "10 ms,")) {
+                fail_if(strncmp(line, *c, strlen(*c)) == 0,
+                        "at %g points a line begins with '%.12s'", width, line);
+            }
+        }
+        g_object_unref(layout);
+    }
+    g_object_unref(context);
+}
+
+// An index can be read where it is printed, however the page of a diagram is scaled: its letters
+// have 6 points there, or those of the text about it.
+TEST(indices_can_be_read_on_scaled_pages)
+{
+    PangoContext *context = text_context_create();
+    for (EACH_OF(double, c, 0.65, 1, 1.38)) {
+        const text_block t = {.markup = "<sub>2</sub>", .size = 8 / *c, .scale = *c};
+        PangoLayout *layout = text_layout_create(context, &t);
+        PangoLayoutRun *run = pango_layout_get_line_readonly(layout, 0)->runs->data;
+        PangoFontDescription *font = pango_font_describe(run->item->analysis.font);
+        check_close(*c * pango_font_description_get_size(font) / PANGO_SCALE, 6, 0.01);
+        pango_font_description_free(font);
+        g_object_unref(layout);
+    }
+    g_object_unref(context);
+}
+
+// A title of two lines ends with more than a word, and lines are as far apart with an exponent in
+// one of them as without.
+TEST(lines_are_even)
+{
+    PangoContext *context = text_context_create();
+    double widths[2], plain, raised, width;
+    text_block title = {.markup = "Optical encoder under a constant 1 V",
+                        .size = 9,
+                        .width = 166,
+                        .balanced = true};
+    PangoLayout *layout = text_layout_create(context, &title);
+    assert_int_equal(pango_layout_get_line_count(layout), 2);
+    for (int i = 0; i < 2; i++) {
+        PangoRectangle logical;
+        pango_layout_line_get_extents(pango_layout_get_line_readonly(layout, i), NULL, &logical);
+        widths[i] = logical.width;
+    }
+    check_close(widths[1] / widths[0], 1, 0.35);
+    g_object_unref(layout);
+
+    text_measure(context, &(text_block){.markup = "one\ntwo\nthree", .size = 8}, &width, &plain);
+    text_measure(context, &(text_block){.markup = "one\n10<sup>−5</sup>\nthree", .size = 8}, &width,
+                 &raised);
+    check_close(raised, plain, 0.01);
+    g_object_unref(context);
+}
+
+ALL_BETWEEN(enter_folder, leave_plot_folder)
