@@ -7,44 +7,17 @@
 #include "render/figures/run_figure.h"
 
 // Panels that several figures have.
-#define FORCE                                                                                      \
-    {                                                                                              \
-        .signals = {"force"}, .with_zero = true, .inset = true, .weight = 1.6                      \
-    }
-#define VELOCITY(body)                                                                             \
-    {                                                                                              \
-        .signals = { body "_velocity" }                                                            \
-    }
-#define ANGLE(body)                                                                                \
-    {                                                                                              \
-        .signals = {body "_angle"}, .wall = true                                                   \
-    }
-#define ACCELERATION(body)                                                                         \
-    {                                                                                              \
-        .signals = { body "_acceleration" }                                                        \
-    }
+#define FORCE              .signals = {"force"}, .with_zero = true, .inset = true, .weight = 1.6
+#define VELOCITY(body)     .signals = {body "_velocity"}
+#define ANGLE(body)        .signals = {body "_angle"}, .wall = true
+#define ACCELERATION(body) .signals = {body "_acceleration"}
 #define ENCODER(other)                                                                             \
-    {                                                                                              \
-        .label = "Hub angle", .signals = {"encoder", other}, .wall = true, .weight = 1.2           \
-    }
-#define TACHOMETER(other)                                                                          \
-    {                                                                                              \
-        .label = "Hub velocity", .signals = {"tachometer", other}, .weight = 1.2                   \
-    }
-#define FORCE_READING                                                                              \
-    {                                                                                              \
-        .label = "Contact force", .signals = {"force_reading", "force"}, .with_zero = true,        \
-        .weight = 1.4                                                                              \
-    }
-#define CALCULATED_FORCE                                                                           \
-    {                                                                                              \
-        .label = "Contact force", .signals = {"calculated_force", "force"}, .with_zero = true,     \
-        .weight = 1.4                                                                              \
-    }
+    .label = "Hub angle", .signals = {"encoder", other}, .wall = true, .weight = 1.2
+#define TACHOMETER(other) .label = "Hub velocity", .signals = {"tachometer", other}, .weight = 1.2
+#define CONTACT(reading)                                                                           \
+    .label = "Contact force", .signals = {reading, "force"}, .with_zero = true, .weight = 1.4
 #define COMMAND                                                                                    \
-    {                                                                                              \
-        .label = "Command <i>u</i>", .signals = {"command"}, .with_zero = true, .weight = 1.2      \
-    }
+    .label = "Command <i>u</i>", .signals = {"command"}, .with_zero = true, .weight = 1.2
 
 // A figure of chapter 3, and one of the virtual rig; each has a scenario of its own name.
 #define RUN(number, name)                                                                          \

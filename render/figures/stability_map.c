@@ -188,19 +188,11 @@ static artwork open_map(newmark_map *m, const figure_options *o)
 static const double steps[MAP_PANELS] = {5e-3, 1e-3, 2e-4}; // [s]
 static const double radii[MAP_RINGS] = {1, 0.8, 0.5};       // generalised-alpha's rho
 
-// Force at evenly spaced instants of the window, straight lines between rows.
+// Force at evenly spaced instants of the window.
 static void sample_force(const trace *t, double from, double *out)
 {
-    size_t row = 0;
     for (int i = 0; i < SAMPLES; i++) {
-        double time = from + WINDOW * (i + 0.5) / SAMPLES;
-        while (row + 1 < t->row_count && t->rows[row + 1].time <= time) {
-            row++;
-        }
-        const sample *a = &t->rows[row];
-        const sample *b = row + 1 < t->row_count ? a + 1 : a;
-        double span = b->time - a->time, share = span > 0 ? (time - a->time) / span : 0;
-        out[i] = a->force + share * (b->force - a->force);
+        out[i] = trace_value(t, SIGNAL_INDEX(force), from + WINDOW * (i + 0.5) / SAMPLES);
     }
 }
 

@@ -224,7 +224,7 @@ char *impulse_strip_label(const figure_panel *panel);
 // --- legends: legend.c
 
 // Returns false if there is no room inside the panel.
-bool place_legend(const drawing *d, panel_layout *l, const placement *grid);
+bool place_legend(drawing *d, panel_layout *l, const placement *grid);
 void draw_legend(drawing *d, const panel_layout *l);
 // The legend for all panels, in rows that are wrapped where they are too long, drawn or only
 // measured. Returns its height; 0: none.

@@ -105,32 +105,48 @@ void draw_inset(drawing *d, const panel_layout *l)
 
 // ==== legends
 
-// What the legend says of a series.
-typedef struct legend_entry {
-    text_block text;
-    double width, height;
-} legend_entry;
+// How the entries of a legend follow each other, from its upper left corner.
+typedef struct legend_run {
+    double x, y;
+    double wrapped; // width at which a long text is wrapped; 0: never
+    double right;   // where a row is full
+    bool column;    // every row has one
+    bool draw;      // or only measured
+} legend_run;
 
-// An entry, on a narrow page its symbol, wrapped at a width (0: never); false of a series without a
-// label.
-static bool entry_of(const drawing *d, const figure_series *s, double wrapped, legend_entry *e)
+// Lays out the entries of a panel's labelled series; on a narrow page with their symbols.
+static figure_rect lay_entries(drawing *d, const panel_layout *l, legend_run run)
 {
-    const bool narrow = d->page.width < NARROW_PAGE && s->symbol != NULL;
-    if (s->label == NULL) {
-        return false;
+    double x = run.x, y = run.y, line = 0, widest = 0, wide, high;
+    for (int i = 0; i < l->panel->series_count; i++) {
+        const figure_series *s = &l->panel->series[i];
+        const bool narrow = d->page.width < NARROW_PAGE && s->symbol != NULL;
+        if (s->label == NULL) {
+            continue;
+        }
+        text_block text = figure_text_of(d, narrow ? s->symbol : s->label, d->style.tick);
+        text.width = run.wrapped;
+        text_measure(d->context, &text, &wide, &high);
+
+        // a new row where this one is full
+        const double width = wide + SWATCH + SWATCH_SPACE;
+        if (x > run.x && (run.column || x + width > run.right)) {
+            x = run.x;
+            y += line;
+            line = 0;
+        }
+
+        // the line's sample, and what it is
+        if (run.draw) {
+            draw_swatch(d, l, i, x, y + 0.55 * high);
+            draw_text(d, text, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0},
+                      d->style.colours->text);
+        }
+        line = fmax(line, high);
+        widest = fmax(widest, x + width - run.x);
+        x += width + 2 * SWATCH_SPACE;
     }
-    e->text = figure_text_of(d, narrow ? s->symbol : s->label, d->style.tick);
-    e->text.width = wrapped;
-    text_measure(d->context, &e->text, &e->width, &e->height);
-    return true;
-}
-
-// An entry with its swatch.
-static void draw_entry(drawing *d, const panel_layout *l, int index, const legend_entry *e,
-                       double x, double y)
-{
-    draw_swatch(d, l, index, x, y + 0.55 * e->height);
-    draw_text(d, e->text, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0}, d->style.colours->text);
+    return (figure_rect){run.x, run.y, widest, y + line - run.y};
 }
 
 static int labelled_series(const figure_panel *panel)
@@ -144,33 +160,9 @@ static int labelled_series(const figure_panel *panel)
 
 // ---- where they go
 
-// Size of a legend with entries in a row or one above the other.
-static void legend_size(const drawing *d, const figure_panel *panel, bool row, double *width,
-                        double *height)
-{
-    legend_entry e;
-    *width = *height = 0;
-    for (int i = 0; i < panel->series_count; i++) {
-        if (!entry_of(d, &panel->series[i], 0, &e)) {
-            continue;
-        }
-
-        // entries add up along the row, or one above the other
-        double w = e.width + SWATCH + SWATCH_SPACE;
-        if (row) {
-            *width += w + (*width > 0 ? 2 * SWATCH_SPACE : 0);
-            *height = fmax(*height, e.height);
-        } else {
-            *width = fmax(*width, w);
-            *height += e.height;
-        }
-    }
-}
-
 // Returns false if there is no room inside the panel.
-bool place_legend(const drawing *d, panel_layout *l, const placement *grid)
+bool place_legend(drawing *d, panel_layout *l, const placement *grid)
 {
-    double width, height;
     l->legend = (figure_rect){0};
     l->legend_inside = false;
 
@@ -180,53 +172,44 @@ bool place_legend(const drawing *d, panel_layout *l, const placement *grid)
         return true;
     }
 
-    legend_size(d, l->panel, l->legend_row, &width, &height);
-
     // a row that is wider than the panel becomes a column
-    if (l->legend_row && width > d->column[l->column].right - d->column[l->column].left) {
-        l->legend_column = true;
-        legend_size(d, l->panel, false, &width, &height);
+    const column_layout *c = &d->column[l->column];
+    legend_run run = {.right = (double)INFINITY, .column = !l->legend_row};
+    figure_rect size = lay_entries(d, l, run);
+    if (l->legend_row && size.width > c->right - c->left) {
+        l->legend_column = run.column = true;
+        size = lay_entries(d, l, run);
     }
 
     // above the panel, at its right end
     if (l->legend_row) {
-        l->legend = (figure_rect){d->column[l->column].right - width, l->plane.box.y - height - 1,
-                                  width, height};
+        l->legend = (figure_rect){c->right - size.width, l->plane.box.y - size.height - 1,
+                                  size.width, size.height};
         if (l->panel->heading != NULL) {
             l->legend.y -= HEADING_ROW;
         }
         if (l->panel->impulse_count > 0) {
-            l->legend.y = l->strip_top - height;
+            l->legend.y = l->strip_top - size.height;
         }
         return true;
     }
 
     l->legend_inside = true;
-    return placement_find(grid, width, height, LEGEND_MARGIN, &l->legend) < INK_CURVE;
+    return placement_find(grid, size.width, size.height, LEGEND_MARGIN, &l->legend) < INK_CURVE;
 }
 
 // ---- strokes
 
 void draw_legend(drawing *d, const panel_layout *l)
 {
-    double x = l->legend.x, y = l->legend.y;
     if (l->legend.width > 0 && !l->legend_inside && !d->fig->transparent) {
         // hairlines of marks do not cross it
         fill_box(d->cr, &l->legend, d->style.colours->page);
     }
-
-    // entry by entry, downwards or to the right
-    legend_entry e;
-    for (int i = 0; i < l->panel->series_count && l->legend.width > 0; i++) {
-        if (!entry_of(d, &l->panel->series[i], 0, &e)) {
-            continue;
-        }
-        draw_entry(d, l, i, &e, x, y);
-        if (l->legend_inside || l->legend_column) {
-            y += e.height;
-        } else {
-            x += e.width + SWATCH + 3 * SWATCH_SPACE;
-        }
+    if (l->legend.width > 0) {
+        lay_entries(d, l,
+                    (legend_run){l->legend.x, l->legend.y, .right = (double)INFINITY,
+                                 .column = l->legend_inside || l->legend_column, .draw = true});
     }
 }
 
@@ -234,27 +217,10 @@ void draw_legend(drawing *d, const panel_layout *l)
 
 double common_legend(drawing *d, bool draw)
 {
-    panel_layout key = {.panel = d->fig->key}, *l = key.panel != NULL ? &key : &d->panels[0];
-    double x = d->left, y = d->legend_y, line = 0;
-    legend_entry e;
-    for (int i = 0; d->fig->common_legend && i < l->panel->series_count; i++) {
-        if (!entry_of(d, &l->panel->series[i], d->right - d->left - SWATCH - SWATCH_SPACE, &e)) {
-            continue;
-        }
-
-        // a new row where this one is full
-        double width = e.width + SWATCH + SWATCH_SPACE;
-        if (x > d->left && x + width > d->right) {
-            x = d->left;
-            y += line;
-            line = 0;
-        }
-
-        line = fmax(line, e.height);
-        if (draw) {
-            draw_entry(d, l, i, &e, x, y);
-        }
-        x += width + 2 * SWATCH_SPACE;
-    }
-    return y + line - d->legend_y;
+    const panel_layout key = {.panel = d->fig->key};
+    const legend_run run = {d->left, d->legend_y, d->right - d->left - SWATCH - SWATCH_SPACE,
+                            .right = d->right, .draw = draw};
+    return d->fig->common_legend
+               ? lay_entries(d, key.panel != NULL ? &key : &d->panels[0], run).height
+               : 0;
 }

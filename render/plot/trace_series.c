@@ -207,33 +207,18 @@ figure_series trace_series(const trace_run *run, int index, owned_figure *o)
     return s;
 }
 
-// The value of a signal at an instant of a run, interpolated linearly between rows; NaN outside the
-// run.
-static double value_at(const trace *t, int index, double time)
+double trace_value(const trace *t, int index, double time)
 {
-    size_t low = 0, high = t->row_count;
-    if (high == 0 || time < t->rows[0].time || time > t->rows[high - 1].time) {
+    const size_t until = trace_rows_until(t, time), last = t->row_count;
+    if (until == 0 || time > t->rows[last - 1].time) {
         return (double)NAN;
     }
-    // the last row that is not later
-    while (high - low > 1) {
-        size_t middle = low + (high - low) / 2;
-        if (t->rows[middle].time <= time) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
 
-    double here = signal_value(&t->rows[low], index);
-    if (high == t->row_count) {
-        return here;
-    }
-
-    // a straight line to the next row
-    double span = t->rows[high].time - t->rows[low].time;
-    double share = span > 0 ? (time - t->rows[low].time) / span : 0;
-    return here + share * (signal_value(&t->rows[high], index) - here);
+    // a straight line from the last row that is not later to the next
+    const sample *before = &t->rows[until - 1], *after = &t->rows[until < last ? until : last - 1];
+    double here = signal_value(before, index), span = after->time - before->time;
+    double share = span > 0 ? (time - before->time) / span : 0;
+    return here + share * (signal_value(after, index) - here);
 }
 
 figure_series trace_difference(const trace *of, const trace *less, int index, owned_figure *o)
@@ -242,7 +227,7 @@ figure_series trace_difference(const trace *of, const trace *less, int index, ow
     double *y = owned_figure_numbers(o, of->row_count + 1);
     for (size_t i = 0; i < of->row_count; i++) {
         x[i] = of->rows[i].time;
-        y[i] = signal_value(&of->rows[i], index) - value_at(less, index, x[i]);
+        y[i] = signal_value(&of->rows[i], index) - trace_value(less, index, x[i]);
     }
     return (figure_series){.x = x, .y = y, .count = of->row_count};
 }
