@@ -68,15 +68,11 @@ char *trace_series_label(const scenario *s, int index, bool joined)
 
 static char *duration_text(double seconds)
 {
-    bool milli = seconds < 1 && seconds >= 1e-3, micro = seconds < 1e-3;
-
-    return text_printf("%g\u2009%s",
-                       seconds * (milli   ? 1e3
-                                  : micro ? 1e6
-                                          : 1),
-                       milli   ? "ms"
-                       : micro ? "\u00b5s"
-                               : "s");
+    const double factor = seconds < 1e-3 ? 1e6 : seconds < 1 ? 1e3 : 1;
+    return text_printf("%g\u2009%s", seconds * factor,
+                       seconds < 1e-3 ? "\u00b5s"
+                       : seconds < 1  ? "ms"
+                                      : "s");
 }
 
 const char *trace_mode_name(const scenario *s, int mode)

@@ -9,7 +9,7 @@
 
 enum { MOST_THREADS = 2, BUFFERS = 2 };
 
-// ---- a second thread that paints every other frame
+// ---- the frames of a film
 
 // A frame to be painted, and what came of it.
 typedef struct frame_job {
@@ -19,96 +19,86 @@ typedef struct frame_job {
     fault fault;
 } frame_job;
 
-// The thread, one frame ahead of who asks: while one of its two surfaces is being written it
-// paints onto the other.
-typedef struct frame_helper {
-    const film_plan *plan;
-    int total;
-    GThread *thread;
-    GAsyncQueue *wanted, *painted; // frame_job
-    frame_job jobs[BUFFERS];
-} frame_helper;
-
-static double film_time_of(const film_plan *plan, int frame, int total)
-{
-    return plan->options.seconds * frame / (total - 1);
-}
-
-// Paints what is wanted until a job without a surface comes.
-static gpointer help(gpointer data)
-{
-    frame_helper *h = data;
-    fault f = {0};
-    film_painter *painter;
-
-    // signals are for the thread that writes: they end its waiting
-    worker_signals_block(NULL);
-
-    status code = film_painter_create(&painter, h->plan, &f);
-    for (;;) {
-        frame_job *job = g_async_queue_pop(h->wanted);
-        if (job->onto == NULL) {
-            break;
-        }
-        job->fault = f;
-        job->code = code != STATUS_OK
-                        ? code
-                        : film_painter_frame(painter, film_time_of(h->plan, job->frame, h->total),
-                                             job->onto, &job->fault);
-        g_async_queue_push(h->painted, job);
-    }
-    film_painter_destroy(painter);
-    return NULL;
-}
-
-// Asks for a frame, if the film has it.
-static void ask_for(frame_helper *h, int frame)
-{
-    if (h->thread != NULL && frame < h->total) {
-        frame_job *job = &h->jobs[frame / 2 % BUFFERS];
-        job->frame = frame;
-        g_async_queue_push(h->wanted, job);
-    }
-}
-
-static void helper_end(frame_helper *h)
-{
-    if (h->thread == NULL) {
-        return;
-    }
-    frame_job end = {0};
-    g_async_queue_push(h->wanted, &end);
-    g_thread_join(h->thread);
-    g_async_queue_unref(h->wanted);
-    g_async_queue_unref(h->painted);
-    for (int i = 0; i < BUFFERS; i++) {
-        cairo_surface_destroy(h->jobs[i].onto);
-    }
-}
-
-// ---- the frames of a film
-
-// What writes the film.
+// What writes the film. A second thread paints every other frame, one ahead of who asks: while one
+// of its two surfaces is being written it paints onto the other.
 typedef struct film_making {
     const film_plan *plan;
+    int total; // frames
     film_painter *painter;
     film_file *file;
     cairo_surface_t *frame;
-    frame_helper helper; // without a thread: all frames are painted here
+    GThreadPool *second; // NULL: all frames are painted here
+    film_painter *its_painter;
+    GAsyncQueue *painted; // frame_job
+    frame_job jobs[BUFFERS];
 } film_making;
 
-// The next frame in the order of the film, painted here or by the helper.
-static status next_frame(film_making *m, int frame, int total, fault *f)
+static double film_time_of(const film_making *m, int frame)
 {
-    if (m->helper.thread == NULL || frame % 2 == 0) {
-        status code =
-            film_painter_frame(m->painter, film_time_of(m->plan, frame, total), m->frame, f);
+    return m->plan->options.seconds * frame / (m->total - 1);
+}
+
+// On the second thread.
+static void paint_job(gpointer data, gpointer making)
+{
+    frame_job *job = data;
+    film_making *m = making;
+
+    // signals are for the thread that writes: they end its waiting
+    worker_signals_block(NULL);
+    job->code = m->its_painter != NULL ? STATUS_OK
+                                       : film_painter_create(&m->its_painter, m->plan, &job->fault);
+    if (job->code == STATUS_OK) {
+        const double time = film_time_of(m, job->frame);
+        job->code = film_painter_frame(m->its_painter, time, job->onto, &job->fault);
+    }
+    g_async_queue_push(m->painted, job);
+}
+
+// Asks the second thread for a frame, if the film has it.
+static void ask_for(film_making *m, int frame)
+{
+    if (m->second != NULL && frame < m->total) {
+        frame_job *job = &m->jobs[frame / 2 % BUFFERS];
+        job->frame = frame;
+        g_thread_pool_push(m->second, job, NULL);
+    }
+}
+
+static void begin_second(film_making *m)
+{
+    const film_options *o = &m->plan->options;
+    for (int i = 0; i < BUFFERS; i++) {
+        m->jobs[i].onto = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o->width, o->height);
+    }
+    m->painted = g_async_queue_new();
+    m->second = g_thread_pool_new(paint_job, m, 1, TRUE, NULL);
+    ask_for(m, 1);
+}
+
+static void end_second(film_making *m)
+{
+    if (m->second != NULL) {
+        g_thread_pool_free(m->second, TRUE, TRUE);
+        g_async_queue_unref(m->painted);
+        film_painter_destroy(m->its_painter);
+        for (int i = 0; i < BUFFERS; i++) {
+            cairo_surface_destroy(m->jobs[i].onto);
+        }
+    }
+}
+
+// The next frame in the order of the film, painted here or by the second thread.
+static status next_frame(film_making *m, int frame, fault *f)
+{
+    if (m->second == NULL || frame % 2 == 0) {
+        status code = film_painter_frame(m->painter, film_time_of(m, frame), m->frame, f);
         return code == STATUS_OK ? film_file_add(m->file, m->frame, f) : code;
     }
 
     // it paints the one after the next while this one is written
-    frame_job *done = g_async_queue_pop(m->helper.painted);
-    ask_for(&m->helper, frame + 2);
+    frame_job *done = g_async_queue_pop(m->painted);
+    ask_for(m, frame + 2);
     if (done->code != STATUS_OK) {
         *f = done->fault;
         return done->code;
@@ -119,7 +109,7 @@ static status next_frame(film_making *m, int frame, int total, fault *f)
 static status add_frames(film_making *m, fault *f)
 {
     const film_options *o = &m->plan->options;
-    int total = (int)fmax(2, round(o->seconds * o->frames_per_second));
+    const int total = m->total = (int)fmax(2, round(o->seconds * o->frames_per_second));
     status code = STATUS_OK;
 
     // a frame with every colour of the film, for formats that have a palette
@@ -129,27 +119,19 @@ static status add_frames(film_making *m, fault *f)
     }
 
     if (o->threads > 1 && code == STATUS_OK) {
-        frame_helper *h = &m->helper;
-        *h = (frame_helper){.plan = m->plan, .total = total};
-        for (int i = 0; i < BUFFERS; i++) {
-            h->jobs[i].onto = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o->width, o->height);
-        }
-        h->wanted = g_async_queue_new();
-        h->painted = g_async_queue_new();
-        h->thread = g_thread_new("film", help, h);
-        ask_for(h, 1);
+        begin_second(m);
     }
     for (int i = 0; i < total && code == STATUS_OK; i++) {
         if (o->stop != NULL && *o->stop != 0) {
             code = fault_set(f, STATUS_STOPPED, "interrupted after %d of %d frames", i, total);
             break;
         }
-        code = next_frame(m, i, total, f);
+        code = next_frame(m, i, f);
         if (code == STATUS_OK && o->progress != NULL) {
             o->progress(o->context, i + 1, total);
         }
     }
-    helper_end(&m->helper);
+    end_second(m);
     return code;
 }
 
