@@ -8,8 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "render/page/picture_file.h"
-#include "render/page/svg.h"
+#include "render/page/page.h"
 #include "render/page/text.h"
 #include "src/study/linear/linear.h"
 #include "src/base/text_stream.h"
@@ -145,8 +144,7 @@ static void end_crashed(int number)
         "impactlab: a library crashed, as it does where it finds no memory\n";
     static const char own[] = "impactlab: crashed, for want of memory in a library or by a "
                               "fault of its own; no half-written file is left\n";
-    const bool in_libraries =
-        text_in_fonts() || picture_is_stroking() || svg_in_patterns() || linear_is_loading();
+    const bool in_libraries = page_in_libraries() || linear_is_loading();
     ssize_t ignored = in_libraries ? write(STDERR_FILENO, drawing, sizeof drawing - 1)
                                    : write(STDERR_FILENO, own, sizeof own - 1);
     (void)ignored;

@@ -1,6 +1,7 @@
 // Common to all pages: theme, rectangles on the page, and a report of what was drawn where.
 #pragma once
 
+#include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -66,3 +67,11 @@ typedef struct figure_report {
 // Adds a text with letters of a size on the page [pt] and its place on the page to a report (may be
 // NULL).
 void report_add_text(figure_report *report, const char *markup, double size, figure_rect place);
+
+// How deep this thread is in libraries that crash without memory: fontconfig and Pango, cairo's
+// strokes, GLib's regular expressions.
+extern _Thread_local volatile sig_atomic_t page_libraries;
+
+// Whether this thread is in one of them, or is not the program's first while Pango is at work. For a
+// signal handler.
+bool page_in_libraries(void);

@@ -7,12 +7,12 @@
 #include <math.h>
 #include <png.h>
 #include <setjmp.h>
-#include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "render/page/page.h"
 #include "render/page/svg.h"
 #include "render/page/text.h"
 #include "src/base/shipped.h"
@@ -213,13 +213,6 @@ static status drawn(status code, cairo_status_t state, fault *f)
 // Where a drawing keeps that a line of it lacks a piece.
 static const cairo_user_data_key_t lacking;
 
-static _Thread_local volatile sig_atomic_t stroking;
-
-bool picture_is_stroking(void)
-{
-    return stroking;
-}
-
 void picture_stroke(cairo_t *cr)
 {
     assert(cr != NULL);
@@ -227,9 +220,9 @@ void picture_stroke(cairo_t *cr)
     // a request for memory that is refused within the call leaves its mark
     const int before = errno;
     errno = 0;
-    stroking = true;
+    page_libraries++;
     cairo_stroke(cr);
-    stroking = false;
+    page_libraries--;
     if (errno == ENOMEM) {
         cairo_set_user_data(cr, &lacking, cr, NULL);
     }

@@ -31,9 +31,6 @@ const char *picture_software(void);
 // long line, it omits a piece of it without reporting an error; picture_end_drawing reports it.
 void picture_stroke(cairo_t *cr);
 
-// Whether this thread is stroking a path, where cairo crashes without memory. For a signal handler.
-bool picture_is_stroking(void);
-
 // Ends a drawing: destroys cr and returns `code`, the status of drawing, or STATUS_NO_MEMORY if
 // cairo met an error, after which it draws nothing, or if a piece of a line is missing. Errors of
 // writing are found by the caller when closing the stream.

@@ -3,34 +3,26 @@
 
 #include <assert.h>
 #include <math.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/page/page.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 
 // Appends to a text what comes in place of a match.
 typedef gboolean replacer(const GMatchInfo *match, GString *out, gpointer context);
 
-// How deep this thread is in GLib's regular expressions, which crash without memory.
-static _Thread_local volatile sig_atomic_t in_patterns;
-
-bool svg_in_patterns(void)
-{
-    return in_patterns > 0;
-}
-
 // The text with what `give` makes of every match of the pattern. Without memory the program ends.
 static char *replaced(const char *text, const char *pattern, replacer *give, gpointer context)
 {
-    in_patterns++;
+    page_libraries++;
     g_autoptr(GRegex) regex = g_regex_new(pattern, G_REGEX_RAW | G_REGEX_DOTALL, 0, NULL);
     char *out = regex ? g_regex_replace_eval(regex, text, -1, 0, 0, give, context, NULL) : NULL;
     if (out == NULL) {
         g_error("out of memory");
     }
-    in_patterns--;
+    page_libraries--;
     return out;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <glib.h>
-#include <stdbool.h>
 
 // cairo makes ids from counters of the whole process ("surface96"), so that the second figure of a
 // program differs from the first. Returns the SVG with the number in every id="name<number>", and
@@ -18,7 +17,3 @@ char *svg_renumber_ids(const char *svg);
 // tags stay as they are. The report of the whole thesis has 1.8 MB by it instead of 3.4
 // (tests/test_figures.c). Free the result with g_free.
 char *svg_for_page(const char *svg, const char *prefix, GHashTable *known);
-
-// Whether this thread is executing in regular expressions, which crash without memory. For a signal
-// handler.
-bool svg_in_patterns(void);

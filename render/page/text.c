@@ -3,21 +3,19 @@
 #include <assert.h>
 #include <errno.h>
 #include <fontconfig/fontconfig.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "render/page/page.h"
 
-// For text_in_fonts: how deep this thread is in fontconfig or Pango, and whether Pango has begun to
-// look for fonts, which it does on threads of its own.
-static _Thread_local volatile sig_atomic_t in_fonts;
+// And whether Pango has begun to look for fonts, which it does on threads of its own.
+_Thread_local volatile sig_atomic_t page_libraries;
 static atomic_bool has_context;
 
-bool text_in_fonts(void)
+bool page_in_libraries(void)
 {
-    return in_fonts > 0 || (atomic_load(&has_context) && gettid() != getpid());
+    return page_libraries > 0 || (atomic_load(&has_context) && gettid() != getpid());
 }
 
 static bool family_matches(const char *wanted_family)
@@ -52,10 +50,10 @@ status text_check_font(fault *f)
     enum { THERE = 1, MISSING };
     static gsize known;
     if (g_once_init_enter(&known)) {
-        in_fonts++;
+        page_libraries++;
         FcFontSet *fonts = FcInit() ? FcConfigGetFonts(NULL, FcSetSystem) : NULL;
         bool there = fonts != NULL && fonts->nfont > 0 && family_matches(TEXT_FAMILY);
-        in_fonts--;
+        page_libraries--;
         g_once_init_leave(&known, there ? THERE : MISSING);
     }
 
@@ -71,9 +69,9 @@ status text_check_font(fault *f)
 status text_check_family(const char *family, fault *f)
 {
     assert(family != NULL);
-    in_fonts++;
+    page_libraries++;
     const bool there = FcInit() && family_matches(family);
-    in_fonts--;
+    page_libraries--;
     if (!there) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "the font '%s' is not installed", family);
     }
@@ -82,7 +80,7 @@ status text_check_family(const char *family, fault *f)
 
 PangoContext *text_context_create(void)
 {
-    in_fonts++;
+    page_libraries++;
     atomic_store(&has_context, true);
     PangoContext *context = pango_font_map_create_context(pango_cairo_font_map_get_default());
     cairo_font_options_t *options = cairo_font_options_create();
@@ -100,7 +98,7 @@ PangoContext *text_context_create(void)
     cairo_font_options_destroy(options);
     pango_context_set_round_glyph_positions(context, FALSE);
     pango_cairo_context_set_resolution(context, 72);
-    in_fonts--;
+    page_libraries--;
     return context;
 }
 
@@ -127,7 +125,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     static const PangoAlignment alignments[] = {PANGO_ALIGN_LEFT, PANGO_ALIGN_CENTER,
                                                 PANGO_ALIGN_RIGHT};
 
-    in_fonts++;
+    page_libraries++;
     PangoLayout *layout = pango_layout_new(context);
     PangoFontDescription *font = pango_font_description_new();
     pango_font_description_set_family(font, t->family != NULL ? t->family : TEXT_FAMILY);
@@ -155,7 +153,7 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
             balance(layout, t->width);
         }
     }
-    in_fonts--;
+    page_libraries--;
     return layout;
 }
 
@@ -163,13 +161,13 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 // leaves in errno does. Shaping stands between the two; without memory the program ends as by GLib.
 static void begin_shaping(void)
 {
-    in_fonts++;
+    page_libraries++;
     errno = 0;
 }
 
 static void end_shaping(void)
 {
-    in_fonts--;
+    page_libraries--;
     if (errno == ENOMEM) {
         g_error("out of memory");
     }

@@ -98,10 +98,6 @@ double text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
 // GLib ends the program by a signal, and Pango draws what it can.
 void text_when_giving_up(void (*end)(const char *reason));
 
-// Whether this thread is executing in fontconfig or Pango, which crash without memory, or is not
-// the program's first thread while these are in use. For a signal handler.
-bool text_in_fonts(void);
-
 // Frees what Pango keeps for later figures (for leak checkers). No figure may be in progress. What
 // cairo keeps is not freed, because Pango's threads may still hold fonts, which cairo treats as an
 // error.
