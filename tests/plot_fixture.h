@@ -93,6 +93,10 @@ enum { RUN_PANELS = 4 };
 
 // ---- looking at what was drawn
 
+// Pixels that go when their block is left: PIXELS(image) = paint_pixels(...);
+GIVEN_BACK(cairo_surface_t, cairo_surface_destroy)
+#define PIXELS(name) SCOPED(cairo_surface_destroy_kept) cairo_surface_t *name
+
 // A figure of the catalogue.
 static inline artwork open_figure(const char *id, figure_options o)
 {

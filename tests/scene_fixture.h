@@ -10,6 +10,10 @@
 
 enum { WIDTH = 320, HEIGHT = 180 };
 
+// Pixels that go when their block is left: PIXELS(image) = paint_pixels(...);
+GIVEN_BACK(cairo_surface_t, cairo_surface_destroy)
+#define PIXELS(name) SCOPED(cairo_surface_destroy_kept) cairo_surface_t *name
+
 typedef struct recorded {
     scenario scenario;
     run_result result;

@@ -60,7 +60,7 @@ TEST(decades_are_evenly_spaced)
                                 .series = series,
                                 .series_count = 3};
     figure fig = figure_of(&panel);
-    cairo_surface_t *image = paint_pixels(&fig, 2, NULL);
+    PIXELS(image) = paint_pixels(&fig, 2, NULL);
     for (int i = 0; i < 3; i++) {
         assert_true(middle_of(image, slots[i], 0, cairo_image_surface_get_width(image), &at_x[i],
                               &at_y[i]));
@@ -69,7 +69,6 @@ TEST(decades_are_evenly_spaced)
     check_close(at_y[2] - at_y[1], at_y[1] - at_y[0], 1);
     assert_true(at_x[1] - at_x[0] > 50);
     assert_true(at_y[0] - at_y[1] > 50); // upwards
-    cairo_surface_destroy(image);
 }
 
 TEST(points_at_or_below_zero_are_left_out)
@@ -83,12 +82,11 @@ TEST(points_at_or_below_zero_are_left_out)
         .y = {.name = "empty", .scale = SCALE_LOGARITHMIC}, .series = &nothing, .series_count = 1};
     figure fig = figure_of(&panel);
     cairo_surface_destroy(paint_pixels(&fig, 2, NULL));
-    cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 300, 300);
+    PIXELS(image) = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 300, 300);
     cairo_t *cr = cairo_create(image);
     fig = figure_of(&empty);
     REFUSED(STATUS_BAD_ARGUMENT, "empty", figure_paint(cr, &fig, NULL, &f));
     cairo_destroy(cr);
-    cairo_surface_destroy(image);
 }
 
 // However narrow, an axis of two decades or more has two labels: one alone gives no scale.

@@ -194,21 +194,13 @@ static double crossed(cairo_surface_t *surface, const letter_mask *m, colour gro
 
 static int complaints;
 
-__attribute__((format(printf, 1, 2))) static void complain_of(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    char *said = g_strdup_vprintf(format, arguments);
-    va_end(arguments);
-    print_error("%s\n", said);
-    g_free(said);
-    complaints++;
-}
+// Told at once, all of them.
+#define complain_of(format, ...) (print_error(format "\n", __VA_ARGS__), complaints++)
 
 // No curve, line or mark crosses a letter, and every letter stands out from its ground.
 static void check_texts(const artwork *a, const char *id, double width)
 {
-    cairo_surface_t *surface = without_texts(a);
+    PIXELS(surface) = without_texts(a);
     for (guint i = 0; i < masks->len; i++) {
         const letter_mask *m = &g_array_index(masks, letter_mask, i);
         colour ground = ground_of(surface, m);
@@ -223,7 +215,6 @@ static void check_texts(const artwork *a, const char *id, double width)
         }
     }
     free_masks();
-    cairo_surface_destroy(surface);
 }
 
 // Nothing leaves the page, no text covers another, none is smaller than can be read.
@@ -303,8 +294,7 @@ static void check_frames(const figure *fig, const char *id, double width)
     static figure_report r;
     static recoloured other;
     recolour(&other, fig, 1);
-    cairo_surface_t *one = paint_pixels(fig, SCALE, &r),
-                    *two = paint_pixels(&other.figure, SCALE, NULL);
+    PIXELS(one) = paint_pixels(fig, SCALE, &r), *two = paint_pixels(&other.figure, SCALE, NULL);
     int outside = 0, inside = 0;
     for (int j = 0; j < cairo_image_surface_get_height(one); j++) {
         for (int i = 0; i < cairo_image_surface_get_width(one); i++) {
@@ -319,7 +309,6 @@ static void check_frames(const figure *fig, const char *id, double width)
         complain_of("%s at %g mm: %d pixels of curves inside, %d outside their frames", id, width,
                     inside, outside);
     }
-    cairo_surface_destroy(one);
     cairo_surface_destroy(two);
 }
 

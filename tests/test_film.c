@@ -19,7 +19,8 @@ static film_clock clock_of(const recorded *r, double seconds, double slow)
 // The film runs through the whole run, forwards, and slower round the impact by what was asked for.
 TEST(test_clock)
 {
-    recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded r = record("corrected/first-impact");
+    SCOPED(forget) recorded untouched = record("corrected/free-vibration");
     film_clock c = clock_of(&r, 10, 8);
     double speed, last = -1, outside, inside = 0, run = 0;
     film_clock_time(&c, 0.5, &outside);
@@ -37,12 +38,9 @@ TEST(test_clock)
     check_relative(outside / inside, 8.0, 1e-6);
     // the displayed speeds add up to the run
     check_relative(run, 1.0, 0.01);
-    forget(&r);
-    r = record("corrected/free-vibration");
-    c = clock_of(&r, 5, 8);
+    c = clock_of(&untouched, 5, 8);
     film_clock_time(&c, 2, &speed);
-    check_relative(speed, r.scenario.parameters.run.duration / 5, 1e-6);
-    forget(&r);
+    check_relative(speed, untouched.scenario.parameters.run.duration / 5, 1e-6);
 }
 
 static film_options small_film(void)
@@ -93,17 +91,14 @@ TEST(test_frames)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
     film_options options = small_film();
-    char path[256];
-    snprintf(path, sizeof path, "%s", "frames");
-    DONE(film_of(&r, &options, path, &f));
-    assert_int_equal(count_files(path), 5);
-    cairo_surface_t *frame = cairo_image_surface_create_from_png("frames/frame-00003.png");
+    DONE(film_of(&r, &options, "frames", &f));
+    assert_int_equal(count_files("frames"), 5);
+    PIXELS(frame) = cairo_image_surface_create_from_png("frames/frame-00003.png");
     assert_int_equal(cairo_image_surface_get_width(frame), 320);
     assert_int_equal(cairo_image_surface_get_height(frame), 240);
     check_below(100, count_pixels(frame, count_beam));
-    cairo_surface_destroy(frame);
     // frames of two films do not mix
-    REFUSED(STATUS_CANNOT_WRITE, "not empty", film_of(&r, &options, path, &f));
+    REFUSED(STATUS_CANNOT_WRITE, "not empty", film_of(&r, &options, "frames", &f));
 }
 
 static void expect_same_frames(const char *one, const char *two, int count)
@@ -120,11 +115,12 @@ static void expect_same_frames(const char *one, const char *two, int count)
 // Two threads write what one does, of one run and of several.
 TEST(test_threads)
 {
-    recorded r[3] = {record("corrected/first-impact"), record("corrected/plane-wall"),
-                     record("corrected/first-impact")};
-    const film_run runs[3] = {{&r[0].scenario, &r[0].result, "one"},
-                              {&r[1].scenario, &r[1].result, "two"},
-                              {&r[2].scenario, &r[2].result, "three"}};
+    SCOPED(forget)
+    recorded a = record("corrected/first-impact"),
+             b = record("corrected/plane-wall");
+    const film_run runs[3] = {{&a.scenario, &a.result, "one"},
+                              {&b.scenario, &b.result, "two"},
+                              {&a.scenario, &a.result, "three"}};
     static const char *const names[][2] = {{"one-1", "one-2"}, {"many-1", "many-2"}};
     for (int k = 0; k < 2; k++) {
         for (int threads = 1; threads <= 2; threads++) {
@@ -134,20 +130,18 @@ TEST(test_threads)
         }
         expect_same_frames(names[k][0], names[k][1], 5);
     }
-    for (int i = 0; i < 3; i++) {
-        forget(&r[i]);
-    }
 }
 
 // Each run has a view of its own: with an arm in it, and the first's own picture in the first.
 TEST(test_split_screen)
 {
-    recorded r[2] = {record("corrected/first-impact"), record("corrected/plane-wall")};
-    const film_run runs[2] = {{&r[0].scenario, &r[0].result, "one"},
-                              {&r[1].scenario, &r[1].result, "two"}};
+    SCOPED(forget)
+    recorded a = record("corrected/first-impact"),
+             b = record("corrected/plane-wall");
+    const film_run runs[2] = {{&a.scenario, &a.result, "one"}, {&b.scenario, &b.result, "two"}};
     film_options options = small_film();
     DONE(film_write(runs, 2, &options, "split", &f));
-    cairo_surface_t *frame = cairo_image_surface_create_from_png("split/frame-00003.png");
+    PIXELS(frame) = cairo_image_surface_create_from_png("split/frame-00003.png");
     assert_int_equal(cairo_image_surface_get_width(frame), 320);
     int beam[2] = {0, 0};
     for (int y = 0; y < 160; y++) {
@@ -157,9 +151,6 @@ TEST(test_split_screen)
     }
     check_below(60, beam[0]);
     check_below(60, beam[1]);
-    cairo_surface_destroy(frame);
-    forget(&r[0]);
-    forget(&r[1]);
 }
 
 // The arrow's pixels of the left or right one of two views.
@@ -179,53 +170,44 @@ static int arrow_of_view(cairo_surface_t *frame, bool right)
 // arrow of four times the force is several times as large.
 TEST(test_one_scale_of_force)
 {
-    recorded r[2] = {record("corrected/first-impact"), record("corrected/first-impact")};
-    run_finish(&r[1].result);
-    assert_int_equal(scenario_override(&r[1].scenario, "motor.voltage=4", NULL), STATUS_OK);
-    assert_int_equal(run_scenario(&r[1].scenario, true, &r[1].result), STATUS_OK);
-    const film_run runs[2] = {{&r[0].scenario, &r[0].result, "one"},
-                              {&r[1].scenario, &r[1].result, "two"}};
+    SCOPED(forget) recorded a = record("corrected/first-impact");
+    SCOPED(forget)
+    recorded b = {.scenario = shipped_with("corrected/first-impact", "motor.voltage=4")};
+    DONE(run_scenario(&b.scenario, true, &b.result));
+    const film_run runs[2] = {{&a.scenario, &a.result, "one"}, {&b.scenario, &b.result, "two"}};
     film_options options = small_film();
     options.width = 640;
     options.height = 480;
     options.view.plain = true;
     DONE(film_write(runs, 2, &options, "scale", &f));
-    cairo_surface_t *frame = cairo_image_surface_create_from_png("scale/frame-00005.png");
+    PIXELS(frame) = cairo_image_surface_create_from_png("scale/frame-00005.png");
     const int one = arrow_of_view(frame, false), four = arrow_of_view(frame, true);
     check_below(0, one);
     check_below(2.5 * one, four);
-    cairo_surface_destroy(frame);
-    forget(&r[0]);
-    forget(&r[1]);
 }
 
 TEST(test_film)
 {
-    recorded r = record("corrected/plane-wall");
-    film_options options = small_film();
     fault f = {0};
     if (film_file_check("film.mp4", &f) != STATUS_OK) {
         assert_non_null(strstr(f.text, "install the package ffmpeg"));
-        forget(&r);
         skip();
     }
+    SCOPED(forget) recorded r = record("corrected/plane-wall");
+    film_options options = small_film();
     const char *const names[] = {"film.mp4", "film.webm", "film.gif", "film.webp"};
     const char *const marks[] = {"ftypisom", "webm", "GIF89a", "WEBPVP8X"};
     for (int i = 0; i < 4; i++) {
         fail_if(film_of(&r, &options, names[i], &f) != STATUS_OK, "%s", f.text);
         check_contains(names[i], marks[i]);
     }
-    forget(&r);
 }
 
 // Puts a program of the given text in the place of ffmpeg. Returns the old PATH, to be restored.
 static char *with_encoder(const char *text)
 {
     char path[256], *old = strdup(getenv("PATH"));
-    FILE *stream = fopen("ffmpeg", "w");
-    assert_non_null(stream);
-    fputs(text, stream);
-    fclose(stream);
+    put_file("ffmpeg", text);
     assert_int_equal(chmod("ffmpeg", 0755), 0);
     snprintf(path, sizeof path, "%s:/bin:/usr/bin", test_folder);
     setenv("PATH", path, 1);
@@ -265,11 +247,8 @@ TEST(test_gif_as_asked)
                              "printf 'GIF89a %s;' \"$*\" >\"${last#file:}\"\n");
     DONE(film_of(&r, &options, "asked.gif", &f));
     restore_encoder(old);
-    char words[4096] = "";
-    FILE *stream = fopen("asked.gif", "r");
-    assert_non_null(stream);
-    assert_non_null(fgets(words, sizeof words, stream));
-    fclose(stream);
+    g_autofree char *words = NULL;
+    assert_true(g_file_get_contents("asked.gif", &words, NULL, NULL));
     assert_non_null(strstr(words, "-s 320x240 -r 10 "));
     assert_null(strstr(words, "scale="));
     assert_null(strstr(words, "fps="));
@@ -317,19 +296,14 @@ TEST(test_encoder_complains)
     fault f = {0};
 
     // a film that was there before stays
-    FILE *kept = fopen("kept.mp4", "w");
-    assert_non_null(kept);
-    fputs("old", kept);
-    fclose(kept);
+    put_file("kept.mp4", "old");
     for (int i = 0; i < 3; i++) {
-        char *old = with_encoder(cases[i].script), text[8] = "";
+        g_autofree char *text = NULL;
+        char *old = with_encoder(cases[i].script);
         assert_int_equal(film_of(&r, &options, "kept.mp4", &f), STATUS_CANNOT_WRITE);
         restore_encoder(old);
         assert_non_null(strstr(f.text, cases[i].said));
-        kept = fopen("kept.mp4", "r");
-        assert_non_null(kept);
-        assert_non_null(fgets(text, sizeof text, kept));
-        fclose(kept);
+        assert_true(g_file_get_contents("kept.mp4", &text, NULL, NULL));
         assert_string_equal(text, "old");
     }
     unlink("kept.mp4");

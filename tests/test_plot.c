@@ -102,7 +102,7 @@ TEST(the_unit_of_small_impulses_has_its_place)
 {
     static figure_report r;
     enum { DARK = 128 };
-    cairo_surface_t *image = paint_impulse(4.02e-3, &r);
+    PIXELS(image) = paint_impulse(4.02e-3, &r);
     expect_text(&r, "4.02");
 
     // lines of letters, counted down the text's place
@@ -122,7 +122,6 @@ TEST(the_unit_of_small_impulses_has_its_place)
         }
     }
     assert_int_equal(lines, 2);
-    cairo_surface_destroy(image);
 }
 
 // ---- curves
@@ -144,7 +143,7 @@ TEST(a_spike_of_one_sample_is_visible)
         static figure_report r;
         record(&fig, &r);
         write_figure(&fig, "spike.png");
-        cairo_surface_t *image = cairo_image_surface_create_from_png("spike.png");
+        PIXELS(image) = cairo_image_surface_create_from_png("spike.png");
         assert_int_equal(cairo_surface_status(image), CAIRO_STATUS_SUCCESS);
         double scale = 100.0 / 72, middle = r.panels[0].y + r.panels[0].height / 2;
         double spike = r.panels[0].x + r.panels[0].width * x[SPIKE] / x[COUNT - 1];
@@ -156,7 +155,6 @@ TEST(a_spike_of_one_sample_is_visible)
         int most = (int)((quarter - 6) * scale);
         assert_true(coloured_pixels(image, scale, here) >= most - 2);
         assert_int_equal(coloured_pixels(image, scale, left), 0);
-        cairo_surface_destroy(image);
     }
 }
 
@@ -174,7 +172,7 @@ TEST(points_that_are_not_finite_leave_a_gap)
         figure_panel panel = {.series = &series, .series_count = 1, .y.low = 0, .y.high = 1};
         figure fig = {.panels = &panel, .panel_count = 1};
         static figure_report r;
-        cairo_surface_t *image = paint_pixels(&fig, 2, &r);
+        PIXELS(image) = paint_pixels(&fig, 2, &r);
         figure_rect p = r.panels[0];
         figure_rect before = {p.x, p.y, 0.39 * p.width, p.height};
         figure_rect gap = {p.x + 0.41 * p.width, p.y, 0.18 * p.width, p.height};
@@ -182,7 +180,6 @@ TEST(points_that_are_not_finite_leave_a_gap)
         assert_true(coloured_pixels(image, 2, before) > 100);
         assert_int_equal(coloured_pixels(image, 2, gap), 0);
         assert_int_equal(coloured_pixels(image, 2, hole), 0);
-        cairo_surface_destroy(image);
         expect_tidy(&fig);
     }
 }
@@ -194,9 +191,8 @@ TEST(one_lone_point_is_visible)
     figure_panel panel = {.series = &series, .series_count = 1};
     figure fig = {.panels = &panel, .panel_count = 1};
     static figure_report r;
-    cairo_surface_t *image = paint_pixels(&fig, 4, &r);
+    PIXELS(image) = paint_pixels(&fig, 4, &r);
     assert_true(coloured_pixels(image, 4, r.panels[0]) > 4);
-    cairo_surface_destroy(image);
 }
 
 TEST(empty_and_hopeless_series_are_drawn_without_fuss)
@@ -228,7 +224,7 @@ TEST(far_away_points_are_clipped)
     figure_panel panel = {.series = &series, .series_count = 1, .y.low = 0, .y.high = 1};
     figure fig = {.panels = &panel, .panel_count = 1};
     static figure_report r;
-    cairo_surface_t *image = paint_pixels(&fig, 2, &r);
+    PIXELS(image) = paint_pixels(&fig, 2, &r);
     figure_rect p = r.panels[0];
     figure_rect centre = {p.x + p.width / 2 - 3, p.y, 6, p.height};
     figure_rect between = {p.x + 0.05 * p.width, p.y, 0.4 * p.width, p.height};
@@ -236,7 +232,6 @@ TEST(far_away_points_are_clipped)
     assert_true(coloured_pixels(image, 2, centre) > (int)(1.5 * p.height));
     assert_int_equal(coloured_pixels(image, 2, between), 0);
     assert_int_equal(coloured_pixels(image, 2, above), 0);
-    cairo_surface_destroy(image);
 }
 
 TEST(legend_and_inset_keep_off_the_data)
@@ -250,7 +245,7 @@ TEST(legend_and_inset_keep_off_the_data)
         s.figure.plot.panels[i].keyless = true;
         s.figure.plot.panels[i].zoom_to = s.figure.plot.panels[i].zoom_from;
     }
-    cairo_surface_t *image = paint_pixels(fig, 3, &without);
+    PIXELS(image) = paint_pixels(fig, 3, &without);
     for (int i = 0; i < RUN_PANELS; i++) {
         if (with.legends[i].width > 0 && with.legends[i].y > with.panels[i].y) {
             assert_int_equal(coloured_pixels(image, 3, with.legends[i]), 0);
@@ -259,7 +254,6 @@ TEST(legend_and_inset_keep_off_the_data)
     assert_true(with.legends[1].width > 0);
     assert_true(with.insets[0].width > 0);
     assert_int_equal(coloured_pixels(image, 3, with.insets[0]), 0);
-    cairo_surface_destroy(image);
 }
 
 // Data in one corner after the other: the legend has to go elsewhere and stay inside.
@@ -281,11 +275,10 @@ TEST(legend_goes_to_a_free_corner)
         static figure_report r, none;
         record(&fig, &r);
         panel.keyless = true;
-        cairo_surface_t *image = paint_pixels(&fig, 3, &none);
+        PIXELS(image) = paint_pixels(&fig, 3, &none);
         assert_true(r.legends[0].width > 0);
         expect_inside(&r.legends[0], &r.panels[0], "the legend");
         assert_int_equal(coloured_pixels(image, 3, r.legends[0]), 0);
-        cairo_surface_destroy(image);
     }
 }
 
@@ -334,9 +327,8 @@ TEST(mono_has_no_colour)
     static figure_report r;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    cairo_surface_t *coloured = paint_pixels(&s.figure.plot.figure, 1.5, &r);
+    PIXELS(coloured) = paint_pixels(&s.figure.plot.figure, 1.5, &r);
     assert_true(coloured_pixels(coloured, 1.5, r.page) > 1000);
-    cairo_surface_destroy(coloured);
     s.figure.plot.figure.theme = THEME_MONO;
     expect_grey(paint_pixels(&s.figure.plot.figure, 1.5, &r));
 
@@ -367,7 +359,7 @@ TEST(a_busy_line_has_no_dashes)
     figure_panel panel = {.series = series, .series_count = 2, .y = {.low = 0, .high = 30}};
     figure fig = {.panels = &panel, .panel_count = 1, .theme = THEME_MONO};
     const double scale = 6;
-    cairo_surface_t *surface = paint_pixels(&fig, scale, &r);
+    PIXELS(surface) = paint_pixels(&fig, scale, &r);
 
     // the first entry's swatch: an unbroken line, lighter than the second one's
     const figure_rect *legend = &r.legends[0];
@@ -390,7 +382,6 @@ TEST(a_busy_line_has_no_dashes)
     assert_true(lightness[0] < 200);
     assert_true(lightness[1] < 40);
     assert_true(lightness[0] > lightness[1] + 60);
-    cairo_surface_destroy(surface);
 }
 
 // ---- runs side by side

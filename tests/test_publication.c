@@ -97,10 +97,9 @@ TEST(files_know_the_command_and_tell_what_they_show)
 TEST(a_transparent_picture_has_no_ground)
 {
     publish(&(figure_options){.look.transparent = true}, "clear.png");
-    cairo_surface_t *surface = cairo_image_surface_create_from_png("clear.png");
+    PIXELS(surface) = cairo_image_surface_create_from_png("clear.png");
     assert_int_equal(cairo_image_surface_get_format(surface), CAIRO_FORMAT_ARGB32);
     assert_int_equal(cairo_image_surface_get_data(surface)[3], 0);
-    cairo_surface_destroy(surface);
 }
 
 TEST(serif_pictures_have_serif_letters)
