@@ -203,9 +203,9 @@ static char *latex_escape(const char *plain)
     return g_string_free(out, FALSE);
 }
 
-void latex_print(FILE *stream, const artwork *a, const char *tex, const char *file)
+char *latex_environment(const artwork *a, const char *tex, const char *file)
 {
-    assert(stream != NULL && a != NULL && tex != NULL && file != NULL);
+    assert(a != NULL && tex != NULL && file != NULL);
     g_autofree char *tex_folder = g_path_get_dirname(tex), *folder = g_path_get_dirname(file);
     g_autofree char *name = g_path_get_basename(file);
     const char *dot = strrchr(name, '.');
@@ -215,16 +215,14 @@ void latex_print(FILE *stream, const artwork *a, const char *tex, const char *fi
     g_autofree char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
     g_autofree char *alt = latex_escape(a->alternative != NULL ? a->alternative : a->title);
 
-    g_autofree char *text =
-        text_printf("\\begin{figure}\n"
-                    "  \\centering\n"
-                    "  \\includegraphics[width=%.4gmm,alt={%s}]{%s}\n"
-                    "  \\caption{%s%s%s}\n"
-                    "  \\label{fig:%.*s}\n"
-                    "\\end{figure}\n",
-                    a->width * 25.4 / 72, alt, strcmp(tex_folder, folder) == 0 ? name : file,
-                    heading, caption[0] != '\0' ? ". " : "", caption, stem, name);
-    fputs(text, stream);
+    return text_printf("\\begin{figure}\n"
+                       "  \\centering\n"
+                       "  \\includegraphics[width=%.4gmm,alt={%s}]{%s}\n"
+                       "  \\caption{%s%s%s}\n"
+                       "  \\label{fig:%.*s}\n"
+                       "\\end{figure}\n",
+                       a->width * 25.4 / 72, alt, strcmp(tex_folder, folder) == 0 ? name : file,
+                       heading, caption[0] != '\0' ? ". " : "", caption, stem, name);
 }
 
 // ---- what stands beside a picture
@@ -237,12 +235,22 @@ static char *beside(const char *file, const char *ending)
     return text_printf("%.*s%s", (int)length, file, ending);
 }
 
+static status write_text(const char *path, const char *text, fault *f)
+{
+    whole_file file;
+    status code = whole_file_open(&file, path, f);
+    if (code == STATUS_OK) {
+        fputs(text, file.stream);
+        code = whole_file_commit(&file, f);
+    }
+    return code;
+}
+
 status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
                        fault *f)
 {
     assert(a != NULL && o != NULL && path != NULL);
     picture p = artwork_picture(a, o);
-
     status code = picture_write(&p, path, f);
     if (code == STATUS_OK && with_csv) {
         g_autofree char *csv = beside(path, ".csv");
@@ -251,24 +259,15 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
 
     // text of a picture that has none of its own
     if (code == STATUS_OK && o->look.bare) {
-        whole_file text;
         g_autofree char *txt = beside(path, ".txt");
         g_autofree char *caption = text_plain(a->caption != NULL ? a->caption : "");
-        code = whole_file_open(&text, txt, f);
-        if (code == STATUS_OK) {
-            fprintf(text.stream, "%s%s%s\n", a->title != NULL ? a->title : "",
-                    caption[0] != '\0' ? "\n\n" : "", caption);
-            code = whole_file_commit(&text, f);
-        }
+        g_autofree char *text = text_printf("%s%s%s\n", a->title != NULL ? a->title : "",
+                                            caption[0] != '\0' ? "\n\n" : "", caption);
+        code = write_text(txt, text, f);
     }
-
     if (code == STATUS_OK && o->latex != NULL) {
-        whole_file tex;
-        code = whole_file_open(&tex, o->latex, f);
-        if (code == STATUS_OK) {
-            latex_print(tex.stream, a, o->latex, path);
-            code = whole_file_commit(&tex, f);
-        }
+        g_autofree char *text = latex_environment(a, o->latex, path);
+        code = write_text(o->latex, text, f);
     }
     return code;
 }

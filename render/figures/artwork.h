@@ -68,6 +68,6 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
 // Sets the ends of a figure's horizontal axis to --from and --to.
 void figure_take_range(figure *fig, const figure_options *o);
 
-// Prints a figure environment: the path of the picture relative to the folder of the .tex file, its
-// width, alternative text, caption and the label fig:NAME with the name of the picture.
-void latex_print(FILE *stream, const artwork *a, const char *tex, const char *file);
+// A figure environment: the path of the picture relative to the folder of the .tex file, its width,
+// alternative text, caption and the label fig:NAME with the name of the picture. Free with g_free.
+char *latex_environment(const artwork *a, const char *tex, const char *file);

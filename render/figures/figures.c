@@ -243,7 +243,8 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
         beside.look.bare = o->look.bare && i == 0;
         code = artwork_publish(&drawn, &beside, path, i == 0, f);
         if (code == STATUS_OK && i == 0 && tex != NULL && o->latex != NULL) {
-            latex_print(tex, &drawn, o->latex, path);
+            g_autofree char *text = latex_environment(&drawn, o->latex, path);
+            fputs(text, tex);
         }
     }
     artwork_finish(&drawn);

@@ -72,6 +72,6 @@ void report_add_text(figure_report *report, const char *markup, double size, fig
 // strokes, GLib's regular expressions.
 extern _Thread_local volatile sig_atomic_t page_libraries;
 
-// Whether this thread is in one of them, or is not the program's first while Pango is at work. For a
-// signal handler.
+// Whether this thread is in one of them, or is not the program's first while Pango is at work. For
+// a signal handler.
 bool page_in_libraries(void);

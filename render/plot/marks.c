@@ -346,6 +346,14 @@ static void draw_hairline(const drawing *d, double x, double top, double bottom)
     cairo_restore(d->cr);
 }
 
+static void draw_dot(const drawing *d, const plane *p, double x, double y)
+{
+    set_colour(d->cr, d->style.colours->text);
+    cairo_new_path(d->cr);
+    cairo_arc(d->cr, plane_x(p, x), plane_y(p, y), DOT_RADIUS, 0, 2 * G_PI);
+    cairo_fill(d->cr);
+}
+
 void draw_points(drawing *d)
 {
     const plane *p = &d->panels[0].plane;
@@ -355,10 +363,7 @@ void draw_points(drawing *d)
         if (!has_point(d, m)) {
             continue;
         }
-        set_colour(d->cr, d->style.colours->text);
-        cairo_new_path(d->cr);
-        cairo_arc(d->cr, plane_x(p, m->x), plane_y(p, m->y), DOT_RADIUS, 0, 2 * G_PI);
-        cairo_fill(d->cr);
+        draw_dot(d, p, m->x, m->y);
         if (at_point(d, i)) {
             draw_label(d, m->label, d->style.small, r->x, r->y, (anchor){0, 0});
         }
@@ -456,11 +461,7 @@ void draw_notes(drawing *d, const panel_layout *l)
 
         // a dot and its text
         figure_rect place = note_place(d, l, n);
-        set_colour(d->cr, d->style.colours->text);
-        cairo_new_path(d->cr);
-        cairo_arc(d->cr, plane_x(&l->plane, n->x), plane_y(&l->plane, n->y), DOT_RADIUS, 0,
-                  2 * G_PI);
-        cairo_fill(d->cr);
+        draw_dot(d, &l->plane, n->x, n->y);
         draw_label(d, n->text, d->style.tick, place.x, place.y, (anchor){0, 0});
     }
 }

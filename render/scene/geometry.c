@@ -2,8 +2,8 @@
 #include "render/scene/geometry.h"
 
 #include <assert.h>
+#include <glib.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/numbers.h"
@@ -44,42 +44,32 @@ vector vector_unit(vector a)
 void mesh_finish(mesh *m)
 {
     assert(m != NULL);
-    free(m->vertices);
-    free(m->corners);
+    g_free(m->vertices);
+    g_free(m->corners);
     *m = (mesh){0};
 }
 
 // Room for `more` items of a size after `count`, by doubling. Returns the items.
-static void *grown(mesh *m, void *items, size_t count, size_t more, size_t *capacity, size_t size)
+static void *grown(void *items, size_t count, size_t more, size_t *capacity, size_t size)
 {
-    if (count + more <= *capacity || m->out_of_memory) {
+    if (count + more <= *capacity) {
         return items;
     }
-    const size_t wanted = *capacity > 0 ? 2 * *capacity : 4096 * more;
-    void *moved = realloc(items, wanted * size);
-    m->out_of_memory = moved == NULL;
-    *capacity = moved != NULL ? wanted : *capacity;
-    return moved != NULL ? moved : items;
+    *capacity = *capacity > 0 ? 2 * *capacity : 4096 * more;
+    return g_realloc_n(items, *capacity, size);
 }
 
 // Adds a vertex and returns its number.
 static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
 {
-    m->vertices =
-        grown(m, m->vertices, m->vertex_count, 1, &m->vertex_capacity, sizeof *m->vertices);
-    if (m->out_of_memory) {
-        return 0;
-    }
+    m->vertices = grown(m->vertices, m->vertex_count, 1, &m->vertex_capacity, sizeof *m->vertices);
     m->vertices[m->vertex_count] = (mesh_vertex){place, normal, of};
     return (unsigned)m->vertex_count++;
 }
 
 static void add_triangle(mesh *m, unsigned a, unsigned b, unsigned c)
 {
-    m->corners = grown(m, m->corners, m->corner_count, 3, &m->corner_capacity, sizeof *m->corners);
-    if (m->out_of_memory) {
-        return;
-    }
+    m->corners = grown(m->corners, m->corner_count, 3, &m->corner_capacity, sizeof *m->corners);
     m->corners[m->corner_count++] = a;
     m->corners[m->corner_count++] = b;
     m->corners[m->corner_count++] = c;

@@ -35,7 +35,6 @@ typedef struct mesh {
     unsigned *corners; // three of each triangle
     size_t vertex_count, vertex_capacity;
     size_t corner_count, corner_capacity;
-    bool out_of_memory; // once true, nothing more is added
 } mesh;
 
 void mesh_finish(mesh *m);

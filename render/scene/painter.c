@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 bool scene_renderer_find(const char *name, scene_renderer *which)
@@ -16,12 +15,6 @@ bool scene_renderer_find(const char *name, scene_renderer *which)
         }
     }
     return false;
-}
-
-static status complain_memory(const scene_painter *p, fault *f)
-{
-    return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
-                     p->samples.width, p->samples.height);
 }
 
 // Opens the renderer asked for, or the first that is there.
@@ -49,28 +42,26 @@ static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
 
     // drawing by hand needs only memory for the depths
     snprintf(p->name, sizeof p->name, "cairo %s, own depth buffer", cairo_version_string());
-    return samples_add_depths(&p->samples) ? STATUS_OK : complain_memory(p, f);
+    return samples_add_depths(&p->samples)
+               ? STATUS_OK
+               : fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", b->width,
+                           b->height);
 }
 
 status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
                             int samples, fault *f)
 {
     assert(out != NULL && width > 0 && height > 0 && samples > 0);
-    scene_painter *p = calloc(1, sizeof *p);
-    *out = NULL;
-    if (p == NULL || !samples_init(&p->samples, width, height, samples)) {
-        scene_painter_destroy(p);
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width,
-                         height);
-    }
-
-    status code = open_renderer(p, which, f);
+    scene_painter *p = *out = g_new0(scene_painter, 1);
+    status code = samples_init(&p->samples, width, height, samples)
+                      ? open_renderer(p, which, f)
+                      : fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
+                                  width, height);
     if (code != STATUS_OK) {
         scene_painter_destroy(p);
-        return code;
+        *out = NULL;
     }
-    *out = p;
-    return STATUS_OK;
+    return code;
 }
 
 void scene_painter_destroy(scene_painter *p)
@@ -78,8 +69,8 @@ void scene_painter_destroy(scene_painter *p)
     if (p != NULL) {
         gl_offscreen_destroy(p->gl);
         samples_finish(&p->samples);
-        free(p->vertices);
-        free(p);
+        g_free(p->vertices);
+        g_free(p);
     }
 }
 
@@ -168,12 +159,8 @@ status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface
     const mesh *m = what->mesh;
     status code = STATUS_OK;
     if (m->vertex_count > p->vertex_capacity) {
-        free(p->vertices);
-        p->vertices = malloc(m->vertex_count * sizeof *p->vertices);
-        p->vertex_capacity = p->vertices ? m->vertex_count : 0;
-    }
-    if (m->out_of_memory || p->vertex_capacity < m->vertex_count) {
-        return complain_memory(p, f);
+        p->vertices = g_renew(gl_vertex, p->vertices, m->vertex_count);
+        p->vertex_capacity = m->vertex_count;
     }
 
     // only the part of the picture that holds something

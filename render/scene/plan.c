@@ -1,8 +1,8 @@
 #include "render/scene/plan.h"
 
 #include <assert.h>
+#include <glib.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "render/page/picture_file.h"
 
@@ -233,26 +233,18 @@ static void paint_all(const painter *g)
     paint_pull(g, x, y);
 }
 
-bool plan_paint(cairo_t *cr, const plan *p, const plan_view *v)
+void plan_paint(cairo_t *cr, const plan *p, const plan_view *v)
 {
     assert(cr != NULL && p != NULL && v != NULL && p->rows != NULL && p->rows->row_count > 0);
     assert(v->scale > 0 && v->magnified > 0 && isfinite(p->time));
-    const size_t links = (size_t)p->parameters->arm.links;
-    painter g = {.cr = cr, .plan = p, .view = v};
-    g.joints = malloc((links + 1) * sizeof *g.joints);
-    g.curve = malloc((size_t)scene_curve_length((int)links) * sizeof *g.curve);
-    const bool done = g.joints != NULL && g.curve != NULL;
-
-    if (done) {
-        cairo_save(cr);
-        cairo_rectangle(cr, 0, 0, v->width, v->height);
-        cairo_clip(cr);
-        set_colour(cr, p->colours.ground);
-        cairo_paint(cr);
-        paint_all(&g);
-        cairo_restore(cr);
-    }
-    free(g.joints);
-    free(g.curve);
-    return done;
+    const int links = p->parameters->arm.links;
+    g_autofree vector *joints = g_new(vector, links + 1);
+    g_autofree vector *curve = g_new(vector, scene_curve_length(links));
+    cairo_save(cr);
+    cairo_rectangle(cr, 0, 0, v->width, v->height);
+    cairo_clip(cr);
+    set_colour(cr, p->colours.ground);
+    cairo_paint(cr);
+    paint_all(&(painter){cr, p, v, joints, curve});
+    cairo_restore(cr);
 }

@@ -28,9 +28,8 @@ typedef struct plan {
     plan_colours colours;
 } plan;
 
-// Paints the plan over the whole picture, from the origin of the cairo context. False without
-// memory.
-bool plan_paint(cairo_t *cr, const plan *p, const plan_view *v);
+// Paints the plan over the whole picture, from the origin of the cairo context.
+void plan_paint(cairo_t *cr, const plan *p, const plan_view *v);
 
 // A close-up of the contact: the point where the tip meets the wall is in the middle of a picture
 // of this size [pixels], undistorted.
