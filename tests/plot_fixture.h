@@ -275,6 +275,12 @@ static inline void expect_same_bytes(const char *a, const char *b)
     assert_memory_equal(a_bytes, b_bytes, a_length);
 }
 
+static inline void write_csv(const figure *fig, const char *path)
+{
+    SCOPED(artwork_finish) artwork a = artwork_of_figure(fig, NULL, NULL);
+    DONE(artwork_write_csv(&a, path, &f));
+}
+
 static inline void write_figure(const figure *fig, const char *path)
 {
     DONE(figure_write(fig, path, &f));

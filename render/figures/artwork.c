@@ -28,9 +28,20 @@ status artwork_paint(const artwork *a, cairo_t *cr, figure_report *report, fault
 status artwork_write_csv(const artwork *a, const char *path, fault *f)
 {
     assert(a != NULL && path != NULL);
-    return a->table != NULL     ? table_write_csv(a->table, path, f)
-           : a->plotted != NULL ? figure_write_csv(a->plotted, path, f)
-                                : a->write_csv(a->owner, path, f);
+    whole_file file;
+    status code = whole_file_open(&file, path, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    csv_writer csv = csv_begin(file.stream);
+    if (a->table != NULL) {
+        table_write_csv(a->table, &csv);
+    } else if (a->plotted != NULL) {
+        figure_write_csv(a->plotted, &csv);
+    } else {
+        a->write_csv(a->owner, &csv);
+    }
+    return whole_file_commit(&file, f);
 }
 
 static status paint(cairo_t *cr, const void *what, fault *f)

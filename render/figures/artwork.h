@@ -27,7 +27,7 @@ typedef struct artwork {
     const figure *plotted;   // of a plotted figure, else NULL
     // of anything else: what the functions below do of its owner
     status (*paint)(cairo_t *cr, const void *owner, figure_report *report, fault *f);
-    status (*write_csv)(const void *owner, const char *path, fault *f);
+    void (*write_csv)(const void *owner, csv_writer *csv);
     void *owner;                  // holds all of it
     void (*release)(void *owner); // NULL: nothing to free
 } artwork;

@@ -4,8 +4,6 @@
 #include <math.h>
 
 #include "render/figures/run_figure.h"
-#include "src/base/csv.h"
-#include "src/base/whole_file.h"
 
 void diagram_add_value(diagram *d, const char *name, double value, const char *unit)
 {
@@ -33,31 +31,22 @@ static void write_value(csv_writer *csv, const char *name, double value, const c
     csv_end_row(csv);
 }
 
-static status write_diagram(const void *what, const char *path, fault *f)
+static void write_diagram(const void *what, csv_writer *csv)
 {
-    whole_file file;
     const diagram *d = what;
-    status code = whole_file_open(&file, path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
-
-    csv_writer csv = csv_begin(file.stream);
-    csv_heading(&csv, "quantity", NULL);
-    csv_heading(&csv, "value", NULL);
-    csv_heading(&csv, "unit", NULL);
-    csv_end_row(&csv);
+    csv_heading(csv, "quantity", NULL);
+    csv_heading(csv, "value", NULL);
+    csv_heading(csv, "unit", NULL);
+    csv_end_row(csv);
 
     // single values, then the curve
     for (int i = 0; i < d->value_count; i++) {
-        write_value(&csv, d->values[i].name, d->values[i].value, d->values[i].unit);
+        write_value(csv, d->values[i].name, d->values[i].value, d->values[i].unit);
     }
     for (int i = 0; d->curve_x != NULL && i < CURVE_POINTS; i++) {
-        write_value(&csv, "force", d->curve_x[i], "N");
-        write_value(&csv, "output", d->curve_y[i], "V");
+        write_value(csv, "force", d->curve_x[i], "N");
+        write_value(csv, "output", d->curve_y[i], "V");
     }
-
-    return whole_file_commit(&file, f);
 }
 
 void diagram_release(void *what)

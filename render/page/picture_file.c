@@ -18,7 +18,7 @@
 #include "src/base/shipped.h"
 #include "src/base/whole_file.h"
 
-enum { NOTES_MOST = 8, COMPRESSION = 3 };
+enum { COMPRESSION = 3 };
 
 static void fail(png_structp png, png_const_charp message)
 {
@@ -41,22 +41,17 @@ static void write_bytes(png_structp png, png_bytep bytes, png_size_t length)
 
 static void set_notes(png_structp png, png_infop info, const png_note *notes, int count)
 {
-    png_text texts[NOTES_MOST];
-    int used = 0;
-    memset(texts, 0, sizeof texts);
-
-    for (int i = 0; i < count && used < NOTES_MOST; i++) {
-        if (notes[i].text != NULL) {
-            texts[used].compression = PNG_ITXT_COMPRESSION_NONE;
-            texts[used].key = (char *)notes[i].keyword;
-            texts[used].text = (char *)notes[i].text;
-            texts[used].itxt_length = strlen(notes[i].text);
-            texts[used].lang = (char *)"";
-            texts[used].lang_key = (char *)notes[i].keyword;
-            used++;
+    for (int i = 0; i < count; i++) {
+        png_text text = {.compression = PNG_ITXT_COMPRESSION_NONE,
+                         .key = (char *)notes[i].keyword,
+                         .text = (char *)notes[i].text,
+                         .lang = (char *)"",
+                         .lang_key = (char *)notes[i].keyword};
+        if (text.text != NULL) {
+            text.itxt_length = strlen(text.text);
+            png_set_text(png, info, &text, 1);
         }
     }
-    png_set_text(png, info, texts, used);
 }
 
 // cairo's native-endian 0xAARRGGBB as bytes R, G, B and A where there is one; cairo's colours are

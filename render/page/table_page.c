@@ -4,9 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/base/csv.h"
-#include "src/base/whole_file.h"
-
 #define CELL_SPACE 3.0 // above and below a row's text, and left and right of a cell's
 #define CELL_SIZE  7.0
 
@@ -247,14 +244,9 @@ static void write_plain(csv_writer *csv, const char *markup)
     csv_text(csv, plain);
 }
 
-status table_write_csv(const table_page *t, const char *path, fault *f)
+void table_write_csv(const table_page *t, csv_writer *csv)
 {
-    assert(t != NULL && path != NULL);
-    whole_file file;
-    status code = whole_file_open(&file, path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    assert(t != NULL && csv != NULL);
 
     // the group that a row stands under becomes its first field
     bool grouped = false;
@@ -262,14 +254,13 @@ status table_write_csv(const table_page *t, const char *path, fault *f)
     for (guint row = 0; row < t->rows->len; row++) {
         grouped = grouped || table_row_is_group(t, row);
     }
-    csv_writer csv = csv_begin(file.stream);
     if (grouped) {
-        csv_heading(&csv, "group", NULL);
+        csv_heading(csv, "group", NULL);
     }
     for (int i = 0; i < t->column_count; i++) {
-        write_plain(&csv, t->columns[i].label);
+        write_plain(csv, t->columns[i].label);
     }
-    csv_end_row(&csv);
+    csv_end_row(csv);
 
     for (guint row = 0; row < t->rows->len; row++) {
         char **cells = row_cells(t, row);
@@ -278,14 +269,13 @@ status table_write_csv(const table_page *t, const char *path, fault *f)
             continue;
         }
         if (grouped) {
-            write_plain(&csv, group);
+            write_plain(csv, group);
         }
         for (int i = 0; i < t->column_count; i++) {
-            write_plain(&csv, cells[i]);
+            write_plain(csv, cells[i]);
         }
-        csv_end_row(&csv);
+        csv_end_row(csv);
     }
-    return whole_file_commit(&file, f);
 }
 
 static void add_html_cell(GString *html, const char *tag, text_align align, const char *markup)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/page/sketch.h"
+#include "src/base/csv.h"
 
 enum { TABLE_COLUMNS = 10 };
 
@@ -35,7 +36,7 @@ void table_size(const table_page *t, double *width, double *height);
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f);
 
 // Writes the texts of the cells without markup; a group's heading is the first column of its rows.
-status table_write_csv(const table_page *t, const char *path, fault *f);
+void table_write_csv(const table_page *t, csv_writer *csv);
 
 // Appends the table as HTML.
 void table_add_html(const table_page *t, GString *html);

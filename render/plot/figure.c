@@ -5,8 +5,6 @@
 
 #include "render/page/picture_file.h"
 #include "render/plot/drawing.h"
-#include "src/base/csv.h"
-#include "src/base/whole_file.h"
 
 #define PANEL_HEIGHT 34.0 // of a panel of weight 1 on a page without a height [mm]
 #define SIDES        52.0 // approximate width of the labels next to the panels [pt]
@@ -310,7 +308,7 @@ status figure_write(const figure *fig, const char *path, fault *f)
 
 // A table in long form.
 typedef struct long_form {
-    csv_writer csv;
+    csv_writer *csv;
     bool shaded; // with a last column for the colour scale
     bool alike;  // all panels show one quantity: their headings tell them apart
 } long_form;
@@ -319,7 +317,7 @@ typedef struct long_form {
 static void write_name(long_form *t, const char *name, const char *label, const char *unit)
 {
     g_autofree char *plain = name ? g_strdup(name) : text_plain(label ? label : "");
-    csv_heading(&t->csv, plain, unit != NULL && unit[0] != '\0' ? unit : NULL);
+    csv_heading(t->csv, plain, unit != NULL && unit[0] != '\0' ? unit : NULL);
 }
 
 static void write_panel_name(long_form *t, const figure_panel *panel)
@@ -334,12 +332,12 @@ static void write_panel_name(long_form *t, const figure_panel *panel)
 // The end of a row; `shade` is the value on the colour scale, where the figure has one.
 static void write_point(long_form *t, double x, double y, double shade)
 {
-    csv_number(&t->csv, x);
-    csv_number(&t->csv, isfinite(y) ? y : (double)NAN);
+    csv_number(t->csv, x);
+    csv_number(t->csv, isfinite(y) ? y : (double)NAN);
     if (t->shaded) {
-        csv_number(&t->csv, isfinite(shade) ? shade : (double)NAN);
+        csv_number(t->csv, isfinite(shade) ? shade : (double)NAN);
     }
-    csv_end_row(&t->csv);
+    csv_end_row(t->csv);
 }
 
 // All that a panel shows of its own.
@@ -348,7 +346,7 @@ static void write_panel(long_form *t, const figure_panel *panel)
     const figure_map *map = panel->map;
     for (int k = 0; k < panel->series_count; k++) {
         const figure_series *s = &panel->series[k];
-        for (size_t i = 0; i < s->count && !ferror(t->csv.stream); i++) {
+        for (size_t i = 0; i < s->count && !ferror(t->csv->stream); i++) {
             if (!isfinite(series_x(s, i))) {
                 continue;
             }
@@ -358,10 +356,10 @@ static void write_panel(long_form *t, const figure_panel *panel)
             write_point(t, series_x(s, i), series_y(s, i), shade);
         }
     }
-    for (size_t i = 0; map != NULL && i < map->columns && !ferror(t->csv.stream); i++) {
+    for (size_t i = 0; map != NULL && i < map->columns && !ferror(t->csv->stream); i++) {
         for (size_t j = 0; j < map->rows; j++) {
             write_panel_name(t, panel);
-            csv_text(&t->csv, "map");
+            csv_text(t->csv, "map");
             write_point(t, map->x[i], map->y[j], map->z[i * map->rows + j]);
         }
     }
@@ -383,8 +381,8 @@ static void write_panel(long_form *t, const figure_panel *panel)
 // A row that has an x alone.
 static void write_instant(long_form *t, const char *panel, const char *series, double x)
 {
-    csv_text(&t->csv, panel);
-    csv_text(&t->csv, series);
+    csv_text(t->csv, panel);
+    csv_text(t->csv, series);
     write_point(t, x, (double)NAN, (double)NAN);
 }
 
@@ -419,25 +417,20 @@ static void write_axis_heading(long_form *t, const figure_axis *a, const char *o
     write_name(t, nameless ? otherwise : a->name, a->label, a->unit);
 }
 
-status figure_write_csv(const figure *fig, const char *path, fault *f)
+void figure_write_csv(const figure *fig, csv_writer *csv)
 {
-    assert(fig != NULL && path != NULL);
-    whole_file file;
-    status code = whole_file_open(&file, path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    assert(fig != NULL && csv != NULL);
 
     // the heading: panel, series, and both axes
-    long_form t = {.csv = csv_begin(file.stream)};
-    csv_heading(&t.csv, "panel", NULL);
-    csv_heading(&t.csv, "series", NULL);
+    long_form t = {csv};
+    csv_heading(csv, "panel", NULL);
+    csv_heading(csv, "series", NULL);
     write_axis_heading(&t, &fig->x, "x");
     t.alike = panels_are_alike(fig);
     if (t.alike) {
         write_axis_heading(&t, &fig->panels[0].y, "y");
     } else {
-        csv_heading(&t.csv, "value", NULL);
+        csv_heading(csv, "value", NULL);
     }
     for (int p = 0; p < fig->panel_count; p++) {
         const figure_colours *colours = fig->panels[p].colours;
@@ -447,12 +440,11 @@ status figure_write_csv(const figure *fig, const char *path, fault *f)
             break;
         }
     }
-    csv_end_row(&t.csv);
+    csv_end_row(csv);
 
     // panel by panel, then what all share
     for (int p = 0; p < fig->panel_count; p++) {
         write_panel(&t, &fig->panels[p]);
     }
     write_marks(&t, fig);
-    return whole_file_commit(&file, f);
 }

@@ -11,6 +11,7 @@
 #include <glib.h>
 
 #include "render/page/page.h"
+#include "src/base/csv.h"
 #include "src/base/fault.h"
 #include "src/tables/signals.h"
 
@@ -218,4 +219,4 @@ status figure_write(const figure *fig, const char *path, fault *f);
 // empty where the curve has a gap), cells of maps as the series "map", impulses as the series
 // impulse[unit], then marks and shaded intervals with an empty y. Where there is a colour scale its
 // value stands in a last column.
-status figure_write_csv(const figure *fig, const char *path, fault *f);
+void figure_write_csv(const figure *fig, csv_writer *csv);

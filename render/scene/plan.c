@@ -109,22 +109,21 @@ static void paint_wall(const painter *g)
     const sample row = scene_joints(g->plan->rows, p, g->plan->time, g->joints);
     const vector shift = scene_wall_shift(p, &row);
     const colour wall = g->plan->colours.wall;
-    const double off = 0.5 * size_of(g, BEAM_WIDTH, 3);
-    const double x = p->arm.length * cos(p->wall.angle), y = p->arm.length * sin(p->wall.angle);
+    const double off = 0.5 * size_of(g, BEAM_WIDTH, 3), l = p->arm.length;
     if (p->wall.kind == WALL_NONE) {
         return;
     }
 
     // across the arm, half the beam away: up on the page
-    const double tip_x = plan_x(g->view, x + shift.x), tip_y = plan_y(g->view, y + shift.y);
     const double hub_x = plan_x(g->view, shift.x), hub_y = plan_y(g->view, shift.y);
-    const double length = hypot(tip_x - hub_x, tip_y - hub_y);
-    const double nx = (tip_y - hub_y) / length, ny = -(tip_x - hub_x) / length;
+    const double tip_x = plan_x(g->view, l * cos(p->wall.angle) + shift.x);
+    const double tip_y = plan_y(g->view, l * sin(p->wall.angle) + shift.y);
+    const double along_x = tip_x - hub_x, along_y = tip_y - hub_y, length = hypot(along_x, along_y);
+    const double nx = along_y / length, ny = -along_x / length;
     if (p->wall.kind == WALL_PLANE) {
-        const double from_x = hub_x + SLAB_FROM * (tip_x - hub_x) + off * nx;
-        const double from_y = hub_y + SLAB_FROM * (tip_y - hub_y) + off * ny;
-        const double dx = (SLAB_TO - SLAB_FROM) * (tip_x - hub_x);
-        const double dy = (SLAB_TO - SLAB_FROM) * (tip_y - hub_y);
+        const double from_x = hub_x + SLAB_FROM * along_x + off * nx;
+        const double from_y = hub_y + SLAB_FROM * along_y + off * ny;
+        const double dx = (SLAB_TO - SLAB_FROM) * along_x, dy = (SLAB_TO - SLAB_FROM) * along_y;
         pen(g, wall, 1);
         hatch(g, from_x, from_y, dx, dy);
         pen(g, wall, 2);
