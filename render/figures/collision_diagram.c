@@ -88,8 +88,8 @@ static void draw_arm(sketch *s, const diagram *d)
                  joint_after);
 
     // the tip arrives, and is stopped by the wall's impulse
-    sketch_arrow(s, (point){contact.x - 8, contact.y + 6 + SPEED_LENGTH * tip_before},
-                 shifted(contact, -8, 6), 2);
+    sketch_arrow(s, shifted(contact, -8, 6 + SPEED_LENGTH * tip_before), shifted(contact, -8, 6),
+                 2);
     sketch_small(s, shifted(contact, -14, 14), (anchor){1, 0},
                  "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
     sketch_arrow(s, shifted(contact, 0, -50), shifted(contact, 0, -6), 5);

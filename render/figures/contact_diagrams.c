@@ -70,13 +70,11 @@ static void draw_wall(sketch *s, point at, double direction, const char *symbol,
     g_autofree char *quantity = text_quantity(force, 3, "N");
     double ux = cos(direction), uy = -sin(direction), nx = -sin(direction), ny = -cos(direction);
     point wall = {at.x + 4 * nx, at.y + 4 * ny};
-    sketch_wall(s, (point){wall.x + 16 * ux, wall.y + 16 * uy},
-                (point){wall.x - 16 * ux, wall.y - 16 * uy});
+    sketch_wall(s, shifted(wall, 16 * ux, 16 * uy), shifted(wall, -16 * ux, -16 * uy));
 
     point start = {at.x + (FORCE_LENGTH + 4) * nx, at.y + (FORCE_LENGTH + 4) * ny};
-    sketch_arrow(s, start, (point){at.x + 4 * nx, at.y + 4 * ny}, 5);
-    sketch_label(s, (point){start.x + 4 * nx, start.y + 4 * ny}, (anchor){0.5, 1}, "%s = %s",
-                 symbol, quantity);
+    sketch_arrow(s, start, shifted(at, 4 * nx, 4 * ny), 5);
+    sketch_label(s, shifted(start, 4 * nx, 4 * ny), (anchor){0.5, 1}, "%s = %s", symbol, quantity);
 }
 
 // ---- 3.1: two successive steps

@@ -112,20 +112,20 @@ point view_place(const view *v, point at)
 
 point view_end(point from, double length, double angle)
 {
-    return (point){from.x + length * cos(angle), from.y + length * sin(angle)};
+    return shifted(from, length * cos(angle), length * sin(angle));
 }
 
 void diagram_angle(sketch *s, point at, angle_arc a)
 {
     double middle = (a.from + a.to) / 2, away = a.radius + 3;
     sketch_arc(s, (arc){at, a.radius, a.from, a.to, true}, SKETCH_INK);
-    sketch_label(s, (point){at.x + away * cos(middle), at.y - away * sin(middle)}, (anchor){0, 0.5},
-                 "%s", a.markup);
+    sketch_label(s, shifted(at, away * cos(middle), -away * sin(middle)), (anchor){0, 0.5}, "%s",
+                 a.markup);
 }
 
 void diagram_link_angle(sketch *s, point at, double radius, double to, const char *markup)
 {
-    sketch_dashed(s, at, (point){at.x + radius + 14, at.y}, SKETCH_FAINT);
+    sketch_dashed(s, at, shifted(at, radius + 14, 0), SKETCH_FAINT);
     diagram_angle(s, at, (angle_arc){radius, 0, to, markup});
 }
 

@@ -148,8 +148,7 @@ static void draw_free_bodies(sketch *s, const diagram *d)
     sketch_label(s, shifted(c, 12, -37), (anchor){0, 0.5}, "\u2212<i>f</i><sub>2</sub>");
     // the wall pushes back, across the last link
     double away = 40;
-    sketch_arrow(s, (point){t.x - away * sin(second), t.y - away * cos(second)}, shifted(t, 0, -4),
-                 5);
+    sketch_arrow(s, shifted(t, -away * sin(second), -away * cos(second)), shifted(t, 0, -4), 5);
     sketch_label(s, (point){t.x - away * sin(second) - 5, t.y - away * cos(second)},
                  (anchor){1, 0.5}, "<i>f</i>");
     sketch_small(s, (point){(c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10}, (anchor){0, 0}, "body 3");
