@@ -14,9 +14,11 @@
 // --- lines ------------------------------------------------------------------------------------
 
 static action_function *const functions[] = {
-#define COMMAND_FUNCTION(group, name, argument, help, function) function,
-    COMMAND_LIST(COMMAND_FUNCTION)
+#define COMMAND_FUNCTION(group, name, keys, argument, help) act_##name,
+#define COMMAND_NOW(group, name, keys, argument, help)      act_##name##_now,
+    COMMAND_LIST(COMMAND_FUNCTION, COMMAND_NOW)
 #undef COMMAND_FUNCTION
+#undef COMMAND_NOW
 };
 
 // The command of a line's first word.
@@ -99,7 +101,7 @@ static bool no_room(explorer_state *st)
     return act_refuse(st, "there are %d keys of your own already, no more fit", USER_KEYS);
 }
 
-bool act_bind_key(explorer_state *st, const char *argument)
+bool act_key(explorer_state *st, const char *argument)
 {
     const char *line;
     char name[KEY_NAME], before[LINE_TEXT] = "";
@@ -131,7 +133,7 @@ bool act_bind_key(explorer_state *st, const char *argument)
     return act_tell(st, "%s does '%s' now", name, line);
 }
 
-bool act_unbind_key(explorer_state *st, const char *argument)
+bool act_unkey(explorer_state *st, const char *argument)
 {
     const char *rest;
     char name[KEY_NAME];
@@ -173,15 +175,15 @@ static const char *const remembered[] = {
     "theme", "glyphs", "colours", "pixels", "closeup", "mouse", "bending", "colourby",
     "rate",  "lanes",  "slow",    "speed",  "panes",   "axis",  "key",     "unkey"};
 
-static bool is_remembered(const char *line)
+// Whether a line's first word is one of `count`.
+static bool begins_with_one(const char *line, const char *const *words, size_t count)
 {
-    size_t length = strcspn(line, " \t");
-    for (size_t i = 0; i < sizeof remembered / sizeof remembered[0]; i++) {
-        if (strlen(remembered[i]) == length && strncmp(line, remembered[i], length) == 0) {
-            return true;
-        }
+    const size_t length = strcspn(line, " \t");
+    bool found = false;
+    for (size_t i = 0; i < count; i++) {
+        found = found || (strlen(words[i]) == length && strncmp(line, words[i], length) == 0);
     }
-    return length == 0 || line[0] == '#';
+    return found;
 }
 
 bool explorer_look(explorer_state *st, const char *line)
@@ -189,13 +191,9 @@ bool explorer_look(explorer_state *st, const char *line)
     static const char *const looking[] = {"panes",    "axis",     "zoom",   "mark",    "trace",
                                           "phase",    "spectrum", "signal", "lanes",   "limit",
                                           "residual", "band",     "note",   "colourby"};
-    const size_t length = strcspn(line, " ");
-    for (size_t i = 0; i < sizeof looking / sizeof looking[0]; i++) {
-        if (strlen(looking[i]) == length && strncmp(line, looking[i], length) == 0) {
-            return explorer_execute(st, line);
-        }
-    }
-    return act_refuse(st, "'%.60s' does not belong into a session", line);
+    return begins_with_one(line, looking, sizeof looking / sizeof looking[0])
+               ? explorer_execute(st, line)
+               : act_refuse(st, "'%.60s' does not belong into a session", line);
 }
 
 // Executes a line of the file; errors are reported with line and column.
@@ -205,8 +203,10 @@ static bool execute_line(explorer_state *st, const char *path, int number, const
 
     // only what :remember writes is taken from a file
     st->message.at = begin;
-    const bool done = is_remembered(line + begin) ? explorer_execute(st, line)
-                                                  : act_refuse(st, "this is no setting");
+    const bool taken =
+        strchr("#", line[begin]) != NULL ||
+        begins_with_one(line + begin, remembered, sizeof remembered / sizeof remembered[0]);
+    const bool done = taken ? explorer_execute(st, line) : act_refuse(st, "this is no setting");
 
     // the place in the file comes before what is wrong
     return done || act_refuse(st, "%s:%d:%d is ignored: %.200s", path, number, st->message.at + 1,
@@ -270,15 +270,12 @@ static void write_axes_and_keys(const explorer_state *st, FILE *stream)
 
 static void write_settings(const explorer_state *st, FILE *stream)
 {
-    const looks *l = &st->looks;
     fprintf(stream, "# settings of the terminal lab, written by :remember\n");
-    fprintf(stream, "theme %s\nglyphs %s\ncolours %s\n", colour_theme_words[l->theme],
-            glyph_set_words[l->glyphs], colour_depth_words[l->depth]);
-    fprintf(stream, "pixels %s\ncloseup %s\nbending %g\nrate %g\n", pixel_words[l->pixels],
-            close_up_words[l->close_up], l->bending, l->rate);
-    fprintf(stream, "mouse %s\nlanes %s\ncolourby %s\nspeed %g\nslow %g\n", mouse_words[l->mouse],
-            lane_choice_words[l->lanes], colour_by_words[l->by_run], st->playback.speed,
-            st->playback.slow);
+    for (const look_choice *c = look_choices; c->command != NULL; c++) {
+        fprintf(stream, "%s %s\n", c->command, look_word(&st->looks, c));
+    }
+    fprintf(stream, "bending %g\nrate %g\nspeed %g\nslow %g\n", st->looks.bending, st->looks.rate,
+            st->playback.speed, st->playback.slow);
 
     // panes that the user did not choose are those that suit the scenario
     fputs(st->panes.chosen ? "panes " : "", stream);

@@ -186,14 +186,14 @@ bool act_save(explorer_state *st, const char *argument)
     return need_new_file(st, argument, "save") && save_over(st, argument);
 }
 
-bool act_save_over(explorer_state *st, const char *argument)
+bool act_save_now(explorer_state *st, const char *argument)
 {
     return argument[0] == '\0' ? act_refuse(st, "save! takes the file that it is to replace")
                                : save_over(st, argument);
 }
 
 // The arm in space at the cursor's instant.
-bool act_save_scene(explorer_state *st, const char *argument)
+bool act_scene(explorer_state *st, const char *argument)
 {
     const session *s = &st->session;
     const scene_options options = {0};

@@ -93,7 +93,7 @@ static void key_in_prompt(explorer *ex, int key)
         // what was typed so far is searched for everywhere
         char words[LINE_TEXT];
         snprintf(words, sizeof words, "%s", p->text);
-        act_open_palette(&ex->state, words);
+        act_palette(&ex->state, words);
         break;
     }
     case KEY_CODE_TAB:

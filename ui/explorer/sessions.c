@@ -73,7 +73,7 @@ static void add_looks(const explorer_state *st, session_file *file)
             shown[n] = '\0';
         }
     }
-    add_line(file, "lanes %s", lane_choice_words[st->looks.lanes]);
+    add_line(file, "lanes %s", look_word(&st->looks, look_choice_of("lanes")));
     if (st->panes.chosen) {
         add_line(file, "panes %s", shown);
     }

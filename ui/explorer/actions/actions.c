@@ -188,7 +188,7 @@ bool act_tell_change(explorer_state *st)
     return act_tell(st, "%s = %s%s%s %s", info->path, value, blank, info->unit, when);
 }
 
-bool act_change(explorer_state *st, int parameter, const char *text)
+bool act_give(explorer_state *st, int parameter, const char *text)
 {
     assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
     session_forget_ghost(&st->session);

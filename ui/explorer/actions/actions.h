@@ -14,9 +14,11 @@ typedef bool action_function(explorer_state *st, const char *argument);
 
 // One for each command. Those that need the table of commands or the whole screen (keys, settings,
 // files) are in the folder above, all others in this one.
-#define ACTION_FUNCTION(group, name, argument, help, function) action_function function;
-COMMAND_LIST(ACTION_FUNCTION)
+#define ACTION_FUNCTION(group, name, keys, argument, help) action_function act_##name;
+#define ACTION_NOW(group, name, keys, argument, help)      action_function act_##name##_now;
+COMMAND_LIST(ACTION_FUNCTION, ACTION_NOW)
 #undef ACTION_FUNCTION
+#undef ACTION_NOW
 
 // --- what is said -----------------------------------------------------------------------------
 
@@ -97,7 +99,7 @@ bool act_zoom_between(explorer_state *st, double from, double to);
 bool act_tell_change(explorer_state *st);
 
 // Gives a parameter another value, from the cursor on or from the start.
-bool act_change(explorer_state *st, int parameter, const char *text);
+bool act_give(explorer_state *st, int parameter, const char *text);
 
 // Says what happens at the cursor: an event of the run, else the controller's change of mode.
 bool act_tell_event(explorer_state *st);

@@ -9,7 +9,7 @@
 #include "src/base/text_stream.h"
 #include "src/base/numbers.h"
 
-// act_change with a number, in small steps: several at one instant are one change, and none at all
+// act_give with a number, in small steps: several at one instant are one change, and none at all
 // once the value is what it was.
 static bool act_adjust(explorer_state *st, int parameter, double value)
 {
@@ -74,7 +74,7 @@ bool act_set(explorer_state *st, const char *argument)
         return act_tell(st, "%s: %s%s%s", info->path, info->description,
                         inert != NULL ? "; without effect, " : "", inert != NULL ? inert : "");
     }
-    return act_change(st, parameter, value);
+    return act_give(st, parameter, value);
 }
 
 // How far a nudge of a real parameter goes up from a value: a fixed step, or on a logarithmic scale
@@ -152,11 +152,11 @@ static bool take_swept(explorer_state *st)
     lab_sweep_values(sweep, sweep->selected, values);
     session_seek(s, 0);
     sweep_axis_format(&sweep->axis, values[0], value, sizeof value);
-    bool changed = act_change(st, sweep->axis.parameter, value);
+    bool changed = act_give(st, sweep->axis.parameter, value);
     if (changed && lab_sweep_is_map(sweep)) {
         session_seek(s, 0);
         sweep_axis_format(&sweep->second, values[1], value, sizeof value);
-        changed = act_change(st, sweep->second.parameter, value);
+        changed = act_give(st, sweep->second.parameter, value);
     }
     const double seen = s->seen;
     session_seek(s, now);
@@ -251,10 +251,10 @@ bool act_redo(explorer_state *st, const char *argument)
     return act_worked(st, session_redo(&st->session, &f), &f) && act_tell(st, "put in again");
 }
 
-bool act_exchange_model(explorer_state *st, const char *argument)
+bool act_model(explorer_state *st, const char *argument)
 {
     bool printed = st->session.effective.parameters.arm.model == ARM_PRINTED;
-    return act_change(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
+    return act_give(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
 }
 
 bool act_extend(explorer_state *st, const char *argument)
@@ -268,7 +268,7 @@ bool act_extend(explorer_state *st, const char *argument)
     // what has been seen stays seen: only rows are added
     double seen = st->session.seen;
     number_format(text, duration + more);
-    if (!act_change(st, PARAMETER_INDEX(run.duration), text)) {
+    if (!act_give(st, PARAMETER_INDEX(run.duration), text)) {
         return false;
     }
     st->session.seen = seen;
@@ -321,7 +321,7 @@ static int read_change(explorer_state *st, const char **text)
                       : act_read_index(st, text, count, "changes", ":changes");
 }
 
-bool act_edit_change(explorer_state *st, const char *argument)
+bool act_change(explorer_state *st, const char *argument)
 {
     const int index = read_change(st, &argument);
     if (index < 0) {
@@ -345,7 +345,7 @@ bool act_edit_change(explorer_state *st, const char *argument)
     return act_tell(st, "%s at the same instant, u takes it back", text);
 }
 
-bool act_drop_change(explorer_state *st, const char *argument)
+bool act_drop(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT];
     const int index = read_change(st, &argument);

@@ -39,7 +39,7 @@ static bool refuse_law(explorer_state *st, const char *name)
 // Changes the control law; if the lock on a mode prevents it, the message says what to do.
 static bool change_law(explorer_state *st, const char *name)
 {
-    return act_change(st, PARAMETER_INDEX(control.law), name) ||
+    return act_give(st, PARAMETER_INDEX(control.law), name) ||
            (lock_prevents(&st->session, name) &&
             act_refuse(st, "%.200s; undo the lock first", st->message.text));
 }
@@ -134,7 +134,7 @@ static bool lock(explorer_state *st, const char *wanted)
     // a lock that is refused leaves the one before in effect
     parameters p = state_parameters(st);
     const bool other = strcmp(p.control.lock, wanted) != 0;
-    if (other && !act_change(st, PARAMETER_INDEX(control.lock), wanted)) {
+    if (other && !act_give(st, PARAMETER_INDEX(control.lock), wanted)) {
         if (replaces) {
             loss_unless(session_redo(s, &f) == STATUS_OK);
         }

@@ -35,7 +35,7 @@ static double first_above(const trace *t, int signal, double level)
 }
 
 // Measured columns under the run, shifted as the file's name says, else to the run's first touch.
-bool act_lay_data(explorer_state *st, const char *argument)
+bool act_data(explorer_state *st, const char *argument)
 {
     fault f = {0};
     trace fresh = {0};

@@ -88,7 +88,7 @@ static bool show_own(explorer_state *st, pane own)
 }
 
 // Shows or hides a pane by number, or makes one of signals by name.
-bool act_trace_pane(explorer_state *st, const char *argument)
+bool act_trace(explorer_state *st, const char *argument)
 {
     // a pane of the table
     if (argument[0] != '\0' && argument[strspn(argument, "0123456789")] == '\0') {
@@ -117,7 +117,7 @@ bool act_trace_pane(explorer_state *st, const char *argument)
     return show_own(st, own);
 }
 
-bool act_residual_pane(explorer_state *st, const char *argument)
+bool act_residual(explorer_state *st, const char *argument)
 {
     pane own = {.view = VIEW_RESIDUAL};
     if (!read_signals(st, argument, &own)) {
@@ -127,7 +127,7 @@ bool act_residual_pane(explorer_state *st, const char *argument)
                          : act_refuse(st, "residual takes signals that were measured");
 }
 
-bool act_phase_pane(explorer_state *st, const char *argument)
+bool act_phase(explorer_state *st, const char *argument)
 {
     pane own = {.view = VIEW_PHASE};
     if (!read_signals(st, argument, &own)) {
@@ -138,7 +138,7 @@ bool act_phase_pane(explorer_state *st, const char *argument)
                : act_refuse(st, "phase takes two signals: what goes up, and what across");
 }
 
-bool act_spectrum_pane(explorer_state *st, const char *argument)
+bool act_spectrum(explorer_state *st, const char *argument)
 {
     pane own = {.view = VIEW_SPECTRUM};
     if (!read_signals(st, argument, &own)) {
@@ -148,7 +148,7 @@ bool act_spectrum_pane(explorer_state *st, const char *argument)
 }
 
 // Shows the panes of these numbers and no others.
-bool act_show_panes(explorer_state *st, const char *argument)
+bool act_panes(explorer_state *st, const char *argument)
 {
     if (argument[strspn(argument, "123456789")] != '\0') {
         return act_refuse(st, "panes takes numbers from 1 to 9, such as 134");
@@ -187,7 +187,7 @@ bool act_toggle_signal(explorer_state *st, int index, int k)
 }
 
 // One signal after the other is hidden, from the last to the first, then all are shown.
-bool act_hide_signal(explorer_state *st, const char *argument)
+bool act_signal(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
     int index = panes_focused(&st->panes);
@@ -239,7 +239,7 @@ static bool read_bound(explorer_state *st, const char *argument, const char *com
            act_refuse(st, "%s takes a signal and a value, such as force 2, or off", command);
 }
 
-bool act_set_limit(explorer_state *st, const char *argument)
+bool act_limit(explorer_state *st, const char *argument)
 {
     solved_limit limit;
     if (!read_bound(st, argument, "limit", &limit)) {
@@ -249,7 +249,7 @@ bool act_set_limit(explorer_state *st, const char *argument)
     return true;
 }
 
-bool act_set_band(explorer_state *st, const char *argument)
+bool act_band(explorer_state *st, const char *argument)
 {
     solved_limit band;
     if (!read_bound(st, argument, "band", &band)) {

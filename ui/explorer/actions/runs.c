@@ -71,7 +71,7 @@ static int read_run(explorer_state *st, const char **text)
                                  : act_read_index(st, text, st->pinned.count, "pinned runs", "R");
 }
 
-bool act_take_run(explorer_state *st, const char *argument)
+bool act_take(explorer_state *st, const char *argument)
 {
     const int index = read_run(st, &argument);
     if (index < 0) {
@@ -103,7 +103,7 @@ bool act_take_run(explorer_state *st, const char *argument)
            act_tell(st, "'%s' goes on; the run before is compared with it", taken->name);
 }
 
-bool act_hide_run(explorer_state *st, const char *argument)
+bool act_hide(explorer_state *st, const char *argument)
 {
     const int index = read_run(st, &argument);
     if (index < 0) {
@@ -113,7 +113,7 @@ bool act_hide_run(explorer_state *st, const char *argument)
     return true;
 }
 
-bool act_set_baseline(explorer_state *st, const char *argument)
+bool act_baseline(explorer_state *st, const char *argument)
 {
     const int index = read_run(st, &argument);
     if (index < 0) {
@@ -124,7 +124,7 @@ bool act_set_baseline(explorer_state *st, const char *argument)
            act_tell(st, "compared with '%s' from now on", st->pinned.runs[index].name);
 }
 
-bool act_rename_run(explorer_state *st, const char *argument)
+bool act_rename(explorer_state *st, const char *argument)
 {
     const int index = read_run(st, &argument);
     if (index < 0) {
@@ -153,7 +153,7 @@ bool act_unpin(explorer_state *st, const char *argument)
     return act_settle_baseline(st);
 }
 
-bool act_show_difference(explorer_state *st, const char *argument)
+bool act_difference(explorer_state *st, const char *argument)
 {
     run_difference *d = &st->difference;
     double tolerance = 0;
@@ -420,7 +420,7 @@ bool act_sweep(explorer_state *st, const char *argument)
     return done;
 }
 
-bool act_set_metric(explorer_state *st, const char *argument)
+bool act_metric(explorer_state *st, const char *argument)
 {
     lab_sweep *sweep = &st->sweep;
     int metric = summary_find(argument);

@@ -49,7 +49,7 @@ static void open_list(explorer_state *st)
     scenario_menu_read_titles(menu);
 }
 
-bool act_open_scenario_by(explorer_state *st, const char *argument)
+bool act_open(explorer_state *st, const char *argument)
 {
     const scenario_menu *menu = &st->scenarios;
     if (argument[0] == '\0') {
@@ -67,7 +67,7 @@ bool act_open_scenario_by(explorer_state *st, const char *argument)
     return act_open_scenario(st, argument);
 }
 
-bool act_find_scenario(explorer_state *st, const char *argument)
+bool act_find(explorer_state *st, const char *argument)
 {
     open_list(st);
     snprintf(st->scenarios.filter, sizeof st->scenarios.filter, "%s", argument);
@@ -151,11 +151,11 @@ static const char *lesson_named(explorer_state *st, const char *name)
     return found;
 }
 
-bool act_open_lesson(explorer_state *st, const char *argument)
+bool act_lesson(explorer_state *st, const char *argument)
 {
     // without a name the list of them
     if (argument[0] == '\0') {
-        act_find_scenario(st, "lesson");
+        act_find(st, "lesson");
         st->scenarios.filtering = false;
         return true;
     }
@@ -208,7 +208,7 @@ bool act_answer(explorer_state *st, const char *argument)
     return st->lesson.passed ? act_hush(st) : act_warn(st, "not %g. %s", value, step->hint);
 }
 
-bool act_go_on(explorer_state *st, const char *argument)
+bool act_continue(explorer_state *st, const char *argument)
 {
     const lesson *l = &st->session.base.lesson;
     const lesson_step *step = present_step(st);

@@ -183,7 +183,7 @@ bool act_tell_event(explorer_state *st)
     return true;
 }
 
-bool act_step_event(explorer_state *st, const char *argument)
+bool act_event(explorer_state *st, const char *argument)
 {
     bool back = argument[0] == '-';
     double time = run_log_next(state_run_log(st), st->session.now, back ? -1 : 1);
@@ -196,7 +196,7 @@ bool act_step_event(explorer_state *st, const char *argument)
 }
 
 // To the last row before a touch, where a prediction can be compared with what comes.
-bool act_step_touch(explorer_state *st, const char *argument)
+bool act_touch(explorer_state *st, const char *argument)
 {
     bool back = argument[0] == '-';
     const session *s = &st->session;
@@ -243,7 +243,7 @@ bool act_seek(explorer_state *st, const char *argument)
                     session_end(&st->session));
 }
 
-bool act_set_speed(explorer_state *st, const char *argument)
+bool act_speed(explorer_state *st, const char *argument)
 {
     double wanted = st->playback.speed;
 
@@ -264,7 +264,7 @@ bool act_set_speed(explorer_state *st, const char *argument)
     return true;
 }
 
-bool act_set_slow(explorer_state *st, const char *argument)
+bool act_slow(explorer_state *st, const char *argument)
 {
     double factor = 1;
     if (strcmp(argument, "off") != 0) {
@@ -288,7 +288,7 @@ bool act_restart(explorer_state *st, const char *argument)
     return act_hush(st);
 }
 
-bool act_wait_for(explorer_state *st, const char *argument)
+bool act_wait(explorer_state *st, const char *argument)
 {
     double seconds;
     return act_read_number(st, argument, &seconds) && act_advance(st, fmax(0, fmin(3600, seconds)));

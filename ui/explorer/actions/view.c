@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool act_select_parameter(explorer_state *st, const char *argument)
+bool act_select(explorer_state *st, const char *argument)
 {
     parameter_line lines[PARAMETER_LINES];
     const int direction = argument[0] == '-' ? -1 : 1;
@@ -106,7 +106,7 @@ void act_settle_filter(explorer_state *st, panel_id panel)
     }
 }
 
-bool act_set_mark(explorer_state *st, const char *argument)
+bool act_mark(explorer_state *st, const char *argument)
 {
     st->mark.time = st->session.now;
     if (!act_read_optional(st, argument, &st->mark.time)) {
@@ -120,7 +120,7 @@ bool act_set_mark(explorer_state *st, const char *argument)
                         : "no mark");
 }
 
-bool act_other_side(explorer_state *st, const char *argument)
+bool act_side(explorer_state *st, const char *argument)
 {
     bool narrow = st->size.width > 0 && st->size.width < SIDE_WIDTH;
 
@@ -158,103 +158,68 @@ static bool toggle_page(explorer_state *st, panel_id page)
     return true;
 }
 
-#define ACTION_OF_PAGE(action, page)                                                               \
-    bool action(explorer_state *st, const char *argument)                                          \
+#define ACTION_OF_PAGE(command, page)                                                              \
+    bool act_##command(explorer_state *st, const char *argument)                                   \
     {                                                                                              \
         return toggle_page(st, page);                                                              \
     }
-ACTION_OF_PAGE(act_show_help, PANEL_HELP)
-ACTION_OF_PAGE(act_show_info, PANEL_INFO)
-ACTION_OF_PAGE(act_explain, PANEL_EXPLAIN)
-ACTION_OF_PAGE(act_show_poles, PANEL_POLES)
-ACTION_OF_PAGE(act_compare, PANEL_COMPARISON)
-ACTION_OF_PAGE(act_show_runs, PANEL_RUN_LIST)
+ACTION_OF_PAGE(help, PANEL_HELP)
+ACTION_OF_PAGE(info, PANEL_INFO)
+ACTION_OF_PAGE(explain, PANEL_EXPLAIN)
+ACTION_OF_PAGE(poles, PANEL_POLES)
+ACTION_OF_PAGE(compare, PANEL_COMPARISON)
+ACTION_OF_PAGE(runs, PANEL_RUN_LIST)
 
-bool act_show_why(explorer_state *st, const char *argument)
+bool act_why(explorer_state *st, const char *argument)
 {
     return act_need_whole_run(st) && toggle_page(st, PANEL_WHY);
 }
 
-bool act_show_notes(explorer_state *st, const char *argument)
+bool act_notes(explorer_state *st, const char *argument)
 {
     st->note = 0;
     return toggle_page(st, PANEL_NOTES);
 }
 
-bool act_show_changes(explorer_state *st, const char *argument)
+bool act_changes(explorer_state *st, const char *argument)
 {
     st->change = st->session.input_count > 0 ? st->session.input_count - 1 : 0;
     return toggle_page(st, PANEL_CHANGES);
 }
 
-// Reads one of the words into a choice, which changes how the screen looks: it is drawn anew.
-static bool choose(explorer_state *st, const char *argument, const char *const *words, int count,
-                   int *choice)
+// Goes on to the next value of a choice, or to the one that is named: the screen is drawn anew.
+static bool choose(explorer_state *st, const look_choice *c, const char *argument)
 {
     char all[128] = "";
-    for (int i = 0; i < count; i++) {
-        if (strcmp(argument, words[i]) == 0) {
-            *choice = i;
-            st->looks.redraw = true;
-            return true;
-        }
+    int *value = look_value(&st->looks, c), count = 0, found = -1;
+    for (; c->words[count] != NULL; count++) {
+        const size_t used = strlen(all);
+        snprintf(all + used, sizeof all - used, "%s%s", count > 0 ? ", " : "", c->words[count]);
+        found = strcmp(argument, c->words[count]) == 0 ? count : found;
     }
-
-    // none of them: the refusal names them all
-    for (int i = 0; i < count; i++) {
-        size_t used = strlen(all);
-        snprintf(all + used, sizeof all - used, "%s%s", i > 0 ? ", " : "", words[i]);
+    if (found < 0 && (argument[0] != '\0' || !c->goes_round)) {
+        return act_refuse(st, "'%s' is none of %s", argument, all);
     }
-    return act_refuse(st, "'%s' is none of %s", argument, all);
+    *value = found >= 0 ? found : (*value + 1) % count;
+    st->looks.redraw |= found >= 0;
+    return c->says[*value] == NULL || act_tell(st, "%s", c->says[*value]);
 }
 
-// Goes on to the next choice, or to the one that is named.
-static bool choose_next(explorer_state *st, const char *argument, const char *const *words,
-                        int count, int *choice)
-{
-    if (argument[0] != '\0') {
-        return choose(st, argument, words, count, choice);
+#define ACTION_OF_CHOICE(command)                                                                  \
+    bool act_##command(explorer_state *st, const char *argument)                                   \
+    {                                                                                              \
+        return choose(st, look_choice_of(#command), argument);                                     \
     }
-    *choice = (*choice + 1) % count;
-    return true;
-}
+ACTION_OF_CHOICE(theme)
+ACTION_OF_CHOICE(glyphs)
+ACTION_OF_CHOICE(colours)
+ACTION_OF_CHOICE(pixels)
+ACTION_OF_CHOICE(closeup)
+ACTION_OF_CHOICE(mouse)
+ACTION_OF_CHOICE(lanes)
+ACTION_OF_CHOICE(colourby)
 
-bool act_set_glyphs(explorer_state *st, const char *argument)
-{
-    return choose(st, argument, glyph_set_words, GLYPH_SETS, &st->looks.glyphs);
-}
-
-bool act_set_theme(explorer_state *st, const char *argument)
-{
-    return choose(st, argument, colour_theme_words, COLOUR_THEMES, &st->looks.theme);
-}
-
-bool act_set_colours(explorer_state *st, const char *argument)
-{
-    return choose(st, argument, colour_depth_words, COLOUR_DEPTHS, &st->looks.depth);
-}
-
-bool act_colour_by(explorer_state *st, const char *argument)
-{
-    return choose_next(st, argument, colour_by_words, 2, &st->looks.by_run) &&
-           act_tell(st, "a colour for each %s", colour_by_words[st->looks.by_run]);
-}
-
-bool act_set_mouse(explorer_state *st, const char *argument)
-{
-    return choose(st, argument, mouse_words, 2, &st->looks.mouse) &&
-           act_tell(st, st->looks.mouse ? "clicks move the cursor"
-                                        : "the mouse is off: the terminal selects");
-}
-
-bool act_set_pixels(explorer_state *st, const char *argument)
-{
-    return choose(st, argument, pixel_words, 2, &st->looks.pixels) &&
-           act_tell(st, st->looks.pixels ? "pictures where the terminal says that it draws them"
-                                         : "characters only");
-}
-
-bool act_set_rate(explorer_state *st, const char *argument)
+bool act_rate(explorer_state *st, const char *argument)
 {
     double rate = 0;
     if (strcmp(argument, "off") != 0 && !act_read_number(st, argument, &rate)) {
@@ -268,21 +233,7 @@ bool act_set_rate(explorer_state *st, const char *argument)
                     : act_tell(st, "pictures as fast as they are drawn");
 }
 
-bool act_set_close_up(explorer_state *st, const char *argument)
-{
-    int *choice = &st->looks.close_up;
-    return choose_next(st, argument, close_up_words, CLOSE_UP_CHOICES, choice) &&
-           act_tell(st, "the contact from near by: %s", close_up_words[*choice]);
-}
-
-bool act_set_lanes(explorer_state *st, const char *argument)
-{
-    int *choice = &st->looks.lanes;
-    return choose_next(st, argument, lane_choice_words, LANE_CHOICES, choice) &&
-           act_tell(st, "lanes: %s", lane_choice_words[*choice]);
-}
-
-bool act_set_bending(explorer_state *st, const char *argument)
+bool act_bending(explorer_state *st, const char *argument)
 {
     enum { MOST = 100 };
     double factor = 1;
@@ -343,7 +294,7 @@ bool act_interrupt(explorer_state *st, const char *argument)
 
 // --- the palette ------------------------------------------------------------------------------
 
-bool act_open_palette(explorer_state *st, const char *argument)
+bool act_palette(explorer_state *st, const char *argument)
 {
     scenario_menu_read_titles(&st->scenarios);
     prompt_open(&st->prompt, "%s", argument);

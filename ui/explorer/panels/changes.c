@@ -57,9 +57,9 @@ static bool list_key(explorer_state *st, int key)
     if (page_select(key, &st->change, s->input_count)) {
         return true;
     } else if (key == KEY_CODE_ENTER) {
-        return act_edit_change(st, number);
+        return act_change(st, number);
     } else if (key == 'd' || key == 'x' || key == KEY_CODE_DELETE) {
-        return act_drop_change(st, number);
+        return act_drop(st, number);
     } else if (key == 'u') {
         return act_undo(st, "");
     } else if (key == 'U' || key == ('r' & 0x1f)) {

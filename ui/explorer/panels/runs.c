@@ -57,7 +57,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
         return false;
     }
     snprintf(number, sizeof number, "%d", g->hit.index + 1);
-    act_hide_run(st, number);
+    act_hide(st, number);
     return true;
 }
 
@@ -128,18 +128,18 @@ static bool list_key(explorer_state *st, int key)
         st->page.panel = PANEL_NONE;
     } else if (key == KEY_CODE_ENTER) {
         st->page.panel = PANEL_NONE;
-        return act_take_run(st, number);
+        return act_take(st, number);
     } else if (key == ' ') {
-        return act_hide_run(st, number);
+        return act_hide(st, number);
     } else if (key == '=') {
-        return act_set_baseline(st, number);
+        return act_baseline(st, number);
     } else if (key == 'r') {
-        return act_rename_run(st, number);
+        return act_rename(st, number);
     } else if (key == 'd' || key == 'x' || key == KEY_CODE_DELETE) {
         return act_unpin(st, number);
     } else if (key == 'D') {
         st->page.panel = PANEL_NONE;
-        return act_show_difference(st, "");
+        return act_difference(st, "");
     } else {
         st->page.panel = PANEL_NONE;
     }

@@ -11,9 +11,11 @@
 #include "ui/terminal/screen.h"
 
 const explorer_command explorer_command_table[] = {
-#define COMMAND_INFO(group, name, argument, help, function) {group, name, argument, help},
-    COMMAND_LIST(COMMAND_INFO)
+#define COMMAND_INFO(group, name, keys, argument, help) {group, #name, keys, argument, help},
+#define COMMAND_NOW(group, name, keys, argument, help)  {group, #name "!", keys, argument, help},
+    COMMAND_LIST(COMMAND_INFO, COMMAND_NOW)
 #undef COMMAND_INFO
+#undef COMMAND_NOW
 };
 const int explorer_command_count = sizeof explorer_command_table / sizeof explorer_command_table[0];
 
@@ -47,103 +49,6 @@ const char *explorer_command_suggest(const char *name)
 }
 
 // --- keys -------------------------------------------------------------------------------------
-
-typedef struct binding {
-    const char *key; // a character, or a name as in --keys without its brackets
-    const char *line;
-} binding;
-
-// In the order of the commands, so that the keys of one stand together.
-static const binding bindings[] = {{"Space", "play"},
-                                   {"Right", "step 1"},
-                                   {"l", "step 1"},
-                                   {"Left", "step -1"},
-                                   {"h", "step -1"},
-                                   {"PgDn", "step 20"},
-                                   {"PgUp", "step -20"},
-                                   {"n", "event"},
-                                   {"N", "event -1"},
-                                   {"i", "touch"},
-                                   {"I", "touch -1"},
-                                   {"Home", "seek 0"},
-                                   {"g", "seek 0"},
-                                   {"End", "seek end"},
-                                   {"G", "seek end"},
-                                   {"+", "speed up"},
-                                   {"=", "speed up"},
-                                   {"-", "speed down"},
-                                   {"Backspace", "restart"},
-                                   {"r", "restart"},
-                                   {"Down", "select"},
-                                   {"j", "select"},
-                                   {"Up", "select -1"},
-                                   {"k", "select -1"},
-                                   {"Enter", "edit"},
-                                   {">", "nudge"},
-                                   {"<", "nudge -1"},
-                                   {"p", "push 0.01"},
-                                   {"P", "push -0.01"},
-                                   {"C", "law"},
-                                   {"L", "lock next"},
-                                   {"F", "lock off"},
-                                   {"t", "model"},
-                                   {"x", "extend"},
-                                   {"b", "branch"},
-                                   {"B", "forget"},
-                                   {"R", "runs"},
-                                   {"D", "difference"},
-                                   {"M", "metric"},
-                                   {"c", "compare"},
-                                   {"u", "undo"},
-                                   {"U", "redo"},
-                                   {"C-r", "redo"},
-                                   {"m", "mark"},
-                                   {"Tab", "side"},
-                                   {"z", "zoom in"},
-                                   {"Z", "zoom out"},
-                                   {"0", "zoom all"},
-                                   {"(", "pan left"},
-                                   {"S-Left", "pan left"},
-                                   {")", "pan right"},
-                                   {"S-Right", "pan right"},
-                                   {"f", "follow"},
-                                   {"w", "focus"},
-                                   {"e", "alone"},
-                                   {"a", "axis next"},
-                                   {"v", "axis in"},
-                                   {"V", "axis out"},
-                                   {"S-Up", "axis up"},
-                                   {"S-Down", "axis down"},
-                                   {"1", "trace 1"},
-                                   {"2", "trace 2"},
-                                   {"3", "trace 3"},
-                                   {"4", "trace 4"},
-                                   {"5", "trace 5"},
-                                   {"6", "trace 6"},
-                                   {"7", "trace 7"},
-                                   {"8", "trace 8"},
-                                   {"9", "trace 9"},
-                                   {"K", "signal"},
-                                   {"W", "why"},
-                                   {"X", "statistics"},
-                                   {"T", "lanes"},
-                                   {"o", "open"},
-                                   {"A", "answer"},
-                                   {"y", "continue"},
-                                   {"/", "filter"},
-                                   {"d", "info"},
-                                   {"H", "changes"},
-                                   {"]", "open +1"},
-                                   {"[", "open -1"},
-                                   {"s", "save"},
-                                   {"S", "scene"},
-                                   {"C-p", "palette"},
-                                   {"C-l", "redraw"},
-                                   {"?", "help"},
-                                   {"F1", "explain"},
-                                   {"q", "quit"},
-                                   {"C-c", "interrupt"}};
-enum { BINDINGS = sizeof bindings / sizeof bindings[0] };
 
 static const struct {
     const char *name;
@@ -211,11 +116,41 @@ void key_name(int key, char *text, size_t size)
     snprintf(text, size, "%s", glyph);
 }
 
+// A key of the explorer's own.
+typedef struct binding {
+    int key;
+    char name[KEY_NAME];
+    char line[KEY_NAME + 8];
+} binding;
+
+enum { BINDINGS = 128 };
+
+// All of them in the order of the commands, read from their table once; key 0 behind the last.
+static const binding *built_in_keys(void)
+{
+    static binding all[BINDINGS + 1];
+    static int count, read;
+    for (; read < explorer_command_count; read++) {
+        const explorer_command *c = &explorer_command_table[read];
+        for (const char *word = c->keys; *word != '\0'; word += strspn(word, " ")) {
+            const int length = (int)strcspn(word, " "), name = (int)strcspn(word, ": ");
+            binding *b = &all[count++];
+            assert(count <= BINDINGS);
+            b->key = key_of_name(word, (size_t)name);
+            snprintf(b->name, sizeof b->name, "%.*s", name, word);
+            snprintf(b->line, sizeof b->line, name < length ? "%s %.*s" : "%s", c->name,
+                     length - name - 1, word + name + 1);
+            word += length;
+        }
+    }
+    return all;
+}
+
 const char *key_built_in_line(int key)
 {
-    for (int i = 0; i < BINDINGS; i++) {
-        if (key_of_name(bindings[i].key, strlen(bindings[i].key)) == key) {
-            return bindings[i].line;
+    for (const binding *b = built_in_keys(); b->key != 0; b++) {
+        if (b->key == key) {
+            return b->line;
         }
     }
     return NULL;
@@ -284,11 +219,9 @@ void key_names_of(const key_bindings *b, const char *command, char *text, size_t
             used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", name);
         }
     }
-    for (int i = 0; i < BINDINGS && used < size; i++) {
-        const binding *own = &bindings[i];
-        if (begins_with(own->line, command) &&
-            own_index(b, key_of_name(own->key, strlen(own->key))) < 0) {
-            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", own->key);
+    for (const binding *own = built_in_keys(); own->key != 0 && used < size; own++) {
+        if (begins_with(own->line, command) && own_index(b, own->key) < 0) {
+            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", own->name);
         }
     }
 }

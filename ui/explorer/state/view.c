@@ -1,7 +1,7 @@
 #include "ui/explorer/state/view.h"
 
 #include <assert.h>
-#include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -46,26 +46,51 @@ bool filter_passes(const char *filter, const char *text)
 
 // --- looks ------------------------------------------------------------------------------------
 
-const char *const glyph_set_words[GLYPH_SETS] = {
-    [GLYPHS_BRAILLE] = "braille", [GLYPHS_BLOCKS] = "blocks", [GLYPHS_ASCII] = "ascii"};
+#define LOOK(command, field) command, offsetof(looks, field)
+const look_choice look_choices[] = {
+    {LOOK("theme", theme), false, {"dark", "light", "mono"}, {NULL}},
+    {LOOK("glyphs", glyphs), false, {"braille", "blocks", "ascii"}, {NULL}},
+    {LOOK("colours", depth), false, {"auto", "true", "256", "16", "mono"}, {NULL}},
+    {LOOK("pixels", pixels),
+     false,
+     {"off", "auto"},
+     {"characters only", "pictures where the terminal says that it draws them"}},
+    {LOOK("closeup", close_up),
+     true,
+     {"auto", "on", "off"},
+     {"the contact from near by: auto", "the contact from near by: on",
+      "the contact from near by: off"}},
+    {LOOK("mouse", mouse),
+     false,
+     {"off", "on"},
+     {"the mouse is off: the terminal selects", "clicks move the cursor"}},
+    {LOOK("lanes", lanes),
+     true,
+     {"auto", "all", "off"},
+     {"lanes: auto", "lanes: all", "lanes: off"}},
+    {LOOK("colourby", by_run),
+     true,
+     {"signal", "run"},
+     {"a colour for each signal", "a colour for each run"}},
+    {NULL},
+};
 
-const char *const colour_theme_words[COLOUR_THEMES] = {
-    [COLOURS_DARK] = "dark", [COLOURS_LIGHT] = "light", [COLOURS_MONO] = "mono"};
+const look_choice *look_choice_of(const char *command)
+{
+    const look_choice *c = look_choices;
+    while (strcmp(c->command, command) != 0) {
+        c++;
+    }
+    return c;
+}
 
-const char *const colour_depth_words[COLOUR_DEPTHS] = {[DEPTH_AUTO] = "auto",
-                                                       [DEPTH_TRUE] = "true",
-                                                       [DEPTH_256] = "256",
-                                                       [DEPTH_16] = "16",
-                                                       [DEPTH_MONO] = "mono"};
+int *look_value(looks *l, const look_choice *c)
+{
+    return (int *)((char *)l + c->place);
+}
 
-const char *const lane_choice_words[LANE_CHOICES] = {
-    [LANES_AUTO] = "auto", [LANES_ALL] = "all", [LANES_OFF] = "off"};
-
-const char *const close_up_words[CLOSE_UP_CHOICES] = {
-    [CLOSE_UP_AUTO] = "auto", [CLOSE_UP_ON] = "on", [CLOSE_UP_OFF] = "off"};
-
-const char *const pixel_words[2] = {"off", "auto"};
-
-const char *const colour_by_words[2] = {"signal", "run"};
-
-const char *const mouse_words[2] = {"off", "on"};
+const char *look_word(const looks *l, const look_choice *c)
+{
+    looks copy = *l;
+    return c->words[*look_value(&copy, c)];
+}

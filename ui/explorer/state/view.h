@@ -110,15 +110,25 @@ typedef struct looks {
     bool redraw;     // the whole screen must be redrawn
 } looks;
 
-// The words for each value of the enumerations, in their order.
-extern const char *const glyph_set_words[GLYPH_SETS];
-extern const char *const colour_theme_words[COLOUR_THEMES];
-extern const char *const colour_depth_words[COLOUR_DEPTHS];
-extern const char *const lane_choice_words[LANE_CHOICES];
-extern const char *const close_up_words[CLOSE_UP_CHOICES];
-extern const char *const colour_by_words[2];
-extern const char *const mouse_words[2];
-extern const char *const pixel_words[2];
+// A command that chooses one of a few words for how the lab looks.
+enum { LOOK_WORDS = 5 };
+typedef struct look_choice {
+    const char *command;
+    size_t place;    // of the choice in struct looks
+    bool goes_round; // without a word it goes on to the next one
+    const char
+        *words[LOOK_WORDS + 1];   // of the values of its enumeration, in their order; then NULL
+    const char *says[LOOK_WORDS]; // when one is chosen, NULL for nothing
+} look_choice;
+
+// All of them; the last one has no command.
+extern const look_choice look_choices[];
+
+// The choice of a command, which has one; its present value.
+const look_choice *look_choice_of(const char *command);
+int *look_value(looks *l, const look_choice *c);
+// The word for its present value.
+const char *look_word(const looks *l, const look_choice *c);
 
 // --- messages ---------------------------------------------------------------------------------
 
