@@ -22,7 +22,6 @@ static void show_progress(void *context, int done, int total)
 {
     static const char full[BAR_LENGTH + 1] = "========================================";
     const int filled = BAR_LENGTH * done / total;
-    (void)context;
     fprintf(stderr, "\r[%.*s%*s] %3d %%  %d of %d frames", filled, full, BAR_LENGTH - filled, "",
             100 * done / total, done, total);
 }

@@ -164,7 +164,6 @@ int complain_fault(const fault *f)
 
 void report_to_stderr(void *context, const char *sentence)
 {
-    (void)context;
     fflush(stdout);
     print_printable(stderr, "%s\n", sentence);
 }
@@ -226,7 +225,6 @@ static int check_keeps_scenario(const scenario *s, const arguments *a)
 
 void complain_sentence(void *context, const char *sentence)
 {
-    (void)context;
     complain("%s", sentence);
 }
 

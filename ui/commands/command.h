@@ -323,7 +323,9 @@ int command_run(const arguments *a);
 // may be NULL (no memory). Returns the exit status.
 int write_json(const char *path, json_t *value) __attribute__((warn_unused_result));
 
-// How a command writes one of its results: what it found of a scenario.
+// How a command writes one of its results: what it found of a scenario. Writers get that and a
+// context also where they make no use of it.
+#pragma GCC diagnostic ignored "-Wunused-parameter"
 typedef void result_writer(FILE *stream, const scenario *s, const void *found);
 
 // Writes a file whole or not at all ("-": standard output, NULL: none was asked for): calls `write`

@@ -69,7 +69,6 @@ static void draw_one(void *context, size_t i, void *scratch, void *result)
     const figure_list *list = context;
     const thesis_figure *which = list->figures[list->order[i]].figure;
     figure_result *out = result;
-    (void)scratch;
     text_stream tex;
     *out = (figure_result){.tex = NULL};
     if (text_stream_open(&tex)) {

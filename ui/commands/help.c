@@ -99,7 +99,6 @@ void print_commands(FILE *stream)
 
 static void write_page(FILE *stream, const scenario *s, const void *about)
 {
-    (void)s;
     write_man_page(stream, about);
 }
 

@@ -9,7 +9,6 @@
 static json_t *tables_object(const scenario *s, const void *found)
 {
     const thesis_tables *t = found;
-    (void)s;
     json_t *rows = json_array();
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
@@ -94,7 +93,6 @@ static void print_rows(const thesis_tables *t)
 static void print_fitted(const scenario *s, const void *found)
 {
     const thesis_tables *t = found;
-    (void)s;
     print_rows(t);
     printf("\nMean error over the 12 cells of a row kind:\n");
     for (size_t i = 0; i < sizeof labels / sizeof labels[0]; i++) {
@@ -108,7 +106,6 @@ static void print_fitted(const scenario *s, const void *found)
 static void print_tables(const scenario *s, const void *found)
 {
     const thesis_tables *t = found;
-    (void)s;
     print_rows(t);
     printf("\nMean error over the 12 cells of a row kind (printed model, corrected model):\n");
     for (size_t i = 0; i < sizeof labels / sizeof labels[0]; i++) {

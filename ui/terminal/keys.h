@@ -3,25 +3,31 @@
 
 #include <stdbool.h>
 
-// Keys that are not characters; the code of a character is its Unicode number.
+// Keys that are not characters: code, name and ncurses' code.
+#define KEY_LIST(X)                                                                                \
+    X(LEFT, "Left", KEY_LEFT)                                                                      \
+    X(RIGHT, "Right", KEY_RIGHT)                                                                   \
+    X(UP, "Up", KEY_UP)                                                                            \
+    X(DOWN, "Down", KEY_DOWN)                                                                      \
+    X(HOME, "Home", KEY_HOME)                                                                      \
+    X(END, "End", KEY_END)                                                                         \
+    X(PAGE_UP, "PgUp", KEY_PPAGE)                                                                  \
+    X(PAGE_DOWN, "PgDn", KEY_NPAGE)                                                                \
+    X(BACKSPACE, "Backspace", KEY_BACKSPACE)                                                       \
+    X(DELETE, "Delete", KEY_DC)                                                                    \
+    X(F1, "F1", KEY_F(1))                                                                          \
+    X(SHIFT_LEFT, "S-Left", KEY_SLEFT)                                                             \
+    X(SHIFT_RIGHT, "S-Right", KEY_SRIGHT)                                                          \
+    X(SHIFT_UP, "S-Up", KEY_SR)                                                                    \
+    X(SHIFT_DOWN, "S-Down", KEY_SF)
+
+// The code of a character is its Unicode number.
 enum key_code {
     KEY_CODE_FIRST = 0x110000,
-    KEY_CODE_LEFT,
-    KEY_CODE_RIGHT,
-    KEY_CODE_UP,
-    KEY_CODE_DOWN,
-    KEY_CODE_HOME,
-    KEY_CODE_END,
-    KEY_CODE_PAGE_UP,
-    KEY_CODE_PAGE_DOWN,
-    KEY_CODE_BACKSPACE,
-    KEY_CODE_DELETE,
-    KEY_CODE_F1,
-    KEY_CODE_SHIFT_LEFT,
-    KEY_CODE_SHIFT_RIGHT,
-    KEY_CODE_SHIFT_UP,
-    KEY_CODE_SHIFT_DOWN,
-    KEY_CODE_ENTER = '\r',
+#define KEY_CODE(code, name, curses) KEY_CODE_##code,
+    KEY_LIST(KEY_CODE)
+#undef KEY_CODE
+        KEY_CODE_ENTER = '\r',
     KEY_CODE_ESCAPE = 27,
     KEY_CODE_TAB = '\t'
 };

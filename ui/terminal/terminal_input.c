@@ -17,22 +17,11 @@ static int key_of_curses(int key)
 {
     static const struct {
         int curses, ours;
-    } keys[] = {{KEY_LEFT, KEY_CODE_LEFT},
-                {KEY_RIGHT, KEY_CODE_RIGHT},
-                {KEY_UP, KEY_CODE_UP},
-                {KEY_DOWN, KEY_CODE_DOWN},
-                {KEY_HOME, KEY_CODE_HOME},
-                {KEY_END, KEY_CODE_END},
-                {KEY_PPAGE, KEY_CODE_PAGE_UP},
-                {KEY_NPAGE, KEY_CODE_PAGE_DOWN},
-                {KEY_DC, KEY_CODE_DELETE},
-                {KEY_BACKSPACE, KEY_CODE_BACKSPACE},
-                {KEY_F(1), KEY_CODE_F1},
-                {KEY_ENTER, KEY_CODE_ENTER},
-                {KEY_SLEFT, KEY_CODE_SHIFT_LEFT},
-                {KEY_SRIGHT, KEY_CODE_SHIFT_RIGHT},
-                {KEY_SR, KEY_CODE_SHIFT_UP},
-                {KEY_SF, KEY_CODE_SHIFT_DOWN}};
+    } keys[] = {
+#define KEY_OF_CURSES(code, name, curses) {curses, KEY_CODE_##code},
+        KEY_LIST(KEY_OF_CURSES)
+#undef KEY_OF_CURSES
+            {KEY_ENTER, KEY_CODE_ENTER}};
 
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         if (keys[i].curses == key) {

@@ -97,7 +97,6 @@ static void write_points(FILE *stream, const scenario *s, const void *found)
 
 static void write_scenario(FILE *stream, const scenario *s, const void *found)
 {
-    (void)s;
     scenario_write(stream, &((const calibrated *)found)->with_table);
 }
 

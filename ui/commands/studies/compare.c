@@ -148,26 +148,22 @@ static status run_all(comparison *c, run_monitor *monitor)
 
 static void write_csv(FILE *stream, const scenario *s, const void *found)
 {
-    (void)s;
     compare_csv(stream, &((const comparison *)found)->table);
 }
 
 static void write_markdown(FILE *stream, const scenario *s, const void *found)
 {
-    (void)s;
     compare_markdown(stream, &((const comparison *)found)->table);
 }
 
 static json_t *table_json(const scenario *s, const void *found)
 {
-    (void)s;
     return compare_json(&((const comparison *)found)->table);
 }
 
 static void print_table(const scenario *s, const void *found)
 {
     const compare_table *t = &((const comparison *)found)->table;
-    (void)s;
     if (t->count > 0) {
         compare_text(stdout, t);
     }
@@ -202,7 +198,6 @@ static bool name_runs(const comparison *c, char *names[TRACE_RUNS], char *title,
 static int plot_runs(const arguments *a, const scenario *s, const void *found)
 {
     const comparison *c = found;
-    (void)s;
     trace_run shown[TRACE_RUNS] = {{.scenario = NULL}};
     run_result results[TRACE_RUNS];
     char *names[TRACE_RUNS], title[64 + SCENARIO_CHANGES];

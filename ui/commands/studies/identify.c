@@ -91,7 +91,6 @@ static status compare_links(const arguments *a, outcome *o, fault *f)
 static json_t *answer(const scenario *s, const void *found)
 {
     const outcome *o = found;
-    (void)s;
     json_t *object = identify_json(&o->fit), *links = json_array();
     for (int i = 0; i < o->link_count; i++) {
         json_add(links, json_members(json_object(), "links:i aic:n white:b", o->links[i], o->aic[i],
@@ -155,13 +154,11 @@ static void print_answer(const scenario *s, const void *found)
 
 static void write_fitted(FILE *stream, const scenario *s, const void *found)
 {
-    (void)s;
     scenario_write(stream, &((const outcome *)found)->written);
 }
 
 static void write_cases(FILE *stream, const scenario *s, const void *found)
 {
-    (void)s;
     identify_write_set(stream, &((const outcome *)found)->fit);
 }
 
@@ -189,7 +186,6 @@ static bool is_reliable(const identification *id)
 
 static int plot(const arguments *a, const scenario *s, const void *found)
 {
-    (void)s;
     return publish_owned(a, identify_figure_create(&((const outcome *)found)->fit));
 }
 

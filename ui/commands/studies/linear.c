@@ -204,7 +204,6 @@ static void write_csv(FILE *stream, const scenario *base, const void *found)
         {"kind", ""}, {"output", ""}, {"real", "1/s"}, {"imaginary", "rad/s"}, {"damping", ""}};
     const analysis *x = found;
     csv_writer w = csv_begin(stream);
-    (void)base;
     for (int i = 0; i < 5; i++) {
         csv_heading(&w, headings[i][0], headings[i][1]);
     }
@@ -226,7 +225,6 @@ static void write_mat(FILE *stream, const scenario *base, const void *found)
 {
     const analysis *x = found;
     matrix list[MATRICES];
-    (void)base;
     list_matrices(&x->arm.system, list);
     mat_file_begin(stream);
     for (int i = 0; i < MATRICES; i++) {
@@ -373,7 +371,6 @@ static json_t *survey_json(const scenario *base, const void *found)
 static void write_survey(FILE *stream, const scenario *base, const void *found)
 {
     const analysis *x = found;
-    (void)base;
     const sweep *s = &x->sweep;
     csv_writer w = csv_begin(stream);
     for (int axis = 0; axis < s->axis_count; axis++) {

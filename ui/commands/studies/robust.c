@@ -304,19 +304,16 @@ static int run_case(robustness *r, int k)
 
 static json_t *table_json(const scenario *s, const void *table)
 {
-    (void)s;
     return robust_json(table);
 }
 
 static void write_markdown(FILE *stream, const scenario *s, const void *table)
 {
-    (void)s;
     robust_markdown(stream, table);
 }
 
 static void write_csv(FILE *stream, const scenario *s, const void *table)
 {
-    (void)s;
     robust_csv(stream, table);
 }
 
@@ -328,7 +325,6 @@ static int plot(const arguments *a, const scenario *s, const void *table)
 
 static void print_table(const scenario *s, const void *table)
 {
-    (void)s;
     robust_text(stdout, table);
 }
 

@@ -29,7 +29,6 @@ static void write_best(FILE *stream, const scenario *s, const void *found)
 {
     const tuning *t = &((const tuner *)found)->tuning;
     scenario best;
-    (void)s;
     if (tune_apply(t, t->found, &best, NULL) == STATUS_OK) {
         scenario_write(stream, &best);
     }
@@ -42,7 +41,6 @@ static status keep_best(void *context, const tuning *best, fault *f)
     const char *path = t->arguments->output;
     whole_file file;
     status code = STATUS_OK;
-    (void)best;
     if (path != NULL && strcmp(path, "-") != 0 &&
         (code = whole_file_open(&file, path, f)) == STATUS_OK) {
         write_best(file.stream, t->scenario, t);

@@ -59,10 +59,9 @@ static void draw_lock(const explorer_state *st, screen *s, area a)
 
 static void draw_quantity(screen *s, area a, const char *name, double value, const char *unit)
 {
-    char number[32];
-    draw_number(number, sizeof number, value);
     screen_text(s, a.x, a.y, a.width, INK_TEXT, name);
-    screen_print(s, a.x + NUMBERS_AT, a.y, a.width - NUMBERS_AT, INK_TITLE, "%8s", number);
+    screen_print(s, a.x + NUMBERS_AT, a.y, a.width - NUMBERS_AT, INK_TITLE, "%8s",
+                 draw_number(value).text);
     screen_text(s, a.x + NUMBERS_AT + 9, a.y, a.width - NUMBERS_AT - 9, INK_DIM,
                 isfinite(value) ? unit : "");
 }

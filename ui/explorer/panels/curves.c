@@ -74,7 +74,7 @@ static void format_value(const explorer_state *st, const pane *p, int signal, bo
     bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
 
     // fewer digits where room is short
-    draw_number(text, size, value);
+    snprintf(text, size, "%s", draw_number(value).text);
     if (briefly && fabs(value) > 1e-12) {
         for (int digits = 3, length = 9; digits > 1 && length > 6; digits--) {
             length = snprintf(text, size, "%.*g", digits, value);

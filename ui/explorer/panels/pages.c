@@ -368,14 +368,13 @@ static void add_poles(page *p, const parameters *values, linear_place place)
     for (int i = 0; code == STATUS_OK && i < of.system.states; i++) {
         const double complex s = poles[i];
         const bool rests = cabs(s) < 1e-6; // rounding of a pole at the origin
-        char frequency[32], damping[32], constant[32];
         if (cimag(s) < 0) {
             continue;
         }
-        draw_number(frequency, sizeof frequency, rests ? 0 : cabs(s) / (2 * acos(-1)));
-        draw_number(damping, sizeof damping, rests ? (double)NAN : linear_damping(s));
-        draw_number(constant, sizeof constant, rests ? (double)NAN : -1 / creal(s));
-        snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s", frequency, damping, constant);
+        snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s",
+                 draw_number(rests ? 0 : cabs(s) / (2 * acos(-1))).text,
+                 draw_number(rests ? (double)NAN : linear_damping(s)).text,
+                 draw_number(rests ? (double)NAN : -1 / creal(s)).text);
     }
     if (code == STATUS_OK && of.system.states == 0) {
         add_text(p, 0, "none: nothing is left that could move", NULL);
@@ -461,23 +460,17 @@ static bool compare_quantity(const session *e, int index, int width, char *colum
 {
     // smaller differences are rounding, of numbers near zero too
     const double relative = 1e-6, absolute = 1e-9;
-    double value = summary_value(&e->run.summary, index), other = (double)NAN;
-    char one[32], two[32] = "", change[32] = "";
-    draw_number(one, sizeof one, value);
-
-    // a single run has no change
-    if (e->has_other) {
-        other = summary_value(&e->other.summary, index);
-        draw_number(two, sizeof two, other);
-        draw_number(change, sizeof change, value - other);
-    }
-
+    const double value = summary_value(&e->run.summary, index);
+    const double other = e->has_other ? summary_value(&e->other.summary, index) : (double)NAN;
     *differs = e->has_other && !(isnan(value) && isnan(other)) &&
                !(fabs(value - other) <= absolute + relative * fmax(fabs(value), fabs(other)));
-    if (!*differs && e->has_other) {
-        snprintf(change, sizeof change, "-");
-    }
-    snprintf(columns, size, "%*s%*s%*s", width, one, width, two, width, change);
+
+    // a single run has no change
+    const number_text none = {""}, two = e->has_other ? draw_number(other) : none;
+    const number_text change =
+        e->has_other ? draw_number(*differs ? value - other : (double)NAN) : none;
+    snprintf(columns, size, "%*s%*s%*s", width, draw_number(value).text, width, two.text, width,
+             change.text);
     return !summary_table[index].timing && !(isnan(value) && isnan(other));
 }
 

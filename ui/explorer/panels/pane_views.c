@@ -32,12 +32,10 @@ static value_range opened(value_range r)
 // The ends of the axis across, in the corners of the lowest row, and what it is.
 static void draw_ends(screen *s, area a, value_range x, const char *name)
 {
-    char low[32], high[32], text[96];
-    draw_number(low, sizeof low, x.low);
-    draw_number(high, sizeof high, x.high);
+    char text[96];
     const int y = a.y + a.height - 1;
-    screen_text(s, a.x, y, a.width, INK_DIM, low);
-    const int length = snprintf(text, sizeof text, "%.48s %s", name, high);
+    screen_text(s, a.x, y, a.width, INK_DIM, draw_number(x.low).text);
+    const int length = snprintf(text, sizeof text, "%.48s %s", name, draw_number(x.high).text);
     screen_text(s, a.x + a.width - length, y, length, INK_DIM, text);
 }
 

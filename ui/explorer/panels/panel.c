@@ -80,17 +80,15 @@ void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink 
 
 #define NOTHING 1e-12 // a smaller value is rounding, and shown as 0
 
-void draw_number(char *text, size_t size, double value)
+number_text draw_number(double value)
 {
-    if (!isfinite(value)) {
-        snprintf(text, size, "-");
-    } else if (fabs(value) < NOTHING) {
-        snprintf(text, size, "0");
-    } else if (fabs(value) < 1e-3 || fabs(value) >= 1e5) {
-        snprintf(text, size, "%.2e", value);
-    } else {
-        snprintf(text, size, "%.4g", value);
+    number_text n = {"-"};
+    const double size = fabs(value);
+    const char *form = size < NOTHING ? "0" : size < 1e-3 || size >= 1e5 ? "%.2e" : "%.4g";
+    if (isfinite(value)) {
+        snprintf(n.text, sizeof n.text, form, value);
     }
+    return n;
 }
 
 int draw_first_line(int selected, int count, int height)
@@ -210,21 +208,79 @@ bool page_point(explorer_state *st, const panel_gesture *g)
     return true;
 }
 
-bool page_select(int key, int *selected, int count)
+// --- lists ------------------------------------------------------------------------------------
+
+static const page_list *open_list(const explorer_state *st)
 {
-    const int by = key == KEY_CODE_UP || key == 'k' ? -1 : key == KEY_CODE_DOWN || key == 'j';
-    if (*selected + by >= 0 && *selected + by < count) {
-        *selected += by;
-    }
-    return by != 0;
+    return panel_of(st->page.panel)->list;
 }
 
-bool page_point_at_line(explorer_state *st, const panel_gesture *g, int *selected, int count)
+static int *list_number(explorer_state *st, size_t place)
 {
+    return (int *)((char *)st + place);
+}
+
+void list_draw(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    const page_list *list = open_list(st);
+    const int count = *(const int *)((const char *)st + list->count);
+    const int selected = *(const int *)((const char *)st + list->selected);
+    const int edges = 2 + list->head + list->foot;
+    const area a = page_area(body, list->width, edges + (count > 0 ? count : list->least));
+    const area lines = {a.x + 1, a.y + 1 + list->head, a.width - 2, a.height - edges};
+    const int first = draw_first_line(selected, count, lines.height);
+    const char *title = a.width < 60 && list->narrow != NULL ? list->narrow : list->title;
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
+                 count == 0 && list->empty != NULL ? list->empty : title);
+    list->draw_rest(st, s, (area){a.x + 2, a.y + 1, a.width - 4, a.height - 2});
+
+    // the lines lie over the page, so a click meets them first
+    layout_add_hit(lay, (hit_area){st->page.panel, PART_BODY, 0, a});
+    layout_add_hit(lay, (hit_area){st->page.panel, PART_LINES, first, lines});
+    for (int i = first; i < count && i - first < lines.height; i++) {
+        const area line = {lines.x + 1, lines.y + i - first, lines.width - 2, 1};
+        list->draw_line(st, s, line, i);
+        if (i == selected) {
+            screen_tint(s, lines.x, line.y, lines.width, 1, INK_SELECTED);
+        }
+    }
+}
+
+bool list_point(explorer_state *st, const panel_gesture *g)
+{
+    const page_list *list = open_list(st);
     const int index = g->hit.index + g->event.y - g->hit.area.y;
     if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
         return page_point(st, g);
     }
-    *selected = index < count ? index : *selected;
+    if (index < *list_number(st, list->count)) {
+        *list_number(st, list->selected) = index;
+    }
     return true;
+}
+
+bool list_key_pressed(explorer_state *st, int key)
+{
+    const page_list *list = open_list(st);
+    const int *count = list_number(st, list->count);
+    int *selected = list_number(st, list->selected);
+    char number[16];
+
+    // up and down
+    const int by = key == KEY_CODE_UP || key == 'k' ? -1 : key == KEY_CODE_DOWN || key == 'j';
+    if (by != 0) {
+        *selected += *selected + by >= 0 && *selected + by < *count ? by : 0;
+        return true;
+    }
+
+    // what the list has a key for, else the page closes
+    const list_key *k = list->keys;
+    while (k->key != 0 && (k->key != key || (*count == 0 && list->needs_lines))) {
+        k++;
+    }
+    if (k->key == 0 || k->closes) {
+        st->page.panel = PANEL_NONE;
+    }
+    snprintf(number, sizeof number, "%d", *selected + 1);
+    return k->key == 0 || k->does(st, number);
 }

@@ -118,7 +118,10 @@ int layout_keep_scroll(layout *lay, panel_id id, int last);
 void layout_settle(const layout *lay, explorer_state *st);
 
 // A number in at most nine cells; values that are only rounding are shown as 0, NaN as "-".
-void draw_number(char *text, size_t size, double value);
+typedef struct number_text {
+    char text[24];
+} number_text;
+number_text draw_number(double value);
 
 // The first line to show so that the selected one is visible.
 int draw_first_line(int selected, int count, int height);
@@ -155,6 +158,8 @@ typedef struct panel {
 
     // Handles a key while the page is open. Pages only.
     bool (*key)(explorer_state *st, int key);
+
+    const struct page_list *list; // of a page that is one, LIST_PAGE
 } panel;
 
 #define PANEL_DECLARATION(id, place, description) extern const panel description;
@@ -180,11 +185,32 @@ bool page_key(explorer_state *st, int key);
 // not lines; returns how far it is scrolled.
 int page_scroll(layout *lay, panel_id id, area a, int lines, int head);
 
-// Keys for up and down move the selection in a list of `count` lines; false for other keys.
-bool page_select(int key, int *selected, int count);
+// A key of a page that is a list: what it does with the number of the selected line, from 1, as its
+// argument.
+typedef struct list_key {
+    int key;
+    action_function *does;
+    bool closes; // the page before that
+} list_key;
 
-// A press selects the line of a list under the mouse; all else is page_point's.
-bool page_point_at_line(explorer_state *st, const panel_gesture *g, int *selected, int count);
+// A page of lines of which one is selected. Keys for up and down and a press of the mouse select
+// another one, keys that the list does not name close it.
+typedef struct page_list {
+    const char *title, *narrow, *empty; // of a narrow page and without lines, NULL: as ever
+    int width, head, foot, least;       // most cells across; rows over, below, and of no lines
+    bool needs_lines;                   // without any every key closes it
+    size_t count, selected;             // where the state has them, an int each
+    void (*draw_line)(const explorer_state *st, screen *s, area a, int index);
+    void (*draw_rest)(const explorer_state *st, screen *s,
+                      area a); // head and foot of the page's area
+    list_key keys[12];         // then one with key 0
+} page_list;
+
+void list_draw(const explorer_state *st, layout *lay, screen *s, area body);
+bool list_point(explorer_state *st, const panel_gesture *g);
+bool list_key_pressed(explorer_state *st, int key);
+
+#define LIST_PAGE .draw = list_draw, .point = list_point, .key = list_key_pressed
 
 // The wheel presses a page's keys for up and down.
 bool page_point(explorer_state *st, const panel_gesture *g);

@@ -45,12 +45,10 @@ static void draw_track(layout *lay, screen *s, area a, const track *k)
 // The slider of the selected number in a line of its own, between the ends of its range.
 static void draw_wide_slider(layout *lay, screen *s, area a, const track *k)
 {
-    char low[32], high[32];
-    draw_number(low, sizeof low, k->scale.low);
-    draw_number(high, sizeof high, k->scale.high);
-    int before = (int)strlen(low), after = (int)strlen(high);
-    screen_text(s, a.x, a.y, a.width, INK_DIM, low);
-    screen_text(s, a.x + a.width - after, a.y, after, INK_DIM, high);
+    const number_text low = draw_number(k->scale.low), high = draw_number(k->scale.high);
+    int before = (int)strlen(low.text), after = (int)strlen(high.text);
+    screen_text(s, a.x, a.y, a.width, INK_DIM, low.text);
+    screen_text(s, a.x + a.width - after, a.y, after, INK_DIM, high.text);
     draw_track(lay, s, (area){a.x + before + 1, a.y, a.width - before - after - 2, 1}, k);
 }
 

@@ -1,8 +1,6 @@
 // The runs: their legend beside the curves, and the page of those that are pinned.
 #include "ui/explorer/panels/panel.h"
 
-#include "ui/terminal/keys.h"
-
 // --- the legend -------------------------------------------------------------------------------
 // The legend of runs: the present one and those pinned, with their lines and peaks.
 
@@ -16,11 +14,9 @@ static int rows(const explorer_state *st, screen_size body)
 // A run in a line: how it is drawn, its name, its peak force.
 static void draw_run(screen *s, area a, const char *name, double peak, unsigned pattern, ink colour)
 {
-    char text[32];
-    draw_number(text, sizeof text, peak);
     draw_line_sample(s, a.x, a.y, SAMPLE, pattern, colour);
     screen_words(s, a.x + SAMPLE + 1, a.y, a.width - SAMPLE - 1 - PEAK, INK_TEXT, name);
-    screen_print(s, a.x + a.width - PEAK, a.y, PEAK, INK_FORCE, "%8s N", text);
+    screen_print(s, a.x + a.width - PEAK, a.y, PEAK, INK_FORCE, "%8s N", draw_number(peak).text);
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
@@ -71,15 +67,14 @@ const panel runs_panel = {.name = "runs",
 // --- the page ---------------------------------------------------------------------------------
 // The page of pinned runs: what differs, and what can be done with them.
 
-enum { WIDE = 100, NAME_WIDTH = 30, NUMBER = 10 };
+enum { NAME_WIDTH = 30, NUMBER = 10 };
 
 // A pinned run: its line, name, peak, and what differs from the present one.
 static void draw_pinned(const explorer_state *st, screen *s, area a, int index)
 {
     const pinned_run *p = &st->pinned.runs[index];
-    char peak[32], differs[LINE_TEXT];
+    char differs[LINE_TEXT];
     const int name = a.width >= 80 ? NAME_WIDTH : 20;
-    draw_number(peak, sizeof peak, p->run.summary.peak_force_N);
     run_list_differences(p, &st->session, differs, sizeof differs);
 
     // number, line, name, peak, difference
@@ -87,70 +82,43 @@ static void draw_pinned(const explorer_state *st, screen *s, area a, int index)
                  index + 1);
     draw_line_sample(s, a.x + 3, a.y, SAMPLE, p->hidden ? 0 : run_pattern(index), INK_TEXT);
     screen_words(s, a.x + 8, a.y, name - 1, p->hidden ? INK_DIM : INK_TITLE, p->name);
-    screen_print(s, a.x + 8 + name, a.y, NUMBER, INK_FORCE, "%7s N", peak);
+    screen_print(s, a.x + 8 + name, a.y, NUMBER, INK_FORCE, "%7s N",
+                 draw_number(p->run.summary.peak_force_N).text);
     screen_words(s, a.x + 8 + name + NUMBER, a.y, a.width - 8 - name - NUMBER, INK_TEXT, differs);
-    if (index == st->pinned.selected) {
-        screen_tint(s, a.x - 1, a.y, a.width + 2, 1, INK_SELECTED);
-    }
 }
 
-static void draw_page(const explorer_state *st, layout *lay, screen *s, area body)
+// What they stand beside, and the keys.
+static void draw_rest(const explorer_state *st, screen *s, area a)
 {
-    const int count = st->pinned.count;
-    const area a = page_area(body, WIDE, count < 1 ? 5 : count + 5);
-    const area lines = {a.x + 2, a.y + 2, a.width - 4, count};
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, "pinned runs (Esc closes)");
-    layout_add_hit(lay, (hit_area){PANEL_RUN_LIST, PART_BODY, 0, a});
-    layout_add_hit(lay, (hit_area){PANEL_RUN_LIST, PART_LINES, 0, lines});
-
-    // headings, the runs, the keys
-    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM,
+    screen_print(s, a.x, a.y, a.width, INK_DIM,
                  "this run peaks at %.4g N; beside it:", st->session.run.summary.peak_force_N);
-    for (int i = 0; i < count && lines.y + i < a.y + a.height - 2; i++) {
-        draw_pinned(st, s, (area){lines.x, lines.y + i, lines.width, 1}, i);
-    }
-    screen_text(s, a.x + 2, a.y + a.height - 2, a.width - 4, INK_DIM,
-                count > 0
+    screen_text(s, a.x, a.y + a.height - 1, a.width, INK_DIM,
+                st->pinned.count > 0
                     ? "Enter takes it, Space hides, = compares, r renames, d drops, D subtracts"
                     : "none yet: b pins the run there is, then change something");
 }
 
-static bool list_key(explorer_state *st, int key)
+static bool subtract(explorer_state *st, const char *number)
 {
-    run_list *list = &st->pinned;
-    char number[16];
-    snprintf(number, sizeof number, "%d", list->selected + 1);
-
-    // keys move the selection or do something with the run
-    if (page_select(key, &list->selected, list->count)) {
-        return true;
-    } else if (list->count == 0) {
-        st->page.panel = PANEL_NONE;
-    } else if (key == KEY_CODE_ENTER) {
-        st->page.panel = PANEL_NONE;
-        return act_take(st, number);
-    } else if (key == ' ') {
-        return act_hide(st, number);
-    } else if (key == '=') {
-        return act_baseline(st, number);
-    } else if (key == 'r') {
-        return act_rename(st, number);
-    } else if (key == 'd' || key == 'x' || key == KEY_CODE_DELETE) {
-        return act_unpin(st, number);
-    } else if (key == 'D') {
-        st->page.panel = PANEL_NONE;
-        return act_difference(st, "");
-    } else {
-        st->page.panel = PANEL_NONE;
-    }
-    return true;
+    return act_difference(st, "");
 }
 
-// A click selects a run.
-static bool point_at_page(explorer_state *st, const panel_gesture *g)
-{
-    return page_point_at_line(st, g, &st->pinned.selected, st->pinned.count);
-}
+static const page_list list = {.title = "pinned runs (Esc closes)",
+                               .width = 100,
+                               .head = 1,
+                               .foot = 2,
+                               .needs_lines = true,
+                               .count = offsetof(explorer_state, pinned.count),
+                               .selected = offsetof(explorer_state, pinned.selected),
+                               .draw_line = draw_pinned,
+                               .draw_rest = draw_rest,
+                               .keys = {{KEY_CODE_ENTER, act_take, true},
+                                        {' ', act_hide},
+                                        {'=', act_baseline},
+                                        {'r', act_rename},
+                                        {'d', act_unpin},
+                                        {'x', act_unpin},
+                                        {KEY_CODE_DELETE, act_unpin},
+                                        {'D', subtract, true}}};
 
-const panel run_list_panel = {
-    .name = "run list", .draw = draw_page, .point = point_at_page, .key = list_key};
+const panel run_list_panel = {.name = "run list", .list = &list, LIST_PAGE};

@@ -116,7 +116,7 @@ static bool filter_key(explorer_state *st, int key)
     return opens ? open_selected(st) : true;
 }
 
-static bool list_key(explorer_state *st, int key)
+static bool menu_key(explorer_state *st, int key)
 {
     scenario_menu *menu = &st->scenarios;
 
@@ -163,4 +163,4 @@ static bool point(explorer_state *st, const panel_gesture *g)
     return true;
 }
 
-const panel scenarios_panel = {.name = "scenarios", .draw = draw, .point = point, .key = list_key};
+const panel scenarios_panel = {.name = "scenarios", .draw = draw, .point = point, .key = menu_key};

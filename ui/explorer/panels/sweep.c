@@ -47,7 +47,7 @@ static void format_value(const sweep_axis *axis, double value, char text[SWEEP_V
 {
     sweep_axis_format(axis, value, text, SWEEP_VALUE_TEXT);
     if (sweep_axis_parameter(axis)->type == PARAMETER_REAL) {
-        draw_number(text, SWEEP_VALUE_TEXT, value);
+        snprintf(text, SWEEP_VALUE_TEXT, "%s", draw_number(value).text);
     }
 }
 
@@ -67,15 +67,13 @@ static void draw_chart(const explorer_state *st, screen *s, area a)
 {
     const lab_sweep *sweep = &st->sweep;
     value_range range;
-    char low[32], high[32];
     if (!range_of_metric(sweep, &range)) {
         screen_text(s, a.x, a.y, a.width, INK_DIM, "no run has this number");
         return;
     }
-    draw_number(low, sizeof low, range.low);
-    draw_number(high, sizeof high, range.high);
-    screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%8s", high);
-    screen_print(s, a.x, a.y + a.height - 2, LABEL_WIDTH, INK_DIM, "%8s", low);
+    screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%8s", draw_number(range.high).text);
+    screen_print(s, a.x, a.y + a.height - 2, LABEL_WIDTH, INK_DIM, "%8s",
+                 draw_number(range.low).text);
 
     // from point to point, but words are no numbers
     const parameter_info *varied = sweep_axis_parameter(&sweep->axis);
@@ -116,14 +114,13 @@ static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
     for (int i = first; i < sweep->count && i - first < a.height; i++) {
         const swept_run *r = &sweep->runs[i];
         const int y = a.y + i - first;
-        char value[SWEEP_VALUE_TEXT], metric[32];
-
+        char value[SWEEP_VALUE_TEXT];
         format_value(&sweep->axis, r->value, value);
-        draw_number(metric, sizeof metric, summary_value(&r->run.summary, sweep->metric));
 
         // a run that stopped says so in the unit's place
         screen_words(s, a.x, y, VALUE - 1, INK_TITLE, value);
-        screen_print(s, a.x + VALUE, y, a.width - VALUE, INK_TEXT, "%10s %s", metric,
+        screen_print(s, a.x + VALUE, y, a.width - VALUE, INK_TEXT, "%10s %s",
+                     draw_number(summary_value(&r->run.summary, sweep->metric)).text,
                      r->run.summary.status == STATUS_OK ? summary_table[sweep->metric].unit
                                                         : "stopped");
         if (i == sweep->selected) {
@@ -177,7 +174,6 @@ static void draw_map(const explorer_state *st, layout *lay, screen *s, area a)
     const int across = (int)sweep->axis.count, up = (int)sweep->second.count;
     const int wide = a.width / across, most = (a.height - BELOW) / up,
               tall = most < TALL ? most : TALL;
-    char low[32], high[32], text[32];
     value_range range;
     if (wide < 1 || tall < 1) {
         screen_print(s, a.x, a.y, a.width, INK_DIM, "a map of %d x %d has no room here", across,
@@ -192,17 +188,16 @@ static void draw_map(const explorer_state *st, layout *lay, screen *s, area a)
             draw_cell(s, place, (value - range.low) / (range.high - range.low),
                       i == sweep->selected);
         }
-        draw_number(low, sizeof low, range.low);
-        draw_number(high, sizeof high, range.high);
-        screen_print(s, a.x, a.y + a.height - 3, a.width, INK_DIM, "blank %s, dark %s", low, high);
+        screen_print(s, a.x, a.y + a.height - 3, a.width, INK_DIM, "blank %s, dark %s",
+                     draw_number(range.low).text, draw_number(range.high).text);
     } else {
         screen_text(s, a.x, a.y, a.width, INK_DIM, "no run has this number");
     }
     draw_values(s, (area){a.x, a.y + a.height - 4, a.width, 1}, sweep, true);
     draw_values(s, (area){a.x, a.y + a.height - 2, a.width, 1}, sweep, false);
     if (sweep->selected < sweep->count) {
-        draw_number(text, sizeof text, lab_sweep_metric(sweep, sweep->selected, sweep->metric));
-        screen_print(s, a.x, a.y + a.height - 1, a.width, INK_TEXT, "%s %s", text,
+        screen_print(s, a.x, a.y + a.height - 1, a.width, INK_TEXT, "%s %s",
+                     draw_number(lab_sweep_metric(sweep, sweep->selected, sweep->metric)).text,
                      summary_table[sweep->metric].unit);
     }
 }

@@ -65,20 +65,17 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         double value = signal_value(row, i), other = beside ? signal_value(beside, i) : 0;
         double difference = value - other, size = fmax(fabs(value), fabs(other));
         bool differs = beside != NULL && fabs(difference) > 1e-6 * size;
-        char text[32];
         int y = a.y + line - first, x = a.x + 2;
         const bool fits = (int)strlen(info->name) < names;
         screen_text(s, x, y, names - 1, INK_TEXT, fits ? info->name : info->ascii);
         x += names;
-        draw_number(text, sizeof text, value);
-        screen_print(s, x, y, NUMBER, INK_TITLE, "%9s", text);
+        screen_print(s, x, y, NUMBER, INK_TITLE, "%9s", draw_number(value).text);
         x += NUMBER;
         if (beside != NULL) {
-            draw_number(text, sizeof text, difference);
-            if (signal_is_state(i)) {
-                snprintf(text, sizeof text, "%s", differs ? "other" : "same");
-            }
-            screen_print(s, x, y, NUMBER, differs ? INK_WARNING : INK_DIM, "%9s", text);
+            screen_print(s, x, y, NUMBER, differs ? INK_WARNING : INK_DIM, "%9s",
+                         !signal_is_state(i) ? draw_number(difference).text
+                         : differs           ? "other"
+                                             : "same");
             x += NUMBER;
         }
         if (wide || beside == NULL) {
@@ -141,12 +138,8 @@ static void integral_unit(const char *unit, char *text, size_t size)
 static void draw_signal(screen *s, area a, int signal, const signal_statistics *x)
 {
     const signal_info *info = &signal_table[signal];
-    char low[32], high[32], mean[32], rms[32], integral[32], unit[32];
-    draw_number(low, sizeof low, x->minimum);
-    draw_number(high, sizeof high, x->maximum);
-    draw_number(mean, sizeof mean, x->mean);
-    draw_number(rms, sizeof rms, x->rms);
-    draw_number(integral, sizeof integral, x->integral);
+    char unit[32];
+    const number_text mean = draw_number(x->mean), integral = draw_number(x->integral);
     integral_unit(info->unit, unit, sizeof unit);
 
     // name, then two rows of numbers
@@ -155,23 +148,24 @@ static void draw_signal(screen *s, area a, int signal, const signal_statistics *
         screen_print(s, a.x + a.width - 8, a.y, 8, INK_DIM, "%8s", info->unit);
     }
     if (a.height > 1) {
-        screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, " min %-9s max %s", low, high);
+        screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, " min %-9s max %s",
+                     draw_number(x->minimum).text, draw_number(x->maximum).text);
     }
 
     // a state has no mean and no integral, one that is on or off the time it is on
     if (signal_is_state(signal)) {
         if (a.height > 2 && x->maximum <= 1) {
-            screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " for %s s in all", integral);
+            screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " for %s s in all", integral.text);
         }
         return;
     }
     if (a.height > 1 && a.width >= 40) {
-        screen_print(s, a.x + 28, a.y + 1, a.width - 28, INK_TEXT, "mean %s", mean);
-        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " rms %-9s integral %s %s", rms, integral,
-                     unit);
+        screen_print(s, a.x + 28, a.y + 1, a.width - 28, INK_TEXT, "mean %s", mean.text);
+        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " rms %-9s integral %s %s",
+                     draw_number(x->rms).text, integral.text, unit);
     } else if (a.height > 2) {
-        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " mean %-8s \u222b %s %s", mean, integral,
-                     unit);
+        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " mean %-8s \u222b %s %s", mean.text,
+                     integral.text, unit);
     }
 }
 

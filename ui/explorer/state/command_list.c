@@ -53,26 +53,15 @@ const char *explorer_command_suggest(const char *name)
 static const struct {
     const char *name;
     int key;
-} key_names[] = {{"Space", ' '},
-                 {"Enter", KEY_CODE_ENTER},
-                 {"Esc", KEY_CODE_ESCAPE},
-                 {"Tab", KEY_CODE_TAB},
-                 {"Left", KEY_CODE_LEFT},
-                 {"Right", KEY_CODE_RIGHT},
-                 {"Up", KEY_CODE_UP},
-                 {"Down", KEY_CODE_DOWN},
-                 {"Home", KEY_CODE_HOME},
-                 {"End", KEY_CODE_END},
-                 {"PgUp", KEY_CODE_PAGE_UP},
-                 {"PgDn", KEY_CODE_PAGE_DOWN},
-                 {"Backspace", KEY_CODE_BACKSPACE},
-                 {"Delete", KEY_CODE_DELETE},
-                 {"F1", KEY_CODE_F1},
-                 {"S-Left", KEY_CODE_SHIFT_LEFT},
-                 {"S-Right", KEY_CODE_SHIFT_RIGHT},
-                 {"S-Up", KEY_CODE_SHIFT_UP},
-                 {"S-Down", KEY_CODE_SHIFT_DOWN},
-                 {"lt", '<'}};
+} key_names[] = {
+#define KEY_NAMED(code, name, curses) {name, KEY_CODE_##code},
+    KEY_LIST(KEY_NAMED)
+#undef KEY_NAMED
+        {"Space", ' '},
+    {"Enter", KEY_CODE_ENTER},
+    {"Esc", KEY_CODE_ESCAPE},
+    {"Tab", KEY_CODE_TAB},
+    {"lt", '<'}};
 
 int key_of_name(const char *name, size_t length)
 {
