@@ -38,9 +38,9 @@ TEST(test_a_phase_pane_ends_where_the_signals_end)
     assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[1], SIGNAL_INDEX(gap));
     char *text = picture(&ex, 120, 40, GLYPHS_BRAILLE);
     const trace *t = &ex.state.session.run.trace;
-    char wanted[64], number[32];
-    draw_number(number, sizeof number, trace_statistics(t, SIGNAL_INDEX(gap), 0, HUGE_VAL).maximum);
-    snprintf(wanted, sizeof wanted, "gap %s", number);
+    char wanted[64];
+    snprintf(wanted, sizeof wanted, "gap %s",
+             draw_number(trace_statistics(t, SIGNAL_INDEX(gap), 0, HUGE_VAL).maximum).text);
     assert_non_null(strstr(text, wanted));
     assert_non_null(strstr(text, "force over gap"));
     free(text);
@@ -62,17 +62,15 @@ TEST(test_a_phase_pane_ends_where_the_signals_end)
 
 TEST(test_statistics_are_from_the_mark_to_the_cursor)
 {
-    char wanted[64], number[32];
+    char wanted[64];
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>:seek 0.45<Enter>m:seek 0.25<Enter>X");
     const signal_statistics s =
         trace_statistics(&ex.state.session.run.trace, SIGNAL_INDEX(force), 0.25, 0.45);
-    draw_number(number, sizeof number, s.maximum);
-    snprintf(wanted, sizeof wanted, "max %s", number);
+    snprintf(wanted, sizeof wanted, "max %s", draw_number(s.maximum).text);
     assert_shows(&ex, "mark and cursor, 0.25 to 0.45 s");
     assert_shows(&ex, wanted);
-    draw_number(number, sizeof number, s.integral);
-    snprintf(wanted, sizeof wanted, "integral %s N s", number);
+    snprintf(wanted, sizeof wanted, "integral %s N s", draw_number(s.integral).text);
     assert_shows(&ex, wanted);
     press_shows(&ex, "X", "!mark and cursor,");
 }

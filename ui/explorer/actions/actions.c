@@ -63,9 +63,9 @@ bool act_read_number(explorer_state *st, const char *text, double *value)
     return true;
 }
 
-bool act_read_optional(explorer_state *st, const char *text, double *value)
+bool act_read_number_or(explorer_state *st, const char *text, const char *word, double *value)
 {
-    return text[0] == '\0' || act_read_number(st, text, value);
+    return strcmp(text, word) == 0 || act_read_number(st, text, value);
 }
 
 int act_read_index(explorer_state *st, const char **text, int count, const char *what,

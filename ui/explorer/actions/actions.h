@@ -36,8 +36,8 @@ bool act_worked(explorer_state *st, status code, const fault *f);
 // Reads a finite number.
 bool act_read_number(explorer_state *st, const char *text, double *value);
 
-// The same for an argument that may be omitted: then the value stays.
-bool act_read_optional(explorer_state *st, const char *text, double *value);
+// The same for an argument that may be a word instead, such as "" or "off": then the value stays.
+bool act_read_number_or(explorer_state *st, const char *text, const char *word, double *value);
 
 // Reads the number of one of `count` things (`what`, in the plural; `lister` shows them), from 1,
 // and the blanks behind it off *text. Returns its index, -1 if it is refused.

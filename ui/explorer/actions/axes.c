@@ -63,10 +63,8 @@ bool act_pan(explorer_state *st, const char *argument)
     // directions are a quarter of what is visible
     if (strcmp(argument, "left") == 0 || strcmp(argument, "right") == 0) {
         seconds = (argument[0] == 'l' ? -0.25 : 0.25) * (to - from);
-    } else {
-        if (!act_read_number(st, argument, &seconds)) {
-            return false;
-        }
+    } else if (!act_read_number(st, argument, &seconds)) {
+        return false;
     }
     if (st->window.to <= st->window.from) {
         return act_refuse(st, "the whole run is visible, z zooms in");
@@ -203,18 +201,15 @@ bool act_axis(explorer_state *st, const char *argument)
     if (count == used && index < 0) {
         return act_refuse(st, "no pane of curves is shown");
     }
-    if (count > used) {
-        if (!act_read_pane(st, words[used], &index)) {
-            return false;
-        }
+    if (count > used && !act_read_pane(st, words[used], &index)) {
+        return false;
     }
 
     // that pane, or all of them
     for (int i = 0; i < PANES; i++) {
-        if ((i == index || index < 0) && st->panes.pane[i].count > 0) {
-            if (!apply(st, i, words, used)) {
-                return false;
-            }
+        if ((i == index || index < 0) && st->panes.pane[i].count > 0 &&
+            !apply(st, i, words, used)) {
+            return false;
         }
     }
     return tell_axis(st, index < 0 ? 0 : index);

@@ -27,14 +27,11 @@ static bool act_adjust(explorer_state *st, int parameter, double value)
 
     // a value that is as it was leaves no change
     const int changes = s->input_count;
-    if (!act_worked(st, session_adjust(s, parameter, text, &f), &f)) {
-        return false;
-    }
-    if (s->input_count < changes) {
-        return act_tell(st, "%s is %s %s again", parameter_table[parameter].path, text,
-                        parameter_table[parameter].unit);
-    }
-    return act_tell_change(st);
+    return act_worked(st, session_adjust(s, parameter, text, &f), &f) &&
+           (s->input_count < changes
+                ? act_tell(st, "%s is %s %s again", parameter_table[parameter].path, text,
+                           parameter_table[parameter].unit)
+                : act_tell_change(st));
 }
 
 // The parameter of a path, of its last part or of a beginning of either.
@@ -211,14 +208,10 @@ bool act_push(explorer_state *st, const char *argument)
     session_forget_ghost(&st->session);
     double impulse = 0.01;
     fault f = {0};
-    if (!act_read_optional(st, argument, &impulse)) {
-        return false;
-    }
-    if (!act_worked(st, session_push(&st->session, impulse, &f), &f)) {
-        return false;
-    }
-    return act_tell_failed_run(st) ||
-           act_tell(st, "pushed with %g N s at %.4f s", impulse, st->session.now);
+    return act_read_number_or(st, argument, "", &impulse) &&
+           act_worked(st, session_push(&st->session, impulse, &f), &f) &&
+           (act_tell_failed_run(st) ||
+            act_tell(st, "pushed with %g N s at %.4f s", impulse, st->session.now));
 }
 
 // Opening a scenario is undone and done again as changes are.
@@ -261,18 +254,16 @@ bool act_extend(explorer_state *st, const char *argument)
 {
     char text[NUMBER_TEXT];
     double duration = st->session.effective.parameters.run.duration, more = duration;
-    if (!act_read_optional(st, argument, &more)) {
+    if (!act_read_number_or(st, argument, "", &more)) {
         return false;
     }
 
     // what has been seen stays seen: only rows are added
-    double seen = st->session.seen;
+    const double seen = st->session.seen;
     number_format(text, duration + more);
-    if (!act_give(st, PARAMETER_INDEX(run.duration), text)) {
-        return false;
-    }
-    st->session.seen = seen;
-    return true;
+    const bool longer = act_give(st, PARAMETER_INDEX(run.duration), text);
+    st->session.seen = longer ? seen : st->session.seen;
+    return longer;
 }
 
 // --- sliders ----------------------------------------------------------------------------------
@@ -298,10 +289,8 @@ bool act_follow_slider(explorer_state *st)
 {
     const slider_grip *grip = &st->slider;
     const parameters p = state_parameters(st);
-    if (!grip->held || parameter_get(&p, grip->parameter) == grip->value) {
-        return true;
-    }
-    return act_adjust(st, grip->parameter, grip->value);
+    return !grip->held || parameter_get(&p, grip->parameter) == grip->value ||
+           act_adjust(st, grip->parameter, grip->value);
 }
 
 bool act_drop_slider(explorer_state *st)

@@ -126,9 +126,8 @@ static bool lock(explorer_state *st, const char *wanted)
 
     // going on through the modes at one instant replaces the lock there
     const bool replaces = locked_just_now(s);
-    status undone = replaces ? session_undo(s, &f) : STATUS_OK;
-    if (undone != STATUS_OK) {
-        return act_worked(st, undone, &f);
+    if (replaces && !act_worked(st, session_undo(s, &f), &f)) {
+        return false;
     }
 
     // a lock that is refused leaves the one before in effect

@@ -80,9 +80,18 @@ static bool read_signals(explorer_state *st, const char *argument, pane *own)
     }
 }
 
-// Shows a pane of the user's, beside those there are.
-static bool show_own(explorer_state *st, pane own)
+// Shows a pane of the user's beside those there are, of the signals of an argument; `refusal` says
+// how many it takes.
+static bool show_own(explorer_state *st, const char *argument, pane_view view, int least, int most,
+                     const char *refusal)
 {
+    pane own = {.view = view};
+    if (!read_signals(st, argument, &own)) {
+        return false;
+    }
+    if (own.count < least || own.count > most) {
+        return act_refuse(st, "%s", refusal);
+    }
     const int index = panes_add(&st->panes, &own);
     return act_tell(st, "pane %d: :trace %d hides it", index + 1, index + 1);
 }
@@ -106,45 +115,25 @@ bool act_trace(explorer_state *st, const char *argument)
         return true;
     }
 
-    // a pane of the user's, of as many signals as fit
-    pane own = {.view = VIEW_TIME};
-    if (!read_signals(st, argument, &own)) {
-        return false;
-    }
-    if (own.count == 0) {
-        return act_refuse(st, "trace takes a number from 1 to 9 or names of signals");
-    }
-    return show_own(st, own);
+    return show_own(st, argument, VIEW_TIME, 1, PANE_SIGNALS,
+                    "trace takes a number from 1 to 9 or names of signals");
 }
 
 bool act_residual(explorer_state *st, const char *argument)
 {
-    pane own = {.view = VIEW_RESIDUAL};
-    if (!read_signals(st, argument, &own)) {
-        return false;
-    }
-    return own.count > 0 ? show_own(st, own)
-                         : act_refuse(st, "residual takes signals that were measured");
+    return show_own(st, argument, VIEW_RESIDUAL, 1, PANE_SIGNALS,
+                    "residual takes signals that were measured");
 }
 
 bool act_phase(explorer_state *st, const char *argument)
 {
-    pane own = {.view = VIEW_PHASE};
-    if (!read_signals(st, argument, &own)) {
-        return false;
-    }
-    return own.count == 2
-               ? show_own(st, own)
-               : act_refuse(st, "phase takes two signals: what goes up, and what across");
+    return show_own(st, argument, VIEW_PHASE, 2, 2,
+                    "phase takes two signals: what goes up, and what across");
 }
 
 bool act_spectrum(explorer_state *st, const char *argument)
 {
-    pane own = {.view = VIEW_SPECTRUM};
-    if (!read_signals(st, argument, &own)) {
-        return false;
-    }
-    return own.count == 1 ? show_own(st, own) : act_refuse(st, "spectrum takes one signal");
+    return show_own(st, argument, VIEW_SPECTRUM, 1, 1, "spectrum takes one signal");
 }
 
 // Shows the panes of these numbers and no others.
@@ -225,28 +214,25 @@ bool act_signal(explorer_state *st, const char *argument)
                                      : act_tell(st, "all signals of the pane are shown");
 }
 
-// Reads a signal and a value, or off.
+// Reads a signal and a value, or off, into a bound unless they are refused.
 static bool read_bound(explorer_state *st, const char *argument, const char *command,
                        solved_limit *bound)
 {
     char text[LINE_TEXT], *words[4];
-    *bound = (solved_limit){.signal = -1};
+    solved_limit read = {.signal = -1};
     snprintf(text, sizeof text, "%s", argument);
-    if (act_split(text, words) == 2 && (bound->signal = signal_find_any(words[0])) >= 0) {
-        return act_read_number(st, words[1], &bound->bound);
-    }
-    return strcmp(argument, "off") == 0 ||
-           act_refuse(st, "%s takes a signal and a value, such as force 2, or off", command);
+    const bool done =
+        act_split(text, words) == 2 && (read.signal = signal_find_any(words[0])) >= 0
+            ? act_read_number(st, words[1], &read.bound)
+            : strcmp(argument, "off") == 0 ||
+                  act_refuse(st, "%s takes a signal and a value, such as force 2, or off", command);
+    *bound = done ? read : *bound;
+    return done;
 }
 
 bool act_limit(explorer_state *st, const char *argument)
 {
-    solved_limit limit;
-    if (!read_bound(st, argument, "limit", &limit)) {
-        return false;
-    }
-    st->limit = limit;
-    return true;
+    return read_bound(st, argument, "limit", &st->limit);
 }
 
 bool act_band(explorer_state *st, const char *argument)

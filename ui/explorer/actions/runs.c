@@ -30,22 +30,17 @@ static bool pin(explorer_state *st, const char *name)
 {
     fault f = {0};
     session_forget_ghost(&st->session);
-    if (!act_need_whole_run(st)) {
-        return false;
-    }
-    return act_worked(st, run_list_pin(&st->pinned, &st->session, name, &f), &f) &&
+    return act_need_whole_run(st) &&
+           act_worked(st, run_list_pin(&st->pinned, &st->session, name, &f), &f) &&
            act_settle_baseline(st);
 }
 
 bool act_branch(explorer_state *st, const char *argument)
 {
-    if (!pin(st, "")) {
-        return false;
-    }
-    return act_tell(st,
-                    "branched at %.4f s: change something, the old run stays beside it "
-                    "(c compares, R lists all, B drops it)",
-                    st->session.now);
+    return pin(st, "") && act_tell(st,
+                                   "branched at %.4f s: change something, the old run stays beside "
+                                   "it (c compares, R lists all, B drops it)",
+                                   st->session.now);
 }
 
 bool act_pin(explorer_state *st, const char *argument)
@@ -64,19 +59,21 @@ bool act_forget(explorer_state *st, const char *argument)
     return act_settle_baseline(st);
 }
 
-// Reads the number of a pinned run off *text; -1 if it is refused.
-static int read_run(explorer_state *st, const char **text)
-{
-    return st->pinned.count == 0 ? (act_refuse(st, "no run is pinned (b pins this one)"), -1)
-                                 : act_read_index(st, text, st->pinned.count, "pinned runs", "R");
-}
+// The action of a command with the run that its argument names; `rest` is what follows.
+#define ACTION_ON_RUN(command)                                                                     \
+    static bool command##_run(explorer_state *st, int index, const char *rest);                    \
+    bool act_##command(explorer_state *st, const char *argument)                                   \
+    {                                                                                              \
+        const int count = st->pinned.count;                                                        \
+        const int index =                                                                          \
+            count > 0 ? act_read_index(st, &argument, count, "pinned runs", "R") : -1;             \
+        return index >= 0 ? command##_run(st, index, argument)                                     \
+                          : count == 0 && act_refuse(st, "no run is pinned (b pins this one)");    \
+    }                                                                                              \
+    static bool command##_run(explorer_state *st, int index, const char *rest)
 
-bool act_take(explorer_state *st, const char *argument)
+ACTION_ON_RUN(take)
 {
-    const int index = read_run(st, &argument);
-    if (index < 0) {
-        return false;
-    }
     run_list *list = &st->pinned;
     if (run_origin_is_of(&list->runs[index].from, &st->session)) {
         return act_tell(st, "this is that run");
@@ -103,52 +100,36 @@ bool act_take(explorer_state *st, const char *argument)
            act_tell(st, "'%s' goes on; the run before is compared with it", taken->name);
 }
 
-bool act_hide(explorer_state *st, const char *argument)
+ACTION_ON_RUN(hide)
 {
-    const int index = read_run(st, &argument);
-    if (index < 0) {
-        return false;
-    }
     st->pinned.runs[index].hidden = !st->pinned.runs[index].hidden;
     return true;
 }
 
-bool act_baseline(explorer_state *st, const char *argument)
+ACTION_ON_RUN(baseline)
 {
-    const int index = read_run(st, &argument);
-    if (index < 0) {
-        return false;
-    }
     st->pinned.baseline = index;
     return act_settle_baseline(st) &&
            act_tell(st, "compared with '%s' from now on", st->pinned.runs[index].name);
 }
 
-bool act_rename(explorer_state *st, const char *argument)
+ACTION_ON_RUN(rename)
 {
-    const int index = read_run(st, &argument);
-    if (index < 0) {
-        return false;
-    }
     pinned_run *p = &st->pinned.runs[index];
 
     // without a name it is asked for
-    if (argument[0] == '\0') {
+    if (rest[0] == '\0') {
         char line[32];
         snprintf(line, sizeof line, "rename %d ", index + 1);
         prompt_open_value(&st->prompt, line, p->name);
         return true;
     }
-    snprintf(p->name, sizeof p->name, "%s", argument);
+    snprintf(p->name, sizeof p->name, "%s", rest);
     return true;
 }
 
-bool act_unpin(explorer_state *st, const char *argument)
+ACTION_ON_RUN(unpin)
 {
-    const int index = read_run(st, &argument);
-    if (index < 0) {
-        return false;
-    }
     run_list_drop(&st->pinned, index);
     return act_settle_baseline(st);
 }
@@ -162,7 +143,7 @@ bool act_difference(explorer_state *st, const char *argument)
         d->on = false;
         return act_tell(st, "the runs themselves");
     }
-    if (!act_read_optional(st, argument, &tolerance)) {
+    if (!act_read_number_or(st, argument, "", &tolerance)) {
         return false;
     }
     if (!st->session.has_other) {
@@ -403,10 +384,8 @@ bool act_sweep(explorer_state *st, const char *argument)
     }
 
     // each run is computed while the lab waits, so they must be short
-    if (!act_need_whole_run(st) || !act_need_short_runs(st, "sweep", SWEPT_RUNS)) {
-        return false;
-    }
-    if (!act_worked(st, lab_sweep_begin(sweep, argument, &f), &f)) {
+    if (!act_need_whole_run(st) || !act_need_short_runs(st, "sweep", SWEPT_RUNS) ||
+        !act_worked(st, lab_sweep_begin(sweep, argument, &f), &f)) {
         return false;
     }
     st->side.panel = PANEL_SWEEP;

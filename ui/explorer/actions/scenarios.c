@@ -82,10 +82,8 @@ bool act_stop(explorer_state *st, const char *argument)
     if (s->computing == NULL) {
         return act_refuse(st, "nothing is being computed");
     }
-    if (!session_stop(s)) {
-        return true;
-    }
-    return act_tell(st, "stopped at %.4g s: Space at its end goes on, u takes the last change back",
+    return !session_stop(s) ||
+           act_tell(st, "stopped at %.4g s: Space at its end goes on, u takes the last change back",
                     session_end(s));
 }
 
@@ -104,12 +102,10 @@ bool act_allow(explorer_state *st, const char *argument)
     }
     const status code = consent_remember(&s->base, &kept, &f);
     st->playback.playing = true;
-    if (act_tell_failed_run(st)) {
-        return true;
-    }
-    return act_worked(st, code, &f) &&
-           act_tell(st, kept ? "allowed, and remembered for just this scenario and program"
-                             : "allowed for this visit");
+    return act_tell_failed_run(st) ||
+           (act_worked(st, code, &f) &&
+            act_tell(st, kept ? "allowed, and remembered for just this scenario and program"
+                              : "allowed for this visit"));
 }
 
 void act_tell_replay(explorer_state *st)

@@ -148,7 +148,7 @@ bool act_play(explorer_state *st, const char *argument)
 bool act_step(explorer_state *st, const char *argument)
 {
     double rows = 1;
-    if (!act_read_optional(st, argument, &rows)) {
+    if (!act_read_number_or(st, argument, "", &rows)) {
         return false;
     }
     st->playback.playing = false;
@@ -232,10 +232,8 @@ bool act_touch(explorer_state *st, const char *argument)
 bool act_seek(explorer_state *st, const char *argument)
 {
     double time = session_end(&st->session);
-    if (strcmp(argument, "end") != 0) {
-        if (!act_read_number(st, argument, &time)) {
-            return false;
-        }
+    if (!act_read_number_or(st, argument, "end", &time)) {
+        return false;
     }
     act_scrub(st, time);
     return fabs(st->session.now - time) < 1e-9 ||
@@ -250,10 +248,8 @@ bool act_speed(explorer_state *st, const char *argument)
     // a step up or down, or the speed itself
     if (strcmp(argument, "up") == 0 || strcmp(argument, "down") == 0) {
         wanted = playback_next_speed(&st->playback, argument[0] == 'u' ? 1 : -1);
-    } else {
-        if (!act_read_number(st, argument, &wanted)) {
-            return false;
-        }
+    } else if (!act_read_number(st, argument, &wanted)) {
+        return false;
     }
 
     // written so that NAN is refused too
@@ -267,10 +263,8 @@ bool act_speed(explorer_state *st, const char *argument)
 bool act_slow(explorer_state *st, const char *argument)
 {
     double factor = 1;
-    if (strcmp(argument, "off") != 0) {
-        if (!act_read_number(st, argument, &factor)) {
-            return false;
-        }
+    if (!act_read_number_or(st, argument, "off", &factor)) {
+        return false;
     }
     if (!(factor >= 1 && factor <= MOST_SLOW)) {
         return act_refuse(st, "impacts are shown 1 to %d times slower", MOST_SLOW);

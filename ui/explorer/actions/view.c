@@ -109,7 +109,7 @@ void act_settle_filter(explorer_state *st, panel_id panel)
 bool act_mark(explorer_state *st, const char *argument)
 {
     st->mark.time = st->session.now;
-    if (!act_read_optional(st, argument, &st->mark.time)) {
+    if (!act_read_number_or(st, argument, "", &st->mark.time)) {
         return false;
     }
     st->mark.set = argument[0] != '\0' || !st->mark.set;
@@ -222,7 +222,7 @@ ACTION_OF_CHOICE(colourby)
 bool act_rate(explorer_state *st, const char *argument)
 {
     double rate = 0;
-    if (strcmp(argument, "off") != 0 && !act_read_number(st, argument, &rate)) {
+    if (!act_read_number_or(st, argument, "off", &rate)) {
         return false;
     }
     if (rate < 0 || (rate > 0 && rate < 1)) {
@@ -237,7 +237,7 @@ bool act_bending(explorer_state *st, const char *argument)
 {
     enum { MOST = 100 };
     double factor = 1;
-    if (!act_read_optional(st, argument, &factor)) {
+    if (!act_read_number_or(st, argument, "", &factor)) {
         return false;
     }
     if (!(factor >= 1 && factor <= MOST)) {

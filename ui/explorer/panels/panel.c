@@ -248,7 +248,7 @@ void list_draw(const explorer_state *st, layout *lay, screen *s, area body)
 
 bool list_point(explorer_state *st, const panel_gesture *g)
 {
-    const page_list *list = open_list(st);
+    const page_list *list = panel_of(g->hit.panel)->list;
     const int index = g->hit.index + g->event.y - g->hit.area.y;
     if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
         return page_point(st, g);
