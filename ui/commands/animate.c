@@ -1,7 +1,5 @@
 #include "ui/commands/command.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "render/scene/film.h"
@@ -176,18 +174,13 @@ static const option_row rows[] = {
 };
 
 const command animate_command = {
-    .name = "animate",
-    .group = GROUP_PICTURES,
-    .operands = "SCENARIO...",
-    .summary = "Make a film of a run: the arm in space and its traces",
+    CALLED("animate", PICTURES, "Make a film of a run: the arm in space and its traces"),
+    SCENARIOS("SCENARIO...", 1, FILM_RUNS),
     .help =
         "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any other "
         "name is that "
         "of a folder, to\nbe made, for PNG frames. Every impact is slowed down against the rest. "
         "Several scenarios, or\n--beside, share the screen and one clock.\n",
-    .least = 1,
-    .most = FILM_RUNS,
-    .takes_scenarios = true,
     .options = {&set_options, OWN_OPTIONS(rows), &quiet_options, &view_options},
     .run = animate,
 };

@@ -112,7 +112,8 @@ const option_row *command_option(const command *c, int i)
     return NULL;
 }
 
-const char *option_text(const arguments *a, const option_row *o)
+// The text an option's place holds, NULL if it was not given. Only for types that store a text.
+static const char *option_text(const arguments *a, const option_row *o)
 {
     assert(o->type >= OPTION_TEXT && o->type <= OPTION_QUANTITY);
     return *(const char **)option_place(a, o);

@@ -201,8 +201,13 @@ struct command {
     int (*use)(const arguments *a, scenario *s);
 };
 
-// What a command that takes a scenario says of its operands.
-#define ONE_SCENARIO .operands = "SCENARIO", .least = 1, .most = 1, .takes_scenarios = true
+// What a command says of itself, and of its operands: how usage shows them, how many at least and
+// at most, whether they are scenarios.
+#define CALLED(command, of, what)   .name = (command), .group = GROUP_##of, .summary = (what)
+#define OPERANDS(names, few, many)  .operands = (names), .least = (few), .most = (many)
+#define SCENARIOS(names, few, many) OPERANDS(names, few, many), .takes_scenarios = true
+#define ONE_SCENARIO                SCENARIOS("SCENARIO", 1, 1)
+#define NO_OPERANDS                 OPERANDS("", 0, 0)
 
 // The study of laws over frequency, which stands in a file of its own.
 int study_of_follow(const arguments *a, scenario *s);
@@ -276,9 +281,6 @@ void arguments_finish(arguments *a);
 // The place of an option's value in the arguments.
 void *option_place(const arguments *a, const option_row *o);
 
-// The text an option's place holds, NULL if it was not given. Only for types that store a text.
-const char *option_text(const arguments *a, const option_row *o);
-
 // Whether the option names a place that results are written to; that place, NULL if it does not or
 // was not given.
 bool option_is_written(const option_row *o);
@@ -336,9 +338,9 @@ int write_file(const char *path, result_writer *write, const scenario *s, const 
 // The results of a command, each with its option; NULL where it has no such option.
 typedef struct command_results {
     json_t *(*json)(const scenario *s, const void *found);
-    result_writer *csv, *markdown, *output, *mat, *cases;
-    int (*plot)(const arguments *a, const scenario *s, const void *found); // gives the exit status
     void (*text)(const scenario *s, const void *found); // for people, on the standard output
+    int (*plot)(const arguments *a, const scenario *s, const void *found); // gives the exit status
+    result_writer *csv, *markdown, *output, *mat, *cases;
     // said after an interrupt: what became of the pieces that were done; the same where none were
     // and nothing is written, NULL: as of some
     const char *kept, *none;

@@ -9,7 +9,6 @@
 #include "render/figures/recipe.h"
 #include "render/figures/report.h"
 #include "src/base/json.h"
-#include "src/base/numbers.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
@@ -193,17 +192,14 @@ static const option_row rows[] = {
 };
 
 const command figures_command = {
-    .name = "figures",
-    .group = GROUP_THESIS,
-    .operands = "[ID]...",
-    .summary = "Draw the figures and tables of the thesis",
+    CALLED("figures", THESIS, "Draw the figures and tables of the thesis"),
+    OPERANDS("[ID]...", 0, 1 << 20),
     .help = "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a CSV of "
             "what is\ndrawn stands beside each.\n\n"
             "IDs are the thesis's numbers: 2.1 to 2.6, 3.1 to 3.11, 4.1 to 4.6, 5.1 to 5.7, T2.1, "
             "T3.1, T3.2,\nT4.1 to T4.3; forces, delays: those printed as points with "
             "residuals; errors: how near they\ncome out; beta-gamma: the map of Newmark's "
             "parameters.\n",
-    .most = 1 << 20,
     .operand_word = figure_word,
     .options = {&json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .run = figures,
@@ -264,15 +260,11 @@ static const option_row plot_rows[] = {
 };
 
 const command plot_command = {
-    .name = "plot",
-    .group = GROUP_PICTURES,
-    .operands = "RECIPE.yaml",
-    .summary = "Draw a figure from a recipe: runs, data and tables in panels",
+    CALLED("plot", PICTURES, "Draw a figure from a recipe: runs, data and tables in panels"),
+    OPERANDS("RECIPE.yaml", 1, 1),
     .help = "A recipe names runs with changed parameters, measured data and the databases of "
             "sweeps, and the\npanels that show them. A CSV of what is drawn stands beside the "
             "picture. Examples are in\nscenarios/recipes, all keys in docs/reference/recipes.md.\n",
-    .least = 1,
-    .most = 1,
     .options = {OWN_OPTIONS(plot_rows), &quiet_options, &page_options},
     .run = plot,
 };
@@ -306,16 +298,12 @@ static const option_row report_rows[] = {
 };
 
 const command report_command = {
-    .name = "report",
-    .group = GROUP_THESIS,
-    .operands = "[SCENARIO|RECIPE.yaml]...",
-    .summary = "Figures and tables as one web page and one PDF",
+    CALLED("report", THESIS, "Figures and tables as one web page and one PDF"),
+    SCENARIOS("[SCENARIO|RECIPE.yaml]...", 0, 64),
     .help = "Of the scenarios and recipes named, or without any of the whole thesis. Into the "
             "folder 'report' unless -o says otherwise. The page needs no other file and "
             "no network. Under\neach item stand its scenario, its model and the command that "
             "makes it again.\n^C ends it and leaves the report of before (exit status 130).\n",
-    .most = 64,
-    .takes_scenarios = true,
     .options = {OWN_OPTIONS(report_rows), &quiet_options},
     .run = report,
 };

@@ -194,15 +194,12 @@ static const option_row rows[] = {
 };
 
 const command help_command = {
-    .name = "help",
-    .group = GROUP_PROGRAM,
-    .summary = "The commands, how to call one, or an answer to a question",
+    CALLED("help", PROGRAM, "The commands, how to call one, or an answer to a question"),
+    OPERANDS("[COMMAND|QUESTION...]", 0, 32),
     .help = "A QUESTION is some words, as in: impactlab help settling time. It is looked up in the "
             "pages of the\nmanual, the parameters, the quantities and signals of a run, and the "
             "commands; the best hits are\nprinted with the passage that fits and where to read "
             "on.\n",
-    .operands = "[COMMAND|QUESTION...]",
-    .most = 32,
     .operand_word = command_word,
     .options = {OWN_OPTIONS(rows)},
     .run = help,

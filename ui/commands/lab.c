@@ -324,15 +324,11 @@ static const option_row rows[] = {
 const option_table lab_options = OPTION_TABLE("Options", rows);
 
 const command lab_command = {
-    .name = "lab",
-    .group = GROUP_ONE_RUN,
-    .operands = "[SCENARIO|FILE.session]",
-    .summary = "Explore a run on the terminal",
+    CALLED("lab", ONE_RUN, "Explore a run on the terminal"),
+    SCENARIOS("[SCENARIO|FILE.session]", 0, 1),
     .help = "Opens corrected/first-impact if no scenario is named; ? lists the keys. With --keys, "
             "--script or\n--size nothing is shown live: the keys are pressed, then the script's "
             "screen is printed as text.\n",
-    .most = 1,
-    .takes_scenarios = true,
     .options = {&set_options, &lab_options, &quiet_options},
     .run = explore,
 };

@@ -191,8 +191,7 @@ static status compute_set(const arm *a, mode_set *set, int hold)
 
 static int modes(const arguments *args, scenario *s)
 {
-    static const command_results r = {
-        .json = modes_object, .plot = plot_modes, .text = print_modes};
+    static const command_results r = {modes_object, print_modes, plot_modes};
     arm_modes m = {0};
     fault f = {.code = STATUS_OK};
     if (s->parameters.arm.model == ARM_PRINTED) {
@@ -217,10 +216,8 @@ static int modes(const arguments *args, scenario *s)
 static const option_row rows[] = {PLOT_OPTION("draw the first modes' shapes")};
 
 const command modes_command = {
-    .name = "modes",
-    .group = GROUP_ONE_RUN,
+    CALLED("modes", ONE_RUN, "Natural frequencies and shapes of the arm"),
     ONE_SCENARIO,
-    .summary = "Natural frequencies and shapes of the arm",
     .help = "Small vibrations about the straight arm without damping and friction, for a hub that "
             "is locked (held by\nthe controller) or free, and a tip that is free or pinned to the "
             "wall.\n",

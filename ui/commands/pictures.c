@@ -9,7 +9,6 @@
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
-#include "src/base/shipped.h"
 
 #define SERIF "DejaVu Serif"
 
@@ -69,9 +68,8 @@ int read_picture_options(const arguments *a, figure_options *o)
     return code;
 }
 
-int publish_figure(const arguments *a, const figure *fig)
+static int publish_figure(const arguments *a, const figure *fig)
 {
-    assert(a != NULL && a->plot != NULL && fig != NULL);
     figure_options o;
     fault f = {0};
     int code = read_picture_options(a, &o);

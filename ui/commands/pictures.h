@@ -10,17 +10,14 @@
 // status.
 int read_picture_options(const arguments *a, figure_options *o);
 
-// Draws a figure to --plot according to the options, with a CSV of its numbers next to it. Returns
-// the exit status.
-int publish_figure(const arguments *a, const figure *fig);
-
-// The same with the title "SCENARIO: what it shows", and what was changed of the scenario.
+// Draws a figure to --plot according to the options, with a CSV of its numbers next to it, with the
+// title "SCENARIO: what it shows" and what was changed of the scenario. Returns the exit status.
 int publish_titled(const arguments *a, const scenario *s, const char *shows, const figure *fig);
 
 // The same for a study's figure: panels side by side over one logarithmic axis.
 int publish_study(const arguments *a, const scenario *s, const char *shows, const figure *fig);
 
-// The same as publish_figure for a figure that is destroyed then.
+// The same for a figure that has its title and is destroyed then.
 int publish_owned(const arguments *a, owned_figure *o);
 
 // The same for a figure of runs: with the requested signals, measured data and range of time.

@@ -201,8 +201,7 @@ static int plot_predictions(const arguments *a, const scenario *s, const void *f
 
 static int report(const arguments *a, const scenario *s, const run_result *result)
 {
-    static const command_results r = {
-        .json = predict_object, .plot = plot_predictions, .text = print_predictions};
+    static const command_results r = {predict_object, print_predictions, plot_predictions};
     predicted p = {.result = result};
     command_list then;
     if (!read_commands(a->then, &then)) {
@@ -251,10 +250,9 @@ static const option_row rows[] = {
 };
 
 const command predict_command = {
-    .name = "predict",
-    .group = GROUP_ONE_RUN,
+    CALLED("predict", ONE_RUN,
+           "Predict the peak force from the instant before contact, beside what then happens"),
     ONE_SCENARIO,
-    .summary = "Predict the peak force from the instant before contact, beside what then happens",
     .help =
         "On a terminal a run of more than a second tells how far it is; ^C ends it (exit status "
         "130), and nothing\nis predicted.\n",

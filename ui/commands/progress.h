@@ -3,9 +3,7 @@
 #pragma once
 
 #include <math.h>
-#include <signal.h>
 
-#include "src/run/run.h"
 #include "src/study/sweep_run.h"
 #include "ui/commands/command.h"
 

@@ -158,8 +158,7 @@ static int run_and_report(const arguments *a, scenario *s)
     status code = run_with_progress(a, s, keep_trace, &result);
 
     // results are written of a run that failed, too
-    static const command_results r = {
-        .json = run_json, .csv = write_signals, .plot = plot_signals, .text = print_run};
+    static const command_results r = {run_json, print_run, plot_signals, write_signals};
     int exit_status = a->scene != NULL ? write_scene(a, s, &result) : EXIT_DONE;
     exit_status = worse(exit_status, write_results(a, &r, s, &result, true));
 
@@ -213,10 +212,8 @@ static const option_row rows[] = {
 };
 
 const command run_command = {
-    .name = "run",
-    .group = GROUP_ONE_RUN,
+    CALLED("run", ONE_RUN, "Simulate a scenario and sum it up"),
     ONE_SCENARIO,
-    .summary = "Simulate a scenario and sum it up",
     .help = "SCENARIO is a name from impactlab list, or a file. What a scenario file expects is "
             "checked unless\n--set changed something. A run that fails still writes what it has "
             "until then, and so does one that ^C ends (exit status 130). On a terminal a run of "

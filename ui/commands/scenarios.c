@@ -107,10 +107,8 @@ static int list(const arguments *a)
 }
 
 const command list_command = {
-    .name = "list",
-    .group = GROUP_ONE_RUN,
-    .operands = "",
-    .summary = "Name and title of every scenario",
+    CALLED("list", ONE_RUN, "Name and title of every scenario"),
+    NO_OPERANDS,
     .help = "",
     .options = {&json_options},
     .run = list,
@@ -166,14 +164,11 @@ static int run_lesson(const arguments *a)
 }
 
 const command lesson_command = {
-    .name = "lesson",
-    .group = GROUP_ONE_RUN,
-    .operands = "[NAME]",
-    .summary = "Experiments step by step, on the terminal",
+    CALLED("lesson", ONE_RUN, "Experiments step by step, on the terminal"),
+    OPERANDS("[NAME]", 0, 1),
     .help = "Opens a lesson in the lab: steps with questions, checked by the run itself. Without a "
             "name it lists them.\nIn the lab y goes on and A answers; :lesson lists the lessons "
             "there.\n",
-    .most = 1,
     .options = {&set_options, &json_options, &lab_options, &quiet_options},
     .run = run_lesson,
 };
@@ -307,10 +302,8 @@ static int show(const arguments *a)
 }
 
 const command show_command = {
-    .name = "show",
-    .group = GROUP_ONE_RUN,
+    CALLED("show", ONE_RUN, "The resolved parameters of a scenario, with units and ranges"),
     ONE_SCENARIO,
-    .summary = "The resolved parameters of a scenario, with units and ranges",
     .help =
         "A parameter marked with = was given by the scenario or by --set, the others have their "
         "defaults.\n",
@@ -378,14 +371,9 @@ static int check(const arguments *a)
 }
 
 const command check_command = {
-    .name = "check",
-    .group = GROUP_ONE_RUN,
-    .operands = "FILE...",
-    .summary = "Validate scenario files",
+    CALLED("check", ONE_RUN, "Validate scenario files"),
+    SCENARIOS("FILE...", 1, 1 << 20),
     .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what was expected.\n",
-    .least = 1,
-    .most = 1 << 20,
-    .takes_scenarios = true,
     .options = {&json_options},
     .run = check,
 };

@@ -122,8 +122,7 @@ static void print_tables(const scenario *s, const void *found)
 
 static int tables(const arguments *a)
 {
-    const command_results r = {.json = tables_object,
-                               .text = a->fitted ? print_fitted : print_tables};
+    const command_results r = {tables_object, a->fitted ? print_fitted : print_tables};
     thesis_tables t;
     fault f = {0};
     if (a->fitted) {
@@ -139,10 +138,8 @@ static const option_row rows[] = {
 };
 
 const command tables_command = {
-    .name = "tables",
-    .group = GROUP_THESIS,
-    .operands = "",
-    .summary = "Tables 4.1-4.3 of the thesis: printed, computed, difference",
+    CALLED("tables", THESIS, "Tables 4.1-4.3 of the thesis: printed, computed, difference"),
+    NO_OPERANDS,
     .help = "Each row is computed with the equations as the thesis prints them and with the "
             "corrected ones. --fitted shows the delays of the simulation with seven numbers and "
             "switches of the printed\nmodel fitted to them, and those of the impact dynamics by "

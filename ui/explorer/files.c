@@ -1,6 +1,5 @@
 // The commands that read and write files: scenarios, figures, rows, screens, scenes.
 #include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

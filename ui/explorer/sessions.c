@@ -1,7 +1,6 @@
 // Sessions: what one did, kept in a file and gone on with.
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 

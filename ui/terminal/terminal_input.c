@@ -2,7 +2,6 @@
 #include "ui/terminal/terminal.h"
 #include "ui/terminal/terminal_state.h"
 
-#include <errno.h>
 #include <poll.h>
 #include <string.h>
 #include <sys/ioctl.h>

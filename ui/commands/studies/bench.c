@@ -82,10 +82,8 @@ static const option_row rows[] = {
 };
 
 const command bench_command = {
-    .name = "bench",
-    .group = GROUP_PROGRAM,
-    .operands = "",
-    .summary = "How fast the lab computes on this machine",
+    CALLED("bench", PROGRAM, "How fast the lab computes on this machine"),
+    NO_OPERANDS,
     .help =
         "Medians of repeated measurements, in computing time of one processor\n(of the batch: by "
         "the clock).\n\n"

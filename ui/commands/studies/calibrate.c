@@ -120,12 +120,9 @@ static status make_table(calibrated *done, const scenario *s, fault *f)
 static int press_and_report(const arguments *a, scenario *s)
 {
     static const char kept[] = "their table is that of these commands only";
-    static const command_results r = {.json = points_json,
-                                      .csv = write_points,
-                                      .output = write_scenario,
-                                      .text = print_points,
-                                      .kept = kept,
-                                      .none = kept};
+    static const command_results r = {points_json,         print_points,
+                                      .csv = write_points, .output = write_scenario,
+                                      .kept = kept,        .none = kept};
     fault f = {0};
     calibrated done;
     double commands[K2_TABLE_MOST];
@@ -150,10 +147,9 @@ static const option_row rows[] = {
 };
 
 const command calibrate_command = {
-    .name = "calibrate",
-    .group = GROUP_CONTROL,
+    CALLED("calibrate", CONTROL,
+           "Measure the stiffness that a controller has to believe in, (5.26)"),
     ONE_SCENARIO,
-    .summary = "Measure the stiffness that a controller has to believe in, (5.26)",
     .help =
         "Presses the arm against the wall with constant commands, eight of them or those of\n"
         "--vary " VOLTAGE_PATH "=a:b:n, and computes K2 = f l / (2 (theta - theta_imp)) from "

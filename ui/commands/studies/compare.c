@@ -248,11 +248,11 @@ static int plot_runs(const arguments *a, const scenario *s, const void *found)
 
 static int compare(const arguments *a)
 {
-    static const command_results r = {.json = table_json,
-                                      .csv = write_csv,
+    static const command_results r = {table_json,
+                                      print_table,
+                                      plot_runs,
+                                      write_csv,
                                       .markdown = write_markdown,
-                                      .text = print_table,
-                                      .plot = plot_runs,
                                       .kept = "the table is that of these"};
     comparison c = {.table.tolerance = a->tolerance / 100};
     fault f = {0};
@@ -289,10 +289,8 @@ static const option_row rows[] = {
 };
 
 const command compare_command = {
-    .name = "compare",
-    .group = GROUP_MANY_RUNS,
-    .operands = "SCENARIO...",
-    .summary = "Several scenarios in one table",
+    CALLED("compare", MANY_RUNS, "Several scenarios in one table"),
+    SCENARIOS("SCENARIO...", 1, MOST_SCENARIOS),
     .help =
         "One row a run: peak force, its overshoot over the commanded force, settling time, "
         "impacts,\nseparations, steady error, largest command and electrical energy. Best peak "
@@ -301,9 +299,6 @@ const command compare_command = {
         "and least time what no controller\ntakes less than for that. --set holds for all of them; "
         "--vary, as sweep takes it, runs each of\nthem for every combination of values. ^C ends it "
         "with the rows that are done (exit status 130).\n",
-    .least = 1,
-    .most = MOST_SCENARIOS,
-    .takes_scenarios = true,
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .run = compare,

@@ -178,9 +178,7 @@ static int plot(const arguments *a, const scenario *s, const void *panel)
 
 static int converge(const arguments *a, scenario *s)
 {
-    static const command_results r = {.json = panel_object,
-                                      .plot = plot,
-                                      .text = print_panel,
+    static const command_results r = {panel_object, print_panel, plot,
                                       .kept = "the table is that of these steps"};
     convergence_panel panel;
     fault f = {0};
@@ -195,10 +193,8 @@ static const option_row rows[] = {
 };
 
 const command converge_command = {
-    .name = "converge",
-    .group = GROUP_MANY_RUNS,
+    CALLED("converge", MANY_RUNS, "Run at the steps h, h/2, h/4 and tell the observed orders"),
     ONE_SCENARIO,
-    .summary = "Run at the steps h, h/2, h/4 and tell the observed orders",
     .help =
         "h is the scenario's method.step. --plot draws the contact force at the three steps. ^C "
         "ends it with the\nsteps that are done (exit status 130).\n",

@@ -1,5 +1,3 @@
-#include <stdlib.h>
-#include <string.h>
 
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"
@@ -191,11 +189,8 @@ static int plot(const arguments *a, const scenario *s, const void *found)
 
 static int identify_and_report(const arguments *a, scenario *s)
 {
-    static const command_results r = {.json = answer,
-                                      .output = write_fitted,
-                                      .cases = write_cases,
-                                      .plot = plot,
-                                      .text = print_answer};
+    static const command_results r = {answer, print_answer, plot, .output = write_fitted,
+                                      .cases = write_cases};
     fault f = {0};
     outcome o = {0};
     if (a->data.count == 0 || a->fits.count == 0) {
@@ -247,10 +242,9 @@ static const option_row rows[] = {
 };
 
 const command identify_command = {
-    .name = "identify",
-    .group = GROUP_CONTROL,
+    CALLED("identify", CONTROL,
+           "Find parameters of an arm, and their errors, from recorded traces"),
     ONE_SCENARIO,
-    .summary = "Find parameters of an arm, and their errors, from recorded traces",
     .help =
         "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit motor.stiction\n"
         "simulates each trace with the command that was recorded and fits the parameters until\n"

@@ -304,8 +304,7 @@ static int plot(const arguments *a, const analysis *x)
 
 static int report(const arguments *a, const analysis *x)
 {
-    static const command_results r = {
-        .json = as_json, .csv = write_csv, .mat = write_mat, .text = print_analysis};
+    static const command_results r = {as_json, print_analysis, .csv = write_csv, .mat = write_mat};
     int result = a->plot != NULL ? plot(a, x) : EXIT_DONE;
     if (a->nyquist != NULL) {
         arguments there = *a;
@@ -430,8 +429,7 @@ static void print_survey(const scenario *base, const void *found)
 
 static int look_around(const arguments *a, analysis *x)
 {
-    static const command_results r = {
-        .json = survey_json, .csv = write_survey, .plot = plot_survey, .text = print_survey};
+    static const command_results r = {survey_json, print_survey, plot_survey, write_survey};
     const sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
     fault f = {.code = STATUS_OK};
     status code = a->plot != NULL && a->varies.count > 2
@@ -505,10 +503,8 @@ static const option_row rows[] = {
 };
 
 const command linear_command = {
-    .name = "linear",
-    .group = GROUP_CONTROL,
+    CALLED("linear", CONTROL, "Poles, zeros and margins of the arm near rest"),
     ONE_SCENARIO,
-    .summary = "Poles, zeros and margins of the arm near rest",
     .help =
         "Linearises the arm at rest, x' = A x + B u from the command u, with back EMF, "
         "viscous friction and damping.\nIt presses with control.force where a law "

@@ -330,11 +330,8 @@ static void print_table(const scenario *s, const void *table)
 
 static int report(const robustness *r)
 {
-    static const command_results written = {.json = table_json,
-                                            .csv = write_csv,
-                                            .markdown = write_markdown,
-                                            .plot = plot,
-                                            .text = print_table};
+    static const command_results written = {table_json, print_table, plot, write_csv,
+                                            .markdown = write_markdown};
     const robust_table table = {r->scenario->name, r->found, r->judged, r->arguments->against};
     const int code = write_results(r->arguments, &written, r->scenario, &table, true);
 
@@ -389,10 +386,8 @@ static const option_row rows[] = {
 };
 
 const command robust_command = {
-    .name = "robust",
-    .group = GROUP_CONTROL,
+    CALLED("robust", CONTROL, "How control laws stand what they were not told"),
     ONE_SCENARIO,
-    .summary = "How control laws stand what they were not told",
     .help =
         "Runs each law many times on the scenario, with beliefs, sensors, wall and start drawn "
         "from a set (a Latin\nhypercube, the same draws for every law), and says which share "

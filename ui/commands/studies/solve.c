@@ -1,5 +1,3 @@
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
@@ -88,7 +86,7 @@ static void print_answer(const scenario *s, const void *asked)
 
 static int find_and_report(const arguments *a, scenario *s)
 {
-    static const command_results r = {.json = answer, .text = print_answer};
+    static const command_results r = {answer, print_answer};
     question q = {.points = a->runs > 0 ? (int)a->runs : SOLVE_POINTS};
     fault f = {0};
     status code = solve_condition_read(a->operands[2], &q.condition, &f);
@@ -114,19 +112,14 @@ static const option_row rows[] = {
 };
 
 const command solve_command = {
-    .name = "solve",
-    .group = GROUP_MANY_RUNS,
-    .operands = "SCENARIO PATH[=a:b] 'KEY<VALUE'",
-    .summary = "Find the limit of a parameter for a condition on a result",
+    CALLED("solve", MANY_RUNS, "Find the limit of a parameter for a condition on a result"),
+    SCENARIOS("SCENARIO PATH[=a:b] 'KEY<VALUE'", 3, 3),
     .help =
         "Up to which voltage does the peak stay below 2 N? solve corrected/first-impact\n"
         "motor.voltage 'peak_force_N<2' runs the range, that of the parameter's slider unless "
         "a:b is\ngiven, and locates each limit within it. KEY is one of run --json; the condition "
         "may be\n<, <=, > or >=. A limit is the last value at which the condition holds. Where "
         "there is\nnone the exit status is 1.\n",
-    .least = 3,
-    .most = 3,
-    .takes_scenarios = true,
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
     .use = find_and_report,
 };

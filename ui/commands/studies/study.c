@@ -2,7 +2,6 @@
 // is from a beam; study_follow.c has the third.
 #include "ui/commands/command.h"
 
-#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -149,9 +148,7 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
 
 static int study_of_methods(const arguments *a, scenario *s)
 {
-    static const command_results r = {.json = methods_object,
-                                      .plot = plot_methods,
-                                      .text = print_methods,
+    static const command_results r = {methods_object, print_methods, plot_methods,
                                       .kept = "the tables hold these",
                                       .none = "there is nothing to show"}; // without the reference
     method_study study;
@@ -286,9 +283,7 @@ static int plot_links(const arguments *a, const scenario *s, const void *found)
 
 static int study_of_links(const arguments *a, scenario *s)
 {
-    static const command_results r = {.json = links_object,
-                                      .plot = plot_links,
-                                      .text = print_links,
+    static const command_results r = {links_object, print_links, plot_links,
                                       .kept = "the table is that of these"};
     links_study study;
     fault f = {0};
@@ -327,10 +322,8 @@ static int study(const arguments *a)
 }
 
 const command study_command = {
-    .name = "study",
-    .group = GROUP_MANY_RUNS,
-    .operands = "methods|links|follow [SCENARIO]",
-    .summary = "Error against cost; links against a beam; laws over frequency",
+    CALLED("study", MANY_RUNS, "Error against cost; links against a beam; laws over frequency"),
+    SCENARIOS("methods|links|follow [SCENARIO]", 1, 2),
     .help =
         "methods: the scenario (corrected/first-impact) by every method of time integration at "
         "steps from 1e-2\ndown to 1e-6 s, with the error of first contact, first pulse's peak "
@@ -342,9 +335,6 @@ const command study_command = {
         "from\n0.2 to 25 Hz: error and phase of the force, beside what delay and arm allow. "
         "See\ndocs/explanation/methods.md and docs/explanation/trust.md. ^C ends any of them "
         "with what it has\nuntil then (exit status 130).\n",
-    .least = 1,
-    .most = 2,
-    .takes_scenarios = true,
     .operand_word = topic_word,
     .options = {&set_options, &json_options, &drawn_options, &quiet_options, &page_options},
     .run = study,

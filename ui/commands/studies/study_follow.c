@@ -1,6 +1,5 @@
 // impactlab study follow: force error and phase of control laws over frequency, beside what delay
 // and arm allow.
-#include <math.h>
 #include <stdio.h>
 
 #include "src/base/json.h"
@@ -122,9 +121,7 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
 
 int study_of_follow(const arguments *a, scenario *s)
 {
-    static const command_results r = {.json = follow_object,
-                                      .plot = plot_follow,
-                                      .text = print_follow,
+    static const command_results r = {follow_object, print_follow, plot_follow,
                                       .kept = "the tables hold these"};
     follow_study study;
     fault f = {0};

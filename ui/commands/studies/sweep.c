@@ -265,10 +265,8 @@ static const option_row rows[] = {
 };
 
 const command sweep_command = {
-    .name = "sweep",
-    .group = GROUP_MANY_RUNS,
+    CALLED("sweep", MANY_RUNS, "A run for each of many parameter values"),
     ONE_SCENARIO,
-    .summary = "A run for each of many parameter values",
     .help =
         "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them evenly in the "
         "logarithm,\nPATH=v1,v2,v3 takes those (words too: method.name=event,newmark). Several "
@@ -317,16 +315,12 @@ static const option_row merge_rows[] = {
 };
 
 const command merge_command = {
-    .name = "merge",
-    .group = GROUP_MANY_RUNS,
-    .operands = "FILE...",
-    .summary = "The parts of a sweep in one database",
+    CALLED("merge", MANY_RUNS, "The parts of a sweep in one database"),
+    OPERANDS("FILE...", 1, 1 << 20),
     .help = "The files are databases of impactlab sweep --part K/N --db FILE, in any order. Parts "
             "of another sweep,\nand parts that hold the same run, are refused. "
             "impactlab sweep with the same scenario and --vary, and\n--db of the merged file, "
             "computes what may be missing and writes CSV and pictures.\n",
-    .least = 1,
-    .most = 1 << 20,
     .options = {&json_options, OWN_OPTIONS(merge_rows), &quiet_options},
     .run = merge,
 };

@@ -2,7 +2,6 @@
 #include "ui/commands/command.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "render/plot/study_plot.h"
@@ -145,8 +144,7 @@ static int plot(const arguments *a, const scenario *s, const void *found)
 
 static int report(const tuner *t)
 {
-    static const command_results r = {
-        .output = write_best, .json = answer, .plot = plot, .text = print_answer};
+    static const command_results r = {answer, print_answer, plot, .output = write_best};
     const tuning *found = &t->tuning;
     const int code = write_results(t->arguments, &r, t->scenario, t, true);
     if (found->best.rank < TUNE_REFUSED) {
@@ -227,10 +225,8 @@ static const option_row rows[] = {
 };
 
 const command tune_command = {
-    .name = "tune",
-    .group = GROUP_CONTROL,
+    CALLED("tune", CONTROL, "Values of parameters that make an expression of results smallest"),
     ONE_SCENARIO,
-    .summary = "Values of parameters that make an expression of results smallest",
     .help =
         "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over those of robust "
         "--json, else those of\nrun --json; growth_per_s "

@@ -2,7 +2,6 @@
 #include "ui/explorer/actions/actions.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/run/measured.h"

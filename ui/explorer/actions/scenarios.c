@@ -1,7 +1,6 @@
 // Actions on scenarios and lessons: opening one, its run as it is computed, answers.
 #include "ui/explorer/actions/actions.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/rig/external/process_lines.h"

@@ -2,7 +2,6 @@
 #include "ui/explorer/actions/actions.h"
 
 #include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 bool act_select(explorer_state *st, const char *argument)

@@ -9,11 +9,8 @@
 
 #include "src/arm/modes.h"
 #include "src/base/text_stream.h"
-#include "src/predict/predictors.h"
 #include "src/session/session.h"
 #include "src/study/linear/linear.h"
-#include "ui/explorer/state/command_list.h"
-#include "ui/terminal/screen.h"
 
 // --- the text of the help ---------------------------------------------------------------------
 

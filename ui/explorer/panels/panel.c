@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "ui/terminal/keys.h"
-
 static const panel *const panels[PANEL_IDS] = {
 #define PANEL_POINTER(id, place, description) [id] = &description,
     PANEL_LIST(PANEL_POINTER)

@@ -2,7 +2,6 @@
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {

@@ -1,6 +1,5 @@
 // The page that lists the scenarios, with a filter.
 #include "ui/explorer/panels/panel.h"
-#include "ui/terminal/keys.h"
 
 enum { PREVIEW = 6, TALL_SCREEN = 22 }; // rows of the preview, and of a screen that has room for it
 

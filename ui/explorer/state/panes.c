@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
-#include <string.h>
 
 // Panes of an arm under a script, and of one with sensors and a controller.
 static const char *const scripted_panes[PANES_OF_TABLE][PANE_SIGNALS] = {
