@@ -244,7 +244,7 @@ TEST(a_page_says_how_much_of_it_is_shown)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":poles<Enter>");
     assert_shows_at(&ex, 80, 24, "free, 5.48 Hz");
-    ex.state.page.panel = PANEL_WELCOME;
+    ex.state.page = PANEL_WELCOME;
     assert_shows_at(&ex, 80, 24, "1  The arm hits the wall by itself.");
 }
 

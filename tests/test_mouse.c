@@ -106,16 +106,16 @@ TEST(test_events_and_scenarios_are_clicked)
     hit_area list = part_on_screen(&ex, PANEL_SCENARIOS, PART_LINES);
     const char *name = ex.state.scenarios.names[list.index + 1];
     click(&ex, list.area.x + 3, list.area.y + 1);
-    assert_int_equal(ex.state.page.panel, PANEL_SCENARIOS);
+    assert_int_equal(ex.state.page, PANEL_SCENARIOS);
     assert_string_equal(ex.state.scenarios.names[ex.state.scenarios.selected], name);
     click(&ex, list.area.x + 3, list.area.y + 1);
-    assert_int_equal(ex.state.page.panel, PANEL_NONE);
+    assert_int_equal(ex.state.page, PANEL_NONE);
     assert_string_equal(ex.state.session.base.name, name);
     // a click outside the list closes it
     press(&ex, "o");
     (void)part_on_screen(&ex, PANEL_SCENARIOS, PART_LINES);
     click(&ex, 1, 5);
-    assert_int_equal(ex.state.page.panel, PANEL_NONE);
+    assert_int_equal(ex.state.page, PANEL_NONE);
     assert_string_equal(ex.state.session.base.name, name);
 }
 
@@ -125,7 +125,7 @@ TEST(test_the_wheel_scrolls_pages_and_panels)
     press(&ex, "?");
     hit_area page = part_on_screen(&ex, PANEL_HELP, PART_BODY);
     point(&ex, POINTER_WHEEL_DOWN, page.area.x + 5, page.area.y + 5);
-    assert_int_equal(ex.state.scroll[PANEL_HELP], 3);
+    assert_int_equal(ex.state.drawn.scroll[PANEL_HELP], 3);
     for (int i = 0; i < 50; i++) {
         point(&ex, POINTER_WHEEL_DOWN, page.area.x + 5, page.area.y + 5);
     }
@@ -133,7 +133,7 @@ TEST(test_the_wheel_scrolls_pages_and_panels)
     for (int i = 0; i < 50; i++) {
         point(&ex, POINTER_WHEEL_UP, page.area.x + 5, page.area.y + 5);
     }
-    assert_int_equal(ex.state.scroll[PANEL_HELP], 0);
+    assert_int_equal(ex.state.drawn.scroll[PANEL_HELP], 0);
     press(&ex, "<Esc><Tab>");
     hit_area values = part_on_screen(&ex, PANEL_VALUES, PART_BODY);
     assert_shows(&ex, "!calculated_for");

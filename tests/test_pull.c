@@ -10,7 +10,7 @@ static void find_tip(explorer *ex, int *x, int *y)
     plane_vector tip, across;
     free(picture(ex, WIDTH, HEIGHT, GLYPHS_BRAILLE));
     recorded_tip(&s->run.trace, &s->effective.parameters.arm, s->row, &tip, &across);
-    stage_cell(&ex->state.stage, tip, x, y);
+    stage_cell(&ex->state.drawn.stage, tip, x, y);
 }
 
 // Takes hold of the tip, pulls `down` cells for some time of the run, and lets go.
@@ -32,7 +32,7 @@ TEST(test_a_place_is_in_its_cell)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     free(picture(&ex, WIDTH, HEIGHT, GLYPHS_BRAILLE));
-    const arm_stage *g = &ex.state.stage;
+    const arm_stage *g = &ex.state.drawn.stage;
     for (int x = g->x; x < g->x + g->width; x++) {
         for (int y = g->y; y < g->y + g->height; y++) {
             int column, row;

@@ -155,26 +155,26 @@ static void end_crashed(int number)
     end_cleanly(number);
 }
 
+// Ends the program by `handler` unless the signal is ignored, as nohup and shells' background jobs
+// ask for, or a sanitizer or a debugger has a handler of its own.
+static void catch_ending(int number, void (*handler)(int))
+{
+    struct sigaction before;
+    const struct sigaction wanted = {.sa_handler = handler};
+    if (sigaction(number, NULL, &before) == 0 && before.sa_handler == SIG_DFL) {
+        sigaction(number, &wanted, NULL);
+    }
+}
+
 static void catch_endings(void)
 {
     static const int crashes[] = {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTRAP};
-    for (size_t i = 0; i < sizeof crashes / sizeof crashes[0]; i++) {
-        struct sigaction before;
-        struct sigaction wanted = {.sa_handler = end_crashed};
-        // a sanitizer or a debugger may have handlers of its own
-        if (sigaction(crashes[i], NULL, &before) == 0 && before.sa_handler == SIG_DFL) {
-            sigaction(crashes[i], &wanted, NULL);
-        }
-    }
-
     static const int endings[] = {SIGINT, SIGTERM, SIGHUP};
+    for (size_t i = 0; i < sizeof crashes / sizeof crashes[0]; i++) {
+        catch_ending(crashes[i], end_crashed);
+    }
     for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
-        struct sigaction before;
-        struct sigaction wanted = {.sa_handler = end_cleanly};
-        // nohup and shells' background jobs ask for a signal to be ignored
-        if (sigaction(endings[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
-            sigaction(endings[i], &wanted, NULL);
-        }
+        catch_ending(endings[i], end_cleanly);
     }
 }
 

@@ -330,6 +330,14 @@ int write_json(const char *path, json_t *value) __attribute__((warn_unused_resul
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 typedef void result_writer(FILE *stream, const scenario *s, const void *found);
 
+// One that is written by a call, with `stream` and what was `found`, of a type.
+#define RESULT_WRITER(name, type, call)                                                            \
+    static void name(FILE *stream, const scenario *s, const void *of)                              \
+    {                                                                                              \
+        const type *found = of;                                                                    \
+        call;                                                                                      \
+    }
+
 // Writes a file whole or not at all ("-": standard output, NULL: none was asked for): calls `write`
 // with the stream, `s` and `found`; errors stay in the stream. Returns the exit status.
 int write_file(const char *path, result_writer *write, const scenario *s, const void *found)

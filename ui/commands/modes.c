@@ -35,27 +35,17 @@ typedef struct arm_modes {
     mode_set sets[HOLDS];
 } arm_modes;
 
-static json_t *array_of(const double *values, int count, double scale)
-{
-    json_t *array = json_array();
-    for (int i = 0; i < count; i++) {
-        json_add(array, json_number(scale * values[i]));
-    }
-    return array;
-}
-
 static json_t *modes_object(const scenario *s, const void *found)
 {
     const arm *a = &((const arm_modes *)found)->arm;
     const mode_set *sets = ((const arm_modes *)found)->sets;
     json_t *array = json_array();
     for (int i = 0; i < HOLDS; i++) {
-        json_t *shapes = json_array();
+        json_t *shapes = json_array(), *frequencies = json_array();
         for (int mode = 0; mode < sets[i].count; mode++) {
-            json_add(shapes, array_of(sets[i].shapes + mode * a->dof, a->dof, 1));
+            json_add(shapes, json_numbers(sets[i].shapes + mode * a->dof, a->dof));
+            json_add(frequencies, json_number(1 / TWO_PI * sets[i].frequencies[mode]));
         }
-
-        json_t *frequencies = array_of(sets[i].frequencies, sets[i].count, 1 / TWO_PI);
         json_add(array, json_members(json_object(), "hub:t tip:t frequency_Hz:o shapes:o",
                                      holds[i].hub_name, holds[i].tip_name, frequencies, shapes));
     }

@@ -115,10 +115,7 @@ static json_t *run_json(const scenario *s, const void *found)
     return export_run(s, found);
 }
 
-static void write_signals(FILE *stream, const scenario *s, const void *found)
-{
-    export_csv(stream, &((const run_result *)found)->trace, s->parameters.arm.links);
-}
+RESULT_WRITER(write_signals, run_result, export_csv(stream, &found->trace, s->parameters.arm.links))
 
 static int plot_signals(const arguments *a, const scenario *s, const void *found)
 {

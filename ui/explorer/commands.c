@@ -319,6 +319,6 @@ void explorer_welcome(explorer *ex)
     }
     FILE *stream = fopen(path, "w");
     if (stream != NULL && fclose(stream) == 0) {
-        ex->state.page.panel = PANEL_WELCOME;
+        ex->state.page = PANEL_WELCOME;
     }
 }

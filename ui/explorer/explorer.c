@@ -70,5 +70,5 @@ void explorer_draw(explorer *ex, screen *s)
         state_update(st);
     }
     compose_screen(st, &ex->layout, s);
-    layout_settle(&ex->layout, st);
+    st->drawn = ex->layout.drawn;
 }

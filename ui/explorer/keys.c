@@ -211,10 +211,10 @@ void explorer_key(explorer *ex, int key)
     key = key == '\n' ? KEY_CODE_ENTER : key == 127 || key == 8 ? KEY_CODE_BACKSPACE : key;
 
     // the page of a first visit takes no key
-    if (st->page.panel == PANEL_WELCOME) {
-        st->page.panel = PANEL_NONE;
+    if (st->page == PANEL_WELCOME) {
+        st->page = PANEL_NONE;
     }
-    bool leaves = key == ('c' & 0x1f) && st->page.panel != PANEL_SCENARIOS;
+    bool leaves = key == ('c' & 0x1f) && st->page != PANEL_SCENARIOS;
     if (st->prompt.open) {
         key_in_prompt(ex, key);
     } else if (st->filters.typing != PANEL_NONE) {
@@ -223,8 +223,8 @@ void explorer_key(explorer *ex, int key)
         prompt_open(&st->prompt, "%s", "");
         st->palette.selected = -1;
         act_hush(st);
-    } else if (st->page.panel != PANEL_NONE && !leaves) {
-        panel_of(st->page.panel)->key(st, key);
+    } else if (st->page != PANEL_NONE && !leaves) {
+        panel_of(st->page)->key(st, key);
     } else {
         key_by_table(ex, key);
     }
@@ -234,7 +234,7 @@ void explorer_paste(explorer *ex, int character)
 {
     explorer_state *st = &ex->state;
     const bool typing = st->prompt.open || st->filters.typing != PANEL_NONE ||
-                        (st->page.panel == PANEL_SCENARIOS && st->scenarios.filtering);
+                        (st->page == PANEL_SCENARIOS && st->scenarios.filtering);
     const bool blank = character == '\n' || character == '\r' || character == '\t';
     if (!typing) {
         act_warn(st, "pasted text does nothing here, : opens the prompt for it");
@@ -259,7 +259,7 @@ static bool give(explorer *ex, const panel_gesture *g)
 // Whether a page is open and a part is not of it.
 static bool is_behind_page(const explorer_state *st, panel_id id)
 {
-    return st->page.panel != PANEL_NONE && (id == PANEL_NONE || panel_place_of(id) < PLACE_PAGE);
+    return st->page != PANEL_NONE && (id == PANEL_NONE || panel_place_of(id) < PLACE_PAGE);
 }
 
 static void press(explorer *ex, pointer_event e)
@@ -270,8 +270,8 @@ static void press(explorer *ex, pointer_event e)
 
     // outside a page: it closes, and the drag does not apply to the panel behind it
     if (is_behind_page(st, hit.panel)) {
-        ex->grip.hit = (hit_area){.panel = st->page.panel};
-        st->page.panel = PANEL_NONE;
+        ex->grip.hit = (hit_area){.panel = st->page};
+        st->page = PANEL_NONE;
         st->scenarios.filtering = false;
         return;
     }
@@ -294,7 +294,7 @@ static void drag(explorer *ex, pointer_event e)
 
     // what began on nothing counts for the plot as soon as it is over the curves
     bool over_curves = area_holds(ex->layout.plot, e.x, e.y);
-    if (grip->hit.panel == PANEL_NONE && ex->state.page.panel == PANEL_NONE && over_curves) {
+    if (grip->hit.panel == PANEL_NONE && ex->state.page == PANEL_NONE && over_curves) {
         g.hit = (hit_area){PANEL_CURVES, PART_BODY, 0, ex->layout.plot};
     }
     give(ex, &g);

@@ -5,50 +5,32 @@
 
 // As many colours as can be told apart with 4.6 of contrast on both grounds, also without the
 // sensitivity for red or for green, near the hues of Okabe and Ito 2008.
-static const rgb dark[INK_COUNT] = {
-    [INK_DIM] = {160, 160, 160},
-    [INK_FRAME] = {128, 128, 128},
-    [INK_ARM] = {135, 215, 255},
-    [INK_HUB] = {255, 215, 175},
-    [INK_WALL] = {188, 188, 188},
-    [INK_FORCE] = {255, 150, 40},
-    [INK_EVENT] = {255, 215, 0},
-    [INK_CURSOR] = {95, 255, 255},
-    [INK_WARNING] = {255, 110, 110},
-    [INK_OTHER] = {180, 145, 255},
-    [INK_SERIES_0] = {24, 191, 255},
-    {247, 189, 30},
-    {0, 171, 115},
-    {126, 233, 255},
-    {255, 125, 189},
-    {255, 96, 11},
-    {204, 248, 183},
-    {255, 255, 30},
-};
-static const rgb light[INK_COUNT] = {
-    [INK_DIM] = {92, 92, 92},
-    [INK_FRAME] = {128, 128, 128},
-    [INK_ARM] = {0, 85, 165},
-    [INK_HUB] = {120, 80, 0},
-    [INK_WALL] = {80, 80, 80},
-    [INK_FORCE] = {175, 70, 0},
-    [INK_EVENT] = {140, 75, 0},
-    [INK_CURSOR] = {0, 105, 110},
-    [INK_WARNING] = {195, 0, 20},
-    [INK_OTHER] = {115, 60, 200},
-    [INK_SERIES_0] = {39, 115, 184},
-    {137, 102, 22},
-    {0, 86, 73},
-    {17, 70, 197},
-    {125, 36, 137},
-    {140, 36, 0},
-    {36, 0, 0},
-    {87, 116, 111},
+static const struct {
+    rgb dark, light;
+} inks[INK_COUNT] = {
+    [INK_DIM] = {{160, 160, 160}, {92, 92, 92}},
+    [INK_FRAME] = {{128, 128, 128}, {128, 128, 128}},
+    [INK_ARM] = {{135, 215, 255}, {0, 85, 165}},
+    [INK_HUB] = {{255, 215, 175}, {120, 80, 0}},
+    [INK_WALL] = {{188, 188, 188}, {80, 80, 80}},
+    [INK_FORCE] = {{255, 150, 40}, {175, 70, 0}},
+    [INK_EVENT] = {{255, 215, 0}, {140, 75, 0}},
+    [INK_CURSOR] = {{95, 255, 255}, {0, 105, 110}},
+    [INK_WARNING] = {{255, 110, 110}, {195, 0, 20}},
+    [INK_OTHER] = {{180, 145, 255}, {115, 60, 200}},
+    [INK_SERIES_0] = {{24, 191, 255}, {39, 115, 184}},
+    {{247, 189, 30}, {137, 102, 22}},
+    {{0, 171, 115}, {0, 86, 73}},
+    {{126, 233, 255}, {17, 70, 197}},
+    {{255, 125, 189}, {125, 36, 137}},
+    {{255, 96, 11}, {140, 36, 0}},
+    {{204, 248, 183}, {36, 0, 0}},
+    {{255, 255, 30}, {87, 116, 111}},
 };
 
 bool ink_rgb(colour_theme theme, ink i, rgb *colour)
 {
-    *colour = theme == COLOURS_LIGHT ? light[i] : dark[i];
+    *colour = theme == COLOURS_LIGHT ? inks[i].light : inks[i].dark;
     return theme != COLOURS_MONO && i != INK_TEXT && i != INK_TITLE && i != INK_SELECTED;
 }
 

@@ -52,8 +52,7 @@ void contact_watch_sample(contact_watch *watch, double time, double angles, doub
     // sin(q1 - wall) + sin(q2 - wall) is zero just where the angles' sum is twice the wall's
     double into = angles - 2 * EXPERIMENT_WALL, before = watch->into;
     if (into >= 0 && before < 0) {
-        double closed =
-            time - watch->step * fmax(0, 1 + before / (watch->step * watch->rate));
+        double closed = time - watch->step * fmax(0, 1 + before / (watch->step * watch->rate));
         if (isnan(a->first_contact)) {
             a->first_contact = closed;
         } else if (watch->released && isnan(a->second_contact)) {

@@ -384,7 +384,8 @@ static void *create(const peer *self)
 
 #define SUNDIALS(text, variant)                                                                    \
     {                                                                                              \
-        "SUNDIALS", SUNDIALS_VERSION, text, 2, variant, create, destroy, run, peer_own_steps, peer_duration  \
+        "SUNDIALS", SUNDIALS_VERSION, text, 2, variant, create, destroy, run, peer_own_steps,      \
+            peer_duration                                                                          \
     }
 
 static const peer list_of_peers[] = {

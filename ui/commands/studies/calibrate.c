@@ -90,15 +90,8 @@ static json_t *points_json(const scenario *s, const void *found)
     return calibration_json(&done->points, s, done->table);
 }
 
-static void write_points(FILE *stream, const scenario *s, const void *found)
-{
-    calibration_csv(stream, &((const calibrated *)found)->points, s);
-}
-
-static void write_scenario(FILE *stream, const scenario *s, const void *found)
-{
-    scenario_write(stream, &((const calibrated *)found)->with_table);
-}
+RESULT_WRITER(write_points, calibrated, calibration_csv(stream, &found->points, s))
+RESULT_WRITER(write_scenario, calibrated, scenario_write(stream, &found->with_table))
 
 // The table of the presses, as text and in the scenario.
 static status make_table(calibrated *done, const scenario *s, fault *f)

@@ -25,6 +25,8 @@ typedef struct comparison {
     compare_row *against; // one of each combination
     compare_table table;  // of the rows that are computed, the first ones
     bool failed;
+    bool drawn; // each scenario's run is kept, for --plot
+    run_result kept[TRACE_RUNS];
 } comparison;
 
 static void finish(comparison *c)
@@ -34,6 +36,9 @@ static void finish(comparison *c)
     }
     for (int i = 0; i < c->opened; i++) {
         scenario_finish(&c->scenarios[i]);
+    }
+    for (int i = 0; i < TRACE_RUNS; i++) {
+        run_finish(&c->kept[i]);
     }
     free(c->sweeps);
     free(c->scenarios);
@@ -100,7 +105,7 @@ static int open_all(comparison *c, const arguments *a)
 // about; one that is stopped has none, and then false is returned.
 static bool run_one(comparison *c, int i, int combination, run_monitor *monitor, compare_row *row)
 {
-    const run_options options = {.monitor = monitor};
+    const run_options options = {.keep_trace = c->drawn, .monitor = monitor};
     run_result result;
     fault f = {0};
     scenario s = c->scenarios[i];
@@ -123,7 +128,11 @@ static bool run_one(comparison *c, int i, int combination, run_monitor *monitor,
     for (int k = 0; c->swept > 0 && k < c->sweeps[i].axis_count; k++) {
         row->varied[k] = sweep_value(&c->sweeps[i], (size_t)combination, k);
     }
-    run_finish(&result);
+    if (c->drawn) {
+        c->kept[i] = result;
+    } else {
+        run_finish(&result);
+    }
     run_monitor_count(monitor);
     return true;
 }
@@ -146,15 +155,8 @@ static status run_all(comparison *c, run_monitor *monitor)
     return STATUS_OK;
 }
 
-static void write_csv(FILE *stream, const scenario *s, const void *found)
-{
-    compare_csv(stream, &((const comparison *)found)->table);
-}
-
-static void write_markdown(FILE *stream, const scenario *s, const void *found)
-{
-    compare_markdown(stream, &((const comparison *)found)->table);
-}
+RESULT_WRITER(write_csv, comparison, compare_csv(stream, &found->table))
+RESULT_WRITER(write_markdown, comparison, compare_markdown(stream, &found->table))
 
 static json_t *table_json(const scenario *s, const void *found)
 {
@@ -198,50 +200,24 @@ static bool name_runs(const comparison *c, char *names[TRACE_RUNS], char *title,
 static int plot_runs(const arguments *a, const scenario *s, const void *found)
 {
     const comparison *c = found;
-    trace_run shown[TRACE_RUNS] = {{.scenario = NULL}};
-    run_result results[TRACE_RUNS];
+    trace_run shown[TRACE_RUNS];
     char *names[TRACE_RUNS], title[64 + SCENARIO_CHANGES];
-    int count = 0, code = EXIT_DONE;
-
-    // what cannot be shown
     if (c->swept > 0) {
         return complain("--plot shows the scenarios themselves, not --vary's combinations");
     }
-    if (c->opened > TRACE_RUNS) {
+    if (!c->drawn) {
         return complain("--plot shows at most %d runs, %d were given", TRACE_RUNS, c->opened);
     }
 
-    // each runs once more, this time recorded
+    // one that failed shows what it has
     const bool named = name_runs(c, names, title, sizeof title);
-    run_monitor *monitor = work_begin(a, "runs", c->opened);
-    const run_options options = {.keep_trace = true, .monitor = monitor};
-    for (; count < c->opened; count++) {
-        // one that fails shows what it has, unless that is less than was compared
-        const status ran = run_scenario_with(&c->scenarios[count], &options, &results[count]);
-        loss_unless(ran != STATUS_NO_MEMORY);
-        run_monitor_count(monitor);
-        shown[count] = (trace_run){.scenario = &c->scenarios[count],
-                                   .result = &results[count],
-                                   .name = names[count],
-                                   .rank = count + 1};
+    for (int i = 0; i < c->opened; i++) {
+        shown[i] = (trace_run){&c->scenarios[i], &c->kept[i], .name = names[i], .rank = i + 1};
     }
-
-    work_end();
-    const bool stopped = run_monitor_stops(monitor);
-    if (stopped) {
-        complain("stopped: the table is whole, the picture is not drawn");
-    } else if (!named) {
-        code = worse(EXIT_FAILED, complain("out of memory"));
-    } else {
-        code = publish_runs(a, title, shown, count);
-    }
-
-    for (int i = 0; i < count; i++) {
-        run_finish(&results[i]);
+    const int code = named ? publish_runs(a, title, shown, c->opened)
+                           : worse(EXIT_FAILED, complain("out of memory"));
+    for (int i = 0; i < c->opened; i++) {
         free(names[i]);
-    }
-    if (stopped) {
-        leave_interrupted();
     }
     return code;
 }
@@ -267,6 +243,7 @@ static int compare(const arguments *a)
         c.table.varied = c.swept > 0 ? c.sweeps[0].axes : NULL;
         c.table.varied_count = a->varies.count;
         c.table.against = a->against != NULL ? c.against : NULL;
+        c.drawn = a->plot != NULL && c.swept == 0 && c.opened <= TRACE_RUNS;
         run_monitor *monitor = work_begin(a, "runs", c.combinations * c.opened);
         const status code = run_all(&c, monitor);
         result = work_finish(a, code, &f, &r, NULL, &c);

@@ -150,15 +150,8 @@ static void print_answer(const scenario *s, const void *found)
     }
 }
 
-static void write_fitted(FILE *stream, const scenario *s, const void *found)
-{
-    scenario_write(stream, &((const outcome *)found)->written);
-}
-
-static void write_cases(FILE *stream, const scenario *s, const void *found)
-{
-    identify_write_set(stream, &((const outcome *)found)->fit);
-}
+RESULT_WRITER(write_fitted, outcome, scenario_write(stream, &found->written))
+RESULT_WRITER(write_cases, outcome, identify_write_set(stream, &found->fit))
 
 // Whether the values can be relied on; says where they are none.
 static bool is_reliable(const identification *id)

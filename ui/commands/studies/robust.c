@@ -307,15 +307,8 @@ static json_t *table_json(const scenario *s, const void *table)
     return robust_json(table);
 }
 
-static void write_markdown(FILE *stream, const scenario *s, const void *table)
-{
-    robust_markdown(stream, table);
-}
-
-static void write_csv(FILE *stream, const scenario *s, const void *table)
-{
-    robust_csv(stream, table);
-}
+RESULT_WRITER(write_markdown, robust_table, robust_markdown(stream, found))
+RESULT_WRITER(write_csv, robust_table, robust_csv(stream, found))
 
 static int plot(const arguments *a, const scenario *s, const void *table)
 {

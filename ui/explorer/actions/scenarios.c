@@ -41,9 +41,9 @@ static void open_list(explorer_state *st)
 {
     scenario_menu *menu = &st->scenarios;
     int at = scenario_menu_find(menu, st->session.base.name);
-    st->page.panel = PANEL_SCENARIOS;
+    st->page = PANEL_SCENARIOS;
     menu->selected = at < 0 ? 0 : at;
-    menu->first = -1;
+    st->drawn.first_scenario = -1;
     menu->filter[0] = '\0';
     scenario_menu_read_titles(menu);
 }

@@ -11,7 +11,7 @@ bool act_select(explorer_state *st, const char *argument)
 
     // panels in which nothing is selected scroll
     if (st->side.panel != PANEL_PARAMETERS && st->side.panel != PANEL_SWEEP) {
-        st->scroll[st->side.panel] += direction;
+        st->drawn.scroll[st->side.panel] += direction;
         return true;
     }
 
@@ -63,7 +63,7 @@ bool act_fold(explorer_state *st, const char *argument)
 // The panel to whose filter `/` applies: the open page, or the side panel.
 static panel_id filtered_panel(const explorer_state *st)
 {
-    return st->page.panel != PANEL_NONE ? st->page.panel : st->side.panel;
+    return st->page != PANEL_NONE ? st->page : st->side.panel;
 }
 
 bool act_filter(explorer_state *st, const char *argument)
@@ -72,7 +72,7 @@ bool act_filter(explorer_state *st, const char *argument)
     char *text = st->filters.text[panel];
     snprintf(text, LINE_TEXT, "%s", argument);
     st->filters.typing = argument[0] == '\0' ? panel : PANEL_NONE;
-    st->scroll[panel] = 0;
+    st->drawn.scroll[panel] = 0;
     act_settle_filter(st, panel);
     return true;
 }
@@ -80,7 +80,7 @@ bool act_filter(explorer_state *st, const char *argument)
 void act_settle_filter(explorer_state *st, panel_id panel)
 {
     parameter_line lines[PARAMETER_LINES];
-    st->scroll[panel] = 0;
+    st->drawn.scroll[panel] = 0;
     if (panel != PANEL_PARAMETERS || st->filters.text[panel][0] == '\0') {
         return;
     }
@@ -129,7 +129,7 @@ bool act_side(explorer_state *st, const char *argument)
         next = next + 1 == PANEL_IDS ? PANEL_NONE : (panel_id)(next + 1);
     } while (next != PANEL_NONE && (panel_place_of(next) == PLACE_SIDE
                                         ? next == PANEL_SWEEP && !lab_sweep_is_on(&st->sweep)
-                                        : !st->side.folded[next]));
+                                        : !st->drawn.folded[next]));
 
     // a narrow screen: curves, each panel of the side, curves again
     if (narrow && (!st->side.in_front || next == PANEL_NONE)) {
@@ -151,8 +151,8 @@ bool act_statistics(explorer_state *st, const char *argument)
 // Opens a page at its beginning, or closes it.
 static bool toggle_page(explorer_state *st, panel_id page)
 {
-    st->page.panel = st->page.panel == page ? PANEL_NONE : page;
-    st->scroll[page] = 0;
+    st->page = st->page == page ? PANEL_NONE : page;
+    st->drawn.scroll[page] = 0;
     st->filters.text[page][0] = '\0';
     return true;
 }

@@ -370,14 +370,15 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
     // for the mouse
     const canvas *c = &g.canvas;
-    lay->stage = (arm_stage){.x = c->x,
-                             .y = c->y,
-                             .width = c->width,
-                             .height = c->height,
-                             .left = g.view.left,
-                             .bottom = g.view.bottom,
-                             .across = g.view.scale * c->width / g.view.width,
-                             .up = g.view.scale * g.view.magnified * c->height / g.view.height};
+    lay->drawn.stage =
+        (arm_stage){.x = c->x,
+                    .y = c->y,
+                    .width = c->width,
+                    .height = c->height,
+                    .left = g.view.left,
+                    .bottom = g.view.bottom,
+                    .across = g.view.scale * c->width / g.view.width,
+                    .up = g.view.scale * g.view.magnified * c->height / g.view.height};
     layout_add_hit(lay, (hit_area){PANEL_ARM, PART_BODY, 0, {c->x, c->y, c->width, c->height}});
 }
 
@@ -388,14 +389,14 @@ static bool point(explorer_state *st, const panel_gesture *g)
 {
     enum { NEAR_ACROSS = 4, NEAR_DOWN = 2 }; // [cells]
     int x, y;
-    if (st->stage.width < 1 || st->stage.height < 1) {
+    if (st->drawn.stage.width < 1 || st->drawn.stage.height < 1) {
         return false;
     }
-    const plane_vector place = stage_place(&st->stage, g->event.x, g->event.y);
+    const plane_vector place = stage_place(&st->drawn.stage, g->event.x, g->event.y);
 
     switch (g->event.kind) {
     case POINTER_PRESS:
-        stage_cell(&st->stage, tip_of(st), &x, &y);
+        stage_cell(&st->drawn.stage, tip_of(st), &x, &y);
         if (abs(x - g->event.x) <= NEAR_ACROSS && abs(y - g->event.y) <= NEAR_DOWN) {
             act_hold_tip(st, place);
         }

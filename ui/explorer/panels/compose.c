@@ -329,7 +329,7 @@ static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS]
                               PANEL_CONTROLLER, PANEL_LOG, PANEL_RUNS};
     int freed = 0;
     for (size_t i = 0; i < sizeof order / sizeof order[0] && left + freed < enough; i++) {
-        lay->folded[order[i]] = rows[order[i]] > 0 || lay->folded[order[i]];
+        lay->drawn.folded[order[i]] = rows[order[i]] > 0 || lay->drawn.folded[order[i]];
         freed += rows[order[i]];
         rows[order[i]] = 0;
     }
@@ -343,7 +343,7 @@ static void draw_tabs(const layout *lay, screen *s, area a)
     bool any = false;
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         const size_t used = strlen(text);
-        if (lay->folded[id]) {
+        if (lay->drawn.folded[id]) {
             snprintf(text + used, sizeof text - used, "%s%s", any ? ", " : "",
                      panel_of((panel_id)id)->name);
             any = true;
@@ -367,8 +367,8 @@ static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
         if (panel_place_of((panel_id)id) == PLACE_STACK && panel_fits(p, body) &&
             id != (int)st->side.panel) {
             rows[id] = p->rows(st, body);
-            lay->folded[id] = rows[id] > 0 && gives_way(st, (panel_id)id);
-            rows[id] = lay->folded[id] ? 0 : rows[id];
+            lay->drawn.folded[id] = rows[id] > 0 && gives_way(st, (panel_id)id);
+            rows[id] = lay->drawn.folded[id] ? 0 : rows[id];
             left -= rows[id];
         }
     }
@@ -443,8 +443,8 @@ void compose_screen(const explorer_state *st, layout *lay, screen *s)
     const area body = {0, 1, s->width, s->height - 3};
     draw_title(st, s);
     draw_panels(st, lay, s, body);
-    if (st->page.panel != PANEL_NONE) {
-        panel_of(st->page.panel)->draw(st, lay, s, body);
+    if (st->page != PANEL_NONE) {
+        panel_of(st->page)->draw(st, lay, s, body);
     }
     int rows = draw_bottom(st, s);
     draw_status(st, s, s->height - 1 - rows);

@@ -81,10 +81,10 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
     // that one in the middle, or the last ones; scrolling counts from there
     int still = draw_first_line(current, count, height), last = count - height;
-    int first = still + st->scroll[PANEL_LOG];
+    int first = still + st->drawn.scroll[PANEL_LOG];
     first = first > last ? last : first;
     first = first < 0 ? 0 : first;
-    lay->scroll[PANEL_LOG] = first - still;
+    lay->drawn.scroll[PANEL_LOG] = first - still;
     const area lines = {a.x + 1, a.y + 1, a.width - 2, height};
     layout_add_hit(lay, (hit_area){PANEL_LOG, PART_LINES, first, lines});
     for (int i = first; i < count && i < first + height; i++) {
@@ -111,7 +111,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
     }
     if (index < log->count && log->entries[index].time <= st->session.seen) {
         act_scrub(st, log->entries[index].time);
-        st->scroll[PANEL_LOG] = 0;
+        st->drawn.scroll[PANEL_LOG] = 0;
     }
     return true;
 }

@@ -179,7 +179,7 @@ static area draw_page(const explorer_state *st, layout *lay, screen *s, area bod
                       const char *title, int below)
 {
     const area a = page_area(body, p->width + 4, p->count + 2 + below);
-    const int scroll = page_scroll(lay, st->page.panel, a, p->count, 2);
+    const int scroll = page_scroll(lay, st->page, a, p->count, 2);
     const int left = p->count - scroll, rows = left < a.height - 2 ? left : a.height - 2;
     draw_page_frame(s, a, title, scroll + rows, p->count);
     for (int i = 0; i < rows; i++) {

@@ -24,7 +24,7 @@ bool panel_fits(const panel *p, screen_size body)
 
 bool panel_scroll(explorer_state *st, const panel_gesture *g, int lines)
 {
-    st->scroll[g->hit.panel] += lines * pointer_wheel(g->event);
+    st->drawn.scroll[g->hit.panel] += lines * pointer_wheel(g->event);
     return pointer_wheel(g->event) != 0;
 }
 
@@ -108,11 +108,9 @@ void layout_begin(layout *lay, const explorer_state *st)
 {
     lay->hit_count = 0;
     lay->plot = (area){0};
-    lay->stage = (arm_stage){0};
-    memset(lay->folded, 0, sizeof lay->folded);
-    lay->page_lines = st->page.lines;
-    lay->first_scenario = st->scenarios.first;
-    memcpy(lay->scroll, st->scroll, sizeof lay->scroll);
+    lay->drawn = st->drawn;
+    lay->drawn.stage = (arm_stage){0};
+    memset(lay->drawn.folded, 0, sizeof lay->drawn.folded);
 }
 
 void layout_add_hit(layout *lay, hit_area hit)
@@ -140,28 +138,19 @@ hit_area layout_hit(const layout *lay, int x, int y)
 int layout_keep_scroll(layout *lay, panel_id id, int last)
 {
     assert(lay != NULL && id > PANEL_NONE && id < PANEL_IDS);
-    int *scroll = &lay->scroll[id];
+    int *scroll = &lay->drawn.scroll[id];
     *scroll = *scroll > last ? last : *scroll;
     *scroll = *scroll < 0 ? 0 : *scroll;
     return *scroll;
-}
-
-void layout_settle(const layout *lay, explorer_state *st)
-{
-    st->page.lines = lay->page_lines;
-    st->scenarios.first = lay->first_scenario;
-    memcpy(st->scroll, lay->scroll, sizeof st->scroll);
-    st->stage = lay->stage;
-    memcpy(st->side.folded, lay->folded, sizeof st->side.folded);
 }
 
 // --- pages ------------------------------------------------------------------------------------
 
 bool page_key(explorer_state *st, int key)
 {
-    assert(st != NULL && st->page.panel != PANEL_NONE);
-    int *scroll = &st->scroll[st->page.panel];
-    const int lines = st->page.lines;
+    assert(st != NULL && st->page != PANEL_NONE);
+    int *scroll = &st->drawn.scroll[st->page];
+    const int lines = st->drawn.page_lines;
 
     // drawing keeps it within the page
     if (key == KEY_CODE_DOWN || key == 'j') {
@@ -176,12 +165,12 @@ bool page_key(explorer_state *st, int key)
         *scroll = INT_MAX / 2;
     } else if (key == KEY_CODE_HOME || key == 'g') {
         *scroll = 0;
-    } else if (key == '/' && st->page.panel == PANEL_HELP) {
+    } else if (key == '/' && st->page == PANEL_HELP) {
         return act_filter(st, "");
-    } else if (key == KEY_CODE_ESCAPE && st->filters.text[st->page.panel][0] != '\0') {
-        st->filters.text[st->page.panel][0] = '\0';
+    } else if (key == KEY_CODE_ESCAPE && st->filters.text[st->page][0] != '\0') {
+        st->filters.text[st->page][0] = '\0';
     } else {
-        st->page.panel = PANEL_NONE;
+        st->page = PANEL_NONE;
     }
     return true;
 }
@@ -189,7 +178,7 @@ bool page_key(explorer_state *st, int key)
 int page_scroll(layout *lay, panel_id id, area a, int lines, int head)
 {
     const int shown = a.height - head, beyond = lines - shown;
-    lay->page_lines = shown > 1 ? shown - 1 : 1;
+    lay->drawn.page_lines = shown > 1 ? shown - 1 : 1;
     layout_add_hit(lay, (hit_area){.panel = id, .area = a});
     return layout_keep_scroll(lay, id, beyond > 0 ? beyond : 0);
 }
@@ -199,9 +188,9 @@ bool page_point(explorer_state *st, const panel_gesture *g)
     if (pointer_wheel(g->event) == 0) {
         return false;
     }
-    for (int i = 0; i < WHEEL_LINES && st->page.panel != PANEL_NONE; i++) {
+    for (int i = 0; i < WHEEL_LINES && st->page != PANEL_NONE; i++) {
         int key = pointer_wheel(g->event) < 0 ? KEY_CODE_UP : KEY_CODE_DOWN;
-        panel_of(st->page.panel)->key(st, key);
+        panel_of(st->page)->key(st, key);
     }
     return true;
 }
@@ -210,7 +199,7 @@ bool page_point(explorer_state *st, const panel_gesture *g)
 
 static const page_list *open_list(const explorer_state *st)
 {
-    return panel_of(st->page.panel)->list;
+    return panel_of(st->page)->list;
 }
 
 static int *list_number(explorer_state *st, size_t place)
@@ -233,8 +222,8 @@ void list_draw(const explorer_state *st, layout *lay, screen *s, area body)
     list->draw_rest(st, s, (area){a.x + 2, a.y + 1, a.width - 4, a.height - 2});
 
     // the lines lie over the page, so a click meets them first
-    layout_add_hit(lay, (hit_area){st->page.panel, PART_BODY, 0, a});
-    layout_add_hit(lay, (hit_area){st->page.panel, PART_LINES, first, lines});
+    layout_add_hit(lay, (hit_area){st->page, PART_BODY, 0, a});
+    layout_add_hit(lay, (hit_area){st->page, PART_LINES, first, lines});
     for (int i = first; i < count && i - first < lines.height; i++) {
         const area line = {lines.x + 1, lines.y + i - first, lines.width - 2, 1};
         list->draw_line(st, s, line, i);
@@ -277,7 +266,7 @@ bool list_key_pressed(explorer_state *st, int key)
         k++;
     }
     if (k->key == 0 || k->closes) {
-        st->page.panel = PANEL_NONE;
+        st->page = PANEL_NONE;
     }
     snprintf(number, sizeof number, "%d", *selected + 1);
     return k->key == 0 || k->does(st, number);

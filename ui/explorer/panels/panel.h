@@ -91,17 +91,13 @@ typedef struct layout {
     int hit_count;
     area plot;                    // where the curves were drawn, no width if nowhere
     value_range axes[PANES];      // of the panes as they were drawn last
-    int scroll[PANEL_IDS];        // by panel: the state's, limited to the existing lines
-    int page_lines;               // lines of the page that are shown at once
-    bool folded[PANEL_IDS];       // panels of the stack for which there was no room
-    int first_scenario;           // line of the list of scenarios that is shown first
-    arm_stage stage;              // where the arm was drawn
+    drawn_view drawn;             // the state's, brought up to date by drawing
     arm_extent extent;            // remembered
     linearised_answer linearised; // remembered
     lane_survey lanes;            // remembered
 } layout;
 
-// Begins a picture: no parts yet, scrolling as in the state.
+// Begins a picture: no parts yet, all else as the state has it.
 void layout_begin(layout *lay, const explorer_state *st);
 
 // Stores the position of a part. Parts beyond the capacity are not found by the mouse.
@@ -113,9 +109,6 @@ bool area_holds(area a, int x, int y);
 
 // Keeps a panel's scrolling from 0 to `last` lines; returns it.
 int layout_keep_scroll(layout *lay, panel_id id, int last);
-
-// Copies to the state what drawing has decided: how far panels are scrolled.
-void layout_settle(const layout *lay, explorer_state *st);
 
 // A number in at most nine cells; values that are only rounding are shown as 0, NaN as "-".
 typedef struct number_text {

@@ -5,9 +5,9 @@ enum { PREVIEW = 6, TALL_SCREEN = 22 }; // rows of the preview, and of a screen 
 
 // The first line to show. It moves only as far as it must, so that a second click meets what the
 // first one selected.
-static int first_line(const scenario_menu *menu, int height)
+static int first_line(const scenario_menu *menu, int first, int height)
 {
-    int count = 0, selected = 0, first = menu->first;
+    int count = 0, selected = 0;
     for (int i = 0; i < menu->count; i++) {
         selected = i == menu->selected ? count : selected;
         count += scenario_menu_shows(menu, i);
@@ -61,7 +61,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     const scenario_menu *menu = &st->scenarios;
     const int preview = s->height >= TALL_SCREEN ? PREVIEW : 0;
     area a = page_area(body, 96, menu->count + 4 + preview);
-    int height = a.height - 4 - preview, first = first_line(menu, height);
+    int height = a.height - 4 - preview, first = first_line(menu, st->drawn.first_scenario, height);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
                  "scenarios (Enter opens, / filters, Esc closes)");
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "/ filter: %s%s", menu->filter,
@@ -69,8 +69,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 
     // the lines lie over the page, so a click meets them first
     const area lines = {a.x + 1, a.y + 3, a.width - 2, height};
-    lay->first_scenario = first;
-    lay->page_lines = height > 1 ? height - 1 : 1;
+    lay->drawn.first_scenario = first;
+    lay->drawn.page_lines = height > 1 ? height - 1 : 1;
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_BODY, 0, a});
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_LINES, first, lines});
 
@@ -92,7 +92,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 static bool open_selected(explorer_state *st)
 {
     const scenario_menu *menu = &st->scenarios;
-    st->page.panel = PANEL_NONE;
+    st->page = PANEL_NONE;
     if (menu->selected < menu->count && scenario_menu_shows(menu, menu->selected)) {
         return act_open_scenario(st, menu->names[menu->selected]);
     }
@@ -136,7 +136,7 @@ static bool menu_key(explorer_state *st, int key)
     } else if (key == KEY_CODE_ENTER) {
         return open_selected(st);
     } else if (key == KEY_CODE_ESCAPE || key == 'q' || key == 'o') {
-        st->page.panel = PANEL_NONE;
+        st->page = PANEL_NONE;
     }
     return true;
 }

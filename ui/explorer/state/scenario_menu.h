@@ -19,7 +19,6 @@ typedef struct scenario_menu {
     char filter[LINE_TEXT];
     bool filtering; // the filter receives the keys
     int selected;   // index
-    int first;      // first line shown; negative: so that the selected one is in the middle
 } scenario_menu;
 
 // Reads the names; the list stays empty if that fails.

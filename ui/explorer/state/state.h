@@ -41,15 +41,17 @@ typedef struct time_mark {
 // The side panel.
 typedef struct side_view {
     panel_id panel;
-    bool in_front;          // a narrow screen shows it instead of the curves
-    bool folded[PANEL_IDS]; // panels of the stack that had no room: Tab selects them
+    bool in_front; // a narrow screen shows it instead of the curves
 } side_view;
 
-// The page over the panels.
-typedef struct page_view {
-    panel_id panel; // PANEL_NONE if nothing has
-    int lines;      // number of its lines shown at once when it was drawn last
-} page_view;
+// What the last picture decided, and the next one begins with.
+typedef struct drawn_view {
+    int scroll[PANEL_IDS];  // by panel: number of lines scrolled from its automatic position
+    bool folded[PANEL_IDS]; // panels of the stack that had no room: Tab selects them
+    int page_lines;         // of the page, shown at once
+    int first_scenario; // line of their list shown first; negative: the selected one in the middle
+    arm_stage stage;    // where the arm was drawn
+} drawn_view;
 
 // A scenario that was opened before the present one, or that undoing has left: as it was then.
 typedef struct visit {
@@ -94,14 +96,13 @@ typedef struct explorer_state {
     side_view side;
     parameter_list parameters;
     filters filters;
-    page_view page;
+    panel_id page; // over the panels, PANEL_NONE if there is none
     scenario_menu scenarios;
     lesson_progress lesson;
-    int change;            // the selected change, index in session.inputs
-    int scroll[PANEL_IDS]; // by panel: number of lines scrolled from its automatic position
+    int change; // the selected change, index in session.inputs
+    drawn_view drawn;
     slider_grip slider;
     tip_pull pull;
-    arm_stage stage; // of the arm
     looks looks;
     screen_size size; // of the screen drawn last
 
