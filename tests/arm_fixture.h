@@ -3,7 +3,7 @@
 
 #include "src/arm/arm.h"
 #include "src/engines/motion_create.h"
-#include "src/scenario/scenario.h"
+#include "src/run/run.h"
 #include "tests/check.h"
 
 // Resolved parameters of the corrected arm with the given settings; the list ends with NULL.
@@ -49,6 +49,24 @@ static __attribute__((format(printf, 1, 2), unused)) const char *const *given(co
 }
 
 #define parameters_with(...) fixture_parameters(given(__VA_ARGS__))
+
+// A run that ends well; the caller calls run_finish.
+static inline run_result run_done(const scenario *s, bool rows)
+{
+    run_result r;
+    fail_if(run_scenario(s, rows, &r) != STATUS_OK, "%s", r.summary.message);
+    return r;
+}
+
+static inline run_result run_arm(parameters p, bool rows)
+{
+    const scenario s = {.name = (char *)"test", .parameters = p};
+    return run_done(&s, rows);
+}
+
+// A run of these settings, with its rows; RUN(r, "arm.links=1", ...): until its block is left.
+#define RUN_OF(...) run_arm(fixture_parameters(SETTINGS(__VA_ARGS__)), true)
+#define RUN(r, ...) SCOPED(run_finish) run_result r = RUN_OF(__VA_ARGS__)
 
 static inline arm arm_of(const parameters *p)
 {

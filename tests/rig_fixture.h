@@ -1,7 +1,6 @@
 // Runs on the rig for tests: the impact of the thesis's 5.4 with settings as "path=value" strings.
 #pragma once
 
-#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
 // Resolved parameters: wall at 0, start at rest 0.1 rad before it, 1.5 s, then the settings.
@@ -20,18 +19,14 @@ static inline parameters rig_parameters(const char *const *settings)
 // Runs them; the caller calls run_finish.
 static inline run_result rig_run(const char *const *settings, bool keep_trace)
 {
-    run_result result;
-    scenario s = {.parameters = rig_parameters(settings)};
-    fail_if(run_scenario(&s, keep_trace, &result) != STATUS_OK, "%s", result.summary.message);
-    return result;
+    return run_arm(rig_parameters(settings), keep_trace);
 }
 
 // Runs them and keeps the summary only.
 static inline summary rig_summary(const char *const *settings)
 {
     SCOPED(run_finish) run_result result = rig_run(settings, false);
-    summary s = result.summary;
-    return s;
+    return result.summary;
 }
 
 // The same of settings as given() takes them.

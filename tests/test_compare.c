@@ -24,9 +24,8 @@ static sweep_axis varied_axis(const char *name)
 // The row of the impact of 5.4 under a law, named like it.
 static compare_row row_of(scenario *s, const char *name, const char *law)
 {
-    SCOPED(run_finish) run_result r;
     *s = (scenario){.name = (char *)name, .parameters = rig_parameters_with("%s", law)};
-    assert_int_equal(run_scenario(s, false, &r), STATUS_OK);
+    SCOPED(run_finish) run_result r = run_done(s, false);
     compare_row row = compare_row_of(s, &r);
     return row;
 }
@@ -133,10 +132,9 @@ TEST(nothing_beats_the_best)
     for (EACH_TEXT(c, "control.law=hybrid", "control.law=optimal", "control.law=predictive",
                    "control.law=force-pd")) {
         for (int k = 1; k <= 8; k++) {
-            SCOPED(run_finish) run_result r;
             scenario s = {.name = (char *)"it",
                           .parameters = rig_parameters_with("%s control.force=%g", *c, 0.5 * k)};
-            assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+            SCOPED(run_finish) run_result r = run_done(&s, false);
             compare_row row = compare_row_of(&s, &r);
             check_below(row.values[1], row.values[0]);
             check_below(row.values[4], row.values[3]);
@@ -164,8 +162,7 @@ TEST(a_gentle_run_is_held_against_its_band)
         scenario s = {.name = (char *)"it",
                       .parameters = rig_parameters_with("control.law=hybrid control.force=%g",
                                                         command[i / 2])};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, false);
         r.summary.peak_force_N = pressed[i % 2];
         const compare_row row = compare_row_of(&s, &r);
         const double allowed = fmax(1.05 * command[i / 2], pressed[i % 2]);
@@ -256,8 +253,7 @@ TEST(a_row_has_the_numbers_of_its_run)
                       .parameters = rig_parameters(cases[scripted ? 0 : i]),
                       .actions = scripted ? script : NULL,
                       .action_count = scripted};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, false);
         const summary *m = &r.summary;
         const compare_row row = compare_row_of(&s, &r);
         const bool rig = i != 1 && i != 5;

@@ -381,9 +381,9 @@ TEST(implicit_methods_start_anew_after_a_jump)
         const double start[] = {0.35, 0.5, 0.6, 0.7, 0.8, 0.9}, volts[] = {2, -0.5, 0.8, 0.3, 0, 1};
         for (int k = 0; k < 6; k++) {
             while (r.motion->state[SLOT_TIME] < start[k]) {
-                motion_report event = next_event(&r, start[k]);
-                events[event.event]++;
-                if (event.event != MOTION_REACHED) {
+                motion_report next = next_event(&r, start[k]);
+                events[next.event]++;
+                if (next.event != MOTION_REACHED) {
                     assert_starts_anew(&r);
                 }
             }
@@ -413,8 +413,8 @@ TEST(what_is_held_does_not_move)
         int held = 0;
         double before[2] = {0};
         while (m->state[SLOT_TIME] < 4 && held < 20) {
-            const motion_event event = next_event(&r, m->state[SLOT_TIME] + 0.01).event;
-            if (!motion_held_still(m) || event != MOTION_REACHED) {
+            const motion_event next = next_event(&r, m->state[SLOT_TIME] + 0.01).event;
+            if (!motion_held_still(m) || next != MOTION_REACHED) {
                 held = 0;
                 continue;
             }
@@ -441,16 +441,16 @@ TEST(bounces_in_long_flights_are_no_chatter)
     double last = -HUGE_VAL;
     while (far <= MOTION_MOST_SHORT_FLIGHTS + 10) {
         // thrown back now and then
-        motion_report event = next_event(&r, r.motion->state[SLOT_TIME] + 0.05);
-        if (event.event == MOTION_REACHED) {
-            motion_push(&r.arm, r.motion, -0.03, &event);
+        motion_report next = next_event(&r, r.motion->state[SLOT_TIME] + 0.05);
+        if (next.event == MOTION_REACHED) {
+            motion_push(&r.arm, r.motion, -0.03, &next);
         }
-        if (event.event == MOTION_IMPACT) {
+        if (next.event == MOTION_IMPACT) {
             const double now = r.motion->state[SLOT_TIME];
             in_a_row = now - last < 0.01 * shortest ? in_a_row + 1 : 0;
             far += now - last > 0.02 * shortest;
             last = now;
-            assert_true(!event.chatter || in_a_row > MOTION_MOST_SHORT_FLIGHTS);
+            assert_true(!next.chatter || in_a_row > MOTION_MOST_SHORT_FLIGHTS);
         }
     }
 }

@@ -221,8 +221,7 @@ static void check_loops(uint64_t seed, looping how)
                             .title = none,
                             .description = none,
                             .parameters = drawn_parameters(&drawn)};
-        SCOPED(run_finish) run_result whole;
-        assert_int_equal(run_scenario(&s, true, &whole), STATUS_OK);
+        SCOPED(run_finish) run_result whole = run_done(&s, true);
 
         const loop_options options = {.keep_trace = true};
         SCOPED(loop_destroy_kept) run_loop *l;
@@ -269,9 +268,8 @@ TEST(runs_side_by_side_are_single_runs)
     assert_int_equal(batch_run(make, NULL, RUNS, 1, together), STATUS_OK);
     for (size_t i = 0; i < RUNS; i++) {
         scenario s = {0};
-        SCOPED(run_finish) run_result single;
         make(NULL, i, &s);
-        assert_int_equal(run_scenario(&s, false, &single), STATUS_OK);
+        SCOPED(run_finish) run_result single = run_done(&s, false);
         check_same_summary(&together[i], &single.summary);
     }
 }

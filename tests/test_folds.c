@@ -1,6 +1,5 @@
 // Arms that fold over the hub's axis, where the model ends, and a pair that its motor brakes.
 
-#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
 static void run_with(const char *const *settings, bool keep_trace, run_result *result)

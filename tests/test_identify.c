@@ -66,12 +66,11 @@ static scenario rig_scenario(const recording_made *r, const double *values, int 
 // Runs a recording with the true values and writes what its sensors read.
 static void record(recording_made *r, const double *values, int seed, int links)
 {
-    SCOPED(run_finish) run_result run;
     scenario s = rig_scenario(r, values, seed);
     parameters p = s.parameters;
     DONE(parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, &f));
     DONE(scenario_take_parameters(&s, &p, &f));
-    assert_int_equal(run_scenario(&s, true, &run), STATUS_OK);
+    SCOPED(run_finish) run_result run = run_done(&s, true);
     snprintf(r->file, sizeof r->file, "/tmp/test_identify.XXXXXX");
     FILE *file = fdopen(mkstemp(r->file), "w");
     assert_non_null(file);

@@ -267,6 +267,7 @@ TEST(press_ends_near_its_force)
 
 TEST(early_touch_moves_the_plan_on)
 {
+    SCOPED(run_finish)
     run_result r = rig_run(given("control.law=inverse-dynamics belief.wall_error=0.02"), true);
     double touch = first_impact(&r)->time;
     check_below(touch, 0.5);
@@ -276,5 +277,4 @@ TEST(early_touch_moves_the_plan_on)
             check_close(row->controller_mode, row->time < touch ? 0 : 1, 0);
         }
     }
-    run_finish(&r);
 }

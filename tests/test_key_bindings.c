@@ -132,7 +132,7 @@ TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
 TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
 {
     char wanted[128];
-    explorer ex;
+    SCOPED(explorer_finish) explorer ex;
     make_settings("# mine\n"
                   "key x step 5\n"
                   "key y stepp 5\n"
@@ -152,5 +152,4 @@ TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
     assert_non_null(strstr(ex.state.message.text, "(and 2 more)"));
     assert_false(explorer_carry_out(&ex, "remember"));
     assert_non_null(strstr(ex.state.message.text, "left alone"));
-    explorer_finish(&ex);
 }

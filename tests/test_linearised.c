@@ -1,5 +1,4 @@
 // The project's own predictor against the corrected simulation, on the cases of Tables 4.1-4.3.
-#include "src/run/run.h"
 #include "src/predict/linearised.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
@@ -33,9 +32,8 @@ static comparison compare(double k2, double volts, const char *wall, const char 
     scenario s = {.parameters =
                       parameters_with("arm.k2=%.17g motor.voltage=%.17g %s %s run.duration=2", k2,
                                       volts, wall, more)};
-    run_result r;
     comparison c;
-    assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+    run_result r = run_done(&s, false);
     c.simulated = r.summary;
     run_finish(&r);
 

@@ -95,9 +95,9 @@ TEST(steps_find_what_series_find)
 
     // of every kind there were some, and few looks on the average; where a hub breaks away the
     // slopes are not known, which the first guess otherwise goes by
-    for (int event = MOTION_IMPACT; event <= MOTION_SLIP; event++) {
-        assert_true(of[event] > 0);
-        check_below(total[event], (event == MOTION_SLIP ? 9 : 7.5) * far[event]);
+    for (int kind = MOTION_IMPACT; kind <= MOTION_SLIP; kind++) {
+        assert_true(of[kind] > 0);
+        check_below(total[kind], (kind == MOTION_SLIP ? 9 : 7.5) * far[kind]);
     }
 }
 

@@ -2,7 +2,6 @@
 // the run stays stable and ends pressing on the wall with the force a static beam would give, and
 // its ledger shows what it lost. The event method is exact for any number of links.
 
-#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
 static void check_case(int links, const char *hub, const char *wall, double volts)
@@ -78,8 +77,7 @@ static double momentum_of_50_ms(int links)
             links)};
 
     // the run is shorter than the window of the steady force, which is then the mean of all of it
-    SCOPED(run_finish) run_result r;
-    assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+    SCOPED(run_finish) run_result r = run_done(&s, false);
     assert_string_equal(summary_status(&r.summary), "ok");
     check_close(r.summary.impacts, 1, 0);
     double momentum =
@@ -115,8 +113,7 @@ TEST(strides_follow_the_fastest_link)
                 "arm.links=3 arm.hub_joint=beam wall.kind=plane wall.angle=0.1 motor.voltage=1 "
                 "motor.viscous_friction=0 motor.amplifier_gain=1000 run.duration=1 %s",
                 steps[i])};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, false);
         assert_string_equal(summary_status(&r.summary), "ok");
         first = i == 0 ? r.summary : first;
         check_relative(r.summary.motor_work_J, first.motor_work_J, 1e-5);

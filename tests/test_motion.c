@@ -1,18 +1,9 @@
 // The machine of free flight, impact, contact, release, stick and slip, on motions with closed
 // forms and by what must hold at every row.
 
-#include "src/run/run.h"
 #include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/told_events.h"
-
-static run_result run(const char *const *settings)
-{
-    scenario s = {.parameters = fixture_parameters(settings)};
-    run_result r;
-    fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s", r.summary.message);
-    return r;
-}
 
 static const event *find_event(const run_result *r, event_kind kind, int number)
 {
@@ -49,7 +40,7 @@ static double rod_angle(const rod *r, double t)
 TEST(a_single_rod_follows_its_closed_form)
 {
     rod r = one_rod();
-    SCOPED(run_finish) run_result result = run(SETTINGS("arm.links=1", "run.duration=0.6"));
+    RUN(result, "arm.links=1", "run.duration=0.6");
     double t = 0.2823; // contact: rod_angle(t) = 0.1, by Newton's method
     for (int i = 0; i < 20; i++) {
         t -= (rod_angle(&r, t) - 0.1) / (r.torque / r.damping * (1 - exp(-r.rate * t)));
@@ -68,10 +59,8 @@ TEST(a_single_rod_follows_its_closed_form)
 TEST(a_rod_that_gathers_speed_meets_the_wall_where_it_is)
 {
     for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
-        SCOPED(run_finish)
-        run_result r = run(SETTINGS("arm.links=1", "motor.back_emf=0", "motor.viscous_friction=0",
-                                    "motor.stiction=0", "motor.voltage=8", "wall.angle=2.5",
-                                    "wall.restitution=0.95", *c, "run.duration=3"));
+        RUN(r, "arm.links=1", "motor.back_emf=0", "motor.viscous_friction=0", "motor.stiction=0",
+            "motor.voltage=8", "wall.angle=2.5", "wall.restitution=0.95", *c, "run.duration=3");
         const double torque = 8 * 6.02 * 0.249092 * 9.80665 / 33.6;
         const double t = sqrt(2 * 2.5 * (0.40108 / 3 + 5.2e-3) / torque);
         check_close(r.summary.first_contact_s, t, 1e-12);
@@ -83,9 +72,8 @@ TEST(a_rod_that_gathers_speed_meets_the_wall_where_it_is)
 TEST(a_coasting_rod_sticks_when_friction_says)
 {
     rod r = one_rod();
-    SCOPED(run_finish)
-    run_result result = run(SETTINGS("arm.links=1", "wall.kind=none", "motor.voltage=0",
-                                     "initial.velocity=0.5", "run.duration=1.2"));
+    RUN(result, "arm.links=1", "wall.kind=none", "motor.voltage=0", "initial.velocity=0.5",
+        "run.duration=1.2");
     // I w' = -D w - c: w = 0 at t = ln(1 + D w0 / c) I / D
     double t = log(1 + r.damping * 0.5 / 0.045) / r.rate;
     check_close(find_event(&result, EVENT_STICK, 0)->time, t, 1e-11);
@@ -97,8 +85,7 @@ TEST(a_coasting_rod_sticks_when_friction_says)
 TEST(a_bouncing_rod_rebounds_by_e_and_comes_to_rest)
 {
     rod r = one_rod();
-    SCOPED(run_finish)
-    run_result result = run(SETTINGS("arm.links=1", "wall.restitution=0.5", "run.duration=1.5"));
+    RUN(result, "arm.links=1", "wall.restitution=0.5", "run.duration=1.5");
     const event *first = find_event(&result, EVENT_IMPACT, 0);
     check_relative(first->impulse, 1.5 * r.inertia * first->speed, 1e-12);
     check_relative(first->loss, 0.5 * r.inertia * first->speed * first->speed * 0.75, 1e-12);
@@ -160,9 +147,8 @@ TEST(a_hub_held_beyond_stiction_is_noted)
 // its far side, which the run says.
 TEST(a_start_on_the_point_behind_the_hub_is_a_touch_from_behind)
 {
-    SCOPED(run_finish)
-    run_result r = run(SETTINGS("arm.links=1", "wall.angle=3", "initial.angle=-0.14159265358979312",
-                                "motor.voltage=-1", "run.duration=0.2"));
+    RUN(r, "arm.links=1", "wall.angle=3", "initial.angle=-0.14159265358979312", "motor.voltage=-1",
+        "run.duration=0.2");
     check_close(r.summary.first_contact_s, 0, 0);
     check_relative(r.summary.steady_force_N, one_rod().torque + 0.045, 1e-12);
     assert_non_null(strstr(r.summary.message, "1 of the touches were behind it"));
@@ -186,9 +172,8 @@ TEST(a_start_on_the_wall_is_the_same_at_any_angle)
             char wall[40], start[40];
             snprintf(wall, sizeof wall, "wall.angle=%.17g", angles[k]);
             snprintf(start, sizeof start, "initial.angle=%.17g", angles[k]);
-            SCOPED(run_finish)
-            run_result r = run(SETTINGS(kind, walls[i / 2 % 3], arms[i / 6 % 3], motors[i / 18],
-                                        wall, start, "motor.voltage=1.2", "run.duration=0.1"));
+            RUN(r, kind, walls[i / 2 % 3], arms[i / 6 % 3], motors[i / 18], wall, start,
+                "motor.voltage=1.2", "run.duration=0.1");
             peak = k == 0 ? r.summary.peak_force_N : peak;
             check_relative(r.summary.peak_force_N, peak, 1e-5);
             assert_false(r.summary.inaccurate);
@@ -227,14 +212,13 @@ TEST(gap_and_force_stay_complementary_and_energy_is_accounted_for)
 {
     const char *const links[] = {"arm.links=1", "arm.links=2", "arm.links=3", "arm.links=5"};
     for (int i = 0; i < 4 * 8; i++) {
-        SCOPED(run_finish)
-        run_result r = run(SETTINGS(links[i % 4], i & 4 ? "wall.kind=plane" : "wall.kind=point",
-                                    i & 8 ? "motor.voltage=5" : "motor.voltage=1",
-                                    i & 16 ? "wall.restitution=0.4" : "wall.restitution=0"));
+        RUN(r, links[i % 4], i & 4 ? "wall.kind=plane" : "wall.kind=point",
+            i & 8 ? "motor.voltage=5" : "motor.voltage=1",
+            i & 16 ? "wall.restitution=0.4" : "wall.restitution=0");
         check_complementarity(&r);
         check_ledger(&r);
     }
-    SCOPED(run_finish) run_result r = run(SETTINGS("arm.hub_joint=spring", "run.duration=0.6"));
+    RUN(r, "arm.hub_joint=spring", "run.duration=0.6");
     check_complementarity(&r);
     check_ledger(&r);
 }
@@ -242,7 +226,7 @@ TEST(gap_and_force_stay_complementary_and_energy_is_accounted_for)
 // With the arm at rest on the wall and the hub held by friction, the middle spring alone presses.
 TEST(the_steady_force_is_the_springs)
 {
-    SCOPED(run_finish) run_result r = run(SETTINGS("run.duration=2"));
+    RUN(r, "run.duration=2");
     const sample *last = &r.trace.rows[r.trace.row_count - 1];
     double d = last->last_angle - last->first_angle;
     double lever =
@@ -254,8 +238,8 @@ TEST(the_steady_force_is_the_springs)
 
 TEST(the_located_peak_does_not_depend_on_the_step)
 {
-    SCOPED(run_finish)
-    run_result coarse = run(SETTINGS("method.step=4e-3")), fine = run(SETTINGS("method.step=1e-4"));
+    RUN(coarse, "method.step=4e-3");
+    RUN(fine, "method.step=1e-4");
     check_relative(coarse.summary.first_pulse_peak_N, fine.summary.first_pulse_peak_N, 1e-9);
     check_close(coarse.summary.first_pulse_time_to_peak_s, fine.summary.first_pulse_time_to_peak_s,
                 1e-5);
@@ -290,8 +274,7 @@ TEST(script_acts_at_its_time_and_is_booked)
     scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=2")),
                   .actions = todo,
                   .action_count = 4};
-    SCOPED(run_finish) run_result r;
-    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    SCOPED(run_finish) run_result r = run_done(&s, true);
     check_close(find_event(&r, EVENT_PUSH, 0)->time, 0.70005, 1e-12);
     check_close(find_event(&r, EVENT_CHANGE, 0)->time, 1.0, 1e-12);
     const sample *last = &r.trace.rows[r.trace.row_count - 1];
@@ -340,8 +323,7 @@ TEST(events_tell_what_is_in_contact_and_what_sticks)
                                    "arm.k1=300", i < 20 ? "wall.kind=point" : "wall.kind=plane")),
                       .actions = todo,
                       .action_count = sizeof todo / sizeof *todo};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, true);
         check_events_tell_the_state(&r);
     }
 }
@@ -357,8 +339,7 @@ TEST(a_hub_that_stops_may_release_the_arm)
                       fixture_parameters(SETTINGS("motor.voltage=2", "motor.stiction=0.35")),
                   .actions = &todo,
                   .action_count = 1};
-    SCOPED(run_finish) run_result r;
-    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    SCOPED(run_finish) run_result r = run_done(&s, true);
     int lifted = 0;
     for (size_t i = 0; i + 1 < r.trace.event_count; i++) {
         const event *e = &r.trace.events[i];
@@ -386,8 +367,7 @@ TEST(a_contact_ended_from_outside_is_released)
                       .actions = &todo,
                       .action_count = 1};
         s.parameters.run.duration = 1.2;
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, true);
         check_close(find_event(&r, EVENT_RELEASE, 0)->time, 1, 0);
         check_events_tell_the_state(&r);
     }
@@ -404,8 +384,7 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
                  {"arm.links=3", "wall.contact=rigid", 7.2441e-3},
                  {"arm.links=3", "wall.contact=kelvin-voigt", 7.5573e-3}};
     for (EACH(c, cases)) {
-        SCOPED(run_finish)
-        run_result r = run(SETTINGS(c->links, c->wall, "wall.angle=0"));
+        RUN(r, c->links, c->wall, "wall.angle=0");
         double largest = 0;
         for (size_t k = 0; k < r.trace.row_count; k++) {
             largest = fmax(largest, r.trace.rows[k].force);
@@ -423,13 +402,13 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
         }
     }
     for (EACH_TEXT(each, "wall.contact=rigid", "wall.contact=kelvin-voigt")) {
-        SCOPED(run_finish) run_result r = run(SETTINGS("arm.links=2", *each, "wall.angle=0"));
+        RUN(r, "arm.links=2", *each, "wall.angle=0");
         assert_true(r.summary.first_contact_s > 0.05);
         run_finish(&r);
 
         // behind a spring the tip swings off as the fourth power of the time
-        r = run(SETTINGS("arm.hub_joint=spring", "arm.k1=276", "arm.k2=64", "motor.voltage=2",
-                         *each, "wall.angle=0"));
+        r = RUN_OF("arm.hub_joint=spring", "arm.k1=276", "arm.k2=64", "motor.voltage=2", *each,
+                   "wall.angle=0");
         check_close(r.summary.first_contact_s, 0.0262512050, 1e-9);
         assert_true(r.summary.first_pulse_peak_N > 1);
     }
@@ -440,10 +419,8 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
 TEST(an_arm_that_moves_into_the_wall_is_in_contact)
 {
     for (EACH_TEXT(c, "wall.contact=kelvin-voigt", "wall.contact=hunt-crossley")) {
-        SCOPED(run_finish)
-        run_result at = run(SETTINGS(*c, "wall.angle=0", "initial.velocity=1"));
-        run_result before =
-            run(SETTINGS(*c, "wall.angle=0", "initial.velocity=1", "initial.angle=-1e-9"));
+        RUN(at, *c, "wall.angle=0", "initial.velocity=1");
+        run_result before = RUN_OF(*c, "wall.angle=0", "initial.velocity=1", "initial.angle=-1e-9");
         check_close(at.summary.first_contact_s, 0, 0);
         check_relative(at.summary.first_pulse_peak_N, before.summary.first_pulse_peak_N, 1e-5);
         check_relative(at.summary.peak_force_N, before.summary.peak_force_N, 1e-5);
@@ -462,8 +439,7 @@ TEST(an_arm_on_the_wall_does_not_strike_it)
                           "arm.links=3", arms[i & 1], walls[i >> 1 & 1], "run.duration=1e-3"))};
         s.parameters.wall.kind = i & 4 ? WALL_PLANE : WALL_POINT;
         s.parameters.wall.angle = s.parameters.initial.angle = 0.01 * (i / 2 - 100);
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, false);
         check_close(r.summary.first_contact_s, 0, 0);
         check_close(r.summary.impacts, 0, 0);
     }
@@ -527,15 +503,14 @@ TEST(a_ledger_that_does_not_close_makes_a_run_inaccurate)
     for (EACH(c, cases)) {
         scenario s = {.parameters =
                           fixture_parameters(SETTINGS("method.name=newmark", c->step, c->bound))};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, false);
         assert_int_equal(r.summary.inaccurate, c->inaccurate);
         assert_int_equal(r.summary.message[0] != '\0', c->inaccurate);
         assert_string_equal(summary_status(&r.summary), c->inaccurate ? "inaccurate" : "ok");
     }
 
     // the event method's own bound is narrow, and kept
-    SCOPED(run_finish) run_result r = run(SETTINGS("run.duration=1"));
+    RUN(r, "run.duration=1");
     check_below(r.summary.energy_residual_J, 1e-6 * r.summary.motor_work_J);
     assert_string_equal(summary_status(&r.summary), "ok");
 }
@@ -563,8 +538,7 @@ TEST(a_motion_too_small_to_follow_is_inaccurate)
         snprintf(voltage, sizeof voltage, "motor.voltage=%s", c->voltage);
         snprintf(stiction, sizeof stiction, "motor.stiction=%s", c->stiction);
         snprintf(angle, sizeof angle, "wall.angle=%s", c->angle);
-        SCOPED(run_finish)
-        run_result r = run(SETTINGS(voltage, stiction, angle, c->links, "wall.kind=plane"));
+        RUN(r, voltage, stiction, angle, c->links, "wall.kind=plane");
         fail_if(r.summary.inaccurate != c->inaccurate, "%s, %s, %s: %s %s", voltage, angle,
                 c->links, summary_status(&r.summary), r.summary.message);
     }
@@ -576,8 +550,8 @@ TEST(fast_rotation_is_resolved_whatever_the_step)
     double contact[2], peak[2];
     for (int i = 0; i < 2; i++) {
         run_result r =
-            run(SETTINGS("arm.links=3", "motor.viscous_friction=0", "motor.amplifier_gain=1000",
-                         i == 0 ? "method.step=1e-3" : "method.step=1e-4", "run.duration=0.12"));
+            RUN_OF("arm.links=3", "motor.viscous_friction=0", "motor.amplifier_gain=1000",
+                   i == 0 ? "method.step=1e-3" : "method.step=1e-4", "run.duration=0.12");
         contact[i] = r.summary.first_contact_s;
         peak[i] = r.summary.first_pulse_peak_N;
         run_finish(&r);
@@ -589,9 +563,8 @@ TEST(fast_rotation_is_resolved_whatever_the_step)
 // Pressed on an elastic wall the arm does not bounce for ever: the chatter rule, and says so.
 TEST(elastic_chattering_is_bounded_and_said)
 {
-    SCOPED(run_finish)
-    run_result r = run(SETTINGS("arm.links=20", "arm.damping_ratio=0.001", "wall.kind=plane",
-                                "wall.restitution=1", "motor.voltage=10", "run.duration=0.25"));
+    RUN(r, "arm.links=20", "arm.damping_ratio=0.001", "wall.kind=plane", "wall.restitution=1",
+        "motor.voltage=10", "run.duration=0.25");
     check_ledger(&r);
     check_below(r.summary.impacts, 2000);
     size_t chatters = 0;
@@ -604,8 +577,7 @@ TEST(elastic_chattering_is_bounded_and_said)
 
 TEST(structural_damping_does_not_upset_the_event_method)
 {
-    SCOPED(run_finish)
-    run_result r = run(SETTINGS("arm.links=20", "arm.damping_ratio=0.01", "run.duration=0.4"));
+    RUN(r, "arm.links=20", "arm.damping_ratio=0.01", "run.duration=0.4");
     check_ledger(&r);
     assert_true(r.trace.rows[r.trace.row_count - 1].damping_loss > 0);
 }

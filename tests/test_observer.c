@@ -331,8 +331,7 @@ TEST(a_hub_on_a_spring_does_not_swing)
 static observer_arms arms_after(const char *const *settings)
 {
     scenario s = {.parameters = rig_parameters(settings)};
-    SCOPED(run_finish) run_result r;
-    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    SCOPED(run_finish) run_result r = run_done(&s, true);
     controller_setup setup = setup_of(&s.parameters);
     observer_task task = {.force = 1, .stopping_force = 1, .approach_voltage = 1};
     observer_arms arms;
@@ -412,8 +411,7 @@ TEST(a_wall_that_gives_is_found)
                           given("control.law=observer wall.contact=hunt-crossley "
                                 "wall.stiffness=%g wall.angle=0 initial.angle=-0.1 run.duration=2",
                                 stiffness[i]))};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, false);
         check_below(r.summary.settling_time_s, 0.3);
         check_below(r.summary.smoothed_over_command_N, 0.15);
     }
@@ -466,8 +464,7 @@ TEST(it_finds_the_wall_again)
         const char *const settings[] = {"control.law=observer", "run.duration=2", NULL};
         action push = {.time = 1, .kind = ACTION_PUSH, .parameter = -1, .value = sign * 0.05};
         scenario s = {.parameters = rig_parameters(settings), .actions = &push, .action_count = 1};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, false);
         check_close(r.summary.steady_error_N, 0, 0.05);
         // a blow against the wall does not reach the hub, and is not answered
         check_below(r.summary.force_over_command_N, sign > 0 ? 0.1 : 0.3);
@@ -482,8 +479,7 @@ TEST(the_tip_comes_back_no_faster_than_it_came)
     const char *const settings[] = {"control.law=observer", "wall.restitution=0.3", NULL};
     action push = {.time = 0.8, .kind = ACTION_PUSH, .parameter = -1, .value = -0.05};
     scenario s = {.parameters = rig_parameters(settings), .actions = &push, .action_count = 1};
-    run_result r;
-    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    run_result r = run_done(&s, true);
 
     double there = 0, back = 0;
     for (size_t i = 0; i < r.trace.row_count; i++) {
@@ -530,8 +526,7 @@ static run_result force_after_change(double from, double to, double rate)
                       "control.law=observer %s control.force_rate=%g run.duration=2", force, rate),
                   .actions = &change,
                   .action_count = 1};
-    run_result r;
-    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    run_result r = run_done(&s, true);
     return r;
 }
 
@@ -581,8 +576,7 @@ TEST(the_same_readings_give_the_same_commands)
                                         "run.duration=0.8", NULL};
         scenario s = {.parameters = rig_parameters(settings)};
         s.parameters.control.law = law;
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, true);
 
         // the law alone, with its beliefs
         const controller *c = controller_of(law);

@@ -381,11 +381,10 @@ TEST(sensors_feel_a_push_in_contact)
 {
     // a twentieth of a millisecond before a sample
     action push = {.kind = ACTION_PUSH, .time = 0.99995, .value = 0.02};
-    SCOPED(run_finish) run_result run;
     scenario s = {.parameters = rig_parameters(SETTINGS("control.law=force-pd", QUIET)),
                   .actions = &push,
                   .action_count = 1};
-    assert_int_equal(run_scenario(&s, true, &run), STATUS_OK);
+    SCOPED(run_finish) run_result run = run_done(&s, true);
     double fsr = 0, piezo_force = 0, acceleration = 0;
     for (size_t i = 0; i < run.trace.row_count; i++) {
         const sample *row = &run.trace.rows[i];

@@ -315,7 +315,7 @@ SWEEP_TEST(rows_of_what_cannot_be_told_stay_alone)
         .parameter = cases[1].parameter, .value = "exec sh law.sh; exit", .law = LAW_PROCESS};
     base.parameters = parameters_of(&shell);
     write_program(0);
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
     must_compute(&s, "first", (sweep_share){1, 2});
     must_compute(&s, "second", (sweep_share){2, 2});
@@ -324,7 +324,6 @@ SWEEP_TEST(rows_of_what_cannot_be_told_stay_alone)
     sweep_merged merged;
     REFUSED(STATUS_BAD_ARGUMENT, "cannot be told", sweep_merge(parts, 2, "merged", &merged, &f));
     DONE(sweep_merge(parts, 1, "merged", &merged, &f));
-    sweep_finish(&s);
 }
 
 // Rows that were computed while it changed are not kept.
@@ -332,7 +331,7 @@ SWEEP_TEST(what_changes_during_a_sweep_ends_it)
 {
     base.parameters = parameters_of(&cases[1]);
     write_program(0);
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
     must_compute(&s, "rows", (sweep_share){1, 4});
 
@@ -357,7 +356,6 @@ SWEEP_TEST(what_changes_during_a_sweep_ends_it)
     unlink("law.sh");
     REFUSED(STATUS_BAD_ARGUMENT, "", sweep_run(&s, store, &options, &progress, &f));
     sweep_store_close(store);
-    sweep_finish(&s);
 }
 
 // A run that was not let, or whose plug-in cannot be loaded, is no row: the next time it may be.
@@ -386,13 +384,12 @@ SWEEP_TEST(what_could_not_begin_is_no_row)
 
     base.parameters = parameters_of(&cases[0]);
     put_file("law.so", "no library");
-    sweep s;
+    SCOPED(sweep_finish) sweep s;
     must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
     sweep_store *store = must_open("rows", &s);
     REFUSED(STATUS_CANNOT_READ, "run 1: control.plugin = ./law.so cannot be loaded",
             sweep_run(&s, store, &options, &progress, &f));
     sweep_store_close(store);
-    sweep_finish(&s);
 }
 
 // --- sessions ---------------------------------------------------------------------------------

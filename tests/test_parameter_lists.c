@@ -3,7 +3,6 @@
 
 #include "src/arm/modes.h"
 #include "src/predict/predictors.h"
-#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 
 static const char *set_list(parameters *p, const char *path, const char *text, fault *f)
@@ -86,18 +85,11 @@ TEST(what_follows_from_others_may_not_change)
     assert_int_equal(parameter_may_change(&list, PARAMETER_INDEX(arm.EI), &f), STATUS_BAD_SCENARIO);
 }
 
-// A run's summary, as bytes, and the rows of its trace.
-static run_result run_of(const char *const *settings)
-{
-    scenario s = {.name = (char *)"list", .parameters = fixture_parameters(settings)};
-    run_result r;
-    fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s", r.summary.message);
-    return r;
-}
-
 static void check_same_bytes(const char *const *settings, const char *const *listed)
 {
-    SCOPED(run_finish) run_result one = run_of(settings), other = run_of(listed);
+    SCOPED(run_finish)
+    run_result one = run_arm(fixture_parameters(settings), true),
+               other = run_arm(fixture_parameters(listed), true);
     assert_int_equal(one.trace.row_count, other.trace.row_count);
     assert_memory_equal(one.trace.rows, other.trace.rows,
                         one.trace.row_count * sizeof *one.trace.rows);
@@ -118,10 +110,13 @@ TEST(equal_numbers_are_the_uniform_arm_to_the_last_bit)
 TEST(the_general_way_meets_the_uniform_one)
 {
     SCOPED(run_finish)
-    run_result one = run_of(given("arm.links=4 arm.k2=5 run.duration=0.33"));
+    run_result one =
+        run_arm(fixture_parameters(given("arm.links=4 arm.k2=5 run.duration=0.33")), true);
     SCOPED(run_finish)
     run_result other =
-        run_of(given("arm.links=4 arm.joint_stiffness=10,10.000000000001,10 run.duration=0.33"));
+        run_arm(fixture_parameters(given(
+                    "arm.links=4 arm.joint_stiffness=10,10.000000000001,10 run.duration=0.33")),
+                true);
     check_relative(other.summary.first_contact_s, one.summary.first_contact_s, 1e-12);
     check_relative(other.summary.contact_impulse_Ns, one.summary.contact_impulse_Ns, 1e-10);
     check_relative(other.summary.first_pulse_peak_N, one.summary.first_pulse_peak_N, 1e-9);
@@ -215,8 +210,10 @@ TEST(predictors_take_lists_or_say_so)
         // against the run from there
         SCOPED(run_finish)
         run_result r =
-            run_of(given("arm.links=3 arm.joint_stiffness=8,5 arm.link_lengths=0.4,0.35,0.25 "
-                         "initial.angle=0.1 initial.velocity=0.6 run.duration=0.3"));
+            run_arm(fixture_parameters(
+                        given("arm.links=3 arm.joint_stiffness=8,5 arm.link_lengths=0.4,0.35,0.25 "
+                              "initial.angle=0.1 initial.velocity=0.6 run.duration=0.3")),
+                    true);
         check_relative(answer.prediction.force, r.summary.first_pulse_peak_N, 0.01);
         check_relative(answer.prediction.impulse, r.summary.contact_impulse_Ns, 1e-6);
     }

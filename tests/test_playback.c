@@ -62,6 +62,7 @@ TEST(a_command_is_held_or_goes_straight)
         char hold[64], shift[64];
         snprintf(hold, sizeof hold, "control.playback_hold=%s", c->hold);
         snprintf(shift, sizeof shift, "control.playback_shift=%s", c->shift);
+        SCOPED(run_finish)
         run_result r = rig_run(
             given("control.law=playback control.playback_file=u.csv control.playback_column=u %s "
                   "%s control.rate=1000 sensor.ideal=true run.duration=0.45 wall.kind=none",
@@ -69,7 +70,6 @@ TEST(a_command_is_held_or_goes_straight)
             true);
         const size_t row = trace_rows_until(&r.trace, c->time) - 1;
         check_close(r.trace.rows[row].voltage, c->volts, 1e-9);
-        run_finish(&r);
     }
 }
 

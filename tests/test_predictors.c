@@ -1,6 +1,5 @@
 // One question to all predictors: which answer, and why the others do not.
 #include "src/run/first_contact.h"
-#include "src/run/run.h"
 
 #include "tests/arm_fixture.h"
 
@@ -188,9 +187,8 @@ TEST(the_row_before_landing_is_asked_about)
     scenario s = {.name = (char *)"printed"};
     parameters_defaults(&s.parameters, ARM_PRINTED);
     assert_int_equal(parameters_resolve(&s.parameters, NULL), STATUS_OK);
-    SCOPED(run_finish) run_result r;
     prediction_answer answers[PREDICTOR_COUNT];
-    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    SCOPED(run_finish) run_result r = run_done(&s, true);
     assert_null(r.before_impact);
     assert_non_null(predict_first_contact(&s, &r, NULL, answers));
     assert_int_equal(answers[PREDICTOR_LINEARISED].outcome, PREDICTION_CORRECTED_ONLY);
@@ -200,9 +198,8 @@ TEST(the_row_before_landing_is_asked_about)
 // A run up to its first contact and on, and what the predictors say of that.
 static run_result predicted_run(scenario *s, prediction_answer answers[PREDICTOR_COUNT])
 {
-    run_result r;
     s->name = (char *)"run";
-    assert_int_equal(run_scenario(s, true, &r), STATUS_OK);
+    run_result r = run_done(s, true);
     assert_non_null(predict_first_contact(s, &r, NULL, answers));
     return r;
 }

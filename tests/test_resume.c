@@ -2,7 +2,6 @@
 #include "tests/arm_fixture.h"
 
 #include "src/run/resume.h"
-#include "src/run/run.h"
 
 enum { ROWS = 20000 };
 

@@ -167,8 +167,7 @@ TEST(energy_under_a_limit_that_changes)
                           "%s control.law=open-loop control.approach_voltage=5", models[i]),
                       .actions = &lower,
                       .action_count = 1};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, true);
 
         // the printed arm's row has the voltage of the step before it
         const motor_parameters *m = &s.parameters.motor;
@@ -192,8 +191,7 @@ TEST(errors_are_from_the_last_command)
     scenario s = {.parameters = rig_parameters_with("control.law=force-pd run.duration=3"),
                   .actions = &raise,
                   .action_count = 1};
-    SCOPED(run_finish) run_result r;
-    assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+    SCOPED(run_finish) run_result r = run_done(&s, false);
     const summary *m = &r.summary;
     check_close(m->force_command_N, 2, 0);
     check_close(m->steady_error_N, 0, 0.05);
@@ -208,11 +206,11 @@ TEST(same_seed_same_bytes)
     run_result a = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
     SCOPED(run_finish)
     run_result b = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
+    SCOPED(run_finish)
     run_result c = rig_run(given("control.law=optimal control.jitter=0.0005 control.seed=2"), true);
     assert_int_equal(a.trace.row_count, b.trace.row_count);
     assert_memory_equal(a.trace.rows, b.trace.rows, a.trace.row_count * sizeof(sample));
     assert_true(a.summary.peak_force_N != c.summary.peak_force_N);
-    run_finish(&c);
 }
 
 // A beam of twelve links bends further at the hub than two links with the same k2: the stiffness

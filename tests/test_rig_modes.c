@@ -67,6 +67,7 @@ TEST(approach_means_the_approach_command)
 TEST(force_means_the_force_law_at_once)
 {
     // in free flight, from the first sample on
+    SCOPED(run_finish)
     run_result r = rig_run(given("control.law=hybrid control.lock=force sensor.ideal=true"), true);
     const sample *first = &r.trace.rows[0];
     double final = 0.5 / (2 * 4.92), torque = 2 * 1 * 0.5 + 10.15 * (final - first->hub_angle);
@@ -75,7 +76,6 @@ TEST(force_means_the_force_law_at_once)
     parameters p = rig_parameters(NULL);
     check_relative(first->command, torque / motor_torque_per_volt(&p.motor), 1e-9);
     check_close(r.summary.steady_force_N, 1, 0.05);
-    run_finish(&r);
 }
 
 TEST(impact_mode_is_planned_anew_and_waits_at_its_end)

@@ -14,54 +14,51 @@ static status read_set(robust_set *set, const char *text, fault *f)
     return robust_set_read(set, path, f);
 }
 
-TEST(a_set_is_its_lines)
+static robust_set set_of(const char *text)
 {
     robust_set set;
-    fault f;
-    assert_int_equal(
-        read_set(&set, "# beliefs\n\n  belief.k2_factor=0.75:1.25 \r\nwall.kind=point,plane", &f),
-        STATUS_OK);
+    DONE(read_set(&set, text, &f));
+    return set;
+}
+
+// The scenario in a case of it, or in none.
+static scenario derived_of(const scenario *base, const robust_case *of)
+{
+    scenario derived;
+    DONE(robust_case_scenario(&derived, base, of, &f));
+    return derived;
+}
+
+TEST(a_set_is_its_lines)
+{
+    robust_set set = set_of("# beliefs\n\n  belief.k2_factor=0.75:1.25 \r\nwall.kind=point,plane");
     assert_int_equal(set.count, 2);
     assert_string_equal(set.lines[0], "belief.k2_factor=0.75:1.25");
     assert_string_equal(set.lines[1], "wall.kind=point,plane");
     robust_set_finish(&set);
 
     // a file without a line, and none
-    assert_int_equal(read_set(&set, "\n# nothing\n", &f), STATUS_BAD_ARGUMENT);
+    REFUSED(STATUS_BAD_ARGUMENT, "", read_set(&set, "\n# nothing\n", &f));
     unlink(path);
-    assert_int_equal(robust_set_read(&set, path, &f), STATUS_CANNOT_READ);
-
-    // a folder, and what has no end
-    static const char *const others[] = {"/tmp", "/dev/zero"};
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        assert_int_equal(robust_set_read(&set, others[i], &f),
-                         i == 0 ? STATUS_CANNOT_READ : STATUS_BAD_ARGUMENT);
-        assert_non_null(strstr(f.text, others[i]));
-        robust_set_finish(&set);
-    }
+    REFUSED(STATUS_CANNOT_READ, "", robust_set_read(&set, path, &f));
 }
 
 TEST(cases_are_what_differs)
 {
-    robust_set set;
-    fault f;
-    assert_int_equal(
-        read_set(&set,
-                 "control.seed=1,2\ncase plain:\n"
-                 "case two at once : belief.k2_factor=0.5; arm.links=3 ;push=-0.05@0.8\n",
-                 &f),
-        STATUS_OK);
+    robust_set set =
+        set_of("control.seed=1,2\ncase plain:\n"
+               "case two at once : belief.k2_factor=0.5; arm.links=3 ;push=-0.05@0.8\n");
     assert_int_equal(set.count, 1);
     assert_int_equal(set.case_count, 2);
     assert_string_equal(set.cases[1].title, "two at once");
 
     // the first is the scenario itself, the second differs in what it says
-    scenario derived, base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
-    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
+    scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
+    scenario derived = derived_of(&base, &set.cases[0]);
     assert_int_equal(derived.action_count, 0);
     assert_int_equal(derived.parameters.arm.links, 2);
     robust_case_finish(&derived);
-    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[1], &f), STATUS_OK);
+    derived = derived_of(&base, &set.cases[1]);
     assert_int_equal(derived.parameters.arm.links, 3);
     check_close(derived.parameters.belief.k2_factor, 0.5, 0);
     assert_int_equal(derived.action_count, 1);
@@ -74,11 +71,11 @@ TEST(cases_are_what_differs)
     action own = {.time = 0.5, .kind = ACTION_PUSH, .parameter = -1, .value = 0.02};
     base.actions = &own;
     base.action_count = 1;
-    assert_int_equal(robust_case_scenario(&derived, &base, NULL, &f), STATUS_OK);
+    derived = derived_of(&base, NULL);
     assert_int_equal(derived.action_count, 1);
     check_close(derived.actions[0].value, 0.02, 0);
     robust_case_finish(&derived);
-    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[1], &f), STATUS_OK);
+    derived = derived_of(&base, &set.cases[1]);
     assert_int_equal(derived.action_count, 2);
     check_close(derived.actions[0].value, 0.02, 0);
     check_close(derived.actions[1].value, -0.05, 0);
@@ -97,16 +94,13 @@ TEST(cases_are_what_differs)
              "control.seed=1,2\ncase a: push=much@1\n", "control.seed=1,2\ncase a: push=0.1@soon\n",
              ("control.seed=1,2\ncase a: push=1@1; push=1@2; push=1@3;"
               "push=1@4; push=1@5\n"))) {
-        assert_int_equal(read_set(&set, *c, &f), STATUS_BAD_ARGUMENT);
+        REFUSED(STATUS_BAD_ARGUMENT, "", read_set(&set, *c, &f));
         robust_set_finish(&set); // as callers do
     }
 
     // of several settings that cannot be the first is named
-    assert_int_equal(
-        read_set(&set, "control.seed=1,2\ncase a: arm.k2=4; arm.links=-3; wall.restitution=7\n",
-                 &f),
-        STATUS_OK);
-    f = (fault){0};
+    set = set_of("control.seed=1,2\ncase a: arm.k2=4; arm.links=-3; wall.restitution=7\n");
+    fault f = {0};
     assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "case 'a'"));
     assert_non_null(strstr(f.text, "arm.links"));
@@ -129,31 +123,33 @@ TEST(pushes_of_a_case_must_act)
     scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")}, derived;
     base.parameters.control.law = LAW_NONE;
     for (EACH(c, wrong)) {
-        SCOPED(robust_set_finish) robust_set set;
+        SCOPED(robust_set_finish) robust_set set = set_of(c->text);
         fault f = {0};
-        assert_int_equal(read_set(&set, c->text, &f), STATUS_OK);
         assert_int_not_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
         fail_if(strstr(f.text, c->says) == NULL, "'%s' does not say '%s'", f.text, c->says);
         robust_case_finish(&derived);
     }
 
     // at the very end there is still a run
-    SCOPED(robust_set_finish) robust_set set;
-    fault f = {0};
-    assert_int_equal(read_set(&set, "a=1\ncase last: push=1@1\n", &f), STATUS_OK);
-    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
+    SCOPED(robust_set_finish) robust_set set = set_of("a=1\ncase last: push=1@1\n");
+    derived = derived_of(&base, &set.cases[0]);
     robust_case_finish(&derived);
 }
 
 // Whatever stands in the place of a set is refused once, and the caller goes on.
 TEST(what_is_no_set_is_refused)
 {
-    for (EACH_TEXT(c, ".", "/dev/full", "/dev/zero", "/dev/null", "/nowhere")) {
+    static const struct {
+        const char *path;
+        status code;
+    } cases[] = {{".", STATUS_CANNOT_READ},
+                 {"/dev/full", STATUS_BAD_ARGUMENT},
+                 {"/dev/zero", STATUS_BAD_ARGUMENT},
+                 {"/dev/null", STATUS_BAD_ARGUMENT},
+                 {"/nowhere", STATUS_CANNOT_READ}};
+    for (EACH(c, cases)) {
         SCOPED(robust_set_finish) robust_set set;
-        fault f = {0};
-        const status code = robust_set_read(&set, *c, &f);
-        assert_true(code == STATUS_BAD_ARGUMENT || code == STATUS_CANNOT_READ);
-        assert_non_null(strstr(f.text, *c));
+        REFUSED(c->code, c->path, robust_set_read(&set, c->path, &f));
     }
 }
 
@@ -186,9 +182,8 @@ static char *judged(int law, char *const *lines, int count, size_t runs, int job
 TEST(sets_have_limits)
 {
     enum { LONGEST = 65536 };
-    robust_set set;
     fault f = {0};
-    assert_int_equal(read_set(&set, "x", &f), STATUS_OK);
+    robust_set set = set_of("x");
     assert_int_equal(set.count, 1);
     assert_string_equal(set.lines[0], "x");
     robust_set_finish(&set);
@@ -200,7 +195,7 @@ TEST(sets_have_limits)
         text[2 * i + 1] = '\n';
     }
     text[400] = '\0';
-    assert_int_equal(read_set(&set, text, &f), STATUS_OK);
+    set = set_of(text);
     assert_int_equal(set.count, 200);
     for (int i = 0; i < 200; i++) {
         assert_int_equal(set.lines[i][0], 'a' + i % 26);
@@ -225,12 +220,8 @@ TEST(sets_have_limits)
     robust_set_finish(&set);
 
     // four pushes, from the start on, and settings of several cases behind one another
-    assert_int_equal(
-        read_set(&set,
-                 "a=1\ncase one: a=1; push=1@0; push=-2@0.5;push=3@1 ; push=4@2; b=2;\n"
-                 "\t# nothing\n  case  two : c=3 \ncase three:;\nb=2",
-                 &f),
-        STATUS_OK);
+    set = set_of("a=1\ncase one: a=1; push=1@0; push=-2@0.5;push=3@1 ; push=4@2; b=2;\n"
+                 "\t# nothing\n  case  two : c=3 \ncase three:;\nb=2");
     assert_int_equal(set.count, 2);
     assert_string_equal(set.lines[1], "b=2");
     assert_int_equal(set.line_numbers[0], 1);
@@ -434,12 +425,12 @@ TEST(a_limit_says_what_is_too_much)
             check_below(found.smoothed[q], found.raw[q]);
             assert_true(i == 2 || found.overshoot[q] == (i == 0 ? found.raw : found.smoothed)[q]);
         }
-        assert_non_null(strstr(text, "\"raw_overshoot_median_percent\": "));
-        assert_non_null(strstr(text, "\"raw_overshoot_nine_tenths_percent\": "));
-        assert_non_null(strstr(text, "\"raw_overshoot_worst_percent\": "));
-        assert_non_null(strstr(text, "\"smoothed_overshoot_median_percent\": "));
-        assert_non_null(strstr(text, "\"smoothed_overshoot_nine_tenths_percent\": "));
-        assert_non_null(strstr(text, "\"smoothed_overshoot_worst_percent\": "));
+        for (EACH_TEXT(key, "median", "nine_tenths", "worst")) {
+            snprintf(expected, sizeof expected, "\"raw_overshoot_%s_percent\": ", *key);
+            assert_non_null(strstr(text, expected));
+            snprintf(expected, sizeof expected, "\"smoothed_overshoot_%s_percent\": ", *key);
+            assert_non_null(strstr(text, expected));
+        }
         robust_law_finish(&found);
     }
     const summary two = rig_summary_with("control.law=hybrid run.duration=1");

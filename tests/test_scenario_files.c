@@ -190,7 +190,7 @@ TEST(every_shipped_scenario_reads_clean)
     int count, thesis = 0;
     DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
-        scenario s;
+        SCOPED(scenario_finish) scenario s;
         sentences all = {0};
         fail_if(scenario_open(&s, names[i], keep_sentence, &all) != STATUS_OK || all.count != 0,
                 "%s", all.text);
@@ -205,7 +205,6 @@ TEST(every_shipped_scenario_reads_clean)
         if (s.parameters.control.law == LAW_NONE && s.lesson.step_count == 0) {
             assert_int_equal(s.parameters.arm.model, of_thesis ? ARM_PRINTED : ARM_CORRECTED);
         }
-        scenario_finish(&s);
         free(names[i]);
     }
     free(names);
@@ -330,10 +329,9 @@ TEST(written_scenarios_read_back)
     int count;
     assert_int_equal(scenario_list(&names, &count, NULL), STATUS_OK);
     for (int i = 0; i < count; i++) {
-        scenario s;
+        SCOPED(scenario_finish) scenario s;
         assert_int_equal(scenario_open(&s, names[i], NULL, NULL), STATUS_OK);
         check_written(&s);
-        scenario_finish(&s);
         free(names[i]);
     }
     free(names);

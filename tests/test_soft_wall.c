@@ -1,6 +1,5 @@
 // Walls that give: closed forms for a single mass, the order of the steps near the touch, and the
 // way to the rigid wall.
-#include "src/run/run.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 #include "tests/motion_advance.h"
@@ -8,17 +7,6 @@
 #define SPEED 0.1 // of the single mass at the wall [m/s]
 
 static const double mass = 5.2e-3 + 0.40108 / 3; // of a rod about its hub, seen 1 m from it [kg]
-
-static run_result run_of(const parameters *p, bool rows)
-{
-    scenario s = {.parameters = *p};
-    run_result r;
-    char name[] = "test";
-    s.name = s.file = s.title = s.description = name;
-    run_scenario(&s, rows, &r);
-    fail_if(r.summary.status != STATUS_OK, "%s", r.summary.message);
-    return r;
-}
 
 // A rod on a hub without drive and friction: near the wall a mass that moves straight.
 static parameters single_mass(const char *contact, const char *stiffness, const char *damping)
@@ -65,7 +53,7 @@ TEST(a_mass_on_kelvin_voigt_has_the_closed_form)
         char c[40];
         snprintf(c, sizeof c, "wall.damping=%g", damping[i]);
         parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", c);
-        SCOPED(run_finish) run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_arm(p, true);
         double w = sqrt(k / mass), zeta = damping[i] / (2 * sqrt(k * mass));
         double root = sqrt(1 - zeta * zeta), length = atan2(2 * zeta * root, 2 * zeta * zeta - 1);
         length = (zeta > 0 ? length : M_PI) / (w * root);
@@ -93,7 +81,7 @@ TEST(a_face_with_a_mass_has_the_closed_form)
         snprintf(c, sizeof c, "wall.damping=%g", damping[i]);
         parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", c);
         p.wall.mass = face;
-        SCOPED(run_finish) run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_arm(p, true);
 
         // the impact, and the swing of the joined masses until x'' = 0
         double w = sqrt(k / both), zeta = damping[i] / (2 * sqrt(k * both));
@@ -136,7 +124,7 @@ TEST(an_arm_is_deepest_or_apart_beside_its_face)
         "motor.voltage=-0.18352 wall.kind=plane wall.contact=kelvin-voigt "
         "wall.stiffness=16.826 wall.damping=0 wall.mass=0.9856 initial.angle=0.0988025 "
         "initial.velocity=0.489266 run.duration=0.08 method.step=1e-5");
-    SCOPED(run_finish) run_result r = run_of(&p, true);
+    SCOPED(run_finish) run_result r = run_arm(p, true);
     double deepest = 0, farthest = 0;
     for (size_t i = 0; i < r.trace.row_count; i++) {
         deepest = fmax(deepest, -r.trace.rows[i].gap);
@@ -152,7 +140,7 @@ TEST(an_arm_is_deepest_or_apart_beside_its_face)
         "arm.damping_ratio=0.0066045 motor.current_limit=0.93877 motor.voltage=3.1376 "
         "wall.contact=kelvin-voigt wall.stiffness=97351 wall.damping=2.8066 wall.mass=0.8488 "
         "initial.angle=0.0969451 initial.velocity=0.380345 run.duration=0.08 method.step=1e-5");
-    r = run_of(&p, true);
+    r = run_arm(p, true);
     for (size_t i = 0; i < r.trace.row_count; i++) {
         farthest = fmax(farthest, r.trace.rows[i].contact ? r.trace.rows[i].gap : 0);
     }
@@ -170,7 +158,7 @@ TEST(an_arm_leaves_a_light_face_once)
         "motor.stiction=0.5 motor.current_limit=0.0082505 wall.kind=plane "
         "wall.contact=kelvin-voigt wall.stiffness=2.8373e6 wall.damping=0 wall.mass=3.886e-5 "
         "initial.angle=0.0483042 initial.velocity=2.96367 run.duration=0.1");
-    SCOPED(run_finish) run_result r = run_of(&p, true);
+    SCOPED(run_finish) run_result r = run_arm(p, true);
     double released = -1;
     for (size_t i = 0; i < r.trace.event_count; i++) {
         if (r.trace.events[i].kind == EVENT_RELEASE) {
@@ -191,7 +179,7 @@ TEST(an_arm_leaves_a_returning_face_once)
     for (int i = 0; i < 2 * 46; i++) {
         p.wall.contact = i < 46 ? WALL_KELVIN_VOIGT : WALL_HUNT_CROSSLEY;
         p.wall.damping = pow(10, -10 + i % 46 / 3.0); // to a return in 0.3 s
-        SCOPED(run_finish) run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_arm(p, true);
         double released = -1;
         for (size_t e = 0; e < r.trace.event_count; e++) {
             const event *now = &r.trace.events[e];
@@ -230,7 +218,7 @@ static run_result face_run(const char *contact, const char *mass_text)
 {
     parameters p = parameters_with("%s %s wall.stiffness=75e3 motor.voltage=2 run.duration=0.25",
                                    contact, mass_text);
-    return run_of(&p, false);
+    return run_arm(p, false);
 }
 
 // Without bound on either side the face is the wall without a mass, or the rigid one; what it is
@@ -265,7 +253,7 @@ TEST(a_light_face_on_a_strong_damper_is_no_face)
         parameters p = parameters_with(
             "wall.contact=kelvin-voigt %s motor.voltage=2 wall.damping=1e3 run.duration=0.25",
             i < 3 ? light[i] : "wall.mass=0");
-        each[i] = run_of(&p, false);
+        each[i] = run_arm(p, false);
     }
 
     // of order 1 in the mass, and the lightest in as many steps as none
@@ -379,7 +367,7 @@ TEST(a_mass_on_hunt_crossley_has_the_closed_form)
         double c = damping[i];
         snprintf(text, sizeof text, "wall.damping=%g", c);
         parameters p = single_mass("wall.contact=hunt-crossley", "wall.stiffness=1e8", text);
-        SCOPED(run_finish) run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_arm(p, true);
         double deepest = pow(2.5 * spent(SPEED, k, c), 1 / 2.5), lo = 0, hi = SPEED;
         for (int bisection = 0; bisection < 200; bisection++) {
             double v = (lo + hi) / 2;
@@ -494,7 +482,7 @@ TEST(a_stiff_wall_holds_like_a_rigid_one)
             parameters_with("%s %s wall.damping=5 arm.damping_ratio=0.3 motor.stiction=0 "
                             "motor.voltage=5 wall.kind=point run.duration=8",
                             walls[i][0], walls[i][1]);
-        SCOPED(run_finish) run_result r = run_of(&p, false);
+        SCOPED(run_finish) run_result r = run_arm(p, false);
         force[i] = r.summary.steady_force_N;
     }
     double order = log10(fabs((force[1] - force[0]) / (force[2] - force[0])));
@@ -512,7 +500,7 @@ TEST(a_wall_without_damping_takes_nothing)
     for (size_t i = 0; i < 6; i++) {
         const parameters p =
             parameters_with("%s %s wall.damping=0", walls[i / 3], stiffness[i % 3]);
-        SCOPED(run_finish) run_result r = run_of(&p, false);
+        SCOPED(run_finish) run_result r = run_arm(p, false);
         assert_false(isnan(r.summary.first_contact_s));
         check_close(r.summary.wall_loss_J, 0, 0);
     }
@@ -530,7 +518,7 @@ TEST(a_slow_face_lets_go_behind_the_wall)
                 : parameters_with("arm.links=4 arm.hub_joint=beam motor.voltage=8 "
                                   "wall.kind=plane wall.contact=hunt-crossley "
                                   "wall.stiffness=1e5 wall.damping=1e6 run.duration=0.2");
-        SCOPED(run_finish) run_result r = run_of(&p, true);
+        SCOPED(run_finish) run_result r = run_arm(p, true);
         const event *release = r.trace.events;
         while (release->kind != EVENT_RELEASE) {
             release++;
@@ -588,7 +576,7 @@ TEST(a_face_without_mass_is_the_limit_of_light_ones)
     run_result r[3];
     for (int i = 0; i < 3; i++) {
         p.wall.mass = i == 0 ? 0 : i == 1 ? 2e-4 : 1e-4;
-        r[i] = run_of(&p, true);
+        r[i] = run_arm(p, true);
         check_below(r[i].summary.energy_residual_J, 1e-11);
     }
     for (int i = 0; i < 3; i++) {
@@ -622,7 +610,7 @@ TEST(a_mass_at_the_tip_strikes_a_rigid_wall)
         parameters p = parameters_with(
             "%s %s arm.links=3 arm.hub_joint=beam arm.tip_mass=0.05 run.duration=0.4",
             methods[i][0], methods[i][1]);
-        SCOPED(run_finish) run_result r = run_of(&p, false);
+        SCOPED(run_finish) run_result r = run_arm(p, false);
         impulse[i] = r.summary.contact_impulse_Ns;
         contact[i] = r.summary.first_contact_s;
         if (i == 0) {

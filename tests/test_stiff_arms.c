@@ -2,7 +2,6 @@
 // report why not, and their slow modes are right. And arms that start on the wall, with first
 // flights that are lower than rounding.
 #include "src/run/loop.h"
-#include "src/run/run.h"
 #include "src/contact/pace.h"
 #include "tests/explicit_stepper.h"
 #include "tests/passage.h"
@@ -121,8 +120,7 @@ TEST(a_stride_that_begins_does_not_unsettle_the_force)
             "arm.mass=0.230311454988 arm.hub_inertia=2.421274642e-4 arm.k2=3.677424150693 "
             "arm.damping_ratio=1 wall.kind=plane wall.angle=1.722191930126 "
             "motor.stiction=0.01 motor.voltage=-0.965138971621489 run.duration=2")};
-    SCOPED(run_finish) run_result r;
-    assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+    SCOPED(run_finish) run_result r = run_done(&s, true);
     const double steady = r.summary.steady_force_N;
     size_t outside = 0;
     for (size_t i = 0; i < r.trace.row_count; i++) {
@@ -163,8 +161,7 @@ TEST(decays_do_not_shorten_strides)
     };
     for (EACH(c, arms)) {
         scenario s = {.parameters = fixture_parameters(*c)};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, false);
         assert_true(r.summary.steps < 2000);
         check_below(r.summary.energy_residual_J, 1e-7 * r.summary.motor_work_J);
     }

@@ -1,7 +1,6 @@
 // The two-link arm by power series: that they solve the equations of chain.h all over the stride,
 // that the bounds hold, and that whole runs through events come out of it.
 #include "src/base/random.h"
-#include "src/run/run.h"
 #include "src/engines/pair/taylor_stride.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
@@ -321,20 +320,11 @@ TEST(known_roots_are_the_first)
     assert_true(known > STATES / 4);
 }
 
-static run_result run(const char *const *settings)
-{
-    scenario s = {.parameters = fixture_parameters(settings)};
-    run_result r;
-    fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s", r.summary.message);
-    return r;
-}
-
 // Rows so near each other that none of them misses the peak by more than rounding.
 TEST(peaks_are_the_largest_force_there_is)
 {
     for (EACH_TEXT(c, "motor.voltage=0.5537109375", "motor.voltage=1", "motor.voltage=3.3")) {
-        SCOPED(run_finish)
-        run_result r = run(SETTINGS(*c, "method.step=2e-6", "run.duration=0.7"));
+        RUN(r, *c, "method.step=2e-6", "run.duration=0.7");
         double largest = 0;
         for (size_t k = 0; k < r.trace.row_count; k++) {
             largest = fmax(largest, r.trace.rows[k].force);
@@ -347,8 +337,8 @@ TEST(peaks_are_the_largest_force_there_is)
 // Rows are read off the stride: the more of them, the more strides are the same.
 TEST(rows_change_nothing)
 {
-    SCOPED(run_finish)
-    run_result few = run(SETTINGS("method.step=0.1")), many = run(SETTINGS("method.step=1e-4"));
+    RUN(few, "method.step=0.1");
+    RUN(many, "method.step=1e-4");
     assert_true(few.summary.first_contact_s == many.summary.first_contact_s);
     assert_true(few.summary.peak_force_N == many.summary.peak_force_N);
     assert_true(few.summary.motor_work_J == many.summary.motor_work_J);
@@ -359,7 +349,7 @@ TEST(rows_change_nothing)
 TEST(events_that_nearly_coincide_are_told_apart)
 {
     run_result r =
-        run(SETTINGS("motor.voltage=0.63671875", "arm.k2=6.909140625", "wall.angle=0.141015625"));
+        RUN_OF("motor.voltage=0.63671875", "arm.k2=6.909140625", "wall.angle=0.141015625");
     check_close(r.summary.first_contact_s, 0.452259, 1e-6);
     check_below(r.summary.energy_residual_J, 1e-13);
     run_finish(&r);

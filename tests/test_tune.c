@@ -121,9 +121,8 @@ TEST(one_parameter_is_that_of_bisection)
     for (int i = 0; i < 40; i++) {
         const double middle = (low + high) / 2;
         scenario s = base;
-        SCOPED(run_finish) run_result r;
         s.parameters.motor.voltage = middle;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+        SCOPED(run_finish) run_result r = run_done(&s, false);
         *(r.summary.peak_force_N < 2 ? &low : &high) = middle;
     }
     assert_true(fabs(t.found[0] - high) <= 1e-3 * high);
@@ -144,9 +143,8 @@ TEST(a_condition_binds)
     SCOPED(tune_finish) tuning t;
     search(&t, &asked, 1);
     scenario s = base;
-    run_result r;
     s.parameters.motor.voltage = t.found[0];
-    assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+    run_result r = run_done(&s, false);
     assert_true(r.summary.peak_force_N <= 2 && r.summary.peak_force_N > 1.98);
     run_finish(&r);
     tune_finish(&t);

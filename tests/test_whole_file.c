@@ -61,12 +61,20 @@ static mode_t mode_of(const char *path)
     return about.st_mode & 07777;
 }
 
-static void write_new(const char *path)
+static status try_new(const char *path, fault *f)
 {
     whole_file w;
-    DONE(whole_file_open(&w, path, &f));
+    const status code = whole_file_open(&w, path, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
     fputs("new", w.stream);
-    DONE(whole_file_commit(&w, &f));
+    return whole_file_commit(&w, f);
+}
+
+static void write_new(const char *path)
+{
+    DONE(try_new(path, &f));
 }
 
 TEST_IN_FOLDER(mode_follows_the_umask_or_the_old_file)
@@ -80,37 +88,26 @@ TEST_IN_FOLDER(mode_follows_the_umask_or_the_old_file)
     umask(before);
 }
 
-TEST_IN_FOLDER(a_link_stays_a_link)
+// Also one to what is not there yet.
+TEST_IN_FOLDER(a_link_stays_a_link_and_leads_to_the_new_file)
 {
     struct stat about;
     put_file("target", "old");
-    assert_int_equal(symlink("target", "link"), 0);
-    write_new("link");
-    assert_int_equal(lstat("link", &about), 0);
-    assert_true(S_ISLNK(about.st_mode));
-    assert_holds("target", "new");
-}
-
-TEST_IN_FOLDER(a_link_to_nothing_leads_to_the_new_file)
-{
-    struct stat about;
-    assert_int_equal(symlink("later", "link"), 0);
-    write_new("link");
-    assert_int_equal(lstat("link", &about), 0);
-    assert_true(S_ISLNK(about.st_mode));
-    assert_holds("later", "new");
+    for (EACH_TEXT(c, "target", "later")) {
+        assert_int_equal(symlink(*c, "link"), 0);
+        write_new("link");
+        assert_int_equal(lstat("link", &about), 0);
+        assert_true(S_ISLNK(about.st_mode));
+        assert_holds(*c, "new");
+        unlink("link");
+    }
 }
 
 TEST_IN_FOLDER(a_full_device_is_reported_and_stays_a_device)
 {
     struct stat about;
-    whole_file w;
-    fault f = {0};
-    assert_int_equal(whole_file_open(&w, "/dev/full", &f), STATUS_OK);
-    fputs("new", w.stream);
-    assert_int_equal(whole_file_commit(&w, &f), STATUS_CANNOT_WRITE);
-    assert_non_null(strstr(f.text, "/dev/full"));
-    assert_non_null(strstr(f.text, "No space left"));
+    REFUSED(STATUS_CANNOT_WRITE, "/dev/full", try_new("/dev/full", &f));
+    REFUSED(STATUS_CANNOT_WRITE, "No space left", try_new("/dev/full", &f));
     assert_int_equal(stat("/dev/full", &about), 0);
     assert_true(S_ISCHR(about.st_mode));
 }
@@ -118,7 +115,6 @@ TEST_IN_FOLDER(a_full_device_is_reported_and_stays_a_device)
 // Carries out one write to the standard output, which leads to `path` meanwhile.
 static status write_to_output(const char *path, fault *f)
 {
-    whole_file w;
     fflush(stdout);
     const int kept = dup(STDOUT_FILENO), there = open(path, O_WRONLY | O_CREAT, 0600);
     assert_true(kept >= 0 && there >= 0);
@@ -126,11 +122,7 @@ static status write_to_output(const char *path, fault *f)
     close(there);
 
     // nothing may fail before the output is itself again
-    status code = whole_file_open(&w, "-", f);
-    if (code == STATUS_OK) {
-        fputs("new", w.stream);
-        code = whole_file_commit(&w, f);
-    }
+    const status code = try_new("-", f);
     clearerr(stdout);
     dup2(kept, STDOUT_FILENO);
     close(kept);
@@ -192,9 +184,7 @@ TEST_IN_FOLDER(only_the_reader_of_the_standard_output_may_leave)
     fflush(stdout);
     const int output = dup(1);
     dup2(ends[1], 1);
-    const status opened = whole_file_open(&w, "-", &f);
-    fputs("text", opened == STATUS_OK ? w.stream : stderr);
-    const status written = opened == STATUS_OK ? whole_file_commit(&w, &f) : opened;
+    const status written = try_new("-", &f);
     dup2(output, 1);
     close(output);
     clearerr(stdout);
@@ -208,29 +198,6 @@ TEST_IN_FOLDER(only_the_reader_of_the_standard_output_may_leave)
     close(reader);
     fputs("text", w.stream);
     assert_int_equal(whole_file_commit(&w, &f), STATUS_CANNOT_WRITE);
-}
-
-// Where the standard input is closed a file gets its descriptor, and is written all the same, whole
-// or in its place.
-TEST_IN_FOLDER(a_file_may_have_the_first_descriptor)
-{
-    const int input = dup(0);
-    assert_true(input > 0);
-    for (EACH_TEXT(c, "first", "/dev/null")) {
-        whole_file w;
-        fault f = {0};
-        close(0);
-        const status opened = whole_file_open(&w, *c, &f);
-        if (opened == STATUS_OK) {
-            fputs("text", w.stream);
-        }
-        const status written = opened == STATUS_OK ? whole_file_commit(&w, &f) : opened;
-        dup2(input, 0);
-        assert_int_equal(written, STATUS_OK);
-    }
-    close(input);
-    assert_holds("first", "text");
-    assert_int_equal(files(), 1);
 }
 
 // A write that failed at once leaves nothing to be flushed, and is still a failure.
@@ -519,26 +486,26 @@ TEST_IN_FOLDER(a_link_to_itself_leads_nowhere)
     REFUSED(STATUS_CANNOT_WRITE, "", whole_file_open(&w, "itself", &f));
 }
 
-// A program that was started without a standard input has its number for the next file.
+// A program that was started without a standard input has its number for the next file, which is
+// written all the same, whole or in its place.
 TEST_IN_FOLDER(a_file_may_have_the_number_of_the_standard_input)
 {
-    fault f = {0};
-    whole_file w;
     const int input = dup(STDIN_FILENO);
-    close(STDIN_FILENO);
-    const status opened = whole_file_open(&w, "numbered-0", &f);
-    const bool is_0 = opened == STATUS_OK && fcntl(STDIN_FILENO, F_GETFD) >= 0;
-    if (opened == STATUS_OK) {
-        fputs("whole", w.stream);
-    }
-    const status written = opened == STATUS_OK ? whole_file_commit(&w, &f) : opened;
-    if (input >= 0) {
+    for (EACH_TEXT(c, "numbered-0", "/dev/null")) {
+        whole_file w;
+        fault f = {0};
+        close(STDIN_FILENO);
+        const status opened = whole_file_open(&w, *c, &f);
+        const bool is_0 = opened == STATUS_OK && fcntl(STDIN_FILENO, F_GETFD) >= 0;
+        fputs("whole", opened == STATUS_OK ? w.stream : stderr);
+        const status written = opened == STATUS_OK ? whole_file_commit(&w, &f) : opened;
         dup2(input, STDIN_FILENO);
-        close(input);
+        assert_int_equal(written, STATUS_OK);
+        assert_true(is_0);
     }
-    assert_int_equal(written, STATUS_OK);
-    assert_true(is_0);
+    close(input);
     assert_holds("numbered-0", "whole");
+    assert_int_equal(files(), 1);
 }
 
 int main(void)
