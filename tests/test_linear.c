@@ -100,6 +100,11 @@ TEST(the_arm_rests_under_its_force)
     check_relative(l.force, K * 1e-3, 1e-6);
     linear_system_finish(&l.system);
 
+    // its weight presses more than the motor pulls
+    l = linearised(ROUND, "motor.voltage=-0.5 arm.tilt=-0.2", LINEAR_CONTACT);
+    check_close(l.force, 9.80665 * sin(0.2) * 0.40108 / 2 * cos(0.1) - K * 0.5, 1e-3);
+    linear_system_finish(&l.system);
+
     static const char *const walls[] = {
         "wall.contact=kelvin-voigt wall.stiffness=1e4 wall.damping=5 control.force=2",
         "wall.contact=hunt-crossley wall.stiffness=1e6 wall.damping=5 control.force=2",
@@ -130,6 +135,8 @@ TEST(what_has_no_linear_form_is_refused)
         {"arm.model=printed", "printed", LINEAR_FREE},
         {"arm.links=65", "64 links", LINEAR_FREE},
         {"wall.contact=hunt-crossley wall.stiffness=1e6 motor.voltage=0", "Hunt", LINEAR_STUCK},
+        {"wall.contact=hunt-crossley arm.tilt=0.3", "Hunt", LINEAR_STUCK},
+        {"wall.motion=sine", "moves", LINEAR_CONTACT},
     };
     for (EACH(c, cases)) {
         SCOPED(scenario_finish) scenario s = shipped_with(ROUND, c->changes);

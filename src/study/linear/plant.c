@@ -226,10 +226,29 @@ static const char *refusal(const parameters *p, linear_place place, double force
            : p->arm.links > LINEAR_MOST_LINKS ? "the linear arm has at most 64 links"
            : place == LINEAR_FREE             ? NULL
            : p->wall.kind == WALL_NONE        ? "there is no wall to press on"
+           : p->wall.motion != MOTION_NONE    ? "nothing rests on a wall that moves, try --set "
+                                                "wall.motion=none"
            : force < 0 ? "the arm does not press on the wall under this command"
            : force == 0 && p->wall.contact == WALL_HUNT_CROSSLEY
                ? "a Hunt-Crossley wall has no stiffness without a force"
                : NULL;
+}
+
+// How the straight arm at the wall presses under its command and its weight [N].
+static double straight_press(const arm *a, const parameters *p)
+{
+    const double weight = a->gravity * (p->arm.mass / 2 + p->arm.tip_mass) * cos(p->wall.angle);
+    return motor_torque_per_volt(&p->motor) * p->motor.voltage / p->arm.length - weight;
+}
+
+// A spring that stiffens with its depth is followed for a small part of it.
+static void take_step(workshop *w, const parameters *p, double force)
+{
+    w->step = ANGLE_STEP / p->arm.links;
+    if (p->wall.contact == WALL_HUNT_CROSSLEY && w->mode.contact && force > 0) {
+        const double depth = plain_pow(force / p->wall.stiffness, 1 / p->wall.exponent);
+        w->step = fmin(w->step, 0.02 * depth / p->arm.length);
+    }
 }
 
 // Rest, its numbers, and the slopes there, with the workshop prepared.
@@ -240,7 +259,7 @@ static status linearise_at(workshop *w, linear_arm *out, const parameters *p, li
     const status code = place != LINEAR_FREE ? find_rest(w, f) : STATUS_OK;
     evaluate(w, w->rest, there);
     out->force = place != LINEAR_FREE ? there[w->n] : 0;
-    const char *why = refusal(p, place, out->force < -1e-12 ? -1 : 1);
+    const char *why = refusal(p, place, fabs(out->force) > 1e-12 ? out->force : 0);
     if (code != STATUS_OK || why != NULL) {
         return code != STATUS_OK ? code : fault_set(f, STATUS_BAD_ARGUMENT, "%s", why);
     }
@@ -252,6 +271,7 @@ static status linearise_at(workshop *w, linear_arm *out, const parameters *p, li
     out->hub_angle = w->rest[0];
     out->bending = w->rest[w->n - 1] - w->rest[w->arm.first];
     w->mode.friction = place == LINEAR_STUCK ? HUB_STICK : HUB_FORWARD;
+    take_step(w, p, out->force);
     return linearise(w, &out->system, f);
 }
 
@@ -259,7 +279,8 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
 {
     *out = (linear_arm){.force = 0};
     const bool touches = place != LINEAR_FREE, held = touches && p->control.law != LAW_NONE;
-    const char *why = refusal(p, place, held ? p->control.force : p->motor.voltage);
+    const bool weighs = !held && p->arm.tilt != 0; // which may press or lift, and is seen at rest
+    const char *why = refusal(p, place, held ? p->control.force : weighs ? 1 : p->motor.voltage);
     FAIL_IF(why != NULL, fault_set(f, STATUS_BAD_ARGUMENT, "%s", why));
     workshop *w = calloc(1, sizeof *w);
     TRY_MEMORY(w != NULL, f);
@@ -279,14 +300,7 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
         w->rest[k] = p->wall.angle;
     }
 
-    // a spring that stiffens with its depth is followed for a small part of it
-    w->step = ANGLE_STEP / p->arm.links;
-    if (p->wall.contact == WALL_HUNT_CROSSLEY && touches) {
-        const double torque = motor_torque_per_volt(&p->motor) * p->motor.voltage;
-        const double force = held ? p->control.force : torque / p->arm.length;
-        const double depth = plain_pow(force / p->wall.stiffness, 1 / p->wall.exponent);
-        w->step = fmin(w->step, 0.02 * depth / p->arm.length);
-    }
+    take_step(w, p, held ? p->control.force : straight_press(&w->arm, p));
     const status code = linearise_at(w, out, p, place, f);
     free(w);
     return code;
