@@ -336,6 +336,25 @@ says err ". cannot be read: Is a directory"
 expect 2 lab hit.yaml --quiet --script long.script
 says err "long.script:2: no command"
 
+# two results have two places, however these are written
+ln -s alone.json to-one
+for other in alone.json ./alone.json "$PWD/alone.json" to-one; do
+    expect 2 run hit.yaml --json alone.json --csv "$other"
+    says err "two results cannot both be written to $other"
+done
+[ ! -e alone.json ] || fail "two results in one place left a file"
+
+# the numbers of a picture take no file that was asked for or is somebody else's
+expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --csv beside.csv --plot beside.svg
+[ "$(wc -l <beside.csv)" = 3 ] || fail "a sweep's rows gave way to the numbers of its picture"
+expect 1 linear hit.yaml --plot beside.svg
+says err "'beside.csv' holds other numbers and is kept"
+[ "$(wc -l <beside.csv)" = 3 ] || fail "the numbers of a picture replaced a sweep's rows"
+rm beside.csv
+expect 0 linear hit.yaml --plot beside.svg
+expect 0 linear hit.yaml --plot beside.svg
+grep -q '^panel,series,' beside.csv || fail "the numbers of a picture are not beside it"
+
 # descriptors that are closed at the start are not taken by the first files opened
 "$lab" sweep hit.yaml --vary motor.voltage=1:2:2 --db closed.db --csv closed.csv <&- >&- 2>&- || true
 [ "$(head -c 15 closed.db | tr -d '\0')" = "SQLite format 3" ] || fail "a closed output ended in the database"

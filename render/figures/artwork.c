@@ -238,9 +238,9 @@ char *latex_environment(const artwork *a, const char *tex, const char *file)
 
 // ---- what stands beside a picture
 
-// The picture's path with another ending.
-static char *beside(const char *file, const char *ending)
+char *artwork_beside(const char *file, const char *ending)
 {
+    assert(file != NULL && ending != NULL);
     const char *slash = strrchr(file, '/'), *dot = strrchr(slash ? slash : file, '.');
     size_t length = dot != NULL ? (size_t)(dot - file) : strlen(file);
     return text_printf("%.*s%s", (int)length, file, ending);
@@ -257,6 +257,26 @@ static status write_text(const char *path, const char *text, fault *f)
     return code;
 }
 
+// Nobody named this CSV: where there is one of other numbers than a figure's, measured ones maybe,
+// it is kept.
+static status may_replace(const artwork *a, const char *csv, fault *f)
+{
+    static const char heading[] = "panel,"; // of figure_write_csv
+    char start[sizeof heading] = "";
+    FILE *there = a->plotted != NULL ? fopen(csv, "re") : NULL;
+    if (there == NULL) {
+        return STATUS_OK;
+    }
+    const bool written = fread(start, 1, sizeof start - 1, there) > 0;
+    fclose(there);
+    return !written || strcmp(start, heading) == 0
+               ? STATUS_OK
+               : fault_set(f, STATUS_CANNOT_WRITE,
+                           "'%s' holds other numbers and is kept, so that those of the picture are "
+                           "not written",
+                           csv);
+}
+
 status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
                        fault *f)
 {
@@ -264,13 +284,14 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
     picture p = artwork_picture(a, o);
     status code = picture_write(&p, path, f);
     if (code == STATUS_OK && with_csv) {
-        g_autofree char *csv = beside(path, ".csv");
-        code = artwork_write_csv(a, csv, f);
+        g_autofree char *csv = artwork_beside(path, ".csv");
+        code = may_replace(a, csv, f);
+        code = code == STATUS_OK ? artwork_write_csv(a, csv, f) : code;
     }
 
     // text of a picture that has none of its own
     if (code == STATUS_OK && o->look.bare) {
-        g_autofree char *txt = beside(path, ".txt");
+        g_autofree char *txt = artwork_beside(path, ".txt");
         g_autofree char *caption = text_plain(a->caption != NULL ? a->caption : "");
         g_autofree char *text = text_printf("%s%s%s\n", a->title != NULL ? a->title : "",
                                             caption[0] != '\0' ? "\n\n" : "", caption);

@@ -54,10 +54,13 @@ status make_folder(const char *folder, fault *f);
 
 // --- publications: the file, a file with its caption if the picture has none, and LaTeX for both
 
+// The path of a picture with another ending, to be freed with g_free.
+char *artwork_beside(const char *file, const char *ending);
+
 // Writes a plotted figure according to the options: the picture at path, with `with_csv` a CSV of
-// its numbers, with a bare look a .txt with its caption, and the figure environment at o->latex.
-// Returns the status of figure_write; STATUS_BAD_ARGUMENT also if the options name recorded
-// signals, because the figure has none.
+// its numbers (STATUS_CANNOT_WRITE if one of other numbers is there), with a bare look a .txt with
+// its caption, and the figure environment at o->latex. Returns the status of figure_write;
+// STATUS_BAD_ARGUMENT also if the options name recorded signals, because the figure has none.
 status figure_publish(const figure *fig, const figure_options *o, const char *path, bool with_csv,
                       fault *f);
 

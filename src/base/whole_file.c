@@ -166,6 +166,24 @@ status whole_file_check(const char *path, fault *f)
     return reason == 0 ? STATUS_OK : cannot_write(f, path, reason);
 }
 
+bool whole_file_same_place(const char *path, const char *other)
+{
+    assert(path != NULL && other != NULL);
+    char places[2][PATH_MAX], folder[PATH_MAX];
+    struct stat around[2];
+    if (strcmp(path, other) == 0 || strcmp(path, "-") == 0 || strcmp(other, "-") == 0) {
+        return strcmp(path, other) == 0;
+    }
+    for (int i = 0; i < 2; i++) {
+        if (follow_links(i == 0 ? path : other, places[i]) != 0 ||
+            stat(folder_of(places[i], folder), &around[i]) != 0) {
+            return false;
+        }
+    }
+    return around[0].st_dev == around[1].st_dev && around[0].st_ino == around[1].st_ino &&
+           strcmp(places[0] + folder_length(places[0]), places[1] + folder_length(places[1])) == 0;
+}
+
 // --- what killed runs left ------------------------------------------------------------------
 
 // A temporary is locked as long as its run lives, and the lock goes with the run however that ends.

@@ -10,6 +10,7 @@
 // (.impactlab-*.part) goes when the next one writes into the same folder.
 #pragma once
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <sys/types.h>
 
@@ -27,6 +28,9 @@ typedef struct whole_file {
 // Tells early, before long work, whether path could be written. Creates nothing.
 // STATUS_CANNOT_WRITE, with path and reason in f, if it could not.
 status whole_file_check(const char *path, fault *f) __attribute__((warn_unused_result));
+
+// Whether two paths lead to one place, links followed, be a file there or not.
+bool whole_file_same_place(const char *path, const char *other);
 
 // Opens path for writing through w->stream. A new file gets its mode from the umask, an existing
 // one keeps its own. On failure nothing is left behind and w needs no further call.

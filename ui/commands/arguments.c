@@ -397,7 +397,7 @@ static int check_places(const arguments *a)
         const char *path = option_written(a, o);
         for (int j = 0; path != NULL && j < i; j++) {
             const char *before = option_written(a, command_option(a->command, j));
-            if (before != NULL && strcmp(path, before) == 0) {
+            if (before != NULL && whole_file_same_place(path, before)) {
                 return complain("two results cannot both be written to %s",
                                 strcmp(path, "-") == 0 ? "the standard output" : path);
             }

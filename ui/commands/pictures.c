@@ -9,6 +9,7 @@
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
+#include "src/base/whole_file.h"
 
 #define SERIF "DejaVu Serif"
 
@@ -68,14 +69,30 @@ int read_picture_options(const arguments *a, figure_options *o)
     return code;
 }
 
+// Whether a result that was asked for by its name goes there.
+static bool is_asked_for(const arguments *a, const char *path)
+{
+    const option_row *o;
+    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
+        const char *result = option_written(a, o);
+        if (result != NULL && whole_file_same_place(result, path)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static int publish_figure(const arguments *a, const figure *fig)
 {
     figure_options o;
     fault f = {0};
     int code = read_picture_options(a, &o);
-    if (code == EXIT_DONE && figure_publish(fig, &o, a->plot, true, &f) != STATUS_OK) {
+    char *csv = artwork_beside(a->plot, ".csv");
+    if (code == EXIT_DONE &&
+        figure_publish(fig, &o, a->plot, !is_asked_for(a, csv), &f) != STATUS_OK) {
         code = complain_fault(&f);
     }
+    g_free(csv);
     return code;
 }
 

@@ -9,6 +9,7 @@
 
 #include "src/arm/chain.h"
 #include "src/base/dense.h"
+#include "src/base/sincos.h"
 #include "src/study/linear/linear.h"
 
 const char *const linear_output_names[LINEAR_OUTPUTS] = {
@@ -237,7 +238,8 @@ static const char *refusal(const parameters *p, linear_place place, double force
 // How the straight arm at the wall presses under its command and its weight [N].
 static double straight_press(const arm *a, const parameters *p)
 {
-    const double weight = a->gravity * (p->arm.mass / 2 + p->arm.tip_mass) * cos(p->wall.angle);
+    const double weight =
+        a->gravity * (p->arm.mass / 2 + p->arm.tip_mass) * inline_cos(p->wall.angle);
     return motor_torque_per_volt(&p->motor) * p->motor.voltage / p->arm.length - weight;
 }
 
