@@ -13,6 +13,8 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define ANGLE_NOISE  4.5e-4 // of the encoder, and of angles that no mode shows [rad]
 #define COUNT_SHARE  0.29   // of the encoder: a count over the square root of 12
 #define RATE_NOISE   0.014  // of the tachometer [rad/s]
+#define NOISE_MEAN   0.2
+#define MOST_NOISE   9.0
 #define RATE_RIPPLE  0.01   // of the tachometer, as a share of the reading
 #define FORCE_NOISE  0.02   // of the force sensor [N]
 #define FORCE_SHARE  0.02   // of the force sensor, as a share of the reading
@@ -137,7 +139,8 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
     o->tip_before = o->tip_now = in->encoder;
     o->count = HUGE_VAL;
     o->turned = o->angle_before = in->encoder;
-    o->rate_before = in->tachometer;
+    o->rate_before[0] = o->rate_before[1] = in->tachometer;
+    o->rate_noise = RATE_NOISE * RATE_NOISE;
     o->observed = 0;
 }
 
@@ -145,8 +148,13 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
 // time of that [rad/s].
 static double tachometer_offset(arm_observer *o, const controller_input *in)
 {
-    o->turned += (o->rate_before + in->tachometer) / 2 * o->period;
-    o->rate_before = in->tachometer;
+    o->turned += (o->rate_before[0] + in->tachometer) / 2 * o->period;
+    const double bend = in->tachometer - 2 * o->rate_before[0] + o->rate_before[1];
+    const double share = fmin(1, o->period / NOISE_MEAN);
+    o->rate_noise += share * (fmin(bend * bend / 6, MOST_NOISE * o->rate_noise) - o->rate_noise);
+    o->rate_noise = fmax(o->rate_noise, RATE_NOISE * RATE_NOISE);
+    o->rate_before[1] = o->rate_before[0];
+    o->rate_before[0] = in->tachometer;
     o->observed += o->period;
     return (o->turned - in->encoder) / (o->observed + OFFSET_TIME);
 }
@@ -360,7 +368,7 @@ static void take_motion(arm_observer *o, const controller_input *in)
     angle[wall_index(o)] += o->touches;
     double ripple = RATE_RIPPLE * in->tachometer;
     take_reading(o, angle, 0, in->encoder, angle_noise(o));
-    take_reading(o, rate, 0, in->tachometer, sqrt(RATE_NOISE * RATE_NOISE + ripple * ripple));
+    take_reading(o, rate, 0, in->tachometer, sqrt(o->rate_noise + ripple * ripple));
 
     if (!isnan(in->film)) {
         double leaked = FILM_LEAK * (in->time - o->since);
@@ -441,7 +449,7 @@ static bool struck(const arm_observer *o, const controller_input *in)
     const mode_set *set = modes_of(o);
     const int n = set->count;
     double off = in->tachometer, ripple = RATE_RIPPLE * in->tachometer;
-    double variance = RATE_NOISE * RATE_NOISE + ripple * ripple;
+    double variance = o->rate_noise + ripple * ripple;
     for (int i = 0; i < n; i++) {
         off -= set->hub[i] * o->e.z[n + i];
         for (int j = 0; j < n; j++) {

@@ -22,7 +22,9 @@ typedef struct arm_observer {
     bool touches, young; // young: a contact that may have ended in a bounce
     estimator e, flown;  // flown: while a contact is young, as if the tip had been thrown back
     double count, angle_before; // smallest step of the encoder so far, its last reading [rad]
-    double turned, rate_before; // angle by the tachometer, its last reading [rad], [rad/s]
+    double turned;              // angle by the tachometer [rad],
+    double rate_before[2];      // its last readings, the latest first [rad/s],
+    double rate_noise;          // and the variance of its noise [rad2/s2]
     double observed;            // for how long [s]
     double last_voltage;        // in effect at the sample before [V]
     double since;               // when the contact or the flight began [s]
