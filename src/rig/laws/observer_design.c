@@ -15,7 +15,7 @@
 #define SOFT_SPEED   0.2  // of a soft touch, for every newton wanted [rad/s/N],
 #define MOST_SPEED   0.45 // at most [rad/s],
 #define LEAST_SPEED  0.12 // and no less, so as to come in time [rad/s],
-#define LEAST_LINKS  0.33 // nor than this with more than two links [rad/s]
+#define LEAST_LINKS  0.32 // nor than this with more than two links [rad/s]
 #define SOFT_EFFORT  0.25 // share of the effort that damping the tip may cost on a wall that gives
 #define LEAST_MARGIN 0.05 // of p h over 1, below which the force does not run away with the motion
 
