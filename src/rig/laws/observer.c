@@ -43,6 +43,7 @@ static const controller_parameter table[PARAMETERS] = {
 #define LAND_TIME       0.1   // or the way left over this, if that is faster [s]
 #define BRAKING         0.5   // share of the force that this may press with meanwhile
 #define REST            0.02  // a slower hub is at rest [rad/s]
+#define TURNS           0.005 // a slower hub as good as rests where the set-point moves [rad/s]
 #define HOLD_WITHIN     0.02  // share of the force within which it is held at rest,
 #define HOLD_BEYOND     0.04  // and beyond which it is held no longer,
 #define HOLD_LEAST      0.005 // both on top of this [N]
@@ -320,14 +321,15 @@ static void follow_setpoint(observer_memory *m, double time)
     }
 
     // one change by itself is a step
-    double way[3] = {mode_at_rest(m, before), 0, 0};
+    double way[3] = {mode_at_rest(m, before + m->correction), 0, 0};
     if (force_rise_moves(&m->rise, time)) {
         force_rise_at(&m->rise, time, way);
     }
     m->force_rate = m->moved / period;
     const double lead = 2 / divergence(m), share = fmin(1, 2 * period / lead);
     m->ahead = goes_on ? m->ahead + share * (lead * m->force_rate - m->ahead) : 0;
-    plan_rise(m, time, way[0], way[1], fmax(0, m->p[FORCE_WANTED] + m->ahead));
+    plan_rise(m, time, way[0], way[1], fmax(0, m->p[FORCE_WANTED] + m->correction + m->ahead));
+    m->rise.time = goes_on ? fmax(m->rise.time, 2 * period) : m->rise.time;
     m->mode = PRESS;
     m->moved = 0;
 }
@@ -346,6 +348,9 @@ static double friction_pressing(const observer_memory *m, const estimator *e, do
                                 double hub_rate, bool moves)
 {
     const double rate = arm_observer_rate(observer_of(m), e), force = m->p[FORCE_WANTED];
+    if (m->force_rate != 0) {
+        return m->rig.stiction * fmax(-1, fmin(hub_rate / TURNS, 1));
+    }
     if (moves || fabs(rate) > REST) {
         return friction_ahead(m, rate, hub_rate);
     }
