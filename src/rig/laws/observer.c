@@ -311,7 +311,8 @@ static void begin_rise(observer_memory *m, double time)
 
 // Follows a set-point that changes in contact. The way goes on from where it is to the new force;
 // of a plan made anew at every sample the force is 2 r/s behind a set-point with the rate r, which
-// is aimed at in advance, with a lag of half that time lest quick waves be amplified without bound.
+// is aimed at in advance, with a lag of a quarter of that time lest quick waves be amplified
+// without bound.
 static void follow_setpoint(observer_memory *m, double time)
 {
     const double before = m->p[FORCE_WANTED] - m->moved, period = m->rig.period;
@@ -326,7 +327,7 @@ static void follow_setpoint(observer_memory *m, double time)
         force_rise_at(&m->rise, time, way);
     }
     m->force_rate = m->moved / period;
-    const double lead = 2 / divergence(m), share = fmin(1, 2 * period / lead);
+    const double lead = 2 / divergence(m), share = fmin(1, 4 * period / lead);
     m->ahead = goes_on ? m->ahead + share * (lead * m->force_rate - m->ahead) : 0;
     plan_rise(m, time, way[0], way[1], fmax(0, m->p[FORCE_WANTED] + m->correction + m->ahead));
     m->rise.time = goes_on ? fmax(m->rise.time, 2 * period) : m->rise.time;
