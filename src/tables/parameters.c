@@ -52,7 +52,7 @@
 #define TORQUE_CONSTANT (0.249092 * 9.80665)
 
 const parameter_info parameter_table[] = {
-#include "src/tables/parameters.inc"
+#include "src/tables/parameter_list.h"
 };
 
 const int parameter_count = (int)(sizeof parameter_table / sizeof parameter_table[0]);

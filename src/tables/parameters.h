@@ -1,4 +1,4 @@
-// Every parameter of a run, and the one table that describes them: parameters.inc.
+// Every parameter of a run, and the one table that describes them: parameter_list.h.
 //
 // The table feeds scenario files, --set, sweeps, `show`, validation messages, the terminal's
 // sliders and the manual.
@@ -64,7 +64,7 @@ enum { CONTROL_MOST_DELAY = 5 }; // from a sample to its command [periods]
 #define END_GROUP(name)                                                                            \
     }                                                                                              \
     name;
-#include "src/tables/parameters.inc"
+#include "src/tables/parameter_list.h"
 #undef GROUP
 #undef REAL
 #undef INTEGER

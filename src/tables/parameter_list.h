@@ -8,8 +8,9 @@
 // with its default, one for both models or DEFAULTS(corrected, printed), and TIMED where it may
 // change during a run; a text says what it is `without` anybody giving it. The path is group.field,
 // a range includes both its ends, a meaning is one sentence without a full stop. A parameter is
-// added here and nowhere else.
+// added here and nowhere else. A row wraps where it reads best, so that the formatter is off.
 
+// clang-format off
 GROUP(arm_parameters)
 CHOICE(arm, model, "equations of motion: derived anew, or as the thesis prints them",
     1, "corrected|printed", DEFAULTS(ARM_CORRECTED, ARM_PRINTED))
