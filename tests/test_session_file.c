@@ -76,6 +76,33 @@ TEST(test_what_was_done_comes_back)
     assert_string_equal(again.state.session.base.name, "corrected/three-links");
 }
 
+static void write_command(const char *volts)
+{
+    FILE *stream = fopen("command.csv", "w");
+    assert_non_null(stream);
+    fprintf(stream, "t,command\n0,%s\n", volts);
+    fclose(stream);
+}
+
+// A recording that a run plays belongs to it, by content: another one in its place is told.
+TEST(test_changed_recordings_are_told)
+{
+    write_command("1");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":set control.playback_file command.csv<Enter>:set control.law playback<Enter>");
+    save(&ex);
+    OPEN_EXPLORER(same, "corrected/three-links");
+    assert_true(explorer_open_session(&same.state, path));
+    fail_if(same.state.message.warning, "%s", same.state.message.text);
+
+    write_command("2");
+    OPEN_EXPLORER(other, "corrected/three-links");
+    assert_true(explorer_open_session(&other.state, path));
+    assert_true(other.state.message.warning);
+    assert_non_null(strstr(other.state.message.text, "has changed since it was kept"));
+    unlink("command.csv");
+}
+
 // No file of others is replaced; the visit's own is.
 TEST(test_only_the_visits_own_file_is_replaced)
 {

@@ -9,6 +9,7 @@
 #include "src/base/numbers.h"
 #include "src/base/text_stream.h"
 #include "src/rig/rig.h"
+#include "src/scenario/outside.h"
 
 static const char head[] = "impactlab-session: 1";
 
@@ -53,6 +54,31 @@ static void write_input(FILE *stream, const session_input *in)
     }
 }
 
+// The digest of what a run reads from outside, by content; empty if that is nothing.
+static void digest_outside(const run_origin *from, char digest[SHA256_TEXT])
+{
+    parameters p = from->base.parameters;
+    for (int i = 0; i < from->input_count; i++) {
+        if (from->inputs[i].kind == SESSION_INPUT_START) {
+            parameter_set_text(&p, from->inputs[i].parameter, from->inputs[i].text, NULL);
+        }
+    }
+    sha256 whole;
+    sha256_init(&whole);
+    bool reads = false;
+    for (int i = 0; i < outside_count; i++) {
+        const outside_source *source = &outside_table[i];
+        char one[SHA256_TEXT];
+        if (outside_is_read(source, &p) && outside_is_told(source, &p) &&
+            outside_digest(source, &p, one, NULL) == STATUS_OK) {
+            sha256_add_text(&whole, one);
+            reads = true;
+        }
+    }
+    sha256_finish(&whole, digest);
+    digest[0] = reads ? digest[0] : '\0';
+}
+
 void session_file_write(FILE *stream, const session_file *file)
 {
     assert(file->run_count > 0);
@@ -71,6 +97,11 @@ void session_file_write(FILE *stream, const session_file *file)
         write_number(stream, "cursor: ", r->from.now);
         write_number(stream, " ", r->from.seen);
         fputs(r->hidden ? "\nhidden:\n" : "\n", stream);
+        char outside[SHA256_TEXT];
+        digest_outside(&r->from, outside);
+        if (outside[0] != '\0') {
+            fprintf(stream, "outside: %s\n", outside);
+        }
     }
     fprintf(stream, "baseline: %d\n", file->baseline + 1);
     for (int i = 0; i < file->line_count; i++) {
@@ -254,6 +285,10 @@ static status take_line(session_reader *r, char *line)
         last->hidden = true;
         return STATUS_OK;
     }
+    if (strcmp(line, "outside") == 0 && last != NULL) {
+        snprintf(last->outside, sizeof last->outside, "%s", rest);
+        return STATUS_OK;
+    }
     if (strcmp(line, "baseline") == 0) {
         file->baseline = atoi(rest) - 1;
         return file->baseline >= -1 && file->baseline < file->run_count - 1
@@ -309,6 +344,17 @@ status session_file_read(session_file *file, const char *path, fault *f)
         return fault_set(f, own.code, "%s", own.text);
     }
     return STATUS_OK;
+}
+
+bool session_file_is_outdated(const session_file *file)
+{
+    bool outdated = false;
+    for (int i = 0; i < file->run_count && !outdated; i++) {
+        char now[SHA256_TEXT];
+        digest_outside(&file->runs[i].from, now);
+        outdated = file->runs[i].outside[0] != '\0' && strcmp(now, file->runs[i].outside) != 0;
+    }
+    return outdated;
 }
 
 void session_file_finish(session_file *file)

@@ -6,6 +6,7 @@
 // begin with "| ".
 #pragma once
 
+#include "src/base/sha256.h"
 #include "src/session/origin.h"
 
 enum { SESSION_FILE_RUNS = 8, SESSION_FILE_NAME = 256, SESSION_FILE_LINES = 512 };
@@ -14,6 +15,7 @@ typedef struct kept_run {
     char name[SESSION_FILE_NAME]; // of a pinned run
     bool hidden;
     run_origin from;
+    char outside[SHA256_TEXT]; // digest of what it read from outside when it was kept, or empty
 } kept_run;
 
 typedef struct session_file {
@@ -31,3 +33,7 @@ void session_file_write(FILE *stream, const session_file *file);
 // STATUS_BAD_ARGUMENT with the line in f, or STATUS_NO_MEMORY; then there is nothing to be freed.
 status session_file_read(session_file *file, const char *path, fault *f);
 void session_file_finish(session_file *file);
+
+// Whether a program or a file that one of its runs reads is another one than when it was kept, so
+// that the run may be, too.
+bool session_file_is_outdated(const session_file *file);

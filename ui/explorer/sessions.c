@@ -229,6 +229,9 @@ bool explorer_open_session(explorer_state *st, const char *path)
             said = st->message;
         }
     }
+    if (done && said.text[0] == '\0' && session_file_is_outdated(&file)) {
+        said = (message_line){.text = "a file that a run reads has changed since it was kept"};
+    }
     if (done) {
         snprintf(st->session_path, sizeof st->session_path, "%s", path);
         st->saved_version = state_run_id(st);
