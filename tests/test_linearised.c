@@ -255,7 +255,7 @@ static prediction follow_motion(const arm *source, motion *m, const voltage_prof
     const double touch = m->state[SLOT_TIME];
     double most_strain = 0, kinetic = 0;
     int next = 0;
-    motion_watch(m);
+    motion_reset_peak(m);
     motion_apply(&a, m, &report);
 
     // rows of a tenth of a millisecond

@@ -137,7 +137,7 @@ TEST(a_hub_held_beyond_stiction_is_noted)
         assert_int_equal(motion_step(&a, m, 1e-3, 1e-3, &r), STATUS_OK);
         assert_true(m->state[SLOT_FRICTION] == HUB_STICK && m->record.overheld == 0);
         a.motor.stiction = 0.5 * fabs(a.motor.torque);
-        motion_end_stride(m);
+        motion_end_internal_step(m);
         assert_int_equal(motion_step(&a, m, 2e-3, 1e-3, &r), STATUS_OK);
         check_close(m->record.overheld, 0.5 * fabs(a.motor.torque), 1e-6);
     }

@@ -3,7 +3,7 @@
 
 #include "src/base/random.h"
 #include "src/run/run.h"
-#include "src/contact/pace.h"
+#include "src/contact/zeno_monitor.h"
 #include "src/engines/motion_create.h"
 #include "tests/scenario_fixture.h"
 
@@ -101,8 +101,8 @@ TEST(what_stands_still_names_the_event_that_repeats)
                  {MOTION_RELEASE, "wall.stiffness"},
                  {MOTION_REACHED, "wall.stiffness"}};
     for (EACH(c, cases)) {
-        char text[PACE_CAUSE_SIZE];
-        pace_tell_cause(&a, m, c->last, text, sizeof text);
+        char text[ZENO_CAUSE_SIZE];
+        zeno_monitor_cause(&a, m, c->last, text, sizeof text);
         assert_non_null(strstr(text, c->cause));
     }
 }

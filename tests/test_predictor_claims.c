@@ -97,7 +97,7 @@ static truth what_happens(const arm *a, motion *m)
 {
     motion_report report = {.event = m->wall_gives ? MOTION_TOUCH : MOTION_IMPACT};
     double touch = m->state[SLOT_TIME];
-    motion_watch(m);
+    motion_reset_peak(m);
     motion_apply(a, m, &report);
     if (m->state[SLOT_CONTACT] == 0) {
         return (truth){.touched = true};

@@ -128,7 +128,7 @@ static size_t motion_to_end(const parameters *p, double interval, bool forgetful
             motion_destroy(m);
             m = motion_create_by(&a, &p->method, &stiff_engine);
             memcpy(m->state, copy, (size_t)m->size * sizeof *copy);
-            motion_forget_stride(m);
+            motion_invalidate_history(m);
         }
     }
     const size_t size = (size_t)(SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT);

@@ -2,7 +2,7 @@
 // report why not, and their slow modes are right. And arms that start on the wall, with first
 // flights that are lower than rounding.
 #include "src/run/loop.h"
-#include "src/contact/pace.h"
+#include "src/contact/zeno_monitor.h"
 #include "tests/explicit_stepper.h"
 #include "tests/passage.h"
 
@@ -193,10 +193,10 @@ TEST(a_run_that_could_not_end_says_why)
         motion_start(&a, m, cases[i].angle, cases[i].velocity);
 
         // the first check only begins to count, and none has passed since
-        pace looked = pace_begin();
+        zeno_monitor looked = zeno_monitor_begin();
         fault f = {.text = ""};
-        assert_int_equal(pace_check(&looked, &a, m, 1, 1e-3, &f), STATUS_OK);
-        assert_int_equal(pace_check(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
+        assert_int_equal(zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f), STATUS_OK);
+        assert_int_equal(zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
         fail_if(strstr(f.text, cases[i].cause) == NULL, "case %zu, '%s': %s", i, cases[i].cause,
                 f.text);
     }
@@ -233,8 +233,8 @@ TEST(a_run_that_stands_still_at_a_wall_says_so)
     SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
     assert_non_null(m);
     motion_start(&a, m, 0, 0);
-    pace looked = {.strides = PACE_STRIDES, .touching = PACE_STRIDES / 2};
-    REFUSED(STATUS_NO_PROGRESS, "wall.damping", pace_check(&looked, &a, m, 1, 1e-3, &f));
+    zeno_monitor looked = {.steps = ZENO_STEPS, .touching = ZENO_STEPS / 2};
+    REFUSED(STATUS_NO_PROGRESS, "wall.damping", zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f));
 }
 
 // Where strides are expensive, with many links, fewer of them are enough to give a run up.
@@ -244,8 +244,8 @@ TEST(expensive_strides_are_given_up_sooner)
         const char *settings[4];
         int most; // strides
     } cases[] = {
-        {{"wall.contact=kelvin-voigt", "wall.damping=1e12"}, 3 * PACE_STRIDES},
-        {{"wall.contact=kelvin-voigt", "wall.damping=1e9", "arm.links=128"}, PACE_STRIDES / 4},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e12"}, 3 * ZENO_STEPS},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e9", "arm.links=128"}, ZENO_STEPS / 4},
     };
     for (EACH(c, cases)) {
         const parameters p = fixture_parameters(c->settings);
@@ -253,7 +253,7 @@ TEST(expensive_strides_are_given_up_sooner)
         SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
         assert_non_null(m);
         motion_start(&a, m, 0.099, 0.7);
-        pace kept = pace_begin();
+        zeno_monitor kept = zeno_monitor_begin();
         fault f;
         status s = STATUS_OK;
         for (int strides = 0; s == STATUS_OK; strides++) {
@@ -261,7 +261,7 @@ TEST(expensive_strides_are_given_up_sooner)
             assert_true(strides < c->most);
             assert_int_equal(motion_step(&a, m, 1, 1e-3, &r), STATUS_OK);
             motion_apply(&a, m, &r);
-            s = pace_keep(&kept, &a, m, 1, 1e-3, &f);
+            s = zeno_monitor_count(&kept, &a, m, 1, 1e-3, &f);
         }
         assert_int_equal(s, STATUS_NO_PROGRESS);
     }

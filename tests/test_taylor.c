@@ -1,7 +1,7 @@
 // The two-link arm by power series: that they solve the equations of chain.h all over the stride,
 // that the bounds hold, and that whole runs through events come out of it.
 #include "src/base/random.h"
-#include "src/engines/pair/taylor_stride.h"
+#include "src/engines/pair/taylor_integrator.h"
 #include "tests/arm_fixture.h"
 #include "tests/motion_advance.h"
 
@@ -87,7 +87,7 @@ TEST(the_series_solve_the_equations_all_over_the_stride)
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
         // strides that something cuts short take lower orders
         for (double remaining = 0.1; remaining > 1e-4; remaining /= 3) {
-            motion_end_stride(moving.motion);
+            motion_end_internal_step(moving.motion);
             double h = moving.motion->engine->advance(&moving.arm, moving.motion, remaining, 1e-3);
             assert_true(h > 0 && h <= remaining);
             for (int k = 0; k <= PLACES; k++) {
@@ -158,7 +158,7 @@ TEST(orders_agree_and_the_ledger_closes)
         for (int k = 1; k <= 8; k++) {
             while (m->state[SLOT_TIME] < h * k / 8 - 1e-15) {
                 double left = h * k / 8 - m->state[SLOT_TIME];
-                motion_end_stride(m);
+                motion_end_internal_step(m);
                 double step = m->engine->advance(&moving.arm, m, left, 1e-3);
                 assert_int_equal(motion_try_step(&moving.arm, m, step), STATUS_OK);
                 memcpy(m->state, m->trial, (size_t)m->size * sizeof(double));
@@ -213,7 +213,7 @@ TEST(cut_strides_go_on)
             handed = step_cut(&made[turn], UNTIL, after);
             assert_true(cut->record.steps > steps);
             memcpy(made[5 - turn].motion->state, made[turn].motion->state, size);
-            motion_forget_stride(made[5 - turn].motion);
+            motion_invalidate_history(made[5 - turn].motion);
             turn = 5 - turn;
         }
 
@@ -267,7 +267,7 @@ TEST(the_bounds_hold)
             }
         }
 
-        const double *block = ((const taylor_stride *)m->memory)->lane.block;
+        const double *block = ((const taylor_integrator *)m->memory)->lane.block;
         const double least[] = {block[AT_WALL_LEAST], block[AT_HUB_LEAST]};
         for (int k = 1; k <= 64; k++) {
             const double t = h * k / 64;
@@ -298,7 +298,7 @@ TEST(known_roots_are_the_first)
             continue;
         }
         const double h = m->engine->advance(&moving.arm, m, 0.1, 1e-3);
-        const taylor_stride *s = m->memory;
+        const taylor_integrator *s = m->memory;
         const bool contact = m->state[SLOT_CONTACT] != 0;
         const event_function watched[] = {contact ? EVENT_OF_FORCE : EVENT_OF_GAP, EVENT_OF_HUB};
         const double roots[] = {s->lane.block[AT_WALL_ROOT], s->lane.block[AT_HUB_ROOT]};

@@ -28,7 +28,7 @@ static double root_found(const double *r, double sign)
     const double terms[TERMS] = {sign * r[0] * r[1] * r[2],
                                  -sign * (r[0] * r[1] + r[0] * r[2] + r[1] * r[2]),
                                  sign * (r[0] + r[1] + r[2]), -sign};
-    const course c = enclosure_of(terms, TERMS, 1);
+    const enclosure c = enclosure_of(terms, TERMS, 1);
     const edge_limits limits = {EDGE_GAP, EDGE_RATE, EDGE_MORE};
     const double first = least_at_first(&c, terms, sign, 1, 0, &limits);
     const enclosed_function f = {terms, TERMS, &c, sign, first, 1, 0};

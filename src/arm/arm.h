@@ -55,7 +55,7 @@ typedef struct arm {
 } arm;
 
 // Whether the arm is equal bare links with equal linear joints, damped in proportion to their
-// stiffness or not, with a motor whose current follows at once: what the equations of special
+// stiffness or not, with a motor whose current follows immediately: what the equations of special
 // engines and predictors are for. In a level plane, the wall at rest.
 static inline bool arm_is_plain(const arm *a)
 {

@@ -41,7 +41,7 @@ typedef struct motor_model {
     double torque_constant; // kT [N m/A]
     double back_emf;        // kB [V s/rad]
     double resistance;      // Ra [ohm]
-    double inductance;      // L, 0: the current follows at once [H]
+    double inductance;      // L, 0: the current follows immediately [H]
     double current_limit;   // HUGE_VAL: none [A]
 } motor_model;
 

@@ -135,7 +135,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     double *state = m->state;
     end_rounding(m);
 
-    // a hub that breaks away goes on doing so where the contact changes at that instant; it gives
+    // a hub that breaks away continues doing so where the contact changes at that instant; it gives
     // way to what friction has held
     const bool breaks_away =
         (event == MOTION_RELEASE || event == MOTION_TOUCH) && state[SLOT_FRICTION] != HUB_STICK;
@@ -385,12 +385,12 @@ void motion_start_at(const arm *a, motion *m, const double *angles, const double
     m->record.start_energy = chain_kinetic_energy(a, q, w) + chain_strain_energy(a, q);
     m->record.steps = 0;
     m->record.largest_penetration = m->record.overheld = 0;
-    motion_watch(m);
+    motion_reset_peak(m);
 
     double g, rate;
     chain_penetration(a, q, w, &g, &rate);
     // an arm on a rigid wall or a face, at rest, that moves into it counts as free until the impact
-    // that follows at once; a gap of rounding is none
+    // that follows immediately; a gap of rounding is none
     const bool closed = g >= -START_ROUNDING * a->links * a->link_length;
     const bool touching = closed && (m->wall_gives ? rate >= 0 : rate == 0);
     resolve(a, m, touching, MOTION_REACHED);
@@ -466,7 +466,7 @@ void motion_retorque(const arm *a, motion *m, double before)
     double friction = state[SLOT_FRICTION_TORQUE] - (a->motor.torque - before);
     if (sticks && !m->electric && m->dof > 1 && fabs(friction) < a->motor.stiction * (1 - 1e-9)) {
         state[SLOT_FRICTION_TORQUE] = friction;
-        motion_end_stride(m); // that was with the other torque
+        motion_end_internal_step(m); // that was with the other torque
         return;
     }
 

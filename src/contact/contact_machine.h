@@ -3,7 +3,7 @@
 //
 //     free -> impact -> contact -> release -> free,      gap >= 0, f >= 0, gap f = 0
 //
-// Event location: where a watched function leaves its admissible side within a step, its root is
+// Event location: where an event function leaves its admissible side within a step, its root is
 // bracketed by shorter steps from the same start until the bracket is as narrow as time resolves,
 // and the end beyond the root is taken (locate.h). Impacts are jumps of the velocities; the contact
 // state after an event is the one combination of contact and hub friction that violates no
@@ -38,7 +38,7 @@ typedef struct motion_report {
 
 // Puts the bodies at angles[dof] [rad] with velocities[dof] [rad/s], and a motor with inductance at
 // a current [A], at time 0 and finds the contact state. An arm that moves into a rigid wall there
-// is free until the impact that follows at once.
+// is free until the impact that follows immediately.
 void motion_start_at(const arm *a, motion *m, const double *angles, const double *velocities,
                      double current);
 
@@ -55,8 +55,8 @@ bool motion_starts_in_contact(const motion *m);
 // the state lies just beyond the event's root, before the event's jump: the caller may look at it
 // and then calls motion_apply.
 //
-// A step that would go beyond m->record.tstop is first tried as if the cut were not there, and ends
-// at the cut only if no event comes before it. So everything before the cut is, to the last bit,
+// A step that would go beyond m->record.tstop is first tried as if tstop were not there, and ends
+// at tstop only if no event comes before it. So everything before tstop is, to the last bit,
 // what it would be without it. Fails with STATUS_NOT_FINITE, STATUS_NEWTON_FAILED or
 // STATUS_SINGULAR; the state is then the last good one. STATUS_NO_MEMORY as motion_follow_arm says.
 // STATUS_FOLDED on a rigid flat wall that holds an arm folded over the hub's axis
@@ -65,10 +65,10 @@ bool motion_starts_in_contact(const motion *m);
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report);
 
 // Determines in advance, in m->step.coming, how far the next motion_step(a, m, until, step, ...)
-// will go, and updates the recorded peak force for that step. The step may go on to `far` [s],
-// `until` or later, while its stride lasts, which is chosen for `until` only. For a dense engine
-// and an arm that is not held still; motion_step does it itself, up to `until`, if nobody has. An
-// arm that is held folded has no step.
+// will go, and updates the recorded peak force for that step. The step may continue to `far` [s],
+// `until` or later, while its internal step lasts, which is chosen for `until` only. For a dense
+// engine and an arm that is not held still; motion_step does it itself, up to `until`, if nobody
+// has. An arm that is held folded has no step.
 void motion_examine_step(const arm *a, motion *m, double until, double far, double step);
 
 // The state at `time` within the last step, as much of it as `extent` says, by stepping again from

@@ -183,7 +183,7 @@ static void raise_peak(const arm *a, motion *m, step_point lo, step_point hi, in
     raise_peak(a, m, middle, hi, cuts - 1, second);
 }
 
-// The gap to the wall at rest and its rate at h in the stride.
+// The gap to the wall at rest and its rate at h in the internal step.
 static value_and_slope rest_gap_at(const arm *a, motion *m, double h)
 {
     value_and_slope gap = motion_output(a, m, OUTPUT_GAP, h);

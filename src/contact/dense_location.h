@@ -1,4 +1,5 @@
-// Events and peaks within the stride of a dense engine (engine.h), without another stride.
+// Events and peaks within the internal step of a dense engine (engine.h), without another internal
+// step.
 //
 // Guarantee: the first fall of an event function below zero by more than its tolerance (1e-12 m,
 // 1e-9 N, 1e-12 N m, 1e-12 rad/s) is found, and its root is exact to rounding; a dip that stays
@@ -7,14 +8,14 @@
 
 #include "src/contact/motion.h"
 
-// The first instant in [0, *h] of the stride at which an event function leaves its admissible side,
-// by finding the roots of those that the engine's excludes_event leaves: *any, *first and *h as
-// locate_first_event has them; m->trial is left alone.
+// The first instant in [0, *h] of the internal step at which an event function leaves its
+// admissible side, by finding the roots of those that the engine's excludes_event leaves: *any,
+// *first and *h as locate_first_event has them; m->trial is left alone.
 void dense_search_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
 
-// Raises m->record.pulse_peak to the largest force in [0, h] of a stride in contact.
+// Raises m->record.pulse_peak to the largest force in [0, h] of an internal step in contact.
 void dense_peak(const arm *a, motion *m, double h);
 
-// Raises m->record.largest_penetration to the deepest point in [0, h] of a stride within a wall
-// that gives, or above a face that the arm has left and that is pushed in.
+// Raises m->record.largest_penetration to the deepest point in [0, h] of an internal step within a
+// wall that gives, or above a face that the arm has left and that is pushed in.
 void dense_deepest(const arm *a, motion *m, double h);

@@ -1,4 +1,4 @@
-// Rounding at the start of a watched function (engine.h): just after an event it may start at zero,
+// Rounding at the start of an event function (engine.h): just after an event it may start at zero,
 // and its first coefficients are then only known to be small.
 #pragma once
 

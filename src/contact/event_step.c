@@ -10,8 +10,8 @@
 #include "src/contact/dense_location.h"
 #include "src/contact/locate.h"
 
-#define MOST_HALVINGS   8    // of a step that does not converge or makes energy
-#define LEAST_AFTER_CUT 1e-9 // share of a step; what is left of one before a cut is longer
+#define MOST_HALVINGS     8    // of a step that does not converge or makes energy
+#define LEAST_AFTER_TSTOP 1e-9 // share of a step; what is left of one before tstop is longer
 // What a stuck hub may be held by beyond stiction: a share of the torques, and of what rounding
 // makes of a slow soft arm's [N m].
 #define HOLD_SHARE    1e-6
@@ -51,7 +51,7 @@ static void accept(motion *m, double step)
     double *previous = m->state;
     m->state = m->trial;
     m->trial = previous;
-    m->step.reached = m->step.holds;
+    m->step.energy = m->step.trial_energy;
     count_step(m, m->state[SLOT_TIME] - previous[SLOT_TIME], step);
     if (!motion_wall_is_rigid(m)) {
         m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0); // the far side of a release
@@ -69,7 +69,7 @@ static void come_to_rest(motion *m)
         fading = fabs(w[i]) < FADED && (w[i] != 0 || acceleration[i] != 0);
     }
     if (fading) {
-        motion_end_stride(m);
+        motion_end_internal_step(m);
     }
     for (int i = SLOT_COUNT; fading && i < m->size; i++) {
         m->state[i] = fabs(m->state[i]) < FADED ? 0 : m->state[i];
@@ -114,12 +114,12 @@ static status step_to_event(const arm *a, motion *m, double *h, event_function *
 
 // Ends a step of the `wanted` length that was just tried at m->record.tstop if it goes beyond, or
 // ends within rounding of it.
-static status cut_step(const arm *a, motion *m, double step, status tried, double wanted, double *h,
-                       event_function *first, bool *any)
+static status stop_at_tstop(const arm *a, motion *m, double step, status tried, double wanted,
+                            double *h, event_function *first, bool *any)
 {
     double left = m->record.tstop - m->state[SLOT_TIME];
     double reached = tried == STATUS_OK ? *h : wanted;
-    double spare = tried == STATUS_OK && *any ? 0 : LEAST_AFTER_CUT * step;
+    double spare = tried == STATUS_OK && *any ? 0 : LEAST_AFTER_TSTOP * step;
     if (reached <= left - spare) {
         return tried;
     }
@@ -134,7 +134,7 @@ static status tried_step(const arm *a, motion *m, double step, double wanted, do
                          event_function *first, bool *any)
 {
     status s = step_to_event(a, m, h, first, any);
-    s = cut_step(a, m, step, s, wanted, h, first, any);
+    s = stop_at_tstop(a, m, step, s, wanted, h, first, any);
     if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
         s = locate_peak(a, m, *h);
     }
@@ -150,8 +150,8 @@ static bool held_folded(const arm *a, motion *m)
 }
 
 // Whether the step just made by a stepping engine led an arm on a rigid flat wall through a fold,
-// where every link goes from one side of across the wall to the other. Strides of dense engines
-// keep clear of it.
+// where every link goes from one side of across the wall to the other. Internal steps of dense
+// engines keep clear of it.
 static bool went_through_fold(const arm *a, const motion *m)
 {
     const double *before = state_angles(m, m->trial), *now = state_angles(m, m->state);
@@ -167,8 +167,8 @@ static bool went_through_fold(const arm *a, const motion *m)
     return through;
 }
 
-// Unused length of the stride that the state keeps [s].
-static double left_of_stride(motion *m)
+// Unused length of the internal step that the state keeps [s].
+static double left_of_step(motion *m)
 {
     const double *kept = state_kept(m, m->state);
     return kept[KEPT_LENGTH] - kept[KEPT_USED];
@@ -181,13 +181,13 @@ static void examine(const arm *a, motion *m, double until, double far, double st
     double h = m->engine->advance(a, m, until - now, step);
     const bool begun = h > 0;
     if (begun && far > until) {
-        h = larger(smaller(left_of_stride(m), far - now), h);
+        h = larger(smaller(left_of_step(m), far - now), h);
     }
     event_function first = EVENT_OF_GAP;
     bool any = false;
 
-    // to the first event, the cut or the stride's end; an event at the instant of the cut is before
-    // it
+    // to the first event, tstop or the internal step's end; an event at the instant of tstop is
+    // before it
     if (begun) {
         m->engine->first_event(a, m, &h, &first, &any);
         if (now + h > m->record.tstop) {
@@ -218,9 +218,9 @@ void motion_examine_step(const arm *a, motion *m, double until, double far, doub
     }
 }
 
-// The stride of a dense engine.
-static status dense_stride(const arm *a, motion *m, double until, double step, double *h,
-                           event_function *first, bool *any)
+// The internal step of a dense engine.
+static status dense_step(const arm *a, motion *m, double until, double step, double *h,
+                         event_function *first, bool *any)
 {
     if (!m->step.coming.known) {
         examine(a, m, until, until, step);
@@ -249,7 +249,7 @@ static void meet_stop(motion *m, double until)
     }
 }
 
-// The step of an arm that is held still: time passes up to `until` or the cut [s], and its force
+// The step of an arm that is held still: time passes up to `until` or tstop [s], and its force
 // stays the same. m->trial gets its start.
 static void rest(motion *m, double until, double step)
 {
@@ -261,7 +261,7 @@ static void rest(motion *m, double until, double step)
     memcpy(m->trial, state, (size_t)m->size * sizeof *state);
     state[SLOT_TIME] += h;
     state_quadratures(m, state)[QUADRATURE_FORCE] += h * state[SLOT_FORCE];
-    m->step.reached = unknown_energy;
+    m->step.energy = unknown_energy;
     m->step.last = h;
     count_step(m, state[SLOT_TIME] - now, step);
     meet_stop(m, until);
@@ -282,13 +282,13 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
         return STATUS_OK;
     }
 
-    // as far as accuracy allows, the cut, or the first event
+    // as far as accuracy allows, tstop, or the first event
     double h;
     event_function first = EVENT_OF_GAP;
     bool any = false;
     status s;
     if (engine_is_dense(m->engine)) {
-        s = dense_stride(a, m, until, step, &h, &first, &any);
+        s = dense_step(a, m, until, step, &h, &first, &any);
     } else {
         double wanted = m->engine->advance(a, m, until - m->state[SLOT_TIME], step);
         h = wanted;

@@ -17,7 +17,7 @@ static bool within_wall(const motion *m, const double *state)
 }
 
 // Positive on the admissible side.
-static double watch_value(const arm *a, const motion *m, const double *state, event_function w)
+static double event_value(const arm *a, const motion *m, const double *state, event_function w)
 {
     switch (w) {
     case EVENT_OF_GAP:
@@ -57,9 +57,9 @@ static double cubic_dip(double v0, double v1, double d0, double d1)
     return b + root != 0 ? -d0 / (b + root) : -1;
 }
 
-// Slopes of a watched function at both ends of the step from m->state to m->trial, per step. False
+// Slopes of an event function at both ends of the step from m->state to m->trial, per step. False
 // where they are not known.
-static bool watch_slopes(const motion *m, double h, event_function w, double *d0, double *d1)
+static bool event_slopes(const motion *m, double h, event_function w, double *d0, double *d1)
 {
     const double *state = m->state, *trial = m->trial;
 
@@ -98,7 +98,7 @@ static double suspected_dip(const arm *a, const motion *m, double h, event_funct
 {
     double d0, d1;
 
-    if (!watch_slopes(m, h, w, &d0, &d1)) {
+    if (!event_slopes(m, h, w, &d0, &d1)) {
         // near the limit of friction the middle of the step is checked
         return fmin(v0, v1) < 0.2 * a->motor.stiction ? 0.5 : -1;
     }
@@ -117,7 +117,7 @@ static double guess_crossing(const motion *m, double h, event_function w, double
 {
     double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
 
-    if (!watch_slopes(m, h, w, &d0, &d1)) {
+    if (!event_slopes(m, h, w, &d0, &d1)) {
         return s;
     }
 
@@ -141,7 +141,7 @@ typedef struct bracket {
 } bracket;
 
 // Narrows a bracket until it is as narrow as LOCATION_TIME; m->trial ends as the state at its far
-// side. Starts at `s` and goes on by Chandrupatla's method: inverse quadratic interpolation where
+// side. Starts at `s` and continues by Chandrupatla's method: inverse quadratic interpolation where
 // the last three values allow it, else bisection.
 static status narrow(const arm *a, motion *m, event_function w, double s, bracket *b)
 {
@@ -159,7 +159,7 @@ static status narrow(const arm *a, motion *m, event_function w, double s, bracke
         evaluated = s;
 
         // the bracket, and the end that the new point replaces
-        double v = watch_value(a, m, m->trial, w) - b->edge, other, v_other, old, v_old;
+        double v = event_value(a, m, m->trial, w) - b->edge, other, v_other, old, v_old;
         if (v > 0) {
             old = b->lo, v_old = b->v_lo, other = b->hi, v_other = b->v_hi;
             b->lo = s, b->v_lo = v;
@@ -186,7 +186,7 @@ static status narrow(const arm *a, motion *m, event_function w, double s, bracke
 // *h and m->trial move there.
 static status search(const arm *a, motion *m, event_function w, double *h, bool *found)
 {
-    double v0 = watch_value(a, m, m->state, w), v1 = watch_value(a, m, m->trial, w);
+    double v0 = event_value(a, m, m->state, w), v1 = event_value(a, m, m->trial, w);
     double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(m, *h, w, v0, v1) : 0.5 * *h;
     double lo = 0, hi = *h, tolerance = event_tolerance(w);
 
@@ -198,7 +198,7 @@ static status search(const arm *a, motion *m, event_function w, double *h, bool 
             return STATUS_OK;
         }
         status s = motion_try_step(a, m, dip * *h);
-        v1 = watch_value(a, m, m->trial, w);
+        v1 = event_value(a, m, m->trial, w);
         if (s != STATUS_OK || v1 >= -tolerance) {
             return s == STATUS_OK ? motion_try_step(a, m, *h) : s;
         }
@@ -218,7 +218,7 @@ static status search(const arm *a, motion *m, event_function w, double *h, bool 
             if (failed != STATUS_OK) {
                 return failed;
             }
-            double v = watch_value(a, m, m->trial, w);
+            double v = event_value(a, m, m->trial, w);
             if (v > 0) {
                 lo = s;
                 v0 = v;

@@ -1,5 +1,5 @@
 // What happens within a step, and when: located by stepping again from the step's start. Where the
-// engine is dense, dense_location.h does it in the stride itself.
+// engine is dense, dense_location.h does it in the internal step itself.
 #pragma once
 
 #include "src/contact/motion.h"
@@ -7,7 +7,7 @@
 #define FORCE_TOLERANCE 1e-9  // tension that counts as a release [N]
 #define TOUCH_SPEED     1e-11 // approach speed below which a touch carries no impulse [m/s]
 
-// Whether a fall of the watched function below zero would end the motion's present contact state.
+// Whether a fall of the event function below zero would end the motion's present contact state.
 static inline bool event_function_active(const arm *a, const motion *m, event_function w)
 {
     bool contact = m->state[SLOT_CONTACT] != 0;
@@ -32,7 +32,7 @@ static inline bool event_function_active(const arm *a, const motion *m, event_fu
     return false;
 }
 
-// Tolerance of the watched function: how far below zero still counts as admissible, in its unit.
+// Tolerance of the event function: how far below zero still counts as admissible, in its unit.
 double event_tolerance(event_function w);
 
 // Looks for the first function that leaves its admissible side within (0, *h], m->trial being the

@@ -85,7 +85,7 @@ force_bounds motion_force_bounds(const arm *a, const motion *m, double *state)
                  : (force_bounds){state[SLOT_FORCE], state[SLOT_FORCE]};
 }
 
-void motion_watch(motion *m)
+void motion_reset_peak(motion *m)
 {
     m->record.pulse_peak = -1;
     m->record.pulse_peak_time = m->state[SLOT_TIME];
@@ -268,7 +268,7 @@ status motion_try_step(const arm *a, motion *m, double h)
 status motion_try_step_for(const arm *a, motion *m, double h, state_extent extent)
 {
     double *trial = m->trial;
-    m->step.holds = unknown_energy;
+    m->step.trial_energy = unknown_energy;
     if (motion_held_still(m)) {
         let_time_pass(m, h);
         return STATUS_OK;

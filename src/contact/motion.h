@@ -1,5 +1,5 @@
-// The mutable side of a simulation: one contiguous state vector, its scratch, and a stride of its
-// smooth motion.
+// The mutable side of a simulation: one contiguous state vector, its scratch, and an internal step
+// of its smooth motion.
 //
 // Between events an engine (engine.h) advances the motion in one contact state. Events and their
 // jumps belong to the contact machine (contact_machine.h), which is built on this module and on
@@ -60,15 +60,15 @@ enum motion_quadrature {
 // Marks energies that have not been computed; no state has negative ones.
 static const state_energy unknown_energy = {-1, -1};
 
-// The last part of the state vector, for engines whose strides are longer than the steps taken of
-// them: where the present stride began and how much of it is used up. So a motion continued from a
-// copy of its state continues the same stride.
+// The last part of the state vector, for engines whose internal steps are longer than the steps
+// taken of them: where the present internal step began and how much of it is used up. So a motion
+// continued from a copy of its state continues the same internal step.
 enum motion_kept {
-    KEPT_LENGTH,                        // of the stride, 0 if there is none to continue [s]
+    KEPT_LENGTH,                        // of the internal step, 0 if there is none to continue [s]
     KEPT_USED,                          // part of it before this state [s]
     KEPT_CHANGED,                       // instant at which torque or arm last changed [s]
     KEPT_INTERVAL,                      // between that change and the one before [s]
-    KEPT_WANTED,                        // length requested for the stride [s]
+    KEPT_WANTED,                        // length requested for the internal step [s]
     KEPT_JUMPED,                        // 1 if it began just after an event
     KEPT_QUADRATURES,                   // at its start, up to QUADRATURE_FORCE
     KEPT_ANGLES = KEPT_QUADRATURES + 3, // [rad]
@@ -94,7 +94,7 @@ typedef struct motion_steps {
 
     // energies of m->trial, and of m->state as motion_step left it, if the engine computed them
     // with the state; else unknown_energy
-    state_energy holds, reached;
+    state_energy trial_energy, energy;
     bool history_invalid; // the step in hand may be another arm's: only what the state keeps of it
                           // is valid
 
@@ -111,7 +111,7 @@ typedef struct motion_steps {
 struct motion {
     // A checkpoint is a copy of `state`, size doubles:
     // slots, q[n], w[n], quadratures, accelerations a[n], algorithmic accelerations[n], what is
-    // kept of the stride.
+    // kept of the internal step.
     double *state;
     int size;      // of this engine's states
     int most_size; // of the states of any engine that a changed arm may get
@@ -138,8 +138,8 @@ struct motion {
     double *scratch; // vectors of length dof
     chain_link *links;
     arm *moved;        // the arm with its wall at an instant, where that moves, else NULL
-    void *memory;      // the engine's own: the stride it is in
-    double most_force; // upper bound of the force in the stride of a dense engine [N]
+    void *memory;      // the engine's own: the internal step it is in
+    double most_force; // upper bound of the force in the internal step of a dense engine [N]
     motion_steps step; // the last one and the coming one
 
     void *block, *engine_block; // where all of that lies
@@ -218,15 +218,15 @@ force_bounds motion_force_bounds(const arm *a, const motion *m, double *state);
 
 // To be called after m->state was overwritten by a copy of an earlier state, even if the arm
 // changed in between.
-static inline void motion_forget_stride(motion *m)
+static inline void motion_invalidate_history(motion *m)
 {
     m->step.history_invalid = true;
     m->step.coming.known = false;
 }
 
-// To be called after a change, other than a jump of the state, of anything that a stride depends
-// on: the motion then begins a new stride.
-static inline void motion_end_stride(motion *m)
+// To be called after a change, other than a jump of the state, of anything that an internal step
+// depends on: the motion then begins a new internal step.
+static inline void motion_end_internal_step(motion *m)
 {
     state_kept(m, m->state)[KEPT_LENGTH] = 0;
 }
@@ -244,7 +244,7 @@ static inline void motion_note_change(motion *m)
 }
 
 // Forgets the recorded peak: the next one counts from the present state.
-void motion_watch(motion *m);
+void motion_reset_peak(motion *m);
 
 // Records a force [N] in contact at an instant [s] as the pulse's peak if none was larger.
 static inline void motion_note_force(motion *m, double time, double force)
@@ -285,14 +285,14 @@ static inline bool motion_held_still(const motion *m)
     return state_is_held_still(m, m->state);
 }
 
-// Computes the state at h in the stride in hand into m->trial, updates its energy ledger and checks
-// that it is finite. Stepping engines need no stride: they step from m->state.
+// Computes the state at h in the internal step in hand into m->trial, updates its energy ledger and
+// checks that it is finite. Stepping engines need no internal step: they step from m->state.
 status motion_try_step(const arm *a, motion *m, double h);
 
 // The same with no more of the state than `extent`.
 status motion_try_step_for(const arm *a, motion *m, double h, state_extent extent);
 
-// A quantity of the stride of a dense engine, and its slope, at h.
+// A quantity of the internal step of a dense engine, and its slope, at h.
 static inline value_and_slope motion_output(const arm *a, motion *m, output_quantity of, double h)
 {
     value_and_slope at;

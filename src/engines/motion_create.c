@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The fastest decay of the two-link series [1/s]: so cheap are they that half a million strides
+// The fastest decay of the two-link series [1/s]: so cheap are they that half a million steps
 // take a third of a second.
 #define FASTEST_OF_PAIR 2e6
 
@@ -201,9 +201,9 @@ void motion_follow_arm(const arm *a, motion *m)
     m->engine = wanted;
     m->size = size_of_states(a, m, wanted);
     m->out_of_memory = !open_engine(a, m);
-    motion_end_stride(m);
+    motion_end_internal_step(m);
 
-    // it knows nothing yet of the strides to come
+    // it knows nothing yet of the steps to come
     memset(m->state + m->head_size, 0, (size_t)(m->size - m->head_size) * sizeof *m->state);
 }
 
@@ -230,5 +230,5 @@ void motion_restore(const arm *a, motion *m, const void *bytes)
     motion_follow_arm(a, m);
     memcpy(&m->record, bytes, sizeof m->record);
     memcpy(m->state, (const char *)bytes + sizeof m->record, (size_t)m->size * sizeof *m->state);
-    motion_forget_stride(m);
+    motion_invalidate_history(m);
 }

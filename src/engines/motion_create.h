@@ -24,7 +24,7 @@ void motion_destroy(motion *m); // m may be NULL
 motion *motion_renew(motion *m, const arm *a, const method_parameters *method);
 
 // To be called after the arm's constants changed: the event method switches to the engine that
-// motion_create would now choose, without a stride in hand. If there is no memory for it, the next
+// motion_create would now choose, without a step in hand. If there is no memory for it, the next
 // step fails with STATUS_NO_MEMORY.
 void motion_follow_arm(const arm *a, motion *m);
 
@@ -32,6 +32,6 @@ void motion_follow_arm(const arm *a, motion *m);
 size_t motion_saved_size(const motion *m);
 // Copies state and record; what the state has no use of is zero.
 void motion_save(const motion *m, void *bytes);
-// Goes on with a copy, with the arm as it was then: chooses its engine, and begins its step anew
+// Continues with a copy, with the arm as it was then: chooses its engine, and begins its step anew
 // from what the state keeps of it.
 void motion_restore(const arm *a, motion *m, const void *bytes);

@@ -288,7 +288,7 @@ status predict_linearised(const arm *a, const method_parameters *method, const d
     const bool plain = a->dof == 2 && a->links == 2 && arm_is_plain(a) && !wall_gives(&a->wall) &&
                        wall_stands(&a->wall);
     if (plain) {
-        // two links on a rigid hub that goes on towards the wall: the closed form
+        // two links on a rigid hub that turns on towards the wall: the closed form
         const arm touched = arm_touching_now(a, q);
         double after[2];
         contact_state mode = {.current = 0};

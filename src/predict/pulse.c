@@ -76,7 +76,7 @@ static bool touch(const arm *a, motion *m, const double *q, const double *w, dou
         motion_apply(a, m, &report);
     }
     out->impulse = report.impulse;
-    motion_watch(m);
+    motion_reset_peak(m);
     return m->state[SLOT_CONTACT] != 0;
 }
 

@@ -119,13 +119,13 @@ void sensors_init(sensors *s, const sensor_parameters *p, int seed)
 }
 
 // A stride shorter than this share of the time constant leaves the closed form too few digits.
-#define SHORT_STRIDE 1e-3
+#define SHORT_STEP 1e-3
 
 // Lengths that differ by less than this share of the time constant are the same but for rounding:
 // the square of the share is nothing.
 #define SAME_STRETCH 1e-9
 
-// exp(-h/time_constant), h no shorter than SHORT_STRIDE.
+// exp(-h/time_constant), h no shorter than SHORT_STEP.
 static double left_after(first_order_lag *y, double h)
 {
     const double longer = h - y->stretch;
@@ -147,7 +147,7 @@ void lag_follow(first_order_lag *y, double h, double first, double last, double 
     }
 
     double curve = 3 * (first + last) - 6 * mean, slope = last - first - curve;
-    if (h < SHORT_STRIDE * lag) {
+    if (h < SHORT_STEP * lag) {
         // the integrals of u^n exp(-(1 - u) x) over the stride as series in x
         double x = h / lag;
         double of_one = 1 - x / 2 * (1 - x / 3 * (1 - x / 4));

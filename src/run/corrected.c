@@ -108,8 +108,8 @@ static status record_start(corrected_run *c, fault *f)
     return failed == STATUS_OK ? recorded : failed;
 }
 
-// corrected_approach_stride where a stretch is over, or the run is to begin; apart from it, which
-// then has little to do for most strides.
+// corrected_approach_step where a stretch is over, or the run is to begin; apart from it, which
+// then has little to do for most steps.
 static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *ended, fault *f)
 {
     recording *r = c->recording;
@@ -126,12 +126,12 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
         }
 
         // the mean force of the end begins to count here
-        if (!c->stretch.under_way.goes_on && same_instant(m->state[SLOT_TIME], window)) {
+        if (!c->stretch.open.goes_on && same_instant(m->state[SLOT_TIME], window)) {
             r->state.integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
             r->state.in_window = (force_bounds){0};
         }
 
-        // what is due now, then how far the motion may go on its own
+        // what is due now, then how far the motion may go by itself
         if (r->state.next_action < r->scenario->action_count) {
             failed = corrected_run_script(c, f);
         }
@@ -152,7 +152,7 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
     return failed;
 }
 
-status corrected_approach_stride(corrected_run *c, bool *ended, fault *f)
+status corrected_approach_step(corrected_run *c, bool *ended, fault *f)
 {
     *ended = false;
     const bool within = c->recording->state.grid_row > 0 && !stretch_is_over(c);
@@ -167,7 +167,7 @@ static status record_step(corrected_run *c, motion_report *report)
     const motion *m = c->motion;
     const bool at_event = report->event != MOTION_REACHED;
     status s = corrected_record_step(c, at_event);
-    c->stretch.under_way.goes_on = false;
+    c->stretch.open.goes_on = false;
     if (s == STATUS_OK && at_event) {
         s = corrected_pass_event(c, report);
         bool same = m->state[SLOT_TIME] - c->stretch.last_event < SAME_EVENT_TIME;
@@ -179,7 +179,7 @@ static status record_step(corrected_run *c, motion_report *report)
 
 // --- the step under way -----------------------------------------------------------------------
 
-// Whether the arm flies under a rig, in strides that outlive steps.
+// Whether the arm flies under a rig, in internal steps that outlast the run's.
 static bool flies_beyond_samples(const corrected_run *c)
 {
     const motion *m = c->motion;
@@ -191,21 +191,21 @@ void corrected_begin_step(corrected_run *c)
 {
     motion *m = c->motion;
     const double step = c->recording->now.method.step;
-    assert(!c->stretch.under_way.goes_on);
+    assert(!c->stretch.open.goes_on);
     if (!flies_beyond_samples(c)) {
         motion_examine_step(&c->arm, m, c->stretch.stop, c->stretch.stop, step);
         return;
     }
 
-    // as far as its stride lasts
+    // as far as its step lasts
     const double now = m->state[SLOT_TIME];
     motion_examine_step(&c->arm, m, c->stretch.stop,
                         c->recording->scenario->parameters.run.duration, step);
     memcpy(m->trial, m->state, (size_t)m->size * sizeof *m->state);
-    c->stretch.under_way = (open_step){.goes_on = true,
-                                       .begun_for = c->stretch.stop,
-                                       .now = now,
-                                       .sensed = corrected_way_at(c, now, m->state)};
+    c->stretch.open = (open_step){.goes_on = true,
+                                  .begun_for = c->stretch.stop,
+                                  .now = now,
+                                  .sensed = corrected_sample_point_at(c, now, m->state)};
 }
 
 // Whether the step under way ends after an instant [s].
@@ -236,11 +236,11 @@ static bool sensed_within(const corrected_run *c, double time, sensed_motion *at
     return true;
 }
 
-// Goes on to an instant [s] within the step under way, with rows and, where the rig acts there,
+// Continues to an instant [s] within the step under way, with rows and, where the rig acts there,
 // sensors.
 static status go_along(corrected_run *c, double time, fault *f)
 {
-    way to = {.time = time, .integral = c->stretch.under_way.sensed.integral};
+    sample_point to = {.time = time, .integral = c->stretch.open.sensed.integral};
     status s = corrected_record_rows_to(c, time);
     if (s == STATUS_OK && time == c->stretch.stop) {
         const bool known = sensed_within(c, time, &to.at);
@@ -249,7 +249,7 @@ static status go_along(corrected_run *c, double time, fault *f)
 
     // the run is there
     if (s == STATUS_OK) {
-        c->stretch.under_way.now = time;
+        c->stretch.open.now = time;
         s = recording_asked_to_stop(c->recording) ? STATUS_STOPPED : s;
     }
     return s == STATUS_OK ? s : corrected_explain(c, s, f);
@@ -266,7 +266,7 @@ static status make_step(corrected_run *c, double until, fault *f)
     motion_report report;
     status s = motion_step(&c->arm, m, until, step, &report);
     if (s != STATUS_OK) {
-        c->stretch.under_way.goes_on = false;
+        c->stretch.open.goes_on = false;
         return corrected_explain_step(c, s, f);
     }
     s = record_step(c, &report);
@@ -282,10 +282,10 @@ static status make_step(corrected_run *c, double until, fault *f)
     if (s != STATUS_OK) {
         return corrected_explain(c, s, f);
     }
-    return pace_keep(&c->pace, &c->arm, m, r->scenario->parameters.run.duration, step, f);
+    return zeno_monitor_count(&c->zeno, &c->arm, m, r->scenario->parameters.run.duration, step, f);
 }
 
-status corrected_stride(corrected_run *c, double until, fault *f)
+status corrected_step(corrected_run *c, double until, fault *f)
 {
     assert(c != NULL && f != NULL);
     recording *r = c->recording;
@@ -295,24 +295,24 @@ status corrected_stride(corrected_run *c, double until, fault *f)
     }
 
     // within the step under way
-    if (!c->stretch.under_way.goes_on && flies_beyond_samples(c)) {
+    if (!c->stretch.open.goes_on && flies_beyond_samples(c)) {
         corrected_begin_step(c);
     }
     const double next = instant_after(c->stretch.stop, until) ? until : c->stretch.stop;
-    if (c->stretch.under_way.goes_on && goes_beyond(c, next)) {
+    if (c->stretch.open.goes_on && goes_beyond(c, next)) {
         return go_along(c, next, f);
     }
 
     // or to the end of one; where it stops by itself it is that of a run that nobody steps, to the
     // last bit
-    if (until < c->stretch.stop && !c->stretch.under_way.goes_on) {
+    if (until < c->stretch.stop && !c->stretch.open.goes_on) {
         m->record.tstop = smaller(m->record.tstop, until);
     }
     const status s = make_step(c, c->stretch.stop, f);
 
-    // the pace is that of strides which the motion chose, not of instants a program asks for
+    // it counts steps that the motion chose, not instants a program asks for
     if (!(c->motion->state[SLOT_TIME] < until)) {
-        c->pace = pace_begin();
+        c->zeno = zeno_monitor_begin();
     }
     return s;
 }
@@ -321,7 +321,7 @@ status corrected_end_step(corrected_run *c, fault *f)
 {
     assert(c != NULL && f != NULL);
     motion *m = c->motion;
-    const open_step *on = &c->stretch.under_way;
+    const open_step *on = &c->stretch.open;
     if (!on->goes_on) {
         return STATUS_OK;
     }
@@ -341,15 +341,15 @@ status corrected_act_now(corrected_run *c, const action *todo, fault *f)
 double *corrected_present(const corrected_run *c)
 {
     motion *m = c->motion;
-    double *within = c->stretch.under_way.goes_on
-                         ? motion_between(&c->arm, m, c->stretch.under_way.now, STATE_WHOLE)
+    double *within = c->stretch.open.goes_on
+                         ? motion_between(&c->arm, m, c->stretch.open.now, STATE_WHOLE)
                          : m->state;
     return within != NULL ? within : m->state;
 }
 
 sensed_motion corrected_sensed_now(const corrected_run *c)
 {
-    const open_step *on = &c->stretch.under_way;
+    const open_step *on = &c->stretch.open;
     sensed_motion at = on->sensed.at;
     if (!on->goes_on) {
         return corrected_sensed_motion(c, c->motion->state);
@@ -372,15 +372,15 @@ void corrected_sum_up(corrected_run *c, status failed)
 {
     assert(c != NULL && c->motion != NULL);
     rig *on = c->recording->rig;
-    if (!c->stretch.under_way.goes_on) {
+    if (!c->stretch.open.goes_on) {
         end_and_summarise(c, failed);
         return;
     }
 
     // all that the end of the step under way changes, but for what is summed up
     const motion moving = *c->motion;
-    const open_step under_way = c->stretch.under_way;
-    const pace paced = c->pace;
+    const open_step open = c->stretch.open;
+    const zeno_monitor monitor = c->zeno;
     const sensors felt = on->sensors;
     size_t *forces = &c->recording->result->history.forces.count;
     const size_t kept = *forces;
@@ -391,8 +391,8 @@ void corrected_sum_up(corrected_run *c, status failed)
     *c->motion = moving;
     memmove(moving.state, start, (size_t)moving.size * sizeof *start);
     memmove(moving.trial, start, (size_t)moving.size * sizeof *start);
-    c->stretch.under_way = under_way;
-    c->pace = paced;
+    c->stretch.open = open;
+    c->zeno = monitor;
     on->sensors = felt;
     *forces = kept;
     corrected_present(c);
@@ -405,7 +405,7 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
     memset(c, 0, offsetof(corrected_run, arm));
     c->recording = r;
     c->stretch.last_event = -1;
-    c->pace = pace_begin();
+    c->zeno = zeno_monitor_begin();
     corrected_bind_arm(c);
     c->motion = motion_renew(spare, &c->arm, &p->method);
     if (c->motion == NULL) {
@@ -468,13 +468,13 @@ void corrected_restore(corrected_run *c, const void *bytes)
     memcpy(&saved, bytes, sizeof saved);
     corrected_bind_arm(c); // to parameters and voltage of then
     motion_restore(&c->arm, c->motion, (const char *)bytes + sizeof saved);
-    c->pace = pace_begin();
+    c->zeno = zeno_monitor_begin();
 
     // the step under way, looked at again as it was when it was begun
     c->stretch = saved;
-    if (saved.under_way.goes_on) {
-        c->stretch.under_way.goes_on = false;
-        c->stretch.stop = saved.under_way.begun_for;
+    if (saved.open.goes_on) {
+        c->stretch.open.goes_on = false;
+        c->stretch.stop = saved.open.begun_for;
         corrected_begin_step(c);
         c->stretch = saved;
     }

@@ -1,6 +1,6 @@
-// A run of the corrected arm, stride by stride:
+// A run of the corrected arm, step by step:
 //
-//     open -> (approach_stride -> corrected_stride) until it has ended or fails -> close
+//     open -> (approach_step -> corrected_step) until it has ended or fails -> close
 //
 // so that several can go side by side (src/run/run.c), and programs step them (src/run/loop.h).
 #pragma once
@@ -8,24 +8,24 @@
 #include "src/run/recording.h"
 #include "src/contact/contact_machine.h"
 #include "src/contact/motion.h"
-#include "src/contact/pace.h"
+#include "src/contact/zeno_monitor.h"
 
 // A point on the way along a step: the instant, and what the sensors see there.
-typedef struct way {
+typedef struct sample_point {
     double time; // [s]
     sensed_motion at;
     double integral; // of the force [N s]
-} way;
+} sample_point;
 
 // A step that continues beyond instants at which the run is observed: samples of the rig that
 // change nothing, stops of a program. The motion still stands at the step's start and knows how far
 // the step goes (m->step.coming; m->trial is a copy, as after a step); the run has come to an
 // instant within it.
 typedef struct open_step {
-    bool goes_on;     // there is one
-    double begun_for; // the stop that it was begun for [s]
-    double now;       // the run's instant [s]
-    way sensed;       // up to where the sensors have followed the arm
+    bool goes_on;        // there is one
+    double begun_for;    // the stop that it was begun for [s]
+    double now;          // the run's instant [s]
+    sample_point sensed; // up to where the sensors have followed the arm
 } open_step;
 
 // The stretch of motion between two stops of script, rig or window.
@@ -33,32 +33,32 @@ typedef struct stretch {
     double stop;       // where it ends at the latest, 0 before the first [s]
     double last_event; // in it, -1 if none [s]
     int at_once;       // events in a row without time passing
-    open_step under_way;
+    open_step open;
 } stretch;
 
 typedef struct corrected_run {
     recording *recording;
     motion *motion;
 
-    stretch stretch; // that the motion is in
-    pace pace;       // of the whole run
-    wall_path *path; // of a wall that a file moves, else NULL
-    arm arm;         // with the command in force
+    stretch stretch;   // that the motion is in
+    zeno_monitor zeno; // of the whole run
+    wall_path *path;   // of a wall that a file moves, else NULL
+    arm arm;           // with the command in force
 } corrected_run;
 
 // The instant that the run has come to [s].
 static inline double corrected_now(const corrected_run *c)
 {
-    return c->stretch.under_way.goes_on ? c->stretch.under_way.now : c->motion->state[SLOT_TIME];
+    return c->stretch.open.goes_on ? c->stretch.open.now : c->motion->state[SLOT_TIME];
 }
 
 // Begins a run, or takes one up, in the storage of a motion that is over (`spare`, which may be
 // NULL and is used up). Whatever it returns, corrected_close or corrected_finish is due.
 status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f);
 
-// Carries out what is due of script and rig until the next thing to do is a stride, to c->stop at
+// Carries out what is due of script and rig until the next thing to do is a step, to c->stop at
 // most; *ended is true if the run is complete instead.
-status corrected_approach_stride(corrected_run *c, bool *ended, fault *f);
+status corrected_approach_step(corrected_run *c, bool *ended, fault *f);
 
 // Sums up what is known of a run that has not come to its end (`failed` says if it failed) and that
 // afterwards continues unchanged; the caller has to save and restore rows, events and
@@ -77,10 +77,9 @@ motion *corrected_finish(corrected_run *c, status failed);
 // it is under way then. Of an arm that a dense engine moves and nothing holds still.
 void corrected_begin_step(corrected_run *c);
 
-// Goes on by one stride, recorded with the event at its end: to the end of the stretch or, cut
+// Continues by one step, recorded with the event at its end: to the end of the stretch or, cut
 // there, to `until` [s] at the most. What fails is explained in f.
-status corrected_stride(corrected_run *c, double until, fault *f)
-    __attribute__((warn_unused_result));
+status corrected_step(corrected_run *c, double until, fault *f) __attribute__((warn_unused_result));
 
 // Ends the step under way, if there is one, at the instant that the run has come to.
 status corrected_end_step(corrected_run *c, fault *f) __attribute__((warn_unused_result));
@@ -161,7 +160,7 @@ status corrected_record_step(corrected_run *c, bool at_event) __attribute__((war
 sensed_motion corrected_sensed_motion(const corrected_run *c, double *state);
 
 // The `way` for an instant [s], from the motion's state there.
-way corrected_way_at(const corrected_run *c, double time, double *state);
+sample_point corrected_sample_point_at(const corrected_run *c, double time, double *state);
 
 // Into how many pieces the force over a step in contact of this length [s] is divided for
 // recording.
@@ -169,7 +168,8 @@ int corrected_force_pieces(const corrected_run *c, double length);
 
 // Lets the sensors follow the arm within the step under way, which is in flight, to where it has
 // come to `to`. STATUS_NOT_FINITE if a state on the way cannot be computed.
-status corrected_follow_flight(corrected_run *c, const way *to) __attribute__((warn_unused_result));
+status corrected_follow_flight(corrected_run *c, const sample_point *to)
+    __attribute__((warn_unused_result));
 
 // Lets the sensors follow the arm over the step just made, or over what is left of it, and keeps
 // its force. STATUS_NOT_FINITE as above, STATUS_NO_MEMORY.

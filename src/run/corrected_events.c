@@ -51,7 +51,7 @@ static void open_first_pulse(corrected_run *c, double impulse)
     s->contact_impulse_Ns = impulse;
     r->state.pulse_open = true;
     r->state.largest = (force_bounds){0};
-    motion_watch(c->motion);
+    motion_reset_peak(c->motion);
 }
 
 // Whether it is not the last link that meets a point but its line, on the other side of its base.
@@ -85,7 +85,7 @@ static void open_landing(corrected_run *c, double impulse)
     r->earlier_peak =
         isnan(c->recording->result->summary.first_contact_s) ? -1 : m->record.pulse_peak;
     r->earlier_peak_time = m->record.pulse_peak_time;
-    motion_watch(m);
+    motion_reset_peak(m);
 }
 
 void corrected_close_landing(corrected_run *c)
@@ -322,7 +322,7 @@ static status check_wall(const corrected_run *c, const action *todo, fault *f)
                               m->state[SLOT_TIME], p.wall.angle, -gap);
 }
 
-// Sets a parameter, under which the arm goes on in its present state.
+// Sets a parameter, under which the arm continues in its present state.
 static status set_parameter(corrected_run *c, const action *todo, fault *f)
 {
     recording *r = c->recording;
@@ -330,7 +330,7 @@ static status set_parameter(corrected_run *c, const action *todo, fault *f)
     recording_before_change(r, todo, now, state_angles(c->motion, c->motion->state)[0]);
     status failed = recording_set(r, todo, now, f);
 
-    // a voltage changes nothing but the torque; else the motion goes on with an arm bound anew
+    // a voltage changes nothing but the torque; else the motion continues with an arm bound anew
     if (todo->parameter == PARAMETER_INDEX(motor.voltage)) {
         const double before = c->arm.motor.torque;
         if (r->rig == NULL) {
@@ -360,7 +360,7 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
         return failed;
     }
 
-    // the arm goes on under another parameter, or with the push's impulse
+    // the arm continues under another parameter, or with the push's impulse
     if (todo->kind == ACTION_SET) {
         failed = set_parameter(c, todo, f);
     } else {

@@ -101,37 +101,40 @@ int corrected_force_pieces(const corrected_run *c, double length)
                : pieces_of_step(c, length, FORCE_REACH);
 }
 
-way corrected_way_at(const corrected_run *c, double time, double *state)
+sample_point corrected_sample_point_at(const corrected_run *c, double time, double *state)
 {
-    return (way){time, corrected_sensed_motion(c, state),
-                 state_quadratures(c->motion, state)[QUADRATURE_FORCE]};
+    return (sample_point){time, corrected_sensed_motion(c, state),
+                          state_quadratures(c->motion, state)[QUADRATURE_FORCE]};
 }
 
-// Goes on to an instant within the step. False if the state there cannot be had.
-static bool go_to(const corrected_run *c, way *w, double time)
+// Continues to an instant within the step. False if the state there cannot be had.
+static bool go_to(const corrected_run *c, sample_point *w, double time)
 {
     motion *m = c->motion;
     double *state = motion_between(&c->arm, m, time, STATE_SENSED);
     if (state != NULL) {
-        *w = corrected_way_at(c, time, state);
+        *w = corrected_sample_point_at(c, time, state);
     }
     return state != NULL;
 }
 
 // Takes a piece of the step just made, over which the force has that mean [N].
-typedef status (*piece_taker)(corrected_run *c, const way *from, const way *to, double mean);
+typedef status (*piece_taker)(corrected_run *c, const sample_point *from, const sample_point *to,
+                              double mean);
 
-// Goes on to an instant within the step, a stretch of this length [s], and hands it over.
-static status take_piece(corrected_run *c, way *w, double time, double length, piece_taker take)
+// Continues to an instant within the step, a stretch of this length [s], and hands it over.
+static status take_piece(corrected_run *c, sample_point *w, double time, double length,
+                         piece_taker take)
 {
-    const way from = *w;
+    const sample_point from = *w;
     return go_to(c, w, time) ? take(c, &from, w, (w->integral - from.integral) / length)
                              : STATUS_NOT_FINITE;
 }
 
 // Follows, piece by piece, the fast decay that an event has excited, up to where equal pieces are
 // enough for the rest of the step, which ends at `end` [s].
-static status follow_decay(corrected_run *c, way *w, double end, double reach, piece_taker take)
+static status follow_decay(corrected_run *c, sample_point *w, double end, double reach,
+                           piece_taker take)
 {
     status s = STATUS_OK;
     double next;
@@ -150,7 +153,7 @@ static bool falls_at_once(value_and_slope first, value_and_slope last, double wi
 }
 
 // Keeps the force over equal pieces of the rest of the step just made, `before` being its integral
-// up to there: each has the mean of the cubic through both ends' values and slopes. A stride may
+// up to there: each has the mean of the cubic through both ends' values and slopes. A step may
 // begin with a decay that is over at once, which only the motion's own integral knows.
 static status record_equal_pieces(corrected_run *c, const force_step *rest, double before,
                                   int count)
@@ -182,7 +185,7 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
     kept[count - 1].end = rest->end;
 
     if (falls_at_once(at[0], at[1], width)) {
-        way w;
+        sample_point w;
         if (!go_to(c, &w, kept[0].end)) {
             return STATUS_NOT_FINITE;
         }
@@ -192,7 +195,8 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
 }
 
 // Keeps the force over a piece of the step.
-static status keep_force(corrected_run *c, const way *from, const way *to, double mean)
+static status keep_force(corrected_run *c, const sample_point *from, const sample_point *to,
+                         double mean)
 {
     return recording_add_step(c->recording, (force_step){.start = from->time,
                                                          .end = to->time,
@@ -215,7 +219,7 @@ static status record_force(corrected_run *c, const force_step *whole, int pieces
     force_step rest = *whole;
     double before = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
     if (decays_outrun(&c->arm)) {
-        way w = corrected_way_at(c, whole->start, m->trial);
+        sample_point w = corrected_sample_point_at(c, whole->start, m->trial);
         const status s = follow_decay(c, &w, whole->end, FORCE_REACH, keep_force);
         if (s != STATUS_OK) {
             return s;
@@ -235,14 +239,14 @@ static status record_force(corrected_run *c, const force_step *whole, int pieces
 }
 
 // Lets the sensors follow the arm over a piece of the step.
-static status sense(corrected_run *c, const way *from, const way *to, double mean)
+static status sense(corrected_run *c, const sample_point *from, const sample_point *to, double mean)
 {
     sensors_follow(&c->recording->rig->sensors, to->time - from->time, &from->at, &to->at, mean);
     return STATUS_OK;
 }
 
 // Lets the sensors follow the arm from where w is to `last`, the force having that mean [N].
-static status follow_to(corrected_run *c, way w, const way *last, double mean)
+static status follow_to(corrected_run *c, sample_point w, const sample_point *last, double mean)
 {
     const double begin = w.time;
     status s = follow_decay(c, &w, last->time, SENSOR_REACH, sense);
@@ -262,9 +266,9 @@ static status follow_to(corrected_run *c, way w, const way *last, double mean)
     return sense(c, &w, last, part ? (last->integral - w.integral) / (length / pieces) : mean);
 }
 
-status corrected_follow_flight(corrected_run *c, const way *to)
+status corrected_follow_flight(corrected_run *c, const sample_point *to)
 {
-    way *sensed = &c->stretch.under_way.sensed;
+    sample_point *sensed = &c->stretch.open.sensed;
     const bool rest = sensors_at_rest(&c->recording->rig->sensors);
     const status s = rest ? STATUS_OK : follow_to(c, *sensed, to, 0);
     *sensed = *to;
@@ -277,7 +281,7 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole, boo
 {
     const motion *m = c->motion;
     sensors *felt = &c->recording->rig->sensors;
-    const open_step *on = &c->stretch.under_way;
+    const open_step *on = &c->stretch.open;
     const bool rest = on->goes_on && on->sensed.time > whole->start;
     const bool pressed = whole->first != 0 || whole->last != 0 || whole->mean != 0;
     if (!pressed && sensors_at_rest(felt)) {
@@ -290,8 +294,9 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole, boo
         return STATUS_OK;
     }
 
-    const way first = rest ? on->sensed : corrected_way_at(c, whole->start, m->trial);
-    const way last = corrected_way_at(c, whole->end, m->state);
+    const sample_point first =
+        rest ? on->sensed : corrected_sample_point_at(c, whole->start, m->trial);
+    const sample_point last = corrected_sample_point_at(c, whole->end, m->state);
     return follow_to(c, first, &last, rest ? 0 : whole->mean);
 }
 

@@ -204,9 +204,9 @@ status corrected_record_step(corrected_run *c, bool at_event)
              chain_weight_energy(a, state_angles(m, m->trial)));
 
     // an arm held still has the energy it had
-    const bool known = m->step.reached.kinetic >= 0;
+    const bool known = m->step.energy.kinetic >= 0;
     status s = motion_held_still(m) ? STATUS_OK
-               : known              ? audit(c, m->step.reached)
+               : known              ? audit(c, m->step.energy)
                                     : corrected_audit(c);
 
     // how fast the tip came towards the wall on its own

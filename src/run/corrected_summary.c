@@ -17,7 +17,7 @@
 
 // --- why it ended early -------------------------------------------------------------------------
 
-// Advice to the user where the energy balance does not close: dense engines choose their strides
+// Advice to the user where the energy balance does not close: dense engines choose their steps
 // themselves.
 static const char *advice(const motion *m)
 {
@@ -50,8 +50,8 @@ static status explain_fold(const corrected_run *c, fault *f)
 status corrected_explain_standstill(const corrected_run *c, motion_event last, fault *f)
 {
     const motion *m = c->motion;
-    char cause[PACE_CAUSE_SIZE];
-    pace_tell_cause(&c->arm, m, last, cause, sizeof cause);
+    char cause[ZENO_CAUSE_SIZE];
+    zeno_monitor_cause(&c->arm, m, last, cause, sizeof cause);
     return fault_set(f, STATUS_NO_PROGRESS, "at t = %.9g s: %s; the method was %s: %s",
                      m->state[SLOT_TIME], status_text(STATUS_NO_PROGRESS), m->engine->name, cause);
 }

@@ -32,9 +32,9 @@ void driver_sum_up(run_driver *d, status failed)
     }
 }
 
-// --- going on ---------------------------------------------------------------------------------
+// --- continuing ---------------------------------------------------------------------------------
 
-// Whether there is no stride left.
+// Whether there is no step left.
 static bool is_at_end(const run_driver *d)
 {
     return d->is_printed ? printed_motion_ended(&d->printed.motion)
@@ -50,7 +50,7 @@ static bool lies_ahead(const run_driver *d, double time)
 status driver_approach(run_driver *d, bool *ended, fault *f)
 {
     return d->is_printed ? printed_approach_step(&d->printed, ended, f)
-                         : corrected_approach_stride(&d->corrected, ended, f);
+                         : corrected_approach_step(&d->corrected, ended, f);
 }
 
 status driver_advance(run_driver *d, double until, bool *ended, fault *f)
@@ -61,7 +61,7 @@ status driver_advance(run_driver *d, double until, bool *ended, fault *f)
         failed = driver_approach(d, ended, f);
         if (failed == STATUS_OK && !*ended) {
             failed = d->is_printed ? printed_step(&d->printed, f)
-                                   : corrected_stride(&d->corrected, until, f);
+                                   : corrected_step(&d->corrected, until, f);
         }
     }
     return failed;

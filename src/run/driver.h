@@ -21,10 +21,10 @@ status driver_open(run_driver *d, recording *r, fault *f);
 // Sums up what has been recorded (`failed` is what ended it) and frees the run.
 void driver_close(run_driver *d, status failed);
 
-// Goes on to an instant [s], by phases: what is due of script and rig, then one stride of the
-// motion with its rows and the event at its end. A stride can be cut at any instant, but for the
-// printed arm, which goes on to the first row there or later. What is due at the instant itself
-// happens when the run goes on from it. *ended becomes true where the run is complete; HUGE_VAL:
+// Continues to an instant [s], by phases: what is due of script and rig, then one step of the
+// motion with its rows and the event at its end. A step can be cut at any instant, but for the
+// printed arm, which continues to the first row there or later. What is due at the instant itself
+// happens when the run continues from it. *ended becomes true where the run is complete; HUGE_VAL:
 // up to there.
 status driver_advance(run_driver *d, double until, bool *ended, fault *f);
 

@@ -118,7 +118,7 @@ void loop_destroy(run_loop *l)
     }
 }
 
-// --- going on ---------------------------------------------------------------------------------
+// --- continuing ---------------------------------------------------------------------------------
 
 double loop_time(const run_loop *l)
 {
@@ -144,7 +144,7 @@ static status stay_failed(run_loop *l, fault *f)
     return l->failed;
 }
 
-// Goes on to an instant, if it lies ahead, what is due now first.
+// Continues to an instant, if it lies ahead, what is due now first.
 static status advance(run_loop *l, double time, fault *f)
 {
     if (l->failed == STATUS_OK) {

@@ -5,7 +5,7 @@
 // instants do not influence the choice of steps: a step that goes beyond one is cut there or, in
 // flight on the rig, continues (corrected.h); the printed model, which has no states between
 // the ends of its steps, stops at the end of the first step that reaches it. What is due at an
-// instant (a sample of the rig, an action of the script) happens when the loop goes on from it.
+// instant (a sample of the rig, an action of the script) happens when the loop continues from it.
 #pragma once
 
 #include "src/rig/rig.h"
@@ -31,10 +31,10 @@ void loop_destroy(run_loop *l); // l may be NULL
 double loop_time(const run_loop *l);
 bool loop_ended(const run_loop *l);
 
-// Goes on to an instant [s], at most to run.duration; one that is not later changes nothing.
+// Continues to an instant [s], at most to run.duration; one that is not later changes nothing.
 // What stopped the run stays: every further call returns it again.
 status loop_until(run_loop *l, double time, fault *f);
-// Goes on to the next sample of the rig, without one to the next multiple of method.step.
+// Continues to the next sample of the rig, without one to the next multiple of method.step.
 status loop_step(run_loop *l, fault *f);
 
 // The command that a commanded loop puts out from its next sample on, until the next call [V].

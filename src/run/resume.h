@@ -6,8 +6,8 @@
 #include "src/scenario/scenario.h"
 #include "src/contact/motion.h"
 
-// Checkpoints of a run of the corrected arm: what is needed to go on from an instant as if the run
-// had never stopped, kept every few hundred rows.
+// Checkpoints of a run of the corrected arm: what is needed to continue from an instant as if the
+// run had never stopped, kept every few hundred rows.
 
 // An element of run_history.checkpoints; its size there includes the motion's state.
 typedef struct checkpoint {

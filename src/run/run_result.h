@@ -61,7 +61,7 @@ typedef struct run_options {
     const struct given_law *law; // that a program gives in the place of control.law; NULL: none
     struct process_transcript
         *transcript;  // of a process that is the controller; NULL: none is kept
-    bool resume;      // *result was prepared by run_resume: go on from there
+    bool resume;      // *result was prepared by run_resume: continue from there
     bool keep_forces; // result->history has the force over every step, without more of a history
 } run_options;
 

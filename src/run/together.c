@@ -11,18 +11,18 @@
 #include "src/run/run.h"
 #include "src/engines/pair/taylor_lanes.h"
 
-// So many runs are in hand at once: enough to fill the vectors with strides of one form, eight
+// So many runs are in hand at once: enough to fill the vectors with steps of one form, eight
 // lanes to 96 %, few enough to stay in the second cache.
 enum { IN_HAND = 24 };
 
-enum { SUMMARY_SHARE = 128 }; // of the summary, what strides add to [bytes]
+enum { SUMMARY_SHARE = 128 }; // of the summary, what steps add to [bytes]
 
 // One of the runs that go side by side.
 typedef struct side_run {
     recording recording;
     corrected_run run;
     fault fault;
-    taylor_lane *lane;    // its part in the series of the stride it is to make
+    taylor_lane *lane;    // its part in the series of the step it is to make
     int kind;             // that of its form
     motion *motion;       // of the run before, NULL if there was none: its storage is used again
     force_history forces; // and that run's, if there was one
@@ -37,7 +37,7 @@ struct side_by_side {
     int waiting_count;
     int alike[TAYLOR_KINDS]; // how many of them are of each kind
     side_run in_hand[IN_HAND];
-    taylor_group series; // of those whose strides are being made
+    taylor_group series; // of those whose steps are being made
 };
 
 // Ends a run, whose storage is for the next one in its place.
@@ -71,11 +71,10 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
 static taylor_lane *lane_for(corrected_run *run)
 {
     const double remaining = run->stretch.stop - run->motion->state[SLOT_TIME];
-    return run->stretch.under_way.goes_on ? NULL
-                                          : taylor_prepare(&run->arm, run->motion, remaining);
+    return run->stretch.open.goes_on ? NULL : taylor_prepare(&run->arm, run->motion, remaining);
 }
 
-// Goes on with a run until it waits for series that can be computed together with others'. False
+// Continues with a run until it waits for series that can be computed together with others'. False
 // if it is over: it is closed then.
 static bool go_on(side_by_side *group, int place)
 {
@@ -83,9 +82,9 @@ static bool go_on(side_by_side *group, int place)
     status failed = STATUS_OK;
     bool ended = false;
 
-    // strides that need no series are taken at once, one that does waits for company
+    // steps that need no series are taken at once, one that does waits for company
     while (failed == STATUS_OK && !ended) {
-        failed = corrected_approach_stride(&one->run, &ended, &one->fault);
+        failed = corrected_approach_step(&one->run, &ended, &one->fault);
         if (failed == STATUS_OK && !ended) {
             one->lane = lane_for(&one->run);
             if (one->lane != NULL) {
@@ -94,7 +93,7 @@ static bool go_on(side_by_side *group, int place)
                 group->waiting[group->waiting_count++] = place;
                 return true;
             }
-            failed = corrected_stride(&one->run, HUGE_VAL, &one->fault);
+            failed = corrected_step(&one->run, HUGE_VAL, &one->fault);
         }
     }
 
@@ -110,7 +109,7 @@ static inline void fetch(const void *from, size_t size)
     }
 }
 
-// Asks for what the next stride of a run will touch: the series of others have taken its place in
+// Asks for what the next step of a run will touch: the series of others have taken its place in
 // the nearest cache.
 static void fetch_run(const side_run *one)
 {
@@ -126,11 +125,11 @@ static void fetch_run(const side_run *one)
     fetch(&one->recording.result->history.forces, sizeof(force_history));
 }
 
-// Makes the stride whose series are computed, and goes on.
-static bool stride_and_go_on(side_by_side *group, int place)
+// Makes the step whose series are computed, and continues.
+static bool step_and_go_on(side_by_side *group, int place)
 {
     side_run *one = &group->in_hand[place];
-    status failed = corrected_stride(&one->run, HUGE_VAL, &one->fault);
+    status failed = corrected_step(&one->run, HUGE_VAL, &one->fault);
     if (failed == STATUS_OK) {
         return go_on(group, place);
     }
@@ -164,7 +163,7 @@ static void begin_next(side_by_side *group, int place)
 }
 
 // Takes as many of those that wait as fit into the vectors and are of the form that most of the
-// first few have, computes their series, and lets them make their strides.
+// first few have, computes their series, and lets them make their steps.
 static void serve(side_by_side *group)
 {
     enum { LOOKED_AT = 4 };
@@ -195,7 +194,7 @@ static void serve(side_by_side *group)
     memmove(group->waiting + left, group->waiting + next,
             (size_t)(group->waiting_count - left) * sizeof *group->waiting);
 
-    // side by side to the ends of their strides
+    // side by side to the ends of their steps
     taylor_end ends[TAYLOR_WIDEST];
     taylor_compute(&group->series, lanes, count);
     for (int i = 0; i < count; i++) {
@@ -210,9 +209,9 @@ static void serve(side_by_side *group)
     }
     taylor_finish(&group->series, lanes, ends, count);
 
-    // then each goes on by itself or makes room
+    // then each continues by itself or makes room
     for (int i = 0; i < count; i++) {
-        if (!stride_and_go_on(group, chosen[i])) {
+        if (!step_and_go_on(group, chosen[i])) {
             begin_next(group, chosen[i]);
         }
     }

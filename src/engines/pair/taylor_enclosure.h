@@ -1,15 +1,15 @@
-// Bounds of the functions that are watched over a stride (taylor_kernel.c), from their series.
+// Bounds of the functions that are watched over a step (taylor_kernel.c), from their series.
 #pragma once
 
 #include "src/engines/pair/taylor_products.h"
 
-// A function over a stride, bounded in four equal pieces.
-typedef struct course {
+// A function over a step, bounded in four equal pieces.
+typedef struct enclosure {
     real start;
     four ends;      // its values where pieces end
     real curvature; // its largest second derivative at most
     real off;       // how far at most it leaves the chord between the ends of a piece
-} course;
+} enclosure;
 
 // One more term of four sums.
 KERNEL void add_term(four *sum, const four *u, real term)
@@ -25,7 +25,7 @@ KERNEL void add_term(four *sum, const four *u, real term)
 
 // That of a polynomial for times from 0 to t. A function deviates from its chord of length h by at
 // most h^2/8 times its largest second derivative. Rounding is allowed for.
-KERNEL course enclosure_of(const real *terms, int count, real t)
+KERNEL enclosure enclosure_of(const real *terms, int count, real t)
 {
     const real zero = (real){0}, u = t * t, none = zero;
     const four time = FOUR(t * 0.25, t * 0.5, t * 0.75, t);
@@ -43,7 +43,7 @@ KERNEL course enclosure_of(const real *terms, int count, real t)
     add_term(&even, &squared, terms[0]);
     add_term(&odd, &squared, terms[1]);
 
-    course c = {.start = terms[0], .curvature = even2 + t * odd2};
+    enclosure c = {.start = terms[0], .curvature = even2 + t * odd2};
     for (int i = 0; i < 4; i++) {
         PART(c.ends, i) = PART(even, i) + PART(time, i) * PART(odd, i);
     }
@@ -58,13 +58,13 @@ KERNEL real smaller_of(real x, real y)
 }
 
 // Its lower and upper bound.
-KERNEL real lowest(const course *c, real first)
+KERNEL real lowest(const enclosure *c, real first)
 {
     const real late = smaller_of(PART(c->ends, 2), PART(c->ends, 3)) - c->off;
     const real early = smaller_of(PART(c->ends, 0), PART(c->ends, 1)) - c->off;
     return smaller_of(first, smaller_of(early, late));
 }
-KERNEL real highest(const course *c)
+KERNEL real highest(const enclosure *c)
 {
     const real late = greater(PART(c->ends, 2), PART(c->ends, 3));
     const real early = greater(PART(c->ends, 0), PART(c->ends, 1));
@@ -81,7 +81,7 @@ typedef struct edge_limits {
 // it grows from there, the bound of the function divided by the time, or by its square: in that
 // piece, of length h, p = p0 + p1 t + p2 t^2 + r has |p - p0 - p1 t| <= curvature t^2/2, and |r| <=
 // (curvature - 2 |p2|) t^2/6 h/t_end.
-KERNEL real least_at_first(const course *c, const real *terms, real sign, real t, mask jumped,
+KERNEL real least_at_first(const enclosure *c, const real *terms, real sign, real t, mask jumped,
                            const edge_limits *limits)
 {
     const real first = sign * c->start - c->off;
@@ -96,10 +96,10 @@ KERNEL real least_at_first(const course *c, const real *terms, real sign, real t
     return choose(jumped, edge, first);
 }
 
-// Its lower bound over the whole stride, `first` being that of the first piece.
-KERNEL real least_of(const course *c, real sign, real first)
+// Its lower bound over the whole step, `first` being that of the first piece.
+KERNEL real least_of(const enclosure *c, real sign, real first)
 {
-    course signed_one = *c;
+    enclosure signed_one = *c;
     for (int i = 0; i < 4; i++) {
         PART(signed_one.ends, i) = sign * PART(c->ends, i);
     }

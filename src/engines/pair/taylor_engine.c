@@ -1,14 +1,14 @@
 // The two-link arm by power series (taylor_kernel.c): a dense engine.
 //
-// The stride goes as far as the fastest mode and the rotation let a series of the highest order
+// The step goes as far as the fastest mode and the rotation let a series of the highest order
 // reach, and is shortened until its last terms are small; where they are small before, as in one
 // that something else ends sooner, the series end with them. Everything within it (events, rows,
 // peaks, quadratures) is a polynomial.
 //
-// Steps that cut a stride without an event (a sample in contact whose command stays, an instant
-// that a program stops at) go on in it: the state says where it began, the engine's memory holds
-// its series. While commands stay, a stride is made for twice as long as the one before; just after
-// a change for twice the time since the change before.
+// Steps that end within an internal step without an event (a sample in contact whose command stays,
+// an instant that a program stops at) continue in it: the state says where it began, the engine's
+// memory holds its series. While commands stay, a step is made for twice as long as the one before;
+// just after a change for twice the time since the change before.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -17,20 +17,20 @@
 #include "src/base/sincos.h"
 #include "src/contact/dense_location.h"
 #include "src/engines/motion_create.h"
-#include "src/engines/pair/taylor_stride.h"
+#include "src/engines/pair/taylor_integrator.h"
 
-// Strides stay below this over the fastest rate and the angular velocities.
+// Steps stay below this over the fastest rate and the angular velocities.
 #define LONGEST_REACH 2.0
-// Limit of (decay rate) x (stride): the series of the highest order is stable on the negative real
+// Limit of (decay rate) x (step): the series of the highest order is stable on the negative real
 // axis to beyond 7.
 #define LONGEST_DECAY 4.0
 // On a flat wall the first link turns by no more than this share of what is left to a fold.
 #define LONGEST_TURN 0.1
 
-// Less of a stride left than this share of it is rounding.
+// Less of a step left than this share of it is rounding.
 #define LEAST_LEFT 1e-9
 
-// --- a stride -----------------------------------------------------------------------------------
+// --- a step -----------------------------------------------------------------------------------
 
 // From angles q and velocities w on.
 static void put_inputs(const arm *a, const motion *m, const double *q, const double *w,
@@ -67,7 +67,7 @@ static void put_inputs(const arm *a, const motion *m, const double *q, const dou
 }
 
 // The length that is tried from velocities w on, up to `most`.
-static double wanted_stride(const arm *a, const double *w, double most)
+static double wanted_step(const arm *a, const double *w, double most)
 {
     // as far as the fastest mode, the rotation and the fastest decay let the highest order reach
     const double first = w[a->first], second = w[a->first + 1];
@@ -79,7 +79,7 @@ static double wanted_stride(const arm *a, const double *w, double most)
     return a->fastest_decay * wanted > LONGEST_DECAY ? LONGEST_DECAY / a->fastest_decay : wanted;
 }
 
-// Records in the state the stride that begins there, at most `most` [s] long.
+// Records in the state the step that begins there, at most `most` [s] long.
 static void keep(motion *m, double most)
 {
     double *kept = state_kept(m, m->state);
@@ -101,20 +101,20 @@ static void keep(motion *m, double most)
     }
 }
 
-// Fills in the inputs of the series of the stride that the state keeps.
+// Fills in the inputs of the series of the step that the state keeps.
 static void prepare(const arm *a, motion *m)
 {
-    taylor_stride *s = m->memory;
+    taylor_integrator *s = m->memory;
     const double *kept = state_kept(m, m->state);
     const double *q = kept + KEPT_ANGLES, *w = kept + KEPT_VELOCITIES;
-    put_inputs(a, m, q, w, wanted_stride(a, w, kept[KEPT_WANTED]), s->lane.block);
+    put_inputs(a, m, q, w, wanted_step(a, w, kept[KEPT_WANTED]), s->lane.block);
     s->lane.form = (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
                                  .point = a->wall.kind == WALL_POINT,
                                  .hub_spring = a->hub_spring,
                                  .damped = a->joint_damping > 0 || a->hub_joint_damping > 0};
 }
 
-// Whether the state's stride goes on: to the end of what remains, or, where it was not made for
+// Whether the state's step continues: to the end of what remains, or, where it was not made for
 // less than that, to its own.
 static bool goes_on(motion *m, double remaining)
 {
@@ -124,10 +124,10 @@ static bool goes_on(motion *m, double remaining)
            (left >= remaining || length <= remaining);
 }
 
-// How long a new stride is to be at most: what remains, or twice the stride that has been used up
+// How long a new step is to be at most: what remains, or twice the step that has been used up
 // since where nothing has changed but the instant to go to. Just after a change no more than twice
 // the time since the change before, as the next may come as soon.
-static double most_of_stride(motion *m, double remaining)
+static double longest_step(motion *m, double remaining)
 {
     const double *kept = state_kept(m, m->state);
     if (m->state[SLOT_TIME] == kept[KEPT_CHANGED] && kept[KEPT_INTERVAL] > 0) {
@@ -139,10 +139,10 @@ static double most_of_stride(motion *m, double remaining)
                                                                     : remaining;
 }
 
-// Goes on in the state's stride, whose series may be to be computed again.
+// Continues in the state's step, whose series may be to be computed again.
 static void take_up(const arm *a, motion *m)
 {
-    taylor_stride *s = m->memory;
+    taylor_integrator *s = m->memory;
     double *kept = state_kept(m, m->state);
     const size_t start = KEPT_WANTED * sizeof *kept, size = sizeof s->kept - start;
     if (m->step.history_invalid || !s->own ||
@@ -157,10 +157,10 @@ static void take_up(const arm *a, motion *m)
     s->own = true;
 }
 
-// The length of the stride whose series are computed: what they allow, but on a flat wall clear of
+// The length of the step whose series are computed: what they allow, but on a flat wall clear of
 // the fold over the hub's axis. There the force has a pole that does not show in the velocities:
 // the velocities' series pass it with small terms, while the force's series diverge.
-static double length_of_stride(const arm *a, const taylor_lane *lane)
+static double length_of_step(const arm *a, const taylor_lane *lane)
 {
     const double allowed = lane->block[AT_ALLOWED];
     if (!lane->form.contact || lane->form.point) {
@@ -184,18 +184,18 @@ static double length_of_stride(const arm *a, const taylor_lane *lane)
 
 static double advance(const arm *a, motion *m, double remaining, double step)
 {
-    taylor_stride *s = m->memory;
+    taylor_integrator *s = m->memory;
     double *kept = state_kept(m, m->state);
     (void)step;
     if (!s->ready && goes_on(m, remaining)) {
         take_up(a, m);
     } else {
         if (!s->ready) {
-            keep(m, most_of_stride(m, remaining));
+            keep(m, longest_step(m, remaining));
             prepare(a, m);
             taylor_compute_one(&s->lane);
         }
-        kept[KEPT_LENGTH] = length_of_stride(a, &s->lane);
+        kept[KEPT_LENGTH] = length_of_step(a, &s->lane);
         s->known = 0;
 
         // series of a group that are to be gone on with
@@ -214,10 +214,10 @@ static double advance(const arm *a, motion *m, double remaining, double step)
     return smaller(kept[KEPT_LENGTH] - s->used, remaining);
 }
 
-// No stride is known yet.
+// No step is known yet.
 static size_t init(const arm *a, void *memory)
 {
-    taylor_stride *s = memory;
+    taylor_integrator *s = memory;
     (void)a;
     if (s != NULL) {
         s->ready = s->own = false;
@@ -228,12 +228,12 @@ static size_t init(const arm *a, void *memory)
 taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
 {
     assert(a != NULL && m != NULL);
-    taylor_stride *s = m->memory;
+    taylor_integrator *s = m->memory;
     if (m->engine != &taylor_engine || m->out_of_memory || motion_held_still(m) ||
         goes_on(m, remaining)) {
         return NULL;
     }
-    keep(m, most_of_stride(m, remaining));
+    keep(m, longest_step(m, remaining));
     prepare(a, m);
     s->ready = true;
     return &s->lane;

@@ -1,23 +1,24 @@
-// What the contact machine asks of the stride of a two-link arm: watched functions, and the force.
+// What the contact machine asks of the step of a two-link arm: event functions, and the force.
 #include <math.h>
 
 #include "src/base/extremes.h"
 #include "src/contact/dense_location.h"
-#include "src/engines/pair/taylor_stride.h"
+#include "src/engines/pair/taylor_integrator.h"
 
-static double rounding_of(const arm *a, const motion *m, const taylor_stride *s)
+static double rounding_of(const arm *a, const motion *m, const taylor_integrator *s)
 {
     return motion_rounding_at(a, m->dof, s->kept + KEPT_ANGLES, s->kept + KEPT_VELOCITIES);
 }
 
 // A function that is to be watched, from the series: only where it comes near zero is it asked for.
 // Just after an event it may begin at zero, as the gap does after a bounce cut short.
-static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, event_function w)
+static void prepare_event_function(const arm *a, const motion *m, taylor_integrator *s,
+                                   event_function w)
 {
     const int order = s->lane.form.order;
     const bool jumped = s->kept[KEPT_JUMPED] != 0;
     const double friction = m->state[SLOT_FRICTION], stiction = a->motor.stiction;
-    polynomial *p = &s->watched[w];
+    polynomial *p = &s->function[w];
     const taylor_lane *lane = &s->lane;
     const int spacing = taylor_spacing(lane);
     s->known |= 1u << w;
@@ -57,19 +58,19 @@ static void prepare_watched(const arm *a, const motion *m, taylor_stride *s, eve
     }
 }
 
-static const polynomial *watched(const arm *a, const motion *m, event_function w)
+static const polynomial *function(const arm *a, const motion *m, event_function w)
 {
-    taylor_stride *s = m->memory;
+    taylor_integrator *s = m->memory;
     if (!(s->known & 1u << w)) {
-        prepare_watched(a, m, s, w);
+        prepare_event_function(a, m, s, w);
     }
-    return &s->watched[w];
+    return &s->function[w];
 }
 
 value_and_slope taylor_event_function(const arm *a, const motion *m, event_function w, double h)
 {
-    const taylor_stride *s = m->memory;
-    const polynomial *p = watched(a, m, w);
+    const taylor_integrator *s = m->memory;
+    const polynomial *p = function(a, m, w);
     const double t = s->used + h;
     value_and_slope near = t > 0 ? value_and_slope_at(p->terms, p->count, t)
                                  : (value_and_slope){p->terms[0], p->terms[1]};
@@ -83,8 +84,8 @@ value_and_slope taylor_event_function(const arm *a, const motion *m, event_funct
 double taylor_second_derivative(const arm *a, const motion *m, event_function w, double from,
                                 double to)
 {
-    taylor_stride *s = m->memory;
-    const polynomial *p = watched(a, m, w);
+    taylor_integrator *s = m->memory;
+    const polynomial *p = function(a, m, w);
     const double t = s->used + to;
     double near = curvature_bound(p, t);
     (void)from;
@@ -100,15 +101,15 @@ double taylor_second_derivative(const arm *a, const motion *m, event_function w,
 
 bool taylor_excludes_event(const motion *m, event_function w)
 {
-    // it is above zero from the start, or rises from it, and stays above zero over the whole stride
-    const taylor_stride *s = m->memory;
+    // it is above zero from the start, or rises from it, and stays above zero over the whole step
+    const taylor_integrator *s = m->memory;
     const bool wall = w == EVENT_OF_GAP || w == EVENT_OF_FORCE;
     return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > 0;
 }
 
-// The root of a watched function that the series' kernel has found, since the step's start; beyond
+// The root of an event function that the series' kernel has found, since the step's start; beyond
 // every step where the function stays clear, negative where the kernel has not found it.
-static double known_root(const taylor_stride *s, int place, bool clear)
+static double known_root(const taylor_integrator *s, int place, bool clear)
 {
     const double root = s->lane.block[place] - s->used;
     return clear ? HUGE_VAL : s->lane.block[place] > 0 ? root : -1;
@@ -116,8 +117,8 @@ static double known_root(const taylor_stride *s, int place, bool clear)
 
 void taylor_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
 {
-    // of most strides the bounds rule all events out
-    const taylor_stride *s = m->memory;
+    // of most steps the bounds rule all events out
+    const taylor_integrator *s = m->memory;
     const contact_state now = contact_state_of(m->state);
     const bool stuck = now.friction == HUB_STICK;
     const event_function wall = now.contact ? EVENT_OF_FORCE : EVENT_OF_GAP;

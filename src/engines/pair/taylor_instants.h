@@ -1,4 +1,4 @@
-// What series come to at instants of their strides, side by side: those of one arm at LANES
+// What series come to at instants of their steps, side by side: those of one arm at LANES
 // instants, or of LANES arms at one each. An instant has the same bits wherever it is computed, and
 // its energies are those of chain_kinetic_energy and chain_strain_energy.
 //

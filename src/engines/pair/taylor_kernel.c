@@ -14,14 +14,14 @@
 // The lowest order at which the series may end: they end with the first even order from it on whose
 // terms are small enough at the wanted length.
 #define LEAST_ORDER 8
-// A stride that is too long for the highest order is shortened by this factor, at most so often.
+// A step that is too long for the highest order is shortened by this factor, at most so often.
 #define SHORTENING       0.875
 #define MOST_SHORTENINGS 200
 
 // --- series -----------------------------------------------------------------------------------
 
 // Magnitudes of the coefficients of the two last orders, and what those of the earlier one are
-// multiplied with at the end of a stride of a length h: of velocities h^(order - 1), of losses h
+// multiplied with at the end of a step of a length h: of velocities h^(order - 1), of losses h
 // times that.
 typedef struct last_terms {
     real before, last, power;
@@ -32,9 +32,9 @@ KERNEL mask too_large(last_terms x, real h, real limit)
     return ~MASK((x.last * h + x.before) * x.power <= limit);
 }
 
-// The longest stride, up to the one of length h that x is of, whose last terms are small; of the
+// The longest step, up to the one of length h that x is of, whose last terms are small; of the
 // highest order.
-KERNEL real allowed_stride(real h, last_terms x, real limit)
+KERNEL real allowed_step(real h, last_terms x, real limit)
 {
     double shrinking = 1, factor = SHORTENING;
     for (int e = TAYLOR_MOST - 1; e > 0; e >>= 1) {
@@ -42,7 +42,8 @@ KERNEL real allowed_stride(real h, last_terms x, real limit)
         factor *= factor;
     }
 
-    // all lanes go on until the last of them is short enough, only those that are too long are cut
+    // all lanes continue until the last of them is short enough, only those that are too long are
+    // cut
     for (int i = 0; i < MOST_SHORTENINGS; i++) {
         const mask bad = too_large(x, h, limit);
         if (!any(bad)) {
@@ -82,13 +83,13 @@ KERNEL real gap_term(const factors *x, ptrdiff_t n, real l, const int point)
     return point ? l * PART(DIRECTIONS(x, n), 1) - S2 : -(PART(DIRECTION1(x, n), 1) + S2);
 }
 
-// What a stride leaves of the function that the wall has watched, and where it ends in between:
+// What a step leaves of the function that the wall has watched, and where it ends in between:
 // `count` terms of the gap, or in contact of the force.
 KERNEL void bound_wall(real *block, const int contact, const real *wall, int count, mask jumped)
 {
     const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
     const real value = zero + (contact ? EDGE_VALUE : EDGE_GAP);
-    const course near = enclosure_of(wall, count, h);
+    const enclosure near = enclosure_of(wall, count, h);
     const real lacking = contact ? zero : EDGE_RATE + LEFT_OUT * (block[AT_EDGE_RATE] - EDGE_RATE);
     const edge_limits edge = {value, zero + EDGE_RATE, greater(lacking, zero + EDGE_MORE)};
     const real first = least_at_first(&near, wall, one, h, jumped, &edge);
@@ -107,12 +108,12 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
 {
     const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
     const real sense = choose(MASK(block[AT_FRICTION] < 0), -one, one);
-    const course turning = enclosure_of(rates, order + 1, h);
+    const enclosure turning = enclosure_of(rates, order + 1, h);
     const edge_limits edge = {zero, block[AT_EDGE_RATE], zero + EDGE_MORE};
     const real first = least_at_first(&turning, rates, sense, h, jumped, &edge);
     real left = least_of(&turning, sense, first);
     if (any(stuck)) {
-        const course torque = enclosure_of(hold, order, h);
+        const enclosure torque = enclosure_of(hold, order, h);
         const real low = lowest(&torque, torque.start - torque.off);
         const real most = greater(highest(&torque), -low);
         const real spared = choose(jumped, zero + EDGE_VALUE, zero);
@@ -199,7 +200,7 @@ KERNEL last_terms all_last_terms(const real *block, const equations *e, ptrdiff_
                                  real scale, const int contact, const int hub_spring)
 {
     last_terms tail = rate_terms(block, order - 1, power, hub_spring);
-    if (!contact) { // the gap's rate: sines of large swings go on where those have ended
+    if (!contact) { // the gap's rate: sines of large swings continue where those have ended
         const real *gap = block + AT_GAP, per_length = 1 / e->l;
         tail.last += magnitude(gap[order + 1]) * (double)(order + 1) * per_length;
         tail.before += magnitude(gap[order]) * (double)order * per_length;
@@ -217,7 +218,7 @@ KERNEL last_terms all_last_terms(const real *block, const equations *e, ptrdiff_
     return tail;
 }
 
-// The equations of a stride, from the block's inputs.
+// The equations of a step, from the block's inputs.
 KERNEL equations equations_of(const real *block, const int hub_spring, bool damped)
 {
     const real zero = (real){0}, mass = block[AT_MASS], l = block[AT_LENGTH];
@@ -286,18 +287,18 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         put_gap(block, &e, &x, order, &last.sum, point);
     }
 
-    // where no order was enough the stride is shortened
+    // where no order was enough the step is shortened
     last_terms tail = all_last_terms(block, &e, order, power, scale, contact, hub_spring);
     const mask ended = order < TAYLOR_MOST ? ~(mask){0} : ~open[TAYLOR_MOST / 2 - 1];
     tail.last = choose(ended, zero, tail.last);
     tail.before = choose(ended, zero, tail.before);
-    const real h = allowed_stride(wanted, tail, limit);
+    const real h = allowed_step(wanted, tail, limit);
     if (LANES > 1 && order > LEAST_ORDER && any(~open[order / 2 - 1])) {
         cut_off(block, open, (int)order);
     }
     block[AT_ALLOWED] = h;
 
-    // what the stride leaves of the wall's function and the hub's, and where it ends in between
+    // what the step leaves of the wall's function and the hub's, and where it ends in between
     const mask jumped = MASK(block[AT_EDGE_RATE] >= 0);
     bound_wall(block, contact, block + (contact ? AT_FORCE : AT_GAP),
                contact ? (int)order : (int)order + 2, jumped);

@@ -75,7 +75,7 @@ void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
     loops->gather(group->block, own);
     group->form.order = loops->series(group->block, group->form);
 
-    // each knows where its own are, and what its stride leaves
+    // each knows where its own are, and what its step leaves
     for (int i = 0; i < count; i++) {
         lanes[i]->group = group;
         lanes[i]->form.order = group->form.order;

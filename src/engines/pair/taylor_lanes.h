@@ -1,18 +1,18 @@
-// Strides of several two-link arms side by side (SIMD): the series and the states at the ends of
-// strides, which are most of a run's work, are computed for as many arms at once as the processor's
+// Steps of several two-link arms side by side (SIMD): the series and the states at the ends of
+// steps, which are most of a run's work, are computed for as many arms at once as the processor's
 // vectors hold. Every arm gets the same bits as when it is computed alone.
 //
 //     taylor_prepare each motion
 //     taylor_compute those of one form
 //     motion_examine_step each motion        (contact_machine.h)
-//     taylor_finish them, each to where its stride ends
+//     taylor_finish them, each to where its step ends
 //     motion_step each
 #pragma once
 
 #include "src/contact/motion.h"
 #include "src/engines/pair/taylor_series.h"
 
-// Series of several arms, and what they come to at the ends of their strides.
+// Series of several arms, and what they come to at the ends of their steps.
 typedef struct taylor_group {
     _Alignas(64) double block[TAYLOR_PLACES * TAYLOR_WIDEST];
     taylor_instants ends;
@@ -21,22 +21,22 @@ typedef struct taylor_group {
     int width;
 } taylor_group;
 
-// A motion's part in it: its stride. Good until the group computes other series.
+// A motion's part in it: its step. Good until the group computes other series.
 typedef struct taylor_lane {
     taylor_form form;
     const taylor_group *group; // NULL: the series are its own, in `block`
     int number;                // of its lane in the group
-    double end;                // where its stride ends, once that is evaluated; else -1 [s]
-    int pieces;                // so many pieces of the stride have their force in the group
+    double end;                // where its step ends, once that is evaluated; else -1 [s]
+    int pieces;                // so many pieces of the step have their force in the group
     unsigned fetched;          // which arrays are in `block`, too
     double block[TAYLOR_PLACES];
 } taylor_lane;
 
-// Prepares the stride that motion_step(a, m, until, ...) is going to begin, with `remaining` to go
-// [s]. NULL if that stride asks for no series: another engine, or an arm that is held still.
+// Prepares the step that motion_step(a, m, until, ...) is going to begin, with `remaining` to go
+// [s]. NULL if that step asks for no series: another engine, or an arm that is held still.
 taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining);
 
-// The kind of a stride, a number below TAYLOR_KINDS: strides can be computed side by side if and
+// The kind of a step, a number below TAYLOR_KINDS: steps can be computed side by side if and
 // only if their kinds are equal.
 enum { TAYLOR_KINDS = 16 };
 static inline int taylor_kind(taylor_form form)
@@ -44,17 +44,17 @@ static inline int taylor_kind(taylor_form form)
     return form.contact | form.point << 1 | form.hub_spring << 2 | form.damped << 3;
 }
 
-// Computes up to taylor_width() prepared strides of one form; the motions take the series from
+// Computes up to taylor_width() prepared steps of one form; the motions take the series from
 // there.
 void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count);
 
-// Where a stride ends, since its start [s], and in how many pieces its force will be asked for.
+// Where a step ends, since its start [s], and in how many pieces its force will be asked for.
 typedef struct taylor_end {
     double time;
     int pieces;
 } taylor_end;
 
-// Evaluates these strides at their ends.
+// Evaluates these steps at their ends.
 void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_end *ends,
                    int count);
 
@@ -76,11 +76,11 @@ static inline int taylor_spacing(const taylor_lane *lane)
 // The first `count` terms of the array of the lane's series that begins at a place.
 const double *taylor_terms(taylor_lane *lane, int place, int count);
 
-// Copies all that a stride may ask of the lane's series into its own block: they then outlive the
+// Copies all that a step may ask of the lane's series into its own block: they then outlive the
 // group's.
 void taylor_fetch(taylor_lane *lane);
 
-// Evaluates the series of one arm at `count` instants of the stride, up to taylor_width().
+// Evaluates the series of one arm at `count` instants of the step, up to taylor_width().
 void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at);
 
 // engine.retorque of the series' engine.

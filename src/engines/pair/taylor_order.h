@@ -22,12 +22,12 @@
 //
 // which are the products that gap' is made of, and p2's as c w1 = c w2 - c d'. Of the n-th
 // coefficient of p1', p2' and the (n+1)-th of gap' all is known but w1_(n+1), w2_(n+1) and f_n,
-// which the matrix of the stride's start, inverted once, gives; q_(n+1) = w_n/(n + 1) follows.
+// which the matrix of the step's start, inverted once, gives; q_(n+1) = w_n/(n + 1) follows.
 #pragma once
 
 #include "src/engines/pair/taylor_products.h"
 
-// The equations of a stride: constants, and the matrix of its start, inverted, in contact without
+// The equations of a step: constants, and the matrix of its start, inverted, in contact without
 // what the wall takes of it, M^-1 - M^-1 J J' M^-1/(J M^-1 J).
 typedef struct equations {
     real l, k, kd, kh, khd, viscous;

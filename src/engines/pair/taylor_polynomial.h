@@ -1,4 +1,4 @@
-// A watched function over a stride of the two-link arm, as a polynomial of the time since its
+// An event function over a step of the two-link arm, as a polynomial of the time since its
 // start.
 //
 // Terms are taken in pairs, so that their number is even, the last one zero if need be.

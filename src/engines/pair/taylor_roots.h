@@ -1,16 +1,16 @@
-// Where functions that are watched over a stride (taylor_enclosure.h) first fall below zero.
+// Where functions that are watched over a step (taylor_enclosure.h) first fall below zero.
 #pragma once
 
 #include "src/engines/pair/taylor_enclosure.h"
 
 enum { MOST_ITERATIONS = 6 }; // of Newton's method
 
-// A function over strides of length t, positive times its sign at first: what it stays above in
+// A function over steps of length t, positive times its sign at first: what it stays above in
 // the first piece, and whether it has jumped there.
 typedef struct enclosed_function {
     const real *terms;
     int count;
-    const course *course;
+    const enclosure *enclosure;
     real sign, first, t;
     mask jumped;
 } enclosed_function;
@@ -24,12 +24,12 @@ typedef struct fall {
 
 KERNEL fall first_zero_crossing(const enclosed_function *f)
 {
-    const real zero = (real){0}, off = f->course->off;
+    const real zero = (real){0}, off = f->enclosure->off;
     fall found = {.from = zero, .length = f->t * 0.25, .above = zero + 1.0, .below = zero - 1.0};
     mask all_clear = ~(mask){0};
-    real start = f->sign * f->course->start;
+    real start = f->sign * f->enclosure->start;
     for (int i = 0; i < 4; i++) {
-        const real end = f->sign * PART(f->course->ends, i);
+        const real end = f->sign * PART(f->enclosure->ends, i);
         const mask starts = i == 0 ? MASK(f->first > 0) : MASK(start > off);
         const mask ends = i == 0 ? f->jumped | MASK(end > off) : MASK(end > off);
         const mask clear = starts & ends, edge = i == 0 ? f->jumped : (mask){0};
@@ -74,7 +74,7 @@ static __attribute__((noinline)) real first_root(const enclosed_function *f)
         return root;
     }
 
-    const real curvature = f->course->curvature, to = in.from + in.length;
+    const real curvature = f->enclosure->curvature, to = in.from + in.length;
     const real resolution = 1e-16 + 2e-16 * to;
     real t = in.from + in.length * (in.above / (in.above - in.below));
     mask open = in.there;

@@ -1,4 +1,4 @@
-// The motion of two links as power series of the time since a stride's start.
+// The motion of two links as power series of the time since a step's start.
 //
 // One source, taylor_kernel.c, is compiled for every width of vectors the processor may have; an
 // arm gets the same bits whichever lane it is in.
@@ -8,7 +8,7 @@
 
 #include "src/contact/edge_limits.h"
 
-// Highest order of the velocities' series, even; strides that something cuts short take less.
+// Highest order of the velocities' series, even; steps that something cuts short take less.
 enum { TAYLOR_MOST = 24, TAYLOR_WIDEST = 8 };
 
 // 1/n
@@ -40,11 +40,11 @@ enum taylor_place {
     AT_HUB_INERTIA,   // [kg m2]
     AT_HUB_STIFFNESS, // of the hub spring [N m/rad]
     AT_HUB_DAMPING,   // [N m s/rad]
-    // the state at the stride's start
+    // the state at the step's start
     AT_FRICTION,                            // hub_friction: 0 with a stuck hub, else its sign
     AT_START_ANGLE,                         // hub (with a spring), first, second link [rad]
     AT_START_VELOCITY = AT_START_ANGLE + 3, // [rad/s]
-    AT_WANTED = AT_START_VELOCITY + 3,      // length of the stride that is wanted [s]
+    AT_WANTED = AT_START_VELOCITY + 3,      // length of the step that is wanted [s]
     // just after an event: the acceleration of a hub at rest below which it is only rounding; else
     // -1 [rad/s2]
     AT_EDGE_RATE,
@@ -58,7 +58,7 @@ enum taylor_place {
     AT_WALL_LEAST,
     AT_HUB_LEAST,
     // where the wall's function, or the sliding hub's, first falls below zero; -1 where the pieces
-    // of the stride do not tell [s]
+    // of the step do not tell [s]
     AT_WALL_ROOT,
     AT_HUB_ROOT,
     AT_FORCE_MOST,                             // and in contact no more than this force [N]
@@ -90,7 +90,7 @@ typedef struct taylor_form {
     int order;       // of the velocities' series, up to TAYLOR_MOST, once they are computed
 } taylor_form;
 
-// Values of the series at instants of their strides, side by side. Bodies are the hub (with a
+// Values of the series at instants of their steps, side by side. Bodies are the hub (with a
 // spring), the first and the second link.
 typedef struct taylor_instants {
     double time[TAYLOR_WIDEST];             // given: since its start [s]
@@ -110,7 +110,7 @@ typedef struct taylor_instants {
     double strain[TAYLOR_WIDEST];           // and of bending [J]
 } taylor_instants;
 
-// The contact force at the ends of equal pieces of a stride, TAYLOR_PIECES at most: a lane has them
+// The contact force at the ends of equal pieces of a step, TAYLOR_PIECES at most: a lane has them
 // at `width`, 2 `width`, and so on.
 enum { TAYLOR_PIECES = 8 };
 typedef struct taylor_pieces {

@@ -1,15 +1,15 @@
-// What the stride of a two-link arm comes to at instants of it.
+// What the step of a two-link arm comes to at instants of it.
 #include <math.h>
 #include <string.h>
 
-#include "src/engines/pair/taylor_stride.h"
+#include "src/engines/pair/taylor_integrator.h"
 
 // What one of the instants comes to, into `state`; in contact the gap and its derivatives ought to
 // be zero, and the second one is taken so.
 static void take_instant(const arm *a, const motion *m, const taylor_instants *at, int i,
                          double *state)
 {
-    const taylor_stride *s = m->memory;
+    const taylor_integrator *s = m->memory;
     const double *before = s->kept + KEPT_QUADRATURES;
     double *quadrature = state_quadratures(m, state);
     memcpy(state_kept(m, state), s->kept, sizeof s->kept);
@@ -50,7 +50,7 @@ static void take_instant(const arm *a, const motion *m, const taylor_instants *a
 }
 
 // The instant h: evaluated with others', where *place says, or into `one`.
-static const taylor_instants *instant_at(taylor_stride *s, double h, taylor_instants *one,
+static const taylor_instants *instant_at(taylor_integrator *s, double h, taylor_instants *one,
                                          int *place)
 {
     *place = 0;
@@ -66,14 +66,14 @@ static const taylor_instants *instant_at(taylor_stride *s, double h, taylor_inst
 status taylor_state_at(const arm *a, motion *m, double h, state_extent extent)
 {
     (void)extent;
-    taylor_stride *s = m->memory;
+    taylor_integrator *s = m->memory;
     taylor_instants one;
     int place;
     const taylor_instants *at = instant_at(s, h, &one, &place);
     take_instant(a, m, at, place, m->trial);
-    m->step.holds = (state_energy){at->kinetic[place], at->strain[place]};
+    m->step.trial_energy = (state_energy){at->kinetic[place], at->strain[place]};
     if (s->lane.form.contact && motion_project(a, m, m->trial)) {
-        m->step.holds = unknown_energy;
+        m->step.trial_energy = unknown_energy;
     }
     return STATUS_OK;
 }
@@ -81,7 +81,7 @@ status taylor_state_at(const arm *a, motion *m, double h, state_extent extent)
 void taylor_states_at(const arm *a, motion *m, const double *h, int count, double *const *states,
                       state_energy *energies)
 {
-    taylor_stride *s = m->memory;
+    taylor_integrator *s = m->memory;
     const int width = taylor_width();
     for (int done = 0; done < count; done += width) {
         taylor_instants at;
@@ -104,12 +104,12 @@ void taylor_states_at(const arm *a, motion *m, const double *h, int count, doubl
 void taylor_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
                          int count, value_and_slope *at)
 {
-    taylor_stride *s = m->memory;
+    taylor_integrator *s = m->memory;
     taylor_lane *lane = &s->lane;
     const double width = count > 0 ? (to - from) / count : 0;
     const int order = lane->form.order;
 
-    // forces may be evaluated with others', which began their strides with the steps
+    // forces may be evaluated with others', which began their steps with the steps
     if (of == OUTPUT_FORCE && count > 0 && lane->pieces == count && from == 0 && lane->end == to) {
         const taylor_pieces *pieces = &lane->group->pieces;
         at[0] = (value_and_slope){*taylor_term(lane, AT_FORCE), *taylor_term(lane, AT_FORCE + 1)};

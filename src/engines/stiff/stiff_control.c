@@ -8,7 +8,7 @@
 #include "src/base/extremes.h"
 #include "src/base/plain_math.h"
 #include "src/contact/dense_location.h"
-#include "src/engines/stiff/stiff_stride.h"
+#include "src/engines/stiff/stiff_integrator.h"
 
 #define NEWTON_SHARE 3e-3  // of the tolerance, what the iteration leaves
 #define FAST_DECAY   3e4   // beyond it, where nothing else is faster, the tolerance is larger [1/s]
@@ -32,10 +32,10 @@
 enum { MOST_ATTEMPTS = 100, MOST_ENDS = 10 };
 
 // How the event function of the step's end, which is `at` its event, differs from zero, as a time.
-static double miss_of(const stiff_stride *s, const arm *a, const motion *m, event_function w)
+static double miss_of(const stiff_integrator *s, const arm *a, const motion *m, event_function w)
 {
     const double *end = s->end;
-    const value_and_slope g = function_at(&s->watched[w], 1);
+    const value_and_slope g = function_at(&s->function[w], 1);
     const double h = s->step.length;
     double value = g.value;
     double slope = g.slope / h;
@@ -50,7 +50,7 @@ static double miss_of(const stiff_stride *s, const arm *a, const motion *m, even
         value = end[SLOT_FRICTION] * state_velocities(m, s->end)[0];
         slope = end[SLOT_FRICTION] * state_accelerations(m, s->end)[0];
     } else if (w == EVENT_OF_STICTION) {
-        value = a->motor.stiction - fabs(end[SLOT_FRICTION_TORQUE]) + s->holds_more;
+        value = a->motor.stiction - fabs(end[SLOT_FRICTION_TORQUE]) + s->stiction_excess;
         const value_and_slope far = function_at(&s->far[w], 1);
         slope = (far.value < g.value ? far.slope : g.slope) / h;
     }
@@ -58,14 +58,14 @@ static double miss_of(const stiff_stride *s, const arm *a, const motion *m, even
 }
 
 // Evaluates the state at the end of the step kept, which begins at m->state.
-static void evaluate_end(stiff_stride *s, const arm *a, motion *m)
+static void evaluate_end(stiff_integrator *s, const arm *a, motion *m)
 {
     memcpy(s->end, m->state, stiff_head_size(m));
     stiff_state_within(s, a, m, s->kept[KEPT_LENGTH], s->end);
 }
 
 // Works out what the solved stages come to.
-static bool take_stages(stiff_stride *s, const arm *a, motion *m)
+static bool take_stages(stiff_integrator *s, const arm *a, motion *m)
 {
     if (!s->loops->residual(&s->step, true)) {
         return false;
@@ -74,14 +74,14 @@ static bool take_stages(stiff_stride *s, const arm *a, motion *m)
     s->kept[STIFF_GAP] = grown;
     stiff_keep_stages(s);
     s->kept[KEPT_LENGTH] = s->step.length;
-    stiff_watch(s, a, m);
+    stiff_event_functions(s, a, m);
     evaluate_end(s, a, m);
     return true;
 }
 
-// Whether a watched function other than `passed` falls below zero in the step, and then the first
+// Whether an event function other than `passed` falls below zero in the step, and then the first
 // one and when [s].
-static bool another_event(stiff_stride *s, const arm *a, motion *m, event_function passed,
+static bool another_event(stiff_integrator *s, const arm *a, motion *m, event_function passed,
                           event_function *first, double *time)
 {
     bool any;
@@ -95,7 +95,8 @@ static bool another_event(stiff_stride *s, const arm *a, motion *m, event_functi
 // Takes the step again up to an event at `time` within it, until it ends there: no longer than its
 // error allows, and at another event where the first moves to beyond that one. An event that moves
 // out of the step was one of rounding, and does not end it.
-static bool end_at_event(stiff_stride *s, const arm *a, motion *m, event_function w, double time)
+static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, event_function w,
+                         double time)
 {
     const double allowed = s->step.length;
     double ratio = time / allowed, rate = 0.5;
@@ -168,7 +169,7 @@ static double first_try(const arm *a, motion *m, bool fresh)
 // How far the links turn in a step on a rigid flat wall, in shares of what a step may take of the
 // way to a fold over the hub's axis. There the force has a pole that does not show in the
 // velocities.
-static double turn_to_fold(const stiff_stride *s, const arm *a)
+static double turn_to_fold(const stiff_integrator *s, const arm *a)
 {
     const stiff_step *p = &s->step;
     if (p->contact != STIFF_RIGID || a->wall.kind != WALL_PLANE || p->links < 2) {
@@ -188,7 +189,7 @@ static double turn_to_fold(const stiff_stride *s, const arm *a)
 
 // Where the step before ended at the drive's limit, or left it, the other of its equations holds,
 // whatever the current's last digits say.
-static void change_drive(stiff_stride *s, const arm *a, motion *m)
+static void change_drive(stiff_integrator *s, const arm *a, motion *m)
 {
     const double *before = state_kept(m, m->state);
     stiff_step *p = &s->step;
@@ -219,7 +220,7 @@ static double tolerance_of(const arm *a, const motion *m)
 
 // What errors of this step are a share of: the largest momentum so far. The least is what the
 // motor's torque makes of the arm in a small turn.
-static double scale_of(const stiff_stride *s, const arm *a, motion *m, double before)
+static double scale_of(const stiff_integrator *s, const arm *a, motion *m, double before)
 {
     const motor_model *motor = &a->motor;
     const double torque =
@@ -231,7 +232,7 @@ static double scale_of(const stiff_stride *s, const arm *a, motion *m, double be
 }
 
 // Puts what holds at the step's start into what is kept.
-static void keep_start(stiff_stride *s, motion *m, double scale)
+static void keep_start(stiff_integrator *s, motion *m, double scale)
 {
     double *kept = s->kept, *state = m->state;
     kept[STIFF_SCALE] = scale;
@@ -250,7 +251,7 @@ static void keep_start(stiff_stride *s, motion *m, double scale)
 }
 
 // Solves a step's stages, as long a step as its error allows. False if there is none.
-static bool solve_within_error(stiff_stride *s, const arm *a, motion *m)
+static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
 {
     const double *before = state_kept(m, m->state);
     const double was = before[STIFF_LENGTH], offset = was > 0 ? before[KEPT_USED] / was : 0;
@@ -288,7 +289,7 @@ static bool solve_within_error(stiff_stride *s, const arm *a, motion *m)
     return false;
 }
 
-bool stiff_make_step(stiff_stride *s, const arm *a, motion *m)
+bool stiff_make_step(stiff_integrator *s, const arm *a, motion *m)
 {
     stiff_set_arm(s, a, m);
     stiff_set_start(s, m);

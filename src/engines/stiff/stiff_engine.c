@@ -1,25 +1,25 @@
 // The stiff engine: Radau IIA of seven stages, order 13, for every arm and wall (stiff_step.h).
 //
 // A step is as long as the error of its velocities and angles allows, whatever is asked of it:
-// rows, stops and the end of a run read its polynomials, and the state keeps it (stiff_stride.h). A
-// step within which a watched function falls below zero is taken again up to that instant, so that
-// an event is where a step ends. After an event a step begins anew, short; after a change of torque
-// it is predicted from the step before, as every other one is.
+// rows, stops and the end of a run read its polynomials, and the state keeps it
+// (stiff_integrator.h). A step within which an event function falls below zero is taken again up to
+// that instant, so that an event is where a step ends. After an event a step begins anew, short;
+// after a change of torque it is predicted from the step before, as every other one is.
 //
 // How a step is made stands in stiff_control.c, what it tells in stiff_output.c.
 #include <string.h>
 
 #include "src/base/extremes.h"
 #include "src/contact/dense_location.h"
-#include "src/engines/stiff/stiff_stride.h"
+#include "src/engines/stiff/stiff_integrator.h"
 #include "src/engines/pair/taylor_lanes.h"
 
-#define LEAST_LEFT 1e-13 // share of a step that is gone on with
+#define LEAST_LEFT 1e-13 // share of a step that is continued
 
 static size_t init(const arm *a, void *memory)
 {
     const size_t n = (size_t)a->dof, links = (size_t)a->links, modes = (size_t)a->damped_modes;
-    stiff_stride none, *s = memory != NULL ? memory : &none;
+    stiff_integrator none, *s = memory != NULL ? memory : &none;
     stiff_step *p = &s->step;
     layout l = {.block = memory};
     memset(s, 0, sizeof *s);
@@ -49,8 +49,8 @@ static size_t init(const arm *a, void *memory)
     return l.length;
 }
 
-// Goes on in the step that the state keeps.
-static void take_up(stiff_stride *s, const arm *a, motion *m)
+// Continues in the step that the state keeps.
+static void take_up(stiff_integrator *s, const arm *a, motion *m)
 {
     const double *kept = state_kept(m, m->state);
     const size_t from = STIFF_LENGTH,
@@ -72,7 +72,7 @@ static void take_up(stiff_stride *s, const arm *a, motion *m)
 
 static double advance(const arm *a, motion *m, double remaining, double step)
 {
-    stiff_stride *s = m->memory;
+    stiff_integrator *s = m->memory;
     const double *kept = state_kept(m, m->state);
     (void)step;
     const double left = kept[KEPT_LENGTH] - kept[KEPT_USED];

@@ -2,13 +2,13 @@
 // formula of order 7 has more than the stages, filtered by the real system.
 #include <math.h>
 
-#include "src/engines/stiff/stiff_stride.h"
+#include "src/engines/stiff/stiff_integrator.h"
 
 #define ANGLE_RATE 20 // that makes an angle's error one of velocity [1/s]
 
-double stiff_momentum(const stiff_stride *stride, const double *w)
+double stiff_momentum(const stiff_integrator *integrator, const double *w)
 {
-    const stiff_step *s = &stride->step;
+    const stiff_step *s = &integrator->step;
     double v = 0, sum = s->hub_inertia * w[0] * w[0];
     for (int k = 0; k < s->links; k++) {
         v += s->link[k].length * w[s->first + k];
@@ -134,11 +134,11 @@ static void solve(const stiff_step *s, double target, double *y)
 }
 
 // What the embedded formula adds to a course, `start` being its own part, over the whole step.
-static double course_error(const stiff_step *s, double start, const stiff_nodes *course)
+static double quadrature_error(const stiff_step *s, double start, const stiff_nodes *values)
 {
     double sum = start;
     for (int i = 0; i < RADAU_STAGES; i++) {
-        sum += radau_difference[i] * course->at[i];
+        sum += radau_difference[i] * values->at[i];
     }
     return s->length * sum;
 }
@@ -165,7 +165,7 @@ static double current_error(const stiff_step *s, double gamma, bool twice)
     const double filter = 1 + m->resistance / (m->inductance * gamma);
     double reach;
     const double filtered =
-        course_error(s, start, &s->current_rate) / (twice ? filter * filter : filter);
+        quadrature_error(s, start, &s->current_rate) / (twice ? filter * filter : filter);
     return m->torque_constant * filtered / (ANGLE_RATE * sqrt(stretched_inertia(s, &reach)));
 }
 
@@ -174,18 +174,19 @@ static double impulse_error(const stiff_step *s)
 {
     double reach;
     const double inertia = stretched_inertia(s, &reach);
-    return course_error(s, radau_start * s->force0, &s->force) * reach / sqrt(inertia);
+    return quadrature_error(s, radau_start * s->force0, &s->force) * reach / sqrt(inertia);
 }
 
 // Filters errors of angles and velocities by the real system, in place: e - g J e is what they are.
-static void filter(stiff_stride *stride, double gamma, double *x, double *w)
+static void filter(stiff_integrator *integrator, double gamma, double *x, double *w)
 {
-    stiff_step *s = &stride->step;
-    double *y = stride->scratch[2];
+    stiff_step *s = &integrator->step;
+    double *y = integrator->scratch[2];
     for (int k = 0; k < s->dof; k++) {
         w[k] = gamma * (w[k] + gamma * x[k]);
     }
-    inertia_and_damping(s, gamma, w, x, y, stride->scratch[3], stride->scratch[3] + s->links);
+    inertia_and_damping(s, gamma, w, x, y, integrator->scratch[3],
+                        integrator->scratch[3] + s->links);
 
     // with the wall
     double target = 0;
@@ -202,27 +203,27 @@ static void filter(stiff_stride *stride, double gamma, double *x, double *w)
     }
 }
 
-double stiff_error(stiff_stride *stride, bool twice)
+double stiff_error(stiff_integrator *integrator, bool twice)
 {
     // what the embedded formula adds to angles (x) and velocities (w)
-    stiff_step *s = &stride->step;
+    stiff_step *s = &integrator->step;
     const double h = s->length, gamma = 1 / (h * radau_start);
-    double *x = stride->scratch[0], *w = stride->scratch[1];
-    stride->loops->differences(s, x, w);
+    double *x = integrator->scratch[0], *w = integrator->scratch[1];
+    integrator->loops->differences(s, x, w);
     for (int k = 0; k < s->dof; k++) {
         x[k] *= h;
         w[k] *= h;
     }
-    filter(stride, gamma, x, w);
+    filter(integrator, gamma, x, w);
     if (twice) {
-        filter(stride, gamma, x, w);
+        filter(integrator, gamma, x, w);
     }
 
     // as velocities
     for (int k = 0; k < s->dof; k++) {
         x[k] *= ANGLE_RATE;
     }
-    const double of_w = stiff_momentum(stride, w), of_q = stiff_momentum(stride, x);
+    const double of_w = stiff_momentum(integrator, w), of_q = stiff_momentum(integrator, x);
     const double of_i = s->drive == STIFF_FLOWS ? current_error(s, gamma, twice) : 0;
     const double of_p = s->contact == STIFF_GIVES ? impulse_error(s) : 0;
     return sqrt(of_w * of_w + of_q * of_q + of_i * of_i + of_p * of_p);

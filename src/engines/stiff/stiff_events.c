@@ -4,7 +4,7 @@
 
 #include "src/base/extremes.h"
 #include "src/contact/edge_limits.h"
-#include "src/engines/stiff/stiff_stride.h"
+#include "src/engines/stiff/stiff_integrator.h"
 
 // Of the current, as a share of its limit.
 #define EDGE_CURRENT 1e-10
@@ -17,26 +17,26 @@
 #define LOW_FLIGHT 1e-9
 
 // The function less what is only rounding at its start (edge_limits.h).
-static void deflate_root(stiff_stride *s, event_function w, const double limits[3])
+static void deflate_root(stiff_integrator *s, event_function w, const double limits[3])
 {
     double terms[4];
-    function_start(&s->watched[w], terms);
+    function_start(&s->function[w], terms);
     const int powers = edge_powers(terms, limits, s->step.length);
     for (int i = 0; i < powers; i++) {
-        function_divide(&s->watched[w]);
+        function_divide(&s->function[w]);
         s->divided[w] = true;
     }
 
     // of one that starts flatter still, what is left at the start is rounding; of a force that
     // presses at all stages, or a gap that is open at all of them, the step's own error, too
-    double *start = s->watched[w].b;
+    double *start = s->function[w].b;
     bool holds = (w == EVENT_OF_FORCE && powers > 0) || (w == EVENT_OF_GAP && powers == 3);
     for (int i = 0; i < RADAU_STAGES && holds; i++) {
         holds = w == EVENT_OF_FORCE ? s->step.force.at[i] > 0
-                                    : function_at(&s->watched[w], radau_node[i]).value > 0;
+                                    : function_at(&s->function[w], radau_node[i]).value > 0;
     }
     const double share = holds ? LACKS : powers == 3 ? FLAT : 0;
-    if (*start < 0 && *start > -share * function_greatest(&s->watched[w])) {
+    if (*start < 0 && *start > -share * function_greatest(&s->function[w])) {
         *start = -*start;
     }
 }
@@ -44,26 +44,26 @@ static void deflate_root(stiff_stride *s, event_function w, const double limits[
 // Of an arm in contact with a wall that gives: its depth, and of Hunt and Crossley's law, for the
 // force itself, the factor k + c v of the power. Of Kelvin and Voigt's the force with its own slope
 // at the start, which decides whether the arm stays.
-static void watch_within(stiff_stride *s, const arm *a, const motion *m)
+static void set_compliant_functions(stiff_integrator *s, const arm *a, const motion *m)
 {
     double law[RADAU_LANES];
-    s->watched[EVENT_OF_GAP] = s->gap;
-    function_scale(&s->watched[EVENT_OF_GAP], -1, 0);
+    s->function[EVENT_OF_GAP] = s->gap;
+    function_scale(&s->function[EVENT_OF_GAP], -1, 0);
     if (a->wall.law == WALL_KELVIN_VOIGT) {
         const double grows = -a->wall.stiffness * m->state[SLOT_GAP_VELOCITY] -
                              a->wall.damping * m->state[SLOT_GAP_ACCELERATION];
-        function_through_rising(&s->watched[EVENT_OF_FORCE], stiff_force(s),
+        function_through_rising(&s->function[EVENT_OF_FORCE], stiff_force(s),
                                 s->step.length * grows);
         return;
     }
     for (int i = 0; i < RADAU_LANES; i++) {
         law[i] = a->wall.stiffness - a->wall.damping * s->step.rate.at[i];
     }
-    function_through(&s->watched[EVENT_OF_FORCE], law);
+    function_through(&s->function[EVENT_OF_FORCE], law);
 }
 
 // The gap, from its rates, its acceleration at the start and where it starts [m].
-static void set_gap(stiff_stride *s, const arm *a, const motion *m)
+static void set_gap(stiff_integrator *s, const arm *a, const motion *m)
 {
     const double h = s->step.length;
     double start = m->state[SLOT_GAP], rates[RADAU_LANES];
@@ -93,23 +93,24 @@ static void ignore_rounding(stiff_function *f)
     }
 }
 
-static void watch_wall(stiff_stride *s, const arm *a, const motion *m, contact_state now)
+static void set_wall_functions(stiff_integrator *s, const arm *a, const motion *m,
+                               contact_state now)
 {
     bool at_edge = m->state[SLOT_JUMPED] != 0;
     function_through(&s->force, stiff_force(s)); // the state's own at both ends
     set_gap(s, a, m);
-    s->watched[EVENT_OF_FORCE] = s->force;
+    s->function[EVENT_OF_FORCE] = s->force;
     if (m->wall_gives && now.contact) {
-        watch_within(s, a, m);
+        set_compliant_functions(s, a, m);
     } else if (!now.contact) {
-        stiff_function *distance = &s->watched[EVENT_OF_GAP];
+        stiff_function *distance = &s->function[EVENT_OF_GAP];
         *distance = s->gap;
         if (distance->b[0] < 0 && distance->b[0] > -EDGE_DEPTH && distance->b[1] > distance->b[0]) {
             distance->b[0] = 0;
             at_edge = true;
         }
     }
-    ignore_rounding(&s->watched[EVENT_OF_GAP]);
+    ignore_rounding(&s->function[EVENT_OF_GAP]);
     if (!at_edge) {
         return;
     }
@@ -127,7 +128,7 @@ static void watch_wall(stiff_stride *s, const arm *a, const motion *m, contact_s
     }
 }
 
-static void watch_hub(stiff_stride *s, const arm *a, const motion *m, contact_state now)
+static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m, contact_state now)
 {
     const bool jumped = m->state[SLOT_JUMPED] != 0;
     if (now.friction != HUB_STICK) {
@@ -135,10 +136,10 @@ static void watch_hub(stiff_stride *s, const arm *a, const motion *m, contact_st
         for (int i = 0; i < RADAU_LANES; i++) {
             rate[i] = now.friction * s->step.stage[0].w[i / 4][i % 4];
         }
-        function_through(&s->watched[EVENT_OF_HUB], rate);
+        function_through(&s->function[EVENT_OF_HUB], rate);
         if (jumped) { // it may start at zero
             const double limits[] = {0, EDGE_RATE * motion_rounding(a, m), EDGE_MORE};
-            function_through_rising(&s->watched[EVENT_OF_HUB], rate,
+            function_through_rising(&s->function[EVENT_OF_HUB], rate,
                                     now.friction * s->step.length * s->step.a0[0]);
             deflate_root(s, EVENT_OF_HUB, limits);
         }
@@ -146,18 +147,18 @@ static void watch_hub(stiff_stride *s, const arm *a, const motion *m, contact_st
     }
 
     // the nearer limit of what friction holds, and the farther one
-    stiff_function *near = &s->watched[EVENT_OF_STICTION];
+    stiff_function *near = &s->function[EVENT_OF_STICTION];
     function_through(near, s->step.hold.at);
     const double sign = near->b[0] < 0 ? 1 : -1;
     stiff_function *far = &s->far[EVENT_OF_STICTION];
     *far = *near;
     function_scale(near, sign, a->motor.stiction);
     function_scale(far, -sign, a->motor.stiction);
-    s->holds_more = jumped && fabs(near->b[0]) <= EDGE_VALUE ? EDGE_VALUE - near->b[0] : 0;
-    function_scale(near, 1, s->holds_more);
+    s->stiction_excess = jumped && fabs(near->b[0]) <= EDGE_VALUE ? EDGE_VALUE - near->b[0] : 0;
+    function_scale(near, 1, s->stiction_excess);
 }
 
-static void watch_current(stiff_stride *s, const arm *a, const motion *m)
+static void set_current_function(stiff_integrator *s, const arm *a, const motion *m)
 {
     const motor_model *motor = &a->motor;
     const double most = motor->current_limit, side = s->step.limited < 0 ? -1 : 1;
@@ -165,7 +166,7 @@ static void watch_current(stiff_stride *s, const arm *a, const motion *m)
     for (int i = 0; i < RADAU_LANES; i++) {
         current[i] = side * s->step.current.at[i];
     }
-    stiff_function *near = &s->watched[EVENT_OF_CURRENT];
+    stiff_function *near = &s->function[EVENT_OF_CURRENT];
     function_through(near, current);
     s->far[EVENT_OF_CURRENT] = *near;
     function_scale(&s->far[EVENT_OF_CURRENT], 1, most);
@@ -192,17 +193,17 @@ static void watch_current(stiff_stride *s, const arm *a, const motion *m)
     (void)m;
 }
 
-void stiff_watch(stiff_stride *s, const arm *a, const motion *m)
+void stiff_event_functions(stiff_integrator *s, const arm *a, const motion *m)
 {
     const contact_state now = contact_state_of(m->state);
     for (int w = 0; w < EVENT_FUNCTION_COUNT; w++) {
         s->divided[w] = false;
     }
     if (wall_stands(&a->wall)) {
-        watch_wall(s, a, m, now);
+        set_wall_functions(s, a, m, now);
     }
-    watch_hub(s, a, m, now);
+    set_hub_functions(s, a, m, now);
     if (a->motor.electric && a->motor.current_limit < HUGE_VAL) {
-        watch_current(s, a, m);
+        set_current_function(s, a, m);
     }
 }

@@ -5,7 +5,7 @@
 
 #include "src/base/extremes.h"
 #include "src/base/sincos.h"
-#include "src/engines/stiff/stiff_stride.h"
+#include "src/engines/stiff/stiff_integrator.h"
 
 #define FARTHEST    2    // in lengths of a step, to where its polynomials are extrapolated
 #define LEAST_RATE  1e-4 // of the iteration that is believed
@@ -39,9 +39,9 @@ static void choose_drive(stiff_step *s, const motor_model *m, double current, do
     }
 }
 
-void stiff_set_arm(stiff_stride *stride, const arm *a, const motion *m)
+void stiff_set_arm(stiff_integrator *integrator, const arm *a, const motion *m)
 {
-    stiff_step *s = &stride->step;
+    stiff_step *s = &integrator->step;
     const contact_state now = contact_state_of(m->state);
     s->links = a->links;
     s->dof = a->dof;
@@ -92,9 +92,9 @@ void stiff_set_arm(stiff_stride *stride, const arm *a, const motion *m)
     s->contact = !now.contact ? STIFF_FREE : motion_wall_is_rigid(m) ? STIFF_RIGID : STIFF_GIVES;
 }
 
-void stiff_set_start(stiff_stride *stride, motion *m)
+void stiff_set_start(stiff_integrator *integrator, motion *m)
 {
-    stiff_step *s = &stride->step;
+    stiff_step *s = &integrator->step;
     const size_t size = (size_t)s->dof * sizeof(double);
     memcpy(s->q0, state_angles(m, m->state), size);
     memcpy(s->w0, state_velocities(m, m->state), size);
@@ -108,10 +108,10 @@ void stiff_set_start(stiff_stride *stride, motion *m)
 
 // --- Newton --------------------------------------------------------------------------------------
 
-bool stiff_solve_stages(stiff_stride *stride, bool fresh, double offset, double ratio, double *rate,
-                        double tolerance, double scale)
+bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset, double ratio,
+                        double *rate, double tolerance, double scale)
 {
-    stiff_step *s = &stride->step;
+    stiff_step *s = &integrator->step;
     _Alignas(32) double weight[RADAU_STAGES][RADAU_LANES] = {{0}};
     for (int i = 0; i < RADAU_STAGES && !fresh; i++) {
         double value[RADAU_LANES];
@@ -126,19 +126,20 @@ bool stiff_solve_stages(stiff_stride *stride, bool fresh, double offset, double 
         s->shift[0].at[i] = at.place;
         s->shift[1].at[i] = at.velocity;
     }
-    stride->loops->predict(s, stiff_accelerations(stride), stiff_force(stride), weight[0]);
+    integrator->loops->predict(s, stiff_accelerations(integrator), stiff_force(integrator),
+                               weight[0]);
 
     // with the tangent at the first iterate
     const double wanted = tolerance * scale;
     double before = 0;
     for (int i = 0; i < MOST_ITERATIONS; i++) {
-        if (!stride->loops->residual(s, false)) {
+        if (!integrator->loops->residual(s, false)) {
             return false;
         }
         if (i == 0) {
-            stride->loops->factor(s);
+            integrator->loops->factor(s);
         }
-        const double now = stride->loops->correct(s), theta = i > 0 ? now / before : *rate;
+        const double now = integrator->loops->correct(s), theta = i > 0 ? now / before : *rate;
         if (!(now < 1e3 * (1 + scale))) {
             return false;
         }
@@ -152,7 +153,7 @@ bool stiff_solve_stages(stiff_stride *stride, bool fresh, double offset, double 
             return true;
         }
         if (i > 1 && theta > SLOW_RATE) { // as near as the angles' last digits let it come
-            const double rounding = LAST_DIGITS * stiff_momentum(stride, s->q0) / s->length;
+            const double rounding = LAST_DIGITS * stiff_momentum(integrator, s->q0) / s->length;
             return now < smaller(rounding, MOST_LEFT * wanted);
         }
         before = now;
@@ -160,14 +161,14 @@ bool stiff_solve_stages(stiff_stride *stride, bool fresh, double offset, double 
     return false;
 }
 
-void stiff_keep_stages(stiff_stride *stride)
+void stiff_keep_stages(stiff_integrator *integrator)
 {
-    const stiff_step *s = &stride->step;
-    double *kept = stride->kept;
-    memcpy(kept + STIFF_COURSE, s->course, sizeof s->course);
-    memcpy(stiff_angles(stride), s->q0, (size_t)s->dof * sizeof(double));
-    memcpy(stiff_velocities(stride), s->w0, (size_t)s->dof * sizeof(double));
-    double *a = stiff_accelerations(stride);
+    const stiff_step *s = &integrator->step;
+    double *kept = integrator->kept;
+    memcpy(kept + STIFF_VALUES, s->values, sizeof s->values);
+    memcpy(stiff_angles(integrator), s->q0, (size_t)s->dof * sizeof(double));
+    memcpy(stiff_velocities(integrator), s->w0, (size_t)s->dof * sizeof(double));
+    double *a = stiff_accelerations(integrator);
     for (int k = 0; k < s->dof; k++) {
         memcpy(a + (size_t)RADAU_LANES * (size_t)k, s->stage[k].a, sizeof s->stage[k].a);
     }
@@ -179,7 +180,7 @@ void stiff_keep_stages(stiff_stride *stride)
         memset(a, 0, (size_t)s->dof * RADAU_LANES * sizeof *a);
     }
     for (int i = 0; i < RADAU_LANES && both && s->contact == STIFF_RIGID; i++) {
-        stiff_force(stride)[i] = s->force.at[RADAU_LANES - 1];
+        stiff_force(integrator)[i] = s->force.at[RADAU_LANES - 1];
     }
     kept[STIFF_LENGTH] = s->length;
 }

@@ -1,11 +1,11 @@
 // What a step of the stiff engine tells of itself (engine.h): its states, by the polynomials
-// through its stages, and the watched functions.
+// through its stages, and the event functions.
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "src/base/extremes.h"
-#include "src/engines/stiff/stiff_stride.h"
+#include "src/engines/stiff/stiff_integrator.h"
 
 // Share of a power's largest value by which it may differ at a start from what the stages say.
 #define LITTLE 1e-2
@@ -27,7 +27,7 @@ typedef struct body_motion {
     double q, w, a;
 } body_motion;
 
-static inline body_motion body_at(const stiff_stride *s, int k, double x,
+static inline body_motion body_at(const stiff_integrator *s, int k, double x,
                                   const radau_weights *weight)
 {
     const double h = s->kept[STIFF_LENGTH], w0 = stiff_velocities(s)[k];
@@ -44,28 +44,29 @@ static inline body_motion body_at(const stiff_stride *s, int k, double x,
 // What the power of a quadrature at the step's start adds there to that by the stages, which have
 // it for a whole step: the next order of the polynomial through them. Nothing where the start shows
 // a transient that they do not.
-static double start_adds(const stiff_stride *s, int of, const radau_weights *weight)
+static double start_adds(const stiff_integrator *s, int of, const radau_weights *weight)
 {
-    const double *course = s->kept + STIFF_COURSE + of * RADAU_LANES;
+    const double *values = s->kept + STIFF_VALUES + of * RADAU_LANES;
     double value[RADAU_LANES], most = 0;
     radau_values_at(0, value);
     for (int j = 0; j < RADAU_STAGES; j++) {
-        most = larger(fabs(course[j]), most);
+        most = larger(fabs(values[j]), most);
     }
-    const double more = course[RADAU_STAGES] - weighted(value, course);
+    const double more = values[RADAU_STAGES] - weighted(value, values);
     return fabs(more) < LITTLE * most ? s->kept[STIFF_LENGTH] * weight->start * more : 0;
 }
 
 // A quadrature there.
-static double quadrature_at(const stiff_stride *s, int of, const radau_weights *weight)
+static double quadrature_at(const stiff_integrator *s, int of, const radau_weights *weight)
 {
     return s->kept[STIFF_QUADRATURES + of] +
            s->kept[STIFF_LENGTH] *
-               weighted(weight->integral, s->kept + STIFF_COURSE + of * RADAU_LANES);
+               weighted(weight->integral, s->kept + STIFF_VALUES + of * RADAU_LANES);
 }
 
 // Angles, velocities and what has added up at `time` after the step's start, evaluated.
-void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double time, double *state)
+void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, double time,
+                        double *state)
 {
     const double x = time / s->kept[STIFF_LENGTH];
     double *q = state_angles(m, state), *w = state_velocities(m, state);
@@ -120,7 +121,7 @@ void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double t
 
 // What sensors see of the state at `time` after the step's start, as the stages have it and not
 // evaluated.
-static void sense_within(const stiff_stride *s, const arm *a, const motion *m, double time,
+static void sense_within(const stiff_integrator *s, const arm *a, const motion *m, double time,
                          double *state)
 {
     const double x = time / s->kept[STIFF_LENGTH];
@@ -139,7 +140,7 @@ static void sense_within(const stiff_stride *s, const arm *a, const motion *m, d
 
 status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
 {
-    const stiff_stride *s = m->memory;
+    const stiff_integrator *s = m->memory;
     double *kept = state_kept(m, m->trial);
 
     // by the instant itself, which is the same whatever stops were made on the way
@@ -166,16 +167,16 @@ status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
 
 // --- what the contact machine asks ---------------------------------------------------------------
 
-static value_and_slope by_time(const stiff_stride *s, value_and_slope g)
+static value_and_slope by_time(const stiff_integrator *s, value_and_slope g)
 {
     return (value_and_slope){g.value, g.slope / s->step.length};
 }
 
 value_and_slope stiff_event_function(const arm *a, const motion *m, event_function w, double h)
 {
-    const stiff_stride *s = m->memory;
+    const stiff_integrator *s = m->memory;
     const double x = (s->used + h) / s->step.length;
-    value_and_slope near = function_at(&s->watched[w], x);
+    value_and_slope near = function_at(&s->function[w], x);
     if (w >= EVENT_OF_STICTION) {
         const value_and_slope far = function_at(&s->far[w], x);
         near = near.value < far.value ? near : far;
@@ -187,10 +188,10 @@ value_and_slope stiff_event_function(const arm *a, const motion *m, event_functi
 double stiff_second_derivative(const arm *a, const motion *m, event_function w, double from,
                                double to)
 {
-    const stiff_stride *s = m->memory;
+    const stiff_integrator *s = m->memory;
     const double length = s->step.length;
     const double x0 = (s->used + from) / length, x1 = (s->used + to) / length;
-    const stiff_function *f = s->used > 0 && w == EVENT_OF_FORCE ? &s->force : &s->watched[w];
+    const stiff_function *f = s->used > 0 && w == EVENT_OF_FORCE ? &s->force : &s->function[w];
     double most = function_curvature(f, x0, x1);
     if (w >= EVENT_OF_STICTION) {
         most = larger(most, function_curvature(&s->far[w], x0, x1));
@@ -203,13 +204,13 @@ double stiff_second_derivative(const arm *a, const motion *m, event_function w, 
 
 bool stiff_excludes_event(const motion *m, event_function w)
 {
-    const stiff_stride *s = m->memory;
-    return s->passed == 1 + (int)w || (function_least(&s->watched[w]) > 0 &&
+    const stiff_integrator *s = m->memory;
+    return s->passed == 1 + (int)w || (function_least(&s->function[w]) > 0 &&
                                        (w < EVENT_OF_STICTION || function_least(&s->far[w]) > 0));
 }
 
 // The hub's angle and velocity at x of the step.
-static value_and_slope hub_at(const stiff_stride *s, double x)
+static value_and_slope hub_at(const stiff_integrator *s, double x)
 {
     radau_weights weight;
     radau_weights_at(x, &weight);
@@ -220,7 +221,7 @@ static value_and_slope hub_at(const stiff_stride *s, double x)
 void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
                         int count, value_and_slope *at)
 {
-    const stiff_stride *s = m->memory;
+    const stiff_integrator *s = m->memory;
     const double width = count > 0 ? (to - from) / count : 0;
     for (int i = 0; i <= count; i++) {
         const double x = (s->used + (from + i * width)) / s->step.length;
@@ -236,7 +237,7 @@ void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from
 
 void stiff_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
 {
-    const stiff_stride *s = m->memory;
+    const stiff_integrator *s = m->memory;
     const int event = (int)s->kept[STIFF_EVENT];
     (void)a;
     *any = event > 0 && *h >= s->kept[KEPT_LENGTH] - s->used;

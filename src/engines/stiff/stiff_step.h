@@ -51,7 +51,7 @@ typedef enum stiff_wall { STIFF_FREE, STIFF_RIGID, STIFF_GIVES } stiff_wall;
 typedef enum stiff_drive { STIFF_DIRECT, STIFF_FOLLOWS, STIFF_FLOWS, STIFF_LIMITED } stiff_drive;
 
 // Courses of a step that a state keeps.
-enum { STIFF_COURSES = QUADRATURE_COUNT + 3 };
+enum { STIFF_STAGE_VALUES = QUADRATURE_COUNT + 3 };
 
 // A link and the joint before it, and the link's direction at the step's start.
 typedef struct stiff_link {
@@ -109,7 +109,7 @@ typedef struct stiff_step {
             stiff_nodes viscous, lost, force, wall_lost, current_rate, electric, pushed;
             stiff_nodes rate, hold, current;
         };
-        stiff_nodes course[STIFF_COURSES];
+        stiff_nodes values[STIFF_STAGE_VALUES];
     };
     double time; // of its start [s]
     // of a wall that moves, else zeros: place and velocity [m], [m/s]

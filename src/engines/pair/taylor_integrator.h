@@ -1,4 +1,4 @@
-// The stride in hand of the two-link engine (taylor_engine.c), its states (taylor_states.c) and the
+// The step in hand of the two-link engine (taylor_engine.c), its states (taylor_states.c) and the
 // answers to the contact machine's questions about it (taylor_events.c).
 #pragma once
 
@@ -6,17 +6,17 @@
 #include "src/engines/pair/taylor_lanes.h"
 #include "src/engines/pair/taylor_polynomial.h"
 
-typedef struct taylor_stride {
+typedef struct taylor_integrator {
     taylor_lane lane; // the series
     polynomial
-        watched[EVENT_OF_STICTION + 1]; // as far as they were asked for; stiction: nearer limit
-    polynomial far_limit;               // of stiction
-    unsigned known;                     // which of them are, a bit each
-    bool ready;                         // the series of the next stride were computed apart
-    double kept[KEPT_COUNT];            // the stride that the series are of
-    double used;                        // of it before the step in hand [s]
-    bool own;                           // the lane's block has all of them
-} taylor_stride;
+        function[EVENT_OF_STICTION + 1]; // as far as they were asked for; stiction: nearer limit
+    polynomial far_limit;                // of stiction
+    unsigned known;                      // which of them are, a bit each
+    bool ready;                          // the series of the next step were computed apart
+    double kept[KEPT_COUNT];             // the step that the series are of
+    double used;                         // of it before the step in hand [s]
+    bool own;                            // the lane's block has all of them
+} taylor_integrator;
 
 // --- states --------------------------------------------------------------------------------------
 

@@ -1,23 +1,23 @@
-#include "src/contact/pace.h"
+#include "src/contact/zeno_monitor.h"
 
 #include <assert.h>
 #include <math.h>
 
 #include "src/base/numbers.h"
 
-// A run is given up where its strides are shorter than this, as a share of its duration or of a
-// second, whichever is less: it would take ten million of them, hours with many links. In contact
-// with a wall whose damper shortens each of them a million are enough: such strides follow a decay
-// that is long over. Steps requested by method.step do not count.
-#define SLOWEST_PACE 1e-7
-#define DAMPED_PACE  1e-6
-#define ASKED_FOR    1e-3 // share of method.step
+// A run is given up where its internal steps are shorter than this, as a share of its duration or
+// of a second, whichever is less: it would take ten million of them, hours with many links. In
+// contact with a wall whose damper shortens each of them a million are enough: such internal steps
+// follow a decay that is long over. Steps requested by method.step do not count.
+#define LEAST_STEP        1e-7
+#define LEAST_DAMPED_STEP 1e-6
+#define ASKED_FOR         1e-3 // share of method.step
 
-// Links up to which all chains have PACE_STRIDES between two checks, and the least number of those
+// Links up to which all chains have ZENO_STEPS between two checks, and the least number of those
 // of more links.
-enum { FEW_LINKS = 8, LEAST_STRIDES = 1 << 12 };
+enum { FEW_LINKS = 8, LEAST_STEPS = 1 << 12 };
 
-// The wall makes strides short where more than one in so many ends in contact.
+// The wall makes internal steps short where more than one in so many ends in contact.
 enum { FEW_TOUCHING = 8 };
 
 // Whether the arm is in contact with a wall that gives.
@@ -46,7 +46,7 @@ static bool rings_on(const arm *a, const motion *m)
            a->motor.inductance == 0;
 }
 
-void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *text, size_t size)
+void zeno_monitor_cause(const arm *a, const motion *m, motion_event last, char *text, size_t size)
 {
     assert(a != NULL && m != NULL && text != NULL);
     const double *w = state_velocities(m, m->state);
@@ -86,44 +86,45 @@ void pace_tell_cause(const arm *a, const motion *m, motion_event last, char *tex
     }
 }
 
-pace pace_begin(void)
+zeno_monitor zeno_monitor_begin(void)
 {
-    return (pace){.checked_at = -1};
+    return (zeno_monitor){.checked_at = -1};
 }
 
-// Strides between two checks.
-static long strides_between(const arm *a)
+// Internal steps between two checks.
+static long steps_between(const arm *a)
 {
-    long strides = PACE_STRIDES;
+    long steps = ZENO_STEPS;
     if (a->dof > FEW_LINKS) {
-        strides = strides * FEW_LINKS / a->dof;
-        strides = strides > LEAST_STRIDES ? strides : LEAST_STRIDES;
+        steps = steps * FEW_LINKS / a->dof;
+        steps = steps > LEAST_STEPS ? steps : LEAST_STEPS;
     }
-    return strides;
+    return steps;
 }
 
-status pace_check(pace *p, const arm *a, const motion *m, double duration, double asked, fault *f)
+status zeno_monitor_check(zeno_monitor *p, const arm *a, const motion *m, double duration,
+                          double asked, fault *f)
 {
     assert(p != NULL && a != NULL && m != NULL && duration > 0 && asked > 0);
     const double now = m->state[SLOT_TIME], from = p->checked_at;
 
-    // the first stride only begins to count
-    const double slowest = is_damped(a, m) ? DAMPED_PACE : SLOWEST_PACE;
-    const long strides = strides_between(a);
-    const double least = (double)strides * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
+    // the first internal step only begins to count
+    const double slowest = is_damped(a, m) ? LEAST_DAMPED_STEP : LEAST_STEP;
+    const long steps = steps_between(a);
+    const double least = (double)steps * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
     const bool passes = from < 0 || now - from >= least;
-    const bool meets_wall = p->touching * FEW_TOUCHING > p->strides;
-    p->strides = p->touching = 0;
-    p->due = strides;
+    const bool meets_wall = p->touching * FEW_TOUCHING > p->steps;
+    p->steps = p->touching = 0;
+    p->due = steps;
     p->checked_at = now;
     if (passes) {
         return STATUS_OK;
     }
 
-    char cause[PACE_CAUSE_SIZE];
-    pace_tell_cause(a, m, meets_wall ? MOTION_TOUCH : MOTION_REACHED, cause, sizeof cause);
+    char cause[ZENO_CAUSE_SIZE];
+    zeno_monitor_cause(a, m, meets_wall ? MOTION_TOUCH : MOTION_REACHED, cause, sizeof cause);
     return fault_set(f, STATUS_NO_PROGRESS,
                      "at t = %.9g s of %g s: %ld strides by %s passed %.3g s, at which the run is "
                      "given up: %s",
-                     now, duration, strides, m->engine->name, now - from, cause);
+                     now, duration, steps, m->engine->name, now - from, cause);
 }

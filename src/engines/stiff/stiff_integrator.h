@@ -20,14 +20,15 @@ enum stiff_kept {
     STIFF_WORK,                // SLOT_MOTOR_WORK there [J]
     STIFF_RUBBED,              // SLOT_FRICTION_LOSS there [J]
     STIFF_FACE,                // place and velocity of a wall's face there [m], [m/s]
-    STIFF_QUADRATURES = STIFF_FACE + 2,                      // at the step's start
-    STIFF_COURSE = STIFF_QUADRATURES + QUADRATURE_COUNT,     // those of stiff_step
-    STIFF_GAPS = STIFF_COURSE + STIFF_COURSES * RADAU_LANES, // the gap's Bernstein coefficients [m]
+    STIFF_QUADRATURES = STIFF_FACE + 2,                  // at the step's start
+    STIFF_VALUES = STIFF_QUADRATURES + QUADRATURE_COUNT, // those of stiff_step
+    STIFF_GAPS =
+        STIFF_VALUES + STIFF_STAGE_VALUES * RADAU_LANES, // the gap's Bernstein coefficients [m]
     STIFF_HEAD = STIFF_GAPS + FUNCTION_MOST
     // then angles and velocities at the start [dof], accelerations at the stages [dof][RADAU_LANES]
 };
 
-typedef struct stiff_stride {
+typedef struct stiff_integrator {
     stiff_step step;
     const stiff_loops *loops;
     double tolerance; // of a step's error, as a share of STIFF_SCALE
@@ -36,31 +37,31 @@ typedef struct stiff_stride {
     double used;      // of it before m->state [s]
 
     // what the contact machine watches
-    stiff_function watched[EVENT_FUNCTION_COUNT], force, gap;
+    stiff_function function[EVENT_FUNCTION_COUNT], force, gap;
     stiff_function far[EVENT_FUNCTION_COUNT]; // the farther limit of stiction or current
     bool divided[EVENT_FUNCTION_COUNT];
-    double holds_more; // than stiction, just after an event [N m]
-    double *end;       // state at the step's end, without what it keeps
-    bool ended;        // whether it is that
-    bool turned;       // the step begins where the drive's equation changes
-    int passed;        // 1 + the event function that a search leaves out, or 0
+    double stiction_excess; // than stiction, just after an event [N m]
+    double *end;            // state at the step's end, without what it keeps
+    bool ended;             // whether it is that
+    bool turned;            // the step begins where the drive's equation changes
+    int passed;             // 1 + the event function that a search leaves out, or 0
 
     double *scratch[4]; // [dof]
-} stiff_stride;
+} stiff_integrator;
 
-static inline double *stiff_force(const stiff_stride *s) // contact force at the stages [N]
+static inline double *stiff_force(const stiff_integrator *s) // contact force at the stages [N]
 {
-    return s->kept + STIFF_COURSE + QUADRATURE_FORCE * RADAU_LANES;
+    return s->kept + STIFF_VALUES + QUADRATURE_FORCE * RADAU_LANES;
 }
-static inline double *stiff_angles(const stiff_stride *s)
+static inline double *stiff_angles(const stiff_integrator *s)
 {
     return s->kept + STIFF_HEAD;
 }
-static inline double *stiff_velocities(const stiff_stride *s)
+static inline double *stiff_velocities(const stiff_integrator *s)
 {
     return s->kept + STIFF_HEAD + s->step.dof;
 }
-static inline double *stiff_accelerations(const stiff_stride *s)
+static inline double *stiff_accelerations(const stiff_integrator *s)
 {
     return s->kept + STIFF_HEAD + 2 * s->step.dof;
 }
@@ -78,42 +79,43 @@ static inline size_t stiff_head_size(const motion *m)
 // --- stiff_newton.c ------------------------------------------------------------------------------
 
 // The arm in its contact state, and the state at the step's start.
-void stiff_set_arm(stiff_stride *s, const arm *a, const motion *m);
-void stiff_set_start(stiff_stride *s, motion *m);
+void stiff_set_arm(stiff_integrator *s, const arm *a, const motion *m);
+void stiff_set_start(stiff_integrator *s, motion *m);
 
 // Solves the stages of a step of s->step.length: with the accelerations that the step kept has at
 // `offset` + `ratio` c of its length, or none where `fresh`. *rate: of the iteration. False if that
 // does not converge.
-bool stiff_solve_stages(stiff_stride *s, bool fresh, double offset, double ratio, double *rate,
+bool stiff_solve_stages(stiff_integrator *s, bool fresh, double offset, double ratio, double *rate,
                         double tolerance, double scale);
 
 // Puts the stages into what is kept.
-void stiff_keep_stages(stiff_stride *s);
+void stiff_keep_stages(stiff_integrator *s);
 
 // --- stiff_error.c -------------------------------------------------------------------------------
 
 // Error of the step, as the embedded formula of order 7 shows it, filtered by the real system; a
 // momentum as STIFF_SCALE is.
-double stiff_error(stiff_stride *s, bool twice);
+double stiff_error(stiff_integrator *s, bool twice);
 
 // Momentum of velocities of the arm stretched out [kg^(1/2) m/s].
-double stiff_momentum(const stiff_stride *s, const double *w);
+double stiff_momentum(const stiff_integrator *s, const double *w);
 
 // --- stiff_events.c ------------------------------------------------------------------------------
 
-// The watched functions of the step, which begins at m->state.
-void stiff_watch(stiff_stride *s, const arm *a, const motion *m);
+// The event functions of the step, which begins at m->state.
+void stiff_event_functions(stiff_integrator *s, const arm *a, const motion *m);
 
 // --- stiff_control.c -----------------------------------------------------------------------------
 
 // Takes a step from m->state, as long as its error allows or up to its first event. False if none
 // can be made.
-bool stiff_make_step(stiff_stride *s, const arm *a, motion *m);
+bool stiff_make_step(stiff_integrator *s, const arm *a, motion *m);
 
 // --- stiff_output.c ------------------------------------------------------------------------------
 
 // Angles, velocities and what has added up at `time` [s] after the step's start, evaluated.
-void stiff_state_within(const stiff_stride *s, const arm *a, motion *m, double time, double *state);
+void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, double time,
+                        double *state);
 
 // The engine's functions of these names (engine.h).
 status stiff_state_at(const arm *a, motion *m, double h, state_extent extent);
