@@ -16,7 +16,7 @@ enum { MOST_COLUMNS = 4096, SHOWN = 60 };
 
 // --- the file ---------------------------------------------------------------------------------
 
-// The whole file as a text on the heap.
+// The whole file as a text on the heap, the caller's in any case.
 static status read_text(const char *path, char **text, fault *f)
 {
     size_t length;
@@ -27,12 +27,10 @@ static status read_text(const char *path, char **text, fault *f)
                                : fault_set(f, STATUS_CANNOT_READ, "'%.300s' cannot be %s: %s", path,
                                            failed, strerror(errno));
     }
-    if (strlen(*text) != length) {
-        free(*text);
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%.300s' is no text, expected a table of numbers (CSV)", path);
-    }
-    return STATUS_OK;
+    return strlen(*text) == length
+               ? STATUS_OK
+               : fault_set(f, STATUS_BAD_ARGUMENT,
+                           "'%.300s' is no text, expected a table of numbers (CSV)", path);
 }
 
 // Takes a field off the text: without quotes and blanks at its ends, ended by a 0. *last: it ends
