@@ -41,31 +41,31 @@ static cairo_surface_t *of_alone;
 static swatch swatches[MOST_SWATCHES];
 static int swatch_count;
 
-double __real_text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
-double __wrap_text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
+figure_rect __real_text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x,
+                            double y, anchor part, colour c);
+figure_rect __wrap_text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x,
+                            double y, anchor part, colour c);
 void __real_draw_swatch(drawing *d, panel_layout *l, int index, double x, double y);
 void __wrap_draw_swatch(drawing *d, panel_layout *l, int index, double x, double y);
 
 // Leaves the text out and keeps its letters.
-double __wrap_text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
+figure_rect __wrap_text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x,
+                            double y, anchor part, colour c)
 {
     if (masks == NULL) {
-        return __real_text_draw(cr, context, t);
+        return __real_text_put(cr, context, t, x, y, part, c);
     }
 
     // alone, where it would have been
-    double x, y, width, height;
     cairo_matrix_t place;
-    letter_mask mask = {.text = text_plain(t->markup)};
-    cairo_get_current_point(cr, &x, &y);
+    letter_mask mask = {.text = text_plain(t->markup), .ink = c};
     cairo_get_matrix(cr, &place);
-    cairo_pattern_get_rgba(cairo_get_source(cr), &mask.ink.red, &mask.ink.green, &mask.ink.blue,
-                           NULL);
     cairo_save(alone);
     cairo_set_matrix(alone, &place);
-    cairo_move_to(alone, x, y);
-    __real_text_draw(alone, context, t);
-    text_measure(context, t, &width, &height);
+    const figure_rect r = __real_text_put(alone, context, t, x, y, part, c);
+    const double width = r.width, height = r.height;
+    x = r.x;
+    y = r.y;
     double left = x, top = y, right = x + width, bottom = y + height;
     cairo_path_extents(alone, &left, &top, &right, &bottom);
     cairo_restore(alone);
@@ -98,7 +98,7 @@ double __wrap_text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
     }
     cairo_surface_mark_dirty(of_alone);
     g_array_append_val(masks, mask);
-    return width;
+    return r;
 }
 
 void __wrap_draw_swatch(drawing *d, panel_layout *l, int index, double x, double y)

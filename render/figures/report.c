@@ -42,9 +42,7 @@ static void put_text(cairo_t *cr, PangoContext *context, const char *markup, dou
                      double x, double y)
 {
     text_block t = {markup, size, .bold = bold, .width = PAGE_WIDTH - PAGE_MARGIN - x};
-    set_colour(cr, palette_of(THEME_COLOUR)->text);
-    cairo_move_to(cr, x, y);
-    text_draw(cr, context, &t);
+    text_put(cr, context, &t, x, y, (anchor){0, 0}, palette_of(THEME_COLOUR)->text);
 }
 
 static void put_title_page(cairo_t *cr, PangoContext *context, const report_content *r)

@@ -72,7 +72,6 @@ static text_block caption_block(const sketch_frame *frame)
 static void frame_heights(PangoContext *context, const sketch_frame *frame, double *above,
                           double *below)
 {
-    double width, height = 0;
     *above = *below = SKETCH_MARGIN;
     if (frame->look.bare) {
         return;
@@ -80,12 +79,9 @@ static void frame_heights(PangoContext *context, const sketch_frame *frame, doub
 
     g_autofree char *title = text_escape(frame->title);
     text_block t = title_block(frame, title), c = caption_block(frame);
-    text_measure(context, &t, &width, &height);
-    *above += height + TITLE_SPACE;
-
+    *above += text_measure(context, &t).height + TITLE_SPACE;
     if (frame->caption != NULL) {
-        text_measure(context, &c, &width, &height);
-        *below += height + TITLE_SPACE;
+        *below += text_measure(context, &c).height + TITLE_SPACE;
     }
 }
 
@@ -102,14 +98,10 @@ void sketch_size(const sketch_frame *frame, double *width, double *height)
 
 static void draw_block(sketch *s, const text_block *t, point at, anchor part, colour c)
 {
-    double width, height, k = s->scale;
-    text_measure(s->context, t, &width, &height);
-    at = shifted(at, -part.x * width, -part.y * height);
-    set_colour(s->cr, c);
-    cairo_move_to(s->cr, at.x, at.y);
-    text_draw(s->cr, s->context, t);
+    const double k = s->scale;
+    const figure_rect r = text_put(s->cr, s->context, t, at.x, at.y, part, c);
     report_add_text(s->report, t->markup, k * t->size,
-                    (figure_rect){k * at.x, k * at.y, k * width, k * height});
+                    (figure_rect){k * r.x, k * r.y, k * r.width, k * r.height});
 }
 
 status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
@@ -462,11 +454,9 @@ void sketch_wrapped(sketch *s, point at, const text_block *text)
 
     if (t.align != TEXT_LEFT) {
         // short lines are placed by their own width
-        double natural, height;
         text_block line = t;
         line.width = 0;
-        text_measure(s->context, &line, &natural, &height);
-        if (natural <= t.width) {
+        if (text_measure(s->context, &line).width <= t.width) {
             part.x = t.align == TEXT_RIGHT ? 1 : 0.5;
             at.x += part.x * t.width;
             t.width = 0;

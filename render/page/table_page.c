@@ -80,15 +80,14 @@ static text_block cell_block(const sketch_frame *frame, const char *markup, bool
 static double widest_word(PangoContext *context, const sketch_frame *frame, const char *markup,
                           bool bold)
 {
-    double widest = 0, width, height;
+    double widest = 0;
     char *plain = text_plain(markup), **words = g_strsplit_set(plain, " \n", -1);
 
     // measured as the cell would set it, bold or not
     for (int i = 0; words[i] != NULL; i++) {
         g_autofree char *word = text_escape(words[i]);
         text_block t = cell_block(frame, word, bold);
-        text_measure(context, &t, &width, &height);
-        widest = fmax(widest, width);
+        widest = fmax(widest, text_measure(context, &t).width);
     }
     g_strfreev(words);
     g_free(plain);
@@ -128,11 +127,9 @@ static void choose_columns(PangoContext *context, const table_page *t, const ske
 
 static double text_height(const table_layout *l, const char *markup, double width, bool bold)
 {
-    double across, down;
     text_block t = cell_block(&l->frame, markup, bold);
     t.width = width - 2 * CELL_SPACE;
-    text_measure(l->context, &t, &across, &down);
-    return down;
+    return text_measure(l->context, &t).height;
 }
 
 static double heading_height(const table_layout *l, const table_page *t)

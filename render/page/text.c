@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <fontconfig/fontconfig.h>
+#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 #include <unistd.h>
@@ -173,7 +174,7 @@ static void end_shaping(void)
     }
 }
 
-void text_measure(PangoContext *context, const text_block *t, double *width, double *height)
+text_size text_measure(PangoContext *context, const text_block *t)
 {
     assert(context != NULL && t != NULL && t->markup != NULL);
     PangoRectangle logical;
@@ -181,15 +182,21 @@ void text_measure(PangoContext *context, const text_block *t, double *width, dou
     PangoLayout *layout = text_layout_create(context, t);
     pango_layout_get_extents(layout, NULL, &logical);
     end_shaping();
-    *width = (double)logical.width / PANGO_SCALE;
-    *height = (double)logical.height / PANGO_SCALE;
     g_object_unref(layout);
+    return (text_size){(double)logical.width / PANGO_SCALE, (double)logical.height / PANGO_SCALE};
 }
 
-double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
+figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x, double y,
+                     anchor part, colour c)
 {
-    assert(cr != NULL && context != NULL && t != NULL && t->markup != NULL);
+    assert(cr != NULL && isfinite(x) && isfinite(y));
     PangoRectangle logical;
+    const text_size size = text_measure(context, t);
+    x -= part.x * size.width;
+    y -= part.y * size.height;
+
+    set_colour(cr, c);
+    cairo_move_to(cr, x, y);
     begin_shaping();
     // the context has to know whether cr is rotated
     pango_cairo_update_context(cr, context);
@@ -200,7 +207,7 @@ double text_draw(cairo_t *cr, PangoContext *context, const text_block *t)
     pango_cairo_show_layout(cr, layout);
     g_object_unref(layout);
     end_shaping();
-    return (double)logical.width / PANGO_SCALE;
+    return (figure_rect){x, y, size.width, size.height};
 }
 
 double page_letters(double letters, double size)

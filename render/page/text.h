@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "render/page/palette.h"
 #include "src/base/fault.h"
 
 // Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size on a page of the
@@ -86,12 +87,15 @@ PangoContext *text_context_create(void);
 // A layout of t, to be freed with g_object_unref. Markup that cannot be parsed is shown unchanged.
 PangoLayout *text_layout_create(PangoContext *context, const text_block *t);
 
-// Width and height of t.
-void text_measure(PangoContext *context, const text_block *t, double *width, double *height);
+typedef struct text_size {
+    double width, height;
+} text_size;
 
-// Draws t with its upper left corner at the current point (of a possibly rotated cr) and returns
-// its width.
-double text_draw(cairo_t *cr, PangoContext *context, const text_block *t);
+text_size text_measure(PangoContext *context, const text_block *t);
+
+// Draws t in a colour with its anchor at (x, y) of a possibly rotated cr. Returns where it is.
+figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x, double y,
+                     anchor part, colour c);
 
 // Sets the function that is called with a reason, and must not return, if GLib fails fatally,
 // mostly for lack of memory, or if Pango warns that it cannot draw a text correctly. Without it

@@ -15,30 +15,19 @@ text_block figure_text_of(const drawing *d, const char *markup, double size)
 
 double width_of(const drawing *d, const char *markup, double size)
 {
-    double width, height;
     text_block t = figure_text_of(d, markup, size);
-    text_measure(d->context, &t, &width, &height);
-    return width;
+    return text_measure(d->context, &t).width;
 }
 
 double height_of(const drawing *d, text_block t)
 {
-    double width, height;
-    text_measure(d->context, &t, &width, &height);
-    return height;
+    return text_measure(d->context, &t).height;
 }
 
 void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c)
 {
-    double width, height;
-    assert(isfinite(x) && isfinite(y));
-    text_measure(d->context, &t, &width, &height);
-    set_colour(d->cr, c);
-    x -= at.x * width;
-    y -= at.y * height;
-    cairo_move_to(d->cr, x, y);
-    text_draw(d->cr, d->context, &t);
-    report_add_text(d->report, t.markup, t.size, (figure_rect){x, y, width, height});
+    const figure_rect place = text_put(d->cr, d->context, &t, x, y, at, c);
+    report_add_text(d->report, t.markup, t.size, place);
 }
 
 void draw_label(drawing *d, const char *markup, double size, double x, double y, anchor at)
@@ -48,17 +37,14 @@ void draw_label(drawing *d, const char *markup, double size, double x, double y,
 
 void draw_rotated(drawing *d, text_block t, double x, double y, colour c)
 {
-    double width, height;
-    assert(isfinite(x) && isfinite(y));
-    text_measure(d->context, &t, &width, &height);
+    const text_size size = text_measure(d->context, &t);
     cairo_save(d->cr);
-    set_colour(d->cr, c);
-    cairo_translate(d->cr, x, y + width / 2);
+    cairo_translate(d->cr, x, y + size.width / 2);
     cairo_rotate(d->cr, -G_PI / 2);
-    cairo_move_to(d->cr, 0, 0);
-    text_draw(d->cr, d->context, &t);
+    text_put(d->cr, d->context, &t, 0, 0, (anchor){0, 0}, c);
     cairo_restore(d->cr);
-    report_add_text(d->report, t.markup, t.size, (figure_rect){x, y - width / 2, height, width});
+    report_add_text(d->report, t.markup, t.size,
+                    (figure_rect){x, y - size.width / 2, size.height, size.width});
 }
 
 // ---- strokes

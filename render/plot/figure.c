@@ -80,8 +80,7 @@ void figure_take_look(figure *fig, const page_look *look)
 // Height of a wrapped text above or below the panels, with its distance from them [pt].
 static double wrapped_height(const figure *fig, const char *markup, double size, bool bold)
 {
-    double width, height, page = fig->width > 0 ? fig->width : DEFAULT_WIDTH;
-    page *= POINTS_PER_MM;
+    const double page = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM;
     PangoContext *context = text_context_create();
     text_block t = {.markup = markup,
                     .size = page_letters(fig->letters, size),
@@ -90,7 +89,7 @@ static double wrapped_height(const figure *fig, const char *markup, double size,
                     .balanced = bold,
                     .width = page - (page < NARROW_PAGE ? 2 * PAGE_MARGIN : SIDES)};
 
-    text_measure(context, &t, &width, &height);
+    const double height = text_measure(context, &t).height;
     g_object_unref(context);
     return height + 4;
 }

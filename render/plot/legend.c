@@ -117,7 +117,7 @@ typedef struct legend_run {
 // Lays out the entries of a panel's labelled series; on a narrow page with their symbols.
 static figure_rect lay_entries(drawing *d, const panel_layout *l, legend_run run)
 {
-    double x = run.x, y = run.y, line = 0, widest = 0, wide, high;
+    double x = run.x, y = run.y, line = 0, widest = 0;
     for (int i = 0; i < l->panel->series_count; i++) {
         const figure_series *s = &l->panel->series[i];
         const bool narrow = d->page.width < NARROW_PAGE && s->symbol != NULL;
@@ -126,10 +126,10 @@ static figure_rect lay_entries(drawing *d, const panel_layout *l, legend_run run
         }
         text_block text = figure_text_of(d, narrow ? s->symbol : s->label, d->style.tick);
         text.width = run.wrapped;
-        text_measure(d->context, &text, &wide, &high);
+        const text_size size = text_measure(d->context, &text);
 
         // a new row where this one is full
-        const double width = wide + SWATCH + SWATCH_SPACE;
+        const double width = size.width + SWATCH + SWATCH_SPACE;
         if (x > run.x && (run.column || x + width > run.right)) {
             x = run.x;
             y += line;
@@ -138,11 +138,11 @@ static figure_rect lay_entries(drawing *d, const panel_layout *l, legend_run run
 
         // the line's sample, and what it is
         if (run.draw) {
-            draw_swatch(d, l, i, x, y + 0.55 * high);
+            draw_swatch(d, l, i, x, y + 0.55 * size.height);
             draw_text(d, text, x + SWATCH + SWATCH_SPACE, y, (anchor){0, 0},
                       d->style.colours->text);
         }
-        line = fmax(line, high);
+        line = fmax(line, size.height);
         widest = fmax(widest, x + width - run.x);
         x += width + 2 * SWATCH_SPACE;
     }

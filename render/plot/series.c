@@ -303,11 +303,10 @@ enum { IMPULSES_LABELLED = 24 };
 static void label_impulse(drawing *d, const panel_layout *l, int index, double base,
                           figure_rect *taken, int *count)
 {
-    double width, height;
     const figure_impulse *all = l->panel->impulses, *p = &all[index];
     g_autofree char *markup = text_number(p->size / pow(10, impulse_exponent(l->panel)), 3);
     text_block t = figure_text_of(d, markup, d->style.small);
-    text_measure(d->context, &t, &width, &height);
+    const double width = text_measure(d->context, &t).width, height = height_of(d, t);
     double x = plane_x(&l->plane, p->x);
 
     // at its right or at its left, on the page, off other labels, arrows and marks

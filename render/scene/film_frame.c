@@ -367,7 +367,7 @@ static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
 {
     char text[64];
     const film_plan *plan = p->plan;
-    double scale = film_scale(plan), width, height;
+    double scale = film_scale(plan);
 
     // the number that is larger than one
     if (speed < 1) {
@@ -379,13 +379,10 @@ static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
     }
 
     const text_block t = {.markup = text, .size = LABELS_LEAST * scale};
-    set_colour(cr, palette_of(plan->options.view.theme)->faint_text);
-    text_measure(p->context, &t, &width, &height);
-
     // with several arms there is a free corner next to the axis of the traces
-    double bottom = plan->options.height - height - 6 * scale;
-    cairo_move_to(cr, 22 * scale, plan->run_count == 1 ? 20 * scale : bottom);
-    text_draw(cr, p->context, &t);
+    const bool alone = plan->run_count == 1;
+    text_put(cr, p->context, &t, 22 * scale, alone ? 20 * scale : plan->options.height - 6 * scale,
+             (anchor){0, !alone}, palette_of(plan->options.view.theme)->faint_text);
 }
 
 // ---- frames

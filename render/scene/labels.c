@@ -11,13 +11,11 @@
 #define FACT_LETTERS  LABELS_LEAST
 #define MARGIN        22.0
 
-static double draw_text(const labels *l, double x, double y, const char *markup, double size,
-                        bool bold, colour ink)
+static void draw_text(const labels *l, double x, double y, const char *markup, double size,
+                      bool bold, colour ink)
 {
     const text_block t = {.markup = markup, .size = size * l->scale, .bold = bold};
-    set_colour(l->cr, ink);
-    cairo_move_to(l->cr, x, y);
-    return text_draw(l->cr, l->context, &t);
+    text_put(l->cr, l->context, &t, x, y, (anchor){0, 0}, ink);
 }
 
 double labels_pixels(const camera *c, vector place, double length)
@@ -60,10 +58,10 @@ void labels_force(const labels *l, vector from, vector end, double force, colour
     char text[48];
 
     // text and its size
-    double width, height, digits = force < 10 ? 2 : force < 100 ? 1 : 0;
-    decimal_print(text, sizeof text, "%.*f\u2009N", (int)digits, force);
+    decimal_print(text, sizeof text, "%.*f\u2009N", force < 10 ? 2 : force < 100 ? 1 : 0, force);
     const text_block t = {.markup = text, .size = TITLE_LETTERS * l->scale, .bold = true};
-    text_measure(l->context, &t, &width, &height);
+    const double width = text_measure(l->context, &t).width;
+    const double height = text_measure(l->context, &t).height;
     vector start = camera_project(l->camera, from), tip = camera_project(l->camera, end);
     double dx = tip.x - start.x, dy = tip.y - start.y, length = fmax(1e-9, hypot(dx, dy));
 
@@ -80,18 +78,16 @@ void labels_force(const labels *l, vector from, vector end, double force, colour
 void labels_caption(const labels *l, const char *title, const char *facts, double width)
 {
     assert(l != NULL && title != NULL && facts != NULL && width > 0);
-    double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale, line, all;
+    double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale;
     double top = bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * l->scale;
     g_autofree char *escaped = text_escape(title);
 
     // a title of several lines grows upwards
     text_block t = {.markup = escaped, .size = TITLE_LETTERS * l->scale, .bold = true};
-    text_measure(l->context, &t, &(double){0}, &line);
+    const double line = text_measure(l->context, &t).height;
     t.width = width;
-    text_measure(l->context, &t, &(double){0}, &all);
-    set_colour(l->cr, l->strong);
-    cairo_move_to(l->cr, left, top - (all - line));
-    text_draw(l->cr, l->context, &t);
+    text_put(l->cr, l->context, &t, left, top - (text_measure(l->context, &t).height - line),
+             (anchor){0, 0}, l->strong);
     draw_text(l, left, bottom - FACT_LETTERS * 1.25 * l->scale, facts, FACT_LETTERS, false,
               l->faint);
 }
@@ -104,36 +100,34 @@ void labels_inset(const labels *l, double left, double bottom, double larger)
     draw_text(l, left, bottom + 4 * l->scale, text, FACT_LETTERS, false, l->faint);
 }
 
-// "12.3 ms" in the letters of facts. Returns its width.
-static double print_instant(const labels *l, double time, char *text, size_t size, double *height)
+// "12.3 ms" in the letters of facts. Returns its size.
+static text_size print_instant(const labels *l, double time, char *text, size_t size)
 {
-    double width;
     decimal_print(text, size, "%.1f\u2009ms", 1e3 * time);
     const text_block t = {.markup = text, .size = FACT_LETTERS * l->scale};
-    text_measure(l->context, &t, &width, height);
-    return width;
+    return text_measure(l->context, &t);
 }
 
 void labels_instants(const labels *l, const double *times, const colour *inks, int count)
 {
     assert(l != NULL && times != NULL && inks != NULL && count > 0);
     double swatch = 26 * l->scale, step = FACT_LETTERS * 1.55 * l->scale;
-    double bottom = l->camera->height - MARGIN * l->scale, width = 0, height = 0;
+    double bottom = l->camera->height - MARGIN * l->scale, width = 0;
     double right = l->camera->width - MARGIN * l->scale;
     char text[48];
 
     // all swatches stand left of the widest text
     for (int i = 0; i < count; i++) {
-        width = fmax(width, print_instant(l, times[i], text, sizeof text, &height));
+        width = fmax(width, print_instant(l, times[i], text, sizeof text).width);
     }
 
     for (int i = 0; i < count; i++) {
         double y = bottom - (count - i) * step;
-        double own = print_instant(l, times[i], text, sizeof text, &height);
-        draw_text(l, right - own, y, text, FACT_LETTERS, false, l->faint);
+        const text_size own = print_instant(l, times[i], text, sizeof text);
+        draw_text(l, right - own.width, y, text, FACT_LETTERS, false, l->faint);
         set_colour(l->cr, inks[i]);
         cairo_rectangle(l->cr, right - width - 10 * l->scale - swatch,
-                        y + height / 2 - 2.5 * l->scale, swatch, 5 * l->scale);
+                        y + own.height / 2 - 2.5 * l->scale, swatch, 5 * l->scale);
         cairo_fill(l->cr);
     }
 }
