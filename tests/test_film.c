@@ -116,8 +116,7 @@ static void expect_same_frames(const char *one, const char *two, int count)
 TEST(test_threads)
 {
     SCOPED(forget)
-    recorded a = record("corrected/first-impact"),
-             b = record("corrected/plane-wall");
+    recorded a = record("corrected/first-impact"), b = record("corrected/plane-wall");
     const film_run runs[3] = {{&a.scenario, &a.result, "one"},
                               {&b.scenario, &b.result, "two"},
                               {&a.scenario, &a.result, "three"}};
@@ -136,8 +135,7 @@ TEST(test_threads)
 TEST(test_split_screen)
 {
     SCOPED(forget)
-    recorded a = record("corrected/first-impact"),
-             b = record("corrected/plane-wall");
+    recorded a = record("corrected/first-impact"), b = record("corrected/plane-wall");
     const film_run runs[2] = {{&a.scenario, &a.result, "one"}, {&b.scenario, &b.result, "two"}};
     film_options options = small_film();
     DONE(film_write(runs, 2, &options, "split", &f));
