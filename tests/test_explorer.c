@@ -47,10 +47,10 @@ TEST(test_playing_shows_an_impact_within_seconds)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     assert_shows(&ex, "free flight");
     press(&ex, "<Space>");
-    explorer_advance(&ex, 2);
+    act_advance(&ex.state, 2);
     assert_shows(&ex, "impact 0.0443 N s");
     assert_shows(&ex, "in contact");
-    explorer_advance(&ex, 100);
+    act_advance(&ex.state, 100);
     assert_false(ex.state.playback.playing);
     assert_shows(&ex, "end of the run");
 }
@@ -60,7 +60,7 @@ TEST(test_a_lower_voltage_is_compared_with_the_run_before)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<Space>");
-    explorer_advance(&ex, 3);
+    act_advance(&ex.state, 3);
     press(&ex, "<Space>NNNN<Home>nN");
     press_shows(&ex, ":seek 0.2<Enter>b<Enter>", ":set motor.voltage 1");
     press_shows(&ex, "<Backspace>0.5<Enter>", "motor.voltage = 0.5 V from 0.2000 s on");
@@ -277,7 +277,7 @@ TEST(test_random_keys_do_no_harm)
         explorer_key(&ex, key);
         ex.state.quit = false;
         if (i % 7 == 0) {
-            explorer_advance(&ex, random_uniform(&r));
+            act_advance(&ex.state, random_uniform(&r));
             click_at(&ex, chance(&r, 130), chance(&r, 45));
             explorer_key(&ex, chance(&r, 2) ? KEY_CODE_DOWN : KEY_CODE_UP);
             free(picture(&ex, 1 + chance(&r, 160), 1 + chance(&r, 60),
@@ -311,7 +311,7 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
     assert_shows(&ex, "computing");
     press(&ex, ":set run.duration 3<Enter>:stop<Enter>:set run.duration 4<Enter>");
     while (ex.state.session.computing != NULL) {
-        explorer_advance(&ex, 0.01);
+        act_advance(&ex.state, 0.01);
         explorer_follow(&ex);
         free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     }

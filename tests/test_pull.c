@@ -21,7 +21,7 @@ static void pull(explorer *ex, int down, double seconds)
     explorer_point(ex, (pointer_event){.kind = POINTER_PRESS, .x = x, .y = y});
     explorer_point(ex, (pointer_event){.kind = POINTER_DRAG, .x = x, .y = y + down});
     for (double t = 0; t < seconds; t += 0.01) {
-        explorer_advance(ex, 0.01 / ex->state.playback.speed);
+        act_advance(&ex->state, 0.01 / ex->state.playback.speed);
         free(picture(ex, WIDTH, HEIGHT, GLYPHS_BRAILLE));
     }
     assert_shows(ex, "pulled with");
@@ -140,10 +140,10 @@ TEST(test_impacts_are_slow_and_the_rest_is_not)
     press(&ex, ":speed 0.1<Enter>");
     session_seek(&st->session, impact);
     st->playback.playing = true;
-    explorer_advance(&ex, 0.01);
+    act_advance(&ex.state, 0.01);
     check_close(st->session.now - impact, 0.001 / 8, 1e-12);
     press(&ex, ":slow off<Enter>");
     session_seek(&st->session, impact);
-    explorer_advance(&ex, 0.01);
+    act_advance(&ex.state, 0.01);
     check_close(st->session.now - impact, 0.001, 1e-12);
 }

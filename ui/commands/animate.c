@@ -161,7 +161,7 @@ static const option_row rows[] = {
     OPTION(PARAMETERS, "beside", "PATH=VALUE",
            "the first scenario once more with this change, in a view of its own; up to 3 of them",
            PLACE(besides)),
-    OPTION(PLACE, "output", "PATH", "film or folder to write to", PLACE(output), .letter = 'o'),
+    OUTPUT_OPTION(PLACE, "PATH", "film or folder to write to"),
     OPTION(NUMBER, "fps", "N", "frames per second of the film (30)", PLACE(fps), .low = 1,
            .high = 120),
     OPTION(NUMBER, "seconds", "S", "length of the film (10)", PLACE(seconds), .low = 0.1,
@@ -177,10 +177,9 @@ const command animate_command = {
     CALLED("animate", PICTURES, "Make a film of a run: the arm in space and its traces"),
     SCENARIOS("SCENARIO...", 1, FILM_RUNS),
     .help =
-        "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any other "
-        "name is that "
-        "of a folder, to\nbe made, for PNG frames. Every impact is slowed down against the rest. "
-        "Several scenarios, or\n--beside, share the screen and one clock.\n",
+        "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any other name is "
+        "that of a folder, to\nbe made, for PNG frames. Every impact is slowed down against the "
+        "rest. Several scenarios, or\n--beside, share the screen and one clock.\n",
     .options = {&set_options, OWN_OPTIONS(rows), &quiet_options, &view_options},
     .run = animate,
 };

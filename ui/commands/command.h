@@ -88,6 +88,9 @@ typedef struct option_table {
         .type = OPTION_##kind, .name = (option), .value = (of), .help = (text), __VA_ARGS__        \
     }
 
+// Where a command writes its main result to, -o.
+#define OUTPUT_OPTION(kind, of, text) OPTION(kind, "output", of, text, PLACE(output), .letter = 'o')
+
 // Tables that several commands share.
 extern const option_table set_options;   // --set
 extern const option_table vary_options;  // --vary

@@ -187,7 +187,7 @@ static const char *figure_word(int i)
 }
 
 static const option_row rows[] = {
-    OPTION(PLACE, "output", "FOLDER", "folder to write to (figures)", PLACE(output), .letter = 'o'),
+    OUTPUT_OPTION(PLACE, "FOLDER", "folder to write to (figures)"),
     OPTION(TEXT, "format", "png,pdf,svg", "which kinds of files to write", PLACE(format)),
 };
 
@@ -197,9 +197,8 @@ const command figures_command = {
     .help = "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a CSV of "
             "what is\ndrawn stands beside each.\n\n"
             "IDs are the thesis's numbers: 2.1 to 2.6, 3.1 to 3.11, 4.1 to 4.6, 5.1 to 5.7, T2.1, "
-            "T3.1, T3.2,\nT4.1 to T4.3; forces, delays: those printed as points with "
-            "residuals; errors: how near they\ncome out; beta-gamma: the map of Newmark's "
-            "parameters.\n",
+            "T3.1, T3.2,\nT4.1 to T4.3; forces, delays: those printed as points with residuals; "
+            "errors: how near they\ncome out; beta-gamma: the map of Newmark's parameters.\n",
     .operand_word = figure_word,
     .options = {&json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .run = figures,
@@ -294,7 +293,7 @@ static int report(const arguments *a)
 }
 
 static const option_row report_rows[] = {
-    OPTION(PLACE, "output", "FOLDER", "folder to write to (report)", PLACE(output), .letter = 'o'),
+    OUTPUT_OPTION(PLACE, "FOLDER", "folder to write to (report)"),
 };
 
 const command report_command = {

@@ -180,7 +180,7 @@ static void run_on_terminal(explorer *ex)
         // what was computed, and time going on
         dirty |= explorer_follow(ex);
         if (ex->state.playback.playing) {
-            explorer_advance(ex, now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
+            act_advance(&ex->state, now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
             dirty = true;
         }
 

@@ -214,9 +214,8 @@ const command run_command = {
     .help = "SCENARIO is a name from impactlab list, or a file. What a scenario file expects is "
             "checked unless\n--set changed something. A run that fails still writes what it has "
             "until then, and so does one that ^C ends (exit status 130). On a terminal a run of "
-            "more than a second\ntells how far it is.\nThe scene shows "
-            "the arm at every --at, or from the start to the peak "
-            "force of the first pulse.\n",
+            "more than a second\ntells how far it is.\nThe scene shows the arm at every --at, or "
+            "from the start to the peak force of the first pulse.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options,
                 &view_options},
     .run = run,

@@ -248,7 +248,6 @@ void explorer_load_settings(explorer *ex)
 // The axes that are not as they are at first, and the user's keys.
 static void write_axes_and_keys(const explorer_state *st, FILE *stream)
 {
-
     // every pane but the user's own
     for (int i = 0; i < PANES_OF_TABLE; i++) {
         const pane *p = &st->panes.pane[i];

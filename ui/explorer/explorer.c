@@ -46,11 +46,6 @@ bool explorer_follow(explorer *ex)
     return true;
 }
 
-void explorer_advance(explorer *ex, double seconds)
-{
-    act_advance(&ex->state, seconds);
-}
-
 bool explorer_is_busy(const explorer *ex)
 {
     return ex->state.playback.playing || ex->state.session.computing != NULL ||

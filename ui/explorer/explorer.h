@@ -32,9 +32,6 @@ void explorer_finish(explorer *ex);
 // Takes in the rows computed since the last call. True if there is something new to draw.
 bool explorer_follow(explorer *ex);
 
-// Advances by wall-clock time [s]: moves the cursor during playback.
-void explorer_advance(explorer *ex, double seconds);
-
 // Whether anything changes with time: playback, or a run being computed.
 bool explorer_is_busy(const explorer *ex);
 

@@ -117,9 +117,8 @@ static void append_word(char *name, size_t size, const char *word)
 static void propose_name(const explorer_state *st, const char *ending, char *name, size_t size)
 {
     const session *s = &st->session;
-    const char *slash = strrchr(s->base.name, '/');
     char stem[LINE_TEXT / 2] = "";
-    append_word(stem, 60, slash != NULL ? slash + 1 : s->base.name);
+    append_word(stem, 60, scenario_leaf(s->base.name));
 
     // what the last change changed
     const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;

@@ -145,10 +145,9 @@ const command calibrate_command = {
     ONE_SCENARIO,
     .help =
         "Presses the arm against the wall with constant commands, eight of them or those of\n"
-        "--vary " VOLTAGE_PATH "=a:b:n, and computes K2 = f l / (2 (theta - theta_imp)) from "
-        "what force\nsensor and encoder read at rest. -o FILE.yaml writes the scenario with the "
-        "table in\ncontrol.k2_table, which every law then goes by. ^C ends it with what was "
-        "measured "
+        "--vary " VOLTAGE_PATH "=a:b:n, and computes K2 = f l / (2 (theta - theta_imp)) from what "
+        "force\nsensor and encoder read at rest. -o FILE.yaml writes the scenario with the table "
+        "in\ncontrol.k2_table, which every law then goes by. ^C ends it with what was measured "
         "until then (exit\nstatus 130); -o writes only the whole table.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
     .use = press_and_report,

@@ -75,8 +75,7 @@ static int open_all(comparison *c, const arguments *a)
     c->scenarios = calloc((size_t)count, sizeof *c->scenarios);
     c->sweeps = calloc((size_t)count, sizeof *c->sweeps);
     if (c->scenarios == NULL || c->sweeps == NULL) {
-        complain("out of memory");
-        return EXIT_FAILED;
+        return worse(EXIT_FAILED, complain("out of memory"));
     }
 
     // the operands, then what they are compared against
@@ -94,8 +93,7 @@ static int open_all(comparison *c, const arguments *a)
         c->rows = calloc(combinations * (size_t)a->operand_count, sizeof *c->rows);
         c->against = calloc(combinations, sizeof *c->against);
         if (c->rows == NULL || c->against == NULL) {
-            complain("out of memory");
-            result = EXIT_FAILED;
+            result = worse(EXIT_FAILED, complain("out of memory"));
         }
     }
     return result;

@@ -145,8 +145,7 @@ static int plot(const arguments *a, const scenario *s, const void *panel)
     fault f = {0};
     three_runs *r = calloc(1, sizeof *r);
     if (r == NULL) {
-        fault_no_memory(&f);
-        return complain_fault(&f);
+        return worse(EXIT_FAILED, complain("out of memory"));
     }
 
     run_monitor *monitor = work_begin(a, "runs", PANEL_STEPS);

@@ -177,9 +177,8 @@ static json_t *links_object(const scenario *s, const void *found)
         const links_row *row = &study->rows[k];
         json_add(quantities,
                  json_members(json_object(),
-                              "quantity:t order:n limit:n error:n beam:n "
-                              "enough_links:o",
-                              row->key, row->order, row->limit, row->error, row->beam,
+                              "quantity:t order:n limit:n error:n beam:n enough_links:o", row->key,
+                              row->order, row->limit, row->error, row->beam,
                               row->enough > 0 ? json_integer(row->enough) : json_null()));
     }
     return json_members(json_object(), "scenario:t links:o limits:o", s->name, rows, quantities);
@@ -326,15 +325,14 @@ const command study_command = {
     SCENARIOS("methods|links|follow [SCENARIO]", 1, 2),
     .help =
         "methods: the scenario (corrected/first-impact) by every method of time integration at "
-        "steps from 1e-2\ndown to 1e-6 s, with the error of first contact, first pulse's peak "
-        "and steady force.\nlinks: the scenario (corrected/damped-beam) with 2 to 64 "
-        "links: its blow and what a first-order sensor\nof 0.5, 1 or 2 ms reads of it, "
-        "frequencies, statics; Richardson's limit and the Euler-Bernoulli\nbeam, and how many "
-        "links are enough for which question.\nfollow: "
-        "the scenario (compare/observer) under six laws with a set-point and a wall that swing, "
-        "from\n0.2 to 25 Hz: error and phase of the force, beside what delay and arm allow. "
-        "See\ndocs/explanation/methods.md and docs/explanation/trust.md. ^C ends any of them "
-        "with what it has\nuntil then (exit status 130).\n",
+        "steps from 1e-2\ndown to 1e-6 s, with the error of first contact, first pulse's peak and "
+        "steady force.\nlinks: the scenario (corrected/damped-beam) with 2 to 64 links: its blow "
+        "and what a first-order sensor\nof 0.5, 1 or 2 ms reads of it, frequencies, statics; "
+        "Richardson's limit and the Euler-Bernoulli\nbeam, and how many links are enough for which "
+        "question.\nfollow: the scenario (compare/observer) under six laws with a set-point and a "
+        "wall that swing, from\n0.2 to 25 Hz: error and phase of the force, beside what delay and "
+        "arm allow. See\ndocs/explanation/methods.md and docs/explanation/trust.md. ^C ends any of "
+        "them with what it has\nuntil then (exit status 130).\n",
     .operand_word = topic_word,
     .options = {&set_options, &json_options, &drawn_options, &quiet_options, &page_options},
     .run = study,

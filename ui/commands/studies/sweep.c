@@ -273,10 +273,9 @@ const command sweep_command = {
         "--vary give every\ncombination, the last one changing fastest. With --sample random or "
         "latin, --runs N values are drawn\nfrom each PATH=a:b or list. LIST[k]=... varies the k-th "
         "number of a list, counted from 1.\n\n"
-        "With --db a sweep that was interrupted goes on where it stopped when the same command "
-        "is given again.\nCtrl-C finishes the runs in hand, within five seconds, and keeps them "
-        "(exit status 130). "
-        "Runs that fail are rows too; the\nexit status is 1 if all of them failed.\n",
+        "With --db a sweep that was interrupted goes on where it stopped when the same command is "
+        "given again.\nCtrl-C finishes the runs in hand, within five seconds, and keeps them (exit "
+        "status 130). Runs that fail are rows too; the\nexit status is 1 if all of them failed.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = sweep_and_report,
@@ -311,7 +310,7 @@ static int merge(const arguments *a)
 }
 
 static const option_row merge_rows[] = {
-    OPTION(PLACE, "output", "FILE.sqlite", "the database to write", PLACE(output), .letter = 'o'),
+    OUTPUT_OPTION(PLACE, "FILE.sqlite", "the database to write"),
 };
 
 const command merge_command = {

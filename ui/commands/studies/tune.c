@@ -219,8 +219,7 @@ static const option_row rows[] = {
     SEED_OPTION,
     JOBS_OPTION,
     DB_OPTION("keep every run in a database; go on where it ends"),
-    OPTION(RESULT, "output", "FILE|-", "write the scenario with the best values so far",
-           PLACE(output), .letter = 'o'),
+    OUTPUT_OPTION(RESULT, "FILE|-", "write the scenario with the best values so far"),
     PLOT_OPTION("draw what each evaluation came to, and the least so far"),
 };
 
@@ -229,14 +228,13 @@ const command tune_command = {
     ONE_SCENARIO,
     .help =
         "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over those of robust "
-        "--json, else those of\nrun --json; growth_per_s "
-        "is that of linear --vary. --vary PATH=a:b (or a:b:log) says what may be "
-        "changed within which range. Over a set an\nevaluation is a batch of runs with the same "
-        "draws each time, as many runs as there are evaluations.\nWhat is not allowed or fails "
-        "ranks last.\n\nThe result is judged on 200 draws that the search did not see, also with "
-        "each number a tenth lower and\nhigher. The file of -o is whole at every instant; with "
-        "--db the same command goes on where a search\nwas stopped. The exit status is 1 if no "
-        "values meet --subject.\n",
+        "--json, else those of\nrun --json; growth_per_s is that of linear --vary. --vary PATH=a:b "
+        "(or a:b:log) says what may be changed within which range. Over a set an\nevaluation is a "
+        "batch of runs with the same draws each time, as many runs as there are evaluations.\nWhat "
+        "is not allowed or fails ranks last.\n\nThe result is judged on 200 draws that the search "
+        "did not see, also with each number a tenth lower and\nhigher. The file of -o is whole at "
+        "every instant; with --db the same command goes on where a search\nwas stopped. The exit "
+        "status is 1 if no values meet --subject.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = tune,

@@ -136,10 +136,9 @@ static const char *lesson_named(explorer_state *st, const char *name)
     const char *found = NULL;
     scenario_menu_read_titles(&st->scenarios);
     for (int i = 0; i < menu->count; i++) {
-        const char *slash = strrchr(menu->names[i], '/');
-        const char *leaf = slash != NULL ? slash + 1 : menu->names[i];
         if (scenario_menu_is_lesson(menu, i) &&
-            (strcmp(menu->names[i], name) == 0 || strcmp(leaf, name) == 0)) {
+            (strcmp(menu->names[i], name) == 0 ||
+             strcmp(scenario_leaf(menu->names[i]), name) == 0)) {
             found = menu->names[i];
         }
     }

@@ -146,6 +146,24 @@ static void draw_status(const explorer_state *st, screen *s, int y)
 
 // --- the bottom -------------------------------------------------------------------------------
 
+// The message in as many rows above `below` as it takes, a few at most; returns how many.
+static int draw_message(const explorer_state *st, screen *s, int below, ink shade)
+{
+    enum { MOST = 3 };
+    text_line lines[MOST];
+    const int count = text_wrap(st->message.text, s->width - 2, lines, MOST, NULL);
+    for (int i = 0; i < count; i++) {
+        const int y = below - count + i;
+        blank_row(s, y);
+        if (i == MOST - 1 && !st->prompt.open) {
+            screen_words(s, 1, y, s->width - 2, shade, lines[i].start);
+        } else {
+            screen_print(s, 1, y, s->width - 2, shade, "%.*s", lines[i].bytes, lines[i].start);
+        }
+    }
+    return count;
+}
+
 // The end of the prompt if it is wider than the screen, and what was said about it.
 static int draw_prompt(const explorer_state *st, screen *s)
 {
@@ -168,15 +186,7 @@ static int draw_prompt(const explorer_state *st, screen *s)
     if (st->message.text[0] != '\0' && x + 4 + text_cells(st->message.text) <= s->width) {
         screen_text(s, x + 3, y, s->width - x - 3, INK_DIM, st->message.text);
     } else if (st->message.text[0] != '\0') {
-        // above the prompt
-        text_line lines[3];
-        int count = text_wrap(st->message.text, s->width - 2, lines, 3, NULL);
-        for (int i = 0; i < count; i++) {
-            blank_row(s, y - count + i);
-            screen_print(s, 1, y - count + i, s->width - 2, INK_DIM, "%.*s", lines[i].bytes,
-                         lines[i].start);
-        }
-        rows += count;
+        rows += draw_message(st, s, y, INK_DIM);
     }
     return rows;
 }
@@ -216,8 +226,6 @@ static void draw_hints(const explorer_state *st, screen *s)
 // Draws the prompt, the message or hints in the last rows and returns how many it took.
 static int draw_bottom(const explorer_state *st, screen *s)
 {
-    enum { MOST = 3 };
-
     // what is being typed comes first
     if (st->prompt.open) {
         return draw_prompt(st, s);
@@ -239,20 +247,8 @@ static int draw_bottom(const explorer_state *st, screen *s)
     }
 
     // a long message covers some of the panels until the next key
-    text_line lines[MOST];
-    int count = text_wrap(st->message.text, s->width - 2, lines, MOST, NULL);
-    count = count < 1 ? 1 : count;
-    for (int i = 0; i < count; i++) {
-        blank_row(s, s->height - count + i);
-        const ink shade = st->message.warning ? INK_WARNING : INK_TEXT;
-        if (i == MOST - 1) {
-            screen_words(s, 1, s->height - 1, s->width - 2, shade, lines[i].start);
-        } else {
-            screen_print(s, 1, s->height - count + i, s->width - 2, shade, "%.*s", lines[i].bytes,
-                         lines[i].start);
-        }
-    }
-    return count;
+    const int rows = draw_message(st, s, s->height, st->message.warning ? INK_WARNING : INK_TEXT);
+    return rows < 1 ? 1 : rows;
 }
 
 // --- too small --------------------------------------------------------------------------------

@@ -548,7 +548,6 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
 static bool point(explorer_state *st, const panel_gesture *g)
 {
-
     // each part takes the mouse in its own way
     switch (g->hit.part) {
     case PART_BODY:

@@ -16,9 +16,8 @@
 
 static const char first_visit[] =
     "A first visit: o lists the scenarios. Watch the arm bounce, Space stops it. I goes back to "
-    "just "
-    "before it touched, PgUp further. b keeps this run, Enter types another voltage from here on, "
-    "Space plays on beside the old run, c compares their peaks, s saves a figure of both.";
+    "just before it touched, PgUp further. b keeps this run, Enter types another voltage from here "
+    "on, Space plays on beside the old run, c compares their peaks, s saves a figure of both.";
 static const char everywhere[] = "Esc goes back one level. : takes a command, Tab completes it, "
                                  "the beginning of a name will do.";
 static const char mouse[] =

@@ -103,7 +103,6 @@ static bool draw_phase(const explorer_state *st, screen *s, const pane *of, area
 // A signal at even instants, straight between rows; what has no value counts as 0.
 static void sample_evenly(const trace *t, int signal, double from, double to, double *series)
 {
-
     // both go forward, so the row is found in one walk
     size_t r = trace_row_at(t, from);
     for (int i = 0; i < SERIES; i++) {

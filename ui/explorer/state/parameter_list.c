@@ -224,44 +224,50 @@ static bool lies_in(int parameter, size_t from, size_t size)
     return offset >= from && offset < from + size;
 }
 
+// Why something has no effect, if that is so.
+typedef struct rule {
+    bool applies;
+    const char *reason;
+} rule;
+
+// The reason of the first rule that applies; NULL if none does.
+static const char *first_reason(const rule *rules, size_t count)
+{
+    const char *reason = NULL;
+    for (size_t i = 0; i < count && reason == NULL; i++) {
+        reason = rules[i].applies ? rules[i].reason : NULL;
+    }
+    return reason;
+}
+#define FIRST_REASON(rules) first_reason(rules, sizeof rules / sizeof rules[0])
+
 // What the arm, its wall and the method leave aside.
 static const char *reason_of_arm(const parameters *p, int parameter)
 {
     const bool of_newmark = IS_OF(parameter, method.beta) || IS_OF(parameter, method.gamma);
-
-    // parts of the arm that this one does not have
-    if (IS_OF(parameter, printed) && p->arm.model != ARM_PRINTED) {
-        return "it belongs to arm.model = printed";
-    }
-    if (IS_OF(parameter, arm.k1) && p->arm.hub_joint != HUB_SPRING) {
-        return "the hub joint is rigid (arm.hub_joint)";
-    }
-    if (IS_OF(parameter, arm.link_inertia) && p->arm.links != 2) {
-        return "it is for two links";
-    }
     const bool of_joints =
         IS_OF(parameter, arm.k2) || IS_OF(parameter, arm.EI) || IS_OF(parameter, arm.stiffening);
     const bool of_springs =
         IS_OF(parameter, arm.damping_ratio) || IS_OF(parameter, arm.modal_ratios);
-    if (p->arm.links == 1 && ((of_joints && p->arm.hub_joint != HUB_BEAM) ||
-                              (of_springs && p->arm.hub_joint == HUB_RIGID))) {
-        return "one link has no joint";
-    }
-    if (IS_OF(parameter, wall) && !IS_OF(parameter, wall.kind) && p->wall.kind == WALL_NONE) {
-        return "there is no wall (wall.kind)";
-    }
-    if (IS_OF(parameter, motor.transconductance) && p->motor.drive != DRIVE_CURRENT) {
-        return "it belongs to motor.drive = current";
-    }
+    const bool without = p->arm.links == 1 && ((of_joints && p->arm.hub_joint != HUB_BEAM) ||
+                                               (of_springs && p->arm.hub_joint == HUB_RIGID));
+    const bool of_wall = IS_OF(parameter, wall) && !IS_OF(parameter, wall.kind);
 
-    // numbers of other methods
-    if (of_newmark && p->method.name != METHOD_NEWMARK) {
-        return "it belongs to method.name = newmark";
-    }
-    if (IS_OF(parameter, method.spectral_radius) && p->method.name != METHOD_GENERALIZED_ALPHA) {
-        return "it belongs to method.name = generalized-alpha";
-    }
-    return NULL;
+    // parts that this arm does not have, then numbers of other methods
+    const rule rules[] = {
+        {IS_OF(parameter, printed) && p->arm.model != ARM_PRINTED,
+         "it belongs to arm.model = printed"},
+        {IS_OF(parameter, arm.k1) && p->arm.hub_joint != HUB_SPRING,
+         "the hub joint is rigid (arm.hub_joint)"},
+        {IS_OF(parameter, arm.link_inertia) && p->arm.links != 2, "it is for two links"},
+        {without, "one link has no joint"},
+        {of_wall && p->wall.kind == WALL_NONE, "there is no wall (wall.kind)"},
+        {IS_OF(parameter, motor.transconductance) && p->motor.drive != DRIVE_CURRENT,
+         "it belongs to motor.drive = current"},
+        {of_newmark && p->method.name != METHOD_NEWMARK, "it belongs to method.name = newmark"},
+        {IS_OF(parameter, method.spectral_radius) && p->method.name != METHOD_GENERALIZED_ALPHA,
+         "it belongs to method.name = generalized-alpha"}};
+    return FIRST_REASON(rules);
 }
 
 // Whether a parameter is one of some fields, by where it lies.
@@ -351,19 +357,14 @@ static bool is_imperfection(int parameter)
 // What sensors that are not fitted, or are ideal, make no use of.
 static const char *reason_of_sensor(const parameters *p, int parameter)
 {
-    if (IS_AMONG(parameter, piezo) && !p->sensor.piezo) {
-        return "no piezo sensor is fitted (sensor.piezo)";
-    }
-    if (IS_AMONG(parameter, film) && !p->sensor.film) {
-        return "no piezo film is fitted (sensor.film)";
-    }
-    if (IS_AMONG(parameter, accelerometer) && !p->sensor.accelerometer) {
-        return "none is fitted (sensor.accelerometer)";
-    }
-    if (p->sensor.ideal && is_imperfection(parameter)) {
-        return "the sensors are ideal (sensor.ideal)";
-    }
-    return NULL;
+    const rule rules[] = {
+        {IS_AMONG(parameter, piezo) && !p->sensor.piezo,
+         "no piezo sensor is fitted (sensor.piezo)"},
+        {IS_AMONG(parameter, film) && !p->sensor.film, "no piezo film is fitted (sensor.film)"},
+        {IS_AMONG(parameter, accelerometer) && !p->sensor.accelerometer,
+         "none is fitted (sensor.accelerometer)"},
+        {p->sensor.ideal && is_imperfection(parameter), "the sensors are ideal (sensor.ideal)"}};
+    return FIRST_REASON(rules);
 }
 
 const char *inert_reason(const parameters *p, int parameter)

@@ -98,8 +98,7 @@ void run_list_differences(const pinned_run *p, const session *s, char *text, siz
 
 #define AS_OPENED "as opened"
 
-// The last part of a scenario's name.
-static const char *leaf_of(const char *name)
+const char *scenario_leaf(const char *name)
 {
     const char *slash = strrchr(name, '/');
     return slash != NULL ? slash + 1 : name;
@@ -110,7 +109,7 @@ static void propose_name(const run_list *list, const session *s, char name[RUN_N
 {
     char text[SESSION_INPUT_TEXT + 80];
     snprintf(text, sizeof text, "%s",
-             run_list_of_scenario(list, s) < list->count ? leaf_of(s->base.name) : AS_OPENED);
+             run_list_of_scenario(list, s) < list->count ? scenario_leaf(s->base.name) : AS_OPENED);
 
     // the last change describes best what is new
     if (s->input_count > 0) {
@@ -136,7 +135,7 @@ void run_list_name_strangers(run_list *list, const session *s)
     for (int i = 0; i < list->count; i++) {
         pinned_run *p = &list->runs[i];
         if (strcmp(p->name, AS_OPENED) == 0 && !same_base(&p->from.base, &s->base)) {
-            snprintf(p->name, sizeof p->name, "%s", leaf_of(p->from.base.name));
+            snprintf(p->name, sizeof p->name, "%s", scenario_leaf(p->from.base.name));
         }
     }
 }

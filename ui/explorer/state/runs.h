@@ -38,6 +38,9 @@ void run_list_name_strangers(run_list *list, const session *s);
 // The value of an input as it is shown: a number without the digits of its rounding.
 void input_value_text(const session_input *in, char text[SESSION_INPUT_TEXT]);
 
+// The last part of a scenario's name.
+const char *scenario_leaf(const char *name);
+
 // Removes a run from the list.
 void run_list_drop(run_list *list, int index);
 void run_list_clear(run_list *list);

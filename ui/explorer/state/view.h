@@ -7,9 +7,8 @@
 #include "ui/terminal/screen.h"
 
 // --- panels -----------------------------------------------------------------------------------
-// One list gives each an identity, a place on the screen and the
-// description in the panel's own file. A new panel needs one file, one line here and one in
-// meson.build.
+// One list gives each an identity, a place on the screen and the description in the panel's own
+// file. A new panel needs one file, one line here and one in meson.build.
 
 // The places of panels.
 typedef enum panel_place {
