@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "src/base/random.h"
+#include "src/rig/rig.h"
 #include "src/run/run.h"
 
 #define RUN_TIME  2.0 // [s]
@@ -171,7 +172,9 @@ static law_case draw_case(int seed)
 
 // --- a run ------------------------------------------------------------------------------------
 
-static summary run_case(const law_case *c, const char *law, double command)
+// The scenario of a case under a law; `pushed` is where its push is kept, NULL for none.
+static void case_scenario(scenario *s, action *pushed, const law_case *c, const char *law,
+                          double command)
 {
     char force[32], of_law[48];
     snprintf(force, sizeof force, "control.force=%g", command);
@@ -182,29 +185,37 @@ static summary run_case(const law_case *c, const char *law, double command)
     for (int i = 0; i < c->count; i++) {
         all[count++] = (char *)c->settings[i];
     }
-
-    // the scenario, and its run
-    scenario s = {.name = "case"};
+    *s = (scenario){.name = "case"};
     fault f = {.code = STATUS_OK};
-    parameters_defaults(&s.parameters, ARM_CORRECTED);
-    action pushed = {.time = c->push_time,
-                     .kind = ACTION_PUSH,
-                     .parameter = -1,
-                     .value = c->push,
-                     .added = true};
-    s.actions = &pushed;
-    s.action_count = c->push != 0;
-    for (int i = 0; i < count; i++) {
-        scenario_override(&s, all[i], &f); // two that need one another
+    parameters_defaults(&s->parameters, ARM_CORRECTED);
+    if (pushed != NULL && c->push != 0) {
+        *pushed = (action){.time = c->push_time,
+                           .kind = ACTION_PUSH,
+                           .parameter = -1,
+                           .value = c->push,
+                           .added = true};
+        s->actions = pushed;
+        s->action_count = 1;
     }
     for (int i = 0; i < count; i++) {
-        if (scenario_override(&s, all[i], &f) != STATUS_OK) {
+        scenario_override(s, all[i], &f); // two that need one another
+    }
+    for (int i = 0; i < count; i++) {
+        if (scenario_override(s, all[i], &f) != STATUS_OK) {
             fprintf(stderr, "%s: %s\n", all[i], f.text);
             exit(2);
         }
     }
+}
+
+// Under `given` in the place of the law, if it is not NULL.
+static summary run_case(const law_case *c, const char *law, const given_law *given, double command)
+{
+    scenario s;
+    action pushed;
     run_result r;
-    run_scenario(&s, false, &r);
+    case_scenario(&s, &pushed, c, law, command);
+    run_scenario_with(&s, &(run_options){.law = given}, &r);
     const summary out = r.summary;
     run_finish(&r);
     return out;
@@ -216,26 +227,31 @@ typedef struct verdict {
     bool within, beyond;
 } verdict;
 
-static verdict judge(const law_case *c, const char *law, double command, double open_loop)
+// Of a run, and the same without the push.
+static verdict judge_runs(const law_case *c, double command, double open_loop, const summary *s,
+                          const summary *calm)
 {
-    const summary s = run_case(c, law, command);
-    const double end = s.first_contact_s + s.settling_time_s;
-    const double begin = c->push != 0 ? fmax(s.first_contact_s, c->push_time) : s.first_contact_s;
-    verdict v = {.over = 100 * s.smoothed_over_command_N / command,
+    const double end = s->first_contact_s + s->settling_time_s;
+    const double begin = c->push != 0 ? fmax(s->first_contact_s, c->push_time) : s->first_contact_s;
+    verdict v = {.over = 100 * calm->smoothed_over_command_N / command,
                  .settling = isnan(end) ? end : fmax(0, end - begin),
-                 .error = 100 * s.steady_error_N / command,
-                 .lost = s.separations,
-                 .late = s.first_contact_s / open_loop};
-    if (c->push != 0) {
-        law_case calm = *c;
-        calm.push = 0;
-        v.over = 100 * run_case(&calm, law, command).smoothed_over_command_N / command;
-    }
-    const bool ok = s.status == STATUS_OK && !s.inaccurate;
+                 .error = 100 * s->steady_error_N / command,
+                 .lost = s->separations,
+                 .late = s->first_contact_s / open_loop};
+    const bool ok = s->status == STATUS_OK && !s->inaccurate;
     v.within = ok && v.over <= 30 && v.settling <= (v.lost > 0 ? 0.6 : 0.3) && fabs(v.error) <= 5 &&
                v.late <= 1.5;
     v.beyond = !(ok && v.over <= 120 && v.settling <= 0.8);
     return v;
+}
+
+static verdict judge(const law_case *c, const char *law, double command, double open_loop)
+{
+    const summary s = run_case(c, law, NULL, command);
+    law_case calm = *c;
+    calm.push = 0;
+    const summary undisturbed = c->push != 0 ? run_case(&calm, law, NULL, command) : s;
+    return judge_runs(c, command, open_loop, &s, &undisturbed);
 }
 
 // Draws that many cases and judges each at every command; `each` is told of them in order.
@@ -246,7 +262,7 @@ static void judge_cases(int seed, int count, const char *law, judged_case *each,
     random_seed(&generator, (uint64_t)seed);
     for (int i = 0; i < count; i++) {
         const law_case c = draw_case(seed);
-        const double open_loop = run_case(&c, "open-loop", 1).first_contact_s;
+        const double open_loop = run_case(&c, "open-loop", NULL, 1).first_contact_s;
         for (int k = 0; k < COMMANDS; k++) {
             const verdict v = judge(&c, law, commands[k], open_loop);
             each(tally, i, &c, k, open_loop, &v);
