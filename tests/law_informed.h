@@ -326,7 +326,7 @@ static verdict informed_verdict(const law_case *c, double command, double open_l
     informed_design(m, t, &plan);
     if (!informed_run(&calm, command, m, &plan, &quiet) ||
         !informed_run(c, command, m, &plan, &given)) {
-        return (verdict){.over = HUGE_VAL, .beyond = true};
+        return (verdict){.over = HUGE_VAL, .settling = HUGE_VAL, .beyond = true};
     }
     const summary undisturbed =
         run_case(&calm, "open-loop", &(given_law){&informed_law, &quiet}, command);
@@ -334,12 +334,22 @@ static verdict informed_verdict(const law_case *c, double command, double open_l
     return judge_runs(c, command, open_loop, &s, &undisturbed);
 }
 
+// With one tuning for all cases.
+static verdict informed_once(const law_case *c, double command, double open_loop)
+{
+    scenario s;
+    case_scenario(&s, NULL, c, "open-loop", command);
+    const informed_arm m = informed_arm_of(&s.parameters, command);
+    const double speed = command < 1 ? 0.01 : command < 3 ? 0.02 : 0.04;
+    const informed_tuning t = {1.2 * open_loop, 0.03, 0.4, 1e-3, speed};
+    return informed_verdict(c, command, open_loop, &m, &t);
+}
+
 // Tries tunings until the law is within the bounds; else the last verdict.
 static verdict informed_search(const law_case *c, double command, double open_loop)
 {
     static const double speeds[] = {0, 0.02, 0.05, 0.01}, weights[] = {1e-3, 1e-2, 1e-4};
-    static const double touches[] = {1.2, 1.35, 1.45}, rises[] = {0.03, 0.06},
-                        firsts[] = {0.1, 0.4};
+    static const double touches[] = {1.2, 1.35, 0.9}, rises[] = {0.03, 0.06}, firsts[] = {0.1, 0.4};
     scenario s;
     case_scenario(&s, NULL, c, "open-loop", command);
     const informed_arm m = informed_arm_of(&s.parameters, command);
