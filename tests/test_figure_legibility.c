@@ -309,7 +309,6 @@ static void check_frames(const figure *fig, const char *id, double width)
         complain_of("%s at %g mm: %d pixels of curves inside, %d outside their frames", id, width,
                     inside, outside);
     }
-    cairo_surface_destroy(two);
 }
 
 // The mark of the peak stands at a point of the force's curve that none near it exceeds, that of
