@@ -76,9 +76,10 @@ static status resolve_wall(parameters *p, fault *f)
               "wall.motion = file needs a CSV file in wall.motion_file");
     REFUSE_IF(moves && !events, BLAME2(p, wall.motion, method.name), f,
               "a wall that moves (wall.motion) runs with method.name = event only");
-    REFUSE_IF(moves && w->mass > 0 && w->kind != WALL_PLANE, BLAME2(p, wall.motion, wall.kind), f,
-              "wall.motion shakes along the wall's normal, but the face of a point (wall.mass) gives "
-              "across the last link, which turns: expected wall.kind = plane");
+    REFUSE_IF(
+        moves && w->mass > 0 && w->kind != WALL_PLANE, BLAME2(p, wall.motion, wall.kind), f,
+        "wall.motion shakes along the wall's normal, but the face of a point (wall.mass) gives "
+        "across the last link, which turns: expected wall.kind = plane");
     REFUSE_IF(moves && p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID && !gives &&
                   p->motor.stiction > 0,
               BLAME2(p, wall.motion, motor.stiction), f,
