@@ -13,27 +13,28 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define ANGLE_NOISE  4.5e-4 // of the encoder, and of angles that no mode shows [rad]
 #define COUNT_SHARE  0.29   // of the encoder: a count over the square root of 12
 #define RATE_NOISE   0.014  // of the tachometer [rad/s]
-#define NOISE_MEAN   0.2
-#define MOST_NOISE   9.0
-#define RATE_RIPPLE  0.01 // of the tachometer, as a share of the reading
-#define FORCE_NOISE  0.02 // of the force sensor [N]
-#define FORCE_SHARE  0.02 // of the force sensor, as a share of the reading
-#define FILM_NOISE   0.01 // of the film [rad]
-#define FILM_LEAK    0.1  // that its charge loses [rad/s]
-#define ACCELERATION 1.0  // of the accelerometer [rad/s2]
-#define TORQUE_DRIFT 0.02 // of the unknown torque, in a second [N m]
-#define WALL_DRIFT   1e-3 // of the wall, in a second [rad]
-#define STIFFNESS    0.25 // share by which the stiffness may be wrong
-#define MOVES        0.05 // a slower hub tells nothing of what arm it is [rad/s]
-#define TAILS        4.0  // degrees of freedom of the distribution that misses of readings have
-#define STIFF_MEMORY 0.5  // over which readings count for the stiffness [s],
-#define STIFF_GUESS  0.15 // and as what the nominal one does [s]
-#define OFFSET_TIME  0.1  // for which the tachometer counts as one without an offset [s]
-#define LEAST_STIFF  0.2  // share of it that the arm has at least
-#define OUTLIER      4.0  // readings further off, in standard deviations, are worth less
-#define TIP_IMPULSE  0.03 // that the wall may give unseen, a standard deviation [N s]
-#define YOUNG        0.1  // a contact after less time may still throw the tip back [s]
-#define REST         0.01 // a slower hub counts as at rest [rad/s]
+#define NOISE_MEAN   0.2    // over which the noise of the tachometer is averaged [s],
+#define MOST_NOISE   9.0    // and the most that a reading counts, in that noise squared
+#define RATE_RIPPLE  0.01   // of the tachometer, as a share of the reading
+#define FORCE_NOISE  0.02   // of the force sensor [N]
+#define FORCE_SHARE  0.02   // of the force sensor, as a share of the reading
+#define FILM_NOISE   0.01   // of the film [rad]
+#define FILM_LEAK    0.1    // that its charge loses [rad/s]
+#define ACCELERATION 1.0    // of the accelerometer [rad/s2]
+#define TORQUE_DRIFT 0.1    // of the unknown torque, in a second, in flight [N m],
+#define TORQUE_STAYS 0.02   // and in contact, where a wall that yields looks like one [N m]
+#define WALL_DRIFT   1e-3   // of the wall, in a second [rad]
+#define STIFFNESS    0.25   // share by which the stiffness may be wrong
+#define MOVES        0.05   // a slower hub tells nothing of what arm it is [rad/s]
+#define TAILS        4.0    // degrees of freedom of the distribution that misses of readings have
+#define STIFF_MEMORY 0.5    // over which readings count for the stiffness [s],
+#define STIFF_GUESS  0.15   // and as what the nominal one does [s]
+#define OFFSET_TIME  0.1    // for which the tachometer counts as one without an offset [s]
+#define LEAST_STIFF  0.2    // share of it that the arm has at least
+#define OUTLIER      4.0    // readings further off, in standard deviations, are worth less
+#define TIP_IMPULSE  0.03   // that the wall may give unseen, a standard deviation [N s]
+#define YOUNG        0.1    // a contact after less time may still throw the tip back [s]
+#define REST         0.01   // a slower hub counts as at rest [rad/s]
 
 // The modes of the present state.
 static const mode_set *modes_of(const arm_observer *o)
@@ -290,7 +291,8 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
     }
 
     // process noise of the states that drift
-    noise[arm_observer_torque_index(o)] = TORQUE_DRIFT * TORQUE_DRIFT * h;
+    const double drift = o->touches ? TORQUE_STAYS : TORQUE_DRIFT;
+    noise[arm_observer_torque_index(o)] = drift * drift * h;
     if (o->touches) {
         // a wrong nominal stiffness shows as a wall that moves with the hub
         double bend = hub_angle(o, e) - e->z[wall_index(o)];
