@@ -34,6 +34,7 @@ TEST(the_bound_is_that_of_zero_and_delay)
         check_close(study.points[k][2].gain, 1, 0.15);
         check_close(study.points[k][2].phase, 0, 6);
         check_below(study.points[k][2].error, 0.5 * study.bound[2].error);
+        check_below(study.points[k][1].error, 0.06);
         if (strcmp(follow_laws[k], "admittance") != 0) {
             check_relative(study.points[k][0].shaken, 4.92 / 0.25, 0.08);
         }

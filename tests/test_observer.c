@@ -552,7 +552,7 @@ TEST(it_follows_a_setpoint_in_contact)
     SCOPED(run_finish) run_result r = force_after_change(1, 3, 5);
     for (size_t k = 0; k < r.trace.row_count; k++) {
         const sample *row = &r.trace.rows[k];
-        if (row->time > 1.1 && row->time < 1.4) {
+        if (row->time > 1.07 && row->time < 1.4) {
             check_close(row->force, 1 + 5 * (row->time - 1), 0.05 * row->force);
         }
     }
