@@ -200,7 +200,8 @@ static double travel(observer_memory *m, const estimator *e)
     const arm_observer *o = observer_of(m);
     const mode_set *set = &o->arm.free;
     const int n = set->count;
-    smooth_approach_slow(&m->plan, design_of(m), arm_observer_tip(o, e));
+    smooth_approach_slow(&m->plan, design_of(m), arm_observer_tip(o, e),
+                         e->z[0] / set->momentum[0]);
     double speed = smooth_approach_speed(&m->plan, design_of(m)), hub_speed = 0, feedback = 0;
 
     // all deviations but the angle's

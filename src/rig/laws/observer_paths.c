@@ -9,7 +9,12 @@
 
 // --- an approach that leaves no vibration ----------------------------------------------------
 
-#define OVERLAP 0.7 // share of a change of speed after which the next one may begin
+// Share of a change of speed after which the next one may begin. An early one asks for a brisk
+// start, which shows what arm it is; what the arm then falls short by is made at the speed of the
+// touch, which takes long where that is slow.
+#define EARLY      0.3
+#define LATE       0.7
+#define FAST_TOUCH 0.3 // speed from which a touch of two links is fast [rad/s]
 
 // The plan from a rotation at a speed, without vibration, all changes still to be made.
 static void plan_from(smooth_approach *p, const observer_design *d, double speed)
@@ -95,22 +100,28 @@ void smooth_approach_begin(smooth_approach *p, const observer_design *d, double 
     const double room = p->guarded - angle - soft * (T / 2 - beyond);
 
     // from rest to the cruising speed
+    if (!(p->overlap > 0)) {
+        const bool fast = d->observer.arm.free.count == 2 && soft > FAST_TOUCH;
+        p->overlap = fast ? EARLY : LATE;
+    }
     p->start_angle = angle;
-    p->change[0] = fmax(soft, fmin(d->top_speed, room / (OVERLAP * T + beyond)));
+    p->change[0] = fmax(soft, fmin(d->top_speed, room / (p->overlap * T + beyond)));
     p->change[1] = 0;
     p->beyond = beyond * (p->change[0] - soft);
     p->slows = !(p->change[0] > soft);
     plan_from(p, d, 0);
 }
 
-void smooth_approach_slow(smooth_approach *p, const observer_design *d, double tip)
+void smooth_approach_slow(smooth_approach *p, const observer_design *d, double tip, double turned)
 {
     assert(p != NULL && d != NULL);
     const double T = d->ramp_time, cruise = p->change[0], soft = d->arrival_speed;
-    if (!p->slows && p->changing[0] >= OVERLAP * T) {
+    if (!p->slows && p->changing[0] >= p->overlap * T) {
         const double unmade = fmax(0, T - p->changing[0]);
         const double way = cruise * (T - unmade * unmade / (2 * T)) + (soft - cruise) * T / 2;
-        if (p->guarded - p->beyond - tip <= way) {
+        // what speeds the beam up still bends it back where the next change is early
+        const double at = p->overlap < LATE ? turned : tip;
+        if (p->guarded - p->beyond - at <= way) {
             p->slows = true;
             p->change[1] = soft - cruise;
         }

@@ -18,6 +18,7 @@ typedef struct smooth_approach {
     double guarded, passed;         // tip angles between which the wall is probably felt [rad]
     double state[ESTIMATOR_STATES]; // planned: free coordinates and rates
     double start_angle;             // [rad]
+    double overlap;                 // share of the first change after which the second may begin
     double from;                    // the rotation's speed before both changes of it [rad/s],
     double beyond;                  // by which the tip swings beyond the end of slowing down [rad]
     double change[2];               // which may overlap [rad/s],
@@ -33,9 +34,9 @@ void smooth_approach_begin(smooth_approach *p, const observer_design *d, double 
 // The plan as it would be, had the present changes of speed been begun for the design of now.
 void smooth_approach_again(smooth_approach *p, const observer_design *d);
 
-// Begins to slow down where the tip [rad] comes near the guarded angle; beyond the other, to
-// search.
-void smooth_approach_slow(smooth_approach *p, const observer_design *d, double tip);
+// Begins to slow down where the tip, or the rotation of the whole arm [rad], comes near the guarded
+// angle; beyond the other, to search.
+void smooth_approach_slow(smooth_approach *p, const observer_design *d, double tip, double turned);
 
 // Planned speed of the rotation [rad/s].
 double smooth_approach_speed(const smooth_approach *p, const observer_design *d);
