@@ -22,7 +22,7 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define FILM_LEAK    0.1    // that its charge loses [rad/s]
 #define ACCELERATION 1.0    // of the accelerometer [rad/s2]
 #define TORQUE_DRIFT 0.1    // of the unknown torque, in a second, in flight [N m],
-#define TORQUE_STAYS 0.02   // and in contact, where a wall that yields looks like one [N m]
+#define TORQUE_STAYS 0.05   // and in contact, where a wall that yields looks like one [N m]
 #define WALL_DRIFT   1e-3   // of the wall, in a second [rad]
 #define STIFFNESS    0.25   // share by which the stiffness may be wrong
 #define MOVES        0.05   // a slower hub tells nothing of what arm it is [rad/s]
@@ -140,7 +140,7 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
     o->tip_before = o->tip_now = in->encoder;
     o->count = HUGE_VAL;
     o->turned = o->angle_before = in->encoder;
-    o->rate_before[0] = o->rate_before[1] = in->tachometer;
+    o->rate_before[0] = o->rate_before[1] = o->rate_before[2] = in->tachometer;
     o->rate_noise = RATE_NOISE * RATE_NOISE;
     o->observed = 0;
 }
@@ -150,11 +150,15 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
 static double tachometer_offset(arm_observer *o, const controller_input *in)
 {
     o->turned += (o->rate_before[0] + in->tachometer) / 2 * o->period;
-    const double bend = in->tachometer - 2 * o->rate_before[0] + o->rate_before[1];
+    double *before = o->rate_before, ripple = RATE_RIPPLE * in->tachometer;
+    const double third = in->tachometer - 3 * (before[0] - before[1]) - before[2];
     const double share = fmin(1, o->period / NOISE_MEAN);
-    o->rate_noise += share * (fmin(bend * bend / 6, MOST_NOISE * o->rate_noise) - o->rate_noise);
+    o->rate_noise +=
+        share * (fmin(fmax(0, third * third / 20 - ripple * ripple), MOST_NOISE * o->rate_noise) -
+                 o->rate_noise);
     o->rate_noise = fmax(o->rate_noise, RATE_NOISE * RATE_NOISE);
-    o->rate_before[1] = o->rate_before[0];
+    before[2] = before[1];
+    before[1] = before[0];
     o->rate_before[0] = in->tachometer;
     o->observed += o->period;
     return (o->turned - in->encoder) / (o->observed + OFFSET_TIME);

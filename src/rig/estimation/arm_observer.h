@@ -23,7 +23,7 @@ typedef struct arm_observer {
     estimator e, flown;  // flown: while a contact is young, as if the tip had been thrown back
     double count, angle_before; // smallest step of the encoder so far, its last reading [rad]
     double turned;              // angle by the tachometer [rad],
-    double rate_before[2];      // its last readings, the latest first [rad/s],
+    double rate_before[3];      // its last readings, the latest first [rad/s],
     double rate_noise;          // and the variance of its noise [rad2/s2]
     double observed;            // for how long [s]
     double last_voltage;        // in effect at the sample before [V]
