@@ -1,6 +1,5 @@
 // impactlab on the command line: finds the command and executes it.
 
-#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <locale.h>
@@ -22,7 +21,6 @@ static int print_welcome(void)
 {
     const command *list = command_find("list");
     const arguments none = {.command = list};
-    assert(list != NULL);
     printf("impactlab %s: impact and force control of a flexible robot arm\n\nScenarios:\n",
            lab_version());
     int result = list->run(&none);

@@ -1,6 +1,5 @@
 #include "render/figures/artwork.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -9,17 +8,14 @@
 
 status make_folder(const char *folder, fault *f)
 {
-    assert(folder != NULL);
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "the folder '%s' cannot be made: %s", folder,
-                         strerror(errno));
-    }
+    FAIL_IF(mkdir(folder, 0777) != 0 && errno != EEXIST,
+            fault_set(f, STATUS_CANNOT_WRITE, "the folder '%s' cannot be made: %s", folder,
+                      strerror(errno)));
     return STATUS_OK;
 }
 
 status artwork_paint(const artwork *a, cairo_t *cr, figure_report *report, fault *f)
 {
-    assert(a != NULL && cr != NULL);
     return a->table != NULL     ? table_paint(cr, a->table, report, f)
            : a->plotted != NULL ? figure_paint(cr, a->plotted, report, f)
                                 : a->paint(cr, a->owner, report, f);
@@ -27,12 +23,8 @@ status artwork_paint(const artwork *a, cairo_t *cr, figure_report *report, fault
 
 status artwork_write_csv(const artwork *a, const char *path, fault *f)
 {
-    assert(a != NULL && path != NULL);
     whole_file file;
-    status code = whole_file_open(&file, path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(whole_file_open(&file, path, f));
     csv_writer csv = csv_begin(file.stream);
     if (a->table != NULL) {
         table_write_csv(a->table, &csv);
@@ -51,8 +43,6 @@ static status paint(cairo_t *cr, const void *what, fault *f)
 
 picture artwork_picture(const artwork *a, const figure_options *options)
 {
-    assert(a != NULL && options != NULL);
-
     // without an alternative text the title stands in for it
     return (picture){.width = a->width,
                      .height = a->height,
@@ -86,7 +76,6 @@ static void release_table(void *what)
 
 artwork artwork_of_table(table_page *t)
 {
-    assert(t != NULL);
     artwork a = {t->title,   .caption = t->caption,   .parameters = t->parameters, .table = t,
                  .owner = t, .release = release_table};
     table_size(t, &a.width, &a.height);
@@ -143,7 +132,6 @@ static char *describe_figure(const figure *fig)
 
 artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner))
 {
-    assert(fig != NULL);
     artwork a = {fig->title,
                  .caption = fig->caption,
                  .parameters = fig->parameters,
@@ -175,7 +163,6 @@ static const char replacements[] =
 // Pango markup as LaTeX: italics, indices, Greek letters and signs. Free the result with g_free.
 static char *latex_of_markup(const char *markup)
 {
-    assert(markup != NULL);
     GString *out = g_string_new(NULL);
     g_auto(GStrv) words = g_strsplit(replacements, "|", -1);
 
@@ -216,7 +203,6 @@ static char *latex_escape(const char *plain)
 
 char *latex_environment(const artwork *a, const char *tex, const char *file)
 {
-    assert(a != NULL && tex != NULL && file != NULL);
     g_autofree char *tex_folder = g_path_get_dirname(tex), *folder = g_path_get_dirname(file);
     g_autofree char *name = g_path_get_basename(file);
     const char *dot = strrchr(name, '.');
@@ -240,7 +226,6 @@ char *latex_environment(const artwork *a, const char *tex, const char *file)
 
 char *artwork_beside(const char *file, const char *ending)
 {
-    assert(file != NULL && ending != NULL);
     const char *slash = strrchr(file, '/'), *dot = strrchr(slash ? slash : file, '.');
     size_t length = dot != NULL ? (size_t)(dot - file) : strlen(file);
     return text_printf("%.*s%s", (int)length, file, ending);
@@ -280,7 +265,6 @@ static status may_replace(const artwork *a, const char *csv, fault *f)
 status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
                        fault *f)
 {
-    assert(a != NULL && o != NULL && path != NULL);
     picture p = artwork_picture(a, o);
     status code = picture_write(&p, path, f);
     if (code == STATUS_OK && with_csv) {
@@ -315,13 +299,11 @@ void figure_take_range(figure *fig, const figure_options *o)
 status figure_publish(const figure *fig, const figure_options *o, const char *path, bool with_csv,
                       fault *f)
 {
-    assert(fig != NULL && o != NULL && path != NULL);
-    if (o->overlay != NULL || o->signals != NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%s: the picture shows no recorded signals that %s could choose or lie "
-                         "over",
-                         path, o->overlay != NULL ? "--overlay" : "--signals");
-    }
+    FAIL_IF(o->overlay != NULL || o->signals != NULL,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "%s: the picture shows no recorded signals that %s could choose or lie "
+                      "over",
+                      path, o->overlay != NULL ? "--overlay" : "--signals"));
 
     // a copy with the look and the range asked for
     figure shown = *fig;

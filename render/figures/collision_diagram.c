@@ -160,9 +160,7 @@ status diagram_collision(const figure_order *order, artwork *out, fault *f)
     // the impact, and what the links do after it
     double speed = 0, impulse = 0;
     status code = diagram_take_impact(d, order, &speed, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     code = predict_velocity_jump(&d->p, &d->before, d->after, &impulse, f);
     if (code != STATUS_OK) {
         diagram_release(d);

@@ -147,10 +147,7 @@ static void add_shape_values(diagram *d, const arm_shape *a)
 status diagram_contact(const figure_order *order, artwork *out, fault *f)
 {
     opened_run run;
-    status code = run_begin(&run, order->which->scenario, "method.step=0.01", f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(run_begin(&run, order->which->scenario, "method.step=0.01", f));
 
     // two steps during contact
     const trace *t = &run.result.trace;
@@ -247,10 +244,7 @@ static const sample *row_before(const trace *t, double contact)
 status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 {
     opened_run run;
-    status code = run_begin(&run, order->which->scenario, NULL, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(run_begin(&run, order->which->scenario, NULL, f));
     const summary *m = &run.result.summary;
     if (!isfinite(m->first_pulse_time_to_peak_s)) {
         run_end(&run);

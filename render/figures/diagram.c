@@ -7,7 +7,7 @@
 
 void diagram_add_value(diagram *d, const char *name, double value, const char *unit)
 {
-    assert(d != NULL && name != NULL && d->value_count < DIAGRAM_VALUES);
+    assert(d->value_count < DIAGRAM_VALUES);
     d->values[d->value_count++] = (diagram_value){name, unit, value};
 }
 
@@ -106,7 +106,6 @@ status diagram_take_impact(diagram *d, const figure_order *order, double *speed,
 
 point view_place(const view *v, point at)
 {
-    assert(v != NULL);
     return (point){v->x + v->metre * at.x, v->y - v->metre * v->across * at.y};
 }
 

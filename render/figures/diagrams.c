@@ -213,10 +213,7 @@ status diagram_springs(const figure_order *order, artwork *out, fault *f)
     diagram *d = diagram_create(order, 108, draw_springs);
     double speed = 0;
     parameters defaults = d->p;
-    status code = diagram_take_impact(d, order, &speed, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(diagram_take_impact(d, order, &speed, f));
 
     // drawn with the defaults, not with the run's wall
     d->p = defaults;

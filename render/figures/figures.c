@@ -54,7 +54,6 @@ const thesis_figure *thesis_figure_at(int i)
 
 const thesis_figure *thesis_figure_find(const char *id)
 {
-    assert(id != NULL);
     for (int i = 0; i < FIGURES; i++) {
         if (g_ascii_strcasecmp(thesis_figures[i].id, id) == 0 ||
             strcmp(thesis_figures[i].file, id) == 0) {
@@ -183,7 +182,6 @@ static status open_signals(const figure_order *order, artwork *out, fault *f)
 status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out,
                             const scenario **s, fault *f)
 {
-    assert(name != NULL && out != NULL && s != NULL);
     const thesis_figure run = {.scenario = name};
     const figure_options options = {0};
     status code = open_signals(&(figure_order){&run, NULL, &options, monitor}, out, f);
@@ -195,12 +193,10 @@ status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out
 
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f)
 {
-    assert(which != NULL && o != NULL && out != NULL);
-    if (which->open != NULL && (o->overlay != NULL || o->signals != NULL)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%s shows no recorded signals that %s could choose or lie over", which->id,
-                         o->overlay != NULL ? o->overlay : o->signals);
-    }
+    FAIL_IF(which->open != NULL && (o->overlay != NULL || o->signals != NULL),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "%s shows no recorded signals that %s could choose or lie over", which->id,
+                      o->overlay != NULL ? o->overlay : o->signals));
     // "Fig. 3.4  ...", "Table 4.1  ...", or the caption alone
     const bool table = which->id[0] == 'T', numbered = table || g_ascii_isdigit(which->id[0]);
     g_autofree char *title = numbered ? text_printf("%s %s  %s", table ? "Table" : "Fig.",
@@ -213,26 +209,21 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
 status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
                    FILE *tex, fault *f)
 {
-    assert(id != NULL && o != NULL && folder != NULL && formats != NULL);
     const thesis_figure *which = thesis_figure_find(id);
-    if (which == NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "there is no figure '%s', expected %s to %s", id,
-                         thesis_figures[0].id, thesis_figures[FIGURES - 1].id);
-    }
+    FAIL_IF(which == NULL,
+            fault_set(f, STATUS_BAD_ARGUMENT, "there is no figure '%s', expected %s to %s", id,
+                      thesis_figures[0].id, thesis_figures[FIGURES - 1].id));
 
     // every format is known before anything is computed
     g_auto(GStrv) list = g_strsplit(formats, ",", -1);
     for (int i = 0; list[i] != NULL; i++) {
-        if (picture_format_of(list[i]) == FORMAT_NONE) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "there is no figure format '%s', expected png, pdf or svg", list[i]);
-        }
+        FAIL_IF(picture_format_of(list[i]) == FORMAT_NONE,
+                fault_set(f, STATUS_BAD_ARGUMENT,
+                          "there is no figure format '%s', expected png, pdf or svg", list[i]));
     }
     artwork drawn;
     status code = figure_open(which, o, &drawn, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     // numbers, caption and what LaTeX needs go with the first picture
     figure_options beside = *o;

@@ -1,6 +1,5 @@
 #include "render/figures/recipe.h"
 
-#include <assert.h>
 #include <stdlib.h>
 
 #include "render/figures/recipe_parts.h"
@@ -140,7 +139,6 @@ static void describe(recipe_figure *fig, const figure_options *o)
 status recipe_open(const char *path, const figure_options *o, fault_handler report, void *context,
                    artwork *out, fault *f)
 {
-    assert(path != NULL && o != NULL && report != NULL && out != NULL);
     gchar *text = NULL;
     gsize length = 0;
     GError *error = NULL;
@@ -176,7 +174,6 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
 
 bool recipe_is(const char *path)
 {
-    assert(path != NULL);
     gchar *text = NULL;
     gsize length = 0;
     if (!g_file_get_contents(path, &text, &length, NULL)) {

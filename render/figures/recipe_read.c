@@ -1,5 +1,4 @@
 // Recipes: from YAML to what a figure shows.
-#include <assert.h>
 #include <float.h>
 #include <string.h>
 
@@ -336,7 +335,6 @@ static void take_recipe(recipe_context *c, const tree_node *root)
 bool recipe_read(recipe *r, const char *path, const char *text, size_t length, fault_handler report,
                  void *report_context)
 {
-    assert(r != NULL && path != NULL && text != NULL && report != NULL);
     fault f = {0};
     recipe_context c = {.reader = {.path = path}, .recipe = r};
     *r = (recipe){.columns = 1, .contact = true};

@@ -71,9 +71,7 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
 {
     const report_page *page = what;
     status code = text_check_font(f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     double y = PAGE_MARGIN;
     PangoContext *context = text_context_create();
@@ -166,16 +164,12 @@ static status add_figures(report_content *r, fault *f)
         const thesis_figure *which = thesis_figure_at(i);
         report_item item = {.scenario = which->scenario, .model = which->model};
         status code = figure_open(which, &options, &item.drawn, f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(code);
 
         item.command = text_printf("impactlab figures %s", which->id);
         g_array_append_val(r->items, item);
         code = report_item_done(r, f);
-        if (code != STATUS_OK) {
-            return code;
-        }
+        TRY(code);
     }
     return STATUS_OK;
 }
@@ -276,7 +270,7 @@ static status add_own(report_content *r, char *const *names, int count, fault *f
 status report_write(const char *folder, char *const *names, int count, run_monitor *monitor,
                     fault *f)
 {
-    assert(folder != NULL && (names != NULL || count == 0));
+    assert(names != NULL || count == 0);
     fault why = {0};
     report_content r = {.monitor = monitor,
                         .items = g_array_new(FALSE, TRUE, sizeof(report_item)),

@@ -66,9 +66,7 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
 {
     text_stream stream;
     size_t length = 0;
-    if (!text_stream_open(&stream)) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(text_stream_open(&stream), f);
     status code = picture_write_png(p, stream.stream, f);
     char *bytes = text_stream_close(&stream, &length);
     code = code == STATUS_OK && bytes == NULL ? fault_no_memory(f) : code;

@@ -21,13 +21,10 @@ status run_begin(opened_run *r, const char *name, const char *change, fault *f)
 status run_begin_changed(opened_run *r, const char *name, const char *const *changes, int count,
                          run_monitor *monitor, fault *f)
 {
-    assert(r != NULL && name != NULL);
     const run_options options = {.keep_trace = true, .monitor = monitor};
     fault first = {STATUS_OK, ""};
     status code = scenario_open(&r->scenario, name, keep_first_fault, &first);
-    if (code != STATUS_OK) {
-        return fault_set(f, code, "%s", first.text);
-    }
+    FAIL_IF(code != STATUS_OK, fault_set(f, code, "%s", first.text));
 
     // changes lie above what the file says
     if (count > 0) {
@@ -71,21 +68,19 @@ static status read_panel(const char *text, trace_panel *p, fault *f)
         int index = signal_find(name);
 
         // known, with room, and of the panel's one unit
-        if (index <= 0) {
-            return fault_set(f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?",
-                             name, nearest_signal(name));
-        }
-        if (i == TRACE_SIGNALS) {
-            return fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a panel shows at most %d signals", text,
-                             TRACE_SIGNALS);
-        }
+        FAIL_IF(index <= 0,
+                fault_set(f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?",
+                          name, nearest_signal(name)));
+        FAIL_IF(i == TRACE_SIGNALS,
+                fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a panel shows at most %d signals", text,
+                          TRACE_SIGNALS));
         p->signals[i] = signal_table[index].name;
-        if (strcmp(signal_table[index].unit, signal_table[signal_index(p->signals[0])].unit) != 0) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "'%s': the signals of a panel have one unit, expected a comma between "
-                             "%s and %s",
-                             text, p->signals[0], name);
-        }
+        FAIL_IF(strcmp(signal_table[index].unit, signal_table[signal_index(p->signals[0])].unit) !=
+                    0,
+                fault_set(f, STATUS_BAD_ARGUMENT,
+                          "'%s': the signals of a panel have one unit, expected a comma between "
+                          "%s and %s",
+                          text, p->signals[0], name));
     }
     return STATUS_OK;
 }
@@ -96,10 +91,9 @@ static status read_signals(const char *text, trace_panel *panels, int *count, fa
     status code = STATUS_OK;
     g_auto(GStrv) words = g_strsplit(text, ",", -1);
     for (*count = 0; words[*count] != NULL && code == STATUS_OK; ++*count) {
-        if (*count == FIGURE_PANELS - 1) {
-            return fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a figure has at most %d panels", text,
-                             FIGURE_PANELS - 1);
-        }
+        FAIL_IF(*count == FIGURE_PANELS - 1,
+                fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a figure has at most %d panels", text,
+                          FIGURE_PANELS - 1));
         trace_panel *p = &panels[*count];
         *p = (trace_panel){.weight = 1};
         code = read_panel(words[*count], p, f);
@@ -128,7 +122,7 @@ void run_figure_finish(run_figure *r)
 status run_figure_init(run_figure *r, const char *title, const trace_panel *panels, int panel_count,
                        const trace_run *runs, int run_count, const figure_options *o, fault *f)
 {
-    assert(r != NULL && runs != NULL && run_count >= 1 && o != NULL);
+    assert(run_count >= 1);
     trace_run all[TRACE_RUNS];
     trace_panel asked[FIGURE_PANELS];
     status code = STATUS_OK;

@@ -23,7 +23,6 @@ const thesis_tables *computed_tables(fault *f)
 const table_row *computed_row(const thesis_tables *t, const char *table, const char *model,
                               const char *quantity)
 {
-    assert(t != NULL && table != NULL && model != NULL && quantity != NULL);
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
         if (strcmp(row->table, table) == 0 && strcmp(row->model, model) == 0 &&
@@ -83,10 +82,7 @@ status table_motor(const figure_order *order, artwork *out, fault *f)
 {
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
-    status code = parameters_resolve(&p, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(parameters_resolve(&p, f));
 
     table_page *t = new_table(order);
     table_add_column(t, "Symbol", 0.75, TEXT_LEFT);
@@ -132,17 +128,14 @@ status table_stability(const figure_order *order, artwork *out, fault *f)
     parameters_defaults(&p, ARM_CORRECTED);
     status code = parameter_set_text(&p, PARAMETER_INDEX(arm.hub_joint), "spring", f);
     code = code == STATUS_OK ? parameters_resolve(&p, f) : code;
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     // hub and two links: three modes, the last is the fastest
     double frequencies[3], shapes[9];
     int count = 0;
     arm_init(&a, &p);
     code = modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes);
-    if (code != STATUS_OK || count < 1) {
-        return fault_set(f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed");
-    }
+    FAIL_IF(code != STATUS_OK || count < 1,
+            fault_set(f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed"));
     double fastest = frequencies[count - 1];
 
     table_page *t = new_table(order);

@@ -79,7 +79,7 @@ double text_index_letters(double size)
 
 char *text_translate(const char *markup, double size, double scale)
 {
-    assert(markup != NULL && size > 0 && scale > 0);
+    assert(size > 0 && scale > 0);
     GString *out = g_string_new(NULL);
 
     bool in_tag = false;
@@ -120,7 +120,7 @@ char *text_translate(const char *markup, double size, double scale)
 
 void text_unit(const char *unit, char *out, size_t size)
 {
-    assert(unit != NULL && out != NULL && size > 0);
+    assert(size > 0);
     static const char *const powers[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                          "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
 
@@ -144,7 +144,7 @@ void text_unit(const char *unit, char *out, size_t size)
 
 char *text_quantity(double value, int digits, const char *unit)
 {
-    assert(unit != NULL && digits > 0);
+    assert(digits > 0);
     char number[48], shown[64];
     decimal_print(number, sizeof number, "%#.*g", digits, fabs(value));
     size_t length = strlen(number);
@@ -176,7 +176,6 @@ char *text_number(double value, int digits)
 
 char *text_label(const char *description)
 {
-    assert(description != NULL);
     g_autofree char *valid = g_utf8_make_valid(description, -1);
     g_autofree char *label = g_strndup(valid, strcspn(valid, ",:;("));
     g_strchomp(label);
@@ -196,7 +195,6 @@ char *text_printable(const char *bytes)
 
 char *text_plain(const char *markup)
 {
-    assert(markup != NULL);
     char *valid = text_printable(markup), *plain = NULL;
     if (pango_parse_markup(valid, -1, 0, NULL, &plain, NULL, NULL)) {
         // an entity may have become what the markup did not hold
@@ -209,7 +207,6 @@ char *text_plain(const char *markup)
 
 char *text_escape(const char *bytes)
 {
-    assert(bytes != NULL);
     char *valid = text_printable(bytes), *escaped = g_markup_escape_text(valid, -1);
     g_free(valid);
     return escaped;

@@ -88,13 +88,12 @@ colour colour_between(colour a, colour b, double share)
 
 void set_colour(cairo_t *cr, colour c)
 {
-    assert(cr != NULL);
     cairo_set_source_rgb(cr, c.red, c.green, c.blue);
 }
 
 void set_line_style(cairo_t *cr, line_style style, double width)
 {
-    assert(cr != NULL && width > 0);
+    assert(width > 0);
     static const double dashed[] = {5, 2.2}, dotted[] = {1.2, 1.8}, dash_dot[] = {7, 2, 1.4, 2};
     double scaled[4];
 

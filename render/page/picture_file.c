@@ -95,7 +95,7 @@ static void write_rows(png_structp png, cairo_surface_t *surface, unsigned char 
 status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const png_note *notes,
                       int note_count, fault *f)
 {
-    assert(stream != NULL && surface != NULL && dpi > 0);
+    assert(dpi > 0);
     fault own = {STATUS_OK, ""};
 
     // libpng reports through `own` and a long jump
@@ -146,7 +146,6 @@ picture_format picture_format_of(const char *path)
         const char *name;
         picture_format format;
     } known[] = {{"png", FORMAT_PNG}, {"pdf", FORMAT_PDF}, {"svg", FORMAT_SVG}};
-    assert(path != NULL);
 
     // only in the last part of the path: a dot in a folder's name begins no ending
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
@@ -161,18 +160,16 @@ picture_format picture_format_of(const char *path)
 
 static status check_extension(const char *path, fault *f)
 {
-    if (picture_format_of(path) == FORMAT_NONE || strchr(path, '.') == NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%s' is no name for a picture: expected one that ends in .png, .pdf or "
-                         ".svg",
-                         path);
-    }
+    FAIL_IF(picture_format_of(path) == FORMAT_NONE || strchr(path, '.') == NULL,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%s' is no name for a picture: expected one that ends in .png, .pdf or "
+                      ".svg",
+                      path));
     return STATUS_OK;
 }
 
 status picture_check_path(const char *path, fault *f)
 {
-    assert(path != NULL);
     status code = check_extension(path, f);
     return code == STATUS_OK ? whole_file_check(path, f) : code;
 }
@@ -210,8 +207,6 @@ static const cairo_user_data_key_t lacking;
 
 void picture_stroke(cairo_t *cr)
 {
-    assert(cr != NULL);
-
     // a request for memory that is refused within the call leaves its mark
     const int before = errno;
     errno = 0;
@@ -226,7 +221,6 @@ void picture_stroke(cairo_t *cr)
 
 status picture_end_drawing(cairo_t *cr, status code, fault *f)
 {
-    assert(cr != NULL);
     const bool lacks = cairo_get_user_data(cr, &lacking) != NULL;
     code = drawn(code, lacks ? CAIRO_STATUS_NO_MEMORY : cairo_status(cr), f);
     cairo_destroy(cr);
@@ -251,19 +245,16 @@ static status paint_surface(cairo_surface_t *surface, const picture *p, bool fin
 
 status picture_write_png(const picture *p, FILE *stream, fault *f)
 {
-    assert(p != NULL && p->paint != NULL && stream != NULL);
     double dpi = p->dpi != 0 ? p->dpi : DEFAULT_DPI;
-    if (!(dpi >= LEAST_DPI && dpi <= MOST_DPI)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "a PNG of %g dpi, expected %g to %g", dpi,
-                         LEAST_DPI, MOST_DPI);
-    }
+    FAIL_IF(!(dpi >= LEAST_DPI && dpi <= MOST_DPI),
+            fault_set(f, STATUS_BAD_ARGUMENT, "a PNG of %g dpi, expected %g to %g", dpi, LEAST_DPI,
+                      MOST_DPI));
     double pixels_across = round(p->width * dpi / 72), pixels_down = round(p->height * dpi / 72);
-    if (!(pixels_across >= 1 && pixels_across <= MOST_PIXELS && pixels_down >= 1 &&
-          pixels_down <= MOST_PIXELS)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge",
-                         pixels_across, pixels_down, MOST_PIXELS);
-    }
+    FAIL_IF(!(pixels_across >= 1 && pixels_across <= MOST_PIXELS && pixels_down >= 1 &&
+              pixels_down <= MOST_PIXELS),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge",
+                      pixels_across, pixels_down, MOST_PIXELS));
 
     cairo_surface_t *surface =
         cairo_image_surface_create(p->transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24,
@@ -353,7 +344,6 @@ static GString *svg_metadata(const picture *p)
 
 char *picture_svg(const picture *p, fault *f)
 {
-    assert(p != NULL && p->paint != NULL);
     char *numbered = NULL;
     GString *svg = g_string_new(NULL);
     cairo_surface_t *surface =
@@ -378,12 +368,9 @@ char *picture_svg(const picture *p, fault *f)
 
 status picture_write_pages(const picture *pages, int count, const char *path, fault *f)
 {
-    assert(pages != NULL && count > 0 && path != NULL);
+    assert(count > 0);
     whole_file file;
-    status code = whole_file_open(&file, path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(whole_file_open(&file, path, f));
     return whole_file_close(&file, write_pages(file.stream, pages, count, f), f);
 }
 
@@ -391,16 +378,13 @@ static status write_svg(const picture *p, FILE *stream, fault *f)
 {
     fault why = {0};
     g_autofree char *svg = picture_svg(p, &why);
-    if (svg == NULL) {
-        return fault_set(f, why.code, "%s", why.text);
-    }
+    FAIL_IF(svg == NULL, fault_set(f, why.code, "%s", why.text));
     fputs(svg, stream);
     return STATUS_OK;
 }
 
 status picture_write(const picture *p, const char *path, fault *f)
 {
-    assert(p != NULL && p->paint != NULL && path != NULL);
     whole_file file;
 
     // only a name that tells its format

@@ -32,7 +32,6 @@ static double page_scale(const sketch_frame *frame)
 
 double sketch_letters(const sketch_frame *frame, double size)
 {
-    assert(frame != NULL);
     // a smaller page has smaller letters, though not as small as its lines; a larger one has not
     double scale = page_scale(frame), shrunk = size * fmin(1, fmax(scale, LEAST_SHRINK));
     return page_letters(frame->look.letters, shrunk) / scale;
@@ -87,7 +86,6 @@ static void frame_heights(PangoContext *context, const sketch_frame *frame, doub
 
 void sketch_size(const sketch_frame *frame, double *width, double *height)
 {
-    assert(frame != NULL && width != NULL && height != NULL);
     double above, below, scale = page_scale(frame);
     PangoContext *context = text_context_create();
     frame_heights(context, frame, &above, &below);
@@ -107,12 +105,8 @@ static void draw_block(sketch *s, const text_block *t, point at, anchor part, co
 status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
                     fault *f)
 {
-    assert(s != NULL && cr != NULL && frame != NULL && frame->title != NULL);
     double above, below, width, height;
-    status code = text_check_font(f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(text_check_font(f));
 
     *s = (sketch){.cr = cr,
                   .context = text_context_create(),
@@ -162,7 +156,6 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
 
 void sketch_end(sketch *s)
 {
-    assert(s != NULL);
     cairo_restore(s->cr);
     g_object_unref(s->context);
 }
@@ -172,7 +165,6 @@ void sketch_end(sketch *s)
 // The colour of a palette slot, SKETCH_INK or SKETCH_FAINT.
 static colour sketch_colour(const sketch *s, int slot)
 {
-    assert(s != NULL);
     if (slot == SKETCH_FAINT) {
         return s->colours->mark;
     }
@@ -197,7 +189,7 @@ static void stroke_line(const sketch *s, point from, point to)
 
 void sketch_line(const sketch *s, point from, point to, double width, int slot)
 {
-    assert(s != NULL && width > 0);
+    assert(width > 0);
     set_pen(s, width, slot);
     stroke_line(s, from, to);
 }
@@ -211,7 +203,6 @@ static void set_dashes(const sketch *s)
 
 void sketch_dashed(const sketch *s, point from, point to, int slot)
 {
-    assert(s != NULL);
     set_pen(s, 0.6, slot);
     set_dashes(s);
     stroke_line(s, from, to);
@@ -253,14 +244,12 @@ static void draw_arrow(const sketch *s, point from, point to)
 
 void sketch_arrow(const sketch *s, point from, point to, int slot)
 {
-    assert(s != NULL);
     set_pen(s, STRONG_WIDTH, slot);
     draw_arrow(s, from, to);
 }
 
 void sketch_dashed_arrow(const sketch *s, point from, point to, int slot)
 {
-    assert(s != NULL);
     set_pen(s, STRONG_WIDTH, slot);
     set_dashes(s);
     draw_arrow(s, from, to);
@@ -268,7 +257,7 @@ void sketch_dashed_arrow(const sketch *s, point from, point to, int slot)
 
 void sketch_measure(const sketch *s, point from, point to)
 {
-    assert(s != NULL && isfinite(length_of(from, to)));
+    assert(isfinite(length_of(from, to)));
     sketch_line(s, from, to, 0.5, SKETCH_INK);
     draw_head(s, to, direction_of(from, to), SMALL_HEAD);
     draw_head(s, from, direction_of(from, to) + G_PI, SMALL_HEAD);
@@ -276,7 +265,7 @@ void sketch_measure(const sketch *s, point from, point to)
 
 void sketch_arc(const sketch *s, arc a, int slot)
 {
-    assert(s != NULL && a.radius > 0);
+    assert(a.radius > 0);
     const point c = a.centre;
     double turn = a.to > a.from ? 1 : -1;
     // the head takes the arc's last bit
@@ -299,7 +288,7 @@ void sketch_arc(const sketch *s, arc a, int slot)
 
 void sketch_disc(const sketch *s, point centre, double radius, int slot, bool filled)
 {
-    assert(s != NULL && radius >= 0);
+    assert(radius >= 0);
     set_pen(s, LINE_WIDTH, slot);
     cairo_arc(s->cr, centre.x, centre.y, radius, 0, 2 * G_PI);
     if (!filled) {
@@ -316,7 +305,7 @@ void sketch_disc(const sketch *s, point centre, double radius, int slot, bool fi
 
 void sketch_bar(const sketch *s, point from, point to, double thickness)
 {
-    assert(s != NULL && thickness > 0);
+    assert(thickness > 0);
     cairo_set_dash(s->cr, NULL, 0, 0);
     cairo_set_line_cap(s->cr, CAIRO_LINE_CAP_ROUND);
     cairo_move_to(s->cr, from.x, from.y);
@@ -331,7 +320,6 @@ void sketch_bar(const sketch *s, point from, point to, double thickness)
 
 void sketch_mass_point(const sketch *s, point at)
 {
-    assert(s != NULL);
     const double r = 3;
     sketch_disc(s, at, r, SKETCH_INK, false);
     for (int quarter = 0; quarter < 4; quarter += 2) {
@@ -345,7 +333,7 @@ void sketch_mass_point(const sketch *s, point at)
 void sketch_spiral(const sketch *s, point centre, double radius, int slot)
 {
     enum { POINTS = 90 };
-    assert(s != NULL && radius > 0);
+    assert(radius > 0);
     set_pen(s, 1, slot);
     for (int i = 0; i <= POINTS; i++) {
         double share = (double)i / POINTS, angle = 2 * G_PI * 2.5 * share;
@@ -393,7 +381,7 @@ static void draw_zigzag(const sketch *s, const guide *g, int turns, double heigh
 
 void sketch_coil(const sketch *s, point from, point to, int turns, int slot)
 {
-    assert(s != NULL && turns > 0);
+    assert(turns > 0);
     const guide g = guide_of(from, to);
     set_pen(s, STRONG_WIDTH, slot);
     draw_zigzag(s, &g, turns, 8, 8);
@@ -401,7 +389,6 @@ void sketch_coil(const sketch *s, point from, point to, int turns, int slot)
 
 void sketch_resistor(const sketch *s, point from, point to)
 {
-    assert(s != NULL);
     const guide g = guide_of(from, to);
     set_pen(s, LINE_WIDTH, SKETCH_INK);
     draw_zigzag(s, &g, 3, 4, (g.length - 22) / 2);
@@ -409,7 +396,6 @@ void sketch_resistor(const sketch *s, point from, point to)
 
 void sketch_wall(const sketch *s, point from, point to)
 {
-    assert(s != NULL);
     const double spacing = 5, depth = 6;
     const guide g = guide_of(from, to);
     sketch_line(s, from, to, STRONG_WIDTH, SKETCH_INK);
@@ -437,7 +423,6 @@ static text_block framed(const sketch *s, text_block t)
 
 void sketch_text(sketch *s, double size, point at, anchor part, const char *format, ...)
 {
-    assert(s != NULL && format != NULL);
     va_list list;
     va_start(list, format);
     g_autofree char *markup = text_vprintf(format, list);
@@ -448,7 +433,7 @@ void sketch_text(sketch *s, double size, point at, anchor part, const char *form
 
 void sketch_wrapped(sketch *s, point at, const text_block *text)
 {
-    assert(s != NULL && text != NULL && text->markup != NULL && text->width > 0);
+    assert(text->width > 0);
     text_block t = framed(s, *text);
     anchor part = {0, 0};
 

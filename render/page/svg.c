@@ -1,7 +1,6 @@
 // SVG text: ids that do not depend on what was drawn before, and pictures in fewer bytes.
 #include "render/page/svg.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,7 +60,6 @@ static gboolean prefix_id(const GMatchInfo *match, GString *out, gpointer prefix
 
 char *svg_renumber_ids(const char *svg)
 {
-    assert(svg != NULL);
     g_autoptr(GHashTable) names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     g_free(replaced(svg, SET_ID, collect_id, names));
     return replaced(svg, ANY_ID, rename_id, names);
@@ -240,7 +238,6 @@ static gboolean compact(const GMatchInfo *match, GString *out, gpointer context)
 
 char *svg_for_page(const char *svg, const char *prefix, GHashTable *known)
 {
-    assert(svg != NULL && prefix != NULL && known != NULL);
     const char *root = strstr(svg, "<svg");
     g_autofree char *own = replaced(root ? root : svg, ANY_ID, prefix_id, (gpointer)prefix);
 

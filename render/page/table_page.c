@@ -9,7 +9,6 @@
 
 void table_begin(table_page *t, const char *title)
 {
-    assert(t != NULL && title != NULL);
     memset(t, 0, sizeof *t);
     t->title = g_strdup(title);
     t->rows = g_ptr_array_new_with_free_func((GDestroyNotify)g_strfreev);
@@ -17,13 +16,13 @@ void table_begin(table_page *t, const char *title)
 
 void table_add_column(table_page *t, const char *label, double share, text_align align)
 {
-    assert(t != NULL && label != NULL && t->column_count < TABLE_COLUMNS);
+    assert(t->column_count < TABLE_COLUMNS);
     t->columns[t->column_count++] = (table_column){label, share, align};
 }
 
 void table_add_row(table_page *t, const char *const *cells)
 {
-    assert(t != NULL && cells != NULL && t->column_count > 0);
+    assert(t->column_count > 0);
     char **row = g_new0(char *, (gsize)t->column_count + 1);
     for (int i = 0; i < t->column_count; i++) {
         row[i] = g_strdup(cells[i]);
@@ -33,7 +32,6 @@ void table_add_row(table_page *t, const char *const *cells)
 
 void table_add_group(table_page *t, const char *heading)
 {
-    assert(t != NULL && heading != NULL);
     char **row = g_new0(char *, 2);
     row[0] = g_strdup(heading);
     g_ptr_array_add(t->rows, row);
@@ -57,7 +55,7 @@ static char **row_cells(const table_page *t, guint row)
 
 static bool table_row_is_group(const table_page *t, guint row)
 {
-    assert(t != NULL && row < t->rows->len);
+    assert(row < t->rows->len);
     return t->column_count > 1 && row_cells(t, row)[1] == NULL;
 }
 
@@ -171,7 +169,6 @@ static void lay_out(table_layout *l, const table_page *t)
 
 void table_size(const table_page *t, double *width, double *height)
 {
-    assert(t != NULL && width != NULL && height != NULL);
     table_layout l;
     lay_out(&l, t);
     sketch_size(&l.frame, width, height);
@@ -196,7 +193,6 @@ static void draw_cells(sketch *s, const table_layout *l, const table_page *t, ch
 
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f)
 {
-    assert(cr != NULL && t != NULL);
     sketch s;
     table_layout l;
     lay_out(&l, t);
@@ -243,8 +239,6 @@ static void write_plain(csv_writer *csv, const char *markup)
 
 void table_write_csv(const table_page *t, csv_writer *csv)
 {
-    assert(t != NULL && csv != NULL);
-
     // the group that a row stands under becomes its first field
     bool grouped = false;
     const char *group = "";
@@ -284,7 +278,6 @@ static void add_html_cell(GString *html, const char *tag, text_align align, cons
 
 void table_add_html(const table_page *t, GString *html)
 {
-    assert(t != NULL && html != NULL);
     // a heading that repeats where the table breaks
     g_string_append(html, "<table>\n<thead><tr>");
     for (int i = 0; i < t->column_count; i++) {

@@ -59,23 +59,19 @@ status text_check_font(fault *f)
     }
 
     // only the answer is kept, each caller gets the words
-    if (known == MISSING) {
-        return fault_set(f, STATUS_CANNOT_READ,
-                         "the font " TEXT_FAMILY " is not installed, figures need it: install "
-                         "fonts-dejavu-core");
-    }
+    FAIL_IF(known == MISSING,
+            fault_set(f, STATUS_CANNOT_READ,
+                      "the font " TEXT_FAMILY " is not installed, figures need it: install "
+                      "fonts-dejavu-core"));
     return STATUS_OK;
 }
 
 status text_check_family(const char *family, fault *f)
 {
-    assert(family != NULL);
     page_libraries++;
     const bool there = FcInit() && family_matches(family);
     page_libraries--;
-    if (!there) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "the font '%s' is not installed", family);
-    }
+    FAIL_IF(!there, fault_set(f, STATUS_BAD_ARGUMENT, "the font '%s' is not installed", family));
     return STATUS_OK;
 }
 
@@ -122,7 +118,6 @@ static void balance(PangoLayout *layout, double width)
 
 PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
 {
-    assert(context != NULL && t != NULL && t->markup != NULL);
     static const PangoAlignment alignments[] = {PANGO_ALIGN_LEFT, PANGO_ALIGN_CENTER,
                                                 PANGO_ALIGN_RIGHT};
 
@@ -176,7 +171,6 @@ static void end_shaping(void)
 
 text_size text_measure(PangoContext *context, const text_block *t)
 {
-    assert(context != NULL && t != NULL && t->markup != NULL);
     PangoRectangle logical;
     begin_shaping();
     PangoLayout *layout = text_layout_create(context, t);
@@ -189,7 +183,7 @@ text_size text_measure(PangoContext *context, const text_block *t)
 figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x, double y,
                      anchor part, colour c)
 {
-    assert(cr != NULL && isfinite(x) && isfinite(y));
+    assert(isfinite(x) && isfinite(y));
     PangoRectangle logical;
     const text_size size = text_measure(context, t);
     x -= part.x * size.width;
@@ -267,7 +261,6 @@ static GLogWriterOutput on_warning(GLogLevelFlags level, const GLogField *fields
 
 void text_when_giving_up(void (*end)(const char *reason))
 {
-    assert(end != NULL);
     end_of_program = end;
     g_log_set_default_handler(on_log, NULL);
     g_log_set_writer_func(on_warning, NULL, NULL);

@@ -52,7 +52,7 @@ bool scale_is_empty(const axis_scale *s)
 
 void scale_widen(axis_scale *s, double share)
 {
-    assert(s != NULL && share >= 0);
+    assert(share >= 0);
     if (!isfinite(s->low) || !isfinite(s->high)) {
         s->low = 0;
         s->high = 1;
@@ -126,7 +126,6 @@ static void choose_decades(axis *a, int wanted)
 
 void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
 {
-    assert(a != NULL && from != NULL);
     a->from = from;
     a->count = 0;
     a->even = (ticks){.minor = 1};
@@ -232,6 +231,5 @@ char *axis_label(const char *label, const char *unit, int exponent)
 
 char *axis_title(const axis *a)
 {
-    assert(a != NULL && a->from != NULL);
     return axis_label(a->from->label, a->from->unit, a->even.exponent);
 }

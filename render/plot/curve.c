@@ -1,6 +1,5 @@
 #include "render/plot/curve.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -189,7 +188,6 @@ static bool x_ascends(const figure_series *s)
 
 void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void *context)
 {
-    assert(p != NULL && s != NULL && sink != NULL);
     pen tip = {.left = p->box.x - CLIP_SPACE,
                .top = p->box.y - CLIP_SPACE,
                .right = p->box.x + p->box.width + CLIP_SPACE,

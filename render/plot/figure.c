@@ -1,5 +1,4 @@
 // A figure: its look and size, its layers painted from the lowest to the uppermost, and its files.
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -66,7 +65,6 @@ const char *owned_figure_printf(owned_figure *o, const char *format, ...)
 
 void figure_take_look(figure *fig, const page_look *look)
 {
-    assert(fig != NULL && look != NULL);
     fig->theme = look->theme;
     fig->width = look->width > 0 ? look->width : fig->width;
     fig->height = look->height > 0 ? look->height : look->width > 0 ? 0 : fig->height;
@@ -96,7 +94,6 @@ static double wrapped_height(const figure *fig, const char *markup, double size,
 
 void figure_size(const figure *fig, double *width, double *height)
 {
-    assert(fig != NULL && width != NULL && height != NULL);
     int columns = figure_columns(fig);
 
     // a page that is half as wide has panels that are a fifth lower
@@ -222,29 +219,24 @@ static void draw_all(drawing *d)
 
 static status check_description(const figure *fig, fault *f)
 {
-    if (fig->panel_count < 1 || fig->panel_count > FIGURE_PANELS) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "a figure has %d panels, expected 1 to %d",
-                         fig->panel_count, FIGURE_PANELS);
-    }
+    FAIL_IF(fig->panel_count < 1 || fig->panel_count > FIGURE_PANELS,
+            fault_set(f, STATUS_BAD_ARGUMENT, "a figure has %d panels, expected 1 to %d",
+                      fig->panel_count, FIGURE_PANELS));
 
     for (int i = 0; i < fig->panel_count; i++) {
-        if (fig->panels[i].series_count < 0 || fig->panels[i].series_count > PANEL_SERIES) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "panel %d of a figure has %d series, expected at most %d", i + 1,
-                             fig->panels[i].series_count, PANEL_SERIES);
-        }
+        FAIL_IF(fig->panels[i].series_count < 0 || fig->panels[i].series_count > PANEL_SERIES,
+                fault_set(f, STATUS_BAD_ARGUMENT,
+                          "panel %d of a figure has %d series, expected at most %d", i + 1,
+                          fig->panels[i].series_count, PANEL_SERIES));
     }
     return STATUS_OK;
 }
 
 status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault *f)
 {
-    assert(cr != NULL && fig != NULL);
     status code = check_description(fig, f);
     code = code == STATUS_OK ? text_check_font(f) : code;
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     // too large for a thread's stack
     drawing *d = g_new0(drawing, 1);
@@ -294,7 +286,6 @@ static status paint(cairo_t *cr, const void *what, fault *f)
 
 status figure_write(const figure *fig, const char *path, fault *f)
 {
-    assert(fig != NULL && path != NULL);
     picture p = {fig->title,
                  .dpi = fig->dpi,
                  .software = picture_software(),
@@ -418,8 +409,6 @@ static void write_axis_heading(long_form *t, const figure_axis *a, const char *o
 
 void figure_write_csv(const figure *fig, csv_writer *csv)
 {
-    assert(fig != NULL && csv != NULL);
-
     // the heading: panel, series, and both axes
     long_form t = {csv};
     csv_heading(csv, "panel", NULL);

@@ -7,7 +7,7 @@
 
 owned_figure *identify_figure_create(const identification *id)
 {
-    assert(id != NULL && id->trace_count > 0 && id->trace_count <= FIGURE_PANELS);
+    assert(id->trace_count > 0 && id->trace_count <= FIGURE_PANELS);
     char changes[SCENARIO_CHANGES];
     owned_figure *o =
         owned_figure_create(id->trace_count, "%s: what the fit leaves of the readings%s",

@@ -1,6 +1,5 @@
 // Where everything on a page goes: ranges of the axes, columns, rows, and what stands in the
 // panels.
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -32,11 +31,10 @@ static bool has_own_ends(const figure_axis *from, axis_scale *s)
 
 static status check_range(const axis_scale *s, const figure_axis *from, fault *f)
 {
-    if (s->kind == SCALE_LOGARITHMIC && scale_is_empty(s)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "the logarithmic axis '%s' has no point above zero to show",
-                         from->name != NULL ? from->name : "");
-    }
+    FAIL_IF(s->kind == SCALE_LOGARITHMIC && scale_is_empty(s),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "the logarithmic axis '%s' has no point above zero to show",
+                      from->name != NULL ? from->name : ""));
     return STATUS_OK;
 }
 
@@ -374,20 +372,18 @@ static status check_room(const drawing *d, fault *f)
     // one panel without room spoils the figure; its size is told as it was given
     for (int i = 0; i < panels; i++) {
         const figure_rect *box = &d->panels[i].plane.box;
-        if (!(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT)) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected "
-                             "a larger page",
-                             d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels,
-                             panels == 1 ? "" : "s");
-        }
+        FAIL_IF(!(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT),
+                fault_set(f, STATUS_BAD_ARGUMENT,
+                          "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected "
+                          "a larger page",
+                          d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels,
+                          panels == 1 ? "" : "s"));
     }
     return STATUS_OK;
 }
 
 status layout_figure(drawing *d, fault *f)
 {
-    assert(d != NULL && d->fig != NULL && d->context != NULL);
     const figure *fig = d->fig;
     int mark_rows = 0;
 

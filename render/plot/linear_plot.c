@@ -15,7 +15,7 @@ enum { CIRCLE = 121 };
 
 owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, int count)
 {
-    assert(s != NULL && curves != NULL && count >= 1 && count <= FIGURE_PANELS);
+    assert(count >= 1 && count <= FIGURE_PANELS);
     char changes[SCENARIO_CHANGES];
     owned_figure *o =
         owned_figure_create(2, "%s: frequency response%s", s->name, scenario_changes(s, changes));
@@ -51,7 +51,6 @@ owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, 
 
 owned_figure *nyquist_figure_create(const scenario *s, const linear_response *loop)
 {
-    assert(s != NULL && loop != NULL);
     static const double critical[] = {-1, 0};
     const size_t n = (size_t)loop->count;
     char changes[SCENARIO_CHANGES];

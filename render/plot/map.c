@@ -8,7 +8,7 @@
 
 int contour_square(const double z[4], double level, contour_piece pieces[2])
 {
-    assert(z != NULL && pieces != NULL && isfinite(level));
+    assert(isfinite(level));
     // corners in the order of going round, and the crossing of the side that begins at each
     static const int corner[4] = {0, 1, 3, 2};
     static const double corner_x[4] = {0, 1, 1, 0}, corner_y[4] = {0, 0, 1, 1};

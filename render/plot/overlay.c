@@ -3,7 +3,6 @@
 #include "src/base/numbers.h"
 #include "src/run/measured.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -31,14 +30,11 @@ static int signal_of(const csv_table *table, const char *column, const trace_pan
 status overlay_read_column(trace *t, const char *path, const char *column, double shift,
                            const trace_panel *panels, int panel_count, char **name, fault *f)
 {
-    assert(t != NULL && path != NULL && name != NULL);
     csv_table table;
     trace_init(t, 0);
     *name = NULL;
     status code = csv_table_read(&table, path, 1, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     // named by its file
     g_autofree char *file = g_path_get_basename(path);
@@ -62,7 +58,6 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
 status overlay_read(trace *t, const char *text, const trace_panel *panels, int panel_count,
                     char **name, fault *f)
 {
-    assert(t != NULL && text != NULL && name != NULL);
     g_autofree char *path = g_strdup(text);
     const char *column = NULL, *rest;
     double shift = 0;

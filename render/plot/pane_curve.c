@@ -128,7 +128,6 @@ static void trace_rows(cairo_t *cr, const pane_frame *f, const pane_curve *c, do
 
 void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c)
 {
-    assert(cr != NULL && f != NULL && c != NULL && c->rows != NULL);
     assert(f->to > f->from && f->high > f->low && f->width > 0 && f->height > 0);
     const trace *t = c->rows;
     const double until = fmin(c->until, f->to);
@@ -160,7 +159,6 @@ static void hairline(cairo_t *cr, double x0, double y0, double x1, double y1, bo
 
 void pane_level_paint(cairo_t *cr, const pane_frame *f, double value, colour in)
 {
-    assert(cr != NULL && f != NULL);
     const double y = floor(pixel_y(f, value)) + 0.5;
     if (value >= f->low && value <= f->high) {
         hairline(cr, 0, y, f->width, y, true, in);
@@ -169,7 +167,6 @@ void pane_level_paint(cairo_t *cr, const pane_frame *f, double value, colour in)
 
 void pane_instant_paint(cairo_t *cr, const pane_frame *f, double time, colour in)
 {
-    assert(cr != NULL && f != NULL);
     const double x = floor(fmin(pixel_x(f, time), f->width - 1)) + 0.5;
     if (time >= f->from && time <= f->to) {
         hairline(cr, x, 0, x, f->height, false, in);

@@ -1,6 +1,5 @@
 #include "render/plot/drawing.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -70,7 +69,6 @@ static double corner_cost(const placement *g, const figure_rect *r, double margi
 double placement_find(const placement *g, double width, double height, double margin,
                       figure_rect *found)
 {
-    assert(g != NULL && found != NULL);
     placement sums = *g;
     // sums over everything above and left of each cell
     for (int r = 1; r <= PLACEMENT_ROWS; r++) {

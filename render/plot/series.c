@@ -1,5 +1,4 @@
 // Series and impulses on the page: lines, markers, and arrows in a strip above a panel.
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -291,7 +290,6 @@ static int impulse_exponent(const figure_panel *panel)
 
 char *impulse_strip_label(const figure_panel *panel)
 {
-    assert(panel != NULL && panel->impulse_label != NULL);
     g_autofree char *unit = axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
     char *label = g_strconcat(panel->impulse_label, "\n", unit, NULL);
     return label;

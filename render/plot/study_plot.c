@@ -15,7 +15,7 @@
 
 owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 {
-    assert(t != NULL && t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
+    assert(t->count >= 1 && t->count <= ROBUST_MOST_CURVES);
     owned_figure *o = owned_figure_create(1, "%s: what the laws make of what they were not told%s",
                                           t->scenario, changes);
 
@@ -391,12 +391,10 @@ static void describe(sweep_drawing *s, const sweep_picture *p)
 
 status sweep_plot_check(const sweep *s, const char *path, fault *f)
 {
-    assert(s != NULL && path != NULL);
-    if (s->axis_count > 2) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "--plot shows one or two varied parameters, but %d are varied",
-                         s->axis_count);
-    }
+    FAIL_IF(s->axis_count > 2,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "--plot shows one or two varied parameters, but %d are varied",
+                      s->axis_count));
     status code = picture_check_path(path, f);
     return code == STATUS_OK ? text_check_font(f) : code;
 }
@@ -419,7 +417,6 @@ owned_figure *sweep_figure_create(const sweep_picture *p)
 
 owned_figure *tune_figure_create(const tuning *t, const char *changes)
 {
-    assert(t != NULL);
     owned_figure *o = owned_figure_create(1, "%s: tuned%s", t->asked.base->name, changes);
     double *number = owned_figure_numbers(o, t->done), *value = owned_figure_numbers(o, t->done);
     double *least = owned_figure_numbers(o, t->done);

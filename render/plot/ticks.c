@@ -182,7 +182,6 @@ static bool straighten(wish *w)
 
 void ticks_between(ticks *t, double low, double high, int wanted)
 {
-    assert(t != NULL);
     wish w = {low, high, wanted};
     memset(t, 0, sizeof *t);
     t->minor = 1;
@@ -222,7 +221,7 @@ void ticks_between(ticks *t, double low, double high, int wanted)
 
 void tick_label(const ticks *t, int index, char text[TICK_TEXT])
 {
-    assert(t != NULL && index >= 0 && index < t->count);
+    assert(index >= 0 && index < t->count);
     double value = t->value[index] / pow(10, t->exponent);
     char digits[TICK_TEXT - 4];
     decimal_print(digits, sizeof digits, "%.*f", t->decimals, fabs(value));

@@ -1,7 +1,6 @@
 // Runs side by side: each has a colour, each signal a line, and one key says both.
 #include "render/plot/trace_plot.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -297,20 +296,18 @@ static void add_residuals(trace_figure *t, const trace_panel *panels, const trac
 
 static status check_panels(const trace_panel *panels, int count, int run_count, fault *f)
 {
-    if (count < 1 || count > FIGURE_PANELS || run_count < 1 || run_count > TRACE_RUNS) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "a figure of %d panels and %d runs, expected 1 to %d and 1 to %d", count,
-                         run_count, FIGURE_PANELS, TRACE_RUNS);
-    }
+    FAIL_IF(count < 1 || count > FIGURE_PANELS || run_count < 1 || run_count > TRACE_RUNS,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "a figure of %d panels and %d runs, expected 1 to %d and 1 to %d", count,
+                      run_count, FIGURE_PANELS, TRACE_RUNS));
 
     // every name is a signal's
     for (int p = 0; p < count; p++) {
         for (int i = 0; i < TRACE_SIGNALS && (i == 0 || panels[p].signals[i] != NULL); i++) {
             const char *name = panels[p].signals[i];
-            if (name == NULL || signal_find(name) < 0) {
-                return fault_set(f, STATUS_BAD_ARGUMENT, "panel %d shows no known signal: '%s'",
-                                 p + 1, name ? name : "");
-            }
+            FAIL_IF(name == NULL || signal_find(name) < 0,
+                    fault_set(f, STATUS_BAD_ARGUMENT, "panel %d shows no known signal: '%s'", p + 1,
+                              name ? name : ""));
         }
     }
     return STATUS_OK;
@@ -319,13 +316,9 @@ static status check_panels(const trace_panel *panels, int count, int run_count, 
 status trace_figure_init(trace_figure *t, const char *title, const trace_panel *panels,
                          int panel_count, const trace_run *runs, int run_count, fault *f)
 {
-    assert(t != NULL && panels != NULL && runs != NULL);
     memset(t, 0, sizeof *t);
 
-    status code = check_panels(panels, panel_count, run_count, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(check_panels(panels, panel_count, run_count, f));
 
     // what is shaded
     bool modes = false;
@@ -396,7 +389,6 @@ static void add_notes(trace_figure *t, const figure_mark *notes, int count)
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
                 const figure_mark *notes, int note_count, const char *path, fault *f)
 {
-    assert(s != NULL && result != NULL && path != NULL);
     const trace_run runs[] = {{s, result, "this run"}, {s, old, "old run"}};
     trace_figure t;
     status code =

@@ -1,7 +1,6 @@
 // What is written on figures of recorded runs: symbols, labels and captions.
 #include "render/plot/trace_parts.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "render/page/text.h"
@@ -168,7 +167,6 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
 
 char *scenario_title(const scenario *s)
 {
-    assert(s != NULL && s->title != NULL);
     char changes[SCENARIO_CHANGES];
     GString *out = g_string_new(s->title);
 
@@ -181,7 +179,6 @@ char *scenario_title(const scenario *s)
 
 char *parameters_line(const scenario *s)
 {
-    assert(s != NULL);
     GString *out = g_string_new(NULL);
     text_append(out, "scenario=%s", s->name);
     for (int i = 0; i < parameter_count; i++) {

@@ -139,33 +139,27 @@ static status add_frames(film_making *m, fault *f)
 
 static status check_options(const film_options *o, fault *f)
 {
-    if (o->width < 320 || o->width > 4096 || o->height < 240 || o->height > 4096 ||
-        o->width % 2 != 0 || o->height % 2 != 0) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "a film of %d x %d pixels, expected even numbers from 320 x 240 to 4096 x "
-                         "4096",
-                         o->width, o->height);
-    }
+    FAIL_IF(o->width < 320 || o->width > 4096 || o->height < 240 || o->height > 4096 ||
+                o->width % 2 != 0 || o->height % 2 != 0,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "a film of %d x %d pixels, expected even numbers from 320 x 240 to 4096 x "
+                      "4096",
+                      o->width, o->height));
 
-    if (o->frames_per_second < 1 || o->frames_per_second > 120) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "%d frames per second, expected 1 to 120",
-                         o->frames_per_second);
-    }
+    FAIL_IF(o->frames_per_second < 1 || o->frames_per_second > 120,
+            fault_set(f, STATUS_BAD_ARGUMENT, "%d frames per second, expected 1 to 120",
+                      o->frames_per_second));
 
-    if (!(o->seconds >= 0.1 && o->seconds <= 3600)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "a film of %g s, expected 0.1 to 3600",
-                         o->seconds);
-    }
+    FAIL_IF(!(o->seconds >= 0.1 && o->seconds <= 3600),
+            fault_set(f, STATUS_BAD_ARGUMENT, "a film of %g s, expected 0.1 to 3600", o->seconds));
 
-    if (o->ghosts < 0 || o->ghosts >= SCENE_INSTANTS) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "%d ghosts, expected 0 to %d", o->ghosts,
-                         SCENE_INSTANTS - 1);
-    }
+    FAIL_IF(o->ghosts < 0 || o->ghosts >= SCENE_INSTANTS,
+            fault_set(f, STATUS_BAD_ARGUMENT, "%d ghosts, expected 0 to %d", o->ghosts,
+                      SCENE_INSTANTS - 1));
 
-    if (!(o->slow >= 1 && o->slow <= 1000)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "impacts slowed down %g times, expected 1 to 1000",
-                         o->slow);
-    }
+    FAIL_IF(!(o->slow >= 1 && o->slow <= 1000),
+            fault_set(f, STATUS_BAD_ARGUMENT, "impacts slowed down %g times, expected 1 to 1000",
+                      o->slow));
     return STATUS_OK;
 }
 
@@ -198,8 +192,7 @@ static status record(film_making *m, const char *path, fault *f)
 status film_write(const film_run *runs, int run_count, const film_options *options,
                   const char *path, fault *f)
 {
-    assert(runs != NULL && run_count >= 1 && run_count <= FILM_RUNS);
-    assert(options != NULL && path != NULL);
+    assert(run_count >= 1 && run_count <= FILM_RUNS);
     film_options o = *options;
     if (o.width == 0 && o.height == 0) {
         o.width = 1280;
@@ -218,9 +211,7 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
             code = fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw");
         }
     }
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     // planned, then painted
     film_plan plan;

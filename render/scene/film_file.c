@@ -87,47 +87,42 @@ static status check_folder(const char *path, fault *f)
         // made later; its own folder must take it
         return whole_file_check(path, f);
     }
-    if (!g_file_test(path, G_FILE_TEST_IS_DIR)) {
-        return fault_set(f, STATUS_CANNOT_WRITE,
-                         "%s is a file: expected the name of a folder, or one that ends in .mp4, "
-                         ".webm, .gif or .webp",
-                         path);
-    }
+    FAIL_IF(!g_file_test(path, G_FILE_TEST_IS_DIR),
+            fault_set(f, STATUS_CANNOT_WRITE,
+                      "%s is a file: expected the name of a folder, or one that ends in .mp4, "
+                      ".webm, .gif or .webp",
+                      path));
     whole_file_clean_folder(path);
     g_autoptr(GDir) folder = g_dir_open(path, 0, NULL);
-    if (folder == NULL || g_dir_read_name(folder) != NULL) {
-        return fault_set(f, STATUS_CANNOT_WRITE,
-                         "the folder %s is not empty: frames of two films would mix, empty it or "
-                         "name another",
-                         path);
-    }
+    FAIL_IF(folder == NULL || g_dir_read_name(folder) != NULL,
+            fault_set(f, STATUS_CANNOT_WRITE,
+                      "the folder %s is not empty: frames of two films would mix, empty it or "
+                      "name another",
+                      path));
     return STATUS_OK;
 }
 
 status film_file_check(const char *path, fault *f)
 {
-    assert(path != NULL);
     const bool film = format_of(path) != NULL;
 
     // a name without an ending means a folder, as does one that is there
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     bool folder = !film && (dot == NULL || dot[1] == '\0' || g_file_test(path, G_FILE_TEST_IS_DIR));
-    if ((!film && !folder) || strcmp(path, "-") == 0) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%s' is no name for a film: expected one that ends in .mp4, .webm, "
-                         ".gif or .webp, or a folder for PNG frames",
-                         path);
-    }
+    FAIL_IF((!film && !folder) || strcmp(path, "-") == 0,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%s' is no name for a film: expected one that ends in .mp4, .webm, "
+                      ".gif or .webp, or a folder for PNG frames",
+                      path));
     if (folder) {
         return check_folder(path, f);
     }
     g_autofree char *program = g_find_program_in_path("ffmpeg");
-    if (program == NULL) {
-        return fault_set(f, STATUS_CANNOT_WRITE,
-                         "%s needs the program ffmpeg, which is not installed: install the package "
-                         "ffmpeg, or give a folder to get PNG frames",
-                         path);
-    }
+    FAIL_IF(program == NULL,
+            fault_set(f, STATUS_CANNOT_WRITE,
+                      "%s needs the program ffmpeg, which is not installed: install the package "
+                      "ffmpeg, or give a folder to get PNG frames",
+                      path));
     return whole_file_check(path, f);
 }
 
@@ -193,10 +188,9 @@ static status start_encoder(film_file *film, fault *f)
     g_autoptr(GError) error = NULL;
     g_auto(GStrv) words = list_arguments(film, target_of(film));
     film->words = tmpfile();
-    if (film->words == NULL || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
-                         strerror(errno));
-    }
+    FAIL_IF(film->words == NULL || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0,
+            fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
+                      strerror(errno)));
     const bool started = g_spawn_async_with_fds(
         NULL, words, NULL,
         G_SPAWN_SEARCH_PATH | G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_STDOUT_TO_DEV_NULL, part_from_us,
@@ -318,7 +312,6 @@ static void film_file_free(film_file *film)
 
 void film_file_abandon(film_file *film)
 {
-    assert(film != NULL);
     stop_encoder(film);
     if (film->format != NULL) {
         whole_file_abandon(&film->file);
@@ -333,21 +326,18 @@ static status open_target(film_file *film, fault *f)
         status code = whole_file_open(&film->file, film->path, f);
         return code == STATUS_OK ? start_encoder(film, f) : code;
     }
-    if (mkdir(film->path, 0777) != 0 && errno != EEXIST) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "the folder %s could not be made: %s", film->path,
-                         strerror(errno));
-    }
+    FAIL_IF(mkdir(film->path, 0777) != 0 && errno != EEXIST,
+            fault_set(f, STATUS_CANNOT_WRITE, "the folder %s could not be made: %s", film->path,
+                      strerror(errno)));
     return STATUS_OK;
 }
 
 status film_file_open(film_file **out, const char *path, const film_facts *facts, fault *f)
 {
-    assert(out != NULL && path != NULL && facts != NULL && facts->width > 0 && facts->height > 0);
+    assert(facts->width > 0 && facts->height > 0);
     *out = NULL;
     status code = film_file_check(path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     film_file *film = g_new0(film_file, 1);
     *film =
         (film_file){.format = format_of(path), .facts = *facts, .path = g_strdup(path), .pipe = -1};
@@ -365,9 +355,7 @@ static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
     whole_file file;
     g_autofree char *path = text_printf("%s/frame-%05d.png", film->path, film->frames + 1);
     status code = whole_file_open(&file, path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     code =
         png_file_write(file.stream, frame, FRAME_DPI, film->facts.notes, film->facts.note_count, f);
     return whole_file_close(&file, code, f);
@@ -375,7 +363,6 @@ static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
 
 bool film_file_wants_palette(const film_file *film)
 {
-    assert(film != NULL);
     return film->format != NULL && film->format->palette;
 }
 
@@ -410,7 +397,6 @@ static status send_frame(film_file *film, cairo_surface_t *frame, fault *f)
 
 status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
 {
-    assert(film != NULL && frame != NULL);
     status code = film->format == NULL ? add_to_folder(film, frame, f) : send_frame(film, frame, f);
     film->frames++;
     return code;
@@ -418,7 +404,6 @@ status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
 
 status film_file_commit(film_file *film, fault *f)
 {
-    assert(film != NULL);
     status code = STATUS_OK;
 
     // only an encoder can fail this late, frames are there already

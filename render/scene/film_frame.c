@@ -62,7 +62,7 @@ static void set_windows(film_clock *c)
 
 film_clock film_clock_of(const run_result *const *results, int count, double seconds, double slow)
 {
-    assert(results != NULL && count > 0 && seconds > 0 && slow >= 1);
+    assert(count > 0 && seconds > 0 && slow >= 1);
     film_clock c = {.start = -HUGE_VAL, .end = HUGE_VAL, .slow = slow, .seconds = seconds};
 
     // what all of them have
@@ -89,7 +89,6 @@ film_clock film_clock_round(double start, double end, double instant, double slo
 
 double film_clock_slowness(const film_clock *c, double t)
 {
-    assert(c != NULL);
     double outside = HUGE_VAL;
     for (int i = 0; i < c->impact_count; i++) {
         double until = c->impacts[i] - c->before - t, since = t - c->impacts[i] - c->after;
@@ -103,7 +102,7 @@ double film_clock_slowness(const film_clock *c, double t)
 
 double film_clock_time(const film_clock *c, double film_time, double *speed)
 {
-    assert(c != NULL && c->seconds > 0 && speed != NULL);
+    assert(c->seconds > 0);
     double span = c->end - c->start, cell = span / CLOCK_CELLS, total = 0, passed = 0;
     for (int i = 0; i < CLOCK_CELLS; i++) {
         total += film_clock_slowness(c, c->start + (i + 0.5) * cell);
@@ -191,9 +190,7 @@ static status paint_traces(film_plan *plan, fault *f)
 {
     trace_figure t;
     status code = describe_traces(plan, &t, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     // its size: what the views leave of the picture
     const film_view *strip = &plan->strip;
@@ -220,8 +217,8 @@ static status paint_traces(film_plan *plan, fault *f)
 status film_plan_init(film_plan *plan, const film_run *runs, int run_count,
                       const film_options *options, fault *f)
 {
-    assert(plan != NULL && runs != NULL && run_count >= 1 && run_count <= FILM_RUNS);
-    assert(options != NULL && options->width > 0 && options->slow >= 1);
+    assert(run_count >= 1 && run_count <= FILM_RUNS);
+    assert(options->width > 0 && options->slow >= 1);
     *plan = (film_plan){.runs = runs, .run_count = run_count, .options = *options};
 
     const run_result *results[FILM_RUNS];
@@ -247,7 +244,6 @@ void film_plan_finish(film_plan *plan)
 
 status film_painter_create(film_painter **out, const film_plan *plan, fault *f)
 {
-    assert(out != NULL && plan != NULL);
     film_painter *p = g_new0(film_painter, 1);
     *out = NULL;
     p->plan = plan;
@@ -424,14 +420,12 @@ static status paint_frame(film_painter *p, double time, double present, double s
 
 status film_painter_frame(film_painter *p, double film_time, cairo_surface_t *onto, fault *f)
 {
-    assert(p != NULL && onto != NULL);
     double speed, time = film_clock_time(&p->plan->clock, film_time, &speed);
     return paint_frame(p, time, time, speed, onto, f);
 }
 
 status film_painter_palette(film_painter *p, cairo_surface_t *onto, fault *f)
 {
-    assert(p != NULL && onto != NULL);
     const film_clock *c = &p->plan->clock;
     double wanted = c->impact_count > 0 ? fmin(c->end, c->impacts[0] + 0.008) : c->end;
     return paint_frame(p, wanted, c->end, 1, onto, f);

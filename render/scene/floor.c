@@ -107,7 +107,7 @@ static void paint_ground(scene_floor *floor, const camera *c)
 
 status scene_floor_init(scene_floor *floor, const camera *c, fault *f)
 {
-    assert(floor != NULL && c != NULL && floor->reach > 0);
+    assert(floor->reach > 0);
     floor->width = (int)c->width;
     floor->height = (int)c->height;
     floor->camera = *c;
@@ -118,10 +118,9 @@ status scene_floor_init(scene_floor *floor, const camera *c, fault *f)
     floor->y = malloc(pixels * sizeof *floor->y);
     floor->mask = malloc((size_t)MAP * MAP);
     floor->spare = malloc((size_t)MAP * MAP);
-    if (!floor->ground || !floor->x || !floor->y || !floor->mask || !floor->spare) {
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
-                         floor->width, floor->height);
-    }
+    FAIL_IF(!floor->ground || !floor->x || !floor->y || !floor->mask || !floor->spare,
+            fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", floor->width,
+                      floor->height));
 
     // the map of the shadow covers all of the floor
     floor->map_left = floor->middle.x - floor->reach;
@@ -275,12 +274,8 @@ static uint32_t darkened(uint32_t rgb, float shadow, uint32_t threshold)
 
 status scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto, fault *f)
 {
-    assert(floor != NULL && m != NULL && onto != NULL);
     map_box shade;
-    status code = cast_shadow(floor, m, &shade, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(cast_shadow(floor, m, &shade, f));
     const pixel_box seen = seen_box(floor, shade);
 
     cairo_surface_flush(onto);

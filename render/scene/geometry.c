@@ -43,7 +43,6 @@ vector vector_unit(vector a)
 
 void mesh_finish(mesh *m)
 {
-    assert(m != NULL);
     g_free(m->vertices);
     g_free(m->corners);
     *m = (mesh){0};
@@ -97,7 +96,7 @@ static void frame_of(vector axis, vector *across, vector *other)
 void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count, material of)
 {
     vector across, other;
-    assert(m != NULL && rings != NULL && count > 1);
+    assert(count > 1);
     frame_of(axis, &across, &other);
 
     // one ring of quadrilaterals between each circle and the next
@@ -156,7 +155,7 @@ static void add_face(mesh *m, vector centre, vector out, vector u, vector v, dou
 
 void mesh_box(mesh *m, const box *b, double cell, material of)
 {
-    assert(m != NULL && b != NULL && cell > 0);
+    assert(cell > 0);
     const vector half[] = {b->u, b->v, b->w};
     for (int face = 0; face < 3; face++) {
         vector out = half[face], along = half[(face + 1) % 3], across = half[(face + 2) % 3];
@@ -213,7 +212,7 @@ static void cap_ribbon(mesh *m, const section *s, vector place, vector along, bo
 void mesh_ribbon(mesh *m, const vector *places, int count, double height, double thickness,
                  material of)
 {
-    assert(m != NULL && places != NULL && count > 0);
+    assert(count > 0);
     const section s = broken_rectangle(thickness, height);
 
     // edge by edge, as each has a normal of its own
@@ -245,7 +244,6 @@ void mesh_ribbon(mesh *m, const vector *places, int count, double height, double
 
 void mesh_tube(mesh *m, const vector *places, const material *of, int count, double radius)
 {
-    assert(m != NULL && places != NULL && of != NULL);
     unsigned before = 0;
     for (int i = 0; i < count; i++) {
         vector across, other;
@@ -271,7 +269,7 @@ void mesh_tube(mesh *m, const vector *places, const material *of, int count, dou
 
 void mesh_arrow(mesh *m, vector start, vector direction, double length, double radius, material of)
 {
-    assert(m != NULL && length >= 0 && radius > 0);
+    assert(length >= 0 && radius > 0);
     double head = fmin(7 * radius, 0.6 * length), broad = 2.6 * radius * head / (7 * radius);
     double shaft = fmin(radius, 0.5 * broad);
     const lathe_ring rings[] = {
@@ -298,7 +296,6 @@ static const struct {
 
 bool camera_read(const char *text, camera_view *view)
 {
-    assert(text != NULL && view != NULL);
     for (size_t i = 0; i < CAMERA_FREE; i++) {
         if (strcmp(kinds[i].name, text) == 0) {
             *view = (camera_view){.kind = (camera_kind)i};
@@ -338,7 +335,7 @@ static double fit_axis(const vector *points, int count, vector axis, vector back
 camera camera_fit(camera_view view, double heading, const vector *points, int count, int width,
                   int height, camera_window window)
 {
-    assert(points != NULL && count > 0 && width > 0 && height > 0);
+    assert(count > 0 && width > 0 && height > 0);
     // three axes of the view; the half angle is that of the shorter edge
     bool own = view.kind == CAMERA_FREE;
     double azimuth = heading + (own ? view.azimuth : kinds[view.kind].azimuth) * M_PI / 180;
@@ -379,7 +376,6 @@ camera camera_fit(camera_view view, double heading, const vector *points, int co
 
 vector camera_project(const camera *c, vector point)
 {
-    assert(c != NULL);
     vector to = vector_sum(point, -1, c->eye);
     double depth = -vector_dot(to, c->back);
     return (vector){(1 + c->focal_x * vector_dot(to, c->right) / depth) * c->width / 2,
@@ -388,7 +384,6 @@ vector camera_project(const camera *c, vector point)
 
 vector camera_ray(const camera *c, double x, double y)
 {
-    assert(c != NULL);
     double across = (2 * x / c->width - 1) / c->focal_x, up = (1 - 2 * y / c->height) / c->focal_y;
     vector ray = vector_scaled(c->back, -1);
     return vector_sum(vector_sum(ray, across, c->right), up, c->up);

@@ -113,23 +113,20 @@ static status open_osmesa(gl_offscreen *g, fault *f)
     // the library, where it is installed
     void *(*create)(unsigned, int, int, int, void *);
     g->handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-    if (g->handle == NULL) {
-        return fault_set(f, STATUS_CANNOT_WRITE,
-                         "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or choose "
-                         "--gl=egl or --gl=cairo");
-    }
+    FAIL_IF(g->handle == NULL,
+            fault_set(f, STATUS_CANNOT_WRITE,
+                      "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or choose "
+                      "--gl=egl or --gl=cairo"));
 
     // a context without a window
-    if (!load(g->handle, "OSMesaCreateContextExt", &create) ||
-        !load(g->handle, "OSMesaGetProcAddress", &g->find)) {
-        return fault_set(f, STATUS_CANNOT_WRITE,
-                         "libOSMesa.so.8 is too old: expected one of Mesa 17 or later");
-    }
+    FAIL_IF(!load(g->handle, "OSMesaCreateContextExt", &create) ||
+                !load(g->handle, "OSMesaGetProcAddress", &g->find),
+            fault_set(f, STATUS_CANNOT_WRITE,
+                      "libOSMesa.so.8 is too old: expected one of Mesa 17 or later"));
     g->small = g_malloc0_n(SMALL * SMALL, 4);
     g->context = create(GL_RGBA, 0, 0, 0, NULL);
-    if (g->context == NULL || !make_current(g)) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "OSMesa gives no context of OpenGL");
-    }
+    FAIL_IF(g->context == NULL || !make_current(g),
+            fault_set(f, STATUS_CANNOT_WRITE, "OSMesa gives no context of OpenGL"));
     return STATUS_OK;
 }
 
@@ -245,21 +242,17 @@ static status set_up(gl_offscreen *g, fault *f)
     const char *name = g->library == GL_OSMESA ? "OSMesa" : "EGL";
 
     // a context with OpenGL's functions
-    if (code != STATUS_OK) {
-        return code;
-    }
-    if (!load_functions(g)) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3", name);
-    }
+    TRY(code);
+    FAIL_IF(!load_functions(g),
+            fault_set(f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3", name));
 
     // what draws, as the picture's notes name it
     snprintf(g->renderer, sizeof g->renderer, "%s, %s, OpenGL %s", name,
              (const char *)g->GetString(GL_RENDERER), (const char *)g->GetString(GL_VERSION));
 
-    if (!make_framebuffer(g)) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "%s cannot draw a picture of %d x %d pixels", name,
-                         g->width, g->height);
-    }
+    FAIL_IF(!make_framebuffer(g),
+            fault_set(f, STATUS_CANNOT_WRITE, "%s cannot draw a picture of %d x %d pixels", name,
+                      g->width, g->height));
     g->Enable(GL_DEPTH_TEST);
     g->Enable(GL_SCISSOR_TEST);
     g->EnableClientState(GL_VERTEX_ARRAY);
@@ -270,7 +263,7 @@ static status set_up(gl_offscreen *g, fault *f)
 
 status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, int height, fault *f)
 {
-    assert(out != NULL && width > 0 && height > 0);
+    assert(width > 0 && height > 0);
     gl_offscreen *g = g_new0(gl_offscreen, 1);
     *out = NULL;
     g->library = library;
@@ -319,17 +312,13 @@ void gl_offscreen_destroy(gl_offscreen *g)
 
 const char *gl_offscreen_renderer(const gl_offscreen *g)
 {
-    assert(g != NULL);
     return g->renderer;
 }
 
 status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region region, uint32_t *pixels,
                          fault *f)
 {
-    assert(g != NULL && t != NULL && pixels != NULL);
-    if (!make_current(g)) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "OpenGL's context is lost");
-    }
+    FAIL_IF(!make_current(g), fault_set(f, STATUS_CANNOT_WRITE, "OpenGL's context is lost"));
 
     // only the part of the picture that is wanted
     g->Viewport(0, 0, g->width, g->height);
@@ -345,8 +334,7 @@ status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region regio
 
     // one question for all calls
     unsigned error = g->GetError();
-    if (error != 0) {
-        return fault_set(f, STATUS_CANNOT_WRITE, "OpenGL refused to draw (error 0x%x)", error);
-    }
+    FAIL_IF(error != 0,
+            fault_set(f, STATUS_CANNOT_WRITE, "OpenGL refused to draw (error 0x%x)", error));
     return STATUS_OK;
 }

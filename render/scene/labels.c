@@ -25,7 +25,7 @@ double labels_pixels(const camera *c, vector place, double length)
 
 void labels_flash(const labels *l, vector place, double radius, double strength)
 {
-    assert(l != NULL && radius > 0);
+    assert(radius > 0);
     enum { RAYS = 12 };
     vector at = camera_project(l->camera, place);
     double r = labels_pixels(l->camera, place, radius) * (0.55 + 0.45 * strength);
@@ -54,7 +54,6 @@ void labels_flash(const labels *l, vector place, double radius, double strength)
 
 void labels_force(const labels *l, vector from, vector end, double force, colour ink)
 {
-    assert(l != NULL);
     char text[48];
 
     // text and its size
@@ -77,7 +76,7 @@ void labels_force(const labels *l, vector from, vector end, double force, colour
 
 void labels_caption(const labels *l, const char *title, const char *facts, double width)
 {
-    assert(l != NULL && title != NULL && facts != NULL && width > 0);
+    assert(width > 0);
     double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale;
     double top = bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * l->scale;
     g_autofree char *escaped = text_escape(title);
@@ -94,7 +93,7 @@ void labels_caption(const labels *l, const char *title, const char *facts, doubl
 
 void labels_inset(const labels *l, double left, double bottom, double larger)
 {
-    assert(l != NULL && larger > 0);
+    assert(larger > 0);
     char text[64];
     decimal_print(text, sizeof text, "contact, %.1f times", larger);
     draw_text(l, left, bottom + 4 * l->scale, text, FACT_LETTERS, false, l->faint);
@@ -110,7 +109,7 @@ static text_size print_instant(const labels *l, double time, char *text, size_t 
 
 void labels_instants(const labels *l, const double *times, const colour *inks, int count)
 {
-    assert(l != NULL && times != NULL && inks != NULL && count > 0);
+    assert(count > 0);
     double swatch = 26 * l->scale, step = FACT_LETTERS * 1.55 * l->scale;
     double bottom = l->camera->height - MARGIN * l->scale, width = 0;
     double right = l->camera->width - MARGIN * l->scale;

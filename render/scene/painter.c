@@ -6,7 +6,6 @@
 
 bool scene_renderer_find(const char *name, scene_renderer *which)
 {
-    assert(name != NULL && which != NULL);
     static const char *const names[] = {"auto", "osmesa", "egl", "cairo"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (strcmp(names[i], name) == 0) {
@@ -51,7 +50,7 @@ static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
 status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
                             int samples, fault *f)
 {
-    assert(out != NULL && width > 0 && height > 0 && samples > 0);
+    assert(width > 0 && height > 0 && samples > 0);
     scene_painter *p = *out = g_new0(scene_painter, 1);
     status code = samples_init(&p->samples, width, height, samples)
                       ? open_renderer(p, which, f)
@@ -154,7 +153,6 @@ static gl_region project(scene_painter *p, const mesh *m, const camera *c, vecto
 
 status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto, fault *f)
 {
-    assert(p != NULL && what != NULL && onto != NULL);
     assert(what->opacity >= 0 && what->opacity <= 1);
     const mesh *m = what->mesh;
     status code = STATUS_OK;

@@ -25,19 +25,17 @@ typedef struct painter {
 
 double plan_x(const plan_view *v, double x)
 {
-    assert(v != NULL);
     return (x - v->left) * v->scale;
 }
 
 double plan_y(const plan_view *v, double y)
 {
-    assert(v != NULL);
     return v->height - (y - v->bottom) * v->scale * v->magnified;
 }
 
 plan_view plan_close_up(const parameters *p, double width, double height)
 {
-    assert(p != NULL && width > 0 && height > 0);
+    assert(width > 0 && height > 0);
     const double length = p->arm.length, scale = width / (CLOSE_WIDTH * length);
     return (plan_view){.left = length * cos(p->wall.angle) - 0.6 * width / scale,
                        .bottom = length * sin(p->wall.angle) - 0.5 * height / scale,
@@ -234,7 +232,7 @@ static void paint_all(const painter *g)
 
 void plan_paint(cairo_t *cr, const plan *p, const plan_view *v)
 {
-    assert(cr != NULL && p != NULL && v != NULL && p->rows != NULL && p->rows->row_count > 0);
+    assert(p->rows->row_count > 0);
     assert(v->scale > 0 && v->magnified > 0 && isfinite(p->time));
     const int links = p->parameters->arm.links;
     g_autofree vector *joints = g_new(vector, links + 1);

@@ -20,7 +20,7 @@ static size_t sample_count(const sample_buffer *b)
 
 bool samples_init(sample_buffer *b, int width, int height, int samples)
 {
-    assert(b != NULL && width > 0 && height > 0);
+    assert(width > 0 && height > 0);
     assert(samples > 0 && samples * SAMPLE_TILE <= ROW_MOST);
     *b = (sample_buffer){width, height, .samples = samples,
                          .tiles_across = (width + SAMPLE_TILE - 1) / SAMPLE_TILE,
@@ -32,7 +32,7 @@ bool samples_init(sample_buffer *b, int width, int height, int samples)
 
 bool samples_add_depths(sample_buffer *b)
 {
-    assert(b != NULL && b->depths == NULL);
+    assert(b->depths == NULL);
     size_t count = sample_count(b);
     b->depths = malloc(count * sizeof *b->depths);
     for (size_t i = 0; i < count && b->depths != NULL; i++) {
@@ -228,7 +228,6 @@ static void fill_triangle(sample_buffer *b, const flat_triangle *t, const gl_ver
 
 void samples_take(sample_buffer *b, const gl_triangles *t)
 {
-    assert(b != NULL && t != NULL);
     memset(b->touched, 0, (size_t)b->tiles_across * (size_t)b->tiles_down);
     for (size_t i = 0; i + 2 < t->corner_count; i += 3) {
         flat_triangle flat;
@@ -321,7 +320,7 @@ static void lay_tile(const sample_buffer *b, gl_region region, gl_region tile, u
 
 void samples_lay_over(sample_buffer *b, gl_region region, double opacity, cairo_surface_t *onto)
 {
-    assert(b != NULL && onto != NULL && opacity >= 0 && opacity <= 1);
+    assert(opacity >= 0 && opacity <= 1);
     const uint32_t share = (uint32_t)(256 * opacity + 0.5);
     cairo_surface_flush(onto);
     for (int i = 0; i < b->tiles_across * b->tiles_down; i++) {

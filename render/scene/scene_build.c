@@ -13,7 +13,7 @@ static double between(double a, double b, double share)
 
 sample scene_joints(const trace *t, const parameters *p, double time, vector *joints)
 {
-    assert(t != NULL && t->row_count > 0 && p != NULL && joints != NULL && isfinite(time));
+    assert(t->row_count > 0 && isfinite(time));
     size_t links = (size_t)p->arm.links, first = (size_t)t->angle_count - links;
     double lengths[PARAMETER_LINKS_MOST];
 
@@ -47,14 +47,13 @@ sample scene_joints(const trace *t, const parameters *p, double time, vector *jo
 
 vector scene_wall_shift(const parameters *p, const sample *row)
 {
-    assert(p != NULL && row != NULL);
     const double place = isnan(row->wall_place) ? 0 : row->wall_place;
     return (vector){place * sin(p->wall.angle), -place * cos(p->wall.angle), 0};
 }
 
 void scene_exaggerate(vector *joints, int links, double factor)
 {
-    assert(joints != NULL && links > 0 && factor >= 0);
+    assert(links > 0 && factor >= 0);
     const vector along = vector_unit(vector_sum(joints[links], -1, joints[0]));
     const vector across = {-along.y, along.x, 0};
     for (int i = 0; i <= links && factor > 0; i++) {
@@ -76,7 +75,7 @@ int scene_curve_length(int links)
 
 int scene_curve(const vector *joints, int links, vector *curve)
 {
-    assert(joints != NULL && curve != NULL && links > 0);
+    assert(links > 0);
     int spans = links > 1 ? links - 1 : 1, pieces = pieces_of_span(links), count = 0;
 
     for (int span = 0; span < spans; span++) {
@@ -105,7 +104,7 @@ int scene_curve(const vector *joints, int links, vector *curve)
 
 void scene_instants(const run_result *result, double *times, int count)
 {
-    assert(result != NULL && result->trace.row_count > 0 && times != NULL && count > 0);
+    assert(result->trace.row_count > 0 && count > 0);
     const trace *t = &result->trace;
     const summary *m = &result->summary;
     double end = t->rows[t->row_count - 1].time, path = 0, done = 0;

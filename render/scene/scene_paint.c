@@ -36,21 +36,18 @@ static const surroundings dark_surroundings = {
 static status check_options(const scene *sc, fault *f)
 {
     const scene_options *o = &sc->options;
-    if (o->width < LEAST_PIXELS || o->width > MOST_PIXELS || o->height < LEAST_PIXELS ||
-        o->height > MOST_PIXELS) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "a scene of %d x %d pixels, expected %d to %d along each edge", o->width,
-                         o->height, LEAST_PIXELS, MOST_PIXELS);
-    }
-    if (sc->result->trace.row_count == 0) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw");
-    }
+    FAIL_IF(o->width < LEAST_PIXELS || o->width > MOST_PIXELS || o->height < LEAST_PIXELS ||
+                o->height > MOST_PIXELS,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "a scene of %d x %d pixels, expected %d to %d along each edge", o->width,
+                      o->height, LEAST_PIXELS, MOST_PIXELS));
+    FAIL_IF(sc->result->trace.row_count == 0,
+            fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw"));
     return text_check_font(f);
 }
 
 void scene_options_scale(scene_options *o, const trace *t)
 {
-    assert(o != NULL && t != NULL);
     for (size_t i = 0; i < t->row_count; i++) {
         o->force = fmax(o->force, t->rows[i].force);
     }
@@ -62,9 +59,7 @@ void scene_options_scale(scene_options *o, const trace *t)
 static status prepare(scene *sc, fault *f)
 {
     status code = check_options(sc, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     // room for one shape
     sc->joints = g_new(vector, sc->links + 1);
@@ -94,7 +89,6 @@ static status prepare(scene *sc, fault *f)
 status scene_create(scene **out, const scenario *s, const run_result *result,
                     const scene_options *options, fault *f)
 {
-    assert(out != NULL && s != NULL && result != NULL);
     scene *sc = g_new0(scene, 1);
     *out = NULL;
     sc->scenario = s;
@@ -141,7 +135,6 @@ void scene_destroy(scene *sc)
 
 const char *scene_renderer_name(const scene *sc)
 {
-    assert(sc != NULL);
     return sc->painter->name;
 }
 
@@ -253,7 +246,7 @@ static status paint_inset(scene *sc, const double *times, int count, cairo_surfa
 
 status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto, fault *f)
 {
-    assert(sc != NULL && times != NULL && count > 0 && onto != NULL);
+    assert(count > 0);
     colour inks[SCENE_INSTANTS];
     status code = STATUS_OK;
     double now = times[count - 1];
@@ -294,11 +287,9 @@ enum { PICTURE_DPI = 144 };
 
 status scene_check_path(const char *path, fault *f)
 {
-    assert(path != NULL);
-    if (picture_format_of(path) != FORMAT_PNG || strchr(path, '.') == NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "'%s' is no name for a scene: expected one that ends in .png", path);
-    }
+    FAIL_IF(picture_format_of(path) != FORMAT_PNG || strchr(path, '.') == NULL,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%s' is no name for a scene: expected one that ends in .png", path));
     return whole_file_check(path, f);
 }
 
@@ -306,34 +297,28 @@ static status check_instants(const scene_picture *p, fault *f)
 {
     const trace *t = &p->result->trace;
 
-    if (p->count < 1 || p->count > SCENE_INSTANTS) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "a scene of %d instants, expected 1 to %d",
-                         p->count, SCENE_INSTANTS);
-    }
+    FAIL_IF(p->count < 1 || p->count > SCENE_INSTANTS,
+            fault_set(f, STATUS_BAD_ARGUMENT, "a scene of %d instants, expected 1 to %d", p->count,
+                      SCENE_INSTANTS));
 
     for (int i = 0; i < p->count; i++) {
         double end = t->row_count > 0 ? t->rows[t->row_count - 1].time : 0;
-        if (!(p->times[i] >= 0 && !instant_after(p->times[i], end))) {
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "a scene at %g s, expected an instant of the run, 0 to %g s",
-                             p->times[i], end);
-        }
+        FAIL_IF(!(p->times[i] >= 0 && !instant_after(p->times[i], end)),
+                fault_set(f, STATUS_BAD_ARGUMENT,
+                          "a scene at %g s, expected an instant of the run, 0 to %g s", p->times[i],
+                          end));
     }
     return STATUS_OK;
 }
 
 status scene_write(const scene_picture *p, const char *path, fault *f)
 {
-    assert(p != NULL && p->scenario != NULL && p->result != NULL && p->times != NULL);
-    assert(path != NULL);
     scene *sc;
 
     status code = scene_check_path(path, f);
     code = code == STATUS_OK ? check_instants(p, f) : code;
     code = code == STATUS_OK ? scene_create(&sc, p->scenario, p->result, &p->options, f) : code;
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     cairo_surface_t *surface = cairo_image_surface_create(
         p->options.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, sc->options.width,

@@ -17,7 +17,7 @@
 
 void arm_set_voltage(arm *a, double volts)
 {
-    assert(a != NULL && isfinite(volts));
+    assert(isfinite(volts));
     motor_set_voltage(&a->motor, volts);
 }
 

@@ -1,13 +1,11 @@
 #include "src/arm/motor.h"
 
-#include <assert.h>
 #include <math.h>
 
 #include "src/base/extremes.h"
 
 double motor_command_limit(const motor_parameters *p)
 {
-    assert(p != NULL);
     if (p->drive != DRIVE_CURRENT || p->current_limit == 0 || p->transconductance == 0) {
         return p->voltage_limit;
     }
@@ -21,13 +19,11 @@ static double limited(double volts, double limit)
 
 double motor_limited_voltage(const motor_parameters *p, double volts)
 {
-    assert(p != NULL);
     return limited(volts, motor_command_limit(p));
 }
 
 double motor_torque_per_volt(const motor_parameters *p)
 {
-    assert(p != NULL);
     if (p->drive == DRIVE_CURRENT) {
         return p->transconductance * p->torque_constant;
     }
@@ -36,7 +32,6 @@ double motor_torque_per_volt(const motor_parameters *p)
 
 double motor_damping(const motor_parameters *p)
 {
-    assert(p != NULL);
     if (p->drive == DRIVE_CURRENT) {
         return p->viscous_friction; // the amplifier overcomes back EMF
     }
@@ -51,7 +46,6 @@ static bool is_electric(const motor_parameters *p)
 double motor_electrical_energy(const motor_parameters *p, double volts, double duration,
                                double turn)
 {
-    assert(p != NULL);
     double command = motor_limited_voltage(p, volts);
     if (is_electric(p)) {
         return (double)NAN;
@@ -67,7 +61,6 @@ double motor_electrical_energy(const motor_parameters *p, double volts, double d
 
 void motor_init(motor_model *m, const motor_parameters *p)
 {
-    assert(m != NULL && p != NULL);
     *m = (motor_model){.voltage_limit = motor_command_limit(p),
                        .torque_per_volt = motor_torque_per_volt(p),
                        .damping = motor_damping(p),
@@ -88,7 +81,6 @@ void motor_init(motor_model *m, const motor_parameters *p)
 
 void motor_set_voltage(motor_model *m, double volts)
 {
-    assert(m != NULL);
     m->voltage = limited(volts, m->voltage_limit);
     m->torque = m->torque_per_volt * m->voltage;
 }

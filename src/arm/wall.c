@@ -18,7 +18,6 @@
 
 void wall_init(wall_model *w, const parameters *p)
 {
-    assert(w != NULL && p != NULL);
     *w = (wall_model){.kind = (wall_kind)p->wall.kind,
                       .cosine = inline_cos(p->wall.angle),
                       .sine = inline_sin(p->wall.angle),
@@ -36,20 +35,18 @@ void wall_init(wall_model *w, const parameters *p)
 
 double wall_restitution(const wall_model *w, double approach_speed)
 {
-    assert(w != NULL);
     const bool rests = approach_speed < w->rest_speed;
     return rests || w->restitution * approach_speed < LEAST_REBOUND ? 0 : w->restitution;
 }
 
 double wall_stored_energy(const wall_model *w, double depth)
 {
-    assert(w != NULL);
     return depth > 0 ? wall_spring_force(w, depth) * depth / (w->exponent + 1) : 0;
 }
 
 double wall_rate(const wall_model *w, double compliance, double depth, double rate)
 {
-    assert(w != NULL && compliance > 0);
+    assert(compliance > 0);
     // without its damper the wall stops the mass at the deepest point, and so does a damper that
     // grows with the depth without the wall's spring
     const double n = w->exponent, inward = fmax(rate, 0);
@@ -83,13 +80,12 @@ static wall_face returning(const wall_model *w, double depth, double least)
 
 wall_face wall_face_left_behind(const wall_model *w, double depth)
 {
-    assert(w != NULL && !wall_has_face(w));
+    assert(!wall_has_face(w));
     return returning(w, return_time(w, depth) > LEAST_RETURN ? depth : 0, LEAST_DEPTH);
 }
 
 double wall_face_acceleration(const wall_model *w, wall_face face)
 {
-    assert(w != NULL);
     return wall_has_face(w)
                ? w->shift.acceleration -
                      (w->stiffness * face.position + w->damping * face.velocity) / w->face_mass
@@ -98,7 +94,6 @@ double wall_face_acceleration(const wall_model *w, wall_face face)
 
 double wall_face_energy(const wall_model *w, wall_face face)
 {
-    assert(w != NULL);
     const double moves = face.velocity - w->shift.velocity;
     return 0.5 * w->face_mass * moves * moves + wall_stored_energy(w, fabs(face.position));
 }
@@ -209,7 +204,7 @@ static wall_face shake(const wall_model *w, wall_face face, double h, double *wo
 
 double wall_face_work(const wall_model *w, wall_face face, double h)
 {
-    assert(w != NULL && h >= 0);
+    assert(h >= 0);
     double series[TERMS], work = 0;
     if (is_shaken(w, series)) {
         shake(w, face, h, &work);
@@ -224,7 +219,7 @@ double wall_face_work(const wall_model *w, wall_face face, double h)
 // d^2; hyperbolic where that is negative.
 wall_face wall_face_after(const wall_model *w, wall_face face, double h)
 {
-    assert(w != NULL && h >= 0);
+    assert(h >= 0);
     if (!wall_has_face(w)) {
         const double passed = face.position > 0 ? h / return_time(w, face.position) : 0;
         const double left = w->law == WALL_KELVIN_VOIGT ? plain_exp(-passed) : 1 - passed;
@@ -263,7 +258,6 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
 
 double wall_face_rate(const wall_model *w, wall_face face)
 {
-    assert(w != NULL);
     double series[TERMS], quiet[TERMS] = {0};
     const bool shaken = is_shaken(w, series);
     if (face.position == 0 && face.velocity == 0 && !shaken) {
@@ -289,7 +283,6 @@ double wall_face_rate(const wall_model *w, wall_face face)
 
 double wall_face_lasts(const wall_model *w, wall_face face)
 {
-    assert(w != NULL);
     return w->law == WALL_HUNT_CROSSLEY && face.position > 0 ? return_time(w, face.position)
                                                              : HUGE_VAL;
 }

@@ -47,13 +47,10 @@ static void find_rates(wall_path *p, double *scratch)
 
 status wall_path_create(wall_path **created, const char *file, fault *f)
 {
-    assert(created != NULL && file != NULL);
     csv_table table = {0};
     wall_path *p = calloc(1, sizeof *p);
     *created = NULL;
-    if (p == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(p != NULL, f);
     status code = csv_table_read(&table, file, 2, f);
     code = code == STATUS_OK ? csv_table_times(&table, "time", &p->times, f) : code;
     code = code == STATUS_OK ? csv_table_numbers(&table, "place", "m", &p->places, f) : code;
@@ -140,7 +137,6 @@ static wall_shift path_at(const wall_path *p, double time)
 
 wall_shift wall_motion_at(const wall_motion *m, double time)
 {
-    assert(m != NULL);
     const double since = time - m->time;
     switch (m->kind) {
     case MOTION_SINE: {
@@ -169,7 +165,7 @@ wall_shift wall_motion_at(const wall_motion *m, double time)
 
 bool wall_motion_series(const wall_motion *m, double time, int count, double *terms)
 {
-    assert(m != NULL && count >= 4 && terms != NULL);
+    assert(count >= 4);
     const double acceleration = wall_motion_at(m, time).acceleration;
     const double since = time - m->time, rate = 2 * m->frequency;
     memset(terms, 0, (size_t)count * sizeof *terms);
@@ -205,7 +201,6 @@ bool wall_motion_series(const wall_motion *m, double time, int count, double *te
 
 double wall_motion_rate(const wall_motion *m, double time)
 {
-    assert(m != NULL);
     if (m->kind == MOTION_FILE) {
         // a share of an interval
         const long i = m->path != NULL ? interval_of(m->path, time - m->time) : -1;
@@ -220,7 +215,6 @@ double wall_motion_rate(const wall_motion *m, double time)
 
 double wall_motion_lasts(const wall_motion *m, double time)
 {
-    assert(m != NULL);
     const double since = time - m->time;
     if (m->kind == MOTION_FILE && m->path != NULL) {
         const long next = interval_of(m->path, since) + 1;

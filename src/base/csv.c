@@ -1,6 +1,5 @@
 #include "src/base/csv.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +8,6 @@
 
 csv_writer csv_begin(FILE *stream)
 {
-    assert(stream != NULL);
     return (csv_writer){.stream = stream};
 }
 
@@ -49,7 +47,6 @@ static bool needs_quotes(const char *text)
 // One field: a name, and a unit in brackets unless that is NULL.
 static void write_field(csv_writer *w, const char *name, const char *unit)
 {
-    assert(w != NULL && w->stream != NULL && name != NULL);
     const char *const parts[] = {name, unit != NULL ? "[" : "", unit != NULL ? unit : "",
                                  unit != NULL ? "]" : ""};
     bool quoted = needs_quotes(name) || (unit != NULL && needs_quotes(unit));
@@ -75,7 +72,6 @@ void csv_text(csv_writer *w, const char *text)
 
 void csv_number(csv_writer *w, double value)
 {
-    assert(w != NULL && w->stream != NULL);
     char text[1 + NUMBER_TEXT] = ",";
     char *number = text + w->in_row;
     *number = '\0';
@@ -88,7 +84,6 @@ void csv_number(csv_writer *w, double value)
 
 void csv_end_row(csv_writer *w)
 {
-    assert(w != NULL && w->stream != NULL);
     fputc('\n', w->stream);
     w->in_row = false;
 }

@@ -92,12 +92,11 @@ static status split(csv_table *t, char *text, fault *f)
         if (columns == 1 && row[0][0] == '\0' && last) {
             continue;
         }
-        if (columns < t->columns || !last) {
-            return fault_set_place(f, STATUS_BAD_ARGUMENT, begin, columns,
-                                   "%.300s:%d:%d: the row has %s than %d fields, expected one "
-                                   "for each heading",
-                                   t->file, begin, columns, last ? "fewer" : "more", t->columns);
-        }
+        FAIL_IF(columns < t->columns || !last,
+                fault_set_place(f, STATUS_BAD_ARGUMENT, begin, columns,
+                                "%.300s:%d:%d: the row has %s than %d fields, expected one "
+                                "for each heading",
+                                t->file, begin, columns, last ? "fewer" : "more", t->columns));
         t->lines[t->rows++] = begin;
         count += (size_t)columns;
     }
@@ -106,7 +105,6 @@ static status split(csv_table *t, char *text, fault *f)
 
 status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
 {
-    assert(t != NULL && path != NULL);
     *t = (csv_table){.file = strdup(path)};
     status code = t->file != NULL ? read_text(path, &t->text, f) : fault_no_memory(f);
     if (code == STATUS_OK) {
@@ -164,7 +162,6 @@ static size_t name_length(const char *heading)
 
 int csv_table_find(const csv_table *t, const char *heading)
 {
-    assert(t != NULL && heading != NULL);
     const size_t length = name_length(heading);
     int found = -1;
     for (int c = t->columns - 1; c >= 0; c--) {
@@ -239,32 +236,27 @@ static double factor_to(const char *unit, const char *wanted)
 static status read_column(const csv_table *t, const char *heading, const char *unit, bool gaps,
                           double **values, fault *f)
 {
-    assert(t != NULL && heading != NULL && unit != NULL && values != NULL);
     *values = NULL;
     const int column = csv_table_find(t, heading);
-    if (column < 0) {
-        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
-                               "%.300s:1:1: there is no column '%.*s', expected one of its %d "
-                               "headings, such as '%.*s'",
-                               t->file, SHOWN, heading, t->columns, SHOWN, t->headings[0]);
-    }
+    FAIL_IF(column < 0,
+            fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
+                            "%.300s:1:1: there is no column '%.*s', expected one of its %d "
+                            "headings, such as '%.*s'",
+                            t->file, SHOWN, heading, t->columns, SHOWN, t->headings[0]));
 
     // its unit
     char own[32];
     const bool said = unit_of(heading, own) || unit_of(t->headings[column], own);
     const double factor = said ? factor_to(own, unit) : 1;
-    if (factor == 0) {
-        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, column + 1,
-                               "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] "
-                               "or what can be converted to it",
-                               t->file, column + 1, own, SHOWN, t->headings[column], unit);
-    }
+    FAIL_IF(factor == 0,
+            fault_set_place(f, STATUS_BAD_ARGUMENT, 1, column + 1,
+                            "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] "
+                            "or what can be converted to it",
+                            t->file, column + 1, own, SHOWN, t->headings[column], unit));
 
     // and its numbers
     double *numbers = calloc(t->rows + 1, sizeof *numbers);
-    if (numbers == NULL) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(numbers != NULL, f);
     for (size_t r = 0; r < t->rows; r++) {
         const char *field = t->fields[r * (size_t)t->columns + (size_t)column], *rest;
         if (gaps && (field[0] == '\0' || strcasecmp(field, "nan") == 0)) {
@@ -316,7 +308,7 @@ status csv_table_times(const csv_table *t, const char *heading, double **values,
 double csv_table_at(const double *times, const double *values, size_t rows, double time,
                     bool linear)
 {
-    assert(times != NULL && values != NULL && rows > 0);
+    assert(rows > 0);
     size_t low = 0, high = rows; // the first row that is later lies in (low, high]
     if (times[0] > time) {
         return values[0];

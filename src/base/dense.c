@@ -16,7 +16,6 @@ static void swap_rows(int length, double *matrix, int i, int j)
 
 static inline bool solve(int n, int columns, double *matrix, double *right)
 {
-
     // elimination
     for (int column = 0; column < n; column++) {
         // the largest entry left in the column becomes the pivot
@@ -62,13 +61,13 @@ static inline bool solve(int n, int columns, double *matrix, double *right)
 
 bool dense_solve(int n, double *matrix, double *vector)
 {
-    assert(n > 0 && matrix != NULL && vector != NULL);
+    assert(n > 0);
     return solve(n, 1, matrix, vector);
 }
 
 bool dense_solve_columns(int n, int columns, double *matrix, double *right)
 {
-    assert(n > 0 && columns > 0 && matrix != NULL && right != NULL);
+    assert(n > 0 && columns > 0);
     return solve(n, columns, matrix, right);
 }
 
@@ -222,7 +221,7 @@ static void sort_rows(int n, double *values, double *rows, double *spare)
 
 bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
 {
-    assert(n > 0 && n <= SYMMETRIC_MOST && matrix != NULL && values != NULL && scratch != NULL);
+    assert(n > 0 && n <= SYMMETRIC_MOST);
 
     // tridiagonal form, and the rotation that leads there
     double *e = scratch, *norms = scratch + n;
@@ -302,7 +301,7 @@ void symmetric_backward(int n, const double *factor, double *vector)
 
 bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values, double *scratch)
 {
-    assert(n > 0 && matrix != NULL && mass != NULL);
+    assert(n > 0);
     const size_t side = (size_t)n;
     if (!symmetric_factor(n, mass)) {
         return false;

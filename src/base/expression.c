@@ -152,7 +152,6 @@ static void read_sum(reader *r)
 status expression_read(expression *e, const char *text, expression_find *find, void *context,
                        fault *f)
 {
-    assert(e != NULL && text != NULL && find != NULL);
     reader r = {.to = e, .text = text, .at = text, .find = find, .context = context, .fault = f};
     e->count = 0;
     read_sum(&r);
@@ -182,7 +181,7 @@ static double combine(int what, double a, double b)
 
 double expression_evaluate(const expression *e, expression_value *value, const void *context)
 {
-    assert(e != NULL && e->count > 0 && value != NULL);
+    assert(e->count > 0);
     double stack[EXPRESSION_STEPS];
     int top = -1;
     for (int i = 0; i < e->count; i++) {

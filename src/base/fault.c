@@ -47,7 +47,6 @@ status fault_no_memory(fault *f)
 
 status fault_set_at(fault *f, status code, const char *path, const char *format, ...)
 {
-    assert(path != NULL);
     va_list args;
     va_start(args, format);
     fill(f, code, path, 0, 0, format, args);

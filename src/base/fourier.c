@@ -38,7 +38,7 @@ static void reverse_bits(double *real, double *imaginary, size_t n)
 
 void fourier_transform(double *real, double *imaginary, size_t n)
 {
-    assert(real != NULL && imaginary != NULL && is_power_of_two(n));
+    assert(is_power_of_two(n));
     reverse_bits(real, imaginary, n);
 
     // transforms of twice the length each time
@@ -62,7 +62,7 @@ void fourier_transform(double *real, double *imaginary, size_t n)
 
 void fourier_amplitudes(const double *series, size_t n, double *scratch, double *amplitude)
 {
-    assert(series != NULL && scratch != NULL && amplitude != NULL && n > 1 && is_power_of_two(n));
+    assert(n > 1 && is_power_of_two(n));
     double *real = scratch, *imaginary = scratch + n, mean = 0, weight = 0;
     for (size_t i = 0; i < n; i++) {
         mean += series[i] / (double)n;

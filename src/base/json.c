@@ -28,7 +28,6 @@ json_t *json_number(double value)
 
 json_t *json_text(const char *text)
 {
-    assert(text != NULL);
     errno = 0;
     json_t *string = json_string(text);
     char *copy = string == NULL && errno != ENOMEM ? strdup(text) : NULL;
@@ -56,7 +55,6 @@ json_t *json_numbers(const double *values, int count)
 
 json_t *json_members(json_t *object, const char *members, ...)
 {
-    assert(members != NULL);
     va_list list;
     va_start(list, members);
     while (*members != '\0') {
@@ -185,7 +183,7 @@ void json_write(FILE *stream, const json_t *value)
 
 void json_write_member(FILE *stream, const json_t *value, int depth)
 {
-    assert(stream != NULL && depth >= 0);
+    assert(depth >= 0);
     loss_unless(value != NULL);
     if (value != NULL) {
         write_indented(stream, value, depth);

@@ -304,22 +304,17 @@ static void write_digits(char *text, double value, int most_plain)
 
 void number_format(char *text, double value)
 {
-    assert(text != NULL);
-
     // the sign of a zero says nothing to a reader
     write_digits(text, value == 0 ? 0 : value, 15);
 }
 
 void number_format_short(char *text, double value)
 {
-    assert(text != NULL);
     write_digits(text, value, 6);
 }
 
 bool decimal_read(const char *text, double *value, const char **rest)
 {
-    assert(text != NULL && value != NULL && rest != NULL);
-
     // what strtod would take beyond a decimal number
     const char *digits = text + (*text == '+' || *text == '-');
     bool begins = isdigit((unsigned char)digits[0]) ||

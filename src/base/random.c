@@ -4,7 +4,6 @@
 
 uint64_t splitmix64_next(uint64_t *state)
 {
-    assert(state != NULL);
     // a counter with an odd step near 2^64 divided by the golden ratio, then a mixing of its bits
     *state += UINT64_C(0x9e3779b97f4a7c15);
     uint64_t z = *state;
@@ -15,7 +14,6 @@ uint64_t splitmix64_next(uint64_t *state)
 
 void random_seed(random_generator *g, uint64_t seed)
 {
-    assert(g != NULL);
     for (int i = 0; i < 4; i++) {
         g->state[i] = splitmix64_next(&seed);
     }
@@ -23,7 +21,7 @@ void random_seed(random_generator *g, uint64_t seed)
 
 uint64_t random_below(random_generator *g, uint64_t bound)
 {
-    assert(g != NULL && bound > 0);
+    assert(bound > 0);
 
     // the first 2^64 mod bound numbers would make small remainders more likely
     uint64_t uneven = (UINT64_MAX - bound + 1) % bound, bits;
@@ -35,7 +33,7 @@ uint64_t random_below(random_generator *g, uint64_t bound)
 
 void random_permutation(random_generator *g, size_t *order, size_t count)
 {
-    assert(g != NULL && (order != NULL || count == 0));
+    assert(order != NULL || count == 0);
 
     // each number goes to a random place, and the one that stood there to the end
     for (size_t i = 0; i < count; i++) {

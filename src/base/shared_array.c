@@ -93,7 +93,7 @@ static bool append_chunk(shared_array *a, const shared_array *from)
 
 void shared_array_init(shared_array *a, size_t size)
 {
-    assert(a != NULL && size > 0);
+    assert(size > 0);
     *a = (shared_array){.size = size};
 }
 
@@ -136,7 +136,7 @@ static bool grow_plain(shared_array *a, size_t count)
 
 bool shared_array_grow(shared_array *a, size_t count)
 {
-    assert(a != NULL && a->size > 0);
+    assert(a->size > 0);
     if (a->reserved == 0) {
         return count <= a->capacity || grow_plain(a, count);
     }
@@ -150,7 +150,7 @@ bool shared_array_grow(shared_array *a, size_t count)
 
 bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 {
-    assert(a != NULL && from != NULL && a->size == from->size && a->chunk_count == 0);
+    assert(a->size == from->size && a->chunk_count == 0);
     assert(a->reserved > 0 && count <= from->capacity);
     size_t bytes = count * a->size, shared = from->reserved > 0 ? bytes / ARRAY_CHUNK : 0;
 
@@ -174,7 +174,6 @@ bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 
 void shared_array_finish(shared_array *a)
 {
-    assert(a != NULL);
     if (a->reserved > 0) {
         munmap(a->base, a->reserved);
         for (size_t i = 0; i < a->chunk_count; i++) {

@@ -1,6 +1,5 @@
 #include "src/base/text_stream.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/types.h>
@@ -35,7 +34,6 @@ static ssize_t take(void *cookie, const char *bytes, size_t count)
 
 bool text_stream_open(text_stream *t)
 {
-    assert(t != NULL);
     *t = (text_stream){.text = NULL};
     t->stream = fopencookie(t, "w", (cookie_io_functions_t){.write = take});
     return t->stream != NULL;
@@ -43,7 +41,6 @@ bool text_stream_open(text_stream *t)
 
 char *text_stream_close(text_stream *t, size_t *length)
 {
-    assert(t != NULL && t->stream != NULL);
     bool whole = ferror(t->stream) == 0;
     whole = fclose(t->stream) == 0 && whole;
     whole = !loss_noted() && whole && make_room(t, 0);

@@ -159,7 +159,6 @@ static int find_target(const char *path, char target[PATH_MAX], mode_t *mode)
 
 status whole_file_check(const char *path, fault *f)
 {
-    assert(path != NULL);
     char target[PATH_MAX];
     mode_t mode;
     const int reason = strcmp(path, "-") == 0 ? 0 : find_target(path, target, &mode);
@@ -168,7 +167,6 @@ status whole_file_check(const char *path, fault *f)
 
 bool whole_file_same_place(const char *path, const char *other)
 {
-    assert(path != NULL && other != NULL);
     char places[2][PATH_MAX], folder[PATH_MAX];
     struct stat around[2];
     if (strcmp(path, other) == 0 || strcmp(path, "-") == 0 || strcmp(other, "-") == 0) {
@@ -215,7 +213,6 @@ static void remove_if_left(int folder, const char *name)
 
 void whole_file_clean_folder(const char *path)
 {
-    assert(path != NULL);
     DIR *folder = opendir(path);
     for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
         // ".impactlab-PROCESS-NUMBER.part" and no more
@@ -346,7 +343,6 @@ static int open_target(whole_file *w, mode_t mode)
 
 status whole_file_open(whole_file *w, const char *path, fault *f)
 {
-    assert(w != NULL && path != NULL);
     *w = (whole_file){.stream = NULL};
     if (strcmp(path, "-") == 0) {
         w->stream = stdout;
@@ -372,7 +368,6 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
 
 int stream_failure(FILE *stream)
 {
-    assert(stream != NULL);
     errno = 0;
     if (fflush(stream) == 0 && !ferror(stream)) {
         return 0;
@@ -403,7 +398,6 @@ static int close_stream(whole_file *w, bool wanted)
 
 status whole_file_close(whole_file *w, status written, fault *f)
 {
-    assert(w != NULL && w->stream != NULL);
     const bool wanted = written == STATUS_OK;
     int reason = 0;
     if (w->path != NULL) {

@@ -16,7 +16,6 @@ static int smaller(int a, int b)
 // Optimal string alignment: Levenshtein's distance with swaps of neighbours.
 int edit_distance(const char *a, const char *b, int limit)
 {
-    assert(a != NULL && b != NULL);
     enum { LONGEST = 64 };
     size_t la = strlen(a), lb = strlen(b);
     int rows[3][LONGEST + 1];
@@ -50,7 +49,6 @@ int edit_distance(const char *a, const char *b, int limit)
 
 nearest_word nearest_begin(const char *word)
 {
-    assert(word != NULL);
     size_t half = strlen(word) / 2;
     return (nearest_word){.word = word, .distance = half < 4 ? (int)half + 1 : 5};
 }
@@ -69,7 +67,6 @@ static const char *last_part(const char *name)
 
 void nearest_try(nearest_word *n, const char *candidate)
 {
-    assert(n->word != NULL && candidate != NULL);
     int whole = edit_distance(n->word, candidate, n->distance);
     int part = edit_distance(n->word, last_part(candidate), n->distance);
     int distance = whole < part ? whole : part;
@@ -115,7 +112,7 @@ static int whole_character(const unsigned char *c, uint32_t *number)
 
 int printable_length(const char *text)
 {
-    assert(text != NULL && *text != '\0');
+    assert(*text != '\0');
     uint32_t character;
     const int length = whole_character((const unsigned char *)text, &character);
     return is_unprintable(character) ? 0 : length;
@@ -134,19 +131,16 @@ static void replace_unprintable(char *text, char kept)
 
 void make_printable(char *text)
 {
-    assert(text != NULL);
     replace_unprintable(text, 0);
 }
 
 void make_lines_printable(char *text)
 {
-    assert(text != NULL);
     replace_unprintable(text, '\n');
 }
 
 void print_printable_list(FILE *stream, const char *format, va_list list)
 {
-    assert(stream != NULL && format != NULL);
     char brief[1024], *text = brief;
     va_list again;
     va_copy(again, list);

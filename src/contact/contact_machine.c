@@ -334,8 +334,6 @@ static void slip(const arm *a, motion *m)
 
 void motion_apply(const arm *a, motion *m, motion_report *report)
 {
-    assert(a != NULL && m != NULL && report != NULL);
-
     a = motion_arm_at(a, m, m->state[SLOT_TIME]);
 
     // the transition that belongs to the event
@@ -372,7 +370,6 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
 void motion_start_at(const arm *a, motion *m, const double *angles, const double *velocities,
                      double current)
 {
-    assert(a != NULL && m != NULL && angles != NULL && velocities != NULL);
     a = motion_arm_at(a, m, 0);
     memset(m->state, 0, (size_t)m->size * sizeof(double));
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
@@ -400,7 +397,7 @@ void motion_start_at(const arm *a, motion *m, const double *angles, const double
 
 void motion_start(const arm *a, motion *m, double angle, double velocity)
 {
-    assert(a != NULL && m != NULL && isfinite(angle) && isfinite(velocity));
+    assert(isfinite(angle) && isfinite(velocity));
     double *q = m->scratch, *w = m->trial;
     for (int i = 0; i < m->dof; i++) {
         q[i] = angle;
@@ -411,7 +408,6 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
 
 bool motion_starts_in_contact(const motion *m)
 {
-    assert(m != NULL);
     // what goes into a wall that gives is in contact, however hard the wall throws it back
     const bool leaves =
         m->wall_gives && m->state[SLOT_GAP_VELOCITY] >= 0 && m->state[SLOT_GAP_ACCELERATION] > 0;
@@ -420,7 +416,7 @@ bool motion_starts_in_contact(const motion *m)
 
 void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
 {
-    assert(a != NULL && m != NULL && report != NULL && isfinite(impulse));
+    assert(isfinite(impulse));
     a = motion_arm_at(a, m, m->state[SLOT_TIME]);
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     bool contact = m->state[SLOT_CONTACT] != 0;
@@ -454,7 +450,6 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
 
 void motion_retorque(const arm *a, motion *m, double before)
 {
-    assert(a != NULL && m != NULL);
     if (motion_unresolved(a, m)) {
         return; // an instant's accelerations say nothing: the next step finds out
     }
@@ -489,7 +484,6 @@ void motion_retorque(const arm *a, motion *m, double before)
 
 double motion_gap_with(const arm *a, motion *m)
 {
-    assert(a != NULL && m != NULL);
     double depth;
     chain_penetration(motion_arm_at(a, m, m->state[SLOT_TIME]), state_angles(m, m->state),
                       state_velocities(m, m->state), &depth, NULL);
@@ -498,7 +492,7 @@ double motion_gap_with(const arm *a, motion *m)
 
 void motion_rebind(const arm *before, const arm *after, motion *m)
 {
-    assert(before != NULL && after != NULL && m != NULL && after->dof == m->dof);
+    assert(after->dof == m->dof);
     const double *q = state_angles(m, m->state);
     motion_note_change(m);
     m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);

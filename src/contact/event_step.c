@@ -212,7 +212,7 @@ static void examine(const arm *a, motion *m, double until, double far, double st
 
 void motion_examine_step(const arm *a, motion *m, double until, double far, double step)
 {
-    assert(a != NULL && m != NULL && step > 0 && engine_is_dense(m->engine));
+    assert(step > 0 && engine_is_dense(m->engine));
     if (!m->out_of_memory && !held_folded(a, m)) {
         examine(a, m, until, far, step);
     }
@@ -269,7 +269,7 @@ static void rest(motion *m, double until, double step)
 
 status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
 {
-    assert(a != NULL && m != NULL && report != NULL && step > 0);
+    assert(step > 0);
     *report = (motion_report){.event = MOTION_REACHED};
 
     // a step examined by motion_examine_step needs no search any more
@@ -319,7 +319,7 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 
 double *motion_between(const arm *a, motion *m, double time, state_extent extent)
 {
-    assert(a != NULL && m != NULL && isfinite(time));
+    assert(isfinite(time));
     // step again from the step's start, which is where m->trial was left, into m->between
     double *now = m->state, *start = m->trial;
     m->state = start;

@@ -152,10 +152,7 @@ static status narrow(const arm *a, motion *m, event_function w, double s, bracke
     double evaluated = -1;
     for (int i = 0; i < 200 && b->hi - b->lo > resolution; i++) {
         s = fmin(fmax(s, b->lo + 0.5 * resolution), b->hi - 0.5 * resolution);
-        status failed = motion_try_step(a, m, s);
-        if (failed != STATUS_OK) {
-            return failed;
-        }
+        TRY(motion_try_step(a, m, s));
         evaluated = s;
 
         // the bracket, and the end that the new point replaces
@@ -214,10 +211,7 @@ static status search(const arm *a, motion *m, event_function w, double *h, bool 
         double s = hi;
         for (int i = 0; i < 20; i++) {
             s /= 2;
-            status failed = motion_try_step(a, m, s);
-            if (failed != STATUS_OK) {
-                return failed;
-            }
+            TRY(motion_try_step(a, m, s));
             double v = event_value(a, m, m->trial, w);
             if (v > 0) {
                 lo = s;
@@ -339,10 +333,7 @@ status locate_peak(const arm *a, motion *m, double h)
         double f[3];
         s = fmin(fmax(s, width), h - width);
         for (int i = 0; i < 3; i++) {
-            status failed = motion_try_step(a, m, s + (i - 1) * width);
-            if (failed != STATUS_OK) {
-                return failed;
-            }
+            TRY(motion_try_step(a, m, s + (i - 1) * width));
             f[i] = m->trial[SLOT_FORCE];
             motion_note_force(m, m->trial[SLOT_TIME], f[i]);
         }

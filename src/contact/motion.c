@@ -66,7 +66,7 @@ void motion_evaluate(const arm *a, motion *m, double *state)
 
 force_bounds motion_held_forces(const arm *a, const motion *m, double *state)
 {
-    assert(a != NULL && m != NULL && state != NULL && m->dof == 1 && wall_stands(&a->wall));
+    assert(m->dof == 1 && wall_stands(&a->wall));
     const double one = 1, lever = chain_penetration_rate(a, state_angles(m, state), &one);
     const double balanced = (a->motor.torque + state[SLOT_MOTOR_TORQUE]) / lever;
     const double friction = a->motor.stiction / fabs(lever);
@@ -75,7 +75,6 @@ force_bounds motion_held_forces(const arm *a, const motion *m, double *state)
 
 force_bounds motion_force_bounds(const arm *a, const motion *m, double *state)
 {
-    assert(a != NULL && m != NULL && state != NULL);
     const contact_state now = contact_state_of(state);
     const bool single =
         m->dof == 1 && !m->wall_moves && wall_stands(&a->wall) && motion_wall_is_rigid(m);
@@ -275,10 +274,7 @@ status motion_try_step_for(const arm *a, motion *m, double h, state_extent exten
     }
 
     set_slots(a, m, m->state, h, trial);
-    status s = m->engine->state_at(a, m, h, extent);
-    if (s != STATUS_OK) {
-        return s;
-    }
+    TRY(m->engine->state_at(a, m, h, extent));
 
     if (m->engine->kept == 0) {
         book(a, m, m->state, trial);
@@ -289,7 +285,7 @@ status motion_try_step_for(const arm *a, motion *m, double h, state_extent exten
 bool motion_between_all(const arm *a, motion *m, const double *times, int count,
                         state_energy *energies)
 {
-    assert(a != NULL && m != NULL && count >= 1 && count <= MOTION_TOGETHER);
+    assert(count >= 1 && count <= MOTION_TOGETHER);
     double *start = m->trial, *states[MOTION_TOGETHER], h[MOTION_TOGETHER];
     if (m->engine->states_at == NULL || state_is_held_still(m, start) || count < 1) {
         return false;

@@ -131,7 +131,7 @@ motion *motion_create(const arm *a, const method_parameters *method)
 
 motion *motion_create_by(const arm *a, const method_parameters *method, const engine *chosen)
 {
-    assert(a != NULL && method != NULL && a->dof > 0 && method->step > 0);
+    assert(a->dof > 0 && method->step > 0);
     motion *m = calloc(1, sizeof *m);
     if (m == NULL) {
         return NULL;
@@ -190,7 +190,7 @@ void motion_destroy(motion *m)
 
 void motion_follow_arm(const arm *a, motion *m)
 {
-    assert(a != NULL && m != NULL && a->dof == m->dof);
+    assert(a->dof == m->dof);
     const bool stays = motion_is_implicit(m) || m->chosen;
     const engine *wanted = stays ? m->engine : event_engine(a);
     if (wanted == m->engine && !m->out_of_memory) {
@@ -211,13 +211,11 @@ void motion_follow_arm(const arm *a, motion *m)
 
 size_t motion_saved_size(const motion *m)
 {
-    assert(m != NULL);
     return sizeof m->record + (size_t)m->most_size * sizeof *m->state;
 }
 
 void motion_save(const motion *m, void *bytes)
 {
-    assert(m != NULL && bytes != NULL);
     const size_t size = (size_t)m->size * sizeof *m->state;
     memset(bytes, 0, motion_saved_size(m));
     memcpy(bytes, &m->record, sizeof m->record);
@@ -226,7 +224,6 @@ void motion_save(const motion *m, void *bytes)
 
 void motion_restore(const arm *a, motion *m, const void *bytes)
 {
-    assert(a != NULL && m != NULL && bytes != NULL);
     motion_follow_arm(a, m);
     memcpy(&m->record, bytes, sizeof m->record);
     memcpy(m->state, (const char *)bytes + sizeof m->record, (size_t)m->size * sizeof *m->state);

@@ -45,7 +45,6 @@
 
 bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
 {
-    assert(p != NULL && m != NULL);
     double l = p->arm.length / 2, quarter = p->arm.mass / 2 * l * l / 4;
     *m = (pressed_arm_model){
         .inertia = p->arm.hub_inertia + 2 * p->arm.link_inertia + 2 * quarter,
@@ -70,7 +69,6 @@ bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
 
 bool pressed_after_impact(const parameters *p, const three_body_state *before, pressed_state *after)
 {
-    assert(p != NULL && before != NULL && after != NULL);
     two_link t;
     double velocity[3], impulse;
     two_link_at(&t, p, FORM_CORRECTED, before->angle[1], before->angle[2]);
@@ -149,7 +147,7 @@ static bool stops(const pressed_arm_model *m, pressed_state s, double peak)
 
 double best_peak(const pressed_arm_model *m, pressed_state s)
 {
-    assert(m != NULL && m->mass_force > 0);
+    assert(m->mass_force > 0);
     double low = runaway(m, s), high = low;
     if (!(s.velocity > 0 && low > 0)) {
         return (double)NAN;
@@ -263,7 +261,7 @@ static double time_on_both(const pressed_arm_model *m, const way *first, const w
 double best_settling(const pressed_arm_model *m, pressed_state s, double force, double band,
                      double peak)
 {
-    assert(m != NULL && m->mass_force > 0 && band > 0);
+    assert(m->mass_force > 0 && band > 0);
     const way settled = {PRESS_KEEP, force * (1 - band), force * (1 + band)};
     const double most = fmax(peak, settled.highest);
     const way hard = {PRESS_HARD, 0, most}, soft = {PRESS_SOFT, 0, most};

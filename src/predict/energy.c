@@ -10,7 +10,7 @@
 
 void quasi_principle_deflections(int n, const double *k, double energy, double *deflection)
 {
-    assert(n > 0 && k != NULL && deflection != NULL);
+    assert(n > 0);
     double compliance = 0;
     for (int i = 0; i < n; i++) {
         compliance += 1 / k[i];
@@ -121,22 +121,18 @@ static bool corrected_force(const parameters *p, const three_body_state *s, doub
 
 status predict_energy(const parameters *p, const three_body_state *s, prediction *out, fault *f)
 {
-    assert(p != NULL && s != NULL && out != NULL);
     bool printed = p->arm.model == ARM_PRINTED;
     two_link touch;
     *out = prediction_none();
     status result = three_body_state_check(s, f);
-    if (result != STATUS_OK) {
-        return result;
-    }
+    TRY(result);
 
     double force, after[3], impulse;
-    if (!(printed ? printed_force(p, s, &force) : corrected_force(p, s, &force)) ||
-        !isfinite(force)) {
-        return fault_set(f, STATUS_SINGULAR,
-                         "the energy principle has no single force for this state: its system "
-                         "(4.28), (4.29), (4.34) is singular");
-    }
+    FAIL_IF(!(printed ? printed_force(p, s, &force) : corrected_force(p, s, &force)) ||
+                !isfinite(force),
+            fault_set(f, STATUS_SINGULAR,
+                      "the energy principle has no single force for this state: its system "
+                      "(4.28), (4.29), (4.34) is singular"));
 
     // it holds for an arm that comes near and, corrected, stays on the wall
     two_link_at(&touch, p, printed ? FORM_LISTED_IMPACT : FORM_CORRECTED, s->angle[1], s->angle[2]);

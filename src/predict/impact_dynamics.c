@@ -1,6 +1,5 @@
 #include "src/predict/predict.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -19,7 +18,6 @@ static two_link_form form_of(const parameters *p)
 status predict_velocity_jump(const parameters *p, const three_body_state *s, double after[3],
                              double *impulse, fault *f)
 {
-    assert(p != NULL && s != NULL && after != NULL && impulse != NULL);
     two_link t;
     TRY(three_body_state_check(s, f));
     two_link_at(&t, p, form_of(p), s->angle[1], s->angle[2]);
@@ -265,11 +263,10 @@ static status solve_with_hub_spring(const integrated_motion *g, double hub_veloc
     if (!isfinite(best)) {
         return STATUS_OK;
     }
-    if (!newton(g, x) || !(x[0] > 0)) {
-        return fault_set(f, STATUS_NEWTON_FAILED,
-                         "Newton's method found no solution of (4.20)-(4.22) near a delay of %g s",
-                         x[0]);
-    }
+    FAIL_IF(!newton(g, x) || !(x[0] > 0),
+            fault_set(f, STATUS_NEWTON_FAILED,
+                      "Newton's method found no solution of (4.20)-(4.22) near a delay of %g s",
+                      x[0]));
 
     *delay = x[0];
     *force = x[1];
@@ -336,7 +333,6 @@ static void solve_rigid_hub(const integrated_motion *g, prediction *out)
 status predict_impact_dynamics(const parameters *p, const three_body_state *s, prediction *out,
                                fault *f)
 {
-    assert(p != NULL && s != NULL && out != NULL);
     two_link t;
     integrated_motion g;
     double after[3];
@@ -360,7 +356,6 @@ status predict_impact_dynamics(const parameters *p, const three_body_state *s, p
 status predict_impact_quadratic(const parameters *p, const three_body_state *s, prediction *out,
                                 fault *f)
 {
-    assert(p != NULL && s != NULL && out != NULL);
     two_link t;
     integrated_motion g;
     double after[3], c[3];

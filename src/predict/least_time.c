@@ -171,7 +171,7 @@ static double time_to_band(double xi, double a, double b, double most, double s)
 
 least_time least_time_of(const parameters *p, double force, double band, double peak)
 {
-    assert(p != NULL && band > 0);
+    assert(band > 0);
     const least_time none = {.total = (double)NAN};
     least_time best = {.total = HUGE_VAL};
     flight f;
@@ -213,7 +213,7 @@ least_time least_time_of(const parameters *p, double force, double band, double 
 void least_time_follow(const parameters *p, const double *torque, int steps, double *tip,
                        double *press)
 {
-    assert(p != NULL && torque != NULL && tip != NULL && press != NULL && steps >= 0);
+    assert(steps >= 0);
     flight f;
     bool known = flight_of(p, &f);
     flight_state s = {{f.start, f.start}, {0, 0}};

@@ -283,7 +283,6 @@ static bool predict_closed_form(const arm *touched, const double *q, const doubl
 status predict_linearised(const arm *a, const method_parameters *method, const double *q,
                           const double *w, prediction *out)
 {
-    assert(a != NULL && method != NULL && q != NULL && w != NULL && out != NULL);
     assert(a->motor.inductance == 0);
     const bool plain = a->dof == 2 && a->links == 2 && arm_is_plain(a) && !wall_gives(&a->wall) &&
                        wall_stands(&a->wall);

@@ -151,7 +151,7 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
         PREDICTOR_LIST(PREDICTOR_TEXT)
 #undef PREDICTOR_TEXT
     };
-    assert(which < PREDICTOR_COUNT && question != NULL && question->parameters != NULL);
+    assert(which < PREDICTOR_COUNT);
 
     prediction_answer answer = {.name = texts[which].name,
                                 .label = texts[which].label,
@@ -192,7 +192,6 @@ static void tell_inductance(const prediction_question *question,
 
 void predict_all(const prediction_question *question, prediction_answer answers[PREDICTOR_COUNT])
 {
-    assert(question != NULL && answers != NULL);
     for (predictor which = 0; which < PREDICTOR_COUNT; which++) {
         answers[which] = predict_with(which, question);
     }
@@ -203,7 +202,6 @@ void predict_all(const prediction_question *question, prediction_answer answers[
 
 bool prediction_known(const prediction_answer *answer)
 {
-    assert(answer != NULL);
     return answer->outcome == PREDICTION_HOLDS || answer->outcome == PREDICTION_LOST;
 }
 
@@ -221,7 +219,6 @@ const char *prediction_reason(const prediction_answer *answer)
     };
 
     // a failure has its own words, a doubt those of its kind
-    assert(answer != NULL);
     if (answer->outcome == PREDICTION_FAILED) {
         return answer->fault.text;
     }

@@ -122,7 +122,6 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
                      const double *w, const voltage_profile *command, bool energies,
                      prediction *out)
 {
-    assert(source != NULL && method != NULL && q != NULL && w != NULL && out != NULL);
     assert(command == NULL || command->count == 0 || (command->times && command->volts));
     *out = prediction_none();
     if (!wall_stands(&source->wall)) {

@@ -1,6 +1,5 @@
 #include "src/predict/two_link.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -31,7 +30,6 @@ static void contact_on_the_arm(two_link *t, int wall, double bend)
 
 void two_link_at(two_link *t, const parameters *p, two_link_form form, double angle2, double angle3)
 {
-    assert(t != NULL && p != NULL);
     memset(t, 0, sizeof *t);
     double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2, inertia = two_link_inertia(p);
     double bend = angle3 - angle2, c = inline_cos(bend);
@@ -87,13 +85,11 @@ bool two_link_solve(const two_link *t, double r[3])
 status two_link_velocity_jump(const two_link *t, const three_body_state *s, double after[3],
                               double *impulse, fault *f)
 {
-    assert(t != NULL && s != NULL && after != NULL && impulse != NULL);
     double r[3] = {0, 0, -two_link_approach_speed(t, s)};
-    if (!two_link_solve(t, r) || !isfinite(r[2])) {
-        return fault_set(f, STATUS_SINGULAR,
-                         "the impact at this state has no single impulse: the system (4.11), "
-                         "(4.12), (4.14) is singular");
-    }
+    FAIL_IF(!two_link_solve(t, r) || !isfinite(r[2]),
+            fault_set(f, STATUS_SINGULAR,
+                      "the impact at this state has no single impulse: the system (4.11), "
+                      "(4.12), (4.14) is singular"));
 
     after[1] = s->velocity[1] + r[0];
     after[2] = s->velocity[2] + r[1];
@@ -107,7 +103,6 @@ status two_link_velocity_jump(const two_link *t, const three_body_state *s, doub
 double two_link_first_force(const two_link *t, const parameters *p, const three_body_state *s,
                             const double after[3])
 {
-    assert(t != NULL && p != NULL && s != NULL && after != NULL);
     double l = t->length, bend = s->angle[2] - s->angle[1], w2 = after[1], w3 = after[2];
     double coupling = p->arm.mass / 2 * l * t->centre * inline_sin(bend);
 
@@ -128,15 +123,13 @@ double two_link_first_force(const two_link *t, const parameters *p, const three_
 
 status three_body_state_check(const three_body_state *s, fault *f)
 {
-    assert(s != NULL);
     static const char *const names[3] = {"hub", "first link", "second link"};
     for (int i = 0; i < 3; i++) {
-        if (!isfinite(s->angle[i]) || !isfinite(s->velocity[i])) {
-            return fault_set(f, STATUS_NOT_FINITE,
-                             "a prediction needs a finite state, but the %s's %s is %g", names[i],
-                             isfinite(s->angle[i]) ? "velocity" : "angle",
-                             isfinite(s->angle[i]) ? s->velocity[i] : s->angle[i]);
-        }
+        FAIL_IF(!isfinite(s->angle[i]) || !isfinite(s->velocity[i]),
+                fault_set(f, STATUS_NOT_FINITE,
+                          "a prediction needs a finite state, but the %s's %s is %g", names[i],
+                          isfinite(s->angle[i]) ? "velocity" : "angle",
+                          isfinite(s->angle[i]) ? s->velocity[i] : s->angle[i]));
     }
     return STATUS_OK;
 }

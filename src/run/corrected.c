@@ -63,18 +63,15 @@ static status begin(corrected_run *c, fault *f)
     }
 
     status failed = recording_open_trace(r, c->arm.dof, f);
-    if (failed != STATUS_OK) {
-        return failed;
-    }
+    TRY(failed);
 
     r->state.earlier_peak = -1;
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
-    if (m->wall_moves && m->state[SLOT_GAP] < -DEEPEST) {
-        return fault_set_at(f, STATUS_BAD_SCENARIO, "wall.motion",
-                            "at t = 0 the wall has moved %.4g m past the arm, which must start in "
-                            "front of it (initial.angle)",
-                            -m->state[SLOT_GAP]);
-    }
+    FAIL_IF(m->wall_moves && m->state[SLOT_GAP] < -DEEPEST,
+            fault_set_at(f, STATUS_BAD_SCENARIO, "wall.motion",
+                         "at t = 0 the wall has moved %.4g m past the arm, which must start in "
+                         "front of it (initial.angle)",
+                         -m->state[SLOT_GAP]));
     failed = corrected_begin_in_contact(c);
     return failed == STATUS_OK ? failed : fault_no_memory(f);
 }
@@ -287,7 +284,6 @@ static status make_step(corrected_run *c, double until, fault *f)
 
 status corrected_step(corrected_run *c, double until, fault *f)
 {
-    assert(c != NULL && f != NULL);
     recording *r = c->recording;
     motion *m = c->motion;
     if (r->options->rows_expected > 0 && !checkpoint_keep(r, m, c->stretch.last_event)) {
@@ -319,7 +315,6 @@ status corrected_step(corrected_run *c, double until, fault *f)
 
 status corrected_end_step(corrected_run *c, fault *f)
 {
-    assert(c != NULL && f != NULL);
     motion *m = c->motion;
     const open_step *on = &c->stretch.open;
     if (!on->goes_on) {
@@ -370,7 +365,6 @@ static void end_and_summarise(corrected_run *c, status failed)
 
 void corrected_sum_up(corrected_run *c, status failed)
 {
-    assert(c != NULL && c->motion != NULL);
     rig *on = c->recording->rig;
     if (!c->stretch.open.goes_on) {
         end_and_summarise(c, failed);
@@ -400,7 +394,7 @@ void corrected_sum_up(corrected_run *c, status failed)
 
 status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
 {
-    assert(c != NULL && r != NULL && r->scenario->parameters.arm.model != ARM_PRINTED);
+    assert(r->scenario->parameters.arm.model != ARM_PRINTED);
     const parameters *p = &r->scenario->parameters;
     memset(c, 0, offsetof(corrected_run, arm));
     c->recording = r;
@@ -408,16 +402,12 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
     c->zeno = zeno_monitor_begin();
     corrected_bind_arm(c);
     c->motion = motion_renew(spare, &c->arm, &p->method);
-    if (c->motion == NULL) {
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", p->arm.links);
-    }
+    FAIL_IF(c->motion == NULL,
+            fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", p->arm.links));
 
     // where a file says how the wall moves
     if (p->wall.motion == MOTION_FILE && p->wall.kind != WALL_NONE) {
-        const status read = wall_path_create(&c->path, p->wall.motion_file, f);
-        if (read != STATUS_OK) {
-            return read;
-        }
+        TRY(wall_path_create(&c->path, p->wall.motion_file, f));
         c->arm.wall.motion.path = c->path;
     }
 

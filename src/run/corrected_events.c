@@ -282,9 +282,7 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
     if (failed == STATUS_OK && closes && lands(m) && result->before_impact == NULL) {
         failed = keep_state_before_impact(result, m);
     }
-    if (failed != STATUS_OK) {
-        return failed;
-    }
+    TRY(failed);
 
     // and after it
     const contact_state ended = contact_state_of(m->state);
@@ -356,9 +354,7 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
     const contact_state before = contact_state_of(m->state);
     status failed = todo->kind == ACTION_SET ? check_wall(c, todo, f) : STATUS_OK;
     failed = failed == STATUS_OK ? corrected_record_row(c, m->state, 0) : failed;
-    if (failed != STATUS_OK) {
-        return failed;
-    }
+    TRY(failed);
 
     // the arm continues under another parameter, or with the push's impulse
     if (todo->kind == ACTION_SET) {

@@ -220,10 +220,7 @@ static status record_force(corrected_run *c, const force_step *whole, int pieces
     double before = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
     if (decays_outrun(&c->arm)) {
         sample_point w = corrected_sample_point_at(c, whole->start, m->trial);
-        const status s = follow_decay(c, &w, whole->end, FORCE_REACH, keep_force);
-        if (s != STATUS_OK) {
-            return s;
-        }
+        TRY(follow_decay(c, &w, whole->end, FORCE_REACH, keep_force));
         rest.start = w.time;
         rest.first = w.at.force;
         before = w.integral;
@@ -257,9 +254,7 @@ static status follow_to(corrected_run *c, sample_point w, const sample_point *la
     for (int i = 1; i < pieces && s == STATUS_OK; i++) {
         s = take_piece(c, &w, start + length * i / pieces, length / pieces, sense);
     }
-    if (s != STATUS_OK) {
-        return s;
-    }
+    TRY(s);
 
     // the last piece ends where the way does
     const bool part = w.time > begin;
@@ -342,17 +337,12 @@ status corrected_record_forces(corrected_run *c)
     const bool one_piece = pieces == 1 && !decays_outrun(&c->arm);
     if (c->recording->rig != NULL) {
         const status s = follow_with_sensors(c, &force, one_piece);
-        if (s != STATUS_OK) {
-            return s;
-        }
+        TRY(s);
     }
     if (!(force.end > force.start)) {
         return STATUS_OK;
     }
-    const status s = follow_bounds(c, &force);
-    if (s != STATUS_OK) {
-        return s;
-    }
+    TRY(follow_bounds(c, &force));
     return one_piece ? recording_add_step(c->recording, force) : record_force(c, &force, pieces);
 }
 

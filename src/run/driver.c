@@ -1,13 +1,11 @@
 #include "src/run/driver.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "src/base/instant.h"
 
 status driver_open(run_driver *d, recording *r, fault *f)
 {
-    assert(d != NULL && r != NULL && f != NULL);
     d->is_printed = r->scenario->parameters.arm.model == ARM_PRINTED;
     d->duration = r->scenario->parameters.run.duration;
     return d->is_printed ? printed_open(&d->printed, r, f)
@@ -55,7 +53,6 @@ status driver_approach(run_driver *d, bool *ended, fault *f)
 
 status driver_advance(run_driver *d, double until, bool *ended, fault *f)
 {
-    assert(d != NULL && ended != NULL && f != NULL);
     status failed = STATUS_OK;
     while (failed == STATUS_OK && !*ended && lies_ahead(d, until)) {
         failed = driver_approach(d, ended, f);

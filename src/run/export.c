@@ -33,7 +33,6 @@ static json_t *parameter_value(const parameters *p, int index)
 
 json_t *export_parameters(const parameters *p)
 {
-    assert(p != NULL);
     json_t *object = json_object();
     for (int i = 0; i < parameter_count; i++) {
         json_put(object, parameter_table[i].path, parameter_value(p, i));
@@ -102,7 +101,6 @@ static json_t *events_array(const scenario *s, const trace *t)
 
 json_t *export_run(const scenario *s, const run_result *result)
 {
-    assert(s != NULL && result != NULL);
     const summary *m = &result->summary;
     json_t *object = json_object();
     if (object == NULL) {
@@ -139,7 +137,7 @@ static int csv_signals(const trace *t, int *columns)
 
 void export_csv(FILE *stream, const trace *t, int links)
 {
-    assert(stream != NULL && t != NULL && links > 0);
+    assert(links > 0);
     int columns[SIGNALS_AT_MOST], count = csv_signals(t, columns);
     size_t angles = links > 2 ? (size_t)t->angle_count : 0;
     csv_writer csv = csv_begin(stream);

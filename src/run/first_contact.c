@@ -1,10 +1,7 @@
 #include "src/run/first_contact.h"
 
-#include <assert.h>
-
 const sample *row_before_landing(const run_result *result)
 {
-    assert(result != NULL);
     const trace *t = &result->trace;
     const double from = result->landing.time;
     for (size_t i = 1; from > 0 && i < t->row_count; i++) {
@@ -18,7 +15,6 @@ const sample *row_before_landing(const run_result *result)
 
 three_body_state row_bodies(const sample *row)
 {
-    assert(row != NULL);
     return (three_body_state){
         .angle = {row->hub_angle, row->first_angle, row->last_angle},
         .velocity = {row->hub_velocity, row->first_velocity, row->last_velocity},
@@ -27,7 +23,6 @@ three_body_state row_bodies(const sample *row)
 
 double row_current(const motor_parameters *motor, const sample *row)
 {
-    assert(motor != NULL && row != NULL);
     return motor->torque_constant > 0 ? row->motor_torque / motor->torque_constant : 0;
 }
 
@@ -35,7 +30,6 @@ const sample *predict_first_contact(const scenario *s, const run_result *result,
                                     const voltage_profile *then,
                                     prediction_answer answers[PREDICTOR_COUNT])
 {
-    assert(s != NULL && result != NULL && answers != NULL);
     const sample *row = row_before_landing(result);
     if (row == NULL) {
         return NULL;

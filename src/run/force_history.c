@@ -8,21 +8,20 @@
 
 void force_history_init(force_history *h)
 {
-    assert(h != NULL);
     shared_array_init(&h->array, sizeof(force_step));
     h->count = 0;
 }
 
 bool force_history_reserve(force_history *h, size_t least, size_t most)
 {
-    assert(h != NULL && least <= most);
+    assert(least <= most);
     h->count = 0;
     return shared_array_reserve(&h->array, sizeof(force_step), least, most);
 }
 
 void force_history_take(force_history *h, force_history *used)
 {
-    assert(h != NULL && used != NULL && h->array.base == NULL && used->array.reserved == 0);
+    assert(h->array.base == NULL && used->array.reserved == 0);
     *h = *used;
     h->count = 0;
     memset(used, 0, sizeof *used);
@@ -30,7 +29,6 @@ void force_history_take(force_history *h, force_history *used)
 
 void force_history_finish(force_history *h)
 {
-    assert(h != NULL);
     shared_array_finish(&h->array);
     memset(h, 0, sizeof *h);
 }
@@ -79,7 +77,7 @@ static double last_crossing(const force_step *step, double edge)
 
 double force_settled_since(const force_history *h, double final)
 {
-    assert(h != NULL && isfinite(final));
+    assert(isfinite(final));
     const force_step *steps = force_steps(h);
     double band = SETTLED_BAND * fabs(final);
 

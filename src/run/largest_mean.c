@@ -158,7 +158,7 @@ static double likely_largest(const run_result *r, double first, double window)
 
 double force_largest_mean(const run_result *result, double from, double window)
 {
-    assert(result != NULL && isfinite(from) && window > 0);
+    assert(isfinite(from) && window > 0);
     const force_history *h = &result->history.forces;
     double end = h->count > 0 ? force_steps(h)[h->count - 1].end : -HUGE_VAL;
     if (!(from + window <= end)) {

@@ -72,7 +72,6 @@ static uint64_t fingerprint_of(const run_loop *l)
 
 status loop_create(run_loop **created, const scenario *s, const loop_options *options, fault *f)
 {
-    assert(created != NULL && s != NULL && options != NULL && f != NULL);
     *created = NULL;
     run_loop *l = calloc(1, sizeof *l);
     if (l == NULL || scenario_copy(&l->scenario, s) != STATUS_OK) {
@@ -122,13 +121,11 @@ void loop_destroy(run_loop *l)
 
 double loop_time(const run_loop *l)
 {
-    assert(l != NULL);
     return driver_time(&l->driver);
 }
 
 bool loop_ended(const run_loop *l)
 {
-    assert(l != NULL);
     return l->ended;
 }
 
@@ -155,13 +152,12 @@ static status advance(run_loop *l, double time, fault *f)
 
 status loop_until(run_loop *l, double time, fault *f)
 {
-    assert(l != NULL && isfinite(time) && f != NULL);
+    assert(isfinite(time));
     return advance(l, time, f);
 }
 
 status loop_step(run_loop *l, fault *f)
 {
-    assert(l != NULL && f != NULL);
     const rig *on = l->recording.rig;
     const double interval = l->recording.now.method.step;
 
@@ -178,7 +174,6 @@ status loop_step(run_loop *l, fault *f)
 
 void loop_command(run_loop *l, double volts)
 {
-    assert(l != NULL);
     l->volts = volts;
 }
 
@@ -188,9 +183,8 @@ static status act(run_loop *l, const action *todo, fault *f)
     if (l->failed != STATUS_OK) {
         return stay_failed(l, f);
     }
-    if (todo->kind == ACTION_PUSH && l->driver.is_printed) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "the printed model takes no pushes");
-    }
+    FAIL_IF(todo->kind == ACTION_PUSH && l->driver.is_printed,
+            fault_set(f, STATUS_BAD_ARGUMENT, "the printed model takes no pushes"));
     if (todo->kind == ACTION_SET && !rig_can_change(&l->recording.now, todo->parameter)) {
         const char *path = parameter_table[todo->parameter].path;
         return fault_set_at(f, STATUS_BAD_ARGUMENT, path,
@@ -223,7 +217,7 @@ static status act(run_loop *l, const action *todo, fault *f)
 
 status loop_set_number(run_loop *l, int parameter, double value, fault *f)
 {
-    assert(l != NULL && parameter >= 0 && parameter < parameter_count && f != NULL);
+    assert(parameter >= 0 && parameter < parameter_count);
     const action todo = {
         .time = loop_time(l), .kind = ACTION_SET, .parameter = parameter, .value = value};
     return act(l, &todo, f);
@@ -231,14 +225,11 @@ status loop_set_number(run_loop *l, int parameter, double value, fault *f)
 
 status loop_set_text(run_loop *l, int parameter, const char *text, fault *f)
 {
-    assert(l != NULL && parameter >= 0 && parameter < parameter_count && text != NULL && f != NULL);
+    assert(parameter >= 0 && parameter < parameter_count);
 
     // read into a copy, so that a bad text changes nothing
     parameters read = l->recording.now;
-    status code = parameter_set_text(&read, parameter, text, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(parameter_set_text(&read, parameter, text, f));
 
     // then it is an action like any other
     const action todo = action_of(loop_time(l), &read, parameter, text);
@@ -247,7 +238,7 @@ status loop_set_text(run_loop *l, int parameter, const char *text, fault *f)
 
 status loop_push(run_loop *l, double impulse, fault *f)
 {
-    assert(l != NULL && isfinite(impulse) && f != NULL);
+    assert(isfinite(impulse));
     const action todo = {.time = loop_time(l), .kind = ACTION_PUSH, .value = impulse};
     return act(l, &todo, f);
 }
@@ -256,7 +247,6 @@ status loop_push(run_loop *l, double impulse, fault *f)
 
 bool loop_sense(run_loop *l, sensor_reading *reading)
 {
-    assert(l != NULL && reading != NULL);
     rig *on = l->recording.rig;
     if (on == NULL) {
         return false;
@@ -271,19 +261,16 @@ bool loop_sense(run_loop *l, sensor_reading *reading)
 
 sample loop_row(run_loop *l)
 {
-    assert(l != NULL);
     return driver_row(&l->driver);
 }
 
 const double *loop_state(const run_loop *l, int *angle_count)
 {
-    assert(l != NULL && angle_count != NULL);
     return driver_state(&l->driver, angle_count);
 }
 
 summary loop_summary(run_loop *l)
 {
-    assert(l != NULL);
     status code = l->failed;
     if (code == STATUS_OK && !l->ended) {
         code = STATUS_STOPPED;
@@ -304,12 +291,10 @@ summary loop_summary(run_loop *l)
 
 const run_result *loop_result(const run_loop *l)
 {
-    assert(l != NULL);
     return &l->result;
 }
 
 const scenario *loop_scenario(const run_loop *l)
 {
-    assert(l != NULL);
     return &l->scenario;
 }

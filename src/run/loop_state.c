@@ -1,5 +1,4 @@
 // States of loops as bytes.
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,7 +33,6 @@ static size_t values_size(const rig *r)
 
 size_t loop_saved_size(const run_loop *l)
 {
-    assert(l != NULL);
     const rig *r = l->recording.rig;
     return sizeof(saved_head) + driver_saved_size(&l->driver) + memory_size(r) + values_size(r);
 }
@@ -65,7 +63,6 @@ static void keep_places(rig *r, const rig *own)
 
 void loop_save(const run_loop *l, void *bytes)
 {
-    assert(l != NULL && bytes != NULL);
     const recording *r = &l->recording;
     saved_head head;
     memset(&head, 0, sizeof head);
@@ -128,22 +125,18 @@ static void restore_rig(run_loop *l, const rig *saved, const char *at)
 
 status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
 {
-    assert(l != NULL && bytes != NULL && f != NULL);
     saved_head head;
-    if (size != loop_saved_size(l)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "a state of this loop has %zu bytes, but %zu were given",
-                         loop_saved_size(l), size);
-    }
+    FAIL_IF(size != loop_saved_size(l),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "a state of this loop has %zu bytes, but %zu were given", loop_saved_size(l),
+                      size));
     memcpy(&head, bytes, sizeof head);
-    if (head.fingerprint != l->fingerprint || head.size != size) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "the state is of another scenario, another controller or another version");
-    }
-    if (head.check != check_of(bytes, size)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "the state is damaged, expected the bytes as they were saved");
-    }
+    FAIL_IF(head.fingerprint != l->fingerprint || head.size != size,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "the state is of another scenario, another controller or another version"));
+    FAIL_IF(head.check != check_of(bytes, size),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "the state is damaged, expected the bytes as they were saved"));
 
     // what was recorded, as far as this loop has it
     recording *r = &l->recording;

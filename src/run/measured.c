@@ -7,7 +7,7 @@
 
 status measured_rows(trace *t, const csv_table *table, const char *column, int signal, fault *f)
 {
-    assert(t != NULL && table != NULL && signal < signal_count);
+    assert(signal < signal_count);
     static const double none[1] = {0};
     double *columns[SIGNALS_AT_MOST] = {NULL};
     size_t numbers = 0;
@@ -33,11 +33,10 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
     for (int i = 0; i < SIGNALS_AT_MOST; i++) {
         free(columns[i]);
     }
-    if (code == STATUS_OK && numbers == 0) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%.200s:1: expected a heading with time[s] and at least one recorded "
-                         "signal, such as force[N], and a number in a row below it",
-                         table->file);
-    }
+    FAIL_IF(code == STATUS_OK && numbers == 0,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "%.200s:1: expected a heading with time[s] and at least one recorded "
+                      "signal, such as force[N], and a number in a row below it",
+                      table->file));
     return code == STATUS_NO_MEMORY ? fault_no_memory(f) : code;
 }

@@ -98,7 +98,6 @@ static status note_contact(printed_run *p, const printed_row *row)
 
 sample printed_sample(const printed_run *p)
 {
-    assert(p != NULL);
     const printed_row *row = &p->motion.row;
     const motor_model *motor = &p->motion.arm.motor;
 
@@ -211,7 +210,7 @@ static status record_row(printed_run *p, fault *f)
 
 status printed_act(printed_run *p, const action *todo, int index, fault *f)
 {
-    assert(p != NULL && todo != NULL && todo->kind == ACTION_SET);
+    assert(todo->kind == ACTION_SET);
     recording *r = p->recording;
     const double time = p->motion.row.time;
 
@@ -266,7 +265,6 @@ static status run_rig(printed_run *p, fault *f)
 
 status printed_approach_step(printed_run *p, bool *ended, fault *f)
 {
-    assert(p != NULL && ended != NULL);
     *ended = printed_motion_ended(&p->motion);
     if (*ended || p->ready) {
         return STATUS_OK;
@@ -281,7 +279,6 @@ status printed_approach_step(printed_run *p, bool *ended, fault *f)
 
 status printed_step(printed_run *p, fault *f)
 {
-    assert(p != NULL);
     status failed = printed_motion_step(&p->motion, f);
     return failed == STATUS_OK ? record_row(p, f) : failed;
 }
@@ -305,7 +302,7 @@ static void refine_sampled_peak(const sampled_peak *peak, double *force, double 
 
 void printed_sum_up(printed_run *p, status failed)
 {
-    assert(p != NULL && p->begun);
+    assert(p->begun);
     recording *r = p->recording;
     summary *s = &r->result->summary;
     snprintf(s->method, sizeof s->method, "Newmark, as printed");
@@ -336,27 +333,24 @@ void printed_sum_up(printed_run *p, status failed)
 static status refuse_pushes(const scenario *s, fault *f)
 {
     for (int i = 0; i < s->action_count; i++) {
-        if (s->actions[i].kind == ACTION_PUSH) {
-            return fault_set(
-                f, STATUS_BAD_SCENARIO,
-                "the script pushes the arm at %g s, but the printed model knows no pushes",
-                s->actions[i].time);
-        }
+        FAIL_IF(
+            s->actions[i].kind == ACTION_PUSH,
+            fault_set(f, STATUS_BAD_SCENARIO,
+                      "the script pushes the arm at %g s, but the printed model knows no pushes",
+                      s->actions[i].time));
     }
     return STATUS_OK;
 }
 
 status printed_open(printed_run *p, recording *r, fault *f)
 {
-    assert(p != NULL && r != NULL && r->scenario->parameters.arm.model == ARM_PRINTED);
+    assert(r->scenario->parameters.arm.model == ARM_PRINTED);
     *p = (printed_run){.recording = r};
     status failed = recording_open_trace(r, 3, f);
     if (failed == STATUS_OK) {
         failed = refuse_pushes(r->scenario, f);
     }
-    if (failed != STATUS_OK) {
-        return failed;
-    }
+    TRY(failed);
 
     // the row of time 0, with the command that the rig starts with
     force_history_init(&r->result->history.forces);

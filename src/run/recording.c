@@ -30,7 +30,6 @@ time_used time_since(time_used start)
 status recording_begin(recording *r, const scenario *s, const run_options *options,
                        run_result *result, fault *f)
 {
-    assert(r != NULL && s != NULL && options != NULL && result != NULL && f != NULL);
     *r = (recording){.scenario = s, .result = result, .options = options, .now = s->parameters};
     *f = (fault){.text = "", .path = ""};
     if (!options->resume) {
@@ -54,7 +53,6 @@ void recording_tell_fault(summary *s, status code, const fault *f)
 
 void recording_end(recording *r, status code, const fault *f, time_used used)
 {
-    assert(r != NULL && f != NULL);
     run_result *result = r->result;
     rig_destroy(r->rig);
     recording_tell_fault(&result->summary, code, f);
@@ -77,7 +75,7 @@ size_t recording_most_rows(size_t expected)
 
 status recording_open_trace(recording *r, int angle_count, fault *f)
 {
-    assert(r != NULL && angle_count > 0);
+    assert(angle_count > 0);
     size_t expected = r->options->rows_expected;
     if (expected == 0) {
         // a row for each step, and two for an event; where there is no memory, rows will say so
@@ -108,7 +106,7 @@ void recording_publish(const recording *r, double time)
 
 status recording_set(recording *r, const action *todo, double time, fault *f)
 {
-    assert(r != NULL && todo != NULL && todo->kind == ACTION_SET);
+    assert(todo->kind == ACTION_SET);
     status failed = action_apply(todo, &r->now, f);
     if (failed != STATUS_OK || r->rig == NULL) {
         return failed;
@@ -139,7 +137,6 @@ force_step *recording_add_steps(recording *r, int count)
 
 void recording_finish_summary(recording *r, double force_integral)
 {
-    assert(r != NULL);
     summary *s = &r->result->summary;
     double duration = r->scenario->parameters.run.duration;
     if (isnan(s->first_contact_s)) {
@@ -164,7 +161,7 @@ void recording_finish_summary(recording *r, double force_integral)
 
 status recording_start_rig(recording *r, fault *f)
 {
-    assert(r != NULL && r->rig == NULL);
+    assert(r->rig == NULL);
     const parameters *p = &r->scenario->parameters;
     if (p->control.law == LAW_NONE && r->options->law == NULL) {
         return STATUS_OK;
@@ -210,7 +207,6 @@ void recording_add_rig_signals(const recording *r, sample *row)
 
 void recording_change_command(recording *r, double time, double hub_angle)
 {
-    assert(r != NULL && r->rig != NULL);
     const recorded_command *c = &r->command;
     r->result->summary.electrical_energy_J +=
         motor_electrical_energy(&r->now.motor, c->volts, time - c->time, hub_angle - c->hub_angle);
@@ -219,7 +215,6 @@ void recording_change_command(recording *r, double time, double hub_angle)
 
 void recording_before_change(recording *r, const action *todo, double time, double hub_angle)
 {
-    assert(r != NULL && todo != NULL);
     if (r->rig != NULL && todo->parameter == PARAMETER_INDEX(motor.voltage_limit)) {
         recording_change_command(r, time, hub_angle);
     }
@@ -227,7 +222,6 @@ void recording_before_change(recording *r, const action *todo, double time, doub
 
 void recording_follow_flight(recording *r, double closing_speed)
 {
-    assert(r != NULL && r->rig != NULL);
     summary *s = &r->result->summary;
     double *largest = isnan(s->first_contact_s) ? &s->approach_speed_m_s : &s->return_speed_m_s;
     *largest = larger(closing_speed, *largest);
@@ -235,7 +229,6 @@ void recording_follow_flight(recording *r, double closing_speed)
 
 void recording_finish_rig_summary(recording *r, double hub_angle)
 {
-    assert(r != NULL);
     summary *s = &r->result->summary;
     const parameters *p = &r->scenario->parameters;
     const double command = r->now.control.force; // the script may have changed it

@@ -16,7 +16,7 @@ enum {
 // The checkpoint of a number, oldest first.
 static checkpoint *checkpoint_at(const run_history *h, size_t index)
 {
-    assert(h != NULL && index < h->checkpoint_count);
+    assert(index < h->checkpoint_count);
     return (checkpoint *)((char *)h->checkpoints.base + index * h->checkpoints.size);
 }
 
@@ -30,7 +30,7 @@ static bool keeps_history(const recording *r)
 // rows. False if it cannot be had.
 static bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected)
 {
-    assert(h != NULL && size >= sizeof(checkpoint));
+    assert(size >= sizeof(checkpoint));
     const size_t most = recording_most_rows(rows_expected);
 
     // of a run of a few rows, too, there is room for one
@@ -41,7 +41,6 @@ static bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected
 
 status checkpoint_open_history(recording *r, const motion *m, fault *f)
 {
-    assert(r != NULL && m != NULL);
     run_history *h = &r->result->history;
     size_t expected = r->options->rows_expected;
     size_t size = sizeof(checkpoint) + motion_saved_size(m);
@@ -97,7 +96,7 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
 
 void checkpoint_restore(recording *r, arm *a, motion *m)
 {
-    assert(r != NULL && r->result->history.checkpoint_count > 0);
+    assert(r->result->history.checkpoint_count > 0);
     const run_history *h = &r->result->history;
     const checkpoint *kept = checkpoint_at(h, h->checkpoint_count - 1);
 
@@ -206,7 +205,6 @@ static bool copy_before_impact(const run_result *from, run_result *result)
 bool run_resume(const run_result *from, const scenario *old, const scenario *s,
                 size_t rows_expected, run_result *result)
 {
-    assert(from != NULL && old != NULL && s != NULL && result != NULL);
     memset(result, 0, sizeof *result);
     const run_history *h = &from->history;
     if (h->checkpoint_count == 0) {
@@ -237,7 +235,6 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
 
 status run_share(const run_result *from, size_t rows_expected, run_result *result)
 {
-    assert(from != NULL && result != NULL);
     memset(result, 0, sizeof *result);
     const shared_part whole = {from->trace.row_count, from->trace.event_count,
                                from->history.forces.count, from->history.checkpoint_count};

@@ -17,7 +17,6 @@ status run_scenario(const scenario *s, bool keep_trace, run_result *result)
 
 status run_scenario_with(const scenario *s, const run_options *options, run_result *result)
 {
-    assert(s != NULL && options != NULL && result != NULL);
     const time_used start = time_now();
     recording r;
     fault f;
@@ -36,7 +35,7 @@ status run_scenario_with(const scenario *s, const run_options *options, run_resu
 int run_check_expectations(const scenario *s, const run_result *result, fault_handler report,
                            void *context)
 {
-    assert(s != NULL && result != NULL && (report != NULL || s->expectation_count == 0));
+    assert(report != NULL || s->expectation_count == 0);
     int missed = 0;
     for (int i = 0; i < s->expectation_count; i++) {
         const expectation *e = &s->expectations[i];

@@ -1,11 +1,9 @@
 #include "src/run/run_result.h"
 
-#include <assert.h>
 #include <stdlib.h>
 
 void run_finish(run_result *result)
 {
-    assert(result != NULL);
     trace_finish(&result->trace);
     force_history_finish(&result->history.forces);
     shared_array_finish(&result->history.checkpoints);

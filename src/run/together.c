@@ -242,7 +242,7 @@ void side_by_side_destroy(side_by_side *storage)
 void run_together(const scenario *scenarios, int count, const atomic_bool *abandon,
                   run_result *results, side_by_side **storage)
 {
-    assert(scenarios != NULL && results != NULL && count >= 0 && storage != NULL);
+    assert(count >= 0);
     const run_options options = {.abandon = abandon};
     const time_used start = time_now();
     side_by_side *group = taylor_width() > 1 ? open_storage(storage) : NULL;

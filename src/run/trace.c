@@ -39,7 +39,7 @@ static void find_places(trace *t)
 
 void trace_init(trace *t, int angle_count)
 {
-    assert(t != NULL && angle_count >= 0);
+    assert(angle_count >= 0);
     memset(t, 0, sizeof *t);
     t->angle_count = angle_count;
     shared_array_init(&t->row_array, sizeof(sample));
@@ -50,7 +50,7 @@ void trace_init(trace *t, int angle_count)
 
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
 {
-    assert(t != NULL && angle_count >= 0);
+    assert(angle_count >= 0);
     memset(t, 0, sizeof *t);
     t->angle_count = angle_count;
     bool reserved =
@@ -69,7 +69,6 @@ status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
 
 void trace_finish(trace *t)
 {
-    assert(t != NULL);
     shared_array_finish(&t->row_array);
     shared_array_finish(&t->angle_array);
     shared_array_finish(&t->velocity_array);
@@ -79,7 +78,7 @@ void trace_finish(trace *t)
 
 status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 {
-    assert(t != NULL && t->row_count == 0 && from != NULL);
+    assert(t->row_count == 0);
     assert(rows <= from->row_count && events <= from->event_count);
     if (!shared_array_share(&t->row_array, &from->row_array, rows) ||
         !shared_array_share(&t->angle_array, &from->angle_array, rows) ||
@@ -94,7 +93,6 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 
 status trace_copy(trace *t, const trace *from)
 {
-    assert(t != NULL && from != NULL);
     const size_t angles = from->row_count * (size_t)from->angle_count * sizeof *from->angles;
     trace_init(t, from->angle_count);
     if (!shared_array_grow(&t->row_array, from->row_count + 1) ||
@@ -133,7 +131,6 @@ static bool make_room(trace *t, size_t rows)
 
 bool trace_expect(trace *t, size_t rows)
 {
-    assert(t != NULL);
     return make_room(t, rows);
 }
 
@@ -171,7 +168,7 @@ status trace_add_event(trace *t, event e)
 
 size_t trace_rows_until(const trace *t, double time)
 {
-    assert(t != NULL && !isnan(time));
+    assert(!isnan(time));
     size_t low = 0, high = t->row_count; // the first row after `time` lies in [low, high]
     while (low < high) {
         size_t middle = low + (high - low) / 2;
@@ -192,7 +189,6 @@ size_t trace_row_at(const trace *t, double time)
 
 bool trace_has(const trace *t, int signal)
 {
-    assert(t != NULL);
     for (size_t i = 0; i < t->row_count; i++) {
         if (isfinite(signal_value(&t->rows[i], signal))) {
             return true;
@@ -218,7 +214,7 @@ static void add_piece(signal_statistics *s, double *squares, double width, doubl
 
 signal_statistics trace_statistics(const trace *t, int signal, double from, double to)
 {
-    assert(t != NULL && t->row_count > 0 && signal >= 0 && from <= to);
+    assert(t->row_count > 0 && signal >= 0 && from <= to);
     signal_statistics s = {.minimum = HUGE_VAL, .maximum = -HUGE_VAL};
     double squares = 0;
     const double end = t->rows[t->row_count - 1].time;

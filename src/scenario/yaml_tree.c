@@ -79,15 +79,13 @@ static bool refuse_syntax(const builder *b)
         snprintf(sentence, sizeof sentence, "not text in UTF-8: %s, expected a YAML file", problem);
         return refuse_at_byte(b, p->problem_offset, sentence);
     }
-    if (byte_at(b, p->problem_mark) == '\t') {
-        return refuse(b, line, column, "a tab, expected spaces for indentation");
-    }
+    FAIL_IF(byte_at(b, p->problem_mark) == '\t',
+            refuse(b, line, column, "a tab, expected spaces for indentation"));
 
     // the parser's words, with what it was in the middle of
-    if (p->context != NULL) {
-        return refuse(b, line, column, "not valid YAML: %s, %s that began at line %d", problem,
-                      p->context, (int)p->context_mark.line + 1);
-    }
+    FAIL_IF(p->context != NULL,
+            refuse(b, line, column, "not valid YAML: %s, %s that began at line %d", problem,
+                   p->context, (int)p->context_mark.line + 1));
     return refuse(b, line, column, "not valid YAML: %s", problem);
 }
 

@@ -164,7 +164,7 @@ static double gap_at(const printed_arm *a, const double angle[3])
 
 void printed_motion_start(printed_motion *m, const parameters *p)
 {
-    assert(m != NULL && p != NULL && p->method.step > 0);
+    assert(p->method.step > 0);
     memset(m, 0, sizeof *m);
     printed_motion_rebind(m, p);
     m->step_count = lround(p->run.duration / p->method.step);
@@ -177,46 +177,41 @@ void printed_motion_start(printed_motion *m, const parameters *p)
 
 void printed_motion_rebind(printed_motion *m, const parameters *p)
 {
-    assert(m != NULL && p != NULL);
     printed_arm_init(&m->arm, p);
     m->method = p->method;
 }
 
 void printed_motion_set_voltage(printed_motion *m, double volts)
 {
-    assert(m != NULL && isfinite(volts));
+    assert(isfinite(volts));
     motor_set_voltage(&m->arm.motor, volts);
 }
 
 bool printed_motion_ended(const printed_motion *m)
 {
-    assert(m != NULL);
     return m->steps >= m->step_count;
 }
 
 status printed_motion_step(printed_motion *m, fault *f)
 {
-    assert(m != NULL && !printed_motion_ended(m));
+    assert(!printed_motion_ended(m));
     const double start = m->row.time, end = (double)(m->steps + 1) * m->method.step;
     printed_row r = {.time = end};
 
     // the equations' own failures
     status result = try_step(m, &r);
-    if (result != STATUS_OK) {
-        return fault_set(f, result, "the equations of the step from t = %.9g s %s contact %s",
-                         start, r.contact ? "in" : "without",
-                         result == STATUS_SINGULAR ? "are singular"
-                                                   : "have a residual that is not finite");
-    }
+    FAIL_IF(result != STATUS_OK,
+            fault_set(f, result, "the equations of the step from t = %.9g s %s contact %s", start,
+                      r.contact ? "in" : "without",
+                      result == STATUS_SINGULAR ? "are singular"
+                                                : "have a residual that is not finite"));
 
     // an overflow, reported before the next step starts from it
     r.force = m->force;
     const char *name = not_finite(&r);
-    if (name != NULL) {
-        return fault_set(f, STATUS_NOT_FINITE,
-                         "%s is not finite after the step from t = %.9g s to t = %.9g s", name,
-                         start, end);
-    }
+    FAIL_IF(name != NULL, fault_set(f, STATUS_NOT_FINITE,
+                                    "%s is not finite after the step from t = %.9g s to t = %.9g s",
+                                    name, start, end));
 
     // the step's end is what the next one starts from
     const double *fed =

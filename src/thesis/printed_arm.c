@@ -1,6 +1,5 @@
 #include "src/thesis/printed_arm.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "src/arm/arm.h"
@@ -9,7 +8,6 @@
 
 void printed_arm_init(printed_arm *a, const parameters *p)
 {
-    assert(a != NULL && p != NULL);
     memset(a, 0, sizeof *a);
     a->link_length = p->arm.length / 2;
     a->centre = a->link_length / 2;

@@ -58,10 +58,9 @@ static void finish_filmed(filmed *m)
 // Opens the scenarios, then the first one again with each --beside. Returns the exit status.
 static int open_all(filmed *m, const arguments *a)
 {
-    if (a->operand_count + a->besides.count > FILM_RUNS) {
-        return complain("%d runs in one film, expected at most %d",
-                        a->operand_count + a->besides.count, FILM_RUNS);
-    }
+    FAIL_IF(a->operand_count + a->besides.count > FILM_RUNS,
+            complain("%d runs in one film, expected at most %d",
+                     a->operand_count + a->besides.count, FILM_RUNS));
 
     for (int i = 0; i < a->operand_count + a->besides.count; i++) {
         bool beside = i >= a->operand_count;
@@ -138,10 +137,9 @@ static int film_runs(const arguments *a, const filmed *m)
 static int animate(const arguments *a)
 {
     fault f = {0};
-    if (a->output == NULL) {
-        return complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, FILE.gif, "
-                        "FILE.webp, or a folder for PNG frames");
-    }
+    FAIL_IF(a->output == NULL,
+            complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, FILE.gif, "
+                     "FILE.webp, or a folder for PNG frames"));
 
     // errors of the request are reported before anything is simulated
     int code = check_view(a);

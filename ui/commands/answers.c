@@ -1,6 +1,5 @@
 #include "ui/commands/answers.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -131,7 +130,6 @@ static void print_hit(FILE *stream, const search_source *sources, const search_h
 
 int print_answers(FILE *stream, const char *question)
 {
-    assert(stream != NULL && question != NULL);
     search_source sources[SOURCES];
     search_hit hits[HITS];
     list_sources(sources);
@@ -152,7 +150,6 @@ int print_answers(FILE *stream, const char *question)
 
 int print_meanings(FILE *stream, const char *words)
 {
-    assert(stream != NULL && words != NULL);
     search_source sources[SOURCES];
     int count = 0;
     list_sources(sources);

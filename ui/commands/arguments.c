@@ -137,11 +137,10 @@ static int read_whole(const option_row *o, const char *text, uint64_t *value)
     char *end;
     errno = 0;
     unsigned long long number = strtoull(text, &end, 10);
-    if (!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
-        number > high) {
-        return complain("--%s %s: expected a whole number from %llu to %llu", o->name, text,
-                        (unsigned long long)low, (unsigned long long)high);
-    }
+    FAIL_IF(!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
+                number > high,
+            complain("--%s %s: expected a whole number from %llu to %llu", o->name, text,
+                     (unsigned long long)low, (unsigned long long)high));
     *value = number;
     return EXIT_DONE;
 }
@@ -153,10 +152,9 @@ static int read_size(const option_row *o, const char *text, grid_size *size)
     if (*rest == 'x') {
         height = strtol(rest + 1, &rest, 10);
     }
-    if (*rest != '\0' || width < 1 || width > o->high || height < 1 || height > o->high) {
-        return complain("--%s %s: expected width x height in %s, like 120x40, at most %g", o->name,
-                        text, o->unit, o->high);
-    }
+    FAIL_IF(*rest != '\0' || width < 1 || width > o->high || height < 1 || height > o->high,
+            complain("--%s %s: expected width x height in %s, like 120x40, at most %g", o->name,
+                     text, o->unit, o->high));
     *size = (grid_size){(int)width, (int)height};
     return EXIT_DONE;
 }
@@ -187,9 +185,8 @@ static int check_quantity(const option_row *o, const char *key)
     if (summary_find(key) >= 0) {
         return EXIT_DONE;
     }
-    if (near != NULL) {
-        return complain("--%s %s: there is no such quantity, did you mean %s?", o->name, key, near);
-    }
+    FAIL_IF(near != NULL,
+            complain("--%s %s: there is no such quantity, did you mean %s?", o->name, key, near));
     return complain("--%s %s: there is no such quantity (impactlab run --json lists them)", o->name,
                     key);
 }
@@ -257,17 +254,15 @@ static int complain_option(const command *self, int found, const char *text)
     char shown[96];
     const option_row *o;
 
-    if (found == ':') {
-        return complain("option %s needs a value (see impactlab %s --help)", text, self->name);
-    }
+    FAIL_IF(found == ':',
+            complain("option %s needs a value (see impactlab %s --help)", text, self->name));
 
     // one that is right elsewhere
     snprintf(shown, sizeof shown, "%.*s", (int)strcspn(text, "="), text);
     const command *owner = owner_of_option(shown + strspn(shown, "-"));
-    if (owner != NULL) {
-        return complain("%s has no option %s, that is one of %s (see impactlab %s --help)",
-                        self->name, shown, owner->name, self->name);
-    }
+    FAIL_IF(owner != NULL,
+            complain("%s has no option %s, that is one of %s (see impactlab %s --help)", self->name,
+                     shown, owner->name, self->name));
 
     // the nearest option is offered
     nearest_word near = nearest_begin(shown + strspn(shown, "-"));
@@ -275,9 +270,8 @@ static int complain_option(const command *self, int found, const char *text)
         nearest_try(&near, o->name);
     }
 
-    if (near.best != NULL && near.distance > 0) {
-        return complain("%s has no option %s, did you mean --%s?", self->name, shown, near.best);
-    }
+    FAIL_IF(near.best != NULL && near.distance > 0,
+            complain("%s has no option %s, did you mean --%s?", self->name, shown, near.best));
     return complain("%s has no option %s (see impactlab %s --help)", self->name, shown, self->name);
 }
 
@@ -397,10 +391,9 @@ static int check_places(const arguments *a)
         const char *path = option_written(a, o);
         for (int j = 0; path != NULL && j < i; j++) {
             const char *before = option_written(a, command_option(a->command, j));
-            if (before != NULL && whole_file_same_place(path, before)) {
-                return complain("two results cannot both be written to %s",
-                                strcmp(path, "-") == 0 ? "the standard output" : path);
-            }
+            FAIL_IF(before != NULL && whole_file_same_place(path, before),
+                    complain("two results cannot both be written to %s",
+                             strcmp(path, "-") == 0 ? "the standard output" : path));
         }
     }
     return EXIT_DONE;
@@ -409,14 +402,11 @@ static int check_places(const arguments *a)
 static int check_operands(const arguments *a)
 {
     const command *self = a->command;
-    if (a->operand_count < self->least) {
-        return complain("%s needs %s (see impactlab %s --help)", self->name, self->operands,
-                        self->name);
-    }
-    if (a->operand_count > self->most) {
-        return complain("%s does not know what to do with '%s' (see impactlab %s --help)",
-                        self->name, a->operands[self->most], self->name);
-    }
+    FAIL_IF(a->operand_count < self->least, complain("%s needs %s (see impactlab %s --help)",
+                                                     self->name, self->operands, self->name));
+    FAIL_IF(a->operand_count > self->most,
+            complain("%s does not know what to do with '%s' (see impactlab %s --help)", self->name,
+                     a->operands[self->most], self->name));
     return check_places(a);
 }
 
@@ -442,7 +432,7 @@ static bool prepare(arguments *a, int argc)
 
 bool arguments_read(arguments *a, const command *self, int argc, char **argv, int *exit_status)
 {
-    assert(self != NULL && argc > 0 && exit_status != NULL);
+    assert(argc > 0);
     *a = (arguments){.command = self};
     *exit_status = EXIT_DONE;
     if (!prepare(a, argc)) {
@@ -486,7 +476,6 @@ void arguments_finish(arguments *a)
 
 int check_results(const arguments *a)
 {
-    assert(a != NULL);
     const option_row *o;
     int result = EXIT_DONE;
 

@@ -54,7 +54,6 @@ const int command_count = (int)(sizeof command_table / sizeof command_table[0]);
 
 const command *command_find(const char *name)
 {
-    assert(name != NULL);
     for (int i = 0; i < command_count; i++) {
         if (strcmp(command_table[i]->name, name) == 0) {
             return command_table[i];
@@ -65,14 +64,12 @@ const command *command_find(const char *name)
 
 int complain_command(const char *name)
 {
-    assert(name != NULL);
     nearest_word near = nearest_begin(name);
     for (int i = 0; i < command_count; i++) {
         nearest_try(&near, command_table[i]->name);
     }
-    if (near.best != NULL) {
-        return complain("there is no command '%s', did you mean '%s'?", name, near.best);
-    }
+    FAIL_IF(near.best != NULL,
+            complain("there is no command '%s', did you mean '%s'?", name, near.best));
 
     // nothing is near: all there are
     char known[256] = "";
@@ -92,7 +89,7 @@ void *option_place(const arguments *a, const option_row *o)
 const option_table *command_options(const command *c, int i)
 {
     int own = 0; // tables that come before --help
-    assert(c != NULL && i >= 0 && i <= COMMAND_TABLES);
+    assert(i >= 0 && i <= COMMAND_TABLES);
     while (c->options[own] != NULL && strcmp(c->options[own]->title, help_options.title) == 0) {
         own++;
     }
@@ -102,7 +99,7 @@ const option_table *command_options(const command *c, int i)
 const option_row *command_option(const command *c, int i)
 {
     const option_table *t;
-    assert(c != NULL && i >= 0);
+    assert(i >= 0);
     for (int k = 0; (t = command_options(c, k)) != NULL; k++) {
         if (i < t->count) {
             return &t->rows[i];
@@ -121,7 +118,6 @@ static const char *option_text(const arguments *a, const option_row *o)
 
 bool option_is_written(const option_row *o)
 {
-    assert(o != NULL);
     return o->type == OPTION_RESULT || o->type == OPTION_PICTURE || o->type == OPTION_PLACE;
 }
 
@@ -134,7 +130,6 @@ const char *option_written(const arguments *a, const option_row *o)
 
 int complain(const char *format, ...)
 {
-    assert(format != NULL);
     va_list list;
     fflush(stdout);
     fputs("impactlab: ", stderr);
@@ -147,7 +142,6 @@ int complain(const char *format, ...)
 
 int complain_fault(const fault *f)
 {
-    assert(f != NULL);
     complain("%s", f->text[0] ? f->text : status_text(f->code));
 
     // what the user can mend, and what went wrong on the way
@@ -171,7 +165,6 @@ void report_to_stderr(void *context, const char *sentence)
 
 void tell_first_fault(told_faults *t)
 {
-    assert(t != NULL);
     if (t->first != NULL) {
         report_to_stderr(NULL, t->first);
     }
@@ -182,7 +175,6 @@ void tell_first_fault(told_faults *t)
 void tell_fault(void *context, const char *sentence)
 {
     told_faults *t = context;
-    assert(t != NULL && sentence != NULL);
     tell_first_fault(t);
     t->first = t->count++ == 0 ? strdup(sentence) : NULL;
     if (t->first == NULL) {
@@ -192,7 +184,7 @@ void tell_fault(void *context, const char *sentence)
 
 int tell_unopened(told_faults *t, status code, const char *name_or_file)
 {
-    assert(t != NULL && code != STATUS_OK && name_or_file != NULL);
+    assert(code != STATUS_OK);
     if (t->count == 0) {
         complain("'%s': %s", name_or_file, status_text(code));
     } else if (t->first != NULL && code == STATUS_BAD_ARGUMENT) {
@@ -216,10 +208,9 @@ static int check_keeps_scenario(const scenario *s, const arguments *a)
 {
     const option_row *o;
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
-        if (is_same_file(option_written(a, o), s->file)) {
-            return complain("'%s' is the scenario itself, expected another file for the results",
-                            option_text(a, o));
-        }
+        FAIL_IF(is_same_file(option_written(a, o), s->file),
+                complain("'%s' is the scenario itself, expected another file for the results",
+                         option_text(a, o)));
     }
     return EXIT_DONE;
 }
@@ -232,7 +223,6 @@ void complain_sentence(void *context, const char *sentence)
 int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
 {
     told_faults told = {0};
-    assert(s != NULL && name_or_file != NULL && a != NULL);
     status code = scenario_open(s, name_or_file, tell_fault, &told);
     if (code != STATUS_OK) {
         return tell_unopened(&told, code, name_or_file);
@@ -256,7 +246,6 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
 int with_scenario(const char *name_or_file, const arguments *a,
                   int (*use)(const arguments *a, scenario *s))
 {
-    assert(use != NULL);
     scenario s;
     int result = open_scenario(&s, name_or_file, a);
     if (result == EXIT_DONE) {
@@ -274,7 +263,6 @@ int command_run(const arguments *a)
 
 int write_json(const char *path, json_t *value)
 {
-    assert(path != NULL);
     whole_file file;
     fault f = {0};
 
@@ -308,7 +296,6 @@ int write_file(const char *path, result_writer *write, const scenario *s, const 
 int write_results(const arguments *a, const command_results *r, const scenario *s,
                   const void *found, bool whole)
 {
-    assert(a != NULL && r != NULL);
     const struct {
         const char *path;
         result_writer *write;
@@ -338,7 +325,6 @@ int worse(int a, int b)
 
 bool summary_wanted(const arguments *a)
 {
-    assert(a != NULL);
     const option_row *o;
     bool alone = false;
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
@@ -350,7 +336,6 @@ bool summary_wanted(const arguments *a)
 
 void say(const char *format, ...)
 {
-    assert(format != NULL);
     va_list list;
     va_start(list, format);
     print_printable_list(stdout, format, list);
@@ -360,7 +345,6 @@ void say(const char *format, ...)
 void print_cell(int width, const char *conversion, double value)
 {
     char text[40] = "-";
-    assert(conversion != NULL);
     if (!isnan(value)) {
         snprintf(text, sizeof text, conversion, value);
     }
@@ -369,7 +353,6 @@ void print_cell(int width, const char *conversion, double value)
 
 void say_title(const scenario *s)
 {
-    assert(s != NULL);
     char title[SCENARIO_TITLED];
     say("%s: %s\n", s->name, scenario_titled(s, title));
 }
@@ -395,7 +378,6 @@ bool terminal_has_utf8(void)
 // Width of a UTF-8 text in characters.
 static int text_width(const char *text)
 {
-    assert(text != NULL);
     int width = 0;
     for (; *text != '\0'; text++) {
         width += ((unsigned char)*text & 0xC0) != 0x80;
@@ -429,7 +411,6 @@ void print_indented(FILE *stream, const char *text, int bytes, int width, int in
 
 bool next_paragraph(const char **text, paragraph *p)
 {
-    assert(text != NULL && *text != NULL && p != NULL);
     *text += strspn(*text, "\n");
     if (**text == '\0') {
         return false;

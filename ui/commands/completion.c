@@ -2,7 +2,6 @@
 // quantities. The names of scenarios are asked of the program when they are wanted.
 #include "ui/commands/command.h"
 
-#include <assert.h>
 #include <string.h>
 
 #include "src/tables/parameters.h"
@@ -274,7 +273,6 @@ static void put_operands(FILE *stream, const shell *h, const command *c)
 
 void write_completion(FILE *stream, const char *name)
 {
-    assert(stream != NULL && name != NULL);
     const shell *h = shells;
     while (strcmp(h->name, name) != 0) {
         h++;

@@ -2,7 +2,6 @@
 #include "ui/commands/answers.h"
 #include "ui/commands/command.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -38,7 +37,6 @@ static int option_width(const option_row *o)
 
 void print_help(FILE *stream, const command *self)
 {
-    assert(stream != NULL && self != NULL);
     fprintf(stream, "impactlab %s%s%s [OPTION]...\n\n%s.\n", self->name,
             self->operands[0] ? " " : "", self->operands, self->summary);
     print_paragraphs(stream, self->help);
@@ -108,9 +106,7 @@ static int write_page_into(const char *folder, const command *c)
     char path[4096];
     int length = snprintf(path, sizeof path, "%s/impactlab%s%s.1", folder, c != NULL ? "-" : "",
                           c != NULL ? c->name : "");
-    if (length >= (int)sizeof path) {
-        return complain("--man-pages %s: the name is too long", folder);
-    }
+    FAIL_IF(length >= (int)sizeof path, complain("--man-pages %s: the name is too long", folder));
     return write_file(path, write_page, NULL, c);
 }
 

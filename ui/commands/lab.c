@@ -29,9 +29,7 @@ static int run_script(explorer *ex, const char *path)
 {
     char line[LINE_TEXT];
     FILE *stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
-    if (stream == NULL) {
-        return complain("%s cannot be read: %s", path, strerror(errno));
-    }
+    FAIL_IF(stream == NULL, complain("%s cannot be read: %s", path, strerror(errno)));
 
     // line by line until one fails or quits
     int code = EXIT_DONE;

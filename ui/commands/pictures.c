@@ -26,9 +26,8 @@ static const char *family_of(const char *font)
 static int read_theme(const arguments *a, figure_theme *theme)
 {
     const char *word = a->theme != NULL ? a->theme : a->mono ? "mono" : a->dark ? "dark" : "light";
-    if (a->mono + a->dark + (a->theme != NULL) > 1) {
-        return complain("--theme, --mono and --dark cannot go together");
-    }
+    FAIL_IF(a->mono + a->dark + (a->theme != NULL) > 1,
+            complain("--theme, --mono and --dark cannot go together"));
     *theme = strcmp(word, "mono") == 0   ? THEME_MONO
              : strcmp(word, "dark") == 0 ? THEME_DARK
                                          : THEME_COLOUR;
@@ -37,7 +36,6 @@ static int read_theme(const arguments *a, figure_theme *theme)
 
 int read_picture_options(const arguments *a, figure_options *o)
 {
-    assert(a != NULL && o != NULL);
     fault f = {0};
     bool ranged = !isnan(a->from) || !isnan(a->to);
     *o = (figure_options){.look = {.width = a->width,
@@ -98,7 +96,6 @@ static int publish_figure(const arguments *a, const figure *fig)
 
 int publish_titled(const arguments *a, const scenario *s, const char *shows, const figure *fig)
 {
-    assert(s != NULL && shows != NULL && fig != NULL);
     char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
     snprintf(title, sizeof title, "%s: %s%s", s->name, shows, scenario_changes(s, changes));
     figure titled = *fig;
@@ -108,7 +105,6 @@ int publish_titled(const arguments *a, const scenario *s, const char *shows, con
 
 int publish_study(const arguments *a, const scenario *s, const char *shows, const figure *fig)
 {
-    assert(fig != NULL);
     figure drawn = *fig;
     drawn.x.scale = SCALE_LOGARITHMIC;
     drawn.x.room = 0.04;
@@ -126,7 +122,7 @@ int publish_owned(const arguments *a, owned_figure *o)
 
 int publish_runs(const arguments *a, const char *title, const trace_run *runs, int run_count)
 {
-    assert(a != NULL && a->plot != NULL && runs != NULL && run_count > 0);
+    assert(run_count > 0);
     figure_options o;
     run_figure r;
     fault f = {0};
@@ -174,27 +170,24 @@ scene_options read_view(const arguments *a)
 int check_view(const arguments *a)
 {
     camera_view unused;
-    if (a->camera != NULL && !camera_read(a->camera, &unused)) {
-        return complain("there is no camera '%s', expected three-quarter, top, side, tip, or two "
-                        "angles such as -60,40 (elevation 1 to 90 degrees)",
-                        a->camera);
-    }
+    FAIL_IF(a->camera != NULL && !camera_read(a->camera, &unused),
+            complain("there is no camera '%s', expected three-quarter, top, side, tip, or two "
+                     "angles such as -60,40 (elevation 1 to 90 degrees)",
+                     a->camera));
     return EXIT_DONE;
 }
 
 int check_scene(const arguments *a)
 {
-    assert(a != NULL);
     fault f = {0};
     if (check_view(a) != EXIT_DONE) {
         return EXIT_BAD_ARGUMENTS;
     }
 
     // there is a picture for each instant, and a limit to them
-    if (a->instants.count > SCENE_INSTANTS) {
-        return complain("--at was given %d times, expected at most %d", a->instants.count,
-                        SCENE_INSTANTS);
-    }
+    FAIL_IF(a->instants.count > SCENE_INSTANTS,
+            complain("--at was given %d times, expected at most %d", a->instants.count,
+                     SCENE_INSTANTS));
 
     // before the run, which may take long
     if (a->scene != NULL && scene_check_path(a->scene, &f) != STATUS_OK) {

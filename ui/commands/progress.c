@@ -106,7 +106,7 @@ static void begin(const arguments *a)
 
 run_monitor *work_begin(const arguments *a, const char *pieces, int total)
 {
-    assert(a != NULL && pieces != NULL && total > 0);
+    assert(total > 0);
     ticker.pieces = pieces;
     ticker.total = total;
     begin(a);
@@ -149,7 +149,6 @@ int work_finish(const arguments *a, status code, const fault *f, const command_r
 
 status run_with_progress(const arguments *a, const scenario *s, bool keep_trace, run_result *result)
 {
-    assert(a != NULL && s != NULL && result != NULL);
     const run_options options = {.keep_trace = keep_trace, .monitor = &watched};
     ticker.pieces = NULL;
     ticker.duration = s->parameters.run.duration;
@@ -161,7 +160,6 @@ status run_with_progress(const arguments *a, const scenario *s, bool keep_trace,
 
 void work_leave(int done, int total, const char *pieces, const char *what_became)
 {
-    assert(pieces != NULL && what_became != NULL);
     complain("stopped: %d of %d %s were done, %s", done, total, pieces, what_became);
     leave_interrupted();
 }
@@ -207,7 +205,6 @@ static void catch_signal(int number)
 
 int many_runs_jobs(const arguments *a)
 {
-    assert(a != NULL);
     long count = sysconf(_SC_NPROCESSORS_ONLN);
     int processors = count < 1 ? 1 : count > SWEEP_MOST_JOBS ? SWEEP_MOST_JOBS : (int)count;
     return a->jobs > 0 ? (int)a->jobs : processors;
@@ -229,7 +226,6 @@ static void format_duration(char *text, size_t size, double seconds)
 // The progress bar, a line that is overwritten.
 static void show_progress(void *context, const sweep_progress *p)
 {
-    assert(p != NULL);
     const char *word = context;
     char left[32] = "", failed[32] = "", line[256];
     const int filled = p->total > 0 ? (int)(BAR_LENGTH * p->done / p->total) : 0;
@@ -255,7 +251,6 @@ static void show_progress(void *context, const sweep_progress *p)
 
 sweep_options many_runs_begin(const arguments *a, const char *word)
 {
-    assert(a != NULL);
     struct sigaction caught = {.sa_handler = catch_signal};
     sigemptyset(&caught.sa_mask);
     sigaction(SIGINT, &caught, NULL);
@@ -273,7 +268,6 @@ sweep_options many_runs_begin(const arguments *a, const char *word)
 
 void many_runs_end(const sweep_options *o)
 {
-    assert(o != NULL);
     if (o->report != NULL) {
         fprintf(stderr, "\r%78s\r", "");
     }
@@ -281,7 +275,7 @@ void many_runs_end(const sweep_options *o)
 
 void many_runs_tell_failure(const sweep_progress *p)
 {
-    assert(p != NULL && p->failed > 0);
+    assert(p->failed > 0);
     complain("%zu of %zu runs failed; run %zu: %s", p->failed, p->done_now, p->first_failed + 1,
              p->first_failure);
 }

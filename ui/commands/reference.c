@@ -2,7 +2,6 @@
 // chapters of the manual.
 #include "ui/commands/command.h"
 
-#include <assert.h>
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
@@ -182,7 +181,6 @@ static void write_command(FILE *stream, const command *c)
 void write_man_page(FILE *stream, const command *c)
 {
     // a page of its own for each command, named as man looks it up
-    assert(stream != NULL);
     put(stream, c != NULL ? ".TH IMPACTLAB\\-%u" : ".TH IMPACTLAB", c != NULL ? c->name : "");
     put(stream, " 1 \"\" \"impactlab %s\"\n", lab_version());
     if (c == NULL) {
@@ -203,7 +201,6 @@ typedef struct parameter_words {
 
 const char *format_range(const parameter_info *info, const char *separator, char text[RANGE_TEXT])
 {
-    assert(info != NULL && separator != NULL && text != NULL);
     const char *choices = info->type == PARAMETER_CHOICE    ? info->choices
                           : info->type == PARAMETER_BOOLEAN ? "true|false"
                           : info->type == PARAMETER_TEXT    ? "text"
@@ -391,7 +388,6 @@ void write_reference(FILE *stream, const char *page)
         {"events", write_events},         {"scenario.5", write_scenario_man},
     };
 
-    assert(stream != NULL && page != NULL);
     for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
         if (strcmp(pages[i].page, page) == 0) {
             pages[i].write(stream);

@@ -127,9 +127,8 @@ static int run_lesson(const arguments *a)
 {
     listing l;
     bool found = false;
-    if (a->json != NULL && a->operand_count > 0) {
-        return complain("--json lists the lessons, expected no name beside it");
-    }
+    FAIL_IF(a->json != NULL && a->operand_count > 0,
+            complain("--json lists the lessons, expected no name beside it"));
     int code = open_listing(&l, a);
     if (code != EXIT_DONE) {
         return code;

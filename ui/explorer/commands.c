@@ -45,9 +45,8 @@ bool explorer_execute(explorer_state *st, const char *line)
     }
 
     // without the blanks at its end
-    if (snprintf(text, sizeof text, "%s", line) >= LINE_TEXT) {
-        return act_refuse(st, "the line is too long");
-    }
+    FAIL_IF(snprintf(text, sizeof text, "%s", line) >= LINE_TEXT,
+            act_refuse(st, "the line is too long"));
     for (size_t n = strlen(text); n > 0 && isspace((unsigned char)text[n - 1]); n--) {
         text[n - 1] = '\0';
     }
@@ -82,17 +81,13 @@ static bool read_key(explorer_state *st, const char *argument, int *key, const c
     *rest = argument + length + strspn(argument + length, " \t");
 
     // what cannot be bound
-    if (length == 0) {
-        return act_refuse(st, "a key is a character or a name such as Space, PgUp, F1, S-Left "
-                              "or C-r");
-    }
-    if (*key == 0) {
-        return act_refuse(st, "there is no key '%.*s'", length, argument);
-    }
-    if (*key == ':' || *key == KEY_CODE_ESCAPE || *key == ('c' & 0x1f)) {
-        return act_refuse(st, "%.*s keeps its meaning: the way to the prompt, back or out", length,
-                          argument);
-    }
+    FAIL_IF(length == 0,
+            act_refuse(st, "a key is a character or a name such as Space, PgUp, F1, S-Left "
+                           "or C-r"));
+    FAIL_IF(*key == 0, act_refuse(st, "there is no key '%.*s'", length, argument));
+    FAIL_IF(*key == ':' || *key == KEY_CODE_ESCAPE || *key == ('c' & 0x1f),
+            act_refuse(st, "%.*s keeps its meaning: the way to the prompt, back or out", length,
+                       argument));
     return true;
 }
 
@@ -157,9 +152,7 @@ bool act_unkey(explorer_state *st, const char *argument)
     }
 
     // one of the explorer's own does nothing then
-    if (built_in == NULL) {
-        return act_refuse(st, "%s does nothing as it is", name);
-    }
+    FAIL_IF(built_in == NULL, act_refuse(st, "%s does nothing as it is", name));
     own = key_add_own(&st->keys, key);
     if (own == NULL) {
         return no_room(st);
@@ -292,12 +285,10 @@ bool act_remember(explorer_state *st, const char *argument)
     char path[1024];
     whole_file file;
     fault f = {0};
-    if (!user_file("lab", path, sizeof path, true)) {
-        return act_refuse(st, "there is no folder for settings (XDG_CONFIG_HOME or HOME)");
-    }
-    if (st->settings_broken) {
-        return act_refuse(st, "%s has faults and is left alone: mend or remove it", path);
-    }
+    FAIL_IF(!user_file("lab", path, sizeof path, true),
+            act_refuse(st, "there is no folder for settings (XDG_CONFIG_HOME or HOME)"));
+    FAIL_IF(st->settings_broken,
+            act_refuse(st, "%s has faults and is left alone: mend or remove it", path));
 
     // whole or not at all
     status code = whole_file_open(&file, path, &f);

@@ -152,9 +152,8 @@ static bool save_over(explorer_state *st, const char *name)
             return false;
         }
     }
-    if (kind == KINDS) {
-        return act_refuse(st, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt");
-    }
+    FAIL_IF(kind == KINDS,
+            act_refuse(st, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt"));
 
     fault f = {0};
     status code;
@@ -206,9 +205,8 @@ bool act_scene(explorer_state *st, const char *argument)
     }
 
     // nothing is replaced, and nothing incomplete is drawn
-    if (exists(argument)) {
-        return act_refuse(st, "%.200s is there already: give the scene another name", argument);
-    }
+    FAIL_IF(exists(argument),
+            act_refuse(st, "%.200s is there already: give the scene another name", argument));
     if (!act_need_whole_run(st)) {
         return false;
     }

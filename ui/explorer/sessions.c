@@ -105,12 +105,11 @@ static status check_lines(const session_file *file, fault *f)
 {
     for (int i = 0; i < file->line_count; i++) {
         const size_t length = strlen(file->lines[i]);
-        if (length >= LINE_TEXT) {
-            return fault_set(f, STATUS_CANNOT_WRITE,
-                             "'%.40s...' takes %zu bytes in a session, expected at most %d: show "
-                             "fewer signals in a pane",
-                             file->lines[i], length, LINE_TEXT - 1);
-        }
+        FAIL_IF(length >= LINE_TEXT,
+                fault_set(f, STATUS_CANNOT_WRITE,
+                          "'%.40s...' takes %zu bytes in a session, expected at most %d: show "
+                          "fewer signals in a pane",
+                          file->lines[i], length, LINE_TEXT - 1));
     }
     return STATUS_OK;
 }
@@ -122,9 +121,7 @@ static status write_session(explorer_state *st, const char *path, fault *f)
     const run_list *pins = &st->pinned;
     file = (session_file){.run_count = 1 + pins->count, .baseline = pins->baseline};
     status code = run_origin_take(&file.runs[0].from, &st->session, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     // the pinned runs stay the list's: nothing of them is freed here
     for (int i = 0; i < pins->count; i++) {
@@ -149,9 +146,8 @@ static bool save_session(explorer_state *st, const char *path)
     fault f = {0};
 
     // a file is replaced only if it is the one this visit goes on with
-    if (access(path, F_OK) == 0 && strcmp(path, st->session_path) != 0) {
-        return act_refuse(st, "%.200s is there already: give the session another name", path);
-    }
+    FAIL_IF(access(path, F_OK) == 0 && strcmp(path, st->session_path) != 0,
+            act_refuse(st, "%.200s is there already: give the session another name", path));
     if (!act_need_whole_run(st) || !act_worked(st, write_session(st, path, &f), &f)) {
         return false;
     }
@@ -168,9 +164,7 @@ static status pin_kept(explorer_state *st, const kept_run *k, fault *f)
 {
     session s;
     status code = session_reopen(&s, &k->from, HUGE_VAL, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     const int before = st->pinned.count;
     code = run_list_pin(&st->pinned, &s, k->name, f);
     if (code == STATUS_OK && st->pinned.count > before) {
@@ -186,10 +180,9 @@ static bool take_session(explorer_state *st, const session_file *file)
     fault f = {0};
     session fresh;
     const int before = st->pinned.count, baseline = st->pinned.baseline;
-    if (before + file->run_count - 1 > PINNED_RUNS) {
-        return act_refuse(st, "its %d pinned runs have no room beside the %d here: R drops some",
-                          file->run_count - 1, before);
-    }
+    FAIL_IF(before + file->run_count - 1 > PINNED_RUNS,
+            act_refuse(st, "its %d pinned runs have no room beside the %d here: R drops some",
+                       file->run_count - 1, before));
     status code = session_reopen(&fresh, &file->runs[0].from, st->session.patience, &f);
     if (code != STATUS_OK) {
         return act_worked(st, code, &f);
@@ -259,8 +252,7 @@ bool act_session(explorer_state *st, const char *argument)
                           st->session_path[0] ? st->session_path : "lab.session");
         return true;
     }
-    if ((!saves && !(length == 4 && strncmp(argument, "open", 4) == 0)) || path[0] == '\0') {
-        return act_refuse(st, "session takes save or open, and a file such as lab.session");
-    }
+    FAIL_IF((!saves && !(length == 4 && strncmp(argument, "open", 4) == 0)) || path[0] == '\0',
+            act_refuse(st, "session takes save or open, and a file such as lab.session"));
     return saves ? save_session(st, path) : explorer_open_session(st, path);
 }

@@ -266,7 +266,7 @@ static int keep_hit(search_hit *hits, int count, int most, search_hit hit)
 int search_find(const search_source *sources, int source_count, const char *question,
                 search_hit *hits, int most)
 {
-    assert(sources != NULL && question != NULL && hits != NULL && most > 0);
+    assert(most > 0);
     question_words q;
     int count = 0;
 
@@ -293,7 +293,6 @@ int search_find(const search_source *sources, int source_count, const char *ques
 
 bool search_names(const char *title, const char *question)
 {
-    assert(title != NULL && question != NULL);
     question_words q;
     occurrences o = {.length = 0};
     read_words(&q, question, true);

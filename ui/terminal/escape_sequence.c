@@ -96,7 +96,7 @@ static sequence_result take_parameter(escape_sequence *e, int character, pointer
 
 sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_event *report)
 {
-    assert(e != NULL && report != NULL && e->state != SEQUENCE_NONE);
+    assert(e->state != SEQUENCE_NONE);
 
     // what kind of sequence it is
     if (e->state == SEQUENCE_ESCAPED && (character == '[' || character == 'O')) {

@@ -98,7 +98,7 @@ void picture_end(screen *s, cairo_t *cr)
     picture_layer *layer = s->pictures;
     const bool drawn = cairo_status(cr) == CAIRO_STATUS_SUCCESS;
     cairo_destroy(cr);
-    assert(layer != NULL && layer->count > 0);
+    assert(layer->count > 0);
     if (!drawn) {
         put_words(s, layer->count - 1, "no memory to draw this");
     }
@@ -150,7 +150,7 @@ static int add_regions(const screen *s, int picture, int most_width, int most_he
 int pictures_regions(const screen *s, int most_width, int most_height,
                      picture_region regions[PICTURE_REGIONS])
 {
-    assert(s != NULL && most_width > 0 && most_height > 0);
+    assert(most_width > 0 && most_height > 0);
     int count = 0;
     for (int i = 0; s->pictures != NULL && i < s->pictures->count; i++) {
         cairo_surface_flush(s->pictures->items[i].surface);

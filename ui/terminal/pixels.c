@@ -156,7 +156,7 @@ static void write_band(FILE *stream, sixel_picture *p, int top)
 
 bool sixel_write(FILE *stream, const pixel_block *block, int colours)
 {
-    assert(stream != NULL && block != NULL && block->width > 0 && block->height > 0);
+    assert(block->width > 0 && block->height > 0);
     assert(colours >= 2 && colours <= SIXEL_COLOURS);
     sixel_picture p = {.block = block};
     p.bins = malloc(BINS * sizeof *p.bins);
@@ -191,7 +191,7 @@ enum { CHUNK = 4096, CHUNK_BYTES = CHUNK / 4 * 3 };
 
 bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns, int rows)
 {
-    assert(stream != NULL && block != NULL && block->width > 0 && block->height > 0);
+    assert(block->width > 0 && block->height > 0);
     assert(number > 0 && columns > 0 && rows > 0);
     const size_t size = 3 * (size_t)block->width * (size_t)block->height;
     uLongf packed_size = compressBound(size);
@@ -231,7 +231,7 @@ bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns
 
 void kitty_delete(FILE *stream, int number)
 {
-    assert(stream != NULL && number >= 0);
+    assert(number >= 0);
     if (number == 0) {
         fputs("\033_Ga=d,d=A,q=2\033\\", stream);
     } else {

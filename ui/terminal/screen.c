@@ -45,7 +45,7 @@ static cell *cell_at(screen *s, int x, int y)
 
 void screen_put(screen *s, int x, int y, uint32_t glyph, ink colour)
 {
-    assert(s != NULL && colour < INK_COUNT);
+    assert(colour < INK_COUNT);
     cell *c = cell_at(s, x, y);
     if (c != NULL) {
         *c = (cell){glyph, colour};
@@ -105,7 +105,7 @@ int screen_print(screen *s, int x, int y, int room, ink colour, const char *form
 
 int text_wrap(const char *text, int width, text_line *lines, int most, bool *split)
 {
-    assert(text != NULL && lines != NULL && most >= 0);
+    assert(most >= 0);
     int count = 0;
     bool broken = false;
     text += strspn(text, " ");

@@ -311,7 +311,7 @@ bool terminal_is_light(void)
 void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
                    bool whole)
 {
-    assert(s != NULL && s->width > 0 && s->height > 0 && tty.curses != NULL);
+    assert(s->width > 0 && s->height > 0);
 
     // another size, theme or depth: everything anew
     bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;

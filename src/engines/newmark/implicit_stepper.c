@@ -203,10 +203,7 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
                            .stuck = mode.friction == HUB_STICK,
                            .velocity_level = !resolved,
                            .sliding = -mode.friction * a->motor.stiction};
-    status s = solve_step(a, m, h, &k, &it);
-    if (s != STATUS_OK) {
-        return s;
-    }
+    TRY(solve_step(a, m, h, &k, &it));
 
     // onto the constraint, with the force evaluated anew where the step resolves all modes
     if (it.contact && resolved) {

@@ -9,7 +9,6 @@
 // an instant that a program stops at) continue in it: the state says where it began, the engine's
 // memory holds its series. While commands stay, a step is made for twice as long as the one before;
 // just after a change for twice the time since the change before.
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -227,7 +226,6 @@ static size_t init(const arm *a, void *memory)
 
 taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
 {
-    assert(a != NULL && m != NULL);
     taylor_integrator *s = m->memory;
     if (m->engine != &taylor_engine || m->out_of_memory || motion_held_still(m) ||
         goes_on(m, remaining)) {

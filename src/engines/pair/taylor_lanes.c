@@ -57,7 +57,7 @@ void taylor_compute_one(taylor_lane *lane)
 
 void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
 {
-    assert(group != NULL && lanes != NULL && count >= 1 && count <= taylor_width());
+    assert(count >= 1 && count <= taylor_width());
     if (count == 1) {
         taylor_compute_one(lanes[0]);
         return;
@@ -92,7 +92,7 @@ void taylor_compute(taylor_group *group, taylor_lane *const *lanes, int count)
 void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_end *ends,
                    int count)
 {
-    assert(group != NULL && lanes != NULL && ends != NULL && count >= 1);
+    assert(count >= 1);
     if (lanes[0]->group != group) {
         return; // it is alone
     }
@@ -154,7 +154,6 @@ static void fetch_motion(taylor_lane *lane)
 
 void taylor_fetch(taylor_lane *lane)
 {
-    assert(lane != NULL);
     const taylor_form form = lane->form;
     fetch_motion(lane);
     if (!form.contact) {
@@ -167,7 +166,7 @@ void taylor_evaluate(taylor_lane *lane, int count, taylor_instants *at)
 {
     const taylor_form form = lane->form;
     const int width = count == 1 ? 1 : taylor_width();
-    assert(lane != NULL && at != NULL && count >= 1 && count <= width);
+    assert(count >= 1 && count <= width);
     for (int i = count; i < width; i++) {
         at->time[i] = at->time[0];
     }

@@ -94,7 +94,6 @@ static void sample_model(const arm_observer *o, const mode_set *set, int torque,
 const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force,
                               double tip_mass, double wall_stiffness)
 {
-    assert(o != NULL && setup != NULL);
     memset(o, 0, sizeof *o);
     const char *refusal = reduced_arm_init(&o->arm, setup, tip_mass, wall_stiffness);
     if (refusal != NULL) {
@@ -166,7 +165,7 @@ static double tachometer_offset(arm_observer *o, const controller_input *in)
 
 void arm_observer_know_wall(arm_observer *o, double angle)
 {
-    assert(o != NULL && !o->touches && isfinite(angle));
+    assert(!o->touches && isfinite(angle));
     o->wall = angle;
     o->wall_variance = 0;
 }
@@ -538,7 +537,6 @@ estimator arm_observer_ahead(const arm_observer *o, double voltage)
 
 bool arm_observer_returns(const arm_observer *o)
 {
-    assert(o != NULL);
     double rate = 0;
     for (int i = 0; i < o->arm.free.count; i++) {
         rate += o->arm.free.tip[i] * o->flown.z[o->arm.free.count + i];

@@ -24,7 +24,7 @@ static void multiply(double out[EXTENDED][EXTENDED], double x[EXTENDED][EXTENDED
 
 void sampled_model_init(sampled_model *m, int n, double rate[N][N], const double input[N], double h)
 {
-    assert(m != NULL && n > 0 && n <= N && isfinite(h));
+    assert(n > 0 && n <= N && isfinite(h));
 
     // exponential of the system extended by its constant input: Taylor's series of a 2^-HALVINGS
     // part of the step, squared back
@@ -118,7 +118,7 @@ void estimator_correct(estimator *e, int n, const double *row, double offset, do
 void estimator_transform(estimator *e, int from, int to,
                          double t[ESTIMATOR_STATES][ESTIMATOR_STATES])
 {
-    assert(e != NULL && t != NULL && from <= ESTIMATOR_STATES && to <= ESTIMATOR_STATES);
+    assert(from <= ESTIMATOR_STATES && to <= ESTIMATOR_STATES);
     const estimator before = *e;
     double product[ESTIMATOR_STATES][ESTIMATOR_STATES];
     memset(e, 0, sizeof *e);

@@ -1,6 +1,5 @@
 #include "src/rig/estimation/reduced_arm.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -157,7 +156,6 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
 const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, double tip_mass,
                              double wall_stiffness)
 {
-    assert(r != NULL && setup != NULL);
     arm a;
     memset(r, 0, sizeof *r);
     nominal_arm(&a, setup, tip_mass);
@@ -183,7 +181,6 @@ const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, doub
 
 double reduced_arm_compliance(const reduced_arm *r)
 {
-    assert(r != NULL);
     double sum = 0;
     for (int i = 0; i < r->contact.count; i++) {
         sum += r->contact.hub[i] * r->contact.hub[i] / r->contact.square[i];

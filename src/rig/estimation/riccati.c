@@ -100,7 +100,7 @@ void quadratic_cost_add(quadratic_cost *c, int n, const double *row, double dire
 
 bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gain)
 {
-    assert(m != NULL && c != NULL && gain != NULL && m->n > 0 && m->n <= N && c->growth > 0);
+    assert(m->n > 0 && m->n <= N && c->growth > 0);
     const int n = m->n;
     if (!(c->effort > 0)) {
         return false;

@@ -1,6 +1,5 @@
 #include "src/rig/estimation/touch_forecast.h"
 
-#include <assert.h>
 #include <math.h>
 
 #include "src/base/plain_math.h"
@@ -9,7 +8,6 @@
 
 void touch_forecast_tell(touch_forecast *t, const parameters *told, const controller_setup *setup)
 {
-    assert(t != NULL && told != NULL && setup != NULL);
     const double l = setup->link_length;
     const bool spring = isfinite(setup->hub_spring);
     parameters *p = &t->arm;
@@ -48,7 +46,6 @@ static void follow_bend(touch_forecast *t, double h, double w)
 
 double touch_forecast_sample(touch_forecast *t, const controller_input *in)
 {
-    assert(t != NULL && in != NULL);
     if (in->force > t->arm.control.contact_threshold) {
         t->flies = false;
         return (double)NAN;

@@ -5,7 +5,6 @@
 // volt, force-pd and discontinuous send in contact
 //
 //     u = (2 f l - kv w)/K + force_gain (f - reading)
-#include <assert.h>
 #include <math.h>
 
 #include "src/rig/laws/laws.h"
@@ -43,7 +42,6 @@ static const controller_parameter force_feedback_parameters[PARAMETERS] = {
 // Takes setup and parameters into a force_memory, at the start or later; never refuses.
 static const char *force_feedback_tune(void *memory, const controller_setup *setup)
 {
-    assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     force_memory *m = memory;
     set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);

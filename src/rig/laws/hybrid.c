@@ -20,7 +20,6 @@
 // theta_imp is what the law is told, or in IMPACT the mean of what a sensor says of it, as 5.2
 // suggests: of film, theta3 - theta2, by (5.8) theta2 + theta3 = 2 theta_imp, or of an
 // accelerometer by (5.13).
-#include <assert.h>
 #include <math.h>
 
 #include "src/rig/laws/laws.h"
@@ -90,7 +89,6 @@ static const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
 // The second is for laws with a parameter of their own behind the shared ones, memory->own.
 static const char *hybrid_start(void *memory, const controller_setup *setup)
 {
-    assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     hybrid_memory *m = memory;
     const double *p = setup->parameters;
 

@@ -151,7 +151,7 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
 const char *observer_design_init(observer_design *d, const controller_setup *setup,
                                  const observer_task *task)
 {
-    assert(d != NULL && setup != NULL && task != NULL && setup->torque_per_volt > 0);
+    assert(setup->torque_per_volt > 0);
     const char *refusal =
         arm_observer_init(&d->observer, setup, task->force, task->tip_mass,
                           task->wall_stiffness > 0 ? task->wall_stiffness : HUGE_VAL);
@@ -189,7 +189,6 @@ const arm_observer *observer_arms_observer(const observer_arms *a)
 const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
                                const observer_task *task)
 {
-    assert(a != NULL && setup != NULL && task != NULL);
     static const int links[] = {2, 3, 6};
     static const double masses[] = {0.04, 0.08};       // [kg]
     static const double walls[] = {60, 150, 375, 940}; // a frequency within a quarter [N/m]

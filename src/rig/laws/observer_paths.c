@@ -30,7 +30,6 @@ static void plan_from(smooth_approach *p, const observer_design *d, double speed
 
 double smooth_approach_speed(const smooth_approach *p, const observer_design *d)
 {
-    assert(p != NULL && d != NULL);
     const mode_set *set = &d->observer.arm.free;
     return p->state[set->count] / set->momentum[0];
 }
@@ -50,8 +49,6 @@ static double share_changed(const observer_design *d, double t)
 
 double smooth_approach_follow(smooth_approach *p, const observer_design *d)
 {
-    assert(p != NULL && d != NULL);
-
     // the mean over the period
     double torque = 0;
     for (int i = 0; i < 1 + p->slows; i++) {
@@ -95,7 +92,7 @@ static double swing_beyond(const smooth_approach *p, const observer_design *d)
 
 void smooth_approach_begin(smooth_approach *p, const observer_design *d, double angle)
 {
-    assert(p != NULL && d != NULL && p->period > 0);
+    assert(p->period > 0);
     const double T = d->ramp_time, soft = d->arrival_speed, beyond = swing_beyond(p, d);
     const double room = p->guarded - angle - soft * (T / 2 - beyond);
 
@@ -114,7 +111,6 @@ void smooth_approach_begin(smooth_approach *p, const observer_design *d, double 
 
 void smooth_approach_slow(smooth_approach *p, const observer_design *d, double tip, double turned)
 {
-    assert(p != NULL && d != NULL);
     const double T = d->ramp_time, cruise = p->change[0], soft = d->arrival_speed;
     if (!p->slows && p->changing[0] >= p->overlap * T) {
         const double unmade = fmax(0, T - p->changing[0]);
@@ -136,7 +132,6 @@ void smooth_approach_slow(smooth_approach *p, const observer_design *d, double t
 
 void smooth_approach_again(smooth_approach *p, const observer_design *d)
 {
-    assert(p != NULL && d != NULL);
     const double first = p->changing[0], second = p->changing[1];
     const bool slows = p->slows;
     if (!slows) {
@@ -187,7 +182,6 @@ static double sum_of(const quickest_touch *q, const double *row, const double *z
 
 void quickest_touch_init(quickest_touch *q, const observer_design *d)
 {
-    assert(q != NULL && d != NULL);
     const reduced_arm *arm = &d->observer.arm;
     const mode_set *set = &arm->free, *contact = &arm->contact;
     const int n = set->count;
@@ -298,7 +292,7 @@ static bool solve(const quickest_touch *q, two_equations *e)
 
 bool quickest_touch_plan(quickest_touch *q, const quickest_task *task)
 {
-    assert(q != NULL && task != NULL && task->low < task->high);
+    assert(task->low < task->high);
     if (q->planned && q->left <= FIXED) {
         return true;
     }
@@ -334,7 +328,7 @@ bool quickest_touch_plan(quickest_touch *q, const quickest_task *task)
 
 double quickest_touch_next(quickest_touch *q)
 {
-    assert(q != NULL && q->left > 0);
+    assert(q->left > 0);
     return q->torque[--q->left];
 }
 
@@ -355,7 +349,7 @@ static double first_bound(const force_rise_task *task, double off)
 
 force_rise force_rise_begin(const force_rise_task *task)
 {
-    assert(task != NULL && task->divergence > 0 && task->end > 0 && task->least >= 0);
+    assert(task->divergence > 0 && task->end > 0 && task->least >= 0);
     const double s = task->divergence, end = task->end;
     double off = fmax(task->coordinate + task->rate / s - end, -SLOWEST * end);
     force_rise r = {.begun = task->time,
@@ -377,7 +371,6 @@ force_rise force_rise_begin(const force_rise_task *task)
 
 void force_rise_at(const force_rise *r, double time, double way[3])
 {
-    assert(r != NULL && way != NULL);
     const double s = r->divergence, end = r->end;
     double t = time - r->begun, from = r->from, off = r->off;
 
@@ -405,6 +398,5 @@ void force_rise_at(const force_rise *r, double time, double way[3])
 
 bool force_rise_moves(const force_rise *r, double time)
 {
-    assert(r != NULL);
     return time - r->begun < r->time;
 }

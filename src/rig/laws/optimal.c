@@ -14,7 +14,6 @@
 // angle and a constant torque, from encoder, tachometer and force sensor.
 //
 // optimal comes in with the constant command; predictive as fast as a limit on the force allows.
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -118,7 +117,6 @@ static void model_contact(optimal_memory *m, double h, sampled_model *model)
 // law with a limit on the force behind the shared parameters.
 static const char *state_feedback_start(void *memory, const controller_setup *setup)
 {
-    assert(memory != NULL && setup != NULL && setup->parameters != NULL);
     optimal_memory *m = memory;
     const double l = setup->link_length, quarter = setup->link_mass * l * l / 4;
 

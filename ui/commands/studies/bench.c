@@ -41,9 +41,8 @@ static int complain_only(const char *name)
     for (int i = 0; i < bench_count; i++) {
         nearest_try(&near, bench_table[i].name);
     }
-    if (near.best != NULL) {
-        return complain("there is no benchmark '%s', did you mean '%s'?", name, near.best);
-    }
+    FAIL_IF(near.best != NULL,
+            complain("there is no benchmark '%s', did you mean '%s'?", name, near.best));
     return complain("there is no benchmark '%s' (see impactlab bench --help)", name);
 }
 

@@ -27,9 +27,8 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
         given = a->varies.items[0];
     }
 
-    if (a->varies.count > 1 || strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0) {
-        return complain("calibrate varies " VOLTAGE_PATH " and nothing else, once");
-    }
+    FAIL_IF(a->varies.count > 1 || strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0,
+            complain("calibrate varies " VOLTAGE_PATH " and nothing else, once"));
 
     sweep_request request = {.vary = &given, .vary_count = 1};
     if (sweep_init(&series, s, &request, &f) != STATUS_OK) {
@@ -43,10 +42,9 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
     }
     sweep_finish(&series);
 
-    if (wanted > K2_TABLE_MOST) {
-        return complain("--vary %s: %zu commands are too many, expected at most %d", given, wanted,
-                        K2_TABLE_MOST);
-    }
+    FAIL_IF(wanted > K2_TABLE_MOST,
+            complain("--vary %s: %zu commands are too many, expected at most %d", given, wanted,
+                     K2_TABLE_MOST));
     *count = (int)wanted;
     return EXIT_DONE;
 }
@@ -101,11 +99,10 @@ static status make_table(calibrated *done, const scenario *s, fault *f)
     if (calibration_table(&done->points, &by_force, f) != STATUS_OK) {
         return f->code;
     }
-    if (!k2_table_write(&by_force, done->table, sizeof done->table)) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%d commands make a table of more than %d characters, expected fewer",
-                         done->points.count, PARAMETER_TEXT_SIZE - 1);
-    }
+    FAIL_IF(!k2_table_write(&by_force, done->table, sizeof done->table),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "%d commands make a table of more than %d characters, expected fewer",
+                      done->points.count, PARAMETER_TEXT_SIZE - 1));
     return parameter_set_text(&done->with_table.parameters, PARAMETER_INDEX(control.k2_table),
                               done->table, f);
 }

@@ -58,9 +58,8 @@ static int open_sweep(comparison *c, const arguments *a, int i)
     // too many rows are refused before anything runs
     c->swept++;
     size_t rows = c->sweeps[i].run_count * (size_t)c->operands;
-    if (rows > MOST_ROWS) {
-        return complain("%zu rows are too many for a table, expected at most %d", rows, MOST_ROWS);
-    }
+    FAIL_IF(rows > MOST_ROWS,
+            complain("%zu rows are too many for a table, expected at most %d", rows, MOST_ROWS));
 
     c->combinations = (int)c->sweeps[i].run_count;
     return EXIT_DONE;
@@ -200,12 +199,10 @@ static int plot_runs(const arguments *a, const scenario *s, const void *found)
     const comparison *c = found;
     trace_run shown[TRACE_RUNS];
     char *names[TRACE_RUNS], title[64 + SCENARIO_CHANGES];
-    if (c->swept > 0) {
-        return complain("--plot shows the scenarios themselves, not --vary's combinations");
-    }
-    if (!c->drawn) {
-        return complain("--plot shows at most %d runs, %d were given", TRACE_RUNS, c->opened);
-    }
+    FAIL_IF(c->swept > 0,
+            complain("--plot shows the scenarios themselves, not --vary's combinations"));
+    FAIL_IF(!c->drawn,
+            complain("--plot shows at most %d runs, %d were given", TRACE_RUNS, c->opened));
 
     // one that failed shows what it has
     const bool named = name_runs(c, names, title, sizeof title);
@@ -230,9 +227,8 @@ static int compare(const arguments *a)
                                       .kept = "the table is that of these"};
     comparison c = {.table.tolerance = a->tolerance / 100};
     fault f = {0};
-    if (a->columns != NULL && compare_choose(&c.table, a->columns, &f) != STATUS_OK) {
-        return complain("--columns %s: %s", a->columns, f.text);
-    }
+    FAIL_IF(a->columns != NULL && compare_choose(&c.table, a->columns, &f) != STATUS_OK,
+            complain("--columns %s: %s", a->columns, f.text));
 
     int result = open_all(&c, a);
     if (result == EXIT_DONE) {

@@ -65,14 +65,12 @@ static status analyse_loop(analysis *x, fault *f)
 {
     const parameters *p = &x->scenario->parameters;
     const bool contact = x->place == LINEAR_CONTACT;
-    if (p->control.law == LAW_NONE) {
-        return fault_set_at(f, STATUS_BAD_ARGUMENT, "control.law",
-                            "--law needs a control law, such as --set control.law=hybrid");
-    }
-    if (x->measured && !contact) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "--inject measures the arm in contact, not %s",
-                         x->word);
-    }
+    FAIL_IF(p->control.law == LAW_NONE,
+            fault_set_at(f, STATUS_BAD_ARGUMENT, "control.law",
+                         "--law needs a control law, such as --set control.law=hybrid"));
+    FAIL_IF(
+        x->measured && !contact,
+        fault_set(f, STATUS_BAD_ARGUMENT, "--inject measures the arm in contact, not %s", x->word));
     status code = x->measured ? STATUS_UNSTABLE : linear_loop(&x->loop, &x->arm, p, f);
     x->measured = x->stable = code == STATUS_UNSTABLE && contact;
     if (x->measured) {
@@ -464,15 +462,12 @@ static int linear(const arguments *a, scenario *s)
     x.place = strcmp(x.word, "free") == 0      ? LINEAR_FREE
               : strcmp(x.word, "contact") == 0 ? LINEAR_CONTACT
                                                : LINEAR_STUCK;
-    if (a->varies.count > 0 && (a->mat != NULL || a->nyquist != NULL || a->injects)) {
-        return complain("--mat, --nyquist and --inject are of one loop, not of --vary");
-    }
-    if (a->varies.count > 0 && s->parameters.control.law == LAW_NONE) {
-        return complain("--vary needs a control law, such as --set control.law=hybrid");
-    }
-    if ((a->nyquist != NULL || a->injects) && !a->looped) {
-        return complain("--nyquist and --inject are of the loop of --law");
-    }
+    FAIL_IF(a->varies.count > 0 && (a->mat != NULL || a->nyquist != NULL || a->injects),
+            complain("--mat, --nyquist and --inject are of one loop, not of --vary"));
+    FAIL_IF(a->varies.count > 0 && s->parameters.control.law == LAW_NONE,
+            complain("--vary needs a control law, such as --set control.law=hybrid"));
+    FAIL_IF((a->nyquist != NULL || a->injects) && !a->looped,
+            complain("--nyquist and --inject are of the loop of --law"));
     if (a->varies.count > 0) {
         return look_around(a, &x);
     }

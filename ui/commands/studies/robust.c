@@ -52,13 +52,11 @@ static int read_against(robustness *r)
         return EXIT_DONE;
     }
     int law = find_law(word, strlen(word));
-    if (law == LAW_NONE) {
-        return complain("--against %s: no control law, expected one of control.law", word);
-    }
-    if (r->set.case_count == 0) {
-        return complain("--against %s: the set has no cases, expected lines case TITLE: ... in it",
-                        word);
-    }
+    FAIL_IF(law == LAW_NONE,
+            complain("--against %s: no control law, expected one of control.law", word));
+    FAIL_IF(
+        r->set.case_count == 0,
+        complain("--against %s: the set has no cases, expected lines case TITLE: ... in it", word));
 
     for (int i = 0; i < r->count; i++) {
         r->against = r->laws[i] == law ? i : r->against;
@@ -82,21 +80,18 @@ static int read_laws(robustness *r)
     while (rest != NULL) {
         size_t length = strcspn(rest, ",");
         int law = find_law(rest, length);
-        if (law == LAW_NONE || r->count == LAW_COUNT) {
-            return complain("--laws %s: '%.*s' is no control law, expected those of control.law",
-                            r->arguments->laws, (int)length, rest);
-        }
+        FAIL_IF(law == LAW_NONE || r->count == LAW_COUNT,
+                complain("--laws %s: '%.*s' is no control law, expected those of control.law",
+                         r->arguments->laws, (int)length, rest));
         r->laws[r->count++] = law;
         rest = rest[length] == ',' ? rest + length + 1 : NULL;
     }
 
     // what cannot be run, or not be shown
-    if (r->laws[0] == LAW_NONE) {
-        return complain("%s has no control law, expected one or --laws", r->scenario->name);
-    }
-    if (r->arguments->plot != NULL && r->count > ROBUST_MOST_CURVES) {
-        return complain("--plot shows at most %d laws", ROBUST_MOST_CURVES);
-    }
+    FAIL_IF(r->laws[0] == LAW_NONE,
+            complain("%s has no control law, expected one or --laws", r->scenario->name));
+    FAIL_IF(r->arguments->plot != NULL && r->count > ROBUST_MOST_CURVES,
+            complain("--plot shows at most %d laws", ROBUST_MOST_CURVES));
     return EXIT_DONE;
 }
 
@@ -124,9 +119,8 @@ static int read_set(robustness *r)
     if (code != STATUS_OK) {
         return complain_fault(&f);
     }
-    if (r->set.case_count > 0 && a->plot != NULL) {
-        return complain("--plot shows laws, not the cases of %s", a->over);
-    }
+    FAIL_IF(r->set.case_count > 0 && a->plot != NULL,
+            complain("--plot shows laws, not the cases of %s", a->over));
 
     // what is drawn is the same in all cases
     bool cases = r->set.case_count > 0;

@@ -170,21 +170,17 @@ static int read_share(const arguments *a, sweep_share *share)
     }
 
     // which part of how many
-    if (sscanf(a->part, "%6d/%6d%c", &share->part, &share->parts, &rest) != 2 || share->part < 1 ||
-        share->parts < share->part) {
-        return complain("--part '%.40s' is no part, expected K/N with K from 1 to N", a->part);
-    }
+    FAIL_IF(sscanf(a->part, "%6d/%6d%c", &share->part, &share->parts, &rest) != 2 ||
+                share->part < 1 || share->parts < share->part,
+            complain("--part '%.40s' is no part, expected K/N with K from 1 to N", a->part));
 
     // a part alone can only be kept
-    if (a->db == NULL) {
-        return complain("--part %s keeps its runs in a database, expected --db FILE.sqlite",
-                        a->part);
-    }
-    if (a->csv != NULL || a->json != NULL || a->plot != NULL) {
-        return complain("--part %s is not the whole sweep: --csv, --json and --plot come after "
-                        "impactlab merge",
-                        a->part);
-    }
+    FAIL_IF(a->db == NULL,
+            complain("--part %s keeps its runs in a database, expected --db FILE.sqlite", a->part));
+    FAIL_IF(a->csv != NULL || a->json != NULL || a->plot != NULL,
+            complain("--part %s is not the whole sweep: --csv, --json and --plot come after "
+                     "impactlab merge",
+                     a->part));
     return EXIT_DONE;
 }
 
@@ -294,9 +290,7 @@ static int merge(const arguments *a)
 {
     fault f = {0};
     sweep_merged merged;
-    if (a->output == NULL) {
-        return complain("merge: expected -o FILE, the database to write");
-    }
+    FAIL_IF(a->output == NULL, complain("merge: expected -o FILE, the database to write"));
     if (sweep_merge(a->operands, a->operand_count, a->output, &merged, &f) != STATUS_OK) {
         return complain_fault(&f);
     }

@@ -185,9 +185,8 @@ static int tune(const arguments *a, scenario *s)
     tuner t = {.arguments = a, .scenario = s};
     robust_set set = {0};
     fault f = {0};
-    if (a->varies.count == 0 || a->minimise == NULL) {
-        return complain("tune: expected --vary PATH=a:b and --minimise EXPR");
-    }
+    FAIL_IF(a->varies.count == 0 || a->minimise == NULL,
+            complain("tune: expected --vary PATH=a:b and --minimise EXPR"));
     const size_t usual = a->over != NULL ? TUNE_RUNS : TUNE_RUNS_ALONE;
     const tune_request asked = {.base = s,
                                 .vary = a->varies.items,

@@ -57,9 +57,8 @@ bool act_read_number(explorer_state *st, const char *text, double *value)
 {
     char *end;
     *value = strtod(text, &end);
-    if (end == text || *end != '\0' || !isfinite(*value)) {
-        return act_refuse(st, "'%s' is no number", text);
-    }
+    FAIL_IF(end == text || *end != '\0' || !isfinite(*value),
+            act_refuse(st, "'%s' is no number", text));
     return true;
 }
 
@@ -71,7 +70,7 @@ bool act_read_number_or(explorer_state *st, const char *text, const char *word, 
 int act_read_index(explorer_state *st, const char **text, int count, const char *what,
                    const char *lister)
 {
-    assert(text != NULL && count > 0);
+    assert(count > 0);
     char *end;
     const long number = strtol(*text, &end, 10);
 
@@ -107,15 +106,13 @@ bool act_read_pane(explorer_state *st, const char *word, int *index)
     }
 
     // numbered as the keys are, and on
-    if (*end != '\0' || end == word || number < 1 || number > PANES) {
-        return act_refuse(st, "'%s' is no pane: 1 to %d, or all", word, PANES);
-    }
+    FAIL_IF(*end != '\0' || end == word || number < 1 || number > PANES,
+            act_refuse(st, "'%s' is no pane: 1 to %d, or all", word, PANES));
     *index = (int)number - 1;
 
     // an empty pane has no axis
-    if (st->panes.pane[*index].count == 0) {
-        return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", word);
-    }
+    FAIL_IF(st->panes.pane[*index].count == 0,
+            act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", word));
     return true;
 }
 
@@ -174,23 +171,20 @@ bool act_tell_change(explorer_state *st)
     const parameters p = session_parameters_at(s, in->time);
     const char *inert = state_inert_reason(st, in->parameter);
     const char *blank = info->unit[0] ? " " : "";
-    if (inert != NULL) {
-        return act_warn(st, "%s = %s%s%s %s, without effect: %s", info->path, value, blank,
-                        info->unit, when, inert);
-    }
-    if (in->parameter == PARAMETER_INDEX(motor.voltage) &&
-        fabs(p.motor.voltage) > p.motor.voltage_limit) {
-        return act_warn(st,
-                        "%s = %s V %s, more than motor.voltage_limit: the command saturates "
-                        "at %g V",
-                        info->path, value, when, p.motor.voltage_limit);
-    }
+    FAIL_IF(inert != NULL, act_warn(st, "%s = %s%s%s %s, without effect: %s", info->path, value,
+                                    blank, info->unit, when, inert));
+    FAIL_IF(in->parameter == PARAMETER_INDEX(motor.voltage) &&
+                fabs(p.motor.voltage) > p.motor.voltage_limit,
+            act_warn(st,
+                     "%s = %s V %s, more than motor.voltage_limit: the command saturates "
+                     "at %g V",
+                     info->path, value, when, p.motor.voltage_limit));
     return act_tell(st, "%s = %s%s%s %s", info->path, value, blank, info->unit, when);
 }
 
 bool act_give(explorer_state *st, int parameter, const char *text)
 {
-    assert(st != NULL && text != NULL && parameter >= 0 && parameter < parameter_count);
+    assert(parameter >= 0 && parameter < parameter_count);
     session_forget_ghost(&st->session);
     fault f = {0};
     return act_worked(st, session_change(&st->session, parameter, text, &f), &f) &&

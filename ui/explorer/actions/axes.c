@@ -66,9 +66,8 @@ bool act_pan(explorer_state *st, const char *argument)
     } else if (!act_read_number(st, argument, &seconds)) {
         return false;
     }
-    if (st->window.to <= st->window.from) {
-        return act_refuse(st, "the whole run is visible, z zooms in");
-    }
+    FAIL_IF(st->window.to <= st->window.from,
+            act_refuse(st, "the whole run is visible, z zooms in"));
     act_pan_by(st, seconds);
     state_window(st, &from, &to);
     return act_tell(st, "%.4g to %.4g s, f follows the cursor again", from, to);
@@ -137,10 +136,9 @@ static bool set_limits(explorer_state *st, int index, const char *from, const ch
     }
 
     // limits the wrong way round, or none at all: NAN is not below anything
-    if (!(limits.low < limits.high)) {
-        return act_refuse(st, "an axis goes from a lower to a higher value, not from %g to %g",
-                          limits.low, limits.high);
-    }
+    FAIL_IF(!(limits.low < limits.high),
+            act_refuse(st, "an axis goes from a lower to a higher value, not from %g to %g",
+                       limits.low, limits.high));
     pane_fix_axis(&st->panes.pane[index], limits);
     return true;
 }
@@ -192,15 +190,9 @@ bool act_axis(explorer_state *st, const char *argument)
     // limits are two words, everything else is one; a pane may follow
     bool limits = (strtod(words[0], &end), end != words[0]);
     int used = limits ? 2 : 1;
-    if (count < used) {
-        return act_refuse(st, "an axis has two limits, such as 0 2, and then a pane");
-    }
-    if (count > used + 1) {
-        return act_refuse(st, "what is '%s' for?", words[2]);
-    }
-    if (count == used && index < 0) {
-        return act_refuse(st, "no pane of curves is shown");
-    }
+    FAIL_IF(count < used, act_refuse(st, "an axis has two limits, such as 0 2, and then a pane"));
+    FAIL_IF(count > used + 1, act_refuse(st, "what is '%s' for?", words[2]));
+    FAIL_IF(count == used && index < 0, act_refuse(st, "no pane of curves is shown"));
     if (count > used && !act_read_pane(st, words[used], &index)) {
         return false;
     }

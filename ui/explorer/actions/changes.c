@@ -13,7 +13,7 @@
 // once the value is what it was.
 static bool act_adjust(explorer_state *st, int parameter, double value)
 {
-    assert(st != NULL && parameter >= 0 && parameter < parameter_count);
+    assert(parameter >= 0 && parameter < parameter_count);
     session *s = &st->session;
     parameters p = state_parameters(st);
     char text[LINE_TEXT];
@@ -39,9 +39,8 @@ static bool find_parameter(explorer_state *st, const char *name, int *parameter)
 {
     fault f = {0};
     *parameter = parameter_of_name(name);
-    if (*parameter == -2) {
-        return act_refuse(st, "several parameters begin with '%s' (Tab lists them)", name);
-    }
+    FAIL_IF(*parameter == -2,
+            act_refuse(st, "several parameters begin with '%s' (Tab lists them)", name));
     if (*parameter < 0 && parameter_look_up(name, &f) < 0) {
         return act_worked(st, STATUS_BAD_ARGUMENT, &f);
     }
@@ -54,9 +53,7 @@ bool act_set(explorer_state *st, const char *argument)
     char path[LINE_TEXT];
     int parameter;
     size_t length = strcspn(argument, " =");
-    if (length == 0) {
-        return act_refuse(st, "set takes a parameter and a value, such as arm.k2 10");
-    }
+    FAIL_IF(length == 0, act_refuse(st, "set takes a parameter and a value, such as arm.k2 10"));
     snprintf(path, sizeof path, "%.*s", (int)length, argument);
     const char *value = argument + length + strspn(argument + length, " =");
     if (!find_parameter(st, path, &parameter)) {
@@ -115,18 +112,15 @@ bool act_nudge(explorer_state *st, const char *argument)
         return true;
     }
     const parameter_info *info = &parameter_table[index];
-    if (st->parameters.on_heading) {
-        return act_refuse(st, "no parameter is selected (arrows up and down select one)");
-    }
+    FAIL_IF(st->parameters.on_heading,
+            act_refuse(st, "no parameter is selected (arrows up and down select one)"));
     parameters p = state_parameters(st);
     double value = parameter_get(&p, index);
     if (strcmp(info->path, "control.lock") == 0) {
         return act_lock(st, direction > 0 ? "next" : "previous");
     }
-    if (parameter_is_text(info)) {
-        return act_refuse(st, "%s is a %s: Enter edits it", info->path,
-                          info->type == PARAMETER_LIST ? "list" : "text");
-    }
+    FAIL_IF(parameter_is_text(info), act_refuse(st, "%s is a %s: Enter edits it", info->path,
+                                                info->type == PARAMETER_LIST ? "list" : "text"));
 
     // a number by a step, anything else to its neighbour
     value = info->type == PARAMETER_REAL ? nudged(index, value, direction) : value + direction;
@@ -140,9 +134,7 @@ static bool take_swept(explorer_state *st)
     session *s = &st->session;
     char value[SWEEP_VALUE_TEXT];
     double values[2];
-    if (sweep->selected >= sweep->count) {
-        return act_refuse(st, "the sweep has no run yet");
-    }
+    FAIL_IF(sweep->selected >= sweep->count, act_refuse(st, "the sweep has no run yet"));
 
     // a change from the start, whatever is looked at
     const double now = s->now;
@@ -190,9 +182,7 @@ bool act_edit(explorer_state *st, const char *argument)
 
     // what can be typed, or why it makes no difference
     const char *inert = state_inert_reason(st, st->parameters.parameter);
-    if (inert != NULL) {
-        return act_warn(st, "%s has no effect: %s", info->path, inert);
-    }
+    FAIL_IF(inert != NULL, act_warn(st, "%s has no effect: %s", info->path, inert));
     if (info->choices != NULL && info->type == PARAMETER_CHOICE) {
         return act_tell(st, "%s: %s", info->description, info->choices);
     }
@@ -270,7 +260,7 @@ bool act_extend(explorer_state *st, const char *argument)
 
 void act_hold_slider(explorer_state *st, slider_drag d)
 {
-    assert(st != NULL && d.parameter >= 0 && d.parameter < parameter_count);
+    assert(d.parameter >= 0 && d.parameter < parameter_count);
     slider_grip *grip = &st->slider;
     parameters p = state_parameters(st);
 

@@ -150,12 +150,9 @@ static bool lock(explorer_state *st, const char *wanted)
 
 bool act_lock(explorer_state *st, const char *argument)
 {
-    if (!state_has_law(st)) {
-        return act_refuse(st, "no law is on that could be held in a mode (:law NAME)");
-    }
-    if (!state_law_modes(st)->lockable) {
-        return act_refuse(st, "this law cannot be held in a mode");
-    }
+    FAIL_IF(!state_has_law(st),
+            act_refuse(st, "no law is on that could be held in a mode (:law NAME)"));
+    FAIL_IF(!state_law_modes(st)->lockable, act_refuse(st, "this law cannot be held in a mode"));
     if (argument[0] == '\0') {
         return tell_modes(st);
     }

@@ -42,9 +42,8 @@ bool act_data(explorer_state *st, const char *argument)
     char path[LINE_TEXT];
     const char *at = strrchr(argument, '@');
     double shift = (double)NAN;
-    if (argument[0] == '\0') {
-        return act_refuse(st, "data takes a table with a column time, such as bench.csv, or off");
-    }
+    FAIL_IF(argument[0] == '\0',
+            act_refuse(st, "data takes a table with a column time, such as bench.csv, or off"));
     if (strcmp(argument, "off") == 0) {
         trace_finish(&st->measured);
         st->measured = (trace){0};
@@ -125,10 +124,9 @@ bool act_identify(explorer_state *st, const char *argument)
     identification id = {.base = &st->session.effective, .starts = FIT_STARTS, .jobs = FIT_THREADS};
     const sweep_axis *axes[IDENTIFY_PATHS];
     double values[IDENTIFY_PATHS];
-    if (argument[0] == '\0' || st->measured.row_count == 0) {
-        return act_refuse(st, argument[0] == '\0' ? "identify takes parameters, such as k2 stiction"
-                                                  : "there are no measured data: :data FILE.csv");
-    }
+    FAIL_IF(argument[0] == '\0' || st->measured.row_count == 0,
+            act_refuse(st, argument[0] == '\0' ? "identify takes parameters, such as k2 stiction"
+                                               : "there are no measured data: :data FILE.csv"));
     if (!act_need_whole_run(st) || !act_need_short_runs(st, "identify", FIT_RUNS)) {
         return false;
     }

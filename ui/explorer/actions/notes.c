@@ -10,7 +10,7 @@
 
 void act_drop_note(explorer_state *st, int index)
 {
-    assert(st != NULL && index >= 0 && index < st->note_count);
+    assert(index >= 0 && index < st->note_count);
     st->note_count--;
     memmove(&st->notes[index], &st->notes[index + 1],
             (size_t)(st->note_count - index) * sizeof st->notes[0]);
@@ -26,9 +26,8 @@ bool act_note(explorer_state *st, const char *argument)
     if (*text == '@') {
         char *end;
         time = strtod(text + 1, &end);
-        if (end == text + 1 || (*end != ' ' && *end != '\0') || !isfinite(time)) {
-            return act_refuse(st, "'%.40s' is no instant, such as @0.35", text);
-        }
+        FAIL_IF(end == text + 1 || (*end != ' ' && *end != '\0') || !isfinite(time),
+                act_refuse(st, "'%.40s' is no instant, such as @0.35", text));
         text = end + strspn(end, " ");
     }
 
@@ -46,9 +45,8 @@ bool act_note(explorer_state *st, const char *argument)
         return there ? act_tell(st, "no note at %.5f s", time)
                      : act_refuse(st, "note takes a text; there is none at %.5f s", time);
     }
-    if (!there && st->note_count == NOTES) {
-        return act_refuse(st, "%d notes are the most there can be (:notes drops some)", NOTES);
-    }
+    FAIL_IF(!there && st->note_count == NOTES,
+            act_refuse(st, "%d notes are the most there can be (:notes drops some)", NOTES));
     if (!there) {
         memmove(&st->notes[at + 1], &st->notes[at],
                 (size_t)(st->note_count++ - at) * sizeof st->notes[0]);

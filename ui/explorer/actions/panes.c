@@ -32,14 +32,11 @@ static bool add_signal(explorer_state *st, const char *text, pane *own)
 {
     fault f = {0};
     int signal = signal_find_any(text);
-    if (signal < 0 && text[strcspn(text, "+-*/(")] == '\0') {
-        return act_refuse(st, "there is no signal '%s' (Tab completes)", text);
-    }
+    FAIL_IF(signal < 0 && text[strcspn(text, "+-*/(")] == '\0',
+            act_refuse(st, "there is no signal '%s' (Tab completes)", text));
     if (signal < 0) {
         const int place = free_place(st, own);
-        if (place < 0) {
-            return act_refuse(st, "%d expressions are shown already", DERIVED_SIGNALS);
-        }
+        FAIL_IF(place < 0, act_refuse(st, "%d expressions are shown already", DERIVED_SIGNALS));
         signal = signal_derive(place, text, &f);
         if (signal < 0) {
             return act_worked(st, f.code, &f);
@@ -67,9 +64,8 @@ static bool read_signals(explorer_state *st, const char *argument, pane *own)
         } else if (length > 0 && (*c != ' ' || !computes)) {
             word[length] = '\0';
             length = 0;
-            if (own->count == PANE_SIGNALS) {
-                return act_refuse(st, "a pane has at most %d signals", PANE_SIGNALS);
-            }
+            FAIL_IF(own->count == PANE_SIGNALS,
+                    act_refuse(st, "a pane has at most %d signals", PANE_SIGNALS));
             if (!add_signal(st, word, own)) {
                 return false;
             }
@@ -89,9 +85,7 @@ static bool show_own(explorer_state *st, const char *argument, pane_view view, i
     if (!read_signals(st, argument, &own)) {
         return false;
     }
-    if (own.count < least || own.count > most) {
-        return act_refuse(st, "%s", refusal);
-    }
+    FAIL_IF(own.count < least || own.count > most, act_refuse(st, "%s", refusal));
     const int index = panes_add(&st->panes, &own);
     return act_tell(st, "pane %d: :trace %d hides it", index + 1, index + 1);
 }
@@ -102,13 +96,11 @@ bool act_trace(explorer_state *st, const char *argument)
     // a pane of the table
     if (argument[0] != '\0' && argument[strspn(argument, "0123456789")] == '\0') {
         const int index = atoi(argument) - 1;
-        if (index < 0 || index >= PANES) {
-            return act_refuse(st, "panes are numbered from 1 to %d", PANES);
-        }
+        FAIL_IF(index < 0 || index >= PANES,
+                act_refuse(st, "panes are numbered from 1 to %d", PANES));
         pane *p = &st->panes.pane[index];
-        if (p->count == 0) {
-            return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", argument);
-        }
+        FAIL_IF(p->count == 0,
+                act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", argument));
         p->shown = !p->shown;
         st->panes.chosen = true;
         st->panes.focus = p->shown ? index : st->panes.focus;
@@ -139,9 +131,8 @@ bool act_spectrum(explorer_state *st, const char *argument)
 // Shows the panes of these numbers and no others.
 bool act_panes(explorer_state *st, const char *argument)
 {
-    if (argument[strspn(argument, "123456789")] != '\0') {
-        return act_refuse(st, "panes takes numbers from 1 to 9, such as 134");
-    }
+    FAIL_IF(argument[strspn(argument, "123456789")] != '\0',
+            act_refuse(st, "panes takes numbers from 1 to 9, such as 134"));
     for (int i = PANES_OF_TABLE; i < PANES; i++) {
         st->panes.pane[i].shown = false;
     }
@@ -157,9 +148,7 @@ bool act_panes(explorer_state *st, const char *argument)
 bool act_focus(explorer_state *st, const char *argument)
 {
     int focused = panes_focused(&st->panes);
-    if (focused < 0) {
-        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
-    }
+    FAIL_IF(focused < 0, act_refuse(st, "no pane of curves is shown, 1 to 9 show them"));
     st->panes.focus = (focused + 1) % PANES;
     st->panes.focus = panes_focused(&st->panes);
     return true;
@@ -167,7 +156,7 @@ bool act_focus(explorer_state *st, const char *argument)
 
 bool act_toggle_signal(explorer_state *st, int index, int k)
 {
-    assert(st != NULL && index >= 0 && index < PANES && k >= 0 && k < PANE_SIGNALS);
+    assert(index >= 0 && index < PANES && k >= 0 && k < PANE_SIGNALS);
     pane *p = &st->panes.pane[index];
     p->hidden ^= 1u << k;
     p->grown = value_range_empty;
@@ -185,9 +174,7 @@ bool act_signal(explorer_state *st, const char *argument)
         return false;
     }
     const int signal = signal_find_any(words[0]);
-    if (index < 0) {
-        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
-    }
+    FAIL_IF(index < 0, act_refuse(st, "no pane of curves is shown, 1 to 9 show them"));
     pane *p = &st->panes.pane[index];
     if (strcmp(words[0], "all") == 0) {
         p->hidden = 0;
@@ -200,9 +187,8 @@ bool act_signal(explorer_state *st, const char *argument)
             return act_toggle_signal(st, index, k);
         }
     }
-    if (argument[0] != '\0') {
-        return act_refuse(st, "the pane in focus has no signal '%.60s' (w: next pane)", argument);
-    }
+    FAIL_IF(argument[0] != '\0',
+            act_refuse(st, "the pane in focus has no signal '%.60s' (w: next pane)", argument));
 
     // the one before that which is hidden; one that is alone stays
     int next = p->count - 1;
@@ -241,9 +227,8 @@ bool act_band(explorer_state *st, const char *argument)
     if (!read_bound(st, argument, "band", &band)) {
         return false;
     }
-    if (band.signal >= 0 && !(band.bound > 0)) {
-        return act_refuse(st, "a band has a tolerance above 0");
-    }
+    FAIL_IF(band.signal >= 0 && !(band.bound > 0),
+            act_refuse(st, "a band has a tolerance above 0"));
     st->band = band;
     if (band.signal < 0 || !st->session.has_other) {
         return act_tell(st, "%s", band.signal < 0 ? "no band" : "b pins the run that it is round");

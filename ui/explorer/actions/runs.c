@@ -145,12 +145,9 @@ bool act_difference(explorer_state *st, const char *argument)
     if (!act_read_number_or(st, argument, "", &tolerance)) {
         return false;
     }
-    if (!st->session.has_other) {
-        return act_refuse(st, "there is nothing to subtract: b pins this run first");
-    }
-    if (tolerance < 0) {
-        return act_refuse(st, "a tolerance is not negative");
-    }
+    FAIL_IF(!st->session.has_other,
+            act_refuse(st, "there is nothing to subtract: b pins this run first"));
+    FAIL_IF(tolerance < 0, act_refuse(st, "a tolerance is not negative"));
     d->on = true;
     d->tolerance = tolerance;
     difference_update(d, state_run_id(st), &st->session.run.trace, &st->session.other.trace);
@@ -209,16 +206,12 @@ status act_pin_values(explorer_state *st, const sweep_axis *const *axes, const d
     run_origin from;
     session other;
     status code = run_origin_take(&from, &st->session, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
 
     // the present run's changes, and the values from the start
     code = session_reopen(&other, &from, HUGE_VAL, f);
     run_origin_finish(&from);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     session_seek(&other, 0);
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         char text[PARAMETER_TEXT_SIZE];
@@ -294,10 +287,9 @@ bool act_solve(explorer_state *st, const char *argument)
     char path[LINE_TEXT];
     const char *rest = argument + strcspn(argument, " ");
     snprintf(path, sizeof path, "%.*s", (int)strcspn(argument, " "), argument);
-    if (*rest == '\0') {
-        return act_refuse(st, "solve takes a parameter and a condition, such as motor.voltage "
-                              "peak_force_N<2");
-    }
+    FAIL_IF(*rest == '\0',
+            act_refuse(st, "solve takes a parameter and a condition, such as motor.voltage "
+                           "peak_force_N<2"));
     if (!act_need_whole_run(st) || !act_need_short_runs(st, "solve", 2 * SOLVE_POINTS)) {
         return false;
     }

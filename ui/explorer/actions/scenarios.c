@@ -78,9 +78,7 @@ bool act_find(explorer_state *st, const char *argument)
 bool act_stop(explorer_state *st, const char *argument)
 {
     session *s = &st->session;
-    if (s->computing == NULL) {
-        return act_refuse(st, "nothing is being computed");
-    }
+    FAIL_IF(s->computing == NULL, act_refuse(st, "nothing is being computed"));
     return !session_stop(s) ||
            act_tell(st, "stopped at %.4g s: Space at its end goes on, u takes the last change back",
                     session_end(s));
@@ -91,9 +89,8 @@ bool act_allow(explorer_state *st, const char *argument)
     session *s = &st->session;
     fault f = {0};
     bool kept;
-    if (s->run.summary.status != STATUS_NOT_ALLOWED) {
-        return act_refuse(st, "the run asks for no permission");
-    }
+    FAIL_IF(s->run.summary.status != STATUS_NOT_ALLOWED,
+            act_refuse(st, "the run asks for no permission"));
 
     // a visit's changes are the user's own: what is remembered is the scenario as it was opened
     if (!act_worked(st, session_allow_code(s, &f), &f)) {
@@ -162,9 +159,8 @@ bool act_lesson(explorer_state *st, const char *argument)
 
     // its scenario brings the lesson along
     const char *name = lesson_named(st, argument);
-    if (name == NULL) {
-        return act_refuse(st, "there is no lesson '%.60s' (:lesson lists them)", argument);
-    }
+    FAIL_IF(name == NULL,
+            act_refuse(st, "there is no lesson '%.60s' (:lesson lists them)", argument));
     return act_open_scenario(st, name) && act_hush(st);
 }
 
@@ -179,12 +175,9 @@ void act_follow_lesson(explorer_state *st)
 bool act_answer(explorer_state *st, const char *argument)
 {
     const lesson_step *step = present_step(st);
-    if (step == NULL) {
-        return act_refuse(st, "there is no lesson here (:lesson lists them)");
-    }
-    if (step->check != LESSON_NUMBER && step->check != LESSON_CHOICE) {
-        return act_refuse(st, "this step wants no answer: do what it says");
-    }
+    FAIL_IF(step == NULL, act_refuse(st, "there is no lesson here (:lesson lists them)"));
+    FAIL_IF(step->check != LESSON_NUMBER && step->check != LESSON_CHOICE,
+            act_refuse(st, "this step wants no answer: do what it says"));
     if (argument[0] == '\0') {
         prompt_open(&st->prompt, "answer ");
         return act_tell(st, "%s",
@@ -206,13 +199,10 @@ bool act_continue(explorer_state *st, const char *argument)
 {
     const lesson *l = &st->session.base.lesson;
     const lesson_step *step = present_step(st);
-    if (step == NULL) {
-        return act_refuse(st, "there is no lesson here (:lesson lists them)");
-    }
+    FAIL_IF(step == NULL, act_refuse(st, "there is no lesson here (:lesson lists them)"));
     act_follow_lesson(st);
-    if (step->check != LESSON_READ && !st->lesson.passed) {
-        return act_warn(st, "not yet. %s", step->hint);
-    }
+    FAIL_IF(step->check != LESSON_READ && !st->lesson.passed,
+            act_warn(st, "not yet. %s", step->hint));
 
     // after the last one the lab is as it always is
     if (st->lesson.step + 1 == l->step_count) {

@@ -22,12 +22,9 @@ bool act_hold_tip(explorer_state *st, plane_vector place)
 {
     const session *s = &st->session;
     tip_pull *p = &st->pull;
-    if (s->effective.parameters.arm.model == ARM_PRINTED) {
-        return act_refuse(st, "the printed model knows no pushes: nothing pulls its tip");
-    }
-    if (s->computing != NULL) {
-        return act_refuse(st, "the run is still being computed");
-    }
+    FAIL_IF(s->effective.parameters.arm.model == ARM_PRINTED,
+            act_refuse(st, "the printed model knows no pushes: nothing pulls its tip"));
+    FAIL_IF(s->computing != NULL, act_refuse(st, "the run is still being computed"));
 
     // the run plays as long as the tip is held
     session_forget_ghost(&st->session);
@@ -92,7 +89,7 @@ enum { MOST_SLOW = 100 }; // how much slower impacts can be shown
 
 void act_scrub(explorer_state *st, double time)
 {
-    assert(st != NULL && isfinite(time));
+    assert(isfinite(time));
     st->playback.playing = false;
     session_forget_ghost(&st->session);
     session_seek(&st->session, time);
@@ -187,9 +184,7 @@ bool act_event(explorer_state *st, const char *argument)
     bool back = argument[0] == '-';
     double time = run_log_next(state_run_log(st), st->session.now, back ? -1 : 1);
     st->playback.playing = false;
-    if (time < 0) {
-        return act_refuse(st, "no %s event", back ? "earlier" : "later");
-    }
+    FAIL_IF(time < 0, act_refuse(st, "no %s event", back ? "earlier" : "later"));
     session_seek(&st->session, time);
     return act_tell_event(st);
 }
@@ -221,9 +216,7 @@ bool act_touch(explorer_state *st, const char *argument)
             }
         }
     }
-    if (found == row) {
-        return act_refuse(st, "no %s touch", back ? "earlier" : "later");
-    }
+    FAIL_IF(found == row, act_refuse(st, "no %s touch", back ? "earlier" : "later"));
     session_step(&st->session, (long)found - (long)row);
     return act_tell(st, "just before a touch: what would come of it is predicted beside what came");
 }
@@ -252,9 +245,8 @@ bool act_speed(explorer_state *st, const char *argument)
     }
 
     // written so that NAN is refused too
-    if (!(wanted >= 1e-3 && wanted <= 1e4)) {
-        return act_refuse(st, "the speed is a number from 0.001 to 10000, 1 is real time");
-    }
+    FAIL_IF(!(wanted >= 1e-3 && wanted <= 1e4),
+            act_refuse(st, "the speed is a number from 0.001 to 10000, 1 is real time"));
     st->playback.speed = wanted;
     return true;
 }
@@ -265,9 +257,8 @@ bool act_slow(explorer_state *st, const char *argument)
     if (!act_read_number_or(st, argument, "off", &factor)) {
         return false;
     }
-    if (!(factor >= 1 && factor <= MOST_SLOW)) {
-        return act_refuse(st, "impacts are shown 1 to %d times slower", MOST_SLOW);
-    }
+    FAIL_IF(!(factor >= 1 && factor <= MOST_SLOW),
+            act_refuse(st, "impacts are shown 1 to %d times slower", MOST_SLOW));
     st->playback.slow = factor;
     return factor > 1 ? act_tell(st, "impacts are shown %g times slower", factor)
                       : act_tell(st, "impacts are shown at the speed of the rest");

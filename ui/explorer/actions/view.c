@@ -196,9 +196,8 @@ static bool choose(explorer_state *st, const look_choice *c, const char *argumen
         snprintf(all + used, sizeof all - used, "%s%s", count > 0 ? ", " : "", c->words[count]);
         found = strcmp(argument, c->words[count]) == 0 ? count : found;
     }
-    if (found < 0 && (argument[0] != '\0' || !c->goes_round)) {
-        return act_refuse(st, "'%s' is none of %s", argument, all);
-    }
+    FAIL_IF(found < 0 && (argument[0] != '\0' || !c->goes_round),
+            act_refuse(st, "'%s' is none of %s", argument, all));
     *value = found >= 0 ? found : (*value + 1) % count;
     st->looks.redraw |= found >= 0;
     return c->says[*value] == NULL || act_tell(st, "%s", c->says[*value]);
@@ -224,9 +223,8 @@ bool act_rate(explorer_state *st, const char *argument)
     if (!act_read_number_or(st, argument, "off", &rate)) {
         return false;
     }
-    if (rate < 0 || (rate > 0 && rate < 1)) {
-        return act_refuse(st, "a rate is at least 1 kB/s, or off");
-    }
+    FAIL_IF(rate < 0 || (rate > 0 && rate < 1),
+            act_refuse(st, "a rate is at least 1 kB/s, or off"));
     st->looks.rate = rate;
     return rate > 0 ? act_tell(st, "pictures take at most %g kB/s", rate)
                     : act_tell(st, "pictures as fast as they are drawn");
@@ -239,9 +237,8 @@ bool act_bending(explorer_state *st, const char *argument)
     if (!act_read_number_or(st, argument, "", &factor)) {
         return false;
     }
-    if (!(factor >= 1 && factor <= MOST)) {
-        return act_refuse(st, "bending is drawn 1 to %d times as large", MOST);
-    }
+    FAIL_IF(!(factor >= 1 && factor <= MOST),
+            act_refuse(st, "bending is drawn 1 to %d times as large", MOST));
     st->looks.bending = factor;
     return factor == 1 ? act_tell(st, "bending is drawn as it is")
                        : act_tell(st, "bending is drawn %g times as large", factor);
@@ -304,7 +301,7 @@ bool act_palette(explorer_state *st, const char *argument)
 
 void act_move_in_palette(explorer_state *st, int direction)
 {
-    assert(st != NULL && (direction == 1 || direction == -1));
+    assert(direction == 1 || direction == -1);
     static palette_entry entries[PALETTE_ENTRIES];
     const int count = palette_find(&st->scenarios, &st->keys, st->prompt.text, entries);
     const int least = st->prompt.searches ? 0 : -1;

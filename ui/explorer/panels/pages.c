@@ -125,7 +125,7 @@ static void add_user_keys(page *p, const key_bindings *b)
 
 int help_write(const key_bindings *b, int width, help_line *lines, int most)
 {
-    assert(b != NULL && lines != NULL && most > 0);
+    assert(most > 0);
     page p = {.lines = lines, .most = most, .width = width};
     p.column = width >= 96 ? 26 : width >= 60 ? 20 : 12;
     add_text(&p, 0, first_visit, NULL);

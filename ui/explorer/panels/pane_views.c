@@ -186,6 +186,6 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
 
 bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a, value_range *axis)
 {
-    assert(st != NULL && s != NULL && p != NULL && p->view != VIEW_TIME && axis != NULL);
+    assert(p->view != VIEW_TIME);
     return p->view == VIEW_PHASE ? draw_phase(st, s, p, a, axis) : draw_spectrum(st, s, p, a, axis);
 }

@@ -137,7 +137,7 @@ hit_area layout_hit(const layout *lay, int x, int y)
 
 int layout_keep_scroll(layout *lay, panel_id id, int last)
 {
-    assert(lay != NULL && id > PANEL_NONE && id < PANEL_IDS);
+    assert(id > PANEL_NONE && id < PANEL_IDS);
     int *scroll = &lay->drawn.scroll[id];
     *scroll = *scroll > last ? last : *scroll;
     *scroll = *scroll < 0 ? 0 : *scroll;
@@ -148,7 +148,7 @@ int layout_keep_scroll(layout *lay, panel_id id, int last)
 
 bool page_key(explorer_state *st, int key)
 {
-    assert(st != NULL && st->page != PANEL_NONE);
+    assert(st->page != PANEL_NONE);
     int *scroll = &st->drawn.scroll[st->page];
     const int lines = st->drawn.page_lines;
 

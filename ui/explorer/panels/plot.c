@@ -231,7 +231,7 @@ static bool have_rows(const ticks *t, value_range axis, int height)
 
 void draw_value_axis(screen *s, area a, value_range axis)
 {
-    assert(s != NULL && axis.high > axis.low);
+    assert(axis.high > axis.low);
     const double low = axis.low, high = axis.high;
     ticks t;
 

@@ -174,7 +174,7 @@ user_key *key_add_own(key_bindings *b, int key)
 
 void key_remove_own(key_bindings *b, user_key *own)
 {
-    assert(b != NULL && own >= b->own && own < b->own + b->count);
+    assert(own >= b->own && own < b->own + b->count);
     *own = b->own[--b->count];
 }
 
@@ -196,7 +196,7 @@ static bool begins_with(const char *line, const char *command)
 
 void key_names_of(const key_bindings *b, const char *command, char *text, size_t size)
 {
-    assert(b != NULL && command != NULL && text != NULL && size > 0);
+    assert(size > 0);
     size_t used = 0;
     char name[KEY_NAME];
     text[0] = '\0';

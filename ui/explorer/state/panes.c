@@ -172,7 +172,7 @@ bool pane_is_derived(const pane *p)
 
 int panes_add(pane_set *set, const pane *own)
 {
-    assert(set != NULL && own != NULL && own->count > 0);
+    assert(own->count > 0);
     int index = PANES - 1;
     for (int i = PANES - 1; i >= PANES_OF_TABLE; i--) {
         index = set->pane[i].count == 0 || (!set->pane[i].shown && set->pane[index].count > 0)
@@ -220,7 +220,7 @@ void time_window_range(const time_window *w, double duration, double *from, doub
 
 void time_window_show(time_window *w, double duration, double from, double to)
 {
-    assert(w != NULL && isfinite(duration));
+    assert(isfinite(duration));
     double width = fmax(to - from, SHORTEST);
     if (width >= duration) {
         time_window_show_all(w);
@@ -292,7 +292,7 @@ static void fill_blocks(double *pairs, size_t first, size_t blocks, const trace 
 
 void extremes_update(extremes *e, unsigned long run, const trace *t, int signal)
 {
-    assert(e != NULL && t != NULL && run != 0);
+    assert(run != 0);
     assert(signal >= 0 && signal < EXTREMES_SIGNALS);
 
     // another run: the blocks of the old one are not valid

@@ -38,7 +38,7 @@ int parameter_group(int parameter)
 
 void parameter_group_name(int parameter, char *name, size_t size)
 {
-    assert(parameter >= 0 && parameter < parameter_count && name != NULL);
+    assert(parameter >= 0 && parameter < parameter_count);
     snprintf(name, size, "%.*s", (int)group_length(parameter), parameter_table[parameter].path);
 }
 
@@ -60,7 +60,7 @@ static bool is_long_group(int parameter)
 
 void parameter_list_arrange(parameter_list *list, const parameters *p, int selected)
 {
-    assert(list != NULL && p != NULL && selected >= 0 && selected < parameter_count);
+    assert(selected >= 0 && selected < parameter_count);
 
     // groups without effect are folded, and long ones in which nothing was set
     for (int first = 0, next; first < parameter_count; first = next) {
@@ -130,7 +130,7 @@ int parameter_list_selected(const parameter_list *list, const parameter_line *li
 
 void parameter_list_select(parameter_list *list, parameter_line line)
 {
-    assert(list != NULL && line.parameter >= 0 && line.parameter < parameter_count);
+    assert(line.parameter >= 0 && line.parameter < parameter_count);
     list->parameter = line.parameter;
     list->on_heading = line.heading;
     if (!line.heading) {
@@ -140,7 +140,7 @@ void parameter_list_select(parameter_list *list, parameter_line line)
 
 void parameter_list_fold(parameter_list *list, int parameter)
 {
-    assert(list != NULL && parameter >= 0 && parameter < parameter_count);
+    assert(parameter >= 0 && parameter < parameter_count);
     bool *folded = &list->folded[parameter_group(parameter)];
     *folded = !*folded;
     list->parameter = group_begin(parameter);
@@ -183,7 +183,7 @@ bool slider_scale_of(int parameter, double value, slider_scale *scale)
 
 double slider_share(const slider_scale *scale, double value)
 {
-    assert(scale != NULL && scale->high > scale->low);
+    assert(scale->high > scale->low);
     double share = scale->logarithmic ? log(value / scale->low) / log(scale->high / scale->low)
                                       : (value - scale->low) / (scale->high - scale->low);
     return fmax(0, fmin(1, share));
@@ -191,7 +191,7 @@ double slider_share(const slider_scale *scale, double value)
 
 double slider_value(const slider_scale *scale, int parameter, double share, int cells)
 {
-    assert(scale != NULL && parameter >= 0 && parameter < parameter_count);
+    assert(parameter >= 0 && parameter < parameter_count);
     const parameter_info *info = &parameter_table[parameter];
     double value, step;
     share = fmax(0, fmin(1, share));
@@ -369,7 +369,7 @@ static const char *reason_of_sensor(const parameters *p, int parameter)
 
 const char *inert_reason(const parameters *p, int parameter)
 {
-    assert(p != NULL && parameter >= 0 && parameter < parameter_count);
+    assert(parameter >= 0 && parameter < parameter_count);
     const bool law = p->control.law != LAW_NONE;
     const bool control = IS_OF(parameter, control), sensor = IS_OF(parameter, sensor);
     const bool of_rig = sensor || control || IS_OF(parameter, belief);

@@ -11,14 +11,14 @@
 
 void playback_measure(playback *p, double simulated, double seconds)
 {
-    assert(p != NULL && seconds > 0);
+    assert(seconds > 0);
     double factor = simulated / seconds;
     p->measured = p->measured > 0 ? (1 - NEW_SHARE) * p->measured + NEW_SHARE * factor : factor;
 }
 
 double playback_slowness(const playback *p, const trace *t, double duration, double time)
 {
-    assert(p != NULL && t != NULL && duration > 0);
+    assert(duration > 0);
     double most = 1, last = -duration;
     for (size_t i = 0; i < t->event_count && p->slow > 1; i++) {
         const event *e = &t->events[i];
@@ -56,14 +56,14 @@ double playback_next_speed(const playback *p, int direction)
 
 plane_vector stage_place(const arm_stage *g, int x, int y)
 {
-    assert(g != NULL && g->width > 0 && g->across > 0 && g->up > 0);
+    assert(g->width > 0 && g->across > 0 && g->up > 0);
     return (plane_vector){g->left + (x - g->x + 0.5) / g->across,
                           g->bottom + (g->y + g->height - y - 0.5) / g->up};
 }
 
 void stage_cell(const arm_stage *g, plane_vector place, int *x, int *y)
 {
-    assert(g != NULL && g->width > 0 && x != NULL && y != NULL);
+    assert(g->width > 0);
     *x = g->x + (int)floor((place.x - g->left) * g->across);
     *y = g->y + g->height - 1 - (int)floor((place.y - g->bottom) * g->up);
 }
@@ -73,7 +73,7 @@ void recorded_tip(const trace *t, const arm_parameters *beam, size_t row, plane_
 {
     double lengths[PARAMETER_LINKS_MOST];
     parameters_link_lengths(beam, lengths);
-    assert(t != NULL && beam != NULL && row < t->row_count && tip != NULL && across != NULL);
+    assert(row < t->row_count);
     const size_t links = (size_t)beam->links;
     const double *angles = t->angles + (row + 1) * (size_t)t->angle_count - links;
     *tip = (plane_vector){0};

@@ -32,7 +32,7 @@ static void add_events(run_log *log, const trace *t, double until)
 
 void run_log_update(run_log *log, unsigned long run, const trace *t, bool complete)
 {
-    assert(log != NULL && t != NULL && run != 0);
+    assert(run != 0);
     if (log->run != run) {
         run_log_forget(log);
         log->run = run;
@@ -81,7 +81,7 @@ void run_log_forget(run_log *log)
 
 void law_modes_update(law_modes *m, unsigned long run, const parameters *p)
 {
-    assert(m != NULL && p != NULL && run != 0);
+    assert(run != 0);
     if (m->run != run) {
         m->run = run;
         m->count = rig_mode_names(p, m->names, LAW_MODES, &m->lockable);

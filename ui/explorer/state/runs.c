@@ -34,7 +34,7 @@ int run_list_of_scenario(const run_list *list, const session *s)
 
 void input_value_text(const session_input *in, char text[SESSION_INPUT_TEXT])
 {
-    assert(in != NULL && in->parameter >= 0 && text != NULL);
+    assert(in->parameter >= 0);
     if (parameter_table[in->parameter].type == PARAMETER_REAL) {
         snprintf(text, SESSION_INPUT_TEXT, "%.10g", in->value);
     } else {
@@ -77,7 +77,7 @@ static void append_others(const session_input *of, int count, const session_inpu
 
 void run_list_differences(const pinned_run *p, const session *s, char *text, size_t size)
 {
-    assert(p != NULL && s != NULL && text != NULL && size > 0);
+    assert(size > 0);
     char here[256] = "";
     const run_origin *o = &p->from;
     text[0] = '\0';
@@ -152,11 +152,9 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
             return STATUS_OK;
         }
     }
-    if (list->count == PINNED_RUNS) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%d runs are pinned already: R lists them, d there drops one",
-                         PINNED_RUNS);
-    }
+    FAIL_IF(list->count == PINNED_RUNS,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "%d runs are pinned already: R lists them, d there drops one", PINNED_RUNS));
 
     // the rows are shared, the changes are copied
     if (name[0] != '\0') {
@@ -164,10 +162,7 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
     } else {
         propose_name(list, s, p.name);
     }
-    const status code = run_origin_take(&p.from, s, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(run_origin_take(&p.from, s, f));
     if (run_share(&s->run, s->run.trace.row_count, &p.run) != STATUS_OK) {
         run_origin_finish(&p.from);
         return fault_no_memory(f);
@@ -180,7 +175,7 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
 
 void run_list_drop(run_list *list, int index)
 {
-    assert(list != NULL && index >= 0 && index < list->count);
+    assert(index >= 0 && index < list->count);
     run_finish(&list->runs[index].run);
     run_origin_finish(&list->runs[index].from);
     memmove(&list->runs[index], &list->runs[index + 1],
@@ -266,16 +261,13 @@ static status read_axis(sweep_axis *axis, const char *definition, fault *f)
     char text[256];
     snprintf(text, sizeof text, "%s", definition);
     char *values = strchr(text, '=');
-    if (values == NULL) {
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as "
-                         "control.rate=50:400:8, and for a map two of them");
-    }
+    FAIL_IF(values == NULL, fault_set(f, STATUS_BAD_ARGUMENT,
+                                      "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as "
+                                      "control.rate=50:400:8, and for a map two of them"));
     *values++ = '\0';
     axis->parameter = parameter_of_name(text);
-    if (axis->parameter == -2) {
-        return fault_set(f, STATUS_BAD_ARGUMENT, "several parameters begin with '%s'", text);
-    }
+    FAIL_IF(axis->parameter == -2,
+            fault_set(f, STATUS_BAD_ARGUMENT, "several parameters begin with '%s'", text));
     if (axis->parameter < 0) {
         parameter_look_up(text, f);
         return STATUS_BAD_ARGUMENT;
@@ -323,7 +315,7 @@ status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
 
 status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
 {
-    assert(sweep != NULL && base != NULL && !lab_sweep_is_done(sweep));
+    assert(!lab_sweep_is_done(sweep));
     double values[2];
     run_result run = {0};
     lab_sweep_values(sweep, sweep->count, values);
@@ -452,7 +444,7 @@ void difference_update(run_difference *d, unsigned long run, const trace *t, con
 
 double difference_first_beyond(const run_difference *d, int signal, double tolerance)
 {
-    assert(d != NULL && signal >= 0 && signal < signal_count);
+    assert(signal >= 0 && signal < signal_count);
     for (size_t r = 0; r < d->trace.row_count; r++) {
         if (fabs(signal_value(&d->trace.rows[r], signal)) > tolerance) {
             return d->trace.rows[r].time;

@@ -89,7 +89,7 @@ int scenario_menu_find(const scenario_menu *menu, const char *name)
 // What a scenario says of itself, nothing before it is read.
 static menu_text text_of(const scenario_menu *menu, int index)
 {
-    assert(menu != NULL && index >= 0 && index < menu->count);
+    assert(index >= 0 && index < menu->count);
     return menu->texts != NULL ? menu->texts[index] : (menu_text){0};
 }
 
@@ -112,7 +112,7 @@ bool scenario_menu_is_lesson(const scenario_menu *menu, int index)
 
 bool scenario_menu_shows(const scenario_menu *menu, int index)
 {
-    assert(menu != NULL && index >= 0 && index < menu->count);
+    assert(index >= 0 && index < menu->count);
     char text[1024];
     snprintf(text, sizeof text, "%s %s", menu->names[index], scenario_menu_title(menu, index));
     return filter_passes(menu->filter, text);
@@ -130,7 +130,7 @@ int scenario_menu_in_line(const scenario_menu *menu, int line)
 
 void scenario_menu_move(scenario_menu *menu, int direction)
 {
-    assert(menu != NULL && (direction == 1 || direction == -1));
+    assert(direction == 1 || direction == -1);
     for (int i = menu->selected + direction; i >= 0 && i < menu->count; i += direction) {
         if (scenario_menu_shows(menu, i)) {
             menu->selected = i;

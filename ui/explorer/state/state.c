@@ -94,10 +94,7 @@ static void show_anew(explorer_state *st)
 status state_init(explorer_state *st, scenario *s, double patience, fault *f)
 {
     memset(st, 0, sizeof *st);
-    status code = session_open(&st->session, s, patience, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(session_open(&st->session, s, patience, f));
 
     st->visit_count = 1;
     st->limit.signal = st->band.signal = -1;
@@ -167,10 +164,7 @@ static status take_visit(const explorer_state *st, visit *v, fault *f)
 status state_take_session(explorer_state *st, session *fresh, fault *f)
 {
     visit left;
-    const status code = take_visit(st, &left, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(take_visit(st, &left, f));
 
     // what undoing had left is given up, and the oldest where there is no room
     for (int i = st->present_visit + 1; i < st->visit_count; i++) {
@@ -190,7 +184,7 @@ status state_take_session(explorer_state *st, session *fresh, fault *f)
 
 bool state_can_turn(const explorer_state *st, int direction)
 {
-    assert(st != NULL && (direction == 1 || direction == -1));
+    assert(direction == 1 || direction == -1);
     const int to = st->present_visit + direction;
     return to >= 0 && to < st->visit_count;
 }
@@ -201,9 +195,7 @@ status state_turn(explorer_state *st, int direction, fault *f)
     visit left, *to = &st->visits[st->present_visit + direction];
     session fresh;
     status code = session_reopen(&fresh, &to->from, st->session.patience, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     code = take_visit(st, &left, f);
     if (code != STATUS_OK) {
         session_finish(&fresh);
@@ -326,7 +318,7 @@ const run_log *state_run_log(explorer_state *st)
 
 void state_change_text(const explorer_state *st, int index, char *text, size_t size)
 {
-    assert(st != NULL && index >= 0 && index < st->session.input_count && text != NULL);
+    assert(index >= 0 && index < st->session.input_count);
     const session_input *in = &st->session.inputs[index];
     if (in->kind == SESSION_INPUT_PUSH) {
         snprintf(text, size, "push %g N s", in->value);
@@ -443,7 +435,7 @@ static value_range range_between(const explorer_state *st, const pane *p, double
 
 bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
 {
-    assert(st != NULL && index >= 0 && index < PANES && axis != NULL);
+    assert(index >= 0 && index < PANES);
     const pane *p = &st->panes.pane[index];
     double from, to;
     const bool subtracts = state_run(st, 0).kind == SHOWN_DIFFERENCE;

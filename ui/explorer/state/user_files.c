@@ -16,7 +16,7 @@
 
 bool user_file(const char *name, char *path, size_t size, bool make)
 {
-    assert(path != NULL && size > 0);
+    assert(size > 0);
     const char *base = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
     int length;
 
@@ -140,9 +140,7 @@ status consent_remember(const scenario *s, bool *kept, fault *f)
     // whole or not at all
     whole_file file;
     status code = whole_file_open(&file, path, f);
-    if (code != STATUS_OK) {
-        return code;
-    }
+    TRY(code);
     if (!look_through(path, digest, file.stream)) {
         const control_parameters *c = &s->parameters.control;
         snprintf(what, sizeof what, "%s: %s", s->name,
