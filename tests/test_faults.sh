@@ -122,6 +122,14 @@ kill_at_random() {
     [ -z "$(find . -name '*.part')" ] || fail "killed: the next run leaves a temporary of: $*"
 }
 
+# what stood in a file before: a picture's CSV replaces only one of its kind
+old_of() {
+    case $1 in
+    *.csv) echo panel,old ;;
+    *) echo old ;;
+    esac
+}
+
 # kill_folder FOLDER ARGUMENT...: the same for a command that fills a folder: each file is that of
 # before or the whole new one, and the next run leaves nothing but whole ones
 kill_folder() {
@@ -134,11 +142,11 @@ kill_folder() {
     cp -r "$into" whole
 
     for ((i = 0; i < kills; i++)); do
-        find "$into" -type f -name '[!.]*' | while read -r file; do echo old >"$file"; done
+        find "$into" -type f -name '[!.]*' | while read -r file; do old_of "$file" >"$file"; done
         [ "$into" != frames ] || rm -f frames/*
         kill_within "$took" "$@"
         while read -r file; do
-            [ "$(head -c 4 "$file" | tr -d "\0")" = old ] || cmp -s "$file" "whole/${file#"$into"/}" ||
+            [ "$(head -c 9 "$file" | tr -d "\0")" = "$(old_of "$file")" ] || cmp -s "$file" "whole/${file#"$into"/}" ||
                 fail "killed: half a file $file of: $*"
         done < <(find "$into" -type f -name '[!.]*')
     done
