@@ -105,6 +105,19 @@ TEST(the_arm_rests_under_its_force)
     check_close(l.force, 9.80665 * sin(0.2) * 0.40108 / 2 * cos(0.1) - K * 0.5, 1e-3);
     linear_system_finish(&l.system);
 
+    // which a wall that stiffens with its depth does not change, be it soft or hard
+    static const char *const weights[] = {"", " control.force=2"};
+    for (int i = 0; i < 4; i++) {
+        char changes[160];
+        snprintf(changes, sizeof changes,
+                 "wall.contact=hunt-crossley wall.stiffness=%s arm.tilt=-1.5%s",
+                 i % 2 == 0 ? "1e4" : "1e8", weights[i / 2]);
+        l = linearised(i / 2 == 0 ? ROUND : "compare/hybrid", changes, LINEAR_CONTACT);
+        check_close(l.force, i / 2 == 0 ? 9.80665 * sin(1.5) * 0.40108 / 2 * cos(0.1) + K : 2,
+                    i / 2 == 0 ? 0.03 : 1e-9);
+        linear_system_finish(&l.system);
+    }
+
     static const char *const walls[] = {
         "wall.contact=kelvin-voigt wall.stiffness=1e4 wall.damping=5 control.force=2",
         "wall.contact=hunt-crossley wall.stiffness=1e6 wall.damping=5 control.force=2",
@@ -135,7 +148,8 @@ TEST(what_has_no_linear_form_is_refused)
         {"arm.model=printed", "printed", LINEAR_FREE},
         {"arm.links=65", "64 links", LINEAR_FREE},
         {"wall.contact=hunt-crossley wall.stiffness=1e6 motor.voltage=0", "Hunt", LINEAR_STUCK},
-        {"wall.contact=hunt-crossley arm.tilt=0.3", "Hunt", LINEAR_STUCK},
+        {"wall.contact=hunt-crossley arm.tilt=0.3", "does not press", LINEAR_STUCK},
+        {"wall.contact=hunt-crossley arm.tilt=1.5", "does not press", LINEAR_CONTACT},
         {"wall.motion=sine", "moves", LINEAR_CONTACT},
     };
     for (EACH(c, cases)) {

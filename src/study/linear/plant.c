@@ -9,7 +9,6 @@
 
 #include "src/arm/chain.h"
 #include "src/base/dense.h"
-#include "src/base/sincos.h"
 #include "src/study/linear/linear.h"
 
 const char *const linear_output_names[LINEAR_OUTPUTS] = {
@@ -21,6 +20,8 @@ enum { MOST_BODIES = LINEAR_MOST_LINKS + 1, NEWTON_STEPS = 60, EDGE = 2 * MOST_B
 // else, in which motions are straight lines or parabolas.
 #define ANGLE_STEP 6e-3 // [rad]
 #define OTHER_STEP 0.01 // [rad/s], [A], [V]
+
+#define NO_FORCE   1e-12 // rounding of one [N]
 
 status linear_system_init(linear_system *s, int states, int outputs, fault *f)
 {
@@ -235,36 +236,56 @@ static const char *refusal(const parameters *p, linear_place place, double force
                : NULL;
 }
 
-// How the straight arm at the wall presses under its command and its weight [N].
-static double straight_press(const arm *a, const parameters *p)
+// The arm at a wall of this kind of contact, without Coulomb friction and limits, which are no part
+// of small motions.
+static void put_arm(workshop *w, const parameters *p, int contact)
 {
-    const double weight =
-        a->gravity * (p->arm.mass / 2 + p->arm.tip_mass) * inline_cos(p->wall.angle);
-    return motor_torque_per_volt(&p->motor) * p->motor.voltage / p->arm.length - weight;
+    parameters smooth = *p;
+    smooth.motor.stiction = 0;
+    smooth.motor.voltage_limit = HUGE_VAL;
+    smooth.motor.current_limit = 0;
+    smooth.wall.contact = contact;
+    arm_init(&w->arm, &smooth);
+    w->n = w->arm.dof;
+    w->rigid = w->mode.contact && contact == WALL_RIGID;
+    w->step = ANGLE_STEP / p->arm.links;
 }
 
-// A spring that stiffens with its depth is followed for a small part of it.
-static void take_step(workshop *w, const parameters *p, double force)
+// Takes an arm from its rest on a rigid wall into the one that stiffens with its depth, as deep as
+// it presses: from farther off Newton's iteration ends where no arm rests. Such a spring is
+// followed for a small part of its depth.
+static void press_in(workshop *w, const parameters *p, double force)
 {
-    w->step = ANGLE_STEP / p->arm.links;
-    if (p->wall.contact == WALL_HUNT_CROSSLEY && w->mode.contact && force > 0) {
-        const double depth = plain_pow(force / p->wall.stiffness, 1 / p->wall.exponent);
-        w->step = fmin(w->step, 0.02 * depth / p->arm.length);
+    double turn[MOST_BODIES];
+    for (int k = 0; k < w->n; k++) {
+        turn[k] = 1;
     }
+    put_arm(w, p, p->wall.contact);
+    const double depth = plain_pow(force / p->wall.stiffness, 1 / p->wall.exponent);
+    const double angle = depth / chain_penetration_rate(&w->arm, w->rest, turn);
+    for (int k = 0; k < w->n; k++) {
+        w->rest[k] += angle;
+    }
+    w->step = fmin(w->step, 0.02 * depth / p->arm.length);
+}
+
+// The force at rest [N], or why that has no linear form.
+static status press(workshop *w, const parameters *p, linear_place place, double *force, fault *f)
+{
+    double there[MOST_BODIES + 2];
+    const status code = place != LINEAR_FREE ? find_rest(w, f) : STATUS_OK;
+    evaluate(w, w->rest, there);
+    *force = place != LINEAR_FREE ? there[w->n] : 0;
+    const char *why = refusal(p, place, fabs(*force) > NO_FORCE ? *force : 0);
+    return code == STATUS_OK && why != NULL ? fault_set(f, STATUS_BAD_ARGUMENT, "%s", why) : code;
 }
 
 // Rest, its numbers, and the slopes there, with the workshop prepared.
 static status linearise_at(workshop *w, linear_arm *out, const parameters *p, linear_place place,
                            fault *f)
 {
-    double x, y, there[MOST_BODIES + 2];
-    const status code = place != LINEAR_FREE ? find_rest(w, f) : STATUS_OK;
-    evaluate(w, w->rest, there);
-    out->force = place != LINEAR_FREE ? there[w->n] : 0;
-    const char *why = refusal(p, place, fabs(out->force) > 1e-12 ? out->force : 0);
-    if (code != STATUS_OK || why != NULL) {
-        return code != STATUS_OK ? code : fault_set(f, STATUS_BAD_ARGUMENT, "%s", why);
-    }
+    double x, y;
+    TRY(press(w, p, place, &out->force, f));
     chain_node(&w->arm, w->rest, w->arm.links, &x, &y);
     const double distance = sqrt(x * x + y * y);
     w->across[0] = -y / distance;
@@ -273,7 +294,6 @@ static status linearise_at(workshop *w, linear_arm *out, const parameters *p, li
     out->hub_angle = w->rest[0];
     out->bending = w->rest[w->n - 1] - w->rest[w->arm.first];
     w->mode.friction = place == LINEAR_STUCK ? HUB_STICK : HUB_FORWARD;
-    take_step(w, p, out->force);
     return linearise(w, &out->system, f);
 }
 
@@ -287,23 +307,20 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
     workshop *w = calloc(1, sizeof *w);
     TRY_MEMORY(w != NULL, f);
 
-    // without Coulomb friction and limits, which are no part of small motions
-    parameters smooth = *p;
-    smooth.motor.stiction = 0;
-    smooth.motor.voltage_limit = HUGE_VAL;
-    smooth.motor.current_limit = 0;
-    arm_init(&w->arm, &smooth);
-    w->n = w->arm.dof;
+    // straight; what is pressed into a wall that stiffens is found from a rigid one
+    const bool stiffens = touches && p->wall.contact == WALL_HUNT_CROSSLEY;
     w->mode = (contact_state){.contact = touches, .friction = HUB_FORWARD};
-    w->rigid = touches && p->wall.contact == WALL_RIGID;
     w->wanted = held ? p->control.force : (double)NAN;
     w->command = held || !touches ? 0 : p->motor.voltage;
+    put_arm(w, p, stiffens ? WALL_RIGID : p->wall.contact);
     for (int k = 0; k < w->n; k++) {
         w->rest[k] = p->wall.angle;
     }
-
-    take_step(w, p, held ? p->control.force : straight_press(&w->arm, p));
-    const status code = linearise_at(w, out, p, place, f);
+    status code = stiffens ? press(w, p, place, &out->force, f) : STATUS_OK;
+    if (code == STATUS_OK && stiffens) {
+        press_in(w, p, out->force);
+    }
+    code = code == STATUS_OK ? linearise_at(w, out, p, place, f) : code;
     free(w);
     return code;
 }
