@@ -131,6 +131,21 @@ TEST(test_threads)
     }
 }
 
+// One film after the other, by OpenGL where it is: the second thread of the one leaves none of its
+// pictures to that of the other.
+TEST(test_films_by_gl)
+{
+    SCOPED(forget) recorded r = record("corrected/first-impact");
+    static const char *const names[] = {"gl-1", "gl-2", "gl-3"};
+    for (int i = 0; i < 3; i++) {
+        film_options options = small_film();
+        options.view.renderer = RENDER_AUTO;
+        options.threads = i == 0 ? 1 : 2;
+        DONE(film_of(&r, &options, names[i], &f));
+        expect_same_frames(names[0], names[i], 5);
+    }
+}
+
 // Each run has a view of its own: with an arm in it, and the first's own picture in the first.
 TEST(test_split_screen)
 {

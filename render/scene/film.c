@@ -38,11 +38,16 @@ static double film_time_of(const film_making *m, int frame)
     return m->plan->options.seconds * frame / (m->total - 1);
 }
 
-// On the second thread.
+// On the second thread. A job without a surface ends its painter there: GLib keeps the thread for
+// others, and OpenGL must not take a context that is gone for that thread's present one.
 static void paint_job(gpointer data, gpointer making)
 {
     frame_job *job = data;
     film_making *m = making;
+    if (job->onto == NULL) {
+        film_painter_destroy(m->its_painter);
+        return;
+    }
 
     // signals are for the thread that writes: they end its waiting
     worker_signals_block(NULL);
@@ -65,23 +70,30 @@ static void ask_for(film_making *m, int frame)
     }
 }
 
+// Without a thread to be had all frames are painted here.
 static void begin_second(film_making *m)
 {
     const film_options *o = &m->plan->options;
+    m->second = g_thread_pool_new(paint_job, m, 1, TRUE, NULL);
+    if (g_thread_pool_get_num_threads(m->second) == 0) {
+        g_thread_pool_free(m->second, TRUE, TRUE);
+        m->second = NULL;
+        return;
+    }
     for (int i = 0; i < BUFFERS; i++) {
         m->jobs[i].onto = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o->width, o->height);
     }
     m->painted = g_async_queue_new();
-    m->second = g_thread_pool_new(paint_job, m, 1, TRUE, NULL);
     ask_for(m, 1);
 }
 
 static void end_second(film_making *m)
 {
+    frame_job last = {0};
     if (m->second != NULL) {
-        g_thread_pool_free(m->second, TRUE, TRUE);
+        g_thread_pool_push(m->second, &last, NULL);
+        g_thread_pool_free(m->second, FALSE, TRUE);
         g_async_queue_unref(m->painted);
-        film_painter_destroy(m->its_painter);
         for (int i = 0; i < BUFFERS; i++) {
             cairo_surface_destroy(m->jobs[i].onto);
         }
