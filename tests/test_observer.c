@@ -431,6 +431,7 @@ TEST(it_learns_how_stiff_the_arm_is)
         p.belief.k2_factor = *c;
         controller_setup setup = setup_of(&p);
         arm_observer o;
+        hub_sensors hub;
         assert_null(arm_observer_init(&o, &setup, 1, 0, HUGE_VAL));
 
         // the hub bends the arm against the wall, the readings are those of the true stiffness
@@ -439,6 +440,7 @@ TEST(it_learns_how_stiff_the_arm_is)
                                .film = (double)NAN,
                                .accelerometer = (double)NAN,
                                .wanted_mode = -1};
+        hub_sensors_start(&hub, &in);
         arm_observer_start(&o, &in);
         arm_observer_touch(&o, 0);
         for (int k = 1; k <= 200; k++) {
@@ -447,7 +449,8 @@ TEST(it_learns_how_stiff_the_arm_is)
             in.tachometer = in.encoder < 0.05 ? 0.5 : 0;
             in.force = stiffness * in.encoder;
             in.voltage = in.force * 2 * setup.link_length / setup.torque_per_volt;
-            arm_observer_sample(&o, &in, 2);
+            const controller_input read = hub_sensors_read(&hub, &in, setup.period);
+            arm_observer_sample(&o, &hub, &read, 2);
         }
 
         // from the believed one towards the true one, and not beyond

@@ -10,31 +10,23 @@ enum { N = ESTIMATOR_STATES };
 _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all modes have room");
 
 // What readings and models are worth: standard deviations.
-#define ANGLE_NOISE  4.5e-4 // of the encoder, and of angles that no mode shows [rad]
-#define COUNT_SHARE  0.29   // of the encoder: a count over the square root of 12
-#define RATE_NOISE   0.014  // of the tachometer [rad/s]
-#define NOISE_MEAN   0.2    // over which the noise of the tachometer is averaged [s],
-#define MOST_NOISE   9.0    // and the most that a reading counts, in that noise squared
-#define RATE_RIPPLE  0.01   // of the tachometer, as a share of the reading
-#define FORCE_NOISE  0.02   // of the force sensor [N]
-#define FORCE_SHARE  0.02   // of the force sensor, as a share of the reading
-#define FILM_NOISE   0.01   // of the film [rad]
-#define FILM_LEAK    0.1    // that its charge loses [rad/s]
-#define ACCELERATION 1.0    // of the accelerometer [rad/s2]
-#define TORQUE_DRIFT 0.1    // of the unknown torque, in a second, in flight [N m],
-#define TORQUE_STAYS 0.05   // and in contact, where a wall that yields looks like one [N m]
-#define WALL_DRIFT   1e-3   // of the wall, in a second [rad]
-#define STIFFNESS    0.25   // share by which the stiffness may be wrong
-#define MOVES        0.05   // a slower hub tells nothing of what arm it is [rad/s]
-#define TAILS        4.0    // degrees of freedom of the distribution that misses of readings have
-#define STIFF_MEMORY 0.5    // over which readings count for the stiffness [s],
-#define STIFF_GUESS  0.15   // and as what the nominal one does [s]
-#define OFFSET_TIME  0.1    // for which the tachometer counts as one without an offset [s]
-#define LEAST_STIFF  0.2    // share of it that the arm has at least
-#define OUTLIER      4.0    // readings further off, in standard deviations, are worth less
-#define TIP_IMPULSE  0.03   // that the wall may give unseen, a standard deviation [N s]
-#define YOUNG        0.1    // a contact after less time may still throw the tip back [s]
-#define REST         0.01   // a slower hub counts as at rest [rad/s]
+#define FORCE_NOISE  0.02 // of the force sensor [N]
+#define FORCE_SHARE  0.02 // of the force sensor, as a share of the reading
+#define FILM_NOISE   0.01 // of the film [rad]
+#define FILM_LEAK    0.1  // that its charge loses [rad/s]
+#define ACCELERATION 1.0  // of the accelerometer [rad/s2]
+#define TORQUE_DRIFT 0.1  // of the unknown torque, in a second, in flight [N m],
+#define TORQUE_STAYS 0.05 // and in contact, where a wall that yields looks like one [N m]
+#define WALL_DRIFT   1e-3 // of the wall, in a second [rad]
+#define STIFFNESS    0.25 // share by which the stiffness may be wrong
+#define TAILS        4.0  // degrees of freedom of the distribution that misses of readings have
+#define STIFF_MEMORY 0.5  // over which readings count for the stiffness [s],
+#define STIFF_GUESS  0.15 // and as what the nominal one does [s]
+#define LEAST_STIFF  0.2  // share of it that the arm has at least
+#define OUTLIER      4.0  // readings further off, in standard deviations, are worth less
+#define TIP_IMPULSE  0.03 // that the wall may give unseen, a standard deviation [N s]
+#define YOUNG        0.1  // a contact after less time may still throw the tip back [s]
+#define REST         0.01 // a slower hub counts as at rest [rad/s]
 
 // The modes of the present state.
 static const mode_set *modes_of(const arm_observer *o)
@@ -65,6 +57,26 @@ static int state_count(const arm_observer *o)
 double arm_observer_square(const arm_observer *o, int i)
 {
     return modes_of(o)->square[i] * (o->touches && i == 0 ? o->stiffness : 1);
+}
+
+// start + a.b over n entries.
+static double add_products(double start, int n, const double *a, const double *b)
+{
+    for (int i = 0; i < n; i++) {
+        start += a[i] * b[i];
+    }
+    return start;
+}
+
+// start + row p row' over n entries, p a part of a covariance.
+static double add_variance(double start, int n, const double *row, const double *p)
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            start += row[i] * p[i * N + j] * row[j];
+        }
+    }
+    return start;
 }
 
 // --- the model --------------------------------------------------------------------------------
@@ -122,7 +134,7 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
     memset(&o->e, 0, sizeof o->e);
     for (int i = 0; i < set->count; i++) {
         o->e.z[i] = set->momentum[i] * in->encoder;
-        o->e.p[i][i] = ANGLE_NOISE * ANGLE_NOISE * o->arm.inertia;
+        o->e.p[i][i] = HUB_ANGLE_NOISE * HUB_ANGLE_NOISE * o->arm.inertia;
         o->e.p[set->count + i][set->count + i] = 1e-6;
     }
 
@@ -137,30 +149,6 @@ void arm_observer_start(arm_observer *o, const controller_input *in)
     o->stiff_force = o->stiff_bend = 0;
     o->last_voltage = in->voltage;
     o->tip_before = o->tip_now = in->encoder;
-    o->count = HUGE_VAL;
-    o->turned = o->angle_before = in->encoder;
-    o->rate_before[0] = o->rate_before[1] = o->rate_before[2] = in->tachometer;
-    o->rate_noise = RATE_NOISE * RATE_NOISE;
-    o->observed = 0;
-}
-
-// Offset of the tachometer: how much further the hub has turned by it than by the encoder, over the
-// time of that [rad/s].
-static double tachometer_offset(arm_observer *o, const controller_input *in)
-{
-    o->turned += (o->rate_before[0] + in->tachometer) / 2 * o->period;
-    double *before = o->rate_before, ripple = RATE_RIPPLE * in->tachometer;
-    const double third = in->tachometer - 3 * (before[0] - before[1]) - before[2];
-    const double share = fmin(1, o->period / NOISE_MEAN);
-    o->rate_noise +=
-        share * (fmin(fmax(0, third * third / 20 - ripple * ripple), MOST_NOISE * o->rate_noise) -
-                 o->rate_noise);
-    o->rate_noise = fmax(o->rate_noise, RATE_NOISE * RATE_NOISE);
-    before[2] = before[1];
-    before[1] = before[0];
-    o->rate_before[0] = in->tachometer;
-    o->observed += o->period;
-    return (o->turned - in->encoder) / (o->observed + OFFSET_TIME);
 }
 
 void arm_observer_know_wall(arm_observer *o, double angle)
@@ -172,45 +160,27 @@ void arm_observer_know_wall(arm_observer *o, double angle)
 
 // --- what an estimate says --------------------------------------------------------------------
 
-// The hub's angle [rad].
-static double hub_angle(const arm_observer *o, const estimator *e)
+// An angle by its shape in the modes, seen from the wall in contact [rad].
+static double angle_of(const arm_observer *o, const estimator *e, const double *shape)
 {
-    const mode_set *set = modes_of(o);
-    double angle = o->touches ? e->z[wall_index(o)] : 0;
-    for (int i = 0; i < set->count; i++) {
-        angle += set->hub[i] * e->z[i];
-    }
-    return angle;
+    return add_products(o->touches ? e->z[wall_index(o)] : 0, count_of(o), shape, e->z);
 }
 
 double arm_observer_tip(const arm_observer *o, const estimator *e)
 {
-    const mode_set *set = modes_of(o);
-    double angle = o->touches ? e->z[wall_index(o)] : 0;
-    for (int i = 0; i < set->count; i++) {
-        angle += set->tip[i] * e->z[i];
-    }
-    return angle;
+    return angle_of(o, e, modes_of(o)->tip);
 }
 
 double arm_observer_rate(const arm_observer *o, const estimator *e)
 {
     const mode_set *set = modes_of(o);
-    double rate = 0;
-    for (int i = 0; i < set->count; i++) {
-        rate += set->hub[i] * e->z[set->count + i];
-    }
-    return rate;
+    return add_products(0, set->count, set->hub, e->z + set->count);
 }
 
 // Inverse of the hub's inertia as the modes show it, sum h_i^2 [1/(kg m2)].
 static double hub_mobility(const mode_set *set)
 {
-    double sum = 0;
-    for (int i = 0; i < set->count; i++) {
-        sum += set->hub[i] * set->hub[i];
-    }
-    return sum;
+    return add_products(0, set->count, set->hub, set->hub);
 }
 
 // Torque on the hub under which it keeps its velocity [N m].
@@ -274,10 +244,7 @@ double arm_observer_force(const arm_observer *o, const estimator *e, double driv
     double row[N];
     force_row(o, row);
     double force = arm_observer_force_per_torque(o) * (drive - friction_under(o, e, drive));
-    for (int i = 0; i < state_count(o); i++) {
-        force += row[i] * e->z[i];
-    }
-    return force;
+    return add_products(force, state_count(o), row, e->z);
 }
 
 // --- one sample -------------------------------------------------------------------------------
@@ -298,7 +265,7 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
     noise[arm_observer_torque_index(o)] = drift * drift * h;
     if (o->touches) {
         // a wrong nominal stiffness shows as a wall that moves with the hub
-        double bend = hub_angle(o, e) - e->z[wall_index(o)];
+        double bend = angle_of(o, e, set->hub) - e->z[wall_index(o)];
         double wandering = 2 * STIFFNESS * STIFFNESS * fabs(bend * arm_observer_rate(o, e));
         noise[wall_index(o)] = (WALL_DRIFT * WALL_DRIFT + wandering) * h;
     }
@@ -323,15 +290,10 @@ static double take_reading(arm_observer *o, const double *row, double offset, do
                            double deviation)
 {
     const int n = state_count(o);
-    double expected = offset, variance = deviation * deviation;
 
     // what the estimate expects, and how far off that may be
-    for (int i = 0; i < n; i++) {
-        expected += row[i] * o->e.z[i];
-        for (int j = 0; j < n; j++) {
-            variance += row[i] * o->e.p[i][j] * row[j];
-        }
-    }
+    const double expected = add_products(offset, n, row, o->e.z);
+    const double variance = add_variance(deviation * deviation, n, row, &o->e.p[0][0]);
 
     // beyond the limit the weight falls with the distance
     double off = fabs(reading - expected) / sqrt(variance);
@@ -346,22 +308,8 @@ static double take_reading(arm_observer *o, const double *row, double offset, do
     return 1 / doubt;
 }
 
-// The smallest step that an encoder has shown is its count, a uniform error of which has the
-// standard deviation count/sqrt(12).
-static void follow_counts(arm_observer *o, double encoder)
-{
-    const double step = fabs(encoder - o->angle_before);
-    o->count = step > 0 ? fmin(step, o->count) : o->count;
-    o->angle_before = encoder;
-}
-
-static double angle_noise(const arm_observer *o)
-{
-    return isfinite(o->count) ? fmax(ANGLE_NOISE, COUNT_SHARE * o->count) : ANGLE_NOISE;
-}
-
 // Hub and beam: encoder, tachometer, and film and accelerometer where they are fitted.
-static void take_motion(arm_observer *o, const controller_input *in)
+static void take_motion(arm_observer *o, const hub_sensors *s, const controller_input *in)
 {
     const mode_set *set = modes_of(o);
     const int n = set->count;
@@ -371,9 +319,8 @@ static void take_motion(arm_observer *o, const controller_input *in)
         bending[i] = set->bending[i];
     }
     angle[wall_index(o)] += o->touches;
-    double ripple = RATE_RIPPLE * in->tachometer;
-    take_reading(o, angle, 0, in->encoder, angle_noise(o));
-    take_reading(o, rate, 0, in->tachometer, sqrt(o->rate_noise + ripple * ripple));
+    take_reading(o, angle, 0, in->encoder, s->angle_deviation);
+    take_reading(o, rate, 0, in->tachometer, sqrt(s->rate_variance));
 
     if (!isnan(in->film)) {
         double leaked = FILM_LEAK * (in->time - o->since);
@@ -400,11 +347,9 @@ double arm_observer_force_noise(double force)
 
 static double take_force(arm_observer *o, const controller_input *in)
 {
-    double row[N], linear = 0, drive = o->torque_per_volt * in->voltage;
+    double row[N], drive = o->torque_per_volt * in->voltage;
     force_row(o, row);
-    for (int i = 0; i < state_count(o); i++) {
-        linear += row[i] * o->e.z[i];
-    }
+    const double linear = add_products(0, state_count(o), row, o->e.z);
     double offset = arm_observer_force(o, &o->e, drive) - linear;
     return take_reading(o, row, offset, in->force, arm_observer_force_noise(in->force));
 }
@@ -449,23 +394,17 @@ static void doubt_tip(const arm_observer *o, estimator *e)
 }
 
 // Whether the hub's rate is none that the estimate in flight explains: the tip was struck.
-static bool struck(const arm_observer *o, const controller_input *in)
+static bool struck(const arm_observer *o, const hub_sensors *s, const controller_input *in)
 {
-    const mode_set *set = modes_of(o);
-    const int n = set->count;
-    double off = in->tachometer, ripple = RATE_RIPPLE * in->tachometer;
-    double variance = o->rate_noise + ripple * ripple;
-    for (int i = 0; i < n; i++) {
-        off -= set->hub[i] * o->e.z[n + i];
-        for (int j = 0; j < n; j++) {
-            variance += set->hub[i] * o->e.p[n + i][n + j] * set->hub[j];
-        }
-    }
+    const double *hub = o->arm.free.hub;
+    const int n = o->arm.free.count;
+    const double off = add_products(-in->tachometer, n, hub, o->e.z + n);
+    const double variance = add_variance(s->rate_variance, n, hub, &o->e.p[n][n]);
     return off * off > OUTLIER * OUTLIER * variance;
 }
 
 // The motion since the sample before, the old command first, and what the sensors say of it.
-static void follow_motion(arm_observer *o, const controller_input *in)
+static void follow_motion(arm_observer *o, const hub_sensors *s, const controller_input *in)
 {
     const sampled_model *models = o->touches ? o->contact_model : o->free_model;
     if (o->delay > 0) {
@@ -474,20 +413,21 @@ static void follow_motion(arm_observer *o, const controller_input *in)
     if (o->delay < o->period) {
         predict(o, &o->e, &models[1], o->period - o->delay, in->voltage);
     }
-    if (!o->touches && struck(o, in)) {
+    if (!o->touches && struck(o, s, in)) {
         doubt_tip(o, &o->e);
     }
-    take_motion(o, in);
+    take_motion(o, s, in);
 }
 
 // The estimate of a tip that is thrown back, beside that of one that stays.
-static void follow_flight(arm_observer *o, const controller_input *in, int felt)
+static void follow_flight(arm_observer *o, const hub_sensors *s, const controller_input *in,
+                          int felt)
 {
     const estimator stays = o->e;
     const double missed = o->missed;
     o->e = o->flown;
     o->touches = false;
-    follow_motion(o, in);
+    follow_motion(o, s, in);
     if (felt > 0) {
         doubt_tip(o, &o->e);
     }
@@ -498,17 +438,15 @@ static void follow_flight(arm_observer *o, const controller_input *in, int felt)
     o->young = in->time - o->since < YOUNG;
 }
 
-void arm_observer_sample(arm_observer *o, const controller_input *in, int felt)
+void arm_observer_sample(arm_observer *o, const hub_sensors *s, const controller_input *in,
+                         int felt)
 {
     // the motion
-    controller_input read = *in;
-    read.tachometer -= tachometer_offset(o, in);
-    o->moves = fabs(in->tachometer) > MOVES;
-    follow_counts(o, in->encoder);
+    o->moves = s->moves;
     if (o->touches && o->young) {
-        follow_flight(o, &read, felt);
+        follow_flight(o, s, in, felt);
     }
-    follow_motion(o, &read);
+    follow_motion(o, s, in);
     o->last_voltage = in->voltage;
 
     // the first reading of a contact shows its impulse
@@ -537,11 +475,9 @@ estimator arm_observer_ahead(const arm_observer *o, double voltage)
 
 bool arm_observer_returns(const arm_observer *o)
 {
-    double rate = 0;
-    for (int i = 0; i < o->arm.free.count; i++) {
-        rate += o->arm.free.tip[i] * o->flown.z[o->arm.free.count + i];
-    }
-    return o->touches && o->young && rate > 0;
+    const mode_set *free = &o->arm.free;
+    return o->touches && o->young &&
+           add_products(0, free->count, free->tip, o->flown.z + free->count) > 0;
 }
 
 // --- the place of the wall ---

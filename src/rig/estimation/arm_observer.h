@@ -4,6 +4,7 @@
 #pragma once
 
 #include "src/rig/estimation/estimator.h"
+#include "src/rig/estimation/hub_sensors.h"
 #include "src/rig/estimation/reduced_arm.h"
 
 // Standard deviation that the torque is taken to have from sample to sample [N m].
@@ -21,13 +22,8 @@ typedef struct arm_observer {
     sampled_model free_model[2], contact_model[2];
     bool touches, young; // young: a contact that may have ended in a bounce
     estimator e, flown;  // flown: while a contact is young, as if the tip had been thrown back
-    double count, angle_before; // smallest step of the encoder so far, its last reading [rad]
-    double turned;              // angle by the tachometer [rad],
-    double rate_before[3];      // its last readings, the latest first [rad/s],
-    double rate_noise;          // and the variance of its noise [rad2/s2]
-    double observed;            // for how long [s]
-    double last_voltage;        // in effect at the sample before [V]
-    double since;               // when the contact or the flight began [s]
+    double last_voltage; // in effect at the sample before [V]
+    double since;        // when the contact or the flight began [s]
     double wall, wall_variance; // as last known [rad], [rad2]
     double tip_before, tip_now; // tip angle in flight at the last two samples [rad]
     double met;                 // wall's angle at the touch [rad]
@@ -54,10 +50,12 @@ void arm_observer_start(arm_observer *o, const controller_input *in);
 // Tells the observer, before the first touch, the wall's exact angle [rad].
 void arm_observer_know_wall(arm_observer *o, double angle);
 
-// One sample: the estimate follows the arm over the period before it and takes in all readings.
-// felt: how many readings in a row have shown contact; the first shows more than the force just
-// after an impact and is not taken in.
-void arm_observer_sample(arm_observer *o, const controller_input *in, int felt);
+// One sample, as hub_sensors_read returns it, and what that knows of the hub's sensors: the
+// estimate follows the arm over the period before it and takes in all readings. felt: how many
+// readings in a row have shown contact; the first shows more than the force just after an impact
+// and is not taken in.
+void arm_observer_sample(arm_observer *o, const hub_sensors *s, const controller_input *in,
+                         int felt);
 
 // The tip met the wall, plastically, or left it, after the last sample and before now.
 void arm_observer_touch(arm_observer *o, double time);

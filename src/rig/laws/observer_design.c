@@ -237,6 +237,7 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
 
 void observer_arms_start(observer_arms *a, const controller_input *in)
 {
+    hub_sensors_start(&a->sensors, in);
     for (int i = 0; i < a->count; i++) {
         arm_observer_start(&a->arms[i].observer, in);
     }
@@ -251,8 +252,9 @@ void observer_arms_know_wall(observer_arms *a, double angle)
 
 void observer_arms_sample(observer_arms *a, const controller_input *in, int felt)
 {
+    const controller_input read = hub_sensors_read(&a->sensors, in, a->arms[0].observer.period);
     for (int i = 0; i < a->count; i++) {
-        arm_observer_sample(&a->arms[i].observer, in, felt);
+        arm_observer_sample(&a->arms[i].observer, &a->sensors, &read, felt);
     }
 }
 

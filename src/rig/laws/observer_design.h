@@ -48,6 +48,7 @@ enum { OBSERVER_MOST_ARMS = 11 };
 typedef struct observer_arms {
     observer_design arms[OBSERVER_MOST_ARMS]; // the first is the one told of
     int count, on;                            // on: the one that the law goes by
+    hub_sensors sensors;                      // that all of them follow
     bool thrown; // the tip has left the wall, which one that gives so much would not have let it
     int giving;  // the first of those at a wall that gives
     int loaded;  // the first of those with a mass at the tip, which no contact shows
