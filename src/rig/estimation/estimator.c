@@ -6,14 +6,14 @@
 
 enum { N = ESTIMATOR_STATES, EXTENDED = N + 1 };
 
-static void multiply(double out[EXTENDED][EXTENDED], double x[EXTENDED][EXTENDED],
+static void multiply(int size, double out[EXTENDED][EXTENDED], double x[EXTENDED][EXTENDED],
                      double y[EXTENDED][EXTENDED], double factor)
 {
-    double product[EXTENDED][EXTENDED];
-    for (int i = 0; i < EXTENDED; i++) {
-        for (int j = 0; j < EXTENDED; j++) {
+    double product[EXTENDED][EXTENDED] = {{0}};
+    for (int i = 0; i < size; i++) {
+        for (int j = 0; j < size; j++) {
             double sum = 0;
-            for (int k = 0; k < EXTENDED; k++) {
+            for (int k = 0; k < size; k++) {
                 sum += x[i][k] * y[k][j];
             }
             product[i][j] = factor * sum;
@@ -35,20 +35,20 @@ void sampled_model_init(sampled_model *m, int n, double rate[N][N], const double
         for (int j = 0; j < n; j++) {
             x[i][j] = rate[i][j];
         }
-        x[i][N] = input[i];
+        x[i][n] = input[i];
     }
 
     for (int i = 0; i < EXTENDED; i++) {
         sum[i][i] = power[i][i] = 1;
     }
     for (int term = 1; term <= TERMS; term++) {
-        multiply(power, power, x, ldexp(h, -HALVINGS) / term);
+        multiply(n + 1, power, power, x, ldexp(h, -HALVINGS) / term);
         for (int i = 0; i < EXTENDED * EXTENDED; i++) {
             (&sum[0][0])[i] += (&power[0][0])[i];
         }
     }
     for (int i = 0; i < HALVINGS; i++) {
-        multiply(sum, sum, sum, 1);
+        multiply(n + 1, sum, sum, sum, 1);
     }
 
     // the state's part, and the constant input's column
@@ -58,27 +58,37 @@ void sampled_model_init(sampled_model *m, int n, double rate[N][N], const double
         for (int j = 0; j < n; j++) {
             m->a[i][j] = sum[i][j];
         }
-        m->b[i] = sum[i][N];
+        m->b[i] = sum[i][n];
     }
+}
+
+void sampled_model_step(const sampled_model *m, double *z, double u)
+{
+    double next[N];
+    for (int i = 0; i < m->n; i++) {
+        next[i] = m->b[i] * u;
+        for (int j = 0; j < m->n; j++) {
+            next[i] += m->a[i][j] * z[j];
+        }
+    }
+    memcpy(z, next, (size_t)m->n * sizeof z[0]);
 }
 
 void estimator_predict(estimator *e, const sampled_model *m, double u, const double *noise)
 {
     const int n = m->n;
-    double z[N], ap[N][N];
+    double ap[N][N];
+    sampled_model_step(m, e->z, u);
 
-    // z = A z + b u, and A P on the way to A P A'
+    // A P on the way to A P A'
     for (int i = 0; i < n; i++) {
-        z[i] = m->b[i] * u;
         for (int j = 0; j < n; j++) {
-            z[i] += m->a[i][j] * e->z[j];
             ap[i][j] = 0;
             for (int k = 0; k < n; k++) {
                 ap[i][j] += m->a[i][k] * e->p[k][j];
             }
         }
     }
-    memcpy(e->z, z, (size_t)n * sizeof z[0]);
 
     // P = A P A' + noise
     for (int i = 0; i < n; i++) {

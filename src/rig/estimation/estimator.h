@@ -17,6 +17,9 @@ typedef struct sampled_model {
 void sampled_model_init(sampled_model *m, int n, double rate[ESTIMATOR_STATES][ESTIMATOR_STATES],
                         const double input[ESTIMATOR_STATES], double h);
 
+// A state one period on.
+void sampled_model_step(const sampled_model *m, double *z, double u);
+
 typedef struct estimator {
     double z[ESTIMATOR_STATES];                   // estimate
     double p[ESTIMATOR_STATES][ESTIMATOR_STATES]; // its covariance

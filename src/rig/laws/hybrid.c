@@ -21,6 +21,7 @@
 // suggests: of film, theta3 - theta2, by (5.8) theta2 + theta3 = 2 theta_imp, or of an
 // accelerometer by (5.13).
 #include <math.h>
+#include <string.h>
 
 #include "src/rig/laws/laws.h"
 #include "src/base/extremes.h"
@@ -44,7 +45,9 @@ enum {
     TRANSITION,
     THRESHOLD,
     IMPACT_ANGLE,
-    OWN
+    OWN,
+    OWN_FORCE_LIMIT, // of the law speed-limit [N]
+    PARAMETERS
 };
 #define HYBRID_PARAMETERS                                                                          \
     {.name = "force"}, {.name = "approach_voltage"}, {.name = "kp"}, {.name = "kv"},               \
@@ -56,14 +59,11 @@ enum {
 
 typedef struct hybrid_memory {
     controller_setup rig;
-    set_point wanted; // of which the force is the aim
-    double force, approach_voltage, kp, kv, transition, threshold, own;
-    double force_limit; // of the law speed-limit [N]
-    int gains;
-    bool printed;        // coefficients
-    int source;          // of the impact angle
-    double impact_angle; // theta_imp, as told or as the sensors have shown [rad]
-    int readings;        // that it is the mean of; 0: as told
+    double p[PARAMETERS]; // the shared ones and the law's own
+    set_point wanted;     // of which the force is the aim
+    bool printed;         // coefficients
+    double impact_angle;  // theta_imp, as told or as the sensors have shown [rad]
+    int readings;         // that it is the mean of; 0: as told
     int mode;
     double since;       // start of the present mode [s]
     double a[6];        // quintic of the impact mode, (5.15)
@@ -86,24 +86,17 @@ static const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
 // Takes setup and parameters into a hybrid_memory, at the start or later; never refuses. In the
 // impact mode the trajectory is planned anew from where the arm is where t_f changes, for what is
 // left of it; a set-point that moves is added to it.
-// The second is for laws with a parameter of their own behind the shared ones, memory->own.
+// The second is for laws with a parameter of their own behind the shared ones.
 static const char *hybrid_start(void *memory, const controller_setup *setup)
 {
     hybrid_memory *m = memory;
     const double *p = setup->parameters;
 
-    m->replans = m->mode == IMPACT && m->transition != p[TRANSITION];
+    m->replans = m->mode == IMPACT && m->p[TRANSITION] != p[TRANSITION];
     set_point_tell(&m->wanted, p[FORCE_WANTED], setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
-    m->force = p[FORCE_WANTED];
-    m->approach_voltage = p[APPROACH_VOLTAGE];
-    m->kp = p[KP];
-    m->kv = p[KV];
-    m->gains = (int)p[GAINS];
+    memcpy(m->p, p, OWN * sizeof p[0]);
     m->printed = p[COEFFICIENTS] != 0;
-    m->transition = p[TRANSITION];
-    m->threshold = p[THRESHOLD];
-    m->source = (int)p[IMPACT_ANGLE];
     if (m->readings == 0) {
         m->impact_angle = setup->wall_angle;
     }
@@ -113,13 +106,8 @@ static const char *hybrid_start(void *memory, const controller_setup *setup)
 static const char *hybrid_start_with_own(void *memory, const controller_setup *setup)
 {
     hybrid_memory *m = memory;
-    m->own = setup->parameters[OWN];
+    m->p[OWN] = setup->parameters[OWN];
     return hybrid_start(memory, setup);
-}
-
-static double sign(double x)
-{
-    return (x > 0) - (x < 0);
 }
 
 // Stiffness of the hub in contact: 6 k2 in (5.13) as printed, 4 k2 once the spring is counted right
@@ -155,7 +143,7 @@ static double contact_acceleration(const hybrid_memory *m, double angle, double 
 {
     const controller_setup *r = &m->rig;
     double torque = r->torque_per_volt * u - r->hub_damping * velocity -
-                    r->stiction * sign(velocity) + spring_torque(m, angle);
+                    coulomb_friction(r, velocity) + spring_torque(m, angle);
     return torque / contact_inertia(m);
 }
 
@@ -174,8 +162,9 @@ static double hybrid_calculated_force(const hybrid_memory *m, const controller_i
 // Volts of the feedback kp (angle error) + kv (velocity error), read as torque or as volts (B7).
 static double feedback(const hybrid_memory *m, double angle_error, double velocity_error)
 {
-    bool volts = m->gains == GAINS_VOLTS || (m->gains == GAINS_PRINTED && m->mode == FORCE);
-    double sum = m->kp * angle_error + m->kv * velocity_error;
+    const int gains = (int)m->p[GAINS];
+    bool volts = gains == GAINS_VOLTS || (gains == GAINS_PRINTED && m->mode == FORCE);
+    double sum = m->p[KP] * angle_error + m->p[KV] * velocity_error;
     return volts ? sum : sum / m->rig.torque_per_volt;
 }
 
@@ -190,20 +179,22 @@ static void lead_to_end(hybrid_memory *m)
     m->a[5] = (12 * way - 6 * velocity * T - acceleration * T * T) / (2 * T * T * T * T * T);
 }
 
-// Plans from the state at contact.
-static void plan(hybrid_memory *m, double angle, double velocity, double acceleration)
+// Plans from the present state and command on, so that the command goes on from where it is.
+static void plan(hybrid_memory *m, const controller_input *in, double length)
 {
+    m->begun = in->time;
+    m->length = length;
     m->planned = m->wanted.force;
-    m->a[0] = angle;
-    m->a[1] = velocity;
-    m->a[2] = acceleration / 2;
+    m->a[0] = in->encoder;
+    m->a[1] = in->tachometer;
+    m->a[2] = contact_acceleration(m, in->encoder, in->tachometer, in->voltage) / 2;
     lead_to_end(m);
 }
 
 // The impact angle that a sample's readings show, NaN where the sensor is not fitted [rad].
 static double angle_shown(const hybrid_memory *m, const controller_input *in)
 {
-    if (m->source == ANGLE_BY_FILM) {
+    if ((int)m->p[IMPACT_ANGLE] == ANGLE_BY_FILM) {
         return in->encoder + in->film / 2;
     }
 
@@ -219,8 +210,9 @@ static double angle_shown(const hybrid_memory *m, const controller_input *in)
 static void follow_angle(hybrid_memory *m, const controller_input *in)
 {
     const double lag = 0.01, window = 0.1; // [s]
-    double time = in->time - m->since, from = m->source == ANGLE_BY_ACCELEROMETER ? lag : 0;
-    bool tells = m->source != ANGLE_TOLD && time >= from && time <= window;
+    const int source = (int)m->p[IMPACT_ANGLE];
+    double time = in->time - m->since, from = source == ANGLE_BY_ACCELEROMETER ? lag : 0;
+    bool tells = source != ANGLE_TOLD && time >= from && time <= window;
     double shown = tells ? angle_shown(m, in) : (double)NAN;
     if (!isnan(shown)) {
         m->readings++;
@@ -229,30 +221,23 @@ static void follow_angle(hybrid_memory *m, const controller_input *in)
     }
 }
 
-// Goes into a mode. Entering the impact mode plans the trajectory from the present state and
-// command on, so that the command goes on from where it is.
 static void hybrid_begin(hybrid_memory *m, int mode, const controller_input *in)
 {
     m->mode = mode;
-    m->since = m->begun = in->time;
-    m->length = m->transition;
+    m->since = in->time;
     if (mode == IMPACT) {
         m->readings = 0;
-        plan(m, in->encoder, in->tachometer,
-             contact_acceleration(m, in->encoder, in->tachometer, in->voltage));
+        plan(m, in, m->p[TRANSITION]);
     }
 }
 
 // Plans anew for what is left of the transition, if that is more than a sample.
 static void plan_again(hybrid_memory *m, const controller_input *in)
 {
-    const double left = m->since + m->transition - in->time;
+    const double left = m->since + m->p[TRANSITION] - in->time;
     m->replans = false;
     if (left > m->rig.period) {
-        m->begun = in->time;
-        m->length = left;
-        plan(m, in->encoder, in->tachometer,
-             contact_acceleration(m, in->encoder, in->tachometer, in->voltage));
+        plan(m, in, left);
     }
 }
 
@@ -264,6 +249,16 @@ static bool hybrid_held(hybrid_memory *m, const controller_input *in)
         hybrid_begin(m, in->wanted_mode, in);
     }
     return in->wanted_mode >= 0;
+}
+
+// The command that gives a torque and feeds the errors of angle and velocity back [V].
+static double follow(const hybrid_memory *m, const controller_input *in, controller_output *out,
+                     double angle, double velocity, double torque)
+{
+    out->desired_angle = angle;
+    out->desired_velocity = velocity;
+    return torque / m->rig.torque_per_volt +
+           feedback(m, angle - in->encoder, velocity - in->tachometer);
 }
 
 // Impact mode: the quintic and the law (5.24).
@@ -282,12 +277,9 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
     acceleration += m->rig.link_length / (2 * m->rig.k2) * m->wanted.acceleration;
 
     // the model's torque along the plan, (5.24)
-    double torque = m->rig.hub_damping * velocity + m->rig.stiction * sign(velocity) -
+    double torque = m->rig.hub_damping * velocity + coulomb_friction(&m->rig, velocity) -
                     spring_torque(m, angle) + contact_inertia(m) * acceleration;
-    out->desired_angle = angle;
-    out->desired_velocity = velocity;
-    return torque / m->rig.torque_per_volt +
-           feedback(m, angle - in->encoder, velocity - in->tachometer);
+    return follow(m, in, out, angle, velocity, torque);
 }
 
 // Force mode: PD round the final angle with the static torque in advance, (5.25); while the
@@ -295,14 +287,23 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
 static double hybrid_force_command(const hybrid_memory *m, const controller_input *in,
                                    controller_output *out)
 {
-    const double angle = pressing_angle(m, m->wanted.force);
-    const double velocity = set_point_turn(&m->wanted, &m->rig);
     double torque = (m->printed ? 3 : 2) * m->wanted.force * m->rig.link_length;
     torque += set_point_torque(&m->wanted, &m->rig);
-    out->desired_angle = angle;
-    out->desired_velocity = velocity;
-    return torque / m->rig.torque_per_volt +
-           feedback(m, angle - in->encoder, velocity - in->tachometer);
+    return follow(m, in, out, pressing_angle(m, m->wanted.force),
+                  set_point_turn(&m->wanted, &m->rig), torque);
+}
+
+// What begins a sample: approach ends with contact, the impact mode after a time [s].
+static void choose_mode(hybrid_memory *m, const controller_input *in, double impact_time)
+{
+    set_point_follow(&m->wanted, m->rig.period);
+    bool chooses = !hybrid_held(m, in), waits = m->mode == APPROACH || m->mode == RECOVER;
+    if (chooses && waits && in->force > m->p[THRESHOLD]) {
+        hybrid_begin(m, IMPACT, in);
+    }
+    if (chooses && m->mode == IMPACT && in->time - m->since >= impact_time) {
+        hybrid_begin(m, FORCE, in);
+    }
 }
 
 // The three modes with their switching, contact and then t_f, behind an approach with the given
@@ -310,17 +311,7 @@ static double hybrid_force_command(const hybrid_memory *m, const controller_inpu
 static double hybrid_command(hybrid_memory *m, const controller_input *in, controller_output *out,
                              double approach)
 {
-    set_point_follow(&m->wanted, m->rig.period);
-
-    // approach ends with contact, the impact mode with t_f
-    bool chooses = !hybrid_held(m, in);
-    if (chooses && (m->mode == APPROACH || m->mode == RECOVER) && in->force > m->threshold) {
-        hybrid_begin(m, IMPACT, in);
-    }
-    if (chooses && m->mode == IMPACT && in->time - m->since >= m->transition) {
-        hybrid_begin(m, FORCE, in);
-    }
-
+    choose_mode(m, in, m->p[TRANSITION]);
     if (m->replans && m->mode == IMPACT) {
         plan_again(m, in);
     }
@@ -340,7 +331,7 @@ static double hybrid_command(hybrid_memory *m, const controller_input *in, contr
 static double hybrid_speed_command(const hybrid_memory *m, const controller_input *in, double speed)
 {
     const double gain = 0.5; // [N m s/rad]
-    double torque = m->rig.hub_damping * speed + m->rig.stiction * sign(speed) +
+    double torque = m->rig.hub_damping * speed + coulomb_friction(&m->rig, speed) +
                     gain * (speed - in->tachometer);
     return torque / m->rig.torque_per_volt;
 }
@@ -353,7 +344,7 @@ static const controller_parameter hybrid_parameters[] = {HYBRID_PARAMETERS};
 static void hybrid_sample(void *memory, const controller_input *in, controller_output *out)
 {
     hybrid_memory *m = memory;
-    out->command = hybrid_command(m, in, out, m->approach_voltage);
+    out->command = hybrid_command(m, in, out, m->p[APPROACH_VOLTAGE]);
 }
 
 const controller hybrid_law =
@@ -369,14 +360,15 @@ static void recovering_sample(void *memory, const controller_input *in, controll
 {
     hybrid_memory *m = memory;
     const int lost = 2; // readings without contact in a row
-    m->readings_without_contact = in->force > m->threshold ? 0 : m->readings_without_contact + 1;
+    m->readings_without_contact = in->force > m->p[THRESHOLD] ? 0 : m->readings_without_contact + 1;
     bool pressing = m->mode == IMPACT || m->mode == FORCE;
     if (!hybrid_held(m, in) && pressing && m->readings_without_contact >= lost) {
         hybrid_begin(m, RECOVER, in);
     }
     // a slow move towards the angle at which the beam would press
-    double speed = fmin(0.3, 5 * (pressing_angle(m, m->force) - in->encoder));
-    double approach = m->mode == RECOVER ? hybrid_speed_command(m, in, speed) : m->approach_voltage;
+    double speed = fmin(0.3, 5 * (pressing_angle(m, m->p[FORCE_WANTED]) - in->encoder));
+    double approach =
+        m->mode == RECOVER ? hybrid_speed_command(m, in, speed) : m->p[APPROACH_VOLTAGE];
     out->command = hybrid_command(m, in, out, approach);
 }
 
@@ -393,21 +385,10 @@ static const controller_parameter reverse_torque_parameters[] = {HYBRID_PARAMETE
 static void reverse_torque_sample(void *memory, const controller_input *in, controller_output *out)
 {
     hybrid_memory *m = memory;
-
-    set_point_follow(&m->wanted, m->rig.period);
-
-    // contact begins the pull back, its time ends it
-    bool chooses = !hybrid_held(m, in);
-    if (chooses && m->mode == APPROACH && in->force > m->threshold) {
-        hybrid_begin(m, IMPACT, in);
-    }
-    if (chooses && m->mode == IMPACT && in->time - m->since >= m->own) {
-        hybrid_begin(m, FORCE, in);
-    }
-
+    choose_mode(m, in, m->p[OWN]); // contact begins the pull back, its time ends it
     out->mode = m->mode;
     out->calculated_force = m->mode == APPROACH ? 0 : hybrid_calculated_force(m, in);
-    out->command = m->mode == APPROACH ? m->approach_voltage
+    out->command = m->mode == APPROACH ? m->p[APPROACH_VOLTAGE]
                    : m->mode == IMPACT ? -m->rig.voltage_limit
                                        : hybrid_force_command(m, in, out);
 }
@@ -431,29 +412,28 @@ const controller reverse_torque_law =
 // Speed at which a resting hub is taken, for the sign of its friction [rad/s].
 #define CREEP 1e-3
 
-enum { OWN_FORCE_LIMIT = OWN + 1 };
 static const controller_parameter speed_limit_parameters[] = {
     HYBRID_PARAMETERS, {.name = "speed_limit"}, {.name = "force_limit"}};
 
 static const char *speed_limit_start(void *memory, const controller_setup *setup)
 {
     hybrid_memory *m = memory;
-    m->force_limit = setup->parameters[OWN_FORCE_LIMIT];
+    m->p[OWN_FORCE_LIMIT] = setup->parameters[OWN_FORCE_LIMIT];
     return hybrid_start_with_own(memory, setup);
 }
 
 // Keeps the present speed up and adds what the predicted force leaves.
 static double force_limited_command(const hybrid_memory *m, const controller_input *in)
 {
-    const double left = SHARE * m->force_limit - in->predicted_force;
+    const double left = SHARE * m->p[OWN_FORCE_LIMIT] - in->predicted_force;
     return hybrid_speed_command(m, in, fmax(in->tachometer, CREEP)) + VOLTS_PER_NEWTON * left;
 }
 
 static void speed_limit_sample(void *memory, const controller_input *in, controller_output *out)
 {
     hybrid_memory *m = memory;
-    double limited = fmin(m->approach_voltage, hybrid_speed_command(m, in, m->own));
-    if (m->force_limit > 0 && isfinite(in->predicted_force)) {
+    double limited = fmin(m->p[APPROACH_VOLTAGE], hybrid_speed_command(m, in, m->p[OWN]));
+    if (m->p[OWN_FORCE_LIMIT] > 0 && isfinite(in->predicted_force)) {
         limited = fmin(limited, force_limited_command(m, in));
     }
     out->command = hybrid_command(m, in, out, limited);
@@ -482,11 +462,11 @@ static void bang_bang_sample(void *memory, const controller_input *in, controlle
 
     // on the last part the command brakes until the arm stands, then it is the plain approach
     double gone = in->encoder - m->start_angle, way = m->rig.wall_angle - m->start_angle;
-    if (gone >= m->own * way) {
+    if (gone >= m->p[OWN] * way) {
         m->reversed = m->reversed || in->tachometer <= 0;
-        approach = m->reversed ? m->approach_voltage : -limit;
+        approach = m->reversed ? m->p[APPROACH_VOLTAGE] : -limit;
     }
-    out->command = hybrid_command(m, in, out, m->reversed ? m->approach_voltage : approach);
+    out->command = hybrid_command(m, in, out, m->reversed ? m->p[APPROACH_VOLTAGE] : approach);
 }
 
 const controller bang_bang_law = HYBRID_LAW("bang-bang", hybrid_modes, bang_bang_parameters,

@@ -43,73 +43,49 @@ static void command_model(const controller_setup *setup, const mode_set *set, in
     sampled_model_init(model, k + n, rate, input, setup->period);
 }
 
-// The free arm without damping, under a torque, for the plan.
-static void command_plan(observer_design *d, const controller_setup *setup)
+// Gains for which the energy of the motion, relative to the wanted rotation or to the rest, and an
+// effort together are the least; `first` as of command_model.
+static bool find_gain(const controller_setup *setup, const mode_set *set, int first, double effort,
+                      double *gains)
 {
-    const mode_set *set = &d->observer.arm.free;
-    const int n = set->count;
-    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}}, input[ESTIMATOR_STATES] = {0};
-    for (int i = 0; i < n; i++) {
-        rate[i][n + i] = 1;
-        rate[n + i][i] = -set->square[i];
-        input[n + i] = set->hub[i];
-    }
-    sampled_model_init(&d->plan_model, 2 * n, rate, input, setup->period);
-}
-
-// In flight: the energy of the motion relative to the wanted rotation, and the effort with which
-// the rotation alone has a time constant [s].
-static bool find_flight_gain(const observer_design *d, const controller_setup *setup, double time,
-                             double *gains)
-{
-    const mode_set *set = &d->observer.arm.free;
     const int n = set->count;
     sampled_model model;
     quadratic_cost cost = {.growth = 1};
-    command_model(setup, set, 1, setup->torque_per_volt, &model);
+    command_model(setup, set, first, setup->torque_per_volt, &model);
 
     // twice the energy: of motion, and of bending
     for (int i = 0; i < n; i++) {
         double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
-        motion[n - 1 + i] = 1;
+        motion[n - first + i] = 1;
         quadratic_cost_add(&cost, model.n, motion, 0, 1);
-        if (i > 0) {
-            strain[i - 1] = 1;
+        if (i >= first) {
+            strain[i - first] = 1;
             quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
         }
     }
-
-    // what the motor may do about it; the angle itself is not fed back
-    double time_constant = set->hub[0] * setup->torque_per_volt * time;
-    cost.effort = time_constant * time_constant;
-    double gain[ESTIMATOR_STATES] = {0};
-    if (!quadratic_gain(&model, &cost, gain)) {
-        return false;
-    }
-    memcpy(gains + 1, gain, (size_t)model.n * sizeof gain[0]);
-    return true;
+    cost.effort = effort;
+    return quadratic_gain(&model, &cost, gains + first);
 }
 
-// In contact: the energy of the motion relative to the rest, and the effort with which the first
-// mode alone is critically damped: a'' = -w^2 a + h K u with u = -a'/sqrt(effort) has 2 w for h K /
-// sqrt(effort). At a wall that gives the tip's swinging is to be damped, too.
+// In flight: the effort with which the rotation alone has a time constant [s]; the angle itself is
+// not fed back.
+static bool find_flight_gain(const observer_design *d, const controller_setup *setup, double time,
+                             double *gains)
+{
+    const mode_set *set = &d->observer.arm.free;
+    const double time_constant = set->hub[0] * setup->torque_per_volt * time;
+    return find_gain(setup, set, 1, time_constant * time_constant, gains);
+}
+
+// In contact: the effort with which the first mode alone is critically damped: a'' = -w^2 a + h K u
+// with u = -a'/sqrt(effort) has 2 w for h K / sqrt(effort). At a wall that gives the tip's swinging
+// is to be damped, too.
 static bool find_press_gain(observer_design *d, const controller_setup *setup, bool gives)
 {
     const mode_set *set = &d->observer.arm.contact;
-    const int n = set->count;
-    sampled_model model;
-    quadratic_cost cost = {.growth = 1};
-    command_model(setup, set, 0, setup->torque_per_volt, &model);
-
-    for (int i = 0; i < n; i++) {
-        double strain[ESTIMATOR_STATES] = {0}, motion[ESTIMATOR_STATES] = {0};
-        strain[i] = motion[n + i] = 1;
-        quadratic_cost_add(&cost, model.n, motion, 0, 1);
-        quadratic_cost_add(&cost, model.n, strain, 0, set->square[i]);
-    }
-    double drive = set->hub[0] * setup->torque_per_volt;
-    cost.effort = (gives ? SOFT_EFFORT : 1) * drive * drive / (4 * set->square[0]);
-    return quadratic_gain(&model, &cost, d->press_gain);
+    const double drive = set->hub[0] * setup->torque_per_volt;
+    const double effort = (gives ? SOFT_EFFORT : 1) * drive * drive / (4 * set->square[0]);
+    return find_gain(setup, set, 0, effort, d->press_gain);
 }
 
 // The speeds. After a touch in uniform rotation v the first mode has a' = p v. With the force as
@@ -163,8 +139,14 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
         !find_press_gain(d, setup, task->wall_stiffness > 0)) {
         return "the Riccati equation of its gains has no stabilising solution";
     }
-    command_plan(d, setup);
     command_model(setup, &d->observer.arm.free, 0, 1, &d->flight_model);
+
+    // the plan is made without damping
+    controller_setup smooth = *setup;
+    mode_set undamped = d->observer.arm.free;
+    smooth.hub_damping = 0;
+    memset(undamped.damping, 0, sizeof undamped.damping);
+    command_model(&smooth, &undamped, 0, 1, &d->plan_model);
     find_speeds(d, setup, task);
     return NULL;
 }

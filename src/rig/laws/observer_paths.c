@@ -59,15 +59,7 @@ double smooth_approach_follow(smooth_approach *p, const observer_design *d)
     torque *= d->observer.arm.inertia / p->period;
 
     // the arm under that
-    double next[ESTIMATOR_STATES];
-    const sampled_model *model = &d->plan_model;
-    for (int i = 0; i < model->n; i++) {
-        next[i] = model->b[i] * torque;
-        for (int j = 0; j < model->n; j++) {
-            next[i] += model->a[i][j] * p->state[j];
-        }
-    }
-    memcpy(p->state, next, (size_t)model->n * sizeof next[0]);
+    sampled_model_step(&d->plan_model, p->state, torque);
     return torque;
 }
 
@@ -157,20 +149,6 @@ enum {
 #define NEAR    1e-6 // of what all torques can do, by which an equation may be missed
 #define DAMPED  1e-6 // share of the unbounded Hessian that is added to it
 
-// State after a period under a torque.
-static void fly(const quickest_touch *q, double *z, double torque)
-{
-    const int n = q->flight.n;
-    double next[ESTIMATOR_STATES];
-    for (int i = 0; i < n; i++) {
-        next[i] = q->flight.b[i] * torque;
-        for (int j = 0; j < n; j++) {
-            next[i] += q->flight.a[i][j] * z[j];
-        }
-    }
-    memcpy(z, next, (size_t)n * sizeof z[0]);
-}
-
 static double sum_of(const quickest_touch *q, const double *row, const double *z)
 {
     double sum = 0;
@@ -200,7 +178,7 @@ void quickest_touch_init(quickest_touch *q, const observer_design *d)
     // and what each torque adds to that
     double z[ESTIMATOR_STATES] = {0};
     for (int k = 0; k < QUICKEST_PERIODS; k++) {
-        fly(q, z, k == 0 ? 1 : 0);
+        sampled_model_step(&q->flight, z, k == 0 ? 1 : 0);
         q->tip_gain[k] = sum_of(q, q->tip, z);
         q->force_gain[k] = sum_of(q, q->force, z);
     }
@@ -307,7 +285,7 @@ bool quickest_touch_plan(quickest_touch *q, const quickest_task *task)
     double z[ESTIMATOR_STATES];
     memcpy(z, task->z, (size_t)q->flight.n * sizeof z[0]);
     for (int n = 1; n <= last && n <= QUICKEST_PERIODS; n++) {
-        fly(q, z, middle);
+        sampled_model_step(&q->flight, z, middle);
         two_equations e = {.n = n,
                            .tip = task->wall - sum_of(q, q->tip, z),
                            .force = task->force - q->force_per_wall * task->wall -
