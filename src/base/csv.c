@@ -11,14 +11,6 @@ csv_writer csv_begin(FILE *stream)
     return (csv_writer){.stream = stream};
 }
 
-static void begin_field(csv_writer *w)
-{
-    if (w->in_row) {
-        fputc(',', w->stream);
-    }
-    w->in_row = true;
-}
-
 // What stands between quotes, inner ones doubled; what may not leave the program becomes '?'.
 static void write_quoted(FILE *stream, const char *text)
 {
@@ -39,35 +31,23 @@ static void write_quoted(FILE *stream, const char *text)
     fwrite(begin, 1, (size_t)(text - begin), stream);
 }
 
-static bool needs_quotes(const char *text)
-{
-    return strpbrk(text, ",\"\n") != NULL;
-}
-
-// One field: a name, and a unit in brackets unless that is NULL.
-static void write_field(csv_writer *w, const char *name, const char *unit)
+void csv_heading(csv_writer *w, const char *name, const char *unit)
 {
     const char *const parts[] = {name, unit != NULL ? "[" : "", unit != NULL ? unit : "",
                                  unit != NULL ? "]" : ""};
-    bool quoted = needs_quotes(name) || (unit != NULL && needs_quotes(unit));
-
-    // the name and its unit are one field
-    begin_field(w);
-    fputs(quoted ? "\"" : "", w->stream);
+    const char *quote =
+        strpbrk(name, ",\"\n") != NULL || strpbrk(parts[2], ",\"\n") != NULL ? "\"" : "";
+    fprintf(w->stream, "%s%s", w->in_row ? "," : "", quote);
+    w->in_row = true;
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         write_quoted(w->stream, parts[i]);
     }
-    fputs(quoted ? "\"" : "", w->stream);
-}
-
-void csv_heading(csv_writer *w, const char *name, const char *unit)
-{
-    write_field(w, name, unit);
+    fputs(quote, w->stream);
 }
 
 void csv_text(csv_writer *w, const char *text)
 {
-    write_field(w, text, NULL);
+    csv_heading(w, text, NULL);
 }
 
 void csv_number(csv_writer *w, double value)
