@@ -202,7 +202,7 @@ static prediction of_one_link(const char *const *settings, const voltage_profile
 
     // whether energies are looked at changes nothing
     assert_int_equal(predict_pulse(&a, &p.method, q, w, command, false, &plain), STATUS_OK);
-    assert_int_equal(plain.doubt, out.doubt);
+    assert_int_equal(plain.doubtful, out.doubtful);
     check_relative(plain.force, out.force, 1e-9);
     return out;
 }
@@ -324,7 +324,7 @@ TEST(an_elastic_impact_does_not_hold)
     prediction out;
     assert_int_equal(predict_linearised(&a, &p.method, q, w, &out), STATUS_OK);
     assert_false(out.holds);
-    assert_int_equal(out.doubt, DOUBT_NONE);
+    assert_false(out.doubtful);
 }
 
 // Commands take the force down after its first peak and up to a higher one: that is the answer as
@@ -344,7 +344,7 @@ TEST(a_force_that_vanishes_ends_the_pulse)
         const voltage_profile command = {2, times, volts};
         prediction out;
         assert_int_equal(predict_pulse(&a, &p.method, q, w, &command, true, &out), STATUS_OK);
-        assert_true(out.holds && out.doubt == DOUBT_NONE);
+        assert_true(out.holds && !out.doubtful);
         if (out.delay > times[0]) {
             assert_true(out.force > 1.2 * plain.force);
             assert_int_equal(lost, 0);

@@ -112,8 +112,7 @@ static truth what_happens(const arm *a, motion *m)
 }
 
 typedef struct tally {
-    int cases, held, answered, lost, wrong;
-    int doubts[2];
+    int cases, held, answered, lost, wrong, doubtful;
     double worst;
 } tally;
 
@@ -149,8 +148,8 @@ static void try_case(const parameters *p, tally *t)
     t->cases++;
     t->held += is.held;
     t->lost += !is.held;
-    t->doubts[out.doubt]++;
-    bool called_lost = !out.holds && out.doubt == DOUBT_NONE;
+    t->doubtful += out.doubtful;
+    bool called_lost = !out.holds && !out.doubtful;
     if (called_lost != !is.held) {
         t->wrong++;
         describe(p, "wrongly lost or held", &out, &is);
@@ -178,7 +177,7 @@ static tally try_many(long count, const family *of)
     print_message("%d to %d links: %d touches, %d lost at once, %d hold, %d of them predicted "
                   "(%.1f %%), worst error %.2f %%; %d too long; %d wrong\n",
                   of->fewest, of->most, t.cases, t.lost, t.held, t.answered,
-                  100.0 * t.answered / t.held, 100 * t.worst, t.doubts[DOUBT_LENGTH], t.wrong);
+                  100.0 * t.answered / t.held, 100 * t.worst, t.doubtful, t.wrong);
     return t;
 }
 

@@ -12,18 +12,6 @@ typedef struct three_body_state {
     double velocity[3]; // [rad/s]
 } three_body_state;
 
-// Why a predictor that knows the state gives no number: what follows the touch cannot be told from
-// it as exactly as the predictor claims.
-#define PREDICTION_DOUBT_LIST(X)                                                                   \
-    X(DOUBT_NONE, "")                                                                              \
-    X(DOUBT_LENGTH, "the pulse lasts longer than it can be followed")
-
-typedef enum prediction_doubt {
-#define PREDICTION_DOUBT_ENUM(id, text) id,
-    PREDICTION_DOUBT_LIST(PREDICTION_DOUBT_ENUM)
-#undef PREDICTION_DOUBT_ENUM
-} prediction_doubt;
-
 typedef struct prediction {
     bool holds;         // false: the touch would not hold, contact is lost at once
     double force;       // peak of the first pulse [N]
@@ -32,7 +20,8 @@ typedef struct prediction {
     double restitution; // e_eq of 4.1.1 [-]; NaN where the method gives none
     double inductance;  // what the motor's inductance changes of the peak [N], NaN where that is
                         // not asked or not known
-    prediction_doubt doubt; // not DOUBT_NONE: force and delay are NaN, and it does not hold
+    bool doubtful; // the pulse lasts longer than it can be followed: force and delay are NaN, and
+                   // it does not hold
 } prediction;
 
 // An empty prediction: it does not hold, and every number is NaN.

@@ -39,9 +39,7 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
         fault_set(f, code, "%s", status_text(code));
         return PREDICTION_FAILED;
     }
-    return out->doubt != DOUBT_NONE ? PREDICTION_DOUBTFUL
-           : out->holds             ? PREDICTION_HOLDS
-                                    : PREDICTION_LOST;
+    return out->doubtful ? PREDICTION_DOUBTFUL : out->holds ? PREDICTION_HOLDS : PREDICTION_LOST;
 }
 
 // Mean command from the touch until `time` [V]: with it, kT/Ra times the time is the integral of
@@ -159,9 +157,9 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
                                 .fault = {.code = STATUS_OK}};
     answer.outcome = ask(which, question, &answer.prediction, &answer.fault);
     if (!prediction_known(&answer)) {
-        const prediction_doubt doubt = answer.prediction.doubt;
+        const bool doubtful = answer.prediction.doubtful;
         answer.prediction = prediction_none();
-        answer.prediction.doubt = doubt;
+        answer.prediction.doubtful = doubtful;
     }
     return answer;
 }
@@ -212,18 +210,7 @@ const char *prediction_reason(const prediction_answer *answer)
         PREDICTION_OUTCOME_LIST(PREDICTION_OUTCOME_TEXT)
 #undef PREDICTION_OUTCOME_TEXT
     };
-    static const char *const doubts[] = {
-#define PREDICTION_DOUBT_TEXT(id, text) [id] = text,
-        PREDICTION_DOUBT_LIST(PREDICTION_DOUBT_TEXT)
-#undef PREDICTION_DOUBT_TEXT
-    };
-
-    // a failure has its own words, a doubt those of its kind
-    if (answer->outcome == PREDICTION_FAILED) {
-        return answer->fault.text;
-    }
-    if (answer->outcome == PREDICTION_DOUBTFUL) {
-        return doubts[answer->prediction.doubt];
-    }
-    return answer->outcome == PREDICTION_HOLDS ? answer->note : texts[answer->outcome];
+    return answer->outcome == PREDICTION_FAILED  ? answer->fault.text
+           : answer->outcome == PREDICTION_HOLDS ? answer->note
+                                                 : texts[answer->outcome];
 }

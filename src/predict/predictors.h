@@ -29,7 +29,7 @@ typedef enum predictor {
 #define PREDICTION_OUTCOME_LIST(X)                                                                 \
     X(PREDICTION_HOLDS, "the touch would hold")                                                    \
     X(PREDICTION_LOST, "the touch would not hold")                                                 \
-    X(PREDICTION_DOUBTFUL, "it cannot be told")                                                    \
+    X(PREDICTION_DOUBTFUL, "the pulse lasts longer than it can be followed")                       \
     X(PREDICTION_CORRECTED_ONLY, "for the corrected model only")                                   \
     X(PREDICTION_RIGID_WALL_ONLY, "for a rigid wall only")                                         \
     X(PREDICTION_STILL_WALL_ONLY, "for a wall at rest only")                                       \

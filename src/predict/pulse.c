@@ -114,7 +114,7 @@ static status follow(arm *a, motion *m, const voltage_profile *command, seen_ene
 
     // a force that still rises has its peak beyond the horizon
     const bool rises = m->record.pulse_peak - before > SETTLED * m->record.pulse_peak;
-    out->doubt = rises || steps > MOST_STEPS ? DOUBT_LENGTH : DOUBT_NONE;
+    out->doubtful = rises || steps > MOST_STEPS;
     return STATUS_OK;
 }
 
@@ -140,7 +140,7 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
     seen_energies seen = {0};
     const bool held = touch(&a, m, q, w, given.current, out);
     const status s = held ? follow(&a, m, &given, energies ? &seen : NULL, out) : STATUS_OK;
-    out->holds = held && s == STATUS_OK && out->doubt == DOUBT_NONE;
+    out->holds = held && s == STATUS_OK && !out->doubtful;
     if (out->holds) {
         out->force = m->record.pulse_peak;
         out->delay = m->record.pulse_peak_time;
