@@ -124,9 +124,7 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     bool printed = p->arm.model == ARM_PRINTED;
     two_link touch;
     *out = prediction_none();
-    status result = three_body_state_check(s, f);
-    TRY(result);
-
+    TRY(three_body_state_check(s, f));
     double force, after[3], impulse;
     FAIL_IF(!(printed ? printed_force(p, s, &force) : corrected_force(p, s, &force)) ||
                 !isfinite(force),
@@ -139,8 +137,8 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     out->force = force;
     out->holds = force > 0 && two_link_approach_speed(&touch, s) >= 0;
     if (!printed) {
-        result = two_link_velocity_jump(&touch, s, after, &impulse, f);
+        TRY(two_link_velocity_jump(&touch, s, after, &impulse, f));
         out->holds = out->holds && two_link_first_force(&touch, p, s, after) >= 0;
     }
-    return result;
+    return STATUS_OK;
 }

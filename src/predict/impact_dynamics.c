@@ -292,33 +292,6 @@ static double earliest_delay(const double c[3])
     return earliest;
 }
 
-// State check, terms and velocity jump that every form starts with.
-static status start(const parameters *p, const three_body_state *s, two_link *t,
-                    integrated_motion *g, prediction *out, double after[3], fault *f)
-{
-    *out = prediction_none();
-
-    // a bad state ends here, with nothing predicted
-    TRY(three_body_state_check(s, f));
-
-    // the jump, and the motion that begins with it
-    two_link_at(t, p, form_of(p), s->angle[1], s->angle[2]);
-    status result = two_link_velocity_jump(t, s, after, &out->impulse, f);
-    if (result == STATUS_OK) {
-        integrate_motion(g, p, t, s, after);
-    }
-    return result;
-}
-
-static void finish(const parameters *p, const two_link *t, const three_body_state *s,
-                   const double after[3], prediction *out)
-{
-    out->holds = out->impulse >= 0 && out->force > 0 && out->delay > 0;
-    if (p->arm.model != ARM_PRINTED) {
-        out->holds = out->holds && two_link_first_force(t, p, s, after) >= 0;
-    }
-}
-
 // Without a hub spring E1 and E2 are one equation, the balance of the whole arm with w1 = w2:
 // -S T + kv T w2 / 2 - P2 + both T f / 2 = 0, and the system is quadratic in T.
 static void solve_rigid_hub(const integrated_motion *g, prediction *out)
@@ -330,24 +303,49 @@ static void solve_rigid_hub(const integrated_motion *g, prediction *out)
     out->force = force_of_delay(g, out->delay);
 }
 
-status predict_impact_dynamics(const parameters *p, const three_body_state *s, prediction *out,
-                               fault *f)
+// The printed closed form of an arm with a hub spring, whose velocity w1 after the impact is known.
+static void solve_known_hub(const integrated_motion *g, double w1, prediction *out)
+{
+    double c[3];
+    force_free_terms(g, c);
+    c[1] += g->k1 * g->hub_bend;
+    c[2] += g->k1 * (g->w2 - w1) / 4;
+    out->delay = earliest_delay(c);
+    out->force = force_of_delay(g, out->delay);
+}
+
+static status predict(const parameters *p, const three_body_state *s, bool closed_form,
+                      prediction *out, fault *f)
 {
     two_link t;
     integrated_motion g;
     double after[3];
-    status result = start(p, s, &t, &g, out, after, f);
+    *out = prediction_none();
+    TRY(three_body_state_check(s, f));
 
-    // a hub without a spring makes the system quadratic
-    if (result == STATUS_OK && t.rigid_hub) {
-        solve_rigid_hub(&g, out);
-    } else if (result == STATUS_OK) {
-        result = solve_with_hub_spring(&g, s->velocity[0], &out->delay, &out->force, f);
+    // the jump, and the motion that begins with it
+    two_link_at(&t, p, form_of(p), s->angle[1], s->angle[2]);
+    TRY(two_link_velocity_jump(&t, s, after, &out->impulse, f));
+    integrate_motion(&g, p, &t, s, after);
+    if (t.rigid_hub) {
+        solve_rigid_hub(&g, out); // a hub without a spring makes the system quadratic
+    } else if (closed_form) {
+        solve_known_hub(&g, s->velocity[0] + after[1] - s->velocity[1], out);
+    } else {
+        TRY(solve_with_hub_spring(&g, s->velocity[0], &out->delay, &out->force, f));
     }
-    if (result == STATUS_OK) {
-        finish(p, &t, s, after, out);
+
+    out->holds = out->impulse >= 0 && out->force > 0 && out->delay > 0;
+    if (p->arm.model != ARM_PRINTED) {
+        out->holds = out->holds && two_link_first_force(&t, p, s, after) >= 0;
     }
-    return result;
+    return STATUS_OK;
+}
+
+status predict_impact_dynamics(const parameters *p, const three_body_state *s, prediction *out,
+                               fault *f)
+{
+    return predict(p, s, false, out, f);
 }
 
 // Hub and first link jump alike. Printed: w1 = w1(before) + Dw2 is then known, E1 and with it the
@@ -356,30 +354,9 @@ status predict_impact_dynamics(const parameters *p, const three_body_state *s, p
 status predict_impact_quadratic(const parameters *p, const three_body_state *s, prediction *out,
                                 fault *f)
 {
-    two_link t;
-    integrated_motion g;
-    double after[3], c[3];
     parameters rigid = *p;
     if (p->arm.model != ARM_PRINTED) {
         rigid.arm.hub_joint = HUB_RIGID;
     }
-
-    // a rigid hub is quadratic as it is; with a hub spring the printed form makes it so
-    status result = start(&rigid, s, &t, &g, out, after, f);
-    if (result == STATUS_OK && t.rigid_hub) {
-        solve_rigid_hub(&g, out);
-    } else if (result == STATUS_OK) {
-        // w1 is known: its terms of E1 go to the constant ones
-        double w1 = s->velocity[0] + after[1] - s->velocity[1];
-        force_free_terms(&g, c);
-        c[1] += g.k1 * g.hub_bend;
-        c[2] += g.k1 * (g.w2 - w1) / 4;
-        out->delay = earliest_delay(c);
-        out->force = force_of_delay(&g, out->delay);
-    }
-
-    if (result == STATUS_OK) {
-        finish(&rigid, &t, s, after, out);
-    }
-    return result;
+    return predict(&rigid, s, true, out, f);
 }
