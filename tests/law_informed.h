@@ -14,7 +14,6 @@
 
 #include "src/arm/modes.h"
 #include "src/base/dense.h"
-#include "src/predict/exponential.h"
 #include "src/run/loop.h"
 #include "tests/law_cases.h"
 

@@ -3,7 +3,7 @@
 
 #include "src/arm/modes.h"
 #include "src/base/random.h"
-#include "src/predict/exponential.h"
+#include "src/base/dense.h"
 #include "src/predict/least_time.h"
 #include "tests/arm_fixture.h"
 

@@ -1,4 +1,4 @@
-// Small dense systems of linear equations, a handful of unknowns.
+// Small dense matrices: systems of linear equations, exponentials, eigenvalues.
 #pragma once
 
 #include <stdbool.h>
@@ -10,6 +10,11 @@ bool dense_solve(int n, double *matrix, double *vector);
 
 // The same for several right-hand sides at once. right: n x columns, row by row; a column is one b.
 bool dense_solve_columns(int n, int columns, double *matrix, double *right);
+
+// result = exp(matrix h) for matrices of size x size, row by row, by Taylor's series of the scaled
+// matrix, squared back. power, product: scratch of the same size.
+void matrix_exponential(const double *matrix, int size, double h, double *result, double *power,
+                        double *product);
 
 // --- symmetric matrices -----------------------------------------------------------------------
 

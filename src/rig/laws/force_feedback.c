@@ -6,6 +6,7 @@
 //
 //     u = (2 f l - kv w)/K + force_gain (f - reading)
 #include <math.h>
+#include <string.h>
 
 #include "src/rig/laws/laws.h"
 
@@ -45,9 +46,7 @@ static const char *force_feedback_tune(void *memory, const controller_setup *set
     force_memory *m = memory;
     set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, m->rig.period == 0);
     m->rig = setup_kept(setup);
-    for (int i = 0; i < PARAMETERS; i++) {
-        m->p[i] = setup->parameters[i];
-    }
+    memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;
 }
 

@@ -129,7 +129,7 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
     m->force_limit = HUGE_VAL;
 
     // the one degree of freedom in contact
-    m->inertia = setup->hub_inertia + 2 * setup->link_inertia + 2 * quarter;
+    m->inertia = pressed_inertia(setup);
     m->stiffness = 4 * setup->k2;
     m->spring_force = 2 * setup->k2 / l;
     m->mass_force = (quarter - setup->link_inertia) / l;
@@ -171,31 +171,36 @@ static const char *state_feedback_start_with_limit(void *memory, const controlle
 static double friction(const optimal_memory *m, double velocity, double other_torque)
 {
     const double rest = 0.01; // [rad/s]
-    double limit = m->rig.stiction;
-    if (fabs(velocity) > rest) {
-        return velocity > 0 ? limit : -limit;
-    }
-    return fmax(-limit, fmin(other_torque, limit));
+    const double limit = m->rig.stiction;
+    return fabs(velocity) > rest ? coulomb_friction(&m->rig, velocity)
+                                 : fmax(-limit, fmin(other_torque, limit));
 }
 
-static double motor_torque(const optimal_memory *m, double volts)
+// Takes in what the sensors of the hub read: the first state, and that of its rate.
+static void read_hub(estimator *e, int rate, const controller_input *in)
 {
-    return m->rig.torque_per_volt * volts;
-}
-
-// --- free flight ----------------------------------------------------------------------------
-
-static void observe_flight(optimal_memory *m, const controller_input *in)
-{
-    static const double angle_row[4] = {[FREE_FIRST] = 1}, rate_row[4] = {[FREE_FIRST_RATE] = 1};
-    estimator *e = &m->e;
+    const double angle_row[4] = {1};
+    double rate_row[4] = {0};
+    rate_row[rate] = 1;
     estimator_correct(e, 4, angle_row, 0, in->encoder, ANGLE_VARIANCE);
     estimator_correct(e, 4, rate_row, 0, in->tachometer, RATE_VARIANCE);
 }
 
+// Begins an estimate with four states and their variances.
+static void begin_estimate(optimal_memory *m, const double *state, const double *variance)
+{
+    m->e = (estimator){.z = {0}};
+    for (int i = 0; i < 4; i++) {
+        m->e.z[i] = state[i];
+        m->e.p[i][i] = variance[i];
+    }
+}
+
+// --- free flight ----------------------------------------------------------------------------
+
 static void predict_flight(optimal_memory *m, const controller_input *in)
 {
-    double drive = motor_torque(m, in->voltage);
+    double drive = m->rig.torque_per_volt * in->voltage;
     drive -= friction(m, m->e.z[FREE_FIRST_RATE], drive);
     estimator_predict(&m->e, &m->flight, drive, flight_noise);
 }
@@ -208,12 +213,8 @@ static void enter_contact(optimal_memory *m, const controller_input *in)
     double after = (m->e.z[FREE_FIRST] + m->e.z[FREE_LAST]) / 2, way = after - before;
 
     // anywhere on the way between the two samples: variance way^2/12
-    estimator e = {.z = {in->encoder, in->tachometer, (before + after) / 2, 0}};
-    e.p[PRESSED_ANGLE][PRESSED_ANGLE] = ANGLE_VARIANCE;
-    e.p[PRESSED_RATE][PRESSED_RATE] = RATE_VARIANCE;
-    e.p[PRESSED_WALL][PRESSED_WALL] = way * way / 12 + 1e-6;
-    e.p[PRESSED_TORQUE][PRESSED_TORQUE] = 1e-4;
-    m->e = e;
+    begin_estimate(m, (double[]){in->encoder, in->tachometer, (before + after) / 2, 0},
+                   (double[]){ANGLE_VARIANCE, RATE_VARIANCE, way * way / 12 + 1e-6, 1e-4});
     m->ceiling = m->force;
     m->flies = false;
 }
@@ -228,13 +229,9 @@ static double braking_force(const optimal_memory *m, double stopping)
 // links turn against each other.
 static void leave_contact(optimal_memory *m, const controller_input *in)
 {
-    double wall = m->e.z[PRESSED_WALL];
-    estimator e = {.z = {in->encoder, 2 * wall - in->encoder, in->tachometer, -in->tachometer}};
-    e.p[FREE_FIRST][FREE_FIRST] = ANGLE_VARIANCE;
-    e.p[FREE_FIRST_RATE][FREE_FIRST_RATE] = RATE_VARIANCE;
-    e.p[FREE_LAST][FREE_LAST] = 1e-4;
-    e.p[FREE_LAST_RATE][FREE_LAST_RATE] = 0.1;
-    m->e = e;
+    const double angle = in->encoder, rate = in->tachometer;
+    begin_estimate(m, (double[]){angle, 2 * m->e.z[PRESSED_WALL] - angle, rate, -rate},
+                   (double[]){ANGLE_VARIANCE, 1e-4, RATE_VARIANCE, 0.1});
     m->flies = true;
 }
 
@@ -307,12 +304,10 @@ static void predict_contact(const optimal_memory *m, const sampled_model *model,
 
 static void observe_contact(optimal_memory *m, const controller_input *in)
 {
-    static const double angle_row[4] = {[PRESSED_ANGLE] = 1}, rate_row[4] = {[PRESSED_RATE] = 1};
     estimator *e = &m->e;
-    double drive = motor_torque(m, in->voltage);
+    double drive = m->rig.torque_per_volt * in->voltage;
     predict_contact(m, &m->contact, e, drive);
-    estimator_correct(e, 4, angle_row, 0, in->encoder, ANGLE_VARIANCE);
-    estimator_correct(e, 4, rate_row, 0, in->tachometer, RATE_VARIANCE);
+    read_hub(e, PRESSED_RATE, in);
 
     // the force is linear in the state but for friction: row times state, plus what is left
     double whole = m->spring_force + m->mass_force * m->stiffness / m->inertia;
@@ -343,7 +338,7 @@ static double limit_command(optimal_memory *m, const double *z, double command)
 
     // the force at once falls by per_volt for each volt: braking presses
     double per_volt = m->mass_force / m->inertia * m->rig.torque_per_volt;
-    double force = contact_force(m, z, motor_torque(m, command));
+    double force = contact_force(m, z, m->rig.torque_per_volt * command);
     double wanted = fmax(least, fmin(force, m->ceiling));
     if (per_volt > 0) {
         command += (force - wanted) / per_volt;
@@ -410,7 +405,7 @@ static double press(optimal_memory *m, const controller_input *in)
     // the state when the command takes effect
     estimator ahead = m->e;
     if (m->rig.delay > 0) {
-        predict_contact(m, &m->during_delay, &ahead, motor_torque(m, in->voltage));
+        predict_contact(m, &m->during_delay, &ahead, m->rig.torque_per_volt * in->voltage);
     }
 
     // at rest within the tolerance the force is held
@@ -442,11 +437,9 @@ static bool contact_is_lost(optimal_memory *m, const controller_input *in)
 {
     const int most = 2;
     m->readings_without_force = in->force > m->threshold ? 0 : m->readings_without_force + 1;
-    if (m->readings_without_force < most) {
-        return false;
-    }
-    m->readings_without_force = 0;
-    return true;
+    const bool lost = m->readings_without_force >= most;
+    m->readings_without_force = lost ? 0 : m->readings_without_force;
+    return lost;
 }
 
 // Updates the observer; the law itself decides where the flight ends.
@@ -462,7 +455,7 @@ static void observe(optimal_memory *m, const controller_input *in)
         m->mode = locked ? m->mode : PRESS;
     } else if (m->flies) {
         predict_flight(m, in);
-        observe_flight(m, in);
+        read_hub(&m->e, FREE_FIRST_RATE, in);
     } else if (!locked && contact_is_lost(m, in)) {
         leave_contact(m, in);
         m->mode = APPROACH;
@@ -498,8 +491,9 @@ static void state_feedback_sample(void *memory, const controller_input *in, cont
     out->desired_angle = wall + m->force / m->spring_force;
     out->desired_velocity = 0;
     out->calculated_force = m->mode == HOLD ? m->held_force
-                            : m->flies      ? 0
-                                       : contact_force(m, m->e.z, motor_torque(m, in->voltage));
+                            : m->flies
+                                ? 0
+                                : contact_force(m, m->e.z, m->rig.torque_per_volt * in->voltage);
 }
 
 // --- optimal ---

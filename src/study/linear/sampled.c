@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/predict/exponential.h"
+#include "src/base/dense.h"
 #include "src/rig/sensors.h"
 #include "src/study/linear/linear.h"
 
