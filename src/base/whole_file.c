@@ -256,24 +256,30 @@ static ssize_t write_bytes(void *context, const char *bytes, size_t size)
     whole_file *w = context;
     size_t done = 0;
     while (done < size) {
-        ssize_t written = write(w->descriptor, bytes + done, size - done);
-        if (written < 0 && errno != EINTR) {
+        const ssize_t written = TEMP_FAILURE_RETRY(write(w->descriptor, bytes + done, size - done));
+        if (written < 0) {
             w->reason = w->reason != 0 ? w->reason : errno;
             return 0;
         }
-        done += written > 0 ? (size_t)written : 0;
+        done += (size_t)written;
     }
     return (ssize_t)size;
+}
+
+static void forget_temporary(whole_file *w)
+{
+    if (w->temporary != NULL) {
+        replace_unfinished(w->temporary, NULL);
+    }
+    free(w->temporary);
+    w->temporary = NULL;
 }
 
 // Frees what the file has; nothing of it is open any more.
 static void forget(whole_file *w)
 {
-    if (w->temporary != NULL) {
-        replace_unfinished(w->temporary, NULL);
-    }
+    forget_temporary(w);
     free(w->path);
-    free(w->temporary);
     *w = (whole_file){.stream = NULL};
 }
 
@@ -301,9 +307,7 @@ static int create_temporary(whole_file *w, mode_t mode)
             reason = EEXIST;
         }
         if (reason != 0) {
-            replace_unfinished(w->temporary, NULL);
-            free(w->temporary);
-            w->temporary = NULL;
+            forget_temporary(w);
         }
     }
 
@@ -399,8 +403,10 @@ static int close_stream(whole_file *w, bool wanted)
 status whole_file_close(whole_file *w, status written, fault *f)
 {
     const bool wanted = written == STATUS_OK;
-    int reason = 0;
+    int reason = 0, locked = -1;
     if (w->path != NULL) {
+        // without its lock another run would take the temporary for one left behind
+        locked = fcntl(w->descriptor, F_DUPFD_CLOEXEC, 0);
         reason = close_stream(w, wanted);
     } else if (wanted) {
         reason = stream_failure(stdout);
@@ -420,6 +426,9 @@ status whole_file_close(whole_file *w, status written, fault *f)
     }
     if (!kept && w->temporary != NULL) {
         unlink(w->temporary);
+    }
+    if (locked >= 0) {
+        close(locked);
     }
     const status result = kept || !wanted ? written : cannot_write(f, w->path, reason);
     forget(w);
@@ -443,24 +452,20 @@ char *whole_file_read(const char *path, size_t most, size_t *length, const char 
     assert(most > 0);
     const int file = open(path, O_RDONLY | O_CLOEXEC);
     char *bytes = NULL;
-    size_t room = 0;
-    ssize_t count = 0;
+    ssize_t count = file < 0 ? -1 : 1;
     *length = 0;
     *failed = file < 0 ? "opened" : "read";
-    while (file >= 0 && *length < most) {
+    for (size_t room = 0; count > 0 && *length < most;) {
         if (*length == room) {
             room = room > most / 2 ? most : room + (room > 0 ? room : most < 65536 ? most : 65536);
             char *more = realloc(bytes, room + 1);
-            count = more != NULL ? 0 : -1;
-            if (count < 0) {
+            if (more == NULL) {
+                count = -1;
                 break;
             }
             bytes = more;
         }
-        count = read(file, bytes + *length, room - *length);
-        if (count == 0 || (count < 0 && errno != EINTR)) {
-            break;
-        }
+        count = TEMP_FAILURE_RETRY(read(file, bytes + *length, room - *length));
         *length += count > 0 ? (size_t)count : 0;
     }
 
@@ -469,7 +474,7 @@ char *whole_file_read(const char *path, size_t most, size_t *length, const char 
     if (file >= 0) {
         close(file);
     }
-    if (file < 0 || count < 0) {
+    if (count < 0) {
         free(bytes);
         errno = reason;
         return NULL;
