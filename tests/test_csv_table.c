@@ -42,7 +42,7 @@ TEST(columns_are_found_by_name_and_converted)
                  {"plain[mV]", "V", 2e-3, 3e-3},
                  {"plain", "N", 2, 3}};
     for (EACH(c, cases)) {
-        DONE(csv_table_numbers(&t, c->heading, c->unit, &values, &f));
+        DONE(csv_table_numbers(&t, c->heading, c->unit, false, &values, &f));
         check_close(values[0], c->first, 1e-15);
         check_close(values[1], c->second, 1e-15);
         free(values);
@@ -78,7 +78,7 @@ TEST(what_cannot_be_read_is_named_with_line_and_column)
         status code = read_table(&t, c->text, 2, &f);
         if (code == STATUS_OK) {
             code = csv_table_times(&t, "time", &times, &f);
-            code = code == STATUS_OK ? csv_table_numbers(&t, "v", "V", &values, &f) : code;
+            code = code == STATUS_OK ? csv_table_numbers(&t, "v", "V", false, &values, &f) : code;
             csv_table_finish(&t);
         }
         assert_int_equal(code, STATUS_BAD_ARGUMENT);

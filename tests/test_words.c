@@ -69,7 +69,7 @@ static void check_printable(const char *text, const char *expected)
 {
     char copy[64];
     snprintf(copy, sizeof copy, "%s", text);
-    make_printable(copy);
+    make_printable(copy, 0);
     assert_string_equal(copy, expected);
 }
 
@@ -103,7 +103,7 @@ TEST(what_turns_the_direction_of_text_becomes_question_marks)
 TEST(lines_keep_their_ends)
 {
     char text[] = "one\ntwo\r\n\tthree";
-    make_lines_printable(text);
+    make_printable(text, '\n');
     assert_string_equal(text, "one\ntwo?\n?three");
 }
 

@@ -189,7 +189,7 @@ char *text_label(const char *description)
 char *text_printable(const char *bytes)
 {
     char *valid = g_utf8_make_valid(bytes, -1);
-    make_lines_printable(valid);
+    make_printable(valid, '\n');
     return valid;
 }
 
@@ -198,7 +198,7 @@ char *text_plain(const char *markup)
     char *valid = text_printable(markup), *plain = NULL;
     if (pango_parse_markup(valid, -1, 0, NULL, &plain, NULL, NULL)) {
         // an entity may have become what the markup did not hold
-        make_lines_printable(plain);
+        make_printable(plain, '\n');
         g_free(valid);
         return plain;
     }

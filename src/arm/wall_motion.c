@@ -53,7 +53,7 @@ status wall_path_create(wall_path **created, const char *file, fault *f)
     TRY_MEMORY(p != NULL, f);
     status code = csv_table_read(&table, file, 2, f);
     code = code == STATUS_OK ? csv_table_times(&table, "time", &p->times, f) : code;
-    code = code == STATUS_OK ? csv_table_numbers(&table, "place", "m", &p->places, f) : code;
+    code = code == STATUS_OK ? csv_table_numbers(&table, "place", "m", false, &p->places, f) : code;
     p->rows = table.rows;
     for (size_t i = 1; i < p->rows && code == STATUS_OK; i++) {
         if (!(p->times[i] > p->times[i - 1])) {

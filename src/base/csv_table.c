@@ -233,8 +233,8 @@ static double factor_to(const char *unit, const char *wanted)
     return factor;
 }
 
-static status read_column(const csv_table *t, const char *heading, const char *unit, bool gaps,
-                          double **values, fault *f)
+status csv_table_numbers(const csv_table *t, const char *heading, const char *unit, bool gaps,
+                         double **values, fault *f)
 {
     *values = NULL;
     const int column = csv_table_find(t, heading);
@@ -276,21 +276,9 @@ static status read_column(const csv_table *t, const char *heading, const char *u
     return STATUS_OK;
 }
 
-status csv_table_numbers(const csv_table *t, const char *heading, const char *unit, double **values,
-                         fault *f)
-{
-    return read_column(t, heading, unit, false, values, f);
-}
-
-status csv_table_readings(const csv_table *t, const char *heading, const char *unit,
-                          double **values, fault *f)
-{
-    return read_column(t, heading, unit, true, values, f);
-}
-
 status csv_table_times(const csv_table *t, const char *heading, double **values, fault *f)
 {
-    status code = csv_table_numbers(t, heading, "s", values, f);
+    status code = csv_table_numbers(t, heading, "s", false, values, f);
     for (size_t r = 1; code == STATUS_OK && r < t->rows; r++) {
         if ((*values)[r] < (*values)[r - 1]) {
             const int column = csv_table_find(t, heading) + 1;

@@ -31,13 +31,10 @@ int csv_table_find(const csv_table *t, const char *heading);
 // The numbers of a column in `unit`, values[rows] on the heap. `heading` is what csv_table_find
 // takes; a "[unit]" in it counts in the place of the file's, and a column without any has the unit
 // that is wanted. STATUS_BAD_ARGUMENT where the column is missing, its unit unknown or a field not
-// a finite number, with line and column; STATUS_NO_MEMORY.
-status csv_table_numbers(const csv_table *t, const char *heading, const char *unit, double **values,
-                         fault *f);
-
-// The same of readings, of which an empty field or "nan" is none: NaN.
-status csv_table_readings(const csv_table *t, const char *heading, const char *unit,
-                          double **values, fault *f);
+// a finite number, with line and column; STATUS_NO_MEMORY. With `gaps`, of readings, an empty field
+// or "nan" is none: NaN.
+status csv_table_numbers(const csv_table *t, const char *heading, const char *unit, bool gaps,
+                         double **values, fault *f);
 
 // As csv_table_numbers for "time" or another clock [s], whose values must not fall.
 status csv_table_times(const csv_table *t, const char *heading, double **values, fault *f);

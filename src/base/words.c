@@ -118,25 +118,14 @@ int printable_length(const char *text)
     return is_unprintable(character) ? 0 : length;
 }
 
-// Replaces what is unprintable, but for `kept`. The bytes after the first of a character that goes
-// begin none, and go one by one.
-static void replace_unprintable(char *text, char kept)
+void make_printable(char *text, char kept)
 {
+    // the bytes after the first of a character that goes begin none, and go one by one
     while (*text != '\0') {
         const int length = *text == kept ? 1 : printable_length(text);
         *text = length > 0 ? *text : '?';
         text += length > 0 ? length : 1;
     }
-}
-
-void make_printable(char *text)
-{
-    replace_unprintable(text, 0);
-}
-
-void make_lines_printable(char *text)
-{
-    replace_unprintable(text, '\n');
 }
 
 void print_printable_list(FILE *stream, const char *format, va_list list)
@@ -154,7 +143,7 @@ void print_printable_list(FILE *stream, const char *format, va_list list)
     va_end(again);
     loss_unless(length >= 0 && (length < (int)sizeof brief || text != brief));
 
-    make_lines_printable(text);
+    make_printable(text, '\n');
     fputs(text, stream);
     if (text != brief) {
         free(text);

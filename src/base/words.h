@@ -36,13 +36,11 @@ int printable_length(const char *text);
 // The one filter for texts from outside (titles, names of files and plug-ins, cells, complaints of
 // other programs) on every way out: terminal, CSV, SVG, HTML. Replaces each byte of an unprintable
 // character, and of broken UTF-8, by '?', in place, so that what was there is seen to be missing.
-void make_printable(char *text);
+// `kept` stays: the line feed of a text of several lines, else 0.
+void make_printable(char *text, char kept);
 
-// The same for a text of several lines, whose line feeds stay.
-void make_lines_printable(char *text);
-
-// Prints like printf, with a decimal point, what make_lines_printable leaves of the text. What is
-// lost of a long one without memory is noted (text_stream.h); errors stay in the stream.
+// Prints like printf, with a decimal point, what make_printable leaves of the text, line feeds too.
+// What is lost of a long one without memory is noted (text_stream.h); errors stay in the stream.
 void print_printable(FILE *stream, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void print_printable_list(FILE *stream, const char *format, va_list list)
     __attribute__((format(printf, 2, 0)));

@@ -129,16 +129,6 @@ static void pressed_tangents(const arm *a, const double *q, double *c, double *k
     *k = a->joint_stiffness * bend * bend / mass;
 }
 
-// Moves *t, the middle one's time, to the top of the parabola through three points with spacing h;
-// where that has none it stays.
-static void seek_parabola_top(const double f[3], double h, double *t)
-{
-    double second = f[0] - 2 * f[1] + f[2], slope = (f[2] - f[0]) / 2;
-    if (second < 0) {
-        *t += fmin(fmax(-slope / second, -1), 1) * h;
-    }
-}
-
 // The predicted path in contact: oscillations one after another.
 typedef struct pressed_path {
     oscillation piece[PIECES];
@@ -213,8 +203,8 @@ static bool path_peak(pressed_arm *p, const pressed_path *path, double first, pr
         f[i] = path_force(p, path, path->stop - (2 - i) * h);
     }
 
-    double middle = t;
-    seek_parabola_top(f, h, &t);
+    const double middle = t, second = f[0] - 2 * f[1] + f[2], slope_there = (f[2] - f[0]) / 2;
+    t += second < 0 ? fmin(fmax(-slope_there / second, -1), 1) * h : 0;
     f[3] = path_force(p, path, t);
 
     // Newton's form on s = (time - middle) / h with nodes -1, 0, 1 and s3

@@ -15,7 +15,7 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
     for (int i = 1; i < signal_count && code == STATUS_OK; i++) {
         const char *heading = column == NULL ? signal_table[i].name : i == signal ? column : NULL;
         if (heading != NULL && csv_table_find(table, heading) >= 0) {
-            code = csv_table_readings(table, heading, signal_table[i].unit, &columns[i], f);
+            code = csv_table_numbers(table, heading, signal_table[i].unit, true, &columns[i], f);
         }
     }
 

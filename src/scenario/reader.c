@@ -32,7 +32,7 @@ void reader_report_at(reader *r, int line, int column, const char *format, ...)
         r->no_memory = true;
         return;
     }
-    make_printable(found.sentence);
+    make_printable(found.sentence, 0);
     r->found[r->faults++] = found;
 }
 

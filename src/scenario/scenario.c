@@ -151,7 +151,7 @@ status scenario_override(scenario *s, const char *assignment, fault *f)
     if (result != STATUS_OK) {
         fault_set_at(f, result, inner.path, "--set %.200s: %.700s", assignment, inner.text);
         if (f != NULL) {
-            make_printable(f->text);
+            make_printable(f->text, 0);
         }
         return result;
     }

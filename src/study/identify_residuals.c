@@ -44,7 +44,7 @@ static status read_column(const csv_table *t, const char *signal, const char *un
                             "which each trial run is driven: record it, or rename its heading",
                             t->file));
     return strcmp(signal, "time") == 0 ? csv_table_times(t, heading, values, f)
-                                       : csv_table_numbers(t, heading, unit, values, f);
+                                       : csv_table_numbers(t, heading, unit, false, values, f);
 }
 
 // Keeps what each sample read: of several rows within a sampling period, which show what the rig

@@ -79,13 +79,6 @@ typedef struct chain_modes {
 
 const char reduced_arm_no_memory[] = "there is no memory for its model";
 
-// Why there are no modes.
-static const char *refusal_of(status code)
-{
-    return code == STATUS_NO_MEMORY ? reduced_arm_no_memory
-                                    : "the modes of the arm it believes in cannot be computed";
-}
-
 // The modes in contact with a wall of a stiffness, HUGE_VAL: a rigid one [N/m].
 static status contact_modes(const arm *a, double wall_stiffness, const chain_modes *work,
                             int *count)
@@ -120,13 +113,13 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
 
     // both sets of modes
     status code = modes_compute(a, HUB_FREE, TIP_FREE, &free_count, work->frequencies, work->free);
-    if (code != STATUS_OK) {
-        return refusal_of(code);
+    if (code == STATUS_OK) {
+        take_modes(&r->free, a, work->mass, highest, free_count, work->frequencies, work->free);
+        code = contact_modes(a, wall_stiffness, work, &contact_count);
     }
-    take_modes(&r->free, a, work->mass, highest, free_count, work->frequencies, work->free);
-    code = contact_modes(a, wall_stiffness, work, &contact_count);
     if (code != STATUS_OK) {
-        return refusal_of(code);
+        return code == STATUS_NO_MEMORY ? reduced_arm_no_memory
+                                        : "the modes of the arm it believes in cannot be computed";
     }
     take_modes(&r->contact, a, work->mass, highest, contact_count, work->frequencies,
                work->contact);

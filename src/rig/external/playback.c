@@ -31,7 +31,7 @@ status playback_create(recorded_command **created, const control_parameters *con
             csv_table_times(&table, csv_table_find(&table, "t") >= 0 ? "t" : "time", &p->times, f);
     }
     if (code == STATUS_OK) {
-        code = csv_table_numbers(&table, control->playback_column, "V", &p->command, f);
+        code = csv_table_numbers(&table, control->playback_column, "V", false, &p->command, f);
     }
     csv_table_finish(&table);
     if (code == STATUS_OK) {

@@ -128,7 +128,7 @@ __attribute__((format(printf, 3, 4))) static bool fail(process *p, status code, 
     const char *errors = said + strspn(said, " ");
     snprintf(p->failure, sizeof p->failure, "the process '%.200s' %s%s%s%s", p->begun.command, why,
              ended, errors[0] != '\0' ? "; it said last: " : "", errors);
-    make_printable(p->failure);
+    make_printable(p->failure, 0);
     p->code = code;
     return false;
 }

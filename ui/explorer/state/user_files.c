@@ -145,7 +145,7 @@ status consent_remember(const scenario *s, bool *kept, fault *f)
         const control_parameters *c = &s->parameters.control;
         snprintf(what, sizeof what, "%s: %s", s->name,
                  c->law == LAW_PROCESS ? c->command : c->plugin);
-        make_printable(what);
+        make_printable(what, 0);
         fprintf(file.stream, "%s %s\n", digest, what);
     }
     code = whole_file_commit(&file, f);
