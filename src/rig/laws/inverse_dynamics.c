@@ -132,19 +132,13 @@ static void join_pieces(inverse_memory *m)
     }
 }
 
-// The piece that a time since the tip's departure lies in.
-static int piece_of(const inverse_memory *m, double time)
+// At a time since the tip's departure.
+static moment plan_at(const inverse_memory *m, double time)
 {
     int piece = WAIT;
     while (piece < JOINTS && time >= m->joint[piece]) {
         piece++;
     }
-    return piece;
-}
-
-static moment plan_at(const inverse_memory *m, double time)
-{
-    const int piece = piece_of(m, time);
     moment now = piece_at(m, piece, time);
     for (int k = 0; k < JOINTS; k++) {
         double decay = plain_exp(-m->zero * fabs(time - m->joint[k]));

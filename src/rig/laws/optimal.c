@@ -112,9 +112,8 @@ static void model_contact(optimal_memory *m, double h, sampled_model *model)
 }
 
 // Takes setup and parameters, at the start or later, models the arm and finds the gains. What it
-// estimates and the mode stay. Refuses an arm without a motor or
-// without inertia, and one whose Riccati equation has no stabilising solution. The second is for a
-// law with a limit on the force behind the shared parameters.
+// estimates and the mode stay. The second is for a law with a limit on the force behind the shared
+// parameters.
 static const char *state_feedback_start(void *memory, const controller_setup *setup)
 {
     optimal_memory *m = memory;
