@@ -96,24 +96,21 @@ static double first_zero_crossing(const arm *a, const motion *m, event_function 
     return first >= 0 ? first : first_zero_crossing(a, m, w, middle, hi, cuts - 1, second);
 }
 
-void dense_search_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
+void dense_search_event(const arm *a, motion *m, step_end *end)
 {
-    *any = false;
-    *first = EVENT_OF_GAP;
+    *end = (step_end){.length = end->length};
 
     // each function that is watched, as far as the first fall so far
     for (event_function w = EVENT_OF_GAP; w < EVENT_FUNCTION_COUNT; w++) {
         if (!event_function_active(a, m, w) || m->engine->excludes_event(m, w)) {
             continue;
         }
-        step_point start = {0, m->engine->event_function(a, m, w, 0)},
-                   end = {*h, m->engine->event_function(a, m, w, *h)};
+        step_point lo = {0, m->engine->event_function(a, m, w, 0)},
+                   hi = {end->length, m->engine->event_function(a, m, w, end->length)};
         double fall =
-            start.at.value < 0 ? 0 : first_zero_crossing(a, m, w, start, end, MOST_CUTS, HUGE_VAL);
+            lo.at.value < 0 ? 0 : first_zero_crossing(a, m, w, lo, hi, MOST_CUTS, HUGE_VAL);
         if (fall >= 0) {
-            *any = true;
-            *first = w;
-            *h = fall;
+            *end = (step_end){fall, true, w};
         }
     }
 }

@@ -8,10 +8,10 @@
 
 #include "src/contact/motion.h"
 
-// The first instant in [0, *h] of the internal step at which an event function leaves its
-// admissible side, by finding the roots of those that the engine's excludes_event leaves: *any,
-// *first and *h as locate_first_event has them; m->trial is left alone.
-void dense_search_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
+// The first instant in [0, end->length] of the internal step at which an event function leaves its
+// admissible side, by finding the roots of those that the engine's excludes_event leaves: *end as
+// locate_first_event has it; m->trial is left alone.
+void dense_search_event(const arm *a, motion *m, step_end *end);
 
 // Raises m->record.pulse_peak to the largest force in [0, h] of an internal step in contact.
 void dense_peak(const arm *a, motion *m, double h);

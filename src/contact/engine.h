@@ -71,6 +71,13 @@ typedef enum event_function {
     EVENT_FUNCTION_COUNT
 } event_function;
 
+// How far a step goes, and whether an event ends it.
+typedef struct step_end {
+    double length;        // up to there [s]
+    bool any;             // an event ends it
+    event_function first; // that event's
+} step_end;
+
 // Value and slope of a function at an instant.
 typedef struct value_and_slope {
     double value; // in its unit
@@ -143,7 +150,7 @@ typedef struct engine {
     bool (*excludes_event)(const motion *m, event_function w);
 
     // Dense engines: the first event, as dense_search_event (dense_location.h) has it.
-    void (*first_event)(const arm *a, motion *m, double *h, event_function *first, bool *any);
+    void (*first_event)(const arm *a, motion *m, step_end *end);
 
     // Engines that can do so without evaluating the state, else NULL: adds to accelerations and
     // reactions of m->state the immediate effect of a change of the motor's torque [N m], while the

@@ -100,45 +100,35 @@ static motion_event event_of(const motion *m, event_function w)
     return MOTION_REACHED;
 }
 
-// Tries a step of *h, shorter if need be; *h and m->trial end at the first event, if there is
-// one.
-static status step_to_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
+// Tries a step of that length, shorter if need be; *end and m->trial end at the first event, if
+// there is one.
+static status step_to_event(const arm *a, motion *m, step_end *end)
 {
-    status s = motion_try_step(a, m, *h);
+    status s = motion_try_step(a, m, end->length);
     for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
-        *h /= 2;
-        s = motion_try_step(a, m, *h);
+        end->length /= 2;
+        s = motion_try_step(a, m, end->length);
     }
-    return s == STATUS_OK ? locate_first_event(a, m, h, first, any) : s;
+    return s == STATUS_OK ? locate_first_event(a, m, end) : s;
 }
 
-// Ends a step of the `wanted` length that was just tried at m->record.tstop if it goes beyond, or
-// ends within rounding of it.
-static status stop_at_tstop(const arm *a, motion *m, double step, status tried, double wanted,
-                            double *h, event_function *first, bool *any)
+// A step of a stepping engine, which locates events and peaks by further, shorter steps. One that
+// goes beyond m->record.tstop, or ends within rounding of it, is made again to end there.
+static status tried_step(const arm *a, motion *m, double until, double step, step_end *end)
 {
-    double left = m->record.tstop - m->state[SLOT_TIME];
-    double reached = tried == STATUS_OK ? *h : wanted;
-    double spare = tried == STATUS_OK && *any ? 0 : LEAST_AFTER_TSTOP * step;
-    if (reached <= left - spare) {
-        return tried;
+    const double wanted = m->engine->advance(a, m, until - m->state[SLOT_TIME], step);
+    const double left = m->record.tstop - m->state[SLOT_TIME];
+    *end = (step_end){.length = wanted};
+    status s = step_to_event(a, m, end);
+    const double reached = s == STATUS_OK ? end->length : wanted;
+    const double spare = s == STATUS_OK && end->any ? 0 : LEAST_AFTER_TSTOP * step;
+    if (!(reached <= left - spare)) {
+        *end = (step_end){.length = left};
+        s = s == STATUS_OK ? motion_try_step(a, m, left) : s;
+        s = s == STATUS_OK ? s : step_to_event(a, m, end);
     }
-    *h = left;
-    *any = false;
-    status s = tried == STATUS_OK ? motion_try_step(a, m, left) : tried;
-    return s == STATUS_OK ? s : step_to_event(a, m, h, first, any);
-}
-
-// A step of a stepping engine, which locates events and peaks by further, shorter steps.
-static status tried_step(const arm *a, motion *m, double step, double wanted, double *h,
-                         event_function *first, bool *any)
-{
-    status s = step_to_event(a, m, h, first, any);
-    s = stop_at_tstop(a, m, step, s, wanted, h, first, any);
-    if (s == STATUS_OK && m->state[SLOT_CONTACT] != 0) {
-        s = locate_peak(a, m, *h);
-    }
-    return s;
+    const bool touches = s == STATUS_OK && m->state[SLOT_CONTACT] != 0;
+    return touches ? locate_peak(a, m, end->length) : s;
 }
 
 // Whether a rigid wall holds the arm where the contact equations are singular: folded over the
@@ -167,47 +157,37 @@ static bool went_through_fold(const arm *a, const motion *m)
     return through;
 }
 
-// Unused length of the internal step that the state keeps [s].
-static double left_of_step(motion *m)
-{
-    const double *kept = state_kept(m, m->state);
-    return kept[KEPT_LENGTH] - kept[KEPT_USED];
-}
-
 // The body of motion_examine_step, for an arm that can move on.
 static void examine(const arm *a, motion *m, double until, double far, double step)
 {
     const double now = m->state[SLOT_TIME];
-    double h = m->engine->advance(a, m, until - now, step);
-    const bool begun = h > 0;
+    step_end end = {.length = m->engine->advance(a, m, until - now, step)};
+    const bool begun = end.length > 0;
     if (begun && far > until) {
-        h = larger(smaller(left_of_step(m), far - now), h);
+        const double *kept = state_kept(m, m->state);
+        const double left = kept[KEPT_LENGTH] - kept[KEPT_USED]; // of the internal step
+        end.length = larger(smaller(left, far - now), end.length);
     }
-    event_function first = EVENT_OF_GAP;
-    bool any = false;
 
     // to the first event, tstop or the internal step's end; an event at the instant of tstop is
     // before it
     if (begun) {
-        m->engine->first_event(a, m, &h, &first, &any);
-        if (now + h > m->record.tstop) {
-            h = m->record.tstop - now;
-            any = false;
+        m->engine->first_event(a, m, &end);
+        if (now + end.length > m->record.tstop) {
+            end = (step_end){.length = m->record.tstop - now};
         }
         const bool touches = m->state[SLOT_CONTACT] != 0;
         if (touches) {
-            dense_peak(a, m, h);
+            dense_peak(a, m, end.length);
         }
         // an arm that has left a swinging face may still be deeper than it stands at rest
         if (!motion_wall_is_rigid(m) && (touches || state_face_swings(m, m->state))) {
-            dense_deepest(a, m, h);
+            dense_deepest(a, m, end.length);
         }
     }
     m->step.coming.known = true;
     m->step.coming.begun = begun;
-    m->step.coming.length = h;
-    m->step.coming.any = any;
-    m->step.coming.first = first;
+    m->step.coming.end = end;
 }
 
 void motion_examine_step(const arm *a, motion *m, double until, double far, double step)
@@ -219,16 +199,13 @@ void motion_examine_step(const arm *a, motion *m, double until, double far, doub
 }
 
 // The internal step of a dense engine.
-static status dense_step(const arm *a, motion *m, double until, double step, double *h,
-                         event_function *first, bool *any)
+static status dense_step(const arm *a, motion *m, double until, double step, step_end *end)
 {
     if (!m->step.coming.known) {
         examine(a, m, until, until, step);
     }
     m->step.coming.known = false;
-    *h = m->step.coming.length;
-    *any = m->step.coming.any;
-    *first = m->step.coming.first;
+    *end = m->step.coming.end;
     m->step.aim = smaller(until, m->record.tstop);
     if (!m->step.coming.begun) {
         double sum = 0;
@@ -237,7 +214,7 @@ static status dense_step(const arm *a, motion *m, double until, double step, dou
         }
         return isfinite(sum) ? STATUS_NO_PROGRESS : STATUS_NOT_FINITE;
     }
-    return motion_try_step(a, m, *h);
+    return motion_try_step(a, m, end->length);
 }
 
 // A requested instant is reached to the last bit.
@@ -283,33 +260,25 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     }
 
     // as far as accuracy allows, tstop, or the first event
-    double h;
-    event_function first = EVENT_OF_GAP;
-    bool any = false;
-    status s;
-    if (engine_is_dense(m->engine)) {
-        s = dense_step(a, m, until, step, &h, &first, &any);
-    } else {
-        double wanted = m->engine->advance(a, m, until - m->state[SLOT_TIME], step);
-        h = wanted;
-        s = tried_step(a, m, step, wanted, &h, &first, &any);
-    }
+    step_end end;
+    const status s = engine_is_dense(m->engine) ? dense_step(a, m, until, step, &end)
+                                                : tried_step(a, m, until, step, &end);
     if (s != STATUS_OK) {
-        m->failure_time = m->state[SLOT_TIME] + h;
+        m->failure_time = m->state[SLOT_TIME] + end.length;
         return s;
     }
 
     accept(m, step);
-    m->step.last = h;
+    m->step.last = end.length;
     note_hold(a, m);
-    const bool folded = any && (first == EVENT_OF_GAP || first == EVENT_OF_FORCE) &&
+    const bool folded = end.any && (end.first == EVENT_OF_GAP || end.first == EVENT_OF_FORCE) &&
                         motion_wall_is_rigid(m) && chain_is_folded(a, state_angles(m, m->state));
     if (folded || went_through_fold(a, m)) {
         m->failure_time = m->state[SLOT_TIME];
         return STATUS_FOLDED;
     }
-    if (any) {
-        report->event = event_of(m, first);
+    if (end.any) {
+        report->event = event_of(m, end.first);
     } else {
         come_to_rest(m);
     }

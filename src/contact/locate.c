@@ -179,27 +179,27 @@ static status narrow(const arm *a, motion *m, event_function w, double s, bracke
     return evaluated == b->hi ? STATUS_OK : motion_try_step(a, m, b->hi);
 }
 
-// Looks for the first instant in (0, *h] at which `w` leaves its admissible side; if there is one,
-// *h and m->trial move there.
-static status search(const arm *a, motion *m, event_function w, double *h, bool *found)
+// Looks for the first instant in (0, end->length] at which `w` leaves its admissible side; if there
+// is one, *end and m->trial move there.
+static status search(const arm *a, motion *m, event_function w, step_end *end)
 {
+    const double h = end->length;
     double v0 = event_value(a, m, m->state, w), v1 = event_value(a, m, m->trial, w);
-    double guess = v0 > 0 && v1 < 0 ? *h * guess_crossing(m, *h, w, v0, v1) : 0.5 * *h;
-    double lo = 0, hi = *h, tolerance = event_tolerance(w);
+    double guess = v0 > 0 && v1 < 0 ? h * guess_crossing(m, h, w, v0, v1) : 0.5 * h;
+    double lo = 0, hi = h, tolerance = event_tolerance(w);
 
     // admissible at the end: only a dip in between can matter
-    *found = false;
     if (v1 >= -tolerance) {
-        double dip = v0 > 0 && v1 > 0 ? suspected_dip(a, m, *h, w, v0, v1) : -1;
+        double dip = v0 > 0 && v1 > 0 ? suspected_dip(a, m, h, w, v0, v1) : -1;
         if (dip < 0) {
             return STATUS_OK;
         }
-        status s = motion_try_step(a, m, dip * *h);
+        status s = motion_try_step(a, m, dip * h);
         v1 = event_value(a, m, m->trial, w);
         if (s != STATUS_OK || v1 >= -tolerance) {
-            return s == STATUS_OK ? motion_try_step(a, m, *h) : s;
+            return s == STATUS_OK ? motion_try_step(a, m, h) : s;
         }
-        hi = dip * *h;
+        hi = dip * h;
         guess = 0.5 * hi;
     }
 
@@ -237,37 +237,32 @@ static status search(const arm *a, motion *m, event_function w, double *h, bool 
         v1 = v_closed;
         guess = 0.5 * hi;
     }
-    *found = true;
+    end->any = true;
+    end->first = w;
     bracket between = {lo, v0 - edge, hi, v1 - edge, edge};
     status s = narrow(a, m, w, guess, &between);
     hi = between.hi;
 
     // an unresolved impact happens within its step: nothing is located inside its first part
-    double least = fmin(*h, UNRESOLVED_IMPACT * m->nominal_step);
+    double least = fmin(h, UNRESOLVED_IMPACT * m->nominal_step);
     bool within_impact = m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
     if (s == STATUS_OK && within_impact && motion_unresolved(a, m)) {
         hi = least;
         s = motion_try_step(a, m, hi);
     }
-    *h = hi;
+    end->length = hi;
     return s;
 }
 
-status locate_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
+status locate_first_event(const arm *a, motion *m, step_end *end)
 {
-    status s = STATUS_OK;
-    *any = false;
-    *first = EVENT_OF_GAP;
-    for (event_function w = EVENT_OF_GAP;
-         s == STATUS_OK && w <= EVENT_OF_STICTION && !motion_held_still(m); w++) {
-        bool found = false;
+    *end = (step_end){.length = end->length};
+    for (event_function w = EVENT_OF_GAP; w <= EVENT_OF_STICTION && !motion_held_still(m); w++) {
         if (event_function_active(a, m, w)) {
-            s = search(a, m, w, h, &found);
+            TRY(search(a, m, w, end));
         }
-        *first = found ? w : *first;
-        *any |= found;
     }
-    return s;
+    return STATUS_OK;
 }
 
 // --- the largest depth and force ---------------------------------------------------------------

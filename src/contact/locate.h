@@ -35,10 +35,10 @@ static inline bool event_function_active(const arm *a, const motion *m, event_fu
 // Tolerance of the event function: how far below zero still counts as admissible, in its unit.
 double event_tolerance(event_function w);
 
-// Looks for the first function that leaves its admissible side within (0, *h], m->trial being the
-// state after a step *h. If there is one, *any is true, *first says which, and *h and m->trial move
-// to the far side of that instant. Returns why, if a step fails.
-status locate_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
+// Looks for the first function that leaves its admissible side within (0, end->length], m->trial
+// being the state after a step of that length. If there is one, *end says which, and it and
+// m->trial move to the far side of that instant. Returns why, if a step fails.
+status locate_first_event(const arm *a, motion *m, step_end *end);
 
 // A function at one instant of a step.
 typedef struct step_point {

@@ -101,10 +101,8 @@ typedef struct motion_steps {
     // the coming step, if motion_examine_step has examined it
     struct {
         bool known;
-        bool begun;           // else it cannot be made
-        double length;        // to its end, tstop or the first event [s]
-        bool any;             // an event ends it
-        event_function first; // that event's
+        bool begun;   // else it cannot be made
+        step_end end; // its own, tstop or the first event
     } coming;
 } motion_steps;
 

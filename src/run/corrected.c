@@ -62,8 +62,7 @@ static status begin(corrected_run *c, fault *f)
             p->method.step, c->arm.links, c->arm.highest_frequency, m->engine->name);
     }
 
-    status failed = recording_open_trace(r, c->arm.dof, f);
-    TRY(failed);
+    TRY(recording_open_trace(r, c->arm.dof, f));
 
     r->state.earlier_peak = -1;
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
@@ -72,8 +71,8 @@ static status begin(corrected_run *c, fault *f)
                          "at t = 0 the wall has moved %.4g m past the arm, which must start in "
                          "front of it (initial.angle)",
                          -m->state[SLOT_GAP]));
-    failed = corrected_begin_in_contact(c);
-    return failed == STATUS_OK ? failed : fault_no_memory(f);
+    TRY_MEMORY(corrected_begin_in_contact(c) == STATUS_OK, f);
+    return STATUS_OK;
 }
 
 // Samples the sensors and changes the command where the time for it has come. A step under way goes
@@ -87,12 +86,12 @@ static status run_rig(corrected_run *c, fault *f)
     }
     bool changed;
     const sensed_motion sensed = corrected_sensed_now(c);
-    status s = rig_act(on, now, &sensed, &changed, f);
-    if (s == STATUS_OK && changed) {
-        s = corrected_end_step(c, f);
-        s = s == STATUS_OK ? corrected_apply_command(c) : s;
+    TRY(rig_act(on, now, &sensed, &changed, f));
+    if (!changed) {
+        return STATUS_OK;
     }
-    return s;
+    TRY(corrected_end_step(c, f));
+    return corrected_apply_command(c);
 }
 
 // The rig's first sample, and the row of the start, which is there even where that sample fails.
@@ -113,13 +112,19 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
     motion *m = c->motion;
     const parameters *p = &r->scenario->parameters;
     const double duration = p->run.duration, window = larger(duration - STEADY_WINDOW, 0);
-    status failed = r->state.grid_row == 0 ? record_start(c, f) : STATUS_OK;
+    if (r->state.grid_row == 0) {
+        TRY(record_start(c, f));
+    }
 
     // script and rig act between stretches of motion, each ending where one of them is due
-    while (failed == STATUS_OK && stretch_is_over(c)) {
+    while (stretch_is_over(c)) {
         *ended = !(corrected_now(c) < duration);
         if (*ended) {
-            break;
+            // the end may lie between rows of the grid
+            const double last_row = (double)(r->state.grid_row - 1) * p->method.step;
+            return last_row < duration - GRID_TOLERANCE * p->method.step
+                       ? corrected_record_row(c, m->state, 0)
+                       : STATUS_OK;
         }
 
         // the mean force of the end begins to count here
@@ -129,24 +134,14 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
         }
 
         // what is due now, then how far the motion may go by itself
-        if (r->state.next_action < r->scenario->action_count) {
-            failed = corrected_run_script(c, f);
-        }
-        if (failed == STATUS_OK && r->rig != NULL) {
-            failed = run_rig(c, f);
-        }
+        TRY(corrected_run_script(c, f));
+        TRY(run_rig(c, f));
         m->record.tstop = next_cut(r, window, m->state[SLOT_TIME]);
         c->stretch.stop = next_stop(r);
         c->stretch.last_event = -1;
         c->stretch.at_once = 0;
     }
-
-    // the end may lie between rows of the grid
-    double last_row = (double)(r->state.grid_row - 1) * p->method.step;
-    if (*ended && last_row < duration - GRID_TOLERANCE * p->method.step) {
-        failed = corrected_record_row(c, m->state, 0);
-    }
-    return failed;
+    return STATUS_OK;
 }
 
 status corrected_approach_step(corrected_run *c, bool *ended, fault *f)
@@ -209,7 +204,8 @@ void corrected_begin_step(corrected_run *c)
 static bool goes_beyond(const corrected_run *c, double time)
 {
     const motion *m = c->motion;
-    return m->step.coming.begun && instant_after(m->state[SLOT_TIME] + m->step.coming.length, time);
+    return m->step.coming.begun &&
+           instant_after(m->state[SLOT_TIME] + m->step.coming.end.length, time);
 }
 
 // What the sensors are fixed to at an instant [s] within the step under way: most see nothing but
@@ -320,15 +316,14 @@ status corrected_end_step(corrected_run *c, fault *f)
     if (!on->goes_on) {
         return STATUS_OK;
     }
-    m->step.coming.length = on->now - m->state[SLOT_TIME];
-    m->step.coming.any = false;
+    m->step.coming.end = (step_end){.length = on->now - m->state[SLOT_TIME]};
     return make_step(c, on->now, f);
 }
 
 status corrected_act_now(corrected_run *c, const action *todo, fault *f)
 {
-    const status s = corrected_end_step(c, f);
-    return s == STATUS_OK ? corrected_act(c, todo, -1, f) : s;
+    TRY(corrected_end_step(c, f));
+    return corrected_act(c, todo, -1, f);
 }
 
 // --- at present -------------------------------------------------------------------------------
@@ -411,14 +406,13 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
         c->arm.wall.motion.path = c->path;
     }
 
-    status failed = checkpoint_open_history(r, c->motion, f);
-    if (failed == STATUS_OK && r->options->resume) {
-        checkpoint_restore(r, &c->arm, c->motion);
-        c->arm.wall.motion.path = c->path;
-    } else if (failed == STATUS_OK) {
-        failed = begin(c, f);
+    TRY(checkpoint_open_history(r, c->motion, f));
+    if (!r->options->resume) {
+        return begin(c, f);
     }
-    return failed;
+    checkpoint_restore(r, &c->arm, c->motion);
+    c->arm.wall.motion.path = c->path;
+    return STATUS_OK;
 }
 
 motion *corrected_finish(corrected_run *c, status failed)

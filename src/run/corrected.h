@@ -138,8 +138,8 @@ status corrected_apply_command(corrected_run *c);
 // STATUS_NOT_FINITE if an energy is not finite.
 status corrected_audit(corrected_run *c) __attribute__((warn_unused_result));
 
-// The row of a state of the motion, at which an impulse [N s] acts or none.
-sample corrected_row(const corrected_run *c, double *state, double impulse);
+// The row of a state of the motion.
+sample corrected_row(const corrected_run *c, double *state);
 
 // Adds a row of a state of the motion, at which an impulse [N s] acts or none, if the run keeps
 // rows. STATUS_NO_MEMORY.

@@ -173,15 +173,14 @@ static status record_consequences(corrected_run *c, contact_state before,
     const motion *m = c->motion;
     const bool holds = m->state[SLOT_FRICTION] == HUB_STICK, held = before.friction == HUB_STICK;
     const bool contact = m->state[SLOT_CONTACT] != 0;
-    const bool lost = before.contact && !contact && report->event != MOTION_RELEASE;
-    status failed = lost ? record_event(r, m, EVENT_RELEASE, report) : STATUS_OK;
-    if (failed == STATUS_OK && holds && !held && report->event != MOTION_STICK) {
-        failed = record_event(r, m, EVENT_STICK, report);
+    if (before.contact && !contact && report->event != MOTION_RELEASE) {
+        TRY(record_event(r, m, EVENT_RELEASE, report));
     }
-    if (failed == STATUS_OK && held && !holds && report->event != MOTION_SLIP) {
-        failed = record_event(r, m, EVENT_SLIP, report);
+    if (holds && !held && report->event != MOTION_STICK) {
+        TRY(record_event(r, m, EVENT_STICK, report));
     }
-    return failed;
+    const bool slips = held && !holds && report->event != MOTION_SLIP;
+    return slips ? record_event(r, m, EVENT_SLIP, report) : STATUS_OK;
 }
 
 // Puts an event that has just been applied into trace and summary; `before`: the contact state that
@@ -195,9 +194,8 @@ static status record_applied_event(corrected_run *c, contact_state before,
     const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
 
     // the event itself; where a start on the wall was no touch, what follows has nothing to release
-    status failed = STATUS_OK;
     if (report->event != MOTION_RELEASE || !isnan(s->first_contact_s)) {
-        failed = record_event(r, m, kind_of(m, report), report);
+        TRY(record_event(r, m, kind_of(m, report), report));
     }
     s->impacts += report->event == MOTION_IMPACT;
 
@@ -212,16 +210,16 @@ static status record_applied_event(corrected_run *c, contact_state before,
         if (isnan(s->first_contact_s)) {
             open_first_pulse(c, report->impulse);
         }
-        if (report->holds && failed == STATUS_OK && report->event == MOTION_IMPACT) {
-            failed = record_event(r, m, EVENT_CONTACT, report);
+        if (report->holds && report->event == MOTION_IMPACT) {
+            TRY(record_event(r, m, EVENT_CONTACT, report));
         }
     }
 
-    if (report->chatter && failed == STATUS_OK) {
-        failed = record_event(r, m, EVENT_CHATTER, report);
+    if (report->chatter) {
+        TRY(record_event(r, m, EVENT_CHATTER, report));
         r->state.chatters++;
     }
-    failed = failed == STATUS_OK ? record_consequences(c, before, report) : failed;
+    TRY(record_consequences(c, before, report));
 
     // it opens again, for the first time the pulse ends
     bool apart = m->state[SLOT_CONTACT] == 0 && (closes || before.contact);
@@ -233,7 +231,7 @@ static status record_applied_event(corrected_run *c, contact_state before,
     if (apart && r->state.landing_open) {
         corrected_close_landing(c);
     }
-    return failed;
+    return STATUS_OK;
 }
 
 // Records what a push, which may be an impact, a change of a parameter or a command has done to the
@@ -263,9 +261,7 @@ static status keep_state_before_impact(run_result *result, const motion *m)
 {
     size_t size = 2 * (size_t)m->dof * sizeof(double); // velocities stand behind the angles
     result->before_impact = malloc(size);
-    if (result->before_impact == NULL) {
-        return STATUS_NO_MEMORY;
-    }
+    FAIL_IF(result->before_impact == NULL, STATUS_NO_MEMORY);
     memcpy(result->before_impact, state_angles(m, m->state), size);
     result->before_impact_size = size;
     return STATUS_OK;
@@ -277,23 +273,20 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
     run_result *result = c->recording->result;
 
     // before it
-    status failed = corrected_record_row(c, m->state, 0);
+    TRY(corrected_record_row(c, m->state, 0));
     const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
-    if (failed == STATUS_OK && closes && lands(m) && result->before_impact == NULL) {
-        failed = keep_state_before_impact(result, m);
+    if (closes && lands(m) && result->before_impact == NULL) {
+        TRY(keep_state_before_impact(result, m));
     }
-    TRY(failed);
 
     // and after it
     const contact_state ended = contact_state_of(m->state);
     motion_apply(&c->arm, m, report);
     c->recording->state.last_jump = m->state[SLOT_TIME];
     add_impulse_to_sensors(c, report);
-    failed = record_applied_event(c, ended, report);
-    if (failed == STATUS_OK) {
-        failed = corrected_audit(c);
-    }
-    return failed == STATUS_OK ? corrected_record_row(c, m->state, report->impulse) : failed;
+    TRY(record_applied_event(c, ended, report));
+    TRY(corrected_audit(c));
+    return corrected_record_row(c, m->state, report->impulse);
 }
 
 // --- the script -------------------------------------------------------------------------------
@@ -352,9 +345,11 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
     event e = {.time = m->state[SLOT_TIME], .kind = EVENT_CHANGE, .index = index};
     const double work = m->state[SLOT_EXTERNAL_WORK];
     const contact_state before = contact_state_of(m->state);
-    status failed = todo->kind == ACTION_SET ? check_wall(c, todo, f) : STATUS_OK;
-    failed = failed == STATUS_OK ? corrected_record_row(c, m->state, 0) : failed;
-    TRY(failed);
+    status failed = STATUS_OK;
+    if (todo->kind == ACTION_SET) {
+        TRY(check_wall(c, todo, f));
+    }
+    TRY(corrected_record_row(c, m->state, 0));
 
     // the arm continues under another parameter, or with the push's impulse
     if (todo->kind == ACTION_SET) {
@@ -373,13 +368,12 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
     }
     r->state.last_jump = m->state[SLOT_TIME];
     r->state.energy_put_in += fabs(m->state[SLOT_EXTERNAL_WORK] - work);
-    if (failed == STATUS_OK) {
-        failed = trace_add_event(&r->result->trace, e);
-    }
+    TRY(failed);
+    TRY(trace_add_event(&r->result->trace, e));
 
     // a push in contact is an impact; either may end the contact
-    failed = failed == STATUS_OK ? record_change(c, before, &report) : failed;
-    return failed == STATUS_OK ? corrected_record_row(c, m->state, report.impulse) : failed;
+    TRY(record_change(c, before, &report));
+    return corrected_record_row(c, m->state, report.impulse);
 }
 
 status corrected_run_script(corrected_run *c, fault *f)
@@ -387,13 +381,10 @@ status corrected_run_script(corrected_run *c, fault *f)
     const scenario *s = c->recording->scenario;
     int *next = &c->recording->state.next_action;
     const double now = c->motion->state[SLOT_TIME];
-    status failed = STATUS_OK;
-    while (failed == STATUS_OK && *next < s->action_count &&
-           !instant_after(s->actions[*next].time, now)) {
-        failed = corrected_act(c, &s->actions[*next], *next, f);
-        *next += failed == STATUS_OK;
+    for (; *next < s->action_count && !instant_after(s->actions[*next].time, now); ++*next) {
+        TRY(corrected_act(c, &s->actions[*next], *next, f));
     }
-    return failed;
+    return STATUS_OK;
 }
 
 // --- the rig ----------------------------------------------------------------------------------
@@ -413,6 +404,6 @@ status corrected_apply_command(corrected_run *c)
     // less torque may let the contact go, or hold the hub no more; the first command finds it so
     before.friction = now > 0 ? before.friction : contact_state_of(m->state).friction;
     motion_report done = {.event = MOTION_REACHED};
-    const status failed = record_change(c, before, &done);
-    return failed == STATUS_OK && now > 0 ? corrected_record_row(c, m->state, 0) : failed;
+    TRY(record_change(c, before, &done));
+    return now > 0 ? corrected_record_row(c, m->state, 0) : STATUS_OK;
 }

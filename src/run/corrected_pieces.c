@@ -32,6 +32,11 @@ sensed_motion corrected_sensed_motion(const corrected_run *c, double *state)
                            .force = state[SLOT_FORCE]};
 }
 
+static force_history *forces_of(const corrected_run *c)
+{
+    return &c->recording->result->history.forces;
+}
+
 // The force over the step just made.
 static force_step force_over_step(const motion *m)
 {
@@ -42,11 +47,8 @@ static force_step force_over_step(const motion *m)
 
     // between stops that differ by rounding only, the integral's difference is all rounding
     double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
-    return (force_step){.start = start[SLOT_TIME],
-                        .end = m->state[SLOT_TIME],
-                        .first = start[SLOT_FORCE],
-                        .last = m->state[SLOT_FORCE],
-                        .mean = length > SHORTEST_MEAN ? integral / length : ends};
+    return (force_step){start[SLOT_TIME], m->state[SLOT_TIME], start[SLOT_FORCE],
+                        m->state[SLOT_FORCE], length > SHORTEST_MEAN ? integral / length : ends};
 }
 
 // Number of pieces for a step of large (fastest rate) x (length), so that a parabola is accurate in
@@ -136,12 +138,11 @@ static status take_piece(corrected_run *c, sample_point *w, double time, double 
 static status follow_decay(corrected_run *c, sample_point *w, double end, double reach,
                            piece_taker take)
 {
-    status s = STATUS_OK;
     double next;
-    while (s == STATUS_OK && next_decay_piece(c, w->time, end, reach, &next)) {
-        s = take_piece(c, w, next, next - w->time, take);
+    while (next_decay_piece(c, w->time, end, reach, &next)) {
+        TRY(take_piece(c, w, next, next - w->time, take));
     }
-    return s;
+    return STATUS_OK;
 }
 
 // Whether a force begins with a decay that is over at once: it shows in the slope at the start
@@ -160,10 +161,8 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
 {
     motion *m = c->motion;
     value_and_slope at[MOST_PIECES + 1];
-    force_step *kept = recording_add_steps(c->recording, count);
-    if (kept == NULL) {
-        return STATUS_NO_MEMORY;
-    }
+    force_step *kept = force_history_extend(forces_of(c), (size_t)count);
+    FAIL_IF(kept == NULL, STATUS_NO_MEMORY);
 
     // the force at the start and at the ends of all pieces
     const double since = rest->start - m->trial[SLOT_TIME], width = (m->step.last - since) / count;
@@ -177,8 +176,7 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
         const double end = rest->start + (i + 1) * width;
         const double mean =
             (first.value + last.value) / 2 + slope_share * (first.slope - last.slope);
-        kept[i] = (force_step){
-            .start = start, .end = end, .first = first.value, .last = last.value, .mean = mean};
+        kept[i] = (force_step){start, end, first.value, last.value, mean};
         start = end;
         first = last;
     }
@@ -186,9 +184,7 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
 
     if (falls_at_once(at[0], at[1], width)) {
         sample_point w;
-        if (!go_to(c, &w, kept[0].end)) {
-            return STATUS_NOT_FINITE;
-        }
+        FAIL_IF(!go_to(c, &w, kept[0].end), STATUS_NOT_FINITE);
         kept[0].mean = (w.integral - before) / width;
     }
     return STATUS_OK;
@@ -198,21 +194,17 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
 static status keep_force(corrected_run *c, const sample_point *from, const sample_point *to,
                          double mean)
 {
-    return recording_add_step(c->recording, (force_step){.start = from->time,
-                                                         .end = to->time,
-                                                         .first = from->at.force,
-                                                         .last = to->at.force,
-                                                         .mean = mean});
+    const force_step piece = {from->time, to->time, from->at.force, to->at.force, mean};
+    return force_history_add(forces_of(c), piece);
 }
 
 // Keeps the force over the step just made, in pieces over which it is nearly a parabola: so many
 // where nothing decays.
 static status record_force(corrected_run *c, const force_step *whole, int pieces)
 {
-    recording *r = c->recording;
     const motion *m = c->motion;
     if (m->trial[SLOT_CONTACT] == 0) {
-        return recording_add_step(r, *whole);
+        return force_history_add(forces_of(c), *whole);
     }
 
     // what an event set going and decays at once, its integral being that of the motion
@@ -232,7 +224,8 @@ static status record_force(corrected_run *c, const force_step *whole, int pieces
         pieces = pieces_of_step(c, length, FORCE_REACH);
         rest.mean = (state_quadratures(m, m->state)[QUADRATURE_FORCE] - before) / length;
     }
-    return pieces > 1 ? record_equal_pieces(c, &rest, before, pieces) : recording_add_step(r, rest);
+    return pieces > 1 ? record_equal_pieces(c, &rest, before, pieces)
+                      : force_history_add(forces_of(c), rest);
 }
 
 // Lets the sensors follow the arm over a piece of the step.
@@ -246,15 +239,14 @@ static status sense(corrected_run *c, const sample_point *from, const sample_poi
 static status follow_to(corrected_run *c, sample_point w, const sample_point *last, double mean)
 {
     const double begin = w.time;
-    status s = follow_decay(c, &w, last->time, SENSOR_REACH, sense);
+    TRY(follow_decay(c, &w, last->time, SENSOR_REACH, sense));
 
     // the rest from piece to piece
     const double start = w.time, length = last->time - start;
     const int pieces = pieces_of_step(c, length, SENSOR_REACH);
-    for (int i = 1; i < pieces && s == STATUS_OK; i++) {
-        s = take_piece(c, &w, start + length * i / pieces, length / pieces, sense);
+    for (int i = 1; i < pieces; i++) {
+        TRY(take_piece(c, &w, start + length * i / pieces, length / pieces, sense));
     }
-    TRY(s);
 
     // the last piece ends where the way does
     const bool part = w.time > begin;
@@ -314,9 +306,7 @@ static status follow_bounds(corrected_run *c, const force_step *whole)
             inner    ? motion_between(&c->arm, m, whole->start + i * length / halves, STATE_WHOLE)
             : i == 0 ? m->trial
                      : m->state;
-        if (state == NULL) {
-            return STATUS_NOT_FINITE;
-        }
+        FAIL_IF(state == NULL, STATUS_NOT_FINITE);
         const force_bounds at = motion_force_bounds(&c->arm, m, state);
         r->in_window.low += share * at.low;
         r->in_window.high += share * at.high;
@@ -336,14 +326,13 @@ status corrected_record_forces(corrected_run *c)
     const int pieces = touches ? pieces_of_step(c, c->motion->step.last, FORCE_REACH) : 0;
     const bool one_piece = pieces == 1 && !decays_outrun(&c->arm);
     if (c->recording->rig != NULL) {
-        const status s = follow_with_sensors(c, &force, one_piece);
-        TRY(s);
+        TRY(follow_with_sensors(c, &force, one_piece));
     }
     if (!(force.end > force.start)) {
         return STATUS_OK;
     }
     TRY(follow_bounds(c, &force));
-    return one_piece ? recording_add_step(c->recording, force) : record_force(c, &force, pieces);
+    return one_piece ? force_history_add(forces_of(c), force) : record_force(c, &force, pieces);
 }
 
 // --- flight -----------------------------------------------------------------------------------

@@ -94,9 +94,9 @@ static sample row_of(const corrected_run *c, double *state, state_energy has, do
     return row;
 }
 
-sample corrected_row(const corrected_run *c, double *state, double impulse)
+sample corrected_row(const corrected_run *c, double *state)
 {
-    return row_of(c, state, motion_energy(&c->arm, c->motion, state), impulse);
+    return row_of(c, state, motion_energy(&c->arm, c->motion, state), 0);
 }
 
 static status record_row_of(corrected_run *c, double *state, state_energy has, double impulse)
@@ -120,21 +120,19 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
 // side if the engine can do that.
 static status record_within(corrected_run *c, const double *times, int count)
 {
-    recording *r = c->recording;
     motion *m = c->motion;
     state_energy has[MOTION_TOGETHER];
     const bool together = count > 1 && motion_between_all(&c->arm, m, times, count, has);
-    status failed = STATUS_OK;
-    for (int i = 0; i < count && failed == STATUS_OK; i++) {
+    for (int i = 0; i < count; i++) {
         if (together) {
-            failed = record_row_of(c, m->between + i * m->size, has[i], 0);
+            TRY(record_row_of(c, m->between + i * m->size, has[i], 0));
         } else {
             double *state = motion_between(&c->arm, m, times[i], STATE_WHOLE);
-            failed = state ? corrected_record_row(c, state, 0) : STATUS_NOT_FINITE;
+            TRY(state ? corrected_record_row(c, state, 0) : STATUS_NOT_FINITE);
         }
-        failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
+        FAIL_IF(recording_asked_to_stop(c->recording), STATUS_STOPPED);
     }
-    return failed;
+    return STATUS_OK;
 }
 
 // Records the rows of the grid before an instant [s], which lie within the step just made or under
@@ -144,19 +142,18 @@ static status record_rows_before(corrected_run *c, double instant)
     recording *r = c->recording;
     const double interval = r->scenario->parameters.method.step;
     double time = (double)r->state.grid_row * interval;
-    status failed = STATUS_OK;
 
     // some at a time
-    while (failed == STATUS_OK && time < instant) {
+    while (time < instant) {
         double times[MOTION_TOGETHER];
         int count = 0;
         for (; count < MOTION_TOGETHER && time < instant; count++) {
             times[count] = time;
             time = (double)++r->state.grid_row * interval;
         }
-        failed = record_within(c, times, count);
+        TRY(record_within(c, times, count));
     }
-    return failed;
+    return STATUS_OK;
 }
 
 status corrected_record_rows_to(corrected_run *c, double time)
@@ -176,13 +173,13 @@ static status record_grid(corrected_run *c, bool at_event)
     const double end = GRID_TOLERANCE * interval;
 
     // those within it, then one at its end; an event records its own rows
-    status failed = record_rows_before(c, now - end);
-    if (failed == STATUS_OK && (double)r->state.grid_row * interval <= now + end) {
-        r->state.grid_row++;
-        failed = at_event ? STATUS_OK : corrected_record_row(c, m->state, 0);
-        failed = failed == STATUS_OK && recording_asked_to_stop(r) ? STATUS_STOPPED : failed;
+    TRY(record_rows_before(c, now - end));
+    if ((double)r->state.grid_row * interval > now + end) {
+        return STATUS_OK;
     }
-    return failed;
+    r->state.grid_row++;
+    TRY(at_event ? STATUS_OK : corrected_record_row(c, m->state, 0));
+    return recording_asked_to_stop(r) ? STATUS_STOPPED : STATUS_OK;
 }
 
 status corrected_record_step(corrected_run *c, bool at_event)
@@ -195,25 +192,25 @@ status corrected_record_step(corrected_run *c, bool at_event)
         r->state.separated = flight_separated(&c->arm, m);
     }
     const arm *a = &c->arm;
-    const double pushed[] = {state_quadratures(m, m->trial)[QUADRATURE_PUSHED],
-                             state_quadratures(m, m->state)[QUADRATURE_PUSHED]};
     r->state.energy_put_in +=
         fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial)) +
-        fabs(pushed[1] - pushed[0]) +
+        fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED] -
+             state_quadratures(m, m->trial)[QUADRATURE_PUSHED]) +
         fabs(chain_weight_energy(a, state_angles(m, m->state)) -
              chain_weight_energy(a, state_angles(m, m->trial)));
 
     // an arm held still has the energy it had
     const bool known = m->step.energy.kinetic >= 0;
-    status s = motion_held_still(m) ? STATUS_OK
-               : known              ? audit(c, m->step.energy)
-                                    : corrected_audit(c);
+    const status s = motion_held_still(m) ? STATUS_OK
+                     : known              ? audit(c, m->step.energy)
+                                          : corrected_audit(c);
 
     // how fast the tip came towards the wall on its own
     if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
         recording_follow_flight(r, flight_closing_speed(&c->arm, m));
     }
 
-    s = s == STATUS_OK ? corrected_record_forces(c) : s;
-    return s == STATUS_OK && r->options->keep_trace ? record_grid(c, at_event) : s;
+    TRY(s);
+    TRY(corrected_record_forces(c));
+    return r->options->keep_trace ? record_grid(c, at_event) : STATUS_OK;
 }

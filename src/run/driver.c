@@ -85,7 +85,7 @@ sensed_motion driver_sensed(run_driver *d)
 sample driver_row(const run_driver *d)
 {
     const corrected_run *c = &d->corrected;
-    return d->is_printed ? printed_sample(&d->printed) : corrected_row(c, corrected_present(c), 0);
+    return d->is_printed ? printed_sample(&d->printed) : corrected_row(c, corrected_present(c));
 }
 
 const double *driver_state(const run_driver *d, int *angle_count)

@@ -7,10 +7,25 @@
 
 #include "src/base/instant.h"
 #include "src/base/shipped.h"
-#include "src/run/loop_parts.h"
-#include "src/run/recording.h"
+#include "src/run/driver.h"
 
 #define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near is the present one
+
+struct run_loop {
+    scenario scenario; // a copy of one's own
+    run_options options;
+    given_law law;
+    process_transcript *transcript; // NULL unless control.law is a process
+    run_result result;
+    recording recording;
+    run_driver driver;
+    bool opened;  // the run is to be closed
+    double volts; // commanded [V]
+    bool ended;
+    status failed; // what stopped it
+    fault fault;
+    uint64_t fingerprint; // of what a saved state must agree with
+};
 
 // What the controller of a commanded loop remembers: where its command stands.
 typedef struct commanded_memory {
@@ -141,19 +156,13 @@ static status stay_failed(run_loop *l, fault *f)
     return l->failed;
 }
 
-// Continues to an instant, if it lies ahead, what is due now first.
-static status advance(run_loop *l, double time, fault *f)
+status loop_until(run_loop *l, double time, fault *f)
 {
+    assert(isfinite(time));
     if (l->failed == STATUS_OK) {
         l->failed = driver_advance(&l->driver, time, &l->ended, &l->fault);
     }
     return stay_failed(l, f);
-}
-
-status loop_until(run_loop *l, double time, fault *f)
-{
-    assert(isfinite(time));
-    return advance(l, time, f);
 }
 
 status loop_step(run_loop *l, fault *f)
@@ -167,7 +176,7 @@ status loop_step(run_loop *l, fault *f)
         l->failed = driver_approach(&l->driver, &l->ended, &l->fault);
         next = l->driver.is_printed ? fmax(next, on->sample_time) : on->sample_time;
     }
-    return advance(l, next, f);
+    return loop_until(l, next, f);
 }
 
 // --- inputs -----------------------------------------------------------------------------------
@@ -193,26 +202,24 @@ static status act(run_loop *l, const action *todo, fault *f)
 
     // tried on a copy, with what the rig will say
     parameters tried = l->recording.now;
-    status code =
-        todo->kind == ACTION_SET ? parameter_may_change(&tried, todo->parameter, f) : STATUS_OK;
-    code = code == STATUS_OK ? action_apply(todo, &tried, f) : code;
+    if (todo->kind == ACTION_SET) {
+        TRY(parameter_may_change(&tried, todo->parameter, f));
+    }
+    TRY(action_apply(todo, &tried, f));
     const rig *on = l->recording.rig;
-    if (code == STATUS_OK && on != NULL) {
+    if (on != NULL) {
         int mode;
-        code = rig_find_mode(on->law, tried.control.lock, &mode, f);
-        code = code == STATUS_OK ? rig_takes(on, &tried, f) : code;
+        TRY(rig_find_mode(on->law, tried.control.lock, &mode, f));
+        TRY(rig_takes(on, &tried, f));
     }
-    if (code == STATUS_OK) {
-        code = driver_act(&l->driver, todo, &l->fault);
-        if (code == STATUS_BAD_SCENARIO) { // a wall that would be behind the arm
-            *f = l->fault;
-            l->fault = (fault){0};
-            return code;
-        }
-        l->failed = code;
-        return stay_failed(l, f);
+    const status code = driver_act(&l->driver, todo, &l->fault);
+    if (code == STATUS_BAD_SCENARIO) { // a wall that would be behind the arm
+        *f = l->fault;
+        l->fault = (fault){0};
+        return code;
     }
-    return code;
+    l->failed = code;
+    return stay_failed(l, f);
 }
 
 status loop_set_number(run_loop *l, int parameter, double value, fault *f)
@@ -271,10 +278,7 @@ const double *loop_state(const run_loop *l, int *angle_count)
 
 summary loop_summary(run_loop *l)
 {
-    status code = l->failed;
-    if (code == STATUS_OK && !l->ended) {
-        code = STATUS_STOPPED;
-    }
+    const status code = l->failed == STATUS_OK && !l->ended ? STATUS_STOPPED : l->failed;
 
     // summed up as if it ended here, and gone on with as it was
     const summary kept = l->result.summary;
@@ -297,4 +301,169 @@ const run_result *loop_result(const run_loop *l)
 const scenario *loop_scenario(const run_loop *l)
 {
     return &l->scenario;
+}
+
+// --- the state as bytes ------------------------------------------------------------------------
+
+// The head of a saved state; the run, the rig's memory and its values follow.
+typedef struct saved_head {
+    uint64_t check; // of all that follows it
+    uint64_t fingerprint;
+    size_t size;
+    bool ended;
+    double volts;
+    size_t rows, events, force_steps;
+    recording_state recording;
+    recorded_command command;
+    summary summary;
+    parameters now;
+    rig rig;
+} saved_head;
+
+static size_t values_size(const rig *r)
+{
+    return (size_t)r->law->parameter_count * sizeof *r->values;
+}
+
+size_t loop_saved_size(const run_loop *l)
+{
+    const rig *r = l->recording.rig;
+    return sizeof(saved_head) + driver_saved_size(&l->driver) +
+           (r != NULL ? r->law->memory_size + values_size(r) : 0);
+}
+
+// A number that other bytes behind the head's `check` would not give, but for one in 2^64: eight
+// bytes a turn are mixed in as by FNV-1a, and the upper half down into the lower one.
+static uint64_t check_of(const char *bytes, size_t size)
+{
+    uint64_t check = 0xcbf29ce484222325u;
+    for (size_t at = sizeof check; at < size; at += sizeof check) {
+        uint64_t word = 0;
+        memcpy(&word, bytes + at, size - at < sizeof word ? size - at : sizeof word);
+        check = (check ^ word) * 0x100000001b3u;
+        check ^= check >> 32;
+    }
+    return check;
+}
+
+// Gives a rig the addresses of another.
+static void keep_places(rig *r, const rig *own)
+{
+    r->law = own->law;
+    r->plugin = own->plugin;
+    r->process = own->process;
+    r->memory = own->memory;
+    r->values = own->values;
+}
+
+void loop_save(const run_loop *l, void *bytes)
+{
+    const recording *r = &l->recording;
+    saved_head head;
+    memset(&head, 0, sizeof head);
+    head.fingerprint = l->fingerprint;
+    head.size = loop_saved_size(l);
+    head.ended = l->ended;
+    head.volts = l->volts;
+
+    // what was recorded
+    head.rows = l->result.trace.row_count;
+    head.events = l->result.trace.event_count;
+    head.force_steps = l->result.history.forces.count;
+    head.recording = r->state;
+    head.command = r->command;
+    head.summary = l->result.summary;
+    head.summary.path = NULL;
+    head.now = r->now;
+
+    // the rig and the run; where things lie is their loop's own, and no part of a state
+    char *at = bytes;
+    if (r->rig != NULL) {
+        head.rig = *r->rig;
+        keep_places(&head.rig, &(rig){.law = NULL});
+    }
+    memcpy(at, &head, sizeof head);
+    at += sizeof head;
+    driver_save(&l->driver, at);
+    at += driver_saved_size(&l->driver);
+    if (r->rig != NULL) {
+        memcpy(at, r->rig->memory, r->rig->law->memory_size);
+        if (l->law.law != NULL) { // which begins with its program's address
+            memset(at, 0, sizeof l->law.context);
+        }
+        memcpy(at + r->rig->law->memory_size, r->rig->values, values_size(r->rig));
+    }
+    head.check = check_of(bytes, head.size);
+    memcpy(bytes, &head.check, sizeof head.check);
+}
+
+// Puts the rig back; where its law, memory and values lie stays. The memory of a law that a program
+// gave begins with that program's address.
+static void restore_rig(run_loop *l, const rig *saved, const char *at)
+{
+    rig *r = l->recording.rig;
+    const rig own = *r;
+
+    // all but where things lie
+    *r = *saved;
+    keep_places(r, &own);
+
+    // the contents, which were saved one after the other
+    memcpy(r->memory, at, r->law->memory_size);
+    memcpy(r->values, at + r->law->memory_size, values_size(r));
+
+    // the program's address is the present one
+    if (l->law.law != NULL) {
+        memcpy(r->memory, &l->law.context, sizeof l->law.context);
+    }
+}
+
+static void keep_at_most(size_t *count, size_t most)
+{
+    *count = *count < most ? *count : most;
+}
+
+status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
+{
+    saved_head head;
+    FAIL_IF(size != loop_saved_size(l),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "a state of this loop has %zu bytes, but %zu were given", loop_saved_size(l),
+                      size));
+    memcpy(&head, bytes, sizeof head);
+    FAIL_IF(head.fingerprint != l->fingerprint || head.size != size,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "the state is of another scenario, another controller or another version"));
+    FAIL_IF(head.check != check_of(bytes, size),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "the state is damaged, expected the bytes as they were saved"));
+
+    // what was recorded, as far as this loop has it
+    recording *r = &l->recording;
+    run_result *result = &l->result;
+    keep_at_most(&result->trace.row_count, head.rows);
+    keep_at_most(&result->trace.event_count, head.events);
+    keep_at_most(&result->history.forces.count, head.force_steps);
+    r->state = head.recording;
+    r->command = head.command;
+    result->summary = head.summary;
+    result->summary.path = "";
+    if (head.recording.landing.time == 0) {
+        free(result->before_impact); // of a contact that is yet to come
+        result->before_impact = NULL;
+        result->before_impact_size = 0;
+    }
+    r->now = head.now;
+    l->volts = head.volts;
+    l->ended = head.ended;
+    l->failed = STATUS_OK;
+    l->fault = (fault){.text = "", .path = ""};
+
+    // the rig first: the run's arm has its voltage
+    const char *at = (const char *)bytes + sizeof head;
+    if (r->rig != NULL) {
+        restore_rig(l, &head.rig, at + driver_saved_size(&l->driver));
+    }
+    driver_restore(&l->driver, at);
+    return STATUS_OK;
 }

@@ -66,7 +66,6 @@ static status note_contact(printed_run *p, const printed_row *row)
     summary *s = &r->result->summary;
     recording_state *state = &r->state;
     const bool was_in_contact = state->pulse_open;
-    status failed = STATUS_OK;
 
     // the first row in contact
     s->max_penetration_m = fmax(s->max_penetration_m, -row->gap);
@@ -83,17 +82,17 @@ static status note_contact(printed_run *p, const printed_row *row)
         s->impacts++;
         s->separations += state->separated;
         state->separated = false;
-        failed = record_event(r, row->time, EVENT_CONTACT, -1);
+        TRY(record_event(r, row->time, EVENT_CONTACT, -1));
     } else if (was_in_contact && !row->contact) {
         if (isnan(s->first_pulse_s)) {
             s->first_pulse_s = row->time - s->first_contact_s;
         }
-        failed = record_event(r, row->time, EVENT_RELEASE, -1);
+        TRY(record_event(r, row->time, EVENT_RELEASE, -1));
     }
 
     state->pulse_open = row->contact;
     state->separated |= row->gap > SEPARATION_GAP;
-    return failed;
+    return STATUS_OK;
 }
 
 sample printed_sample(const printed_run *p)
@@ -193,17 +192,12 @@ static status record_row(printed_run *p, fault *f)
     memcpy(p->state + 3, row->velocity, sizeof row->velocity);
 
     // and is kept
-    if (failed == STATUS_OK) {
-        failed = recording_add_step(r, step);
-    }
-    if (failed == STATUS_OK) {
-        failed = add_row(p);
-    }
-    if (failed == STATUS_OK && recording_asked_to_stop(r)) {
-        failed = fault_set(f, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
-                           status_text(STATUS_STOPPED));
-    }
-    return failed;
+    TRY(failed);
+    TRY(force_history_add(&r->result->history.forces, step));
+    TRY(add_row(p));
+    FAIL_IF(recording_asked_to_stop(r), fault_set(f, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
+                                                  status_text(STATUS_STOPPED)));
+    return STATUS_OK;
 }
 
 // --- between steps ----------------------------------------------------------------------------
@@ -233,13 +227,10 @@ static status run_script(printed_run *p, fault *f)
 {
     const scenario *s = p->recording->scenario;
     int *next = &p->recording->state.next_action;
-    status failed = STATUS_OK;
-    while (failed == STATUS_OK && *next < s->action_count &&
-           s->actions[*next].time <= p->motion.row.time) {
-        failed = printed_act(p, &s->actions[*next], *next, f);
-        *next += failed == STATUS_OK;
+    for (; *next < s->action_count && s->actions[*next].time <= p->motion.row.time; ++*next) {
+        TRY(printed_act(p, &s->actions[*next], *next, f));
     }
-    return failed;
+    return STATUS_OK;
 }
 
 // Samples the sensors and changes the command where the time for it has come.
@@ -269,18 +260,16 @@ status printed_approach_step(printed_run *p, bool *ended, fault *f)
     if (*ended || p->ready) {
         return STATUS_OK;
     }
-    status failed = run_script(p, f);
-    if (failed == STATUS_OK) {
-        failed = run_rig(p, f);
-    }
-    p->ready = failed == STATUS_OK;
-    return failed;
+    TRY(run_script(p, f));
+    TRY(run_rig(p, f));
+    p->ready = true;
+    return STATUS_OK;
 }
 
 status printed_step(printed_run *p, fault *f)
 {
-    status failed = printed_motion_step(&p->motion, f);
-    return failed == STATUS_OK ? record_row(p, f) : failed;
+    TRY(printed_motion_step(&p->motion, f));
+    return record_row(p, f);
 }
 
 // --- the summary ------------------------------------------------------------------------------
@@ -346,11 +335,8 @@ status printed_open(printed_run *p, recording *r, fault *f)
 {
     assert(r->scenario->parameters.arm.model == ARM_PRINTED);
     *p = (printed_run){.recording = r};
-    status failed = recording_open_trace(r, 3, f);
-    if (failed == STATUS_OK) {
-        failed = refuse_pushes(r->scenario, f);
-    }
-    TRY(failed);
+    TRY(recording_open_trace(r, 3, f));
+    TRY(refuse_pushes(r->scenario, f));
 
     // the row of time 0, with the command that the rig starts with
     force_history_init(&r->result->history.forces);

@@ -27,6 +27,30 @@ time_used time_since(time_used start)
     return (time_used){now.cpu - start.cpu, now.wall - start.wall};
 }
 
+// Sets up the rig, if the scenario has a control law; until its first command the motor rests.
+static status start_rig(recording *r, fault *f)
+{
+    assert(r->rig == NULL);
+    const parameters *p = &r->scenario->parameters;
+    if (p->control.law == LAW_NONE && r->options->law == NULL) {
+        return STATUS_OK;
+    }
+
+    r->command = (recorded_command){.hub_angle = p->initial.angle};
+    r->result->summary.electrical_energy_J = 0;
+    if (p->arm.model != ARM_PRINTED) { // whose listing has no rate of the gap
+        r->result->summary.approach_speed_m_s = r->result->summary.return_speed_m_s = 0;
+    }
+    const run_options *o = r->options;
+    const rig_options given = {
+        .law = o->law,
+        .transcript = o->transcript,
+        .ends = {o->monitor != NULL ? &o->monitor->stop : NULL, o->abandon},
+    };
+    TRY(rig_create(&r->rig, p, &given, f));
+    return r->rig->withheld ? STATUS_OK : scenario_check_locks(r->scenario, r->rig->law, f);
+}
+
 status recording_begin(recording *r, const scenario *s, const run_options *options,
                        run_result *result, fault *f)
 {
@@ -38,7 +62,7 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
     }
 
     // not even set up: an arm of a thousand links takes seconds for that
-    return recording_is_abandoned(r) ? STATUS_STOPPED : recording_start_rig(r, f);
+    return recording_is_abandoned(r) ? STATUS_STOPPED : start_rig(r, f);
 }
 
 void recording_tell_fault(summary *s, status code, const fault *f)
@@ -107,14 +131,14 @@ void recording_publish(const recording *r, double time)
 status recording_set(recording *r, const action *todo, double time, fault *f)
 {
     assert(todo->kind == ACTION_SET);
-    status failed = action_apply(todo, &r->now, f);
-    if (failed != STATUS_OK || r->rig == NULL) {
-        return failed;
+    TRY(action_apply(todo, &r->now, f));
+    if (r->rig == NULL) {
+        return STATUS_OK;
     }
 
     // the rig has its own view of the parameters
-    failed = rig_lock(r->rig, r->now.control.lock, f);
-    return failed == STATUS_OK ? rig_retune(r->rig, &r->now, time, f) : failed;
+    TRY(rig_lock(r->rig, r->now.control.lock, f));
+    return rig_retune(r->rig, &r->now, time, f);
 }
 
 status recording_add_row(recording *r, const sample *row, const double *angles,
@@ -123,16 +147,6 @@ status recording_add_row(recording *r, const sample *row, const double *angles,
     status s = trace_add_row(&r->result->trace, row, angles, velocities);
     recording_publish(r, row->time);
     return s;
-}
-
-status recording_add_step(recording *r, force_step step)
-{
-    return force_history_add(&r->result->history.forces, step);
-}
-
-force_step *recording_add_steps(recording *r, int count)
-{
-    return force_history_extend(&r->result->history.forces, (size_t)count);
 }
 
 void recording_finish_summary(recording *r, double force_integral)
@@ -158,30 +172,6 @@ void recording_finish_summary(recording *r, double force_integral)
 // The smoothed force: means over SMOOTHING_WINDOW [s], from SMOOTHED_AFTER first contact on [s].
 #define SMOOTHING_WINDOW 5e-3
 #define SMOOTHED_AFTER   0.02
-
-status recording_start_rig(recording *r, fault *f)
-{
-    assert(r->rig == NULL);
-    const parameters *p = &r->scenario->parameters;
-    if (p->control.law == LAW_NONE && r->options->law == NULL) {
-        return STATUS_OK;
-    }
-
-    r->command = (recorded_command){.hub_angle = p->initial.angle};
-    r->result->summary.electrical_energy_J = 0;
-    if (p->arm.model != ARM_PRINTED) { // whose listing has no rate of the gap
-        r->result->summary.approach_speed_m_s = r->result->summary.return_speed_m_s = 0;
-    }
-    const run_options *o = r->options;
-    const rig_options given = {
-        .law = o->law,
-        .transcript = o->transcript,
-        .ends = {o->monitor != NULL ? &o->monitor->stop : NULL, o->abandon},
-    };
-    status s = rig_create(&r->rig, p, &given, f);
-    return s == STATUS_OK && !r->rig->withheld ? scenario_check_locks(r->scenario, r->rig->law, f)
-                                               : s;
-}
 
 void recording_add_rig_signals(const recording *r, sample *row)
 {

@@ -78,12 +78,6 @@ status recording_set(recording *r, const action *todo, double time, fault *f)
 status recording_add_row(recording *r, const sample *row, const double *angles,
                          const double *velocities) __attribute__((warn_unused_result));
 
-// Keeps the force over a step. STATUS_NO_MEMORY.
-status recording_add_step(recording *r, force_step step) __attribute__((warn_unused_result));
-
-// Room for the force over `count` steps, which the caller fills in. NULL without memory.
-force_step *recording_add_steps(recording *r, int count);
-
 // Fills in steady force, overshoot and settling time; force_integral is that of the force over the
 // last STEADY_WINDOW of the run [N s].
 void recording_finish_summary(recording *r, double force_integral);
@@ -111,9 +105,6 @@ void recording_end(recording *r, status code, const fault *f, time_used used);
 void recording_tell_fault(summary *s, status code, const fault *f);
 
 // --- the rig in a run, in every row and in the summary ----------------------------------------
-
-// Sets up the rig, if the scenario has a control law; until its first command the motor rests.
-status recording_start_rig(recording *r, fault *f);
 
 // Copies what the rig knows into a row; NaN without a rig or before its first sample.
 void recording_add_rig_signals(const recording *r, sample *row);

@@ -203,7 +203,7 @@ static void serve(side_by_side *group)
     for (int i = 0; i < count; i++) {
         corrected_run *run = &group->in_hand[chosen[i]].run;
         corrected_begin_step(run);
-        const double length = run->motion->step.coming.length;
+        const double length = run->motion->step.coming.end.length;
         const int pieces = lanes[i]->form.contact ? corrected_force_pieces(run, length) : 0;
         ends[i] = (taylor_end){length, pieces};
     }

@@ -115,7 +115,7 @@ static double known_root(const taylor_integrator *s, int place, bool clear)
     return clear ? HUGE_VAL : s->lane.block[place] > 0 ? root : -1;
 }
 
-void taylor_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
+void taylor_first_event(const arm *a, motion *m, step_end *end)
 {
     // of most steps the bounds rule all events out
     const taylor_integrator *s = m->memory;
@@ -127,8 +127,7 @@ void taylor_first_event(const arm *a, motion *m, double *h, event_function *firs
         taylor_excludes_event(m, wall) || (!now.contact && !wall_stands(&a->wall));
     const bool hub_clear = taylor_excludes_event(m, hub) || (!stuck && a->motor.stiction == 0);
 
-    *first = EVENT_OF_GAP;
-    *any = false;
+    *end = (step_end){.length = end->length};
     if (wall_clear && hub_clear) {
         return;
     }
@@ -137,13 +136,11 @@ void taylor_first_event(const arm *a, motion *m, double *h, event_function *firs
     const double at_wall = known_root(s, AT_WALL_ROOT, wall_clear);
     const double at_hub = known_root(s, AT_HUB_ROOT, hub_clear);
     if (!(at_wall >= 0 && at_hub >= 0)) {
-        dense_search_event(a, m, h, first, any);
+        dense_search_event(a, m, end);
         return;
     }
     const double root = smaller(at_wall, at_hub);
-    if (root <= *h) {
-        *h = root;
-        *first = at_hub < at_wall ? hub : wall;
-        *any = true;
+    if (root <= end->length) {
+        *end = (step_end){root, true, at_hub < at_wall ? hub : wall};
     }
 }

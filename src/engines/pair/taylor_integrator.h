@@ -33,4 +33,4 @@ value_and_slope taylor_event_function(const arm *a, const motion *m, event_funct
 double taylor_second_derivative(const arm *a, const motion *m, event_function w, double from,
                                 double to);
 bool taylor_excludes_event(const motion *m, event_function w);
-void taylor_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
+void taylor_first_event(const arm *a, motion *m, step_end *end);

@@ -79,27 +79,23 @@ static bool take_stages(stiff_integrator *s, const arm *a, motion *m)
     return true;
 }
 
-// Whether an event function other than `passed` falls below zero in the step, and then the first
-// one and when [s].
-static bool another_event(stiff_integrator *s, const arm *a, motion *m, event_function passed,
-                          event_function *first, double *time)
+// Where the first event function other than `passed` falls below zero in the step, if one does.
+static step_end another_event(stiff_integrator *s, const arm *a, motion *m, event_function passed)
 {
-    bool any;
-    *time = s->step.length;
+    step_end end = {.length = s->step.length};
     s->passed = 1 + (int)passed;
-    dense_search_event(a, m, time, first, &any);
+    dense_search_event(a, m, &end);
     s->passed = 0;
-    return any;
+    return end;
 }
 
-// Takes the step again up to an event at `time` within it, until it ends there: no longer than its
+// Takes the step again up to an event within it, until it ends there: no longer than its
 // error allows, and at another event where the first moves to beyond that one. An event that moves
 // out of the step was one of rounding, and does not end it.
-static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, event_function w,
-                         double time)
+static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, step_end at)
 {
     const double allowed = s->step.length;
-    double ratio = time / allowed, rate = 0.5;
+    double ratio = at.length / allowed, rate = 0.5;
     for (int i = 0; i < MOST_ENDS; i++) {
         const double h = s->step.length * ratio;
         if (!(h > SHORTEST)) { // at once
@@ -113,12 +109,12 @@ static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, event_fun
             !take_stages(s, a, m)) {
             return false;
         }
-        double miss = miss_of(s, a, m, w), earlier;
-        event_function other;
-        if (h > time * (1 + AT_EVENT) && another_event(s, a, m, w, &other, &earlier)) {
-            w = other;
-            time = earlier;
-            miss = earlier - h;
+        double miss = miss_of(s, a, m, at.first);
+        const step_end other =
+            h > at.length * (1 + AT_EVENT) ? another_event(s, a, m, at.first) : (step_end){0};
+        if (other.any) {
+            at = other;
+            miss = at.length - h;
         }
         if (fabs(miss) <= AT_EVENT * h || fabs(miss) < SAME_INSTANT) {
             s->kept[KEPT_LENGTH] = h + miss;
@@ -131,7 +127,7 @@ static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, event_fun
         ratio = smaller(larger(1 + miss / h, 0.5), 1.5);
         ratio = smaller(ratio, larger(allowed / h, 1));
     }
-    s->kept[STIFF_EVENT] = 1 + (int)w;
+    s->kept[STIFF_EVENT] = 1 + (int)at.first;
     return true;
 }
 
@@ -306,11 +302,9 @@ bool stiff_make_step(stiff_integrator *s, const arm *a, motion *m)
     }
 
     // and no longer than to the first event
-    double end = s->step.length;
-    event_function first;
-    bool any;
-    dense_search_event(a, m, &end, &first, &any);
-    if (any && !end_at_event(s, a, m, first, end)) {
+    step_end end = {.length = s->step.length};
+    dense_search_event(a, m, &end);
+    if (end.any && !end_at_event(s, a, m, end)) {
         return false;
     }
     s->known = s->ended = true;

@@ -125,4 +125,4 @@ value_and_slope stiff_event_function(const arm *a, const motion *m, event_functi
 double stiff_second_derivative(const arm *a, const motion *m, event_function w, double from,
                                double to);
 bool stiff_excludes_event(const motion *m, event_function w);
-void stiff_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any);
+void stiff_first_event(const arm *a, motion *m, step_end *end);

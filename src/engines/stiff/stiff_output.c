@@ -235,11 +235,11 @@ void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from
     }
 }
 
-void stiff_first_event(const arm *a, motion *m, double *h, event_function *first, bool *any)
+void stiff_first_event(const arm *a, motion *m, step_end *end)
 {
     const stiff_integrator *s = m->memory;
     const int event = (int)s->kept[STIFF_EVENT];
     (void)a;
-    *any = event > 0 && *h >= s->kept[KEPT_LENGTH] - s->used;
-    *first = *any ? (event_function)(event - 1) : EVENT_OF_GAP;
+    end->any = event > 0 && end->length >= s->kept[KEPT_LENGTH] - s->used;
+    end->first = end->any ? (event_function)(event - 1) : EVENT_OF_GAP;
 }
