@@ -190,14 +190,13 @@ void corrected_begin_step(corrected_run *c)
     }
 
     // as far as its step lasts
-    const double now = m->state[SLOT_TIME];
     motion_examine_step(&c->arm, m, c->stretch.stop,
                         c->recording->scenario->parameters.run.duration, step);
     memcpy(m->trial, m->state, (size_t)m->size * sizeof *m->state);
     c->stretch.open = (open_step){.goes_on = true,
                                   .begun_for = c->stretch.stop,
-                                  .now = now,
-                                  .sensed = corrected_sample_point_at(c, now, m->state)};
+                                  .now = m->state[SLOT_TIME],
+                                  .sensed = corrected_sample_point_at(c, m->state)};
 }
 
 // Whether the step under way ends after an instant [s].

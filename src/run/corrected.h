@@ -159,8 +159,8 @@ status corrected_record_step(corrected_run *c, bool at_event) __attribute__((war
 // What the sensors are fixed to, in a state of the motion.
 sensed_motion corrected_sensed_motion(const corrected_run *c, double *state);
 
-// The `way` for an instant [s], from the motion's state there.
-sample_point corrected_sample_point_at(const corrected_run *c, double time, double *state);
+// The point on the way that a state of the motion is.
+sample_point corrected_sample_point_at(const corrected_run *c, double *state);
 
 // Into how many pieces the force over a step in contact of this length [s] is divided for
 // recording.

@@ -103,9 +103,9 @@ int corrected_force_pieces(const corrected_run *c, double length)
                : pieces_of_step(c, length, FORCE_REACH);
 }
 
-sample_point corrected_sample_point_at(const corrected_run *c, double time, double *state)
+sample_point corrected_sample_point_at(const corrected_run *c, double *state)
 {
-    return (sample_point){time, corrected_sensed_motion(c, state),
+    return (sample_point){state[SLOT_TIME], corrected_sensed_motion(c, state),
                           state_quadratures(c->motion, state)[QUADRATURE_FORCE]};
 }
 
@@ -115,7 +115,7 @@ static bool go_to(const corrected_run *c, sample_point *w, double time)
     motion *m = c->motion;
     double *state = motion_between(&c->arm, m, time, STATE_SENSED);
     if (state != NULL) {
-        *w = corrected_sample_point_at(c, time, state);
+        *w = corrected_sample_point_at(c, state);
     }
     return state != NULL;
 }
@@ -211,7 +211,7 @@ static status record_force(corrected_run *c, const force_step *whole, int pieces
     force_step rest = *whole;
     double before = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
     if (decays_outrun(&c->arm)) {
-        sample_point w = corrected_sample_point_at(c, whole->start, m->trial);
+        sample_point w = corrected_sample_point_at(c, m->trial);
         TRY(follow_decay(c, &w, whole->end, FORCE_REACH, keep_force));
         rest.start = w.time;
         rest.first = w.at.force;
@@ -281,9 +281,8 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole, boo
         return STATUS_OK;
     }
 
-    const sample_point first =
-        rest ? on->sensed : corrected_sample_point_at(c, whole->start, m->trial);
-    const sample_point last = corrected_sample_point_at(c, whole->end, m->state);
+    const sample_point first = rest ? on->sensed : corrected_sample_point_at(c, m->trial);
+    const sample_point last = corrected_sample_point_at(c, m->state);
     return follow_to(c, first, &last, rest ? 0 : whole->mean);
 }
 

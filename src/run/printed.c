@@ -95,47 +95,33 @@ static status note_contact(printed_run *p, const printed_row *row)
     return STATUS_OK;
 }
 
+// What the printed equations do not keep: energies, and their listing no rate of the gap.
+#define NONE(name, ...) .name = (double)NAN,
+static const sample nothing = {SIGNALS(NONE)};
+#undef NONE
+
 sample printed_sample(const printed_run *p)
 {
     const printed_row *row = &p->motion.row;
     const motor_model *motor = &p->motion.arm.motor;
 
-    // the printed equations keep no energies, and their listing no rate of the gap
-    sample sampled = {
-        .time = row->time,
-        .hub_angle = row->angle[0],
-        .first_angle = row->angle[1],
-        .last_angle = row->angle[2],
-        .hub_velocity = row->velocity[0],
-        .first_velocity = row->velocity[1],
-        .last_velocity = row->velocity[2],
-        .hub_acceleration = row->acceleration[0],
-        .first_acceleration = row->acceleration[1],
-        .last_acceleration = row->acceleration[2],
-        .gap = row->gap,
-        .gap_velocity = (double)NAN,
-        .force = row->force,
-        .contact = row->contact,
-        .voltage = motor->voltage,
-        .motor_torque = motor->torque,
-        .friction_torque = (double)NAN,
-        .kinetic_energy = (double)NAN,
-        .strain_energy = (double)NAN,
-        .motor_work = (double)NAN,
-        .external_work = (double)NAN,
-        .viscous_loss = (double)NAN,
-        .friction_loss = (double)NAN,
-        .damping_loss = (double)NAN,
-        .impact_loss = (double)NAN,
-        .wall_energy = (double)NAN,
-        .wall_loss = (double)NAN,
-        .wall_place = (double)NAN,
-        .wall_work = (double)NAN,
-        .weight_energy = (double)NAN,
-        .face_depth = (double)NAN,
-        .energy_residual = (double)NAN,
-    };
-
+    sample sampled = nothing;
+    sampled.time = row->time;
+    sampled.hub_angle = row->angle[0];
+    sampled.first_angle = row->angle[1];
+    sampled.last_angle = row->angle[2];
+    sampled.hub_velocity = row->velocity[0];
+    sampled.first_velocity = row->velocity[1];
+    sampled.last_velocity = row->velocity[2];
+    sampled.hub_acceleration = row->acceleration[0];
+    sampled.first_acceleration = row->acceleration[1];
+    sampled.last_acceleration = row->acceleration[2];
+    sampled.gap = row->gap;
+    sampled.force = row->force;
+    sampled.impulse = sampled.sticking = 0;
+    sampled.contact = row->contact;
+    sampled.voltage = motor->voltage;
+    sampled.motor_torque = motor->torque;
     recording_add_rig_signals(p->recording, &sampled);
     return sampled;
 }
@@ -217,7 +203,7 @@ status printed_act(printed_run *p, const action *todo, int index, fault *f)
     // the arm takes it, and the command in force stays
     printed_motion_rebind(&p->motion, &r->now);
     if (r->rig != NULL) {
-        printed_motion_set_voltage(&p->motion, r->rig->voltage);
+        motor_set_voltage(&p->motion.arm.motor, r->rig->voltage);
     }
     return failed;
 }
@@ -250,7 +236,7 @@ static status run_rig(printed_run *p, fault *f)
     }
 
     // the controller's command, not motor.voltage
-    printed_motion_set_voltage(&p->motion, r->rig->voltage);
+    motor_set_voltage(&p->motion.arm.motor, r->rig->voltage);
     return failed;
 }
 
@@ -342,7 +328,7 @@ status printed_open(printed_run *p, recording *r, fault *f)
     force_history_init(&r->result->history.forces);
     printed_motion_start(&p->motion, &r->now);
     if (r->rig != NULL) {
-        printed_motion_set_voltage(&p->motion, r->rig->voltage);
+        motor_set_voltage(&p->motion.arm.motor, r->rig->voltage);
     }
     return record_row(p, f);
 }

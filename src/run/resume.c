@@ -80,8 +80,7 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
     }
 
     // all that the steps to come depend on
-    h->checkpoint_count++;
-    checkpoint *kept = checkpoint_at(h, h->checkpoint_count - 1);
+    checkpoint *kept = checkpoint_at(h, h->checkpoint_count++);
     *kept = (checkpoint){.time = now,
                          .rows = t->row_count,
                          .events = t->event_count,
@@ -90,7 +89,6 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
                          .recording = r->state,
                          .summary = r->result->summary};
     motion_save(m, kept->motion);
-
     return true;
 }
 
@@ -166,10 +164,10 @@ typedef struct shared_part {
     size_t rows, events, force_steps, checkpoints;
 } shared_part;
 
-// Lets result begin with the given part of `from`, with room for the rows expected. False without
-// memory; what was shared until then is result's.
-static bool share(const run_result *from, const shared_part *part, size_t rows_expected,
-                  run_result *result)
+// Lets a trace and a history begin with the given part of `from`, with room for the rows expected.
+// False without memory; what was shared until then is result's.
+static bool share_parts(const run_result *from, const shared_part *part, size_t rows_expected,
+                        run_result *result)
 {
     const run_history *old = &from->history;
     run_history *own = &result->history;
@@ -202,6 +200,20 @@ static bool copy_before_impact(const run_result *from, run_result *result)
     return result->before_impact != NULL;
 }
 
+// The same with what was known before the landing, if it is behind, and a summary. False without
+// memory; result is empty then.
+static bool share(const run_result *from, const shared_part *part, bool impacted, const summary *s,
+                  size_t rows_expected, run_result *result)
+{
+    const bool done = share_parts(from, part, rows_expected, result) &&
+                      (!impacted || copy_before_impact(from, result));
+    result->summary = *s;
+    if (!done) {
+        run_finish(result);
+    }
+    return done;
+}
+
 bool run_resume(const run_result *from, const scenario *old, const scenario *s,
                 size_t rows_expected, run_result *result)
 {
@@ -224,13 +236,7 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
     // everything up to it
     const checkpoint *last = checkpoint_at(h, count - 1);
     const shared_part part = {last->rows, last->events, last->force_steps, count};
-    if (!share(from, &part, rows_expected, result) ||
-        (last->impacted && !copy_before_impact(from, result))) {
-        run_finish(result);
-        return false;
-    }
-    result->summary = last->summary;
-    return true;
+    return share(from, &part, last->impacted, &last->summary, rows_expected, result);
 }
 
 status run_share(const run_result *from, size_t rows_expected, run_result *result)
@@ -238,11 +244,7 @@ status run_share(const run_result *from, size_t rows_expected, run_result *resul
     memset(result, 0, sizeof *result);
     const shared_part whole = {from->trace.row_count, from->trace.event_count,
                                from->history.forces.count, from->history.checkpoint_count};
-    bool done = share(from, &whole, rows_expected, result) &&
-                (from->before_impact == NULL || copy_before_impact(from, result));
-    result->summary = from->summary;
-    if (!done) {
-        run_finish(result);
-    }
-    return done ? STATUS_OK : STATUS_NO_MEMORY;
+    const bool impacted = from->before_impact != NULL;
+    return share(from, &whole, impacted, &from->summary, rows_expected, result) ? STATUS_OK
+                                                                                : STATUS_NO_MEMORY;
 }

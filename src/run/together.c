@@ -57,14 +57,12 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
 {
     one->run.motion = NULL;
     one->run.path = NULL;
-    status failed = recording_begin(&one->recording, s, options, result, &one->fault);
+    const status failed = recording_begin(&one->recording, s, options, result, &one->fault);
     force_history_take(&result->history.forces, &one->forces);
-    if (failed == STATUS_OK) {
-        motion *spare = one->motion;
-        one->motion = NULL;
-        failed = corrected_open(&one->run, &one->recording, spare, &one->fault);
-    }
-    return failed;
+    TRY(failed);
+    motion *spare = one->motion;
+    one->motion = NULL;
+    return corrected_open(&one->run, &one->recording, spare, &one->fault);
 }
 
 // Where the series of the run's next step are to be computed; NULL if it needs none.
@@ -74,12 +72,11 @@ static taylor_lane *lane_for(corrected_run *run)
     return run->stretch.open.goes_on ? NULL : taylor_prepare(&run->arm, run->motion, remaining);
 }
 
-// Continues with a run until it waits for series that can be computed together with others'. False
-// if it is over: it is closed then.
-static bool go_on(side_by_side *group, int place)
+// Continues with a run, what came last having come to `failed`, until it waits for series that can
+// be computed together with others'. False if it is over: it is closed then.
+static bool go_on(side_by_side *group, int place, status failed)
 {
     side_run *one = &group->in_hand[place];
-    status failed = STATUS_OK;
     bool ended = false;
 
     // steps that need no series are taken at once, one that does waits for company
@@ -125,18 +122,6 @@ static void fetch_run(const side_run *one)
     fetch(&one->recording.result->history.forces, sizeof(force_history));
 }
 
-// Makes the step whose series are computed, and continues.
-static bool step_and_go_on(side_by_side *group, int place)
-{
-    side_run *one = &group->in_hand[place];
-    status failed = corrected_step(&one->run, HUGE_VAL, &one->fault);
-    if (failed == STATUS_OK) {
-        return go_on(group, place);
-    }
-    end_run(one, failed);
-    return false;
-}
-
 // Begins runs in a free place until one waits there for its series, or none is left.
 static void begin_next(side_by_side *group, int place)
 {
@@ -153,12 +138,7 @@ static void begin_next(side_by_side *group, int place)
         }
 
         // the next corrected run, up to its first wait
-        const status failed = begin_run(one, s, &group->options, result);
-        if (failed == STATUS_OK) {
-            waits = go_on(group, place);
-        } else {
-            end_run(one, failed);
-        }
+        waits = go_on(group, place, begin_run(one, s, &group->options, result));
     }
 }
 
@@ -211,7 +191,8 @@ static void serve(side_by_side *group)
 
     // then each continues by itself or makes room
     for (int i = 0; i < count; i++) {
-        if (!step_and_go_on(group, chosen[i])) {
+        side_run *one = &group->in_hand[chosen[i]];
+        if (!go_on(group, chosen[i], corrected_step(&one->run, HUGE_VAL, &one->fault))) {
             begin_next(group, chosen[i]);
         }
     }

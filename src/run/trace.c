@@ -4,75 +4,69 @@
 #include <math.h>
 #include <string.h>
 
-#define EVENT_WORD(name, word, description) word,
-static const char *const event_words[] = {EVENT_KINDS(EVENT_WORD)};
-#undef EVENT_WORD
-
-#define EVENT_DESCRIPTION(name, word, description) description,
-static const char *const event_descriptions[] = {EVENT_KINDS(EVENT_DESCRIPTION)};
-#undef EVENT_DESCRIPTION
+#define EVENT_TEXTS(name, word, description) {word, description},
+static const struct {
+    const char *word, *description;
+} event_texts[] = {EVENT_KINDS(EVENT_TEXTS)};
+#undef EVENT_TEXTS
 
 const char *event_name(event_kind kind)
 {
-    return event_words[kind];
+    return event_texts[kind].word;
 }
 
 const char *event_description(int kind)
 {
-    const int count = (int)(sizeof event_descriptions / sizeof event_descriptions[0]);
-    return kind >= 0 && kind < count ? event_descriptions[kind] : NULL;
+    const int count = (int)(sizeof event_texts / sizeof event_texts[0]);
+    return kind >= 0 && kind < count ? event_texts[kind].description : NULL;
 }
 
-static size_t angles_size(int angle_count)
+// Bytes of an element of one of the arrays.
+static size_t element_size(int array, int angle_count)
 {
-    return (angle_count > 0 ? (size_t)angle_count : 1) * sizeof(double);
+    const size_t angles = (angle_count > 0 ? (size_t)angle_count : 1) * sizeof(double);
+    return array == TRACE_ROWS ? sizeof(sample) : array == TRACE_EVENTS ? sizeof(event) : angles;
 }
 
 // Plain arrays move as they grow: where the four lie now.
 static void find_places(trace *t)
 {
-    t->rows = t->row_array.base;
-    t->angles = t->angle_array.base;
-    t->velocities = t->velocity_array.base;
-    t->events = t->event_array.base;
+    t->rows = t->arrays[TRACE_ROWS].base;
+    t->velocities = t->arrays[TRACE_VELOCITIES].base;
+    t->angles = t->arrays[TRACE_ANGLES].base;
+    t->events = t->arrays[TRACE_EVENTS].base;
+}
+
+static status give_up(trace *t)
+{
+    trace_finish(t);
+    return STATUS_NO_MEMORY;
 }
 
 void trace_init(trace *t, int angle_count)
 {
     assert(angle_count >= 0);
-    memset(t, 0, sizeof *t);
-    t->angle_count = angle_count;
-    shared_array_init(&t->row_array, sizeof(sample));
-    shared_array_init(&t->angle_array, angles_size(angle_count));
-    shared_array_init(&t->velocity_array, angles_size(angle_count));
-    shared_array_init(&t->event_array, sizeof(event));
+    *t = (trace){.angle_count = angle_count};
+    for (int i = 0; i < TRACE_ARRAYS; i++) {
+        shared_array_init(&t->arrays[i], element_size(i, angle_count));
+    }
 }
 
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
 {
-    assert(angle_count >= 0);
-    memset(t, 0, sizeof *t);
-    t->angle_count = angle_count;
-    bool reserved =
-        shared_array_reserve(&t->row_array, sizeof(sample), least, most) &&
-        shared_array_reserve(&t->angle_array, angles_size(angle_count), least, most) &&
-        shared_array_reserve(&t->velocity_array, angles_size(angle_count), least, most) &&
-        shared_array_reserve(&t->event_array, sizeof(event), least, most);
-    if (!reserved) {
-        trace_finish(t);
-        return STATUS_NO_MEMORY;
+    trace_init(t, angle_count);
+    for (int i = 0; i < TRACE_ARRAYS; i++) {
+        FAIL_IF(!shared_array_reserve(&t->arrays[i], t->arrays[i].size, least, most), give_up(t));
     }
-
     find_places(t);
     return STATUS_OK;
 }
 
 void trace_finish(trace *t)
 {
-    shared_array_finish(&t->row_array);
-    shared_array_finish(&t->angle_array);
-    shared_array_finish(&t->velocity_array);
-    shared_array_finish(&t->event_array);
+    for (int i = 0; i < TRACE_ARRAYS; i++) {
+        shared_array_finish(&t->arrays[i]);
+    }
     memset(t, 0, sizeof *t);
 }
 
@@ -80,11 +74,9 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 {
     assert(t->row_count == 0);
     assert(rows <= from->row_count && events <= from->event_count);
-    if (!shared_array_share(&t->row_array, &from->row_array, rows) ||
-        !shared_array_share(&t->angle_array, &from->angle_array, rows) ||
-        !shared_array_share(&t->velocity_array, &from->velocity_array, rows) ||
-        !shared_array_share(&t->event_array, &from->event_array, events)) {
-        return STATUS_NO_MEMORY;
+    for (int i = 0; i < TRACE_ARRAYS; i++) {
+        const size_t count = i == TRACE_EVENTS ? events : rows;
+        FAIL_IF(!shared_array_share(&t->arrays[i], &from->arrays[i], count), STATUS_NO_MEMORY);
     }
     t->row_count = rows;
     t->event_count = events;
@@ -93,54 +85,39 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
 
 status trace_copy(trace *t, const trace *from)
 {
-    const size_t angles = from->row_count * (size_t)from->angle_count * sizeof *from->angles;
+    const void *there[] = {from->rows, from->velocities, from->angles, from->events};
     trace_init(t, from->angle_count);
-    if (!shared_array_grow(&t->row_array, from->row_count + 1) ||
-        !shared_array_grow(&t->angle_array, from->row_count + 1) ||
-        !shared_array_grow(&t->velocity_array, from->row_count + 1) ||
-        !shared_array_grow(&t->event_array, from->event_count + 1)) {
-        trace_finish(t);
-        return STATUS_NO_MEMORY;
+    for (int i = 0; i < TRACE_ARRAYS; i++) {
+        const size_t count = i == TRACE_EVENTS ? from->event_count : from->row_count;
+        FAIL_IF(!shared_array_grow(&t->arrays[i], count + 1), give_up(t));
+        if (count > 0 && there[i] != NULL) {
+            memcpy(t->arrays[i].base, there[i], count * t->arrays[i].size);
+        }
     }
-
     find_places(t);
-    if (from->row_count > 0) {
-        memcpy(t->rows, from->rows, from->row_count * sizeof *from->rows);
-        memcpy(t->angles, from->angles, angles);
-        memcpy(t->velocities, from->velocities, angles);
-    }
-    if (from->event_count > 0) {
-        memcpy(t->events, from->events, from->event_count * sizeof *from->events);
-    }
     t->row_count = from->row_count;
     t->event_count = from->event_count;
     return STATUS_OK;
 }
 
-// Room for so many rows; the places of plain arrays may change.
-static bool make_room(trace *t, size_t rows)
+bool trace_expect(trace *t, size_t rows)
 {
-    bool grown = shared_array_grow(&t->row_array, rows) &&
-                 shared_array_grow(&t->velocity_array, rows) &&
-                 shared_array_grow(&t->angle_array, rows); // last: the velocities have their room
-    if (t->row_array.reserved == 0) {
+    bool grown = true; // the angles last: the velocities have their room then
+    for (int i = 0; i < TRACE_EVENTS && grown; i++) {
+        grown = shared_array_grow(&t->arrays[i], rows);
+    }
+    if (t->arrays[TRACE_ROWS].reserved == 0) {
         find_places(t);
     }
     return grown;
 }
 
-bool trace_expect(trace *t, size_t rows)
-{
-    return make_room(t, rows);
-}
-
 status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities)
 {
     size_t n = (size_t)t->angle_count;
-    bool full = t->row_count >= t->row_array.capacity || t->row_count >= t->angle_array.capacity;
-    if (full && !make_room(t, t->row_count + 1)) {
-        return STATUS_NO_MEMORY;
-    }
+    const bool full = t->row_count >= t->arrays[TRACE_ROWS].capacity ||
+                      t->row_count >= t->arrays[TRACE_ANGLES].capacity;
+    FAIL_IF(full && !trace_expect(t, t->row_count + 1), STATUS_NO_MEMORY);
 
     t->rows[t->row_count] = *row;
     double *to_angles = t->angles + t->row_count * n, *to_rates = t->velocities + t->row_count * n;
@@ -154,14 +131,9 @@ status trace_add_row(trace *t, const sample *row, const double *angles, const do
 
 status trace_add_event(trace *t, event e)
 {
-    if (t->event_count >= t->event_array.capacity) {
-        if (!shared_array_grow(&t->event_array, t->event_count + 1)) {
-            return STATUS_NO_MEMORY;
-        }
-        if (t->event_array.reserved == 0) {
-            find_places(t);
-        }
-    }
+    shared_array *events = &t->arrays[TRACE_EVENTS];
+    FAIL_IF(!shared_array_grow(events, t->event_count + 1), STATUS_NO_MEMORY);
+    t->events = events->base;
     t->events[t->event_count++] = e;
     return STATUS_OK;
 }

@@ -39,6 +39,9 @@ const char *event_name(event_kind kind);
 // What happens at such an event, without a full stop; NULL past the last kind.
 const char *event_description(int kind);
 
+// The arrays of a trace: those of rows, then the events.
+enum { TRACE_ROWS, TRACE_VELOCITIES, TRACE_ANGLES, TRACE_EVENTS, TRACE_ARRAYS };
+
 typedef struct trace {
     sample *rows;
     double *angles;     // row r: angles[r * angle_count ...], the hub's first if it has one [rad]
@@ -46,7 +49,7 @@ typedef struct trace {
     event *events;
     size_t row_count, event_count;
     int angle_count;
-    shared_array row_array, angle_array, velocity_array, event_array; // where the four above lie
+    shared_array arrays[TRACE_ARRAYS]; // where the four above lie
 } trace;
 
 // An empty trace for angle_count link angles a row.

@@ -49,17 +49,13 @@ static status solve_step(printed_motion *m, printed_row *r)
             residual[i] = -residual[i];
             error += fabs(residual[i]);
         }
-        if (!isfinite(error)) {
-            return STATUS_NOT_FINITE;
-        }
+        FAIL_IF(!isfinite(error), STATUS_NOT_FINITE);
         if (error <= tolerance) {
             break;
         }
 
         // its correction
-        if (!dense_solve(n, matrix, residual)) {
-            return STATUS_SINGULAR;
-        }
+        FAIL_IF(!dense_solve(n, matrix, residual), STATUS_SINGULAR);
         for (int i = 0; i < n; i++) {
             x[i] += residual[i];
             change += fabs(residual[i]);
@@ -179,12 +175,6 @@ void printed_motion_rebind(printed_motion *m, const parameters *p)
 {
     printed_arm_init(&m->arm, p);
     m->method = p->method;
-}
-
-void printed_motion_set_voltage(printed_motion *m, double volts)
-{
-    assert(isfinite(volts));
-    motor_set_voltage(&m->arm.motor, volts);
 }
 
 bool printed_motion_ended(const printed_motion *m)

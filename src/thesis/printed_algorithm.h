@@ -46,11 +46,9 @@ typedef struct printed_motion {
 // step.
 void printed_motion_start(printed_motion *m, const parameters *p);
 
-// Adopts parameters changed by a script for the coming steps; the command is motor.voltage again.
+// Adopts parameters changed by a script for the coming steps; the command is motor.voltage again,
+// until motor_set_voltage puts another one in force.
 void printed_motion_rebind(printed_motion *m, const parameters *p);
-
-// Puts another command [V] in force for the coming steps.
-void printed_motion_set_voltage(printed_motion *m, double volts);
 
 // Whether the run's last step has been made.
 bool printed_motion_ended(const printed_motion *m);

@@ -425,7 +425,7 @@ void difference_update(run_difference *d, unsigned long run, const trace *t, con
     }
 
     // of another run everything is computed anew, of one that grew the rest
-    if (d->run != run || d->rows > t->row_count || d->trace.row_array.size == 0) {
+    if (d->run != run || d->rows > t->row_count || d->trace.arrays[TRACE_ROWS].size == 0) {
         trace_finish(&d->trace);
         trace_init(&d->trace, 1);
         d->built++;
