@@ -235,15 +235,13 @@ TEST(listed_reevaluation_breaks_the_constraint_by_the_misplaced_term)
 
 TEST(sign_has_a_dead_band_of_1e_5_either_way_as_listed_too)
 {
-    for (int listed = 0; listed <= 1; listed++) {
-        assert_true(printed_sign(1e-4, listed) == 1);
-        assert_true(printed_sign(1e-5, listed) == 0);
-        assert_true(printed_sign(5e-6, listed) == 0);
-        assert_true(printed_sign(-5e-6, listed) == 0);
-        assert_true(printed_sign(-1e-5, listed) == 0);
-        assert_true(printed_sign(-1e-4, listed) == -1);
-        assert_true(printed_sign(-1, listed) == -1);
-    }
+    assert_true(printed_sign(1e-4) == 1);
+    assert_true(printed_sign(1e-5) == 0);
+    assert_true(printed_sign(5e-6) == 0);
+    assert_true(printed_sign(-5e-6) == 0);
+    assert_true(printed_sign(-1e-5) == 0);
+    assert_true(printed_sign(-1e-4) == -1);
+    assert_true(printed_sign(-1) == -1);
 }
 
 TEST(constants_are_those_of_the_thesis)

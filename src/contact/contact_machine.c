@@ -63,7 +63,7 @@
 
 // --- what holds at an instant -----------------------------------------------------------------
 
-// Checks the numbered invariants, once after each event.
+// Checks the numbered invariants.
 static void check_invariants(const arm *a, const motion *m)
 {
     const double *state = m->state;
@@ -89,11 +89,9 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     double worst = 0;
 
     // the wall: no tension, no acceleration into it
-    if (m->wall_gives) {
-        worst = 0;
-    } else if (now.contact) {
+    if (now.contact && !m->wall_gives) {
         worst = fmax(worst, -state[SLOT_FORCE]);
-    } else if (touching) {
+    } else if (touching && !m->wall_gives) {
         // of a light face the force that moves it: its acceleration amplifies the force's rounding
         const double mass = m->wall_has_face ? fmin(a->wall.face_mass, 1) : 1;
         worst = fmax(worst, -state[SLOT_GAP_ACCELERATION] * mass);
@@ -129,9 +127,9 @@ static void end_rounding(motion *m)
 // to be found.
 static void resolve(const arm *a, motion *m, bool touching, motion_event event)
 {
-    static const hub_friction sticking_first[] = {HUB_STICK, HUB_FORWARD, HUB_BACKWARD};
-    static const hub_friction sliding_first[][3] = {{HUB_FORWARD, HUB_BACKWARD, HUB_STICK},
-                                                    {HUB_BACKWARD, HUB_FORWARD, HUB_STICK}};
+    static const hub_friction orders[][3] = {{HUB_STICK, HUB_FORWARD, HUB_BACKWARD},
+                                             {HUB_FORWARD, HUB_BACKWARD, HUB_STICK},
+                                             {HUB_BACKWARD, HUB_FORWARD, HUB_STICK}};
     double *state = m->state;
     end_rounding(m);
 
@@ -142,7 +140,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     const bool slides = event == MOTION_SLIP || breaks_away;
     const bool backwards =
         breaks_away ? state[SLOT_FRICTION] == HUB_BACKWARD : state[SLOT_FRICTION_TORQUE] > 0;
-    const hub_friction *at_rest = slides ? sliding_first[backwards] : sticking_first;
+    const hub_friction *at_rest = orders[!slides ? 0 : backwards ? 2 : 1];
     if (touching && m->dof == 1 && motion_wall_is_rigid(m) && !m->wall_moves) {
         state_velocities(m, state)[0] = 0; // but for rounding it is
     }
@@ -175,10 +173,10 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
         tried = contact_state_of(state);
         if (i == 0 || v < least) {
             least = v;
-            best = contact_state_of(state);
+            best = tried;
         }
         if (v <= (i < preferred ? rounding : FORCE_TOLERANCE / 1000)) {
-            best = contact_state_of(state);
+            best = tried;
             break;
         }
     }
@@ -200,6 +198,7 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
            (size_t)m->dof * sizeof(double));
     state[SLOT_JUMPED] = 1;
+    check_invariants(a, m);
 }
 
 // The arm leaves the face of a wall that gives, which returns by itself from now on. What does so
@@ -392,7 +391,6 @@ void motion_start_at(const arm *a, motion *m, const double *angles, const double
     const bool touching = closed && (m->wall_gives ? rate >= 0 : rate == 0);
     resolve(a, m, touching, MOTION_REACHED);
     m->record.start_energy += motion_wall_energy(a, m, m->state); // of a depth by rounding
-    check_invariants(a, m);
 }
 
 void motion_start(const arm *a, motion *m, double angle, double velocity)
@@ -404,14 +402,6 @@ void motion_start(const arm *a, motion *m, double angle, double velocity)
         w[i] = velocity;
     }
     motion_start_at(a, m, q, w, 0);
-}
-
-bool motion_starts_in_contact(const motion *m)
-{
-    // what goes into a wall that gives is in contact, however hard the wall throws it back
-    const bool leaves =
-        m->wall_gives && m->state[SLOT_GAP_VELOCITY] >= 0 && m->state[SLOT_GAP_ACCELERATION] > 0;
-    return m->state[SLOT_CONTACT] != 0 && !leaves;
 }
 
 void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
@@ -445,7 +435,6 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
         }
     }
     report->holds = m->state[SLOT_CONTACT] != 0;
-    check_invariants(a, m);
 }
 
 void motion_retorque(const arm *a, motion *m, double before)
@@ -474,7 +463,6 @@ void motion_retorque(const arm *a, motion *m, double before)
     }
     if (!moves || (state[SLOT_CONTACT] != 0 && state[SLOT_FORCE] <= 0)) {
         resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_REACHED);
-        check_invariants(a, m);
         return;
     }
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
@@ -507,5 +495,4 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
     }
     after = motion_arm_at(after, m, m->state[SLOT_TIME]);
     resolve(after, m, contact && (!m->wall_gives || face_follows(after, m)), MOTION_REACHED);
-    check_invariants(after, m);
 }

@@ -45,10 +45,6 @@ void motion_start_at(const arm *a, motion *m, const double *angles, const double
 // The same of a straight arm: all bodies at `angle` [rad] with `velocity` [rad/s].
 void motion_start(const arm *a, motion *m, double angle, double velocity);
 
-// Whether a motion that has just been started lies against the wall: held by a rigid one, or on one
-// that gives without leaving it at once.
-bool motion_starts_in_contact(const motion *m);
-
 // Makes one step towards `until`, or to the first event if that comes first. The implicit methods
 // take steps of `step`; the event method goes as far as its accuracy allows, many times `step` or a
 // fraction of it; an arm that contact and friction hold still goes to `until` at once. At an event

@@ -281,9 +281,7 @@ status corrected_step(corrected_run *c, double until, fault *f)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    if (r->options->rows_expected > 0 && !checkpoint_keep(r, m, c->stretch.last_event)) {
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(r->options->rows_expected == 0 || checkpoint_keep(r, m, c->stretch.last_event), f);
 
     // within the step under way
     if (!c->stretch.open.goes_on && flies_beyond_samples(c)) {
@@ -423,11 +421,6 @@ motion *corrected_finish(corrected_run *c, status failed)
     wall_path_destroy(c->path);
     c->path = NULL;
     return m;
-}
-
-void corrected_close(corrected_run *c, status failed)
-{
-    motion_destroy(corrected_finish(c, failed));
 }
 
 // --- the state as bytes ------------------------------------------------------------------------

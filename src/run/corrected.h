@@ -1,6 +1,6 @@
 // A run of the corrected arm, step by step:
 //
-//     open -> (approach_step -> corrected_step) until it has ended or fails -> close
+//     open -> (approach_step -> corrected_step) until it has ended or fails -> finish
 //
 // so that several can go side by side (src/run/run.c), and programs step them (src/run/loop.h).
 #pragma once
@@ -53,7 +53,7 @@ static inline double corrected_now(const corrected_run *c)
 }
 
 // Begins a run, or takes one up, in the storage of a motion that is over (`spare`, which may be
-// NULL and is used up). Whatever it returns, corrected_close or corrected_finish is due.
+// NULL and is used up). Whatever it returns, corrected_finish is due.
 status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f);
 
 // Carries out what is due of script and rig until the next thing to do is a step, to c->stop at
@@ -65,10 +65,8 @@ status corrected_approach_step(corrected_run *c, bool *ended, fault *f);
 // recording.state.
 void corrected_sum_up(corrected_run *c, status failed);
 
-// Sums the run up and frees it; `failed` is what ended it.
-void corrected_close(corrected_run *c, status failed);
-
-// The same, but for its motion's storage, which it returns: NULL if there is none.
+// Sums the run up, `failed` being what ended it, and frees it but for its motion's storage, which
+// it returns: NULL if there is none.
 motion *corrected_finish(corrected_run *c, status failed);
 
 // --- a step, from where it is begun to what comes of its end ----------------------------------

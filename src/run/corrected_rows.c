@@ -28,9 +28,7 @@ static inline status audit(corrected_run *c, state_energy has)
                          m->record.start_energy + fabs(torque) * TINY_TURN + TINY_ENERGY;
     // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
     double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
-    if (!isfinite(residual) || !isfinite(turned_over)) {
-        return STATUS_NOT_FINITE;
-    }
+    FAIL_IF(!isfinite(residual) || !isfinite(turned_over), STATUS_NOT_FINITE);
     return wrong > WRONG_ENERGY * turned_over ? STATUS_UNSTABLE : STATUS_OK;
 }
 

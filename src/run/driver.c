@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "src/base/instant.h"
+#include "src/engines/motion_create.h"
 
 status driver_open(run_driver *d, recording *r, fault *f)
 {
@@ -15,7 +16,7 @@ status driver_open(run_driver *d, recording *r, fault *f)
 void driver_close(run_driver *d, status failed)
 {
     if (!d->is_printed) {
-        corrected_close(&d->corrected, failed);
+        motion_destroy(corrected_finish(&d->corrected, failed));
     } else if (d->printed.begun) {
         printed_sum_up(&d->printed, failed);
     }

@@ -46,9 +46,7 @@ force_step *force_history_extend(force_history *h, size_t count)
 status force_history_add(force_history *h, force_step step)
 {
     force_step *added = force_history_extend(h, 1);
-    if (added == NULL) {
-        return STATUS_NO_MEMORY;
-    }
+    FAIL_IF(added == NULL, STATUS_NO_MEMORY);
     *added = step;
     return STATUS_OK;
 }

@@ -21,11 +21,9 @@ void printed_arm_init(printed_arm *a, const parameters *p)
     a->switches = p->printed;
 }
 
-double printed_sign(double velocity, bool listed)
+double printed_sign(double velocity)
 {
     const double edge = 1e-5;
-    // the listing's first test gives 0 from -1e-2 on, but its third one overrules it
-    (void)listed;
     return velocity > edge ? 1 : velocity < -edge ? -1 : 0;
 }
 
@@ -68,8 +66,7 @@ void printed_residual(const printed_arm *a, const double q[3], const double w[3]
 
     // (2.15): the hub
     residual[0] = a->hub_inertia * alpha[0] - a->k1 * hub_bend + a->motor.damping * w[0] +
-                  a->motor.stiction * printed_sign(w[0], a->switches.sign_dead_band) -
-                  a->motor.torque;
+                  a->motor.stiction * printed_sign(w[0]) - a->motor.torque;
 
     // (2.16): both links, (2.17): the last one
     residual[1] = a->k1 * hub_bend + t.m22 * alpha[1] + t.m23 * alpha[2] -

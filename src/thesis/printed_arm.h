@@ -45,10 +45,10 @@ typedef struct newmark_slopes {
 // Derives the constants from resolved parameters of a two-link arm.
 void printed_arm_init(printed_arm *a, const parameters *p);
 
-// Sign of a velocity [rad/s] as the listing takes it: zero in a dead band around rest. The band is
-// 1e-5 either way. With `listed` the listing's three tests run in their order, whose first names
-// -1e-2 for the lower edge; the third overrules it, so that both give the same.
-double printed_sign(double velocity, bool listed);
+// Sign of a velocity [rad/s] as the listing takes it: zero in a dead band around rest, 1e-5 either
+// way. The first of the listing's three tests names -1e-2 for the lower edge; the third overrules
+// it, so that `sign_dead_band` changes nothing.
+double printed_sign(double velocity);
 
 // residual[4] = R1..R4 at angles q, velocities w, accelerations alpha and contact force f. Free
 // flight is f = 0 and the first three.

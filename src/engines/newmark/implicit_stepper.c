@@ -100,9 +100,7 @@ static status solve_step(const arm *a, motion *m, double h, const coefficients *
             size = fmax(size, fabs(dq[i]));
             largest = fmax(largest, fabs(q1[i]));
         }
-        if (!isfinite(size)) {
-            return STATUS_NOT_FINITE;
-        }
+        FAIL_IF(!isfinite(size), STATUS_NOT_FINITE);
 
         // small enough: the rates that go with the angles found
         if (size <= NEWTON_TOLERANCE * largest) {
@@ -216,9 +214,7 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
             bend_to_wall(a, m);
         }
         keep_balance(a, m, &it);
-        if (k.beta == 1 && makes_energy(a, m)) {
-            return STATUS_UNSTABLE;
-        }
+        FAIL_IF(k.beta == 1 && makes_energy(a, m), STATUS_UNSTABLE);
     }
 
     // quadratures by the trapezoidal rule, with the powers at both ends

@@ -83,20 +83,13 @@ static void keep(motion *m, double most)
 {
     double *kept = state_kept(m, m->state);
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
-    const double *quadratures = state_quadratures(m, m->state);
     kept[KEPT_LENGTH] = kept[KEPT_USED] = 0;
     kept[KEPT_WANTED] = most;
     kept[KEPT_JUMPED] = m->state[SLOT_JUMPED];
-    for (int i = 0; i < 3; i++) {
-        kept[KEPT_QUADRATURES + i] = quadratures[i];
-    }
-    kept[KEPT_ANGLES] = q[0];
-    kept[KEPT_VELOCITIES] = w[0];
-    kept[KEPT_ANGLES + 1] = q[1];
-    kept[KEPT_VELOCITIES + 1] = w[1];
-    if (m->dof > 2) { // with a hub on a spring
-        kept[KEPT_ANGLES + 2] = q[2];
-        kept[KEPT_VELOCITIES + 2] = w[2];
+    memcpy(kept + KEPT_QUADRATURES, state_quadratures(m, m->state), 3 * sizeof *kept);
+    for (int i = 0; i < m->dof; i++) { // three with a hub on a spring
+        kept[KEPT_ANGLES + i] = q[i];
+        kept[KEPT_VELOCITIES + i] = w[i];
     }
 }
 

@@ -70,8 +70,7 @@ static bool take_stages(stiff_integrator *s, const arm *a, motion *m)
     if (!s->loops->residual(&s->step, true)) {
         return false;
     }
-    const double grown = state_kept(m, m->state)[STIFF_GAP];
-    s->kept[STIFF_GAP] = grown;
+    s->kept[STIFF_GAP] = state_kept(m, m->state)[STIFF_GAP];
     stiff_keep_stages(s);
     s->kept[KEPT_LENGTH] = s->step.length;
     stiff_event_functions(s, a, m);
@@ -293,13 +292,10 @@ bool stiff_make_step(stiff_integrator *s, const arm *a, motion *m)
     change_drive(s, a, m);
     memcpy(s->kept, state_kept(m, m->state), (KEPT_COUNT + stiff_kept_size(a)) * sizeof *s->kept);
     keep_start(s, m, scale_of(s, a, m, s->kept[STIFF_SCALE]));
-    if (!solve_within_error(s, a, m)) {
+    if (!solve_within_error(s, a, m) || !take_stages(s, a, m)) {
         return false;
     }
     s->used = 0;
-    if (!take_stages(s, a, m)) {
-        return false;
-    }
 
     // and no longer than to the first event
     step_end end = {.length = s->step.length};

@@ -158,7 +158,7 @@ static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m
     function_scale(near, 1, s->stiction_excess);
 }
 
-static void set_current_function(stiff_integrator *s, const arm *a, const motion *m)
+static void set_current_function(stiff_integrator *s, const arm *a)
 {
     const motor_model *motor = &a->motor;
     const double most = motor->current_limit, side = s->step.limited < 0 ? -1 : 1;
@@ -190,20 +190,17 @@ static void set_current_function(stiff_integrator *s, const arm *a, const motion
     if (s->turned) { // a current that leaves its limit does so without a slope
         near->b[0] = fabs(near->b[0]);
     }
-    (void)m;
 }
 
 void stiff_event_functions(stiff_integrator *s, const arm *a, const motion *m)
 {
     const contact_state now = contact_state_of(m->state);
-    for (int w = 0; w < EVENT_FUNCTION_COUNT; w++) {
-        s->divided[w] = false;
-    }
+    memset(s->divided, 0, sizeof s->divided);
     if (wall_stands(&a->wall)) {
         set_wall_functions(s, a, m, now);
     }
     set_hub_functions(s, a, m, now);
     if (a->motor.electric && a->motor.current_limit < HUGE_VAL) {
-        set_current_function(s, a, m);
+        set_current_function(s, a);
     }
 }
