@@ -26,12 +26,6 @@ static bool is_within(const motion *m)
     return !motion_wall_is_rigid(m) && m->state[SLOT_CONTACT] != 0;
 }
 
-// Whether that wall has a damper.
-static bool is_damped(const arm *a, const motion *m)
-{
-    return is_within(m) && a->wall.damping > 0;
-}
-
 // Whether an event is one of the wall.
 static bool is_of_wall(motion_event event)
 {
@@ -108,7 +102,7 @@ status zeno_monitor_check(zeno_monitor *p, const arm *a, const motion *m, double
     const double now = m->state[SLOT_TIME], from = p->checked_at;
 
     // the first internal step only begins to count
-    const double slowest = is_damped(a, m) ? LEAST_DAMPED_STEP : LEAST_STEP;
+    const double slowest = is_within(m) && a->wall.damping > 0 ? LEAST_DAMPED_STEP : LEAST_STEP;
     const long steps = steps_between(a);
     const double least = (double)steps * fmin(slowest * fmin(duration, 1), ASKED_FOR * asked);
     const bool passes = from < 0 || now - from >= least;

@@ -13,14 +13,6 @@
 // take a third of a second.
 #define FASTEST_OF_PAIR 2e6
 
-// The engine asked for by name, NULL where the arm is to decide.
-static const engine *named_engine(engine_kind name)
-{
-    static const engine *const named[] = {
-        [ENGINE_AUTO] = NULL, [ENGINE_PAIR] = &taylor_engine, [ENGINE_STIFF] = &stiff_engine};
-    return named[name];
-}
-
 // The event method's engine: series of two equal links, hub joint and damping of any kind, on a
 // rigid wall that is a point, a plane or none; the stiff engine for all others. It does not depend
 // on the time step.
@@ -56,7 +48,9 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
         m->gamma = 0.5 - m->alpha_m + m->alpha_f;
         m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
     } else {
-        const engine *wanted = chosen != NULL ? chosen : named_engine((engine_kind)method->engine);
+        static const engine *const named[] = {
+            [ENGINE_AUTO] = NULL, [ENGINE_PAIR] = &taylor_engine, [ENGINE_STIFF] = &stiff_engine};
+        const engine *wanted = chosen != NULL ? chosen : named[method->engine];
         m->engine = wanted != NULL ? wanted : event_engine(a);
         m->chosen = wanted != NULL;
         m->tolerance = method->tolerance;

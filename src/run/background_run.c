@@ -30,17 +30,6 @@ static void *compute(void *argument)
     return NULL;
 }
 
-// Starts the thread; signals are for the one that waits for input.
-static bool start_thread(background_run *c)
-{
-    // a new thread inherits the mask of the one that starts it
-    sigset_t before;
-    worker_signals_block(&before);
-    bool started = pthread_create(&c->thread, NULL, compute, c) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return started;
-}
-
 background_run *background_run_start(const scenario *s, const background_options *how,
                                      run_result *begun)
 {
@@ -69,8 +58,12 @@ background_run *background_run_start(const scenario *s, const background_options
     pthread_cond_init(&c->ended, &clock);
     pthread_condattr_destroy(&clock);
 
-    // without a thread it is computed here
-    c->threaded = !how->at_once && start_thread(c);
+    // a new thread inherits the mask of the one that starts it: signals are for that one, which
+    // waits for input; without a thread it is computed here
+    sigset_t before;
+    worker_signals_block(&before);
+    c->threaded = !how->at_once && pthread_create(&c->thread, NULL, compute, c) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
     if (!c->threaded) {
         compute(c);
     }

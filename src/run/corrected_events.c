@@ -329,7 +329,7 @@ static status set_parameter(corrected_run *c, const action *todo, fault *f)
     recording *r = c->recording;
     const double now = c->motion->state[SLOT_TIME];
     recording_before_change(r, todo, now, state_angles(c->motion, c->motion->state)[0]);
-    status failed = recording_set(r, todo, now, f);
+    const status failed = recording_set(r, todo, now, f);
 
     // a voltage changes nothing but the torque; else the motion continues with an arm bound anew
     if (todo->parameter == PARAMETER_INDEX(motor.voltage)) {

@@ -33,17 +33,12 @@ void driver_sum_up(run_driver *d, status failed)
 
 // --- continuing ---------------------------------------------------------------------------------
 
-// Whether there is no step left.
-static bool is_at_end(const run_driver *d)
-{
-    return d->is_printed ? printed_motion_ended(&d->printed.motion)
-                         : !(corrected_now(&d->corrected) < d->duration);
-}
-
 // Whether an instant is still to be gone to; the end is, until it is known to be one.
 static bool lies_ahead(const run_driver *d, double time)
 {
-    return instant_after(time, driver_time(d)) || time >= d->duration || is_at_end(d);
+    const bool at_end = d->is_printed ? printed_motion_ended(&d->printed.motion)
+                                      : !(corrected_now(&d->corrected) < d->duration);
+    return instant_after(time, driver_time(d)) || time >= d->duration || at_end;
 }
 
 status driver_approach(run_driver *d, bool *ended, fault *f)
@@ -54,15 +49,14 @@ status driver_approach(run_driver *d, bool *ended, fault *f)
 
 status driver_advance(run_driver *d, double until, bool *ended, fault *f)
 {
-    status failed = STATUS_OK;
-    while (failed == STATUS_OK && !*ended && lies_ahead(d, until)) {
-        failed = driver_approach(d, ended, f);
-        if (failed == STATUS_OK && !*ended) {
-            failed = d->is_printed ? printed_step(&d->printed, f)
-                                   : corrected_step(&d->corrected, until, f);
+    while (!*ended && lies_ahead(d, until)) {
+        TRY(driver_approach(d, ended, f));
+        if (!*ended) {
+            TRY(d->is_printed ? printed_step(&d->printed, f)
+                              : corrected_step(&d->corrected, until, f));
         }
     }
-    return failed;
+    return STATUS_OK;
 }
 
 status driver_act(run_driver *d, const action *todo, fault *f)

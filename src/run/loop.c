@@ -27,24 +27,20 @@ struct run_loop {
     uint64_t fingerprint; // of what a saved state must agree with
 };
 
-// What the controller of a commanded loop remembers: where its command stands.
-typedef struct commanded_memory {
-    const double *volts;
-} commanded_memory;
-
 // --- the controller of a commanded loop -------------------------------------------------------
 
+// All it remembers is where its command stands.
 static void put_out(void *memory, const controller_input *input, controller_output *output)
 {
-    const commanded_memory *m = memory;
+    const double *const *volts = memory;
     (void)input;
-    output->command = *m->volts;
+    output->command = **volts;
 }
 
 static const controller commanded_law = {.interface = CONTROLLER_INTERFACE,
                                          .name = "the program",
                                          .modes = (const char *const[]){"command", NULL},
-                                         .memory_size = sizeof(commanded_memory),
+                                         .memory_size = sizeof(const double *),
                                          .sample = put_out};
 
 // --- beginning and end ------------------------------------------------------------------------

@@ -8,14 +8,6 @@
 #include "src/base/clock.h"
 #include "src/base/extremes.h"
 
-// What a run counts and adds up begins with nothing.
-static void summary_start(summary *s)
-{
-    summary_init(s);
-    s->impacts = s->separations = s->steps = s->max_penetration_m = 0;
-    s->motor_work_J = s->energy_residual_J = 0;
-}
-
 time_used time_now(void)
 {
     return (time_used){clock_seconds(CLOCK_THREAD_CPUTIME_ID), clock_seconds(CLOCK_MONOTONIC)};
@@ -58,7 +50,10 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
     *f = (fault){.text = "", .path = ""};
     if (!options->resume) {
         memset(result, 0, sizeof *result);
-        summary_start(&result->summary);
+        summary *all = &result->summary;
+        summary_init(all);
+        all->impacts = all->separations = all->steps = all->max_penetration_m = 0;
+        all->motor_work_J = all->energy_residual_J = 0;
     }
 
     // not even set up: an arm of a thousand links takes seconds for that

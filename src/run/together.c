@@ -65,13 +65,6 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
     return corrected_open(&one->run, &one->recording, spare, &one->fault);
 }
 
-// Where the series of the run's next step are to be computed; NULL if it needs none.
-static taylor_lane *lane_for(corrected_run *run)
-{
-    const double remaining = run->stretch.stop - run->motion->state[SLOT_TIME];
-    return run->stretch.open.goes_on ? NULL : taylor_prepare(&run->arm, run->motion, remaining);
-}
-
 // Continues with a run, what came last having come to `failed`, until it waits for series that can
 // be computed together with others'. False if it is over: it is closed then.
 static bool go_on(side_by_side *group, int place, status failed)
@@ -83,7 +76,11 @@ static bool go_on(side_by_side *group, int place, status failed)
     while (failed == STATUS_OK && !ended) {
         failed = corrected_approach_step(&one->run, &ended, &one->fault);
         if (failed == STATUS_OK && !ended) {
-            one->lane = lane_for(&one->run);
+            corrected_run *run = &one->run;
+            const double remaining = run->stretch.stop - run->motion->state[SLOT_TIME];
+            one->lane = run->stretch.open.goes_on
+                            ? NULL
+                            : taylor_prepare(&run->arm, run->motion, remaining);
             if (one->lane != NULL) {
                 one->kind = taylor_kind(one->lane->form);
                 group->alike[one->kind]++;
