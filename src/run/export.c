@@ -90,15 +90,6 @@ static json_t *event_object(const scenario *s, const event *e)
     return object;
 }
 
-static json_t *events_array(const scenario *s, const trace *t)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < t->event_count; i++) {
-        json_add(array, event_object(s, &t->events[i]));
-    }
-    return array;
-}
-
 json_t *export_run(const scenario *s, const run_result *result)
 {
     const summary *m = &result->summary;
@@ -119,7 +110,11 @@ json_t *export_run(const scenario *s, const run_result *result)
     if (s->expectation_count > 0) {
         json_put(object, "expectations", expectations_array(s, result));
     }
-    json_put(object, "events", events_array(s, &result->trace));
+    json_t *events = json_array();
+    for (size_t i = 0; i < result->trace.event_count; i++) {
+        json_add(events, event_object(s, &result->trace.events[i]));
+    }
+    json_put(object, "events", events);
     return object;
 }
 

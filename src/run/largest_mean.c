@@ -27,11 +27,6 @@ static double integral_within(const force_step *step, double time)
     return length * s * (p.first + s * (p.slope / 2 + s * p.curve / 3));
 }
 
-static bool is_impulse(const event *e)
-{
-    return e->kind == EVENT_IMPACT && e->impulse > 0 && !e->delivered_by_step;
-}
-
 // Moves an end of the window on, which stands `behind` the front's time [s]. Impulses at the
 // instant itself are passed or not. Instants are compared where the front meets them, by the same
 // sums as in next_change: rounded otherwise, the end could stay in a step that it has left.
@@ -47,11 +42,13 @@ static void advance(const run_result *r, window_end *w, double time, double behi
 
     // and past impulses
     for (; w->event < t->event_count; w->event++) {
-        const double met = t->events[w->event].time + behind;
+        const event *e = &t->events[w->event];
+        const double met = e->time + behind;
         if (!(met < time || (past_impulses && met == time))) {
             break;
         }
-        w->impulses += is_impulse(&t->events[w->event]) ? t->events[w->event].impulse : 0;
+        const bool strikes = e->kind == EVENT_IMPACT && e->impulse > 0 && !e->delivered_by_step;
+        w->impulses += strikes ? e->impulse : 0;
     }
     w->time = time;
 }

@@ -209,15 +209,6 @@ bool stiff_excludes_event(const motion *m, event_function w)
                                        (w < EVENT_OF_STICTION || function_least(&s->far[w]) > 0));
 }
 
-// The hub's angle and velocity at x of the step.
-static value_and_slope hub_at(const stiff_integrator *s, double x)
-{
-    radau_weights weight;
-    radau_weights_at(x, &weight);
-    const body_motion hub = body_at(s, 0, x, &weight);
-    return (value_and_slope){hub.q, hub.w};
-}
-
 void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
                         int count, value_and_slope *at)
 {
@@ -226,7 +217,10 @@ void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from
     for (int i = 0; i <= count; i++) {
         const double x = (s->used + (from + i * width)) / s->step.length;
         if (of == OUTPUT_HUB) {
-            at[i] = hub_at(s, x);
+            radau_weights weight;
+            radau_weights_at(x, &weight);
+            const body_motion hub = body_at(s, 0, x, &weight);
+            at[i] = (value_and_slope){hub.q, hub.w};
         } else if (of == OUTPUT_GAP && !wall_stands(&a->wall)) {
             at[i] = (value_and_slope){HUGE_VAL, 0};
         } else {
