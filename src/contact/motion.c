@@ -207,14 +207,6 @@ bool motion_project(const arm *a, motion *m, double *state)
     return true;
 }
 
-// A step of an arm that is held still: only time passes.
-static void let_time_pass(motion *m, double h)
-{
-    memcpy(m->trial, m->state, (size_t)m->size * sizeof(double));
-    m->trial[SLOT_TIME] += h;
-    state_quadratures(m, m->trial)[QUADRATURE_FORCE] += h * m->state[SLOT_FORCE];
-}
-
 // The parts of a state, `h` after another one, that need no evaluation.
 static void set_slots(const arm *a, const motion *m, double *from, double h, double *state)
 {
@@ -268,8 +260,10 @@ status motion_try_step_for(const arm *a, motion *m, double h, state_extent exten
 {
     double *trial = m->trial;
     m->step.trial_energy = unknown_energy;
-    if (motion_held_still(m)) {
-        let_time_pass(m, h);
+    if (motion_held_still(m)) { // only time passes
+        memcpy(trial, m->state, (size_t)m->size * sizeof *trial);
+        trial[SLOT_TIME] += h;
+        state_quadratures(m, trial)[QUADRATURE_FORCE] += h * m->state[SLOT_FORCE];
         return STATUS_OK;
     }
 

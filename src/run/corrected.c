@@ -27,13 +27,6 @@ static bool stretch_is_over(const corrected_run *c)
     return !(corrected_now(c) < smaller(c->stretch.stop, c->motion->record.tstop));
 }
 
-// The next instant that steps end at: the rig's, or the end.
-static double next_stop(const recording *r)
-{
-    double stop = r->scenario->parameters.run.duration;
-    return r->rig != NULL ? smaller(rig_next_time(r->rig), stop) : stop;
-}
-
 // The next instant at which steps are cut without being planned for it: an action, or the start of
 // the window of the steady force. The motion before it does not depend on it.
 static double next_cut(const recording *r, double window, double now)
@@ -137,7 +130,7 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
         TRY(corrected_run_script(c, f));
         TRY(run_rig(c, f));
         m->record.tstop = next_cut(r, window, m->state[SLOT_TIME]);
-        c->stretch.stop = next_stop(r);
+        c->stretch.stop = r->rig != NULL ? smaller(rig_next_time(r->rig), duration) : duration;
         c->stretch.last_event = -1;
         c->stretch.at_once = 0;
     }

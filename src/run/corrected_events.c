@@ -152,15 +152,6 @@ static bool has_not_touched(const corrected_run *c)
            c->motion->state[SLOT_TIME] < AT_ONCE && !(c->motion->record.pulse_peak > NO_FORCE);
 }
 
-// Its first contact is still to come.
-static void forget_first_contact(corrected_run *c)
-{
-    recording *r = c->recording;
-    r->state.pulse_open = false;
-    r->result->summary.first_contact_s = (double)NAN;
-    r->result->summary.contact_impulse_Ns = (double)NAN;
-}
-
 // What the trace calls the event.
 static event_kind kind_of(const motion *m, const motion_report *report)
 {
@@ -234,7 +225,8 @@ static status record_applied_event(corrected_run *c, contact_state before,
     // it opens again, for the first time the pulse ends
     bool apart = m->state[SLOT_CONTACT] == 0 && (closes || before.contact);
     if (apart && r->state.pulse_open && !closes && has_not_touched(c)) {
-        forget_first_contact(c);
+        r->state.pulse_open = false; // its first contact is still to come
+        s->first_contact_s = s->contact_impulse_Ns = (double)NAN;
     } else if (apart && r->state.pulse_open) {
         corrected_close_first_pulse(c);
     }

@@ -14,15 +14,6 @@ static status record_event(recording *r, double time, event_kind kind, int index
     return trace_add_event(&r->result->trace, (event){.time = time, .kind = kind, .index = index});
 }
 
-// The first row in contact: pulse and peaks count from here.
-static void begin_first_pulse(recording *r, const printed_row *row)
-{
-    summary *s = &r->result->summary;
-    s->first_contact_s = row->time;
-    s->peak_force_N = s->first_pulse_peak_N = -1;
-    s->first_pulse_s = (double)NAN;
-}
-
 // Keeps what lies beside a peak: the row is one (`larger`), comes right after it, or neither.
 static void note_neighbours(const printed_run *p, const printed_row *row, bool larger,
                             sampled_peak *peak)
@@ -67,10 +58,12 @@ static status note_contact(printed_run *p, const printed_row *row)
     recording_state *state = &r->state;
     const bool was_in_contact = state->pulse_open;
 
-    // the first row in contact
+    // the first row in contact: pulse and peaks count from here
     s->max_penetration_m = fmax(s->max_penetration_m, -row->gap);
     if (row->contact && isnan(s->first_contact_s)) {
-        begin_first_pulse(r, row);
+        s->first_contact_s = row->time;
+        s->peak_force_N = s->first_pulse_peak_N = -1;
+        s->first_pulse_s = (double)NAN;
     }
     if (isnan(s->first_contact_s)) {
         return STATUS_OK; // the wall is still to be met
