@@ -10,7 +10,6 @@
 #include "src/contact/dense_location.h"
 #include "src/engines/stiff/stiff_integrator.h"
 
-#define NEWTON_SHARE 3e-3  // of the tolerance, what the iteration leaves
 #define FAST_DECAY   3e4   // beyond it, where nothing else is faster, the tolerance is larger [1/s]
 #define DECAYING     10    // so many times
 #define BOUNCING     0.1   // and of an arm that bounces undamped, which amplifies errors
@@ -103,9 +102,7 @@ static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, step_end 
             break;
         }
         s->step.length = h;
-        if (!stiff_solve_stages(s, false, 0, ratio, &rate, NEWTON_SHARE * s->tolerance,
-                                s->kept[STIFF_SCALE]) ||
-            !take_stages(s, a, m)) {
+        if (!stiff_solve_stages(s, false, 0, ratio, &rate) || !take_stages(s, a, m)) {
             return false;
         }
         double miss = miss_of(s, a, m, at.first);
@@ -257,8 +254,7 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
     bool fresh = begins, again = false;
     for (int i = 0; i < MOST_ATTEMPTS && h > SHORTEST; i++, again = true) {
         s->step.length = h;
-        if (!stiff_solve_stages(s, fresh, offset, h / was, &rate, NEWTON_SHARE * s->tolerance,
-                                scale)) {
+        if (!stiff_solve_stages(s, fresh, offset, h / was, &rate)) {
             h = fresh ? h / 3 : h;
             fresh = true;
             continue;

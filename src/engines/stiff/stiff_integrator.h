@@ -85,8 +85,7 @@ void stiff_set_start(stiff_integrator *s, motion *m);
 // Solves the stages of a step of s->step.length: with the accelerations that the step kept has at
 // `offset` + `ratio` c of its length, or none where `fresh`. *rate: of the iteration. False if that
 // does not converge.
-bool stiff_solve_stages(stiff_integrator *s, bool fresh, double offset, double ratio, double *rate,
-                        double tolerance, double scale);
+bool stiff_solve_stages(stiff_integrator *s, bool fresh, double offset, double ratio, double *rate);
 
 // Puts the stages into what is kept.
 void stiff_keep_stages(stiff_integrator *s);

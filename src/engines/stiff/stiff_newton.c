@@ -7,12 +7,13 @@
 #include "src/base/sincos.h"
 #include "src/engines/stiff/stiff_integrator.h"
 
-#define FARTHEST    2    // in lengths of a step, to where its polynomials are extrapolated
-#define LEAST_RATE  1e-4 // of the iteration that is believed
-#define SLOW_RATE   0.6  // and from which on a shorter step is cheaper
-#define LEAST_SHARE 1e-14
-#define LAST_DIGITS 1e-14 // of an angle, as corrections that do not converge show them
-#define MOST_LEFT   30    // times what is wanted, of such corrections
+#define NEWTON_SHARE 3e-3 // of the tolerance, what the iteration leaves
+#define FARTHEST     2    // in lengths of a step, to where its polynomials are extrapolated
+#define LEAST_RATE   1e-4 // of the iteration that is believed
+#define SLOW_RATE    0.6  // and from which on a shorter step is cheaper
+#define LEAST_SHARE  1e-14
+#define LAST_DIGITS  1e-14 // of an angle, as corrections that do not converge show them
+#define MOST_LEFT    30    // times what is wanted, of such corrections
 
 enum { MOST_ITERATIONS = 12 };
 
@@ -109,7 +110,7 @@ void stiff_set_start(stiff_integrator *integrator, motion *m)
 // --- Newton --------------------------------------------------------------------------------------
 
 bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset, double ratio,
-                        double *rate, double tolerance, double scale)
+                        double *rate)
 {
     stiff_step *s = &integrator->step;
     _Alignas(32) double weight[RADAU_STAGES][RADAU_LANES] = {{0}};
@@ -130,7 +131,8 @@ bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
                                weight[0]);
 
     // with the tangent at the first iterate
-    const double wanted = tolerance * scale;
+    const double scale = integrator->kept[STIFF_SCALE];
+    const double wanted = NEWTON_SHARE * integrator->tolerance * scale;
     double before = 0;
     for (int i = 0; i < MOST_ITERATIONS; i++) {
         if (!integrator->loops->residual(s, false)) {
