@@ -1,6 +1,7 @@
 #include "src/base/whole_file.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
 
@@ -285,6 +286,29 @@ TEST_IN_FOLDER(what_killed_runs_left_goes)
     }
     close(told[0]);
     close(told[1]);
+}
+
+// A run in another process that opens a file at that moment looks for what killed ones left.
+static bool cleans_before_rename;
+int rename(const char *from, const char *to)
+{
+    if (cleans_before_rename) {
+        whole_file_clean_folder(".");
+    }
+    return renameat(AT_FDCWD, from, AT_FDCWD, to);
+}
+
+// Until a file has its name its temporary is nobody's to remove.
+TEST_IN_FOLDER(a_temporary_is_locked_until_it_has_its_name)
+{
+    whole_file w;
+    DONE(whole_file_open(&w, "new", &f));
+    fputs("new", w.stream);
+    cleans_before_rename = true;
+    const bool committed = whole_file_commit(&w, NULL) == STATUS_OK;
+    cleans_before_rename = false;
+    assert_true(committed);
+    assert_holds("new", "new");
 }
 
 // In a folder like /tmp a link of somebody else's leads nowhere, as the kernel has it.
