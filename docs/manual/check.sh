@@ -22,6 +22,10 @@ done < <(find "$source/docs" -name '*.md' ! -path '*/matplotlib/*')
 for name in parameters signals quantities laws events functions claims; do
     grep -q "<section id=\"table-of-$name\">" "$page" || complain "the table of $name is no chapter"
 done
+# the chapter of the laws has what stands over their code: of a file, of a family, of a member
+for words in 'm_a v' 'force_gain (f - reading)' 'In the family of <code>hybrid</code>' '= integral_gain (f'; do
+    grep -qF "$words" "$page" || complain "the chapter of the laws has no '$words'"
+done
 grep -o ' id="[^"]*"' "$page" | sed 's/.*="//; s/"//' | sort >"$work/ids"
 grep -o 'href="#[^"]*"' "$page" | sed 's/.*="#//; s/"//' | sort -u >"$work/links"
 [ "$(wc -l <"$work/links")" -gt 20 ] || complain "only $(wc -l <"$work/links") links"
