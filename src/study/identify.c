@@ -271,9 +271,10 @@ static status residuals_of(identification *id, const double *x, int sets, const 
 static status jacobian_of(identification *id, const double *x, double *jacobian, fault *f)
 {
     const size_t n = (size_t)id->unknowns, m = id->residuals;
-    double *moved = calloc(2 * n * (n + m), sizeof *moved), *out = moved + 2 * n * n;
+    double *moved = calloc(2 * n * (n + m), sizeof *moved);
     int only[2 * IDENTIFY_UNKNOWNS];
     TRY_MEMORY(moved != NULL, f);
+    double *out = moved + 2 * n * n;
     for (size_t s = 0; s < 2 * n; s++) {
         const int j = (int)(s / 2);
         memcpy(moved + s * n, x, n * sizeof *x);
@@ -387,9 +388,10 @@ static status draw_beginnings(identification *id, double *x, double *rest, fault
 }
 
 // Fits with room for the beginnings and what they leave, a set of residuals and the Jacobian.
-static status fit_with(identification *id, double *x, double *rest, double *residual,
-                       double *jacobian, fault *f)
+static status fit_with(identification *id, double *x, fault *f)
 {
+    double *rest = x + id->starts * id->unknowns, *residual = rest + id->starts,
+           *jacobian = residual + id->residuals;
     const double *best = x;
     double least = HUGE_VAL;
     TRY(draw_beginnings(id, x, rest, f));
@@ -435,11 +437,9 @@ status identify_fit(identification *id, fault *f)
 
     free(id->residual);
     id->residual = calloc(m, sizeof *id->residual);
-    double *room = calloc(starts * (n + 1) + m + m * n, sizeof *room), *rest = room + starts * n,
-           *residual = rest + starts;
-    const status code = id->residual != NULL && room != NULL
-                            ? fit_with(id, room, rest, residual, residual + m, f)
-                            : fault_no_memory(f);
+    double *room = calloc(starts * (n + 1) + m + m * n, sizeof *room);
+    const status code =
+        id->residual != NULL && room != NULL ? fit_with(id, room, f) : fault_no_memory(f);
     free(room);
     return code;
 }

@@ -95,9 +95,9 @@ status linear_zeros(const linear_system *s, int output, int *count, double compl
 {
     assert(output >= 0 && output < s->outputs);
     const int n = s->states;
-    double *row = calloc((size_t)(n * n + 2 * n) + 1, sizeof *row), *next = row + n,
-           *matrix = next + n;
+    double *row = calloc((size_t)(n * n + 2 * n) + 1, sizeof *row);
     TRY_MEMORY(row != NULL, f);
+    double *next = row + n, *matrix = next + n;
 
     // the output's derivative, row x + direct u, that sees the input first
     double direct = s->d[output];

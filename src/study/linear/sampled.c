@@ -86,9 +86,10 @@ static status fill(linear_system *out, const linear_system *s, int n, int held, 
 {
     const int size = n + 1, states = out->states;
     const size_t square = (size_t)size * (size_t)size;
-    double *both = calloc(5 * square, sizeof *both), *before = both + square,
-           *after = before + square, *power = after + square, *product = power + square;
+    double *both = calloc(5 * square, sizeof *both);
     TRY_MEMORY(both != NULL, f);
+    double *before = both + square, *after = before + square, *power = after + square,
+           *product = power + square;
     for (int i = 0; i < n; i++) {
         memcpy(both + i * size, s->a + i * s->states, (size_t)n * sizeof *both);
         both[i * size + n] = s->b[i];
