@@ -100,6 +100,13 @@ TEST(test_changed_recordings_are_told)
     assert_true(explorer_open_session(&other.state, path));
     assert_true(other.state.message.warning);
     assert_non_null(strstr(other.state.message.text, "has changed since it was kept"));
+
+    // so is one that was put there between the run and its keeping
+    write_command("3");
+    save(&other);
+    OPEN_EXPLORER(late, "corrected/three-links");
+    assert_true(explorer_open_session(&late.state, path));
+    assert_true(late.state.message.warning);
     unlink("command.csv");
 }
 

@@ -176,6 +176,24 @@ status outside_digest(const outside_source *source, const parameters *p, char di
                                 value, strerror(reason));
 }
 
+void outside_digest_all(const parameters *p, char digest[SHA256_TEXT])
+{
+    sha256 whole;
+    sha256_init(&whole);
+    bool reads = false;
+    for (int i = 0; i < outside_count; i++) {
+        const outside_source *source = &outside_table[i];
+        char one[SHA256_TEXT];
+        if (outside_is_read(source, p) && outside_is_told(source, p) &&
+            outside_digest(source, p, one, NULL) == STATUS_OK) {
+            sha256_add_text(&whole, one);
+            reads = true;
+        }
+    }
+    sha256_finish(&whole, digest);
+    digest[0] = reads ? digest[0] : '\0';
+}
+
 void outside_stamp(unsigned sources, const parameters *p, char stamp[SHA256_TEXT])
 {
     sha256 h;

@@ -12,6 +12,7 @@ status run_origin_take(run_origin *o, const session *s, fault *f)
         free(o->inputs);
         return fault_no_memory(f);
     }
+    memcpy(o->outside, s->digest, sizeof o->outside);
     if (s->input_count > 0) {
         memcpy(o->inputs, s->inputs, (size_t)s->input_count * sizeof *o->inputs);
     }

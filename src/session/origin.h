@@ -8,7 +8,8 @@ typedef struct run_origin {
     scenario base;
     session_input *inputs;
     int input_count;
-    double now, seen; // the cursor, and the latest instant it has been at [s]
+    double now, seen;          // the cursor, and the latest instant it has been at [s]
+    char outside[SHA256_TEXT]; // outside_digest_all of what it read, or empty
 } run_origin;
 
 // Copies a session's; STATUS_NO_MEMORY, and then nothing is to be freed.

@@ -168,17 +168,15 @@ static bool end_computing(session *s)
     return s->run.summary.status == STATUS_STOPPED;
 }
 
-// Whether the files that parameters name are those of the runs before. If they are others, what a
-// program answered then says nothing of now.
-static bool outside_is_same(session *s, const parameters *p)
+// Whether the files that parameters name, whose stamp is set, are those of the present run. If they
+// are others, what a program answered then says nothing of now.
+static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_TEXT])
 {
-    char stamp[SHA256_TEXT];
     // before a consent no program is opened, but what is only read is looked at
     outside_stamp(p->code_allowed ? ~0u : outside_files(), p, stamp);
     if (strcmp(stamp, s->outside) == 0) {
         return true;
     }
-    memcpy(s->outside, stamp, sizeof stamp);
     process_transcript_destroy(s->transcript);
     s->transcript = NULL;
     return false;
@@ -190,9 +188,17 @@ static status start_run(session *s, const scenario *effective, fault *f)
 {
     run_result run = {.before_impact = NULL};
     size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
-    bool resume = outside_is_same(s, &effective->parameters) &&
-                  run_resume(&s->run, &s->effective, effective, rows, &run);
-    if (s->transcript == NULL && effective->parameters.control.law == LAW_PROCESS) {
+    const parameters *p = &effective->parameters;
+    char stamp[SHA256_TEXT], digest[SHA256_TEXT];
+    const bool same = outside_is_same(s, p, stamp);
+    bool resume = same && run_resume(&s->run, &s->effective, effective, rows, &run);
+
+    // of what it is about to read, unless that was read before
+    memcpy(digest, s->digest, sizeof digest);
+    if (!same || !p->code_allowed || outside_read(p) != outside_read(&s->effective.parameters)) {
+        outside_digest_all(p, digest);
+    }
+    if (s->transcript == NULL && p->control.law == LAW_PROCESS) {
         s->transcript = process_transcript_create(); // without memory the program is always asked
     }
     const background_options how = {
@@ -229,6 +235,8 @@ static status start_run(session *s, const scenario *effective, fault *f)
 
     run_finish(&s->run);
     s->run = run;
+    memcpy(s->outside, stamp, sizeof stamp);
+    memcpy(s->digest, digest, sizeof digest);
     s->computing = c;
     s->surveyed = 0;
     return STATUS_OK;

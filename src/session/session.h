@@ -63,6 +63,7 @@ typedef struct session {
     struct process_transcript
         *transcript;           // what a process was asked in all runs, NULL if there is none
     char outside[SHA256_TEXT]; // stamp of what the runs could read from outside
+    char digest[SHA256_TEXT];  // outside_digest_all of what the run read
     size_t surveyed;           // rows whose force is in the summary of an incomplete run
 } session;
 

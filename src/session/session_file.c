@@ -54,31 +54,6 @@ static void write_input(FILE *stream, const session_input *in)
     }
 }
 
-// The digest of what a run reads from outside, by content; empty if that is nothing.
-static void digest_outside(const run_origin *from, char digest[SHA256_TEXT])
-{
-    parameters p = from->base.parameters;
-    for (int i = 0; i < from->input_count; i++) {
-        if (from->inputs[i].kind == SESSION_INPUT_START) {
-            parameter_set_text(&p, from->inputs[i].parameter, from->inputs[i].text, NULL);
-        }
-    }
-    sha256 whole;
-    sha256_init(&whole);
-    bool reads = false;
-    for (int i = 0; i < outside_count; i++) {
-        const outside_source *source = &outside_table[i];
-        char one[SHA256_TEXT];
-        if (outside_is_read(source, &p) && outside_is_told(source, &p) &&
-            outside_digest(source, &p, one, NULL) == STATUS_OK) {
-            sha256_add_text(&whole, one);
-            reads = true;
-        }
-    }
-    sha256_finish(&whole, digest);
-    digest[0] = reads ? digest[0] : '\0';
-}
-
 void session_file_write(FILE *stream, const session_file *file)
 {
     assert(file->run_count > 0);
@@ -97,10 +72,8 @@ void session_file_write(FILE *stream, const session_file *file)
         write_number(stream, "cursor: ", r->from.now);
         write_number(stream, " ", r->from.seen);
         fputs(r->hidden ? "\nhidden:\n" : "\n", stream);
-        char outside[SHA256_TEXT];
-        digest_outside(&r->from, outside);
-        if (outside[0] != '\0') {
-            fprintf(stream, "outside: %s\n", outside);
+        if (r->from.outside[0] != '\0') {
+            fprintf(stream, "outside: %s\n", r->from.outside);
         }
     }
     fprintf(stream, "baseline: %d\n", file->baseline + 1);
@@ -286,7 +259,7 @@ static status take_line(session_reader *r, char *line)
         return STATUS_OK;
     }
     if (strcmp(line, "outside") == 0 && last != NULL) {
-        snprintf(last->outside, sizeof last->outside, "%s", rest);
+        snprintf(last->from.outside, sizeof last->from.outside, "%s", rest);
         return STATUS_OK;
     }
     if (strcmp(line, "baseline") == 0) {
@@ -350,9 +323,16 @@ bool session_file_is_outdated(const session_file *file)
 {
     bool outdated = false;
     for (int i = 0; i < file->run_count && !outdated; i++) {
+        const run_origin *from = &file->runs[i].from;
+        parameters p = from->base.parameters;
+        for (int k = 0; k < from->input_count; k++) {
+            if (from->inputs[k].kind == SESSION_INPUT_START) {
+                parameter_set_text(&p, from->inputs[k].parameter, from->inputs[k].text, NULL);
+            }
+        }
         char now[SHA256_TEXT];
-        digest_outside(&file->runs[i].from, now);
-        outdated = file->runs[i].outside[0] != '\0' && strcmp(now, file->runs[i].outside) != 0;
+        outside_digest_all(&p, now);
+        outdated = from->outside[0] != '\0' && strcmp(now, from->outside) != 0;
     }
     return outdated;
 }

@@ -6,7 +6,6 @@
 // begin with "| ".
 #pragma once
 
-#include "src/base/sha256.h"
 #include "src/session/origin.h"
 
 enum { SESSION_FILE_RUNS = 8, SESSION_FILE_NAME = 256, SESSION_FILE_LINES = 512 };
@@ -15,7 +14,6 @@ typedef struct kept_run {
     char name[SESSION_FILE_NAME]; // of a pinned run
     bool hidden;
     run_origin from;
-    char outside[SHA256_TEXT]; // digest of what it read from outside when it was kept, or empty
 } kept_run;
 
 typedef struct session_file {
@@ -34,6 +32,6 @@ void session_file_write(FILE *stream, const session_file *file);
 status session_file_read(session_file *file, const char *path, fault *f);
 void session_file_finish(session_file *file);
 
-// Whether a program or a file that one of its runs reads is another one than when it was kept, so
-// that the run may be, too.
+// Whether a program or a file that one of its runs reads is another one than the run read, so that
+// it may be another one, too.
 bool session_file_is_outdated(const session_file *file);
