@@ -130,8 +130,9 @@ BOOLEAN(printed, spring_counted_twice, "printed model: (2.16) carries the spring
     "in (2.17) alone", DEFAULT(true))
 BOOLEAN(printed, force_at_link_end, "printed model: the contact force acts at the link's end "
     "instead of the contact point", DEFAULT(true))
-BOOLEAN(printed, sign_dead_band, "printed model: sign() takes -0.01 for the lower edge of its dead "
-    "band instead of -1e-5", DEFAULT(true))
+BOOLEAN(printed, sign_dead_band, "printed model: sign() names -0.01 for the lower edge of its dead "
+    "band instead of -1e-5; its last test overrules that, so that this changes no result",
+    DEFAULT(true))
 BOOLEAN(printed, energy_cross_term, "printed model: kinetic energy of the predictor has eps w2 w3 "
     "for 2 l eps w2 w3", DEFAULT(true))
 CHOICE(printed, reevaluation, "printed model: where the re-evaluation puts 2 l sin(d) w2 w3, as "
