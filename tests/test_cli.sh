@@ -581,6 +581,7 @@ expect 1 identify hit.yaml $rig --data recorded.csv --fit arm.hub_inertia=0.004:
 says err "arm.hub_inertia = 0.005 is an end of its range"
 expect 1 identify hit.yaml $rig --set arm.mass=1 --data recorded.csv --fit arm.k2
 says err "per reading, expected about 1"
+says err "the best of 16 starts led to no values that fit"
 
 # --- the limit of a parameter for a condition
 expect 0 solve hit.yaml motor.voltage=0.5:5 'peak_force_N<2' --json solved.json

@@ -168,9 +168,10 @@ static bool is_reliable(const identification *id)
     }
     const double misfit = identify_misfit(id, &most);
     if (misfit > most) {
-        complain("chi square is %.3g per reading, expected about 1 and at most %.3g: the scenario "
-                 "is not of the arm or the runs that were recorded, whatever values are fitted",
-                 misfit, most);
+        complain("chi square is %.3g per reading, expected about 1 and at most %.3g: the best of "
+                 "%d starts led to no values that fit; the scenario may be of another arm or other "
+                 "runs, or more --starts find better values",
+                 misfit, most, id->starts);
     }
     return reliable && misfit <= most;
 }
