@@ -347,13 +347,22 @@ done
 # the numbers of a picture take no file that was asked for or is somebody else's
 expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --csv beside.csv --plot beside.svg
 [ "$(wc -l <beside.csv)" = 3 ] || fail "a sweep's rows gave way to the numbers of its picture"
-expect 1 linear hit.yaml --plot beside.svg
+expect 1 linear hit.yaml --plot beside.svg --bare --latex beside.tex
 says err "'beside.csv' holds other numbers and is kept"
+[ -s beside.txt ] && [ -s beside.tex ] || fail "a CSV that is kept hindered the caption or LaTeX"
 [ "$(wc -l <beside.csv)" = 3 ] || fail "the numbers of a picture replaced a sweep's rows"
 rm beside.csv
 expect 0 linear hit.yaml --plot beside.svg
 expect 0 linear hit.yaml --plot beside.svg
 grep -q '^panel,series,' beside.csv || fail "the numbers of a picture are not beside it"
+mkdir drawn && echo "measured" >drawn/fig-3-4.csv
+expect 1 figures 3.4 2.2 -o drawn --format svg,pdf --latex drawn.tex --json drawn.json
+says err "'drawn/fig-3-4.csv' holds other numbers and is kept"
+ls drawn | tr '\n' ' ' >listed
+says listed "fig-2-2.csv fig-2-2.pdf fig-2-2.svg fig-3-4.csv fig-3-4.pdf fig-3-4.svg"
+[ "$(grep -c includegraphics drawn.tex)" = 2 ] || fail "a CSV that is kept hindered LaTeX"
+expect 2 figures 2.1 --format ""
+says err "there is no figure format ''"
 
 # descriptors that are closed at the start are not taken by the first files opened
 "$lab" sweep hit.yaml --vary motor.voltage=1:2:2 --db closed.db --csv closed.csv <&- >&- 2>&- || true

@@ -242,24 +242,22 @@ static status write_text(const char *path, const char *text, fault *f)
     return code;
 }
 
-// Nobody named this CSV: where there is one of other numbers than a figure's, measured ones maybe,
-// it is kept.
-static status may_replace(const artwork *a, const char *csv, fault *f)
+status artwork_publish_csv(const artwork *a, const char *path, fault *f)
 {
     static const char heading[] = "panel,"; // of figure_write_csv
+    g_autofree char *csv = artwork_beside(path, ".csv");
     char start[sizeof heading] = "";
     FILE *there = a->plotted != NULL ? fopen(csv, "re") : NULL;
-    if (there == NULL) {
-        return STATUS_OK;
+    const bool written = there != NULL && fread(start, 1, sizeof start - 1, there) > 0;
+    if (there != NULL) {
+        fclose(there);
     }
-    const bool written = fread(start, 1, sizeof start - 1, there) > 0;
-    fclose(there);
-    return !written || strcmp(start, heading) == 0
-               ? STATUS_OK
-               : fault_set(f, STATUS_CANNOT_WRITE,
-                           "'%s' holds other numbers and is kept, so that those of the picture are "
-                           "not written",
-                           csv);
+    FAIL_IF(written && strcmp(start, heading) != 0,
+            fault_set(f, STATUS_CANNOT_WRITE,
+                      "'%s' holds other numbers and is kept, so that those of the picture are not "
+                      "written",
+                      csv));
+    return artwork_write_csv(a, csv, f);
 }
 
 status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
@@ -267,11 +265,6 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
 {
     picture p = artwork_picture(a, o);
     status code = picture_write(&p, path, f);
-    if (code == STATUS_OK && with_csv) {
-        g_autofree char *csv = artwork_beside(path, ".csv");
-        code = may_replace(a, csv, f);
-        code = code == STATUS_OK ? artwork_write_csv(a, csv, f) : code;
-    }
 
     // text of a picture that has none of its own
     if (code == STATUS_OK && o->look.bare) {
@@ -285,7 +278,7 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
         g_autofree char *text = latex_environment(a, o->latex, path);
         code = write_text(o->latex, text, f);
     }
-    return code;
+    return code == STATUS_OK && with_csv ? artwork_publish_csv(a, path, f) : code;
 }
 
 void figure_take_range(figure *fig, const figure_options *o)

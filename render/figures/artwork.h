@@ -57,16 +57,20 @@ status make_folder(const char *folder, fault *f);
 // The path of a picture with another ending, to be freed with g_free.
 char *artwork_beside(const char *file, const char *ending);
 
-// Writes a plotted figure according to the options: the picture at path, with `with_csv` a CSV of
-// its numbers (STATUS_CANNOT_WRITE if one of other numbers is there), with a bare look a .txt with
-// its caption, and the figure environment at o->latex. Returns the status of figure_write;
-// STATUS_BAD_ARGUMENT also if the options name recorded signals, because the figure has none.
+// Writes a plotted figure according to the options: the picture at path, with a bare look a .txt
+// with its caption, the figure environment at o->latex, and with `with_csv` its numbers. Returns
+// the status of figure_write; STATUS_BAD_ARGUMENT also if the options name recorded signals,
+// because the figure has none.
 status figure_publish(const figure *fig, const figure_options *o, const char *path, bool with_csv,
                       fault *f);
 
 // The same for any artwork that was opened with o.
 status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
                        fault *f);
+
+// Writes its numbers beside the picture at `path`. Nobody named this CSV: where there is one of
+// other numbers than a figure's, measured ones maybe, it is kept; STATUS_CANNOT_WRITE.
+status artwork_publish_csv(const artwork *a, const char *path, fault *f);
 
 // Sets the ends of a figure's horizontal axis to --from and --to.
 void figure_take_range(figure *fig, const figure_options *o);

@@ -216,28 +216,31 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
 
     // every format is known before anything is computed
     g_auto(GStrv) list = g_strsplit(formats, ",", -1);
-    for (int i = 0; list[i] != NULL; i++) {
-        FAIL_IF(picture_format_of(list[i]) == FORMAT_NONE,
+    for (int i = 0; i == 0 || list[i] != NULL; i++) {
+        const char *format = list[i] != NULL ? list[i] : "";
+        FAIL_IF(picture_format_of(format) == FORMAT_NONE,
                 fault_set(f, STATUS_BAD_ARGUMENT,
-                          "there is no figure format '%s', expected png, pdf or svg", list[i]));
+                          "there is no figure format '%s', expected png, pdf or svg", format));
     }
     artwork drawn;
     status code = figure_open(which, o, &drawn, f);
     TRY(code);
 
-    // numbers, caption and what LaTeX needs go with the first picture
+    // caption and what LaTeX needs go with the first picture, numbers with them all
     figure_options beside = *o;
     beside.latex = NULL;
     code = make_folder(folder, f);
     for (int i = 0; list[i] != NULL && code == STATUS_OK; i++) {
         g_autofree char *path = text_printf("%s/%s.%s", folder, which->file, list[i]);
         beside.look.bare = o->look.bare && i == 0;
-        code = artwork_publish(&drawn, &beside, path, i == 0, f);
+        code = artwork_publish(&drawn, &beside, path, false, f);
         if (code == STATUS_OK && i == 0 && tex != NULL && o->latex != NULL) {
             g_autofree char *text = latex_environment(&drawn, o->latex, path);
             fputs(text, tex);
         }
     }
+    g_autofree char *numbers = text_printf("%s/%s.csv", folder, which->file);
+    code = code == STATUS_OK ? artwork_publish_csv(&drawn, numbers, f) : code;
     artwork_finish(&drawn);
     return code;
 }

@@ -43,7 +43,8 @@ static int check_ids(const arguments *a)
 
 typedef struct asked_figure {
     const thesis_figure *figure;
-    char *tex; // its figure environment, NULL before it is drawn
+    char *tex;   // its figure environment, NULL before it is drawn
+    bool failed; // a file of it could not be written
 } asked_figure;
 
 // Figures in the order in which they were asked for.
@@ -54,6 +55,7 @@ typedef struct figure_list {
     bool quiet;
     const char *folder, *formats;
     figure_options options;
+    fault failed; // of the first file that could not be written
 } figure_list;
 
 // The result of a piece of work.
@@ -75,7 +77,7 @@ static void draw_one(void *context, size_t i, void *scratch, void *result)
                                 &out->fault);
         out->tex = text_stream_close(&tex, NULL);
     }
-    if (out->code == STATUS_OK && out->tex == NULL) {
+    if (out->tex == NULL) {
         out->code = fault_no_memory(&out->fault);
     }
 }
@@ -85,15 +87,19 @@ static status take_one(void *context, size_t i, const void *result, fault *f)
 {
     figure_list *list = context;
     const figure_result *from = result;
-    if (from->code != STATUS_OK) {
-        free(from->tex);
+    asked_figure *taken = &list->figures[list->order[i]];
+    taken->tex = from->tex;
+    taken->failed = from->code != STATUS_OK;
+    if (taken->failed && list->failed.code == STATUS_OK) {
+        list->failed = from->fault;
+    }
+    if (taken->failed && from->code != STATUS_CANNOT_WRITE) {
         *f = from->fault;
         return from->code;
     }
-    list->figures[list->order[i]].tex = from->tex;
     for (; list->told < list->count && list->figures[list->told].tex != NULL; list->told++) {
         const thesis_figure *which = list->figures[list->told].figure;
-        if (!list->quiet) {
+        if (!list->quiet && !list->figures[list->told].failed) {
             say("%-10s  %s/%s  %s\n", which->id, list->folder, which->file, which->caption);
         }
     }
@@ -142,6 +148,9 @@ static json_t *figures_array(const figure_list *list)
     json_t *array = json_array();
     for (size_t i = 0; i < list->count; i++) {
         const thesis_figure *which = list->figures[i].figure;
+        if (list->figures[i].failed) {
+            continue;
+        }
         json_add(array,
                  json_members(json_object(), "id:t folder:t file:t formats:t caption:t", which->id,
                               list->folder, which->file, list->formats, which->caption));
@@ -172,6 +181,9 @@ static int figures(const arguments *a)
         code = complain_fault(&f);
     } else if (a->json != NULL) {
         code = write_json(a->json, figures_array(&list));
+    }
+    if (drawn == STATUS_OK && list.failed.code != STATUS_OK) {
+        code = worse(code, complain_fault(&list.failed));
     }
     for (size_t i = 0; list.figures != NULL && i < count; i++) {
         free(list.figures[i].tex);
