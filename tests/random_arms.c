@@ -4,9 +4,9 @@
 //     random_arms [NAME=VALUE]...
 //         count=200 first=0 least=1 most=8       arms FIRST to FIRST + COUNT - 1 of so many links
 //         engine=auto                            or a value of method.engine
-//         by=explicit                            implicit (to 24 links), fine (the same engine at a
-//                                                hundredth of its tolerance), or a value of
-//                                                method.engine
+//         by=explicit                            implicit (to 24 links, which knows no moving walls
+//                                                and no tilt), fine (the same engine at a hundredth
+//                                                of its tolerance), or a value of method.engine
 //         gate=a                                 limits: a 1e-9 s, 1e-7 of momentum, 1e-6 of the
 //         peak;
 //                                                b 1e-11 s, 1e-9, 1e-8
@@ -359,7 +359,8 @@ static bool can_follow(const random_arm *r, const options *o)
         arm_init(&a, &r->parameters);
         return a.fastest_rate <= FASTEST;
     }
-    return strcmp(o->by, "implicit") != 0 || r->parameters.arm.links <= IMPLICIT_MOST;
+    return strcmp(o->by, "implicit") != 0 ||
+           (!o->moves && r->parameters.arm.links <= IMPLICIT_MOST);
 }
 
 // Distances of two outcomes: contacts as instants times their share of the first speed of approach,
@@ -485,7 +486,7 @@ static bool implicit_agrees(const random_arm *r, const options *o, const chain_o
 {
     options other = *o;
     strcpy(other.by, "implicit");
-    if (o->moves || !can_follow(r, &other)) {
+    if (!can_follow(r, &other)) {
         return false;
     }
     const chain_outcome finer = by_reference(r, &other, 0, 2);
