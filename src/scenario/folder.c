@@ -364,7 +364,7 @@ static bool may_be_listed(const char *name)
             return false;
         }
         part = strchr(part, '/');
-        part += part != NULL;
+        part = part != NULL ? part + 1 : NULL;
     }
     return depth <= MAX_FOLDER_DEPTH + 1 &&
            !(strncmp(name, no_scenarios, skipped) == 0 && name[skipped] == '/');
