@@ -186,6 +186,7 @@ try r.json run hit.yaml --quiet --json r.json
 try r.csv run hit.yaml --quiet --csv r.csv
 try s.sqlite sweep hit.yaml --vary motor.voltage=1:2:3 --quiet --jobs 1 --db s.sqlite
 try p.svg run hit.yaml --quiet --plot p.svg
+try p.pdf run hit.yaml --quiet --plot p.pdf
 try c.json compare hit.yaml --columns peak_force_N --quiet --json c.json
 # threads of their own paint every second frame; the encoder runs out of memory, too
 ! command -v ffmpeg >/dev/null ||

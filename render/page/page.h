@@ -69,7 +69,7 @@ typedef struct figure_report {
 void report_add_text(figure_report *report, const char *markup, double size, figure_rect place);
 
 // How deep this thread is in libraries that crash without memory: fontconfig and Pango, cairo's
-// strokes, GLib's regular expressions.
+// strokes and files, GLib's regular expressions.
 extern _Thread_local volatile sig_atomic_t page_libraries;
 
 // Whether this thread is in one of them, or is not the program's first while Pango is at work. For

@@ -227,6 +227,14 @@ status picture_end_drawing(cairo_t *cr, status code, fault *f)
     return code;
 }
 
+// Lets cairo write: without memory for a font it may end in an assertion of its own.
+static void write_out(cairo_surface_t *surface, void (*call)(cairo_surface_t *surface))
+{
+    page_libraries++;
+    call(surface);
+    page_libraries--;
+}
+
 // Draws on a surface and finishes it.
 static status paint_surface(cairo_surface_t *surface, const picture *p, bool finish, fault *f)
 {
@@ -236,7 +244,7 @@ static status paint_surface(cairo_surface_t *surface, const picture *p, bool fin
     const status painted = p->paint(cr, p->what, f);
     status code = picture_end_drawing(cr, painted, f);
     if (finish) {
-        cairo_surface_finish(surface);
+        write_out(surface, cairo_surface_finish);
     }
     const cairo_status_t state =
         errno == ENOMEM ? CAIRO_STATUS_NO_MEMORY : cairo_surface_status(surface);
@@ -300,10 +308,10 @@ static status write_pages(FILE *stream, const picture *p, int count, fault *f)
         cairo_pdf_surface_set_size(surface, p[i].width, p[i].height);
         code = paint_surface(surface, &p[i], i == count - 1, f);
         if (i < count - 1) {
-            cairo_surface_show_page(surface);
+            write_out(surface, cairo_surface_show_page);
         }
     }
-    cairo_surface_destroy(surface);
+    write_out(surface, cairo_surface_destroy);
     return code;
 }
 
