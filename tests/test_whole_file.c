@@ -290,20 +290,25 @@ TEST_IN_FOLDER(what_killed_runs_left_goes)
 
 // A run in another process that opens a file at that moment looks for what killed ones left.
 static bool cleans_before_rename;
+static struct rlimit descriptors;
 int rename(const char *from, const char *to)
 {
     if (cleans_before_rename) {
+        setrlimit(RLIMIT_NOFILE, &descriptors);
         whole_file_clean_folder(".");
     }
     return renameat(AT_FDCWD, from, AT_FDCWD, to);
 }
 
-// Until a file has its name its temporary is nobody's to remove.
+// Until a file has its name its temporary is nobody's to remove, be there descriptors left or not.
 TEST_IN_FOLDER(a_temporary_is_locked_until_it_has_its_name)
 {
     whole_file w;
     DONE(whole_file_open(&w, "new", &f));
     fputs("new", w.stream);
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &descriptors), 0);
+    const struct rlimit none = {(rlim_t)w.descriptor + 1, descriptors.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
     cleans_before_rename = true;
     const bool committed = whole_file_commit(&w, NULL) == STATUS_OK;
     cleans_before_rename = false;

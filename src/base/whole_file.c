@@ -384,7 +384,7 @@ int stream_failure(FILE *stream)
     return errno != 0 ? errno : EIO;
 }
 
-// Closes stream and file, brought to the disk if it is `wanted`; 0 or the reason why not.
+// Closes the stream, brings the file to the disk if it is `wanted`; 0 or the reason why not.
 static int close_stream(whole_file *w, bool wanted)
 {
     const bool flushed = fclose(w->stream) == 0; // looks at everything written before
@@ -394,19 +394,14 @@ static int close_stream(whole_file *w, bool wanted)
     if (wanted && reason == 0 && w->temporary != NULL && fsync(w->descriptor) != 0) {
         reason = errno;
     }
-    if (close(w->descriptor) != 0 && reason == 0) {
-        reason = errno;
-    }
     return reason;
 }
 
 status whole_file_close(whole_file *w, status written, fault *f)
 {
     const bool wanted = written == STATUS_OK;
-    int reason = 0, locked = -1;
+    int reason = 0;
     if (w->path != NULL) {
-        // without its lock another run would take the temporary for one left behind
-        locked = fcntl(w->descriptor, F_DUPFD_CLOEXEC, 0);
         reason = close_stream(w, wanted);
     } else if (wanted) {
         reason = stream_failure(stdout);
@@ -427,8 +422,11 @@ status whole_file_close(whole_file *w, status written, fault *f)
     if (!kept && w->temporary != NULL) {
         unlink(w->temporary);
     }
-    if (locked >= 0) {
-        close(locked);
+
+    // with it goes the lock, without which another run would take the temporary for one left behind
+    if (w->path != NULL && close(w->descriptor) != 0 && kept && w->temporary == NULL) {
+        reason = errno;
+        kept = false;
     }
     const status result = kept || !wanted ? written : cannot_write(f, w->path, reason);
     forget(w);
