@@ -88,6 +88,11 @@ interrupted study methods endless.yaml
 says err "0 of 40 runs"
 interrupted predict endless.yaml
 says err "stopped before its end"
+interrupted solve endless.yaml motor.voltage=0.001:0.002 'peak_force_N<2'
+says err "stopped before its end"
+"$program" run brief.yaml --quiet --set control.law=open-loop --csv recorded.csv || fail "no recording"
+interrupted identify endless.yaml --set control.law=open-loop --data recorded.csv --fit arm.k2
+says err "stopped before its end"
 interrupted run endless.yaml --csv trace.csv
 says err "stopped before its end"
 [ "$(wc -l <trace.csv)" -gt 100 ] || fail "rows of a run that was stopped are not kept"

@@ -205,6 +205,7 @@ static int identify_and_report(const arguments *a, scenario *s)
         work_end();
     }
     if (code == STATUS_STOPPED) {
+        complain("%s", status_text(code));
         leave_interrupted();
     }
     const bool reliable = code != STATUS_OK || is_reliable(&o.fit);

@@ -97,6 +97,7 @@ static int find_and_report(const arguments *a, scenario *s)
         work_end();
     }
     if (code == STATUS_STOPPED) {
+        complain("%s", status_text(code));
         leave_interrupted();
     }
 
