@@ -344,6 +344,16 @@ for other in alone.json ./alone.json "$PWD/alone.json" to-one; do
 done
 [ ! -e alone.json ] || fail "two results in one place left a file"
 
+# nor a result and what stands beside a picture, nor that of two pictures
+for other in json latex; do
+    expect 2 run hit.yaml --plot alone.svg --bare --$other alone.txt
+    says err "two results cannot both be written to alone.txt"
+done
+expect 2 linear compare/hybrid --law --plot alone.svg --nyquist alone.pdf
+says err "differ in more than their ending"
+expect 2 linear compare/hybrid --law --plot alone.svg --nyquist plane.svg --latex alone.tex
+says err "--latex for one of them"
+
 # the numbers of a picture take no file that was asked for or is somebody else's
 expect 0 sweep hit.yaml --vary motor.voltage=1:2:2 --csv beside.csv --plot beside.svg
 [ "$(wc -l <beside.csv)" = 3 ] || fail "a sweep's rows gave way to the numbers of its picture"

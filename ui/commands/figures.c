@@ -121,6 +121,7 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
     }
 
     // slow ones first, so that no thread is left with one at the end
+    list->order = (size_t *)(list->figures + list->count);
     size_t placed = 0;
     for (int slow = 1; slow >= 0; slow--) {
         for (size_t i = 0; i < list->count; i++) {
@@ -175,7 +176,6 @@ static int figures(const arguments *a)
 
     // lists of figures to be drawn and of their results
     list.figures = calloc(count, sizeof *list.figures + sizeof *list.order);
-    list.order = (size_t *)(list.figures + count);
     const status drawn = list.figures != NULL ? draw_and_write(&list, a, &f) : fault_no_memory(&f);
     if (drawn != STATUS_OK) {
         code = complain_fault(&f);

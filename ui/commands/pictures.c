@@ -34,6 +34,19 @@ static int read_theme(const arguments *a, figure_theme *theme)
     return EXIT_DONE;
 }
 
+// Whether a result that was asked for by its name goes there.
+static bool is_asked_for(const arguments *a, const char *path)
+{
+    const option_row *o;
+    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
+        const char *result = option_written(a, o);
+        if (result != NULL && whole_file_same_place(result, path)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 int read_picture_options(const arguments *a, figure_options *o)
 {
     fault f = {0};
@@ -64,20 +77,12 @@ int read_picture_options(const arguments *a, figure_options *o)
         text_check_family(o->look.font, &f) != STATUS_OK) {
         code = complain_fault(&f);
     }
-    return code;
-}
 
-// Whether a result that was asked for by its name goes there.
-static bool is_asked_for(const arguments *a, const char *path)
-{
-    const option_row *o;
-    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
-        const char *result = option_written(a, o);
-        if (result != NULL && whole_file_same_place(result, path)) {
-            return true;
-        }
-    }
-    return false;
+    // the text of a picture that has none of its own
+    g_autofree char *text = a->bare && a->plot != NULL ? artwork_beside(a->plot, ".txt") : NULL;
+    FAIL_IF(code == EXIT_DONE && text != NULL && is_asked_for(a, text),
+            complain("two results cannot both be written to %s", text));
+    return code;
 }
 
 static int publish_figure(const arguments *a, const figure *fig)

@@ -7,6 +7,7 @@
 #include "src/base/csv.h"
 #include "src/base/json.h"
 #include "src/base/plain_math.h"
+#include "src/base/whole_file.h"
 #include "src/exchange/mat_file.h"
 #include "ui/commands/pictures.h"
 
@@ -324,6 +325,9 @@ static status survey(analysis *x, fault *f)
 {
     const sweep *s = &x->sweep;
     status code = STATUS_OK;
+    x->numbers[1] = x->numbers[0] + s->run_count;
+    x->holds[0] = (bool *)(x->numbers[1] + s->run_count);
+    x->holds[1] = x->holds[0] + s->run_count;
     for (size_t i = 0; i < s->run_count && code == STATUS_OK; i++) {
         scenario derived;
         code = sweep_scenario(s, i, &derived, f);
@@ -436,11 +440,7 @@ static int look_around(const arguments *a, analysis *x)
                                   a->varies.count)
                       : sweep_init(&x->sweep, x->scenario, &request, &f);
     if (code == STATUS_OK) {
-        const size_t count = x->sweep.run_count;
-        x->numbers[0] = calloc(2 * count, sizeof *x->numbers[0] + sizeof *x->holds[0]);
-        x->numbers[1] = x->numbers[0] + count;
-        x->holds[0] = (bool *)(x->numbers[0] + 2 * count);
-        x->holds[1] = x->holds[0] + count;
+        x->numbers[0] = calloc(2 * x->sweep.run_count, sizeof *x->numbers[0] + sizeof *x->holds[0]);
         code = x->numbers[0] != NULL ? survey(x, &f) : fault_no_memory(&f);
     }
     const int result =
@@ -451,6 +451,14 @@ static int look_around(const arguments *a, analysis *x)
 }
 
 // --- the command ------------------------------------------------------------------------------
+
+// Whether the numbers of both pictures would stand in one file.
+static bool share_numbers(const arguments *a)
+{
+    g_autofree char *one = artwork_beside(a->plot, ".csv");
+    g_autofree char *other = artwork_beside(a->nyquist, ".csv");
+    return whole_file_same_place(one, other);
+}
 
 static int linear(const arguments *a, scenario *s)
 {
@@ -468,6 +476,9 @@ static int linear(const arguments *a, scenario *s)
             complain("--vary needs a control law, such as --set control.law=hybrid"));
     FAIL_IF((a->nyquist != NULL || a->injects) && !a->looped,
             complain("--nyquist and --inject are of the loop of --law"));
+    FAIL_IF(a->plot != NULL && a->nyquist != NULL && (a->latex != NULL || share_numbers(a)),
+            complain("--plot and --nyquist are two pictures: expected names that differ in more "
+                     "than their ending, and --latex for one of them"));
     if (a->varies.count > 0) {
         return look_around(a, &x);
     }
