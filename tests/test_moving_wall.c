@@ -287,7 +287,10 @@ TEST(the_ledger_closes_on_every_wall_that_moves)
         {"wall.motion=sine", "wall.contact=hunt-crossley", "wall.damping=0", "arm.links=1",
          "wall.motion_frequency=986"},
         {"wall.motion=step", "wall.contact=kelvin-voigt", "wall.stiffness=3000", "arm.links=1",
-         "motor.voltage=5"}};
+         "motor.voltage=5"},
+        // so fast that the force falls through zero within the last bit of the time
+        {"wall.motion=sine", "wall.motion_amplitude=1e-6", "wall.motion_frequency=1e4",
+         "arm.links=2", "motor.voltage=2"}};
     for (EACH(set, sets)) {
         const char *const *more = *set;
         const scenario s = {.parameters = fixture_parameters(SETTINGS(

@@ -158,7 +158,8 @@ static void resolve(const arm *a, motion *m, bool touching, motion_event event)
                           : event == MOTION_STICK                          ? 1
                                                                            : 0;
     const double more = event == MOTION_RELEASE ? larger(m->engine->left_out, 1) : 1;
-    const double beyond = accelerates ? more * (motion_rounding(a, m) - 1) : 0;
+    const double beyond =
+        accelerates ? more * (motion_rounding(a, m) - 1 + motion_wall_rounding(a, m)) : 0;
     const double rounding = FORCE_TOLERANCE * (1 + beyond) + motion_face_rounding(a, m);
     double least = 0;
     contact_state best = {false, sliding}, tried = best;

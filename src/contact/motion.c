@@ -100,6 +100,14 @@ double motion_face_rounding(const arm *a, const motion *m)
     return m->wall_has_face ? EDGE_PLACE * a->wall.stiffness : 0;
 }
 
+double motion_wall_rounding(const arm *a, const motion *m)
+{
+    double terms[4];
+    const double time = m->state[SLOT_TIME], since = fabs(time) + fabs(a->wall.motion.time);
+    wall_motion_series(&a->wall.motion, time, 4, terms);
+    return LAST_BITS * fabs(terms[1]) * since;
+}
+
 void motion_gap_edges(const arm *a, const motion *m, double limits[3])
 {
     // a rounding error of the force accelerates a face by that error over its mass, and so does

@@ -317,6 +317,9 @@ double motion_rounding(const arm *a, const motion *m);
 // What the force on a wall's face with a mass errs by: its spring times the rounding of its place
 // [N]; 0 without such a face.
 double motion_face_rounding(const arm *a, const motion *m);
+
+// That of a moving wall's acceleration, by the instant's, in the same measure.
+double motion_wall_rounding(const arm *a, const motion *m);
 // What counts as rounding of the gap just after an event, and of its first and second derivatives
 // by time (edge_limits.h) [m], [m/s], [m/s2].
 void motion_gap_edges(const arm *a, const motion *m, double limits[3]);
