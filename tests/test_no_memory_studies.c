@@ -94,7 +94,7 @@ static status converge(scenario *s, FILE *out)
 {
     convergence_panel panel;
     fault f = {0};
-    const status code = convergence_compute(s, NULL, &panel, &f);
+    const status code = convergence_compute(s, NULL, NULL, &panel, &f);
     for (int i = 0; i < panel.row_count && code == STATUS_OK; i++) {
         fprintf(out, "%s %a\n", panel.rows[i].key, panel.rows[i].value[0]);
     }

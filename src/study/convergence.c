@@ -28,36 +28,47 @@ static const char *const panel_keys[] = {
 };
 enum { PANEL_KEYS = sizeof panel_keys / sizeof panel_keys[0] };
 
-// Runs the parameters; the summary's numbers stay in *result.
-static status run_with(const scenario *s, const parameters *p, run_monitor *monitor,
-                       summary *result, fault *f)
+// A run of the scenario with other parameters, all else of which is borrowed.
+typedef struct one_run {
+    scenario scenario;
+    run_options options;
+    run_result *kept; // NULL: its summary is enough
+    summary summary;
+    fault *fault;
+} one_run;
+
+static status run_once(void *context)
 {
-    const run_options options = {.monitor = monitor};
-    scenario changed = *s; // borrows everything but the parameters
-    changed.parameters = *p;
+    one_run *r = context;
     run_result run;
-    status code = run_scenario_with(&changed, &options, &run);
-    *result = run.summary;
-    run_finish(&run);
-    return code == STATUS_OK ? code
-                             : fault_set_at(f, code, result->path, "with a step of %g s: %s",
-                                            p->method.step, result->message);
+    const status code = run_scenario_with(&r->scenario, &r->options, &run);
+    r->summary = run.summary;
+    if (r->kept != NULL) {
+        *r->kept = run;
+    } else {
+        run_finish(&run);
+    }
+    return code == STATUS_OK
+               ? code
+               : fault_set_at(r->fault, code, r->summary.path, "with a step of %g s: %s",
+                              r->scenario.parameters.method.step, r->summary.message);
 }
 
-status convergence_compute(const scenario *s, run_monitor *monitor, convergence_panel *panel,
-                           fault *f)
+status convergence_compute(const scenario *s, run_monitor *monitor, run_result *kept,
+                           convergence_panel *panel, fault *f)
 {
     summary results[PANEL_STEPS];
     status code = STATUS_OK;
+    one_run r = {*s, {.keep_trace = kept != NULL, .monitor = monitor}, .fault = f};
     panel->done = 0;
 
     // three runs, each with half the step of the one before
     for (int i = 0; i < PANEL_STEPS; i++) {
-        parameters p = s->parameters;
-        p.method.step = panel->step[i] = ldexp(s->parameters.method.step, -i);
-        code = code == STATUS_OK ? run_with(s, &p, monitor, &results[i], f) : code;
+        r.scenario.parameters.method.step = panel->step[i] = ldexp(s->parameters.method.step, -i);
+        r.kept = kept != NULL ? &kept[i] : NULL;
+        code = code == STATUS_OK ? run_once(&r) : code;
         if (code == STATUS_OK) {
-            panel->done++;
+            results[panel->done++] = r.summary;
             run_monitor_count(monitor);
         }
     }
@@ -103,20 +114,6 @@ const char *const study_keys[STUDY_QUANTITIES] = {"first_contact_s", "first_puls
 static const method_kind method_kinds[STUDY_METHODS] = {METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA,
                                                         METHOD_EVENT};
 
-typedef struct timed_run {
-    const scenario *scenario;
-    parameters parameters;
-    run_monitor *monitor;
-    summary summary;
-    fault fault;
-} timed_run;
-
-static status run_again(void *context)
-{
-    timed_run *r = context;
-    return run_with(r->scenario, &r->parameters, r->monitor, &r->summary, &r->fault);
-}
-
 static void values_of(const summary *s, double values[STUDY_QUANTITIES])
 {
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
@@ -128,13 +125,13 @@ static void values_of(const summary *s, double values[STUDY_QUANTITIES])
 static status study_one(const scenario *s, method_kind method, const double *reference,
                         run_monitor *monitor, study_point *point)
 {
-    timed_run r = {.scenario = s, .parameters = s->parameters, .monitor = monitor};
+    one_run r = {*s, {.monitor = monitor}};
     double values[STUDY_QUANTITIES];
     status code;
 
-    r.parameters.method.name = (int)method;
-    r.parameters.method.step = point->step;
-    point->cost = bench_seconds_per_call(run_again, &r, LEAST_TIME, &code);
+    r.scenario.parameters.method.name = (int)method;
+    r.scenario.parameters.method.step = point->step;
+    point->cost = bench_seconds_per_call(run_once, &r, LEAST_TIME, &code);
 
     values_of(&r.summary, values);
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
@@ -161,15 +158,14 @@ static void prepare_points(method_study *study)
 status method_study_compute(const scenario *s, run_monitor *monitor, method_study *study, fault *f)
 {
     _Static_assert(STUDY_QUANTITIES == 3, "an error each");
-    parameters p = s->parameters;
-    summary reference;
+    one_run r = {*s, {.monitor = monitor}, .fault = f};
     prepare_points(study);
 
     // what the errors are measured against
-    p.method.name = METHOD_EVENT;
-    p.method.step = study->reference_step = REFERENCE_STEP;
-    status code = run_with(s, &p, monitor, &reference, f);
-    values_of(&reference, study->reference);
+    r.scenario.parameters.method.name = METHOD_EVENT;
+    r.scenario.parameters.method.step = study->reference_step = REFERENCE_STEP;
+    status code = run_once(&r);
+    values_of(&r.summary, study->reference);
     TRY(code);
     run_monitor_count(monitor);
 

@@ -27,9 +27,10 @@ double observed_order(double coarse, double middle, double fine);
 
 // Runs the scenario at its own method.step, at a half and at a quarter of it. Fails as the runs do;
 // STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for it. The panel then has the values
-// of the steps before, NaN for the others and for the orders.
-status convergence_compute(const scenario *s, run_monitor *monitor, convergence_panel *panel,
-                           fault *f);
+// of the steps before, NaN for the others and for the orders. `kept` (NULL: nobody wants them) are
+// PANEL_STEPS runs of zeroes, which become those with their rows, to be finished in any case.
+status convergence_compute(const scenario *s, run_monitor *monitor, run_result *kept,
+                           convergence_panel *panel, fault *f);
 
 // The force of a run less that of one with shorter steps, at the instants both have: x [s] and y
 // [N] have room for as many values as `coarse` has rows. Returns their number. Rows of one instant,

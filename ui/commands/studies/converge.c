@@ -9,9 +9,15 @@
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
 
+// The panel, and for --plot its runs.
+typedef struct three_steps {
+    convergence_panel panel;
+    run_result runs[PANEL_STEPS];
+} three_steps;
+
 static json_t *panel_object(const scenario *s, const void *found)
 {
-    const convergence_panel *panel = found;
+    const convergence_panel *panel = &((const three_steps *)found)->panel;
     json_t *rows = json_array();
     for (int k = 0; k < panel->row_count; k++) {
         const convergence_row *row = &panel->rows[k];
@@ -31,7 +37,7 @@ static bool all_digits_agree(const convergence_row *row)
 
 static void print_panel(const scenario *s, const void *found)
 {
-    const convergence_panel *panel = found;
+    const convergence_panel *panel = &((const three_steps *)found)->panel;
     if (panel->done == 0) {
         return;
     }
@@ -72,40 +78,18 @@ static void print_panel(const scenario *s, const void *found)
 
 // --- the force at the three steps -----------------------------------------------------------
 
-typedef struct three_runs {
-    scenario scenario[PANEL_STEPS]; // borrow all but the step from the command's scenario
-    run_result result[PANEL_STEPS];
-} three_runs;
-
-static status run_all(const scenario *s, const convergence_panel *panel, run_monitor *monitor,
-                      three_runs *r, fault *f)
-{
-    const run_options options = {.keep_trace = true, .monitor = monitor};
-    for (int i = 0; i < PANEL_STEPS; i++) {
-        r->scenario[i] = *s;
-        r->scenario[i].parameters.method.step = panel->step[i];
-        status code = run_scenario_with(&r->scenario[i], &options, &r->result[i]);
-        if (code != STATUS_OK) {
-            return summary_fault(&r->result[i].summary, f);
-        }
-        run_monitor_count(monitor);
-    }
-    return STATUS_OK;
-}
-
-static int draw(const arguments *a, const three_runs *r, double *work[4])
+static int draw(const arguments *a, const scenario *s, const three_steps *r, double *work[4])
 {
     static const int colours[PANEL_STEPS] = {5, 0, 6};
     static const char *const names[PANEL_STEPS] = {"h", "h/2", "h/4"};
-    const trace *finest = &r->result[PANEL_STEPS - 1].trace;
+    const trace *finest = &r->runs[PANEL_STEPS - 1].trace;
     char label[PANEL_STEPS][48];
     figure_series force[PANEL_STEPS], less[PANEL_STEPS - 1];
 
     // each run's force, and what it lacks of the finest
     for (int i = 0; i < PANEL_STEPS; i++) {
-        const trace *t = &r->result[i].trace;
-        decimal_print(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms",
-                      1e3 * r->scenario[i].parameters.method.step);
+        const trace *t = &r->runs[i].trace;
+        decimal_print(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms", 1e3 * r->panel.step[i]);
         force[i] = (figure_series){.name = names[i],
                                    .label = label[i],
                                    .x = &t->rows[0].time,
@@ -137,41 +121,21 @@ static int draw(const arguments *a, const three_runs *r, double *work[4])
     const figure fig = {.x = {.name = "time", .label = "Time <i>t</i>", .unit = "s"},
                         .panels = panels,
                         .panel_count = 2};
-    return publish_titled(a, &r->scenario[0], "the same run at three steps", &fig);
+    return publish_titled(a, s, "the same run at three steps", &fig);
 }
 
-static int plot(const arguments *a, const scenario *s, const void *panel)
+static int plot(const arguments *a, const scenario *s, const void *found)
 {
-    fault f = {0};
-    three_runs *r = calloc(1, sizeof *r);
-    if (r == NULL) {
-        return worse(EXIT_FAILED, complain("out of memory"));
-    }
-
-    run_monitor *monitor = work_begin(a, "runs", PANEL_STEPS);
-    status ran = run_all(s, panel, monitor, r, &f);
-    work_end();
-
     // abscissas and ordinates of two differences
-    double *work[4];
-    const size_t room = r->result[0].trace.row_count + r->result[1].trace.row_count + 1;
-    work[0] = ran == STATUS_OK ? malloc(4 * room * sizeof(double)) : NULL;
+    const three_steps *r = found;
+    const size_t room = r->runs[0].trace.row_count + r->runs[1].trace.row_count + 1;
+    double *work[4] = {malloc(4 * room * sizeof(double))};
     for (int i = 1; i < 4 && work[0] != NULL; i++) {
         work[i] = work[0] + (size_t)i * room;
     }
-    int code = ran != STATUS_OK  ? complain_fault(&f)
-               : work[0] != NULL ? draw(a, r, work)
-                                 : worse(EXIT_FAILED, complain("out of memory"));
-
-    // runs that came about are released whether all did or not
+    const int code =
+        work[0] != NULL ? draw(a, s, r, work) : worse(EXIT_FAILED, complain("out of memory"));
     free(work[0]);
-    for (int i = 0; i < PANEL_STEPS; i++) {
-        run_finish(&r->result[i]);
-    }
-    free(r);
-    if (ran == STATUS_STOPPED) {
-        leave_interrupted();
-    }
     return code;
 }
 
@@ -179,11 +143,16 @@ static int converge(const arguments *a, scenario *s)
 {
     static const command_results r = {panel_object, print_panel, plot,
                                       .kept = "the table is that of these steps"};
-    convergence_panel panel;
+    three_steps found = {.panel = {.done = 0}};
     fault f = {0};
     run_monitor *monitor = work_begin(a, "runs", PANEL_STEPS);
-    const status code = convergence_compute(s, monitor, &panel, &f);
-    return work_finish(a, code, &f, &r, s, &panel);
+    const status code =
+        convergence_compute(s, monitor, a->plot != NULL ? found.runs : NULL, &found.panel, &f);
+    const int result = work_finish(a, code, &f, &r, s, &found);
+    for (int i = 0; i < PANEL_STEPS; i++) {
+        run_finish(&found.runs[i]);
+    }
+    return result;
 }
 
 static const option_row rows[] = {
