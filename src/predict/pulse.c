@@ -132,9 +132,7 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
     method_parameters event = *method;
     event.name = METHOD_EVENT;
     motion *m = motion_create(&a, &event);
-    if (m == NULL) {
-        return STATUS_NO_MEMORY;
-    }
+    FAIL_IF(m == NULL, STATUS_NO_MEMORY);
 
     // numbers only where they are to be relied on
     seen_energies seen = {0};

@@ -65,9 +65,7 @@ bool run_origin_is_of(const run_origin *o, const session *s)
 status session_reopen(session *s, const run_origin *o, double patience, fault *f)
 {
     scenario base;
-    if (scenario_copy(&base, &o->base) != STATUS_OK) {
-        return fault_no_memory(f);
-    }
+    FAIL_IF(scenario_copy(&base, &o->base) != STATUS_OK, fault_no_memory(f));
 
     // the scenario's own run, then that of the changes
     status code = session_open(s, &base, patience, f);

@@ -129,9 +129,7 @@ static status begin_run(session_reader *r, const char *name)
     FAIL_IF(file->run_count == SESSION_FILE_RUNS, refuse(r, "one run more than a session holds"));
     kept_run *k = &file->runs[file->run_count];
     *k = (kept_run){0};
-    if (scenario_copy(&k->from.base, &r->base) != STATUS_OK) {
-        return fault_no_memory(r->fault);
-    }
+    FAIL_IF(scenario_copy(&k->from.base, &r->base) != STATUS_OK, fault_no_memory(r->fault));
     snprintf(k->name, sizeof k->name, "%s", name);
     file->run_count++;
     return STATUS_OK;
@@ -208,9 +206,8 @@ static status add_text(session_reader *r, const char *line)
 {
     const size_t more = strlen(line);
     char *longer = r->text != NULL ? realloc(r->text, r->length + more + 2) : NULL;
-    if (longer == NULL) {
-        return r->text == NULL ? refuse(r, "text without a scenario") : fault_no_memory(r->fault);
-    }
+    FAIL_IF(longer == NULL,
+            r->text == NULL ? refuse(r, "text without a scenario") : fault_no_memory(r->fault));
     r->text = longer;
     r->length += (size_t)sprintf(r->text + r->length, "%s\n", line);
     return STATUS_OK;

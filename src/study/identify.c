@@ -209,9 +209,7 @@ static status collect_piece(void *context, size_t i, const void *result, fault *
 {
     const batch_of_runs *b = context;
     (void)i;
-    if (*(const status *)result == STATUS_NO_MEMORY) {
-        return fault_no_memory(f);
-    }
+    FAIL_IF(*(const status *)result == STATUS_NO_MEMORY, fault_no_memory(f));
     FAIL_IF(run_monitor_stops(b->id->monitor),
             fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED)));
     run_monitor_count(b->id->monitor);

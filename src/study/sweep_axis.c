@@ -35,9 +35,7 @@ status sweep_axis_find(sweep_axis *axis, const char *text, fault *f)
     const size_t length = strcspn(name, "[");
     snprintf(path, sizeof path, "%.*s", (int)length, name);
     axis->parameter = parameter_look_up(path, f);
-    if (axis->parameter < 0) {
-        return STATUS_BAD_ARGUMENT;
-    }
+    FAIL_IF(axis->parameter < 0, STATUS_BAD_ARGUMENT);
 
     // a list by one of its numbers, nothing else by any
     const parameter_type type = sweep_axis_parameter(axis)->type;

@@ -66,17 +66,14 @@ static int open_all(filmed *m, const arguments *a)
         bool beside = i >= a->operand_count;
         scenario *s = &m->scenarios[i];
         int code = open_scenario(s, a->operands[beside ? 0 : i], a);
-        if (code != EXIT_DONE) {
-            return code;
-        }
+        FAIL_IF(code != EXIT_DONE, code);
         m->opened++;
         m->names[i] = s->name;
         if (beside) {
             m->names[i] = a->besides.items[i - a->operand_count];
-            if (scenario_override_all(s, &a->besides.items[i - a->operand_count], 1,
-                                      complain_sentence, NULL) != STATUS_OK) {
-                return EXIT_BAD_ARGUMENTS;
-            }
+            FAIL_IF(scenario_override_all(s, &a->besides.items[i - a->operand_count], 1,
+                                          complain_sentence, NULL) != STATUS_OK,
+                    EXIT_BAD_ARGUMENTS);
         }
     }
     return EXIT_DONE;

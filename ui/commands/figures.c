@@ -170,9 +170,7 @@ static int figures(const arguments *a)
 
     int code = check_ids(a);
     code = code == EXIT_DONE ? read_picture_options(a, &list.options) : code;
-    if (code != EXIT_DONE) {
-        return code;
-    }
+    FAIL_IF(code != EXIT_DONE, code);
 
     // lists of figures to be drawn and of their results
     list.figures = calloc(count, sizeof *list.figures + sizeof *list.order);
@@ -240,9 +238,7 @@ static int plot(const arguments *a)
         code = complain("a recipe says itself which signals and data it shows, --%s is for runs",
                         o.overlay != NULL ? "overlay" : "signals");
     }
-    if (code != EXIT_DONE) {
-        return code;
-    }
+    FAIL_IF(code != EXIT_DONE, code);
     char *path = a->plot != NULL ? strdup(a->plot) : default_name(a->operands[0]);
     status done = path != NULL ? picture_check_path(path, &f) : fault_no_memory(&f);
 
@@ -295,9 +291,7 @@ static int report(const arguments *a)
     if (code == STATUS_STOPPED) {
         work_leave(monitor->pieces, steps, "steps", "the report is as it was before");
     }
-    if (code != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(code != STATUS_OK, complain_fault(&f));
     if (!a->quiet) {
         say("%s/report.html\n%s/report.pdf\n", folder, folder);
     }

@@ -232,14 +232,10 @@ static int open_explorer(explorer *ex, const arguments *a)
     const size_t length = strlen(named), tail = strlen(".session");
     const bool is_session = length > tail && strcmp(named + length - tail, ".session") == 0;
     int code = open_scenario(&s, is_session ? first_scenario : named, a);
-    if (code != EXIT_DONE) {
-        return code;
-    }
+    FAIL_IF(code != EXIT_DONE, code);
 
     bool live = a->keys == NULL && a->script == NULL && a->size.width == 0;
-    if (explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK, complain_fault(&f));
 
     // the terminal's own looks, then those that were kept
     char line[LINE_TEXT];
@@ -281,14 +277,10 @@ static int explore(const arguments *a)
     fault f = {0};
 
     bool off_screen = a->keys != NULL || a->script != NULL || a->size.width > 0;
-    if (!off_screen && !terminal_usable(&f)) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(!off_screen && !terminal_usable(&f), complain_fault(&f));
 
     int code = open_explorer(&ex, a);
-    if (code != EXIT_DONE) {
-        return code;
-    }
+    FAIL_IF(code != EXIT_DONE, code);
 
     if (off_screen) {
         code = run_off_screen(&ex, a);

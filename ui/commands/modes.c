@@ -113,9 +113,7 @@ static int plot_modes(const arguments *args, const scenario *s, const void *foun
     char headings[HOLDS][64], labels[HOLDS][MODES_DRAWN][48];
     size_t points = (size_t)a->links + 1;
     double *numbers = calloc((size_t)HOLDS * MODES_DRAWN * 2 * points, sizeof *numbers);
-    if (numbers == NULL) {
-        return worse(EXIT_FAILED, complain("out of memory"));
-    }
+    FAIL_IF(numbers == NULL, worse(EXIT_FAILED, complain("out of memory")));
 
     // a panel for each way of holding the arm, a curve for each of its first modes
     for (int i = 0; i < HOLDS; i++) {
@@ -172,9 +170,7 @@ static status compute_set(const arm *a, mode_set *set, int hold)
     size_t n = (size_t)a->dof;
     set->frequencies = calloc(n, sizeof *set->frequencies);
     set->shapes = calloc(n * n, sizeof *set->shapes);
-    if (set->frequencies == NULL || set->shapes == NULL) {
-        return STATUS_NO_MEMORY;
-    }
+    FAIL_IF(set->frequencies == NULL || set->shapes == NULL, STATUS_NO_MEMORY);
     return modes_compute(a, holds[hold].hub, holds[hold].tip, &set->count, set->frequencies,
                          set->shapes);
 }

@@ -133,13 +133,10 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs, i
     fault f = {0};
 
     int code = read_picture_options(a, &o);
-    if (code != EXIT_DONE) {
-        return code;
-    }
+    FAIL_IF(code != EXIT_DONE, code);
 
-    if (run_figure_init(&r, title, NULL, 0, runs, run_count, &o, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(run_figure_init(&r, title, NULL, 0, runs, run_count, &o, &f) != STATUS_OK,
+            complain_fault(&f));
 
     artwork drawn = artwork_of_figure(&r.traces.plot.figure, NULL, NULL);
     if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
@@ -185,9 +182,7 @@ int check_view(const arguments *a)
 int check_scene(const arguments *a)
 {
     fault f = {0};
-    if (check_view(a) != EXIT_DONE) {
-        return EXIT_BAD_ARGUMENTS;
-    }
+    FAIL_IF(check_view(a) != EXIT_DONE, EXIT_BAD_ARGUMENTS);
 
     // there is a picture for each instant, and a limit to them
     FAIL_IF(a->instants.count > SCENE_INSTANTS,
@@ -195,9 +190,7 @@ int check_scene(const arguments *a)
                      SCENE_INSTANTS));
 
     // before the run, which may take long
-    if (a->scene != NULL && scene_check_path(a->scene, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(a->scene != NULL && scene_check_path(a->scene, &f) != STATUS_OK, complain_fault(&f));
     return EXIT_DONE;
 }
 
@@ -218,8 +211,6 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
     }
     const scene_picture shown = {
         .scenario = s, .result = result, .options = read_view(a), .times = times, .count = count};
-    if (scene_write(&shown, a->scene, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(scene_write(&shown, a->scene, &f) != STATUS_OK, complain_fault(&f));
     return EXIT_DONE;
 }

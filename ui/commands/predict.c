@@ -204,9 +204,7 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
     static const command_results r = {predict_object, print_predictions, plot_predictions};
     predicted p = {.result = result};
     command_list then;
-    if (!read_commands(a->then, &then)) {
-        return EXIT_BAD_ARGUMENTS;
-    }
+    FAIL_IF(!read_commands(a->then, &then), EXIT_BAD_ARGUMENTS);
 
     p.row = predict_first_contact(s, result, &(voltage_profile){then.count, then.times, then.volts},
                                   p.answers);
@@ -218,9 +216,7 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
 
     // what there was no memory for is no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        if (p.answers[i].fault.code == STATUS_NO_MEMORY) {
-            return complain_fault(&p.answers[i].fault);
-        }
+        FAIL_IF(p.answers[i].fault.code == STATUS_NO_MEMORY, complain_fault(&p.answers[i].fault));
     }
     return write_results(a, &r, s, &p, true);
 }

@@ -80,9 +80,7 @@ static int list(const arguments *a)
 {
     listing l;
     int width = 0, result = open_listing(&l, a);
-    if (result != EXIT_DONE) {
-        return result;
-    }
+    FAIL_IF(result != EXIT_DONE, result);
 
     // the titles of all stand in a column
     for (int i = 0; i < l.count; i++) {
@@ -130,9 +128,7 @@ static int run_lesson(const arguments *a)
     FAIL_IF(a->json != NULL && a->operand_count > 0,
             complain("--json lists the lessons, expected no name beside it"));
     int code = open_listing(&l, a);
-    if (code != EXIT_DONE) {
-        return code;
-    }
+    FAIL_IF(code != EXIT_DONE, code);
 
     // without a name all of them, otherwise the one with that name
     const char *wanted = a->operand_count > 0 ? a->operands[0] : NULL;

@@ -20,9 +20,7 @@ status database_fault(const sweep_database *store, fault *f)
     const char *why = sqlite3_errmsg(store->database);
     const char *path = store->path ? store->path : "the results in memory";
 
-    if (code == SQLITE_NOMEM) {
-        return fault_no_memory(f);
-    }
+    FAIL_IF(code == SQLITE_NOMEM, fault_no_memory(f));
     FAIL_IF(code == SQLITE_NOTADB,
             fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database", path));
     FAIL_IF(code == SQLITE_CORRUPT,
@@ -34,9 +32,8 @@ status database_fault(const sweep_database *store, fault *f)
                       path, why));
     FAIL_IF(code != SQLITE_READONLY && sqlite3_db_readonly(store->database, "main") == 1,
             fault_set(f, STATUS_CANNOT_READ, "'%s' cannot be read: %s", path, why));
-    if (sqlite3_extended_errcode(store->database) == SQLITE_READONLY_DBMOVED) {
-        return database_moved_fault(store, f);
-    }
+    FAIL_IF(sqlite3_extended_errcode(store->database) == SQLITE_READONLY_DBMOVED,
+            database_moved_fault(store, f));
     return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path, why);
 }
 
@@ -303,9 +300,7 @@ static status read_line(definition *d, const char *path, sqlite3_stmt *row, faul
 {
     const char *key = (const char *)sqlite3_column_text(row, 0);
     const char *value = (const char *)sqlite3_column_text(row, 1);
-    if (sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM) {
-        return fault_no_memory(f);
-    }
+    FAIL_IF(sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM, fault_no_memory(f));
     FAIL_IF(key == NULL || value == NULL || strlen(key) >= sizeof d->lines[0].key ||
                 strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
                 strlen(value) != (size_t)sqlite3_column_bytes(row, 1),

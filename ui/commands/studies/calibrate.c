@@ -31,9 +31,7 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
             complain("calibrate varies " VOLTAGE_PATH " and nothing else, once"));
 
     sweep_request request = {.vary = &given, .vary_count = 1};
-    if (sweep_init(&series, s, &request, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(sweep_init(&series, s, &request, &f) != STATUS_OK, complain_fault(&f));
 
     // the values, as many as a table holds
     size_t wanted = series.run_count;
@@ -117,9 +115,7 @@ static int press_and_report(const arguments *a, scenario *s)
     calibrated done;
     double commands[K2_TABLE_MOST];
     int count = 0, result = choose_commands(a, s, commands, &count);
-    if (result != EXIT_DONE) {
-        return result;
-    }
+    FAIL_IF(result != EXIT_DONE, result);
 
     run_monitor *monitor = work_begin(a, "presses", count);
     status code = calibrate(s, commands, count, monitor, &done.points, &f);

@@ -51,9 +51,8 @@ static int open_sweep(comparison *c, const arguments *a, int i)
 {
     fault f = {0};
     sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
-    if (sweep_init(&c->sweeps[i], &c->scenarios[i], &request, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(sweep_init(&c->sweeps[i], &c->scenarios[i], &request, &f) != STATUS_OK,
+            complain_fault(&f));
 
     // too many rows are refused before anything runs
     c->swept++;
@@ -73,9 +72,8 @@ static int open_all(comparison *c, const arguments *a)
 
     c->scenarios = calloc((size_t)count, sizeof *c->scenarios);
     c->sweeps = calloc((size_t)count, sizeof *c->sweeps);
-    if (c->scenarios == NULL || c->sweeps == NULL) {
-        return worse(EXIT_FAILED, complain("out of memory"));
-    }
+    FAIL_IF(c->scenarios == NULL || c->sweeps == NULL,
+            worse(EXIT_FAILED, complain("out of memory")));
 
     // the operands, then what they are compared against
     for (int i = 0; i < count && result == EXIT_DONE; i++) {
@@ -139,13 +137,10 @@ static bool run_one(comparison *c, int i, int combination, run_monitor *monitor,
 static status run_all(comparison *c, run_monitor *monitor)
 {
     for (int k = 0; k < c->combinations; k++) {
-        if (c->opened > c->operands && !run_one(c, c->operands, k, monitor, &c->against[k])) {
-            return STATUS_STOPPED;
-        }
+        FAIL_IF(c->opened > c->operands && !run_one(c, c->operands, k, monitor, &c->against[k]),
+                STATUS_STOPPED);
         for (int i = 0; i < c->operands; i++) {
-            if (!run_one(c, i, k, monitor, &c->rows[c->table.count])) {
-                return STATUS_STOPPED;
-            }
+            FAIL_IF(!run_one(c, i, k, monitor, &c->rows[c->table.count]), STATUS_STOPPED);
             c->table.count++;
         }
     }

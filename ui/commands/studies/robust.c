@@ -116,9 +116,7 @@ static int read_set(robustness *r)
     const char *read = a->over != NULL ? a->over : path;
     status code = read != NULL ? robust_set_read(&r->set, read, &f) : fault_no_memory(&f);
     free(path);
-    if (code != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(code != STATUS_OK, complain_fault(&f));
     FAIL_IF(r->set.case_count > 0 && a->plot != NULL,
             complain("--plot shows laws, not the cases of %s", a->over));
 
@@ -127,9 +125,7 @@ static int read_set(robustness *r)
     r->runs = a->runs > 0 ? (size_t)a->runs : cases ? DEFAULT_CASE_RUNS : DEFAULT_RUNS;
     const sweep_request request = request_of(r);
     sweep plan;
-    if (sweep_plan(&plan, &request, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(sweep_plan(&plan, &request, &f) != STATUS_OK, complain_fault(&f));
     sweep_finish(&plan);
     r->found =
         calloc((size_t)(cases ? r->set.case_count : 1) * (size_t)(r->count + 1), sizeof *r->found);
@@ -263,9 +259,7 @@ static int take_case(robustness *r, int k, bool run)
     scenario base, under;
     sweep s;
     const robust_case *c = k >= 0 ? &r->set.cases[k] : NULL;
-    if (robust_case_scenario(&base, r->scenario, c, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(robust_case_scenario(&base, r->scenario, c, &f) != STATUS_OK, complain_fault(&f));
     int code = EXIT_DONE;
     for (int i = 0; i < r->count + (r->against == r->count) && code == EXIT_DONE; i++) {
         code = open_law(r, &base, i, k, run && !r->arguments->quiet, &under, &s);

@@ -35,9 +35,7 @@ static int write_rows(sweep_store *store, const char *path,
     if (path == NULL) {
         return EXIT_DONE;
     }
-    if (whole_file_open(&file, path, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(whole_file_open(&file, path, &f) != STATUS_OK, complain_fault(&f));
     const status code = whole_file_close(&file, write(store, file.stream, &f), &f);
     return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
@@ -196,9 +194,7 @@ static int compute(const sweep_order *o, sweep_store *store)
     many_runs_end(&options);
 
     // what it came to: an error, a stop, the whole sweep or a part of it
-    if (code != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(code != STATUS_OK, complain_fault(&f));
     if (progress.done < progress.total) {
         return many_runs_stopped(o->arguments->db, progress.done, progress.total);
     }
@@ -226,12 +222,8 @@ static int sweep_and_report(const arguments *a, scenario *base)
     fault f = {0};
     sweep_store *store;
     int code = read_share(a, &o.share);
-    if (code != EXIT_DONE) {
-        return code;
-    }
-    if (sweep_init(&o.sweep, base, &request, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(code != EXIT_DONE, code);
+    FAIL_IF(sweep_init(&o.sweep, base, &request, &f) != STATUS_OK, complain_fault(&f));
 
     // the rows, in the file or in memory
     if ((a->plot == NULL || sweep_plot_check(&o.sweep, a->plot, &f) == STATUS_OK) &&
@@ -291,9 +283,8 @@ static int merge(const arguments *a)
     fault f = {0};
     sweep_merged merged;
     FAIL_IF(a->output == NULL, complain("merge: expected -o FILE, the database to write"));
-    if (sweep_merge(a->operands, a->operand_count, a->output, &merged, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
+    FAIL_IF(sweep_merge(a->operands, a->operand_count, a->output, &merged, &f) != STATUS_OK,
+            complain_fault(&f));
 
     // a sweep with missing runs is a valid file: the same sweep continues in it
     if (summary_wanted(a)) {
