@@ -8,6 +8,7 @@
 #pragma once
 
 #include <complex.h>
+#include <math.h>
 
 #include "src/study/sweep.h"
 
@@ -145,7 +146,11 @@ status linear_contact_margin(const scenario *s, double *impulse, fault *f);
 // *number is its settling time [s] or NaN; else its linear form decays: *number is how fast its
 // slowest part grows [1/s], below zero of a stable one.
 status linear_stability(const scenario *s, linear_place place, bool by_runs, double *number,
-                        bool *stable, fault *f);
+                        fault *f);
+static inline bool linear_is_stable(bool by_runs, double number)
+{
+    return by_runs ? isfinite(number) : number < 0;
+}
 
 // How fast the slowest part of the linear form grows in contact [1/s]; NaN on failure.
 status linear_growth(const scenario *s, double *growth, fault *f);

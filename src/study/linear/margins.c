@@ -129,7 +129,6 @@ static status growth_of(const scenario *s, linear_place place, double *growth, f
 {
     linear_arm arm;
     linear_system loop = {0};
-    *growth = (double)NAN;
     status code = linear_arm_init(&arm, &s->parameters, place, f);
     code = code == STATUS_OK ? linear_loop(&loop, &arm, &s->parameters, f) : code;
     double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
@@ -147,50 +146,42 @@ static status growth_of(const scenario *s, linear_place place, double *growth, f
 }
 
 status linear_stability(const scenario *s, linear_place place, bool by_runs, double *number,
-                        bool *stable, fault *f)
+                        fault *f)
 {
-    status code;
     *number = (double)NAN;
-    if (by_runs) {
-        run_result result;
-        code = run_scenario(s, false, &result);
-        *number = result.summary.settling_time_s;
-        if (code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED) {
-            summary_fault(&result.summary, f);
-        } else {
-            code = STATUS_OK;
-        }
-        run_finish(&result);
-    } else {
-        code = growth_of(s, place, number, f);
+    if (!by_runs) {
+        return growth_of(s, place, number, f);
     }
-    *stable = by_runs ? isfinite(*number) : *number < 0;
+    run_result result;
+    status code = run_scenario(s, false, &result);
+    *number = result.summary.settling_time_s;
+    code = code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED
+               ? summary_fault(&result.summary, f)
+               : STATUS_OK;
+    run_finish(&result);
     return code;
 }
 
 status linear_growth(const scenario *s, double *growth, fault *f)
 {
-    return growth_of(s, LINEAR_CONTACT, growth, f);
+    return linear_stability(s, LINEAR_CONTACT, false, growth, f);
 }
 
 status linear_limit(const sweep *s, linear_place place, bool by_runs, double from, double to,
                     double *limit, fault *f)
 {
     assert(s->axis_count == 1);
-    bool at_start = false, here;
-    status code = STATUS_OK;
-    for (int i = -1; i < (by_runs ? RUN_BISECTIONS : BISECTIONS) && code == STATUS_OK; i++) {
+    bool at_start = false;
+    for (int i = -1; i < (by_runs ? RUN_BISECTIONS : BISECTIONS); i++) {
         const double value = i < 0 ? from : (from + to) / 2;
         scenario derived;
         double number;
-        code = sweep_axes_scenario(s->axes, 1, &value, s->base, &derived, f);
-        code = code == STATUS_OK ? linear_stability(&derived, place, by_runs, &number, &here, f)
-                                 : code;
-        at_start = i < 0 && code == STATUS_OK ? here : at_start;
-        if (code == STATUS_OK) {
-            *(here == at_start ? &from : &to) = value;
-        }
+        TRY(sweep_axes_scenario(s->axes, 1, &value, s->base, &derived, f));
+        TRY(linear_stability(&derived, place, by_runs, &number, f));
+        const bool here = linear_is_stable(by_runs, number);
+        at_start = i < 0 ? here : at_start;
+        *(here == at_start ? &from : &to) = value;
     }
     *limit = (from + to) / 2;
-    return code;
+    return STATUS_OK;
 }

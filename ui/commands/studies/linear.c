@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "render/plot/study_plot.h"
-#include "src/base/csv.h"
 #include "src/base/json.h"
 #include "src/base/plain_math.h"
 #include "src/base/whole_file.h"
 #include "src/exchange/mat_file.h"
+#include "src/study/result_rows.h"
 #include "ui/commands/pictures.h"
 
 #define TWO_PI (2 * 3.14159265358979323846)
@@ -40,7 +40,6 @@ typedef struct analysis {
     // with --vary: of each value, by poles and by runs, growth [1/s] and settling time [s]
     sweep sweep;
     double *numbers[2];
-    bool *holds[2];
     struct {
         double value;
         int by_runs;
@@ -75,40 +74,37 @@ static status analyse_loop(analysis *x, fault *f)
     status code = x->measured ? STATUS_UNSTABLE : linear_loop(&x->loop, &x->arm, p, f);
     x->measured = x->stable = code == STATUS_UNSTABLE && contact;
     if (x->measured) {
-        code = linear_inject(x->scenario, &x->response, f);
-    } else if (code == STATUS_OK) {
+        TRY(linear_inject(x->scenario, &x->response, f));
+    } else {
+        TRY(code);
         x->period = 1 / p->control.rate;
-        code = linear_respond(&x->loop, 0, x->period, &x->response, f);
-        code = code == STATUS_OK ? find_roots(&x->sets[HUB_ZEROS], &x->loop, "loop", 0, f) : code;
+        TRY(linear_respond(&x->loop, 0, x->period, &x->response, f));
+        TRY(find_roots(&x->sets[HUB_ZEROS], &x->loop, "loop", 0, f));
         linear_close(&x->loop);
-        code = code == STATUS_OK ? find_roots(&x->sets[POLES], &x->loop, NULL, 0, f) : code;
-        const int last = x->sets[POLES].count - 1;
-        x->stable = code == STATUS_OK && cabs(x->sets[POLES].values[last]) < 1;
+        TRY(find_roots(&x->sets[POLES], &x->loop, NULL, 0, f));
+        x->stable = cabs(x->sets[POLES].values[x->sets[POLES].count - 1]) < 1;
     }
     x->margins = linear_margins_of(&x->response);
-    return code;
+    return STATUS_OK;
 }
 
 static status analyse(analysis *x, bool looped, fault *f)
 {
     const linear_system *s = &x->arm.system;
-    status code = linear_arm_init(&x->arm, &x->scenario->parameters, x->place, f);
+    TRY(linear_arm_init(&x->arm, &x->scenario->parameters, x->place, f));
     if (x->place != LINEAR_FREE && x->scenario->parameters.control.law != LAW_NONE) {
-        code = code == STATUS_OK ? linear_contact_margin(x->scenario, &x->least_push, f) : code;
+        TRY(linear_contact_margin(x->scenario, &x->least_push, f));
     }
-    code = code == STATUS_OK && looped ? analyse_loop(x, f) : code;
-    if (code != STATUS_OK || x->period > 0) {
-        return code;
+    TRY(looped ? analyse_loop(x, f) : STATUS_OK);
+    if (x->period > 0) {
+        return STATUS_OK;
     }
 
     // a tip on the wall has no zeros, nor a force without one
-    const int end = x->place == LINEAR_FREE ? LINEAR_TIP : LINEAR_FORCE;
-    const char *const *names = linear_output_names;
-    code = find_roots(&x->sets[POLES], s, NULL, 0, f);
-    code = code == STATUS_OK
-               ? find_roots(&x->sets[HUB_ZEROS], s, names[LINEAR_HUB_ANGLE], LINEAR_HUB_ANGLE, f)
-               : code;
-    return code == STATUS_OK ? find_roots(&x->sets[END_ZEROS], s, names[end], end, f) : code;
+    const int hub = LINEAR_HUB_ANGLE, end = x->place == LINEAR_FREE ? LINEAR_TIP : LINEAR_FORCE;
+    TRY(find_roots(&x->sets[POLES], s, NULL, 0, f));
+    TRY(find_roots(&x->sets[HUB_ZEROS], s, linear_output_names[hub], hub, f));
+    return find_roots(&x->sets[END_ZEROS], s, linear_output_names[end], end, f);
 }
 
 // A root as one of s; of a sampled system s = log(z)/period.
@@ -199,23 +195,24 @@ static json_t *as_json(const scenario *base, const void *found)
 
 static void write_csv(FILE *stream, const scenario *base, const void *found)
 {
-    static const char *const headings[][2] = {
-        {"kind", ""}, {"output", ""}, {"real", "1/s"}, {"imaginary", "rad/s"}, {"damping", ""}};
+    static const result_column columns[] = {{NULL, "kind", ""},
+                                            {NULL, "output", ""},
+                                            {NULL, "real", "1/s"},
+                                            {NULL, "imaginary", "rad/s"},
+                                            {NULL, "damping", ""}};
+    enum { COLUMNS = sizeof columns / sizeof *columns };
     const analysis *x = found;
     csv_writer w = csv_begin(stream);
-    for (int i = 0; i < 5; i++) {
-        csv_heading(&w, headings[i][0], headings[i][1]);
-    }
-    csv_end_row(&w);
+    result_headings(&w, columns, COLUMNS);
     for (const root_set *set = x->sets; set < x->sets + SETS; set++) {
         for (int i = 0; i < set->count; i++) {
             const double complex s = in_time(x, set->values[i]);
-            csv_text(&w, set->kind);
-            csv_text(&w, set->output);
-            csv_number(&w, creal(s));
-            csv_number(&w, cimag(s));
-            csv_number(&w, linear_damping(s));
-            csv_end_row(&w);
+            const result_cell cells[COLUMNS] = {{set->kind},
+                                                {set->output},
+                                                {NULL, creal(s)},
+                                                {NULL, cimag(s)},
+                                                {NULL, linear_damping(s)}};
+            result_row(&w, cells, COLUMNS);
         }
     }
 }
@@ -324,27 +321,25 @@ static const summary_info told[2] = {
 static status survey(analysis *x, fault *f)
 {
     const sweep *s = &x->sweep;
-    status code = STATUS_OK;
     x->numbers[1] = x->numbers[0] + s->run_count;
-    x->holds[0] = (bool *)(x->numbers[1] + s->run_count);
-    x->holds[1] = x->holds[0] + s->run_count;
-    for (size_t i = 0; i < s->run_count && code == STATUS_OK; i++) {
+    for (size_t i = 0; i < s->run_count; i++) {
         scenario derived;
-        code = sweep_scenario(s, i, &derived, f);
-        for (int k = 0; k < 2 && code == STATUS_OK; k++) {
-            code = linear_stability(&derived, x->place, k, &x->numbers[k][i], &x->holds[k][i], f);
+        TRY(sweep_scenario(s, i, &derived, f));
+        for (int k = 0; k < 2; k++) {
+            const double *before = i > 0 ? &x->numbers[k][i - 1] : NULL;
+            TRY(linear_stability(&derived, x->place, k, &x->numbers[k][i], f));
 
             // the limit between neighbours of which one is stable
-            if (code == STATUS_OK && s->axis_count == 1 && i > 0 && x->limit_count < MOST_LIMITS &&
-                x->holds[k][i] != x->holds[k][i - 1]) {
+            if (s->axis_count == 1 && before != NULL && x->limit_count < MOST_LIMITS &&
+                linear_is_stable(k, before[0]) != linear_is_stable(k, before[1])) {
                 const double *values = s->axes[0].values + i - 1;
                 x->limits[x->limit_count].by_runs = k;
-                code = linear_limit(s, x->place, k, values[0], values[1],
-                                    &x->limits[x->limit_count++].value, f);
+                TRY(linear_limit(s, x->place, k, values[0], values[1],
+                                 &x->limits[x->limit_count++].value, f));
             }
         }
     }
-    return code;
+    return STATUS_OK;
 }
 
 static json_t *survey_json(const scenario *base, const void *found)
@@ -359,7 +354,8 @@ static json_t *survey_json(const scenario *base, const void *found)
         }
         json_add(points,
                  json_members(json_object(), "values:o growth_per_s:n stable:b settling_time_s:n",
-                              values, x->numbers[0][i], x->holds[0][i], x->numbers[1][i]));
+                              values, x->numbers[0][i], linear_is_stable(false, x->numbers[0][i]),
+                              x->numbers[1][i]));
     }
     for (int i = 0; i < x->limit_count; i++) {
         json_add(limits, json_members(json_object(), "path:t value:n of:t", s->axes[0].name,
@@ -416,8 +412,8 @@ static void print_survey(const scenario *base, const void *found)
     const sweep *s = &x->sweep;
     size_t stable = 0, settle = 0;
     for (size_t i = 0; i < s->run_count; i++) {
-        stable += x->holds[0][i];
-        settle += x->holds[1][i];
+        stable += linear_is_stable(false, x->numbers[0][i]);
+        settle += linear_is_stable(true, x->numbers[1][i]);
     }
     say_title(base);
     printf("%zu of %zu loops are stable without friction, %zu of the runs settle\n", stable,
@@ -440,7 +436,7 @@ static int look_around(const arguments *a, analysis *x)
                                   a->varies.count)
                       : sweep_init(&x->sweep, x->scenario, &request, &f);
     if (code == STATUS_OK) {
-        x->numbers[0] = calloc(2 * x->sweep.run_count, sizeof *x->numbers[0] + sizeof *x->holds[0]);
+        x->numbers[0] = calloc(2 * x->sweep.run_count, sizeof *x->numbers[0]);
         code = x->numbers[0] != NULL ? survey(x, &f) : fault_no_memory(&f);
     }
     const int result =
