@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
+#include "src/tables/parameters_parts.h"
 
 // Reads "FORCE:K2" at the start of text; *rest is what follows it and blanks.
 static bool read_entry(const char *text, double *force, double *k2, const char **rest)
@@ -22,22 +23,18 @@ status k2_table_read(k2_table *t, const char *text, fault *f)
         int i = t->count, length = (int)strcspn(entry, " ");
 
         // a pair of numbers, as long as there is room
-        FAIL_IF(i == K2_TABLE_MOST,
-                fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
-                             "control.k2_table has more than %d entries of FORCE:K2",
-                             K2_TABLE_MOST));
-        FAIL_IF(!read_entry(entry, &t->force[i], &t->k2[i], &rest),
-                fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
-                             "control.k2_table: '%.*s' is wrong, expected FORCE:K2 such as "
-                             "1.5:4.92, a force from 0 N and a stiffness above 0 N m/rad",
-                             length, entry));
+        REFUSE_IF(i == K2_TABLE_MOST, "control.k2_table", f,
+                  "control.k2_table has more than %d entries of FORCE:K2", K2_TABLE_MOST);
+        REFUSE_IF(!read_entry(entry, &t->force[i], &t->k2[i], &rest), "control.k2_table", f,
+                  "control.k2_table: '%.*s' is wrong, expected FORCE:K2 such as "
+                  "1.5:4.92, a force from 0 N and a stiffness above 0 N m/rad",
+                  length, entry);
 
         // in growing order, so that there is one k2 between any two of them
-        FAIL_IF(i > 0 && !(t->force[i] > t->force[i - 1]),
-                fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
-                             "control.k2_table: the force of '%.*s' is not above the one before "
-                             "it, expected growing forces",
-                             length, entry));
+        REFUSE_IF(i > 0 && !(t->force[i] > t->force[i - 1]), "control.k2_table", f,
+                  "control.k2_table: the force of '%.*s' is not above the one before "
+                  "it, expected growing forces",
+                  length, entry);
         t->count++;
     }
     return STATUS_OK;

@@ -5,7 +5,7 @@
 #include <strings.h>
 
 #include "src/base/numbers.h"
-#include "src/tables/parameters.h"
+#include "src/tables/parameters_parts.h"
 #include "src/tables/settings.h"
 
 #define LEAST 1e-100 // of what is not 0: squares and quotients of it are numbers, too
@@ -81,29 +81,24 @@ void parameters_defaults(parameters *p, arm_model_kind model)
 static status check_number(const parameter_info *info, double value, fault *f)
 {
     const char *unit = info->unit, *space = unit[0] ? " " : "";
-    FAIL_IF(!isfinite(value), fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                                           "%s is not a finite number, expected %g to %g%s%s",
-                                           info->path, info->minimum, info->maximum, space, unit));
-    FAIL_IF(info->type != PARAMETER_REAL && info->type != PARAMETER_LIST && value != floor(value),
-            fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s = %g is not a whole number",
-                         info->path, value));
-    FAIL_IF(value < info->minimum || value > info->maximum,
-            fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                         "%s = %g is out of range, expected %g to %g%s%s", info->path, value,
-                         info->minimum, info->maximum, space, unit));
-    FAIL_IF(value != 0 && fabs(value) < LEAST,
-            fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                         "%s = %g is too small to be computed with, expected 0 or at least %g%s%s",
-                         info->path, value, LEAST, space, unit));
+    REFUSE_IF(!isfinite(value), info->path, f, "%s is not a finite number, expected %g to %g%s%s",
+              info->path, info->minimum, info->maximum, space, unit);
+    REFUSE_IF(info->type != PARAMETER_REAL && info->type != PARAMETER_LIST && value != floor(value),
+              info->path, f, "%s = %g is not a whole number", info->path, value);
+    REFUSE_IF(value < info->minimum || value > info->maximum, info->path, f,
+              "%s = %g is out of range, expected %g to %g%s%s", info->path, value, info->minimum,
+              info->maximum, space, unit);
+    REFUSE_IF(value != 0 && fabs(value) < LEAST, info->path, f,
+              "%s = %g is too small to be computed with, expected 0 or at least %g%s%s", info->path,
+              value, LEAST, space, unit);
     return STATUS_OK;
 }
 
 status parameter_set_number(parameters *p, int index, double value, fault *f)
 {
     const parameter_info *info = row_of(index);
-    FAIL_IF(parameter_is_text(info),
-            fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s is a %s and takes no number",
-                         info->path, info->type == PARAMETER_LIST ? "list" : "text"));
+    REFUSE_IF(parameter_is_text(info), info->path, f, "%s is a %s and takes no number", info->path,
+              info->type == PARAMETER_LIST ? "list" : "text");
     status code = check_number(info, value, f);
     if (code == STATUS_OK) {
         store(p, info, value);
@@ -143,10 +138,8 @@ static status parse_quantity(const parameter_info *info, const char *text, doubl
 
     // a unit is no conversion: only the parameter's own may stand there
     if (*unit != '\0' && strcmp(unit, info->unit) != 0) {
-        FAIL_IF(info->unit[0] == '\0',
-                fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                             "%s = '%.60s' carries a unit, expected a pure number", info->path,
-                             text));
+        REFUSE_IF(info->unit[0] == '\0', info->path, f,
+                  "%s = '%.60s' carries a unit, expected a pure number", info->path, text);
         return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
                             "%s = '%.60s' is in '%.20s', expected %s", info->path, text, unit,
                             info->unit);
@@ -159,10 +152,8 @@ static status store_text(parameters *p, int index, const char *text, size_t leng
 {
     const parameter_info *info = row_of(index);
     for (size_t i = 0; i < length; i++) {
-        FAIL_IF(is_control(text[i]),
-                fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                             "%s holds a control character, expected one line of text",
-                             info->path));
+        REFUSE_IF(is_control(text[i]), info->path, f,
+                  "%s holds a control character, expected one line of text", info->path);
     }
 
     // zeroes behind the text make equal parameters equal byte by byte
@@ -198,11 +189,10 @@ static status store_list(parameters *p, int index, const char *text, size_t leng
 
         // a number of the parameter's unit and range, and no comma too many
         double value;
-        FAIL_IF(first == last,
-                fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                             "%s: number %d is missing, expected numbers with commas between "
-                             "them",
-                             info->path, count + 1));
+        REFUSE_IF(first == last, info->path, f,
+                  "%s: number %d is missing, expected numbers with commas between "
+                  "them",
+                  info->path, count + 1);
         status code = parse_quantity(info, word, &value, f);
         code = code == STATUS_OK ? check_number(info, value, f) : code;
         TRY(code);
@@ -211,10 +201,9 @@ static status store_list(parameters *p, int index, const char *text, size_t leng
         number_format_short(number, value);
         used +=
             (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "", number);
-        FAIL_IF(count == PARAMETER_LIST_MOST || used >= sizeof list,
-                fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                             "%s is too long, expected at most %d numbers and 127 characters",
-                             info->path, PARAMETER_LIST_MOST));
+        REFUSE_IF(count == PARAMETER_LIST_MOST || used >= sizeof list, info->path, f,
+                  "%s is too long, expected at most %d numbers and 127 characters", info->path,
+                  PARAMETER_LIST_MOST);
         text = comma != NULL && comma + 1 == end ? comma : comma != NULL ? comma + 1 : end;
     }
     memcpy((char *)p + info->offset, list, sizeof list);
@@ -252,9 +241,8 @@ static status set_setting(parameters *p, const char *text, fault *f)
 {
     char name[PARAMETER_TEXT_SIZE];
     const size_t length = strcspn(text, " =");
-    FAIL_IF(length == 1 || length > sizeof name || text[length] != '=',
-            fault_set_at(f, STATUS_BAD_SCENARIO, setting_info.path,
-                         "control.settings%.60s is no setting, expected .NAME=NUMBER", text));
+    REFUSE_IF(length == 1 || length > sizeof name || text[length] != '=', setting_info.path, f,
+              "control.settings%.60s is no setting, expected .NAME=NUMBER", text);
     snprintf(name, sizeof name, "%.*s", (int)length - 1, text + 1);
     return settings_set_text(p, name, text + length + 1, f);
 }
@@ -280,9 +268,8 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
     }
 
     char word[PARAMETER_TEXT_SIZE];
-    FAIL_IF(length == 0 || length >= sizeof word,
-            fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s has %s", info->path,
-                         length ? "a value of more than 127 characters" : "no value"));
+    REFUSE_IF(length == 0 || length >= sizeof word, info->path, f, "%s has %s", info->path,
+              length ? "a value of more than 127 characters" : "no value");
     memcpy(word, text, length);
     word[length] = '\0';
 

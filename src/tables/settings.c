@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
+#include "src/tables/parameters_parts.h"
 
 static const char group[] = "control.settings.";
 
@@ -111,8 +112,7 @@ bool settings_get(const parameters *p, const char *name, double *value)
 status settings_set(parameters *p, const char *name, double value, fault *f)
 {
     char number[NUMBER_TEXT], text[2 * PARAMETER_TEXT_SIZE] = "";
-    FAIL_IF(!isfinite(value), fault_set_at(f, STATUS_BAD_SCENARIO, setting_info.path,
-                                           "%s%s is not a finite number", group, name));
+    REFUSE_IF(!isfinite(value), setting_info.path, f, "%s%s is not a finite number", group, name);
     number_format_short(number, value);
 
     // the others stay; what has its name makes room for it, else it comes last
@@ -134,11 +134,10 @@ status settings_set(parameters *p, const char *name, double value, fault *f)
             snprintf(text + used, sizeof text - used, "%s%.*s", between, (int)s.length, s.word);
         }
     }
-    FAIL_IF(strlen(text) >= PARAMETER_TEXT_SIZE,
-            fault_set_at(f, STATUS_BAD_SCENARIO, setting_info.path,
-                         "%s%s = %s has no room beside the other settings, which are at most %d "
-                         "characters together",
-                         group, name, number, PARAMETER_TEXT_SIZE - 1));
+    REFUSE_IF(strlen(text) >= PARAMETER_TEXT_SIZE, setting_info.path, f,
+              "%s%s = %s has no room beside the other settings, which are at most %d "
+              "characters together",
+              group, name, number, PARAMETER_TEXT_SIZE - 1);
     memset(p->control.settings, 0, sizeof p->control.settings);
     memcpy(p->control.settings, text, strlen(text));
     p->set[PARAMETER_INDEX(control.settings)] = 1;
@@ -150,8 +149,7 @@ status settings_set_text(parameters *p, const char *name, const char *text, faul
     const char *end;
     double value;
     text += strspn(text, " \t\n\v\f\r");
-    FAIL_IF(!decimal_read(text, &value, &end) || *end != '\0',
-            fault_set_at(f, STATUS_BAD_SCENARIO, setting_info.path,
-                         "%s%s = '%.60s' is not a number", group, name, text));
+    REFUSE_IF(!decimal_read(text, &value, &end) || *end != '\0', setting_info.path, f,
+              "%s%s = '%.60s' is not a number", group, name, text);
     return settings_set(p, name, value, f);
 }
