@@ -40,24 +40,26 @@ static bool is_missing(int reason)
     return reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG || reason == ELOOP;
 }
 
-static bool is_folder(const char *path)
+// What a name is of; what cannot be looked at may be anything.
+enum { NOTHING = 1, FOLDER = 2, FILE_OR_LIKE = 4, HIDDEN = 8 };
+
+static int kind_of(const char *path)
 {
     struct stat information;
-    return stat(path, &information) == 0 && S_ISDIR(information.st_mode);
+    return stat(path, &information) == 0 ? (S_ISDIR(information.st_mode) ? FOLDER : FILE_OR_LIKE)
+           : is_missing(errno)           ? NOTHING
+                                         : HIDDEN;
 }
 
-// Whether there is no folder of that name; what cannot be looked at may be one.
-static bool is_no_folder(const char *path)
+static bool is_folder(const char *path)
 {
-    struct stat information;
-    return stat(path, &information) == 0 ? !S_ISDIR(information.st_mode) : is_missing(errno);
+    return kind_of(path) == FOLDER;
 }
 
 // Whether there is a file of that name, or what cannot be looked at: its reader will tell.
 static bool is_file(const char *path)
 {
-    struct stat information;
-    return stat(path, &information) == 0 ? !S_ISDIR(information.st_mode) : !is_missing(errno);
+    return (kind_of(path) & (FILE_OR_LIKE | HIDDEN)) != 0;
 }
 
 // ---- reading ------------------------------------------------------------------------------------
@@ -161,7 +163,7 @@ static status name_folders(name_list *all, fault *f)
     status result = STATUS_OK;
     for (int i = 0; i < all->count && result == STATUS_OK; i++) {
         const bool needed = i < all->count - 1 || i == 0;
-        if (needed && is_no_folder(all->names[i])) {
+        if (needed && (kind_of(all->names[i]) & (FILE_OR_LIKE | NOTHING)) != 0) {
             result = fault_set(f, STATUS_CANNOT_READ,
                                "%.500s: no such folder, expected the scenarios there "
                                "(IMPACTLAB_SCENARIOS adds folders, separated by colons)",
@@ -399,9 +401,7 @@ status scenario_open(scenario *s, const char *name_or_file, fault_handler report
     // a scenario of the folder
     char *path;
     status result = find_name(name_or_file, &path);
-    if (result != STATUS_OK) {
-        return report_no_memory(report, context);
-    }
+    FAIL_IF(result != STATUS_OK, report_no_memory(report, context));
     if (path != NULL) {
         result = scenario_read(s, path, name_or_file, report, context);
         free(path);
@@ -409,20 +409,14 @@ status scenario_open(scenario *s, const char *name_or_file, fault_handler report
     }
 
     // a file, with its ending or without
-    if (is_file(name_or_file)) {
-        return scenario_read(s, name_or_file, NULL, report, context);
-    }
     path = text_of("%s%s", name_or_file, suffix);
-    if (path == NULL) {
-        return report_no_memory(report, context);
-    }
-    if (is_file(path)) {
-        result = scenario_read(s, path, NULL, report, context);
-    } else if (is_folder(name_or_file)) {
-        result = scenario_read(s, name_or_file, NULL, report, context);
-    } else {
-        result = report_unknown(name_or_file, report, context);
-    }
+    FAIL_IF(path == NULL, report_no_memory(report, context));
+    const char *file = is_file(name_or_file)     ? name_or_file
+                       : is_file(path)           ? path
+                       : is_folder(name_or_file) ? name_or_file
+                                                 : NULL;
+    result = file != NULL ? scenario_read(s, file, NULL, report, context)
+                          : report_unknown(name_or_file, report, context);
     free(path);
     return result;
 }

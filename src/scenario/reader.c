@@ -12,7 +12,7 @@
 #include "src/rig/rig.h"
 #include "src/tables/settings.h"
 
-void reader_report_at(reader *r, int line, int column, const char *format, ...)
+bool reader_report_at(reader *r, int line, int column, const char *format, ...)
 {
     assert(line > 0 && column > 0);
     char what[1280];
@@ -30,10 +30,11 @@ void reader_report_at(reader *r, int line, int column, const char *format, ...)
     if (grown == NULL ||
         asprintf(&found.sentence, "%s:%d:%d: %s", r->path, line, column, what) < 0) {
         r->no_memory = true;
-        return;
+        return false;
     }
     make_printable(found.sentence, 0);
     r->found[r->faults++] = found;
+    return false;
 }
 
 // By the place in the file; equal places in the order found.
@@ -67,9 +68,7 @@ void reader_report_all(reader *r, fault_handler report, void *context)
 
 bool reader_have_memory(reader *r, const void *memory)
 {
-    if (memory == NULL) {
-        r->no_memory = true;
-    }
+    r->no_memory = r->no_memory || memory == NULL;
     return memory != NULL;
 }
 
@@ -126,11 +125,8 @@ const char *reader_key(reader *r, const tree_node *map, const tree_node *child)
 
 bool reader_expect_map(reader *r, const tree_node *node, const char *what, const char *example)
 {
-    if (node->kind != TREE_MAP) {
-        report_node(r, node, "%s is %s, expected keys such as '%s'", what, node_kind_name(node),
-                    example);
-    }
-    return node->kind == TREE_MAP;
+    return node->kind == TREE_MAP || report_node(r, node, "%s is %s, expected keys such as '%s'",
+                                                 what, node_kind_name(node), example);
 }
 
 bool reader_quantity(reader *r, const tree_node *node, const char *what, const char *unit,
@@ -139,28 +135,20 @@ bool reader_quantity(reader *r, const tree_node *node, const char *what, const c
     const char *rest, *space = unit[0] != '\0' ? " in " : "";
 
     // a number
-    if (!node_is_scalar(node) || node_is_empty(node)) {
-        report_node(r, node, "%s is %s, expected a number%s%s", what, node_kind_name(node), space,
-                    unit);
-        return false;
-    }
-    if (!decimal_read(node->text, value, &rest)) {
-        report_node(r, node, "%s = '%.60s' is not a finite number, expected a number%s%s", what,
-                    node->text, space, unit);
-        return false;
-    }
+    FAIL_IF(!node_is_scalar(node) || node_is_empty(node),
+            report_node(r, node, "%s is %s, expected a number%s%s", what, node_kind_name(node),
+                        space, unit));
+    FAIL_IF(!decimal_read(node->text, value, &rest),
+            report_node(r, node, "%s = '%.60s' is not a finite number, expected a number%s%s", what,
+                        node->text, space, unit));
 
     // with its unit or without, and finite
-    if (*rest != '\0' && strcmp(rest, unit) != 0) {
-        report_node(r, node, "%s = '%.60s' carries '%.20s', expected %s", what, node->text, rest,
-                    unit[0] != '\0' ? unit : "a number without a unit");
-        return false;
-    }
-    if (!isfinite(*value)) {
-        report_node(r, node, "%s = '%.60s' is too large, expected a finite number", what,
-                    node->text);
-        return false;
-    }
+    FAIL_IF(*rest != '\0' && strcmp(rest, unit) != 0,
+            report_node(r, node, "%s = '%.60s' carries '%.20s', expected %s", what, node->text,
+                        rest, unit[0] != '\0' ? unit : "a number without a unit"));
+    FAIL_IF(!isfinite(*value),
+            report_node(r, node, "%s = '%.60s' is too large, expected a finite number", what,
+                        node->text));
     return true;
 }
 

@@ -34,8 +34,8 @@ typedef struct reader {
 // Whether an allocation succeeded; the reader remembers one that did not.
 bool reader_have_memory(reader *r, const void *memory);
 
-// Records a fault at a place of the file; printf-like.
-void reader_report_at(reader *r, int line, int column, const char *format, ...)
+// Records a fault at a place of the file; printf-like. Always false.
+bool reader_report_at(reader *r, int line, int column, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 // The same at a node or its key.
 #define report_node(r, node, ...) reader_report_at(r, (node)->line, (node)->column, __VA_ARGS__)

@@ -91,11 +91,9 @@ static bool parse_time(reader *r, const tree_node *node, double *time)
     if (!reader_quantity(r, node, "at", "s", time)) {
         return false;
     }
-    if (*time < 0 || (r->duration_known && *time > duration)) {
-        report_node(r, node, "at = %g s is outside the run, expected 0 to %g s (run.duration)",
-                    *time, duration);
-        return false;
-    }
+    FAIL_IF(*time < 0 || (r->duration_known && *time > duration),
+            report_node(r, node, "at = %g s is outside the run, expected 0 to %g s (run.duration)",
+                        *time, duration));
     return true;
 }
 
@@ -198,11 +196,9 @@ static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectati
     const char *quantity = summary_table[e->quantity].key;
     const tree_node *value = NULL, *tolerance = NULL;
     const int faults = r->faults;
-    if (map->kind != TREE_MAP) {
-        report_node(r, map, "%s is %s, expected {value: ..., tolerance: ...} or null", quantity,
-                    node_kind_name(map));
-        return false;
-    }
+    FAIL_IF(map->kind != TREE_MAP,
+            report_node(r, map, "%s is %s, expected {value: ..., tolerance: ...} or null", quantity,
+                        node_kind_name(map)));
 
     // which of the two keys are there
     for (const tree_node *child = map->first; child != NULL; child = child->next) {

@@ -92,35 +92,14 @@ static bool refuse_syntax(const builder *b)
 // What a scenario may not use although YAML has it, as a sentence, or NULL.
 static const char *forbidden(const yaml_event_t *event)
 {
-    const void *anchor = NULL, *tag = NULL;
-
-    // where the parser keeps both depends on the kind of event
-    switch (event->type) {
-    case YAML_ALIAS_EVENT:
-        return "an alias (*name) is not allowed here, expected the value itself";
-    case YAML_SCALAR_EVENT:
-        anchor = event->data.scalar.anchor;
-        tag = event->data.scalar.tag;
-        break;
-    case YAML_SEQUENCE_START_EVENT:
-        anchor = event->data.sequence_start.anchor;
-        tag = event->data.sequence_start.tag;
-        break;
-    case YAML_MAPPING_START_EVENT:
-        anchor = event->data.mapping_start.anchor;
-        tag = event->data.mapping_start.tag;
-        break;
-    default:
-        break;
-    }
-
-    if (anchor != NULL) {
-        return "an anchor (&name) is not allowed here, expected the value alone";
-    }
-    if (tag != NULL) {
-        return "a tag (!name) is not allowed here, expected the value alone";
-    }
-    return NULL;
+    // a scalar, a list and a map keep their anchor and tag in one place
+    return event->type == YAML_ALIAS_EVENT
+               ? "an alias (*name) is not allowed here, expected the value itself"
+           : event->data.scalar.anchor != NULL
+               ? "an anchor (&name) is not allowed here, expected the value alone"
+           : event->data.scalar.tag != NULL
+               ? "a tag (!name) is not allowed here, expected the value alone"
+               : NULL;
 }
 
 // Makes the node that begins with an event, with nothing below it yet. False after a fault.
@@ -130,20 +109,15 @@ static bool make_node(builder *b, const yaml_event_t *event, tree_node **made)
     const char *value = scalar ? (const char *)event->data.scalar.value : "";
     const size_t length = scalar ? event->data.scalar.length : 0;
     const char *reason = forbidden(event);
-    if (reason != NULL) {
-        return refuse_at(b, event->start_mark, "%s", reason);
-    }
-    if (memchr(value, '\0', length) != NULL) {
-        return refuse_at(b, event->start_mark, "a NUL character, expected text without it");
-    }
-    if (!scalar && b->depth >= TREE_MAX_DEPTH) {
-        return refuse_at(b, event->start_mark, "nested too deeply, expected at most %d levels",
-                         TREE_MAX_DEPTH);
-    }
-    if (++b->nodes > TREE_MAX_NODES) {
-        return refuse_at(b, event->start_mark, "too many keys and values, expected at most %d",
-                         TREE_MAX_NODES);
-    }
+    FAIL_IF(reason != NULL, refuse_at(b, event->start_mark, "%s", reason));
+    FAIL_IF(memchr(value, '\0', length) != NULL,
+            refuse_at(b, event->start_mark, "a NUL character, expected text without it"));
+    FAIL_IF(!scalar && b->depth >= TREE_MAX_DEPTH,
+            refuse_at(b, event->start_mark, "nested too deeply, expected at most %d levels",
+                      TREE_MAX_DEPTH));
+    FAIL_IF(++b->nodes > TREE_MAX_NODES,
+            refuse_at(b, event->start_mark, "too many keys and values, expected at most %d",
+                      TREE_MAX_NODES));
 
     tree_node *node = calloc(1, sizeof *node);
     char *text = node != NULL && scalar ? strndup(value, length) : NULL;
@@ -201,11 +175,10 @@ static bool take_event(builder *b, const yaml_event_t *event)
         b->depth--;
         return true;
     default:
-        if (!make_node(b, event, &node)) {
-            return false;
+        if (make_node(b, event, &node)) {
+            add_node(b, node);
         }
-        add_node(b, node);
-        return true;
+        return node != NULL;
     }
 }
 
