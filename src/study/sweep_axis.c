@@ -135,25 +135,19 @@ static status read_value(const sweep_axis *axis, const char *text, double *value
 {
     parameters scratch = {0};
     const char *own = settings_name(axis->name);
-    if (own != NULL) {
-        status read = settings_set_text(&scratch, own, text, f);
-        *value = read == STATUS_OK ? sweep_axis_get(axis, &scratch) : 0;
-        return read;
+    char list[PARAMETER_TEXT_SIZE];
+    double numbers[PARAMETER_LIST_MOST];
+    TRY(own != NULL ? settings_set_text(&scratch, own, text, f)
+                    : parameter_set_text(&scratch, axis->parameter, text, f));
+    if (axis->element == 0) {
+        *value = sweep_axis_get(axis, &scratch);
+        return STATUS_OK;
     }
-    if (axis->element > 0) {
-        char list[PARAMETER_TEXT_SIZE];
-        double numbers[PARAMETER_LIST_MOST];
-        status read = parameter_set_text(&scratch, axis->parameter, text, f);
-        parameter_format(&scratch, axis->parameter, list, sizeof list);
-        if (read == STATUS_OK && parameter_list_numbers(list, numbers) != 1) {
-            read = fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s' is no number", text);
-        }
-        *value = read == STATUS_OK ? numbers[0] : 0;
-        return read;
-    }
-    status code = parameter_set_text(&scratch, axis->parameter, text, f);
-    *value = parameter_get(&scratch, axis->parameter);
-    return code;
+    parameter_format(&scratch, axis->parameter, list, sizeof list);
+    FAIL_IF(parameter_list_numbers(list, numbers) != 1,
+            fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s' is no number", text));
+    *value = numbers[0];
+    return STATUS_OK;
 }
 
 void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t size)
@@ -286,17 +280,17 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
                       drawn ? "a:b or a:b:n" : "a:b:n"));
 
     // the ends, and the number of values
-    status code = read_value(axis, pieces[0], &axis->low, f);
-    code = code == STATUS_OK ? read_value(axis, pieces[1], &axis->high, f) : code;
-    TRY(code == STATUS_OK && count == 3 ? read_count(pieces[2], &n, f) : code);
+    TRY(read_value(axis, pieces[0], &axis->low, f));
+    TRY(read_value(axis, pieces[1], &axis->high, f));
+    TRY(count == 3 ? read_count(pieces[2], &n, f) : STATUS_OK);
 
     FAIL_IF(axis->low == axis->high,
             fault_set(f, STATUS_BAD_ARGUMENT, "a range needs two different ends"));
     FAIL_IF(axis->logarithmic && !(axis->low > 0 && axis->high > 0),
             fault_set(f, STATUS_BAD_ARGUMENT, "a logarithmic range needs ends above zero"));
 
-    code = describe_range(axis, drawn ? 0 : n, f);
-    return code == STATUS_OK && !drawn ? fill_range(axis, n, f) : code;
+    TRY(describe_range(axis, drawn ? 0 : n, f));
+    return drawn ? STATUS_OK : fill_range(axis, n, f);
 }
 
 // Reads "v1,v2,v3".

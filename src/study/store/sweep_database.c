@@ -249,32 +249,17 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned
     return STATUS_OK;
 }
 
-// The same of all rows.
-static status check_rows(sweep_database *store, fault *f)
-{
-    sqlite3_stmt *rows = NULL;
-    unsigned char *seen = calloc(store->sweep->run_count, 1);
-    status code =
-        seen != NULL ? database_prepare(store, &rows, "SELECT * FROM run", f) : fault_no_memory(f);
-    while (database_next(store, rows, &code, f)) {
-        code = check_row(store, rows, seen, f);
-        if (code != STATUS_OK && sqlite3_errcode(store->database) == SQLITE_NOMEM) {
-            code = fault_no_memory(f);
-        }
-    }
-    free(seen);
-    return code;
-}
-
 status database_check_runs(sweep_database *store, fault *f)
 {
     run_column expected[RUN_MOST_COLUMNS];
     const int columns = database_columns(store->sweep, expected);
     sqlite3_stmt *rows;
+    unsigned char *seen = calloc(store->sweep->run_count, 1);
+    TRY_MEMORY(seen != NULL, f);
     status code = database_prepare(store, &rows, "SELECT * FROM run", f);
-    int found = code == STATUS_OK ? sqlite3_column_count(rows) : 0;
+    const int found = code == STATUS_OK ? sqlite3_column_count(rows) : 0;
 
-    // name by name, in their order
+    // name by name, in their order, and none beyond
     for (int i = 0; i < columns && code == STATUS_OK; i++) {
         const char *name = i < found ? sqlite3_column_name(rows, i) : NULL;
         if (name == NULL || strcmp(name, expected[i].told.key) != 0) {
@@ -283,14 +268,20 @@ status database_check_runs(sweep_database *store, fault *f)
                              name != NULL ? name : "nothing", i + 1, expected[i].told.key);
         }
     }
-
-    // and none beyond
     if (code == STATUS_OK && found != columns) {
         code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' has %d columns of runs, expected %d",
                          store->path, found, columns);
     }
-    sqlite3_finalize(rows);
-    return code == STATUS_OK ? check_rows(store, f) : code;
+
+    // row by row
+    while (database_next(store, rows, &code, f)) {
+        code = check_row(store, rows, seen, f);
+        if (code != STATUS_OK && sqlite3_errcode(store->database) == SQLITE_NOMEM) {
+            code = fault_no_memory(f);
+        }
+    }
+    free(seen);
+    return code;
 }
 
 // --- the definition of the sweep ---
