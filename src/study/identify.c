@@ -125,39 +125,26 @@ status identify_parameters(const identification *id, bool determined, parameters
 static void list_unknowns(identification *id)
 {
     id->unknowns = id->count;
+    for (int i = 0; i < id->count; i++) {
+        id->unknown[i] = (unknown){-1, i, id->fit[i].scale, &id->fit[i].value};
+    }
     for (int k = 0; k < id->trace_count; k++) {
-        const recorded_trace *t = &id->traces[k];
+        recorded_trace *t = &id->traces[k];
         const bool turns = t->reading[CHANNEL_ENCODER] != NULL;
         const bool fitted[OWNS] = {true, turns, turns, t->fits_velocity};
         for (int own = 0; own < OWNS; own++) {
             if (fitted[own]) {
-                id->own[id->unknowns++ - id->count] = (own_unknown){k, own};
+                id->unknown[id->unknowns++] = (unknown){k, own, own_scale[own], &t->own[own]};
             }
         }
     }
 }
 
-// The present values as unknowns, each in its scale.
-static void to_unknowns(const identification *id, double *x)
+// The value that a number gives an unknown in its scale; a parameter stays within its range.
+static double value_of(const identification *id, int n, double x)
 {
-    for (int n = 0; n < id->count; n++) {
-        x[n] = id->fit[n].value / id->fit[n].scale;
-    }
-    for (int n = id->count; n < id->unknowns; n++) {
-        const own_unknown *u = &id->own[n - id->count];
-        x[n] = id->traces[u->trace].own[u->own] / own_scale[u->own];
-    }
-}
-
-static void from_unknowns(identification *id, const double *x)
-{
-    for (int n = 0; n < id->count; n++) {
-        id->fit[n].value = within_range(&id->fit[n], x[n] * id->fit[n].scale);
-    }
-    for (int n = id->count; n < id->unknowns; n++) {
-        const own_unknown *u = &id->own[n - id->count];
-        id->traces[u->trace].own[u->own] = x[n] * own_scale[u->own];
-    }
+    const unknown *u = &id->unknown[n];
+    return u->trace < 0 ? within_range(&id->fit[u->index], x * u->scale) : x * u->scale;
 }
 
 // --- batches of runs --------------------------------------------------------------------------
@@ -189,15 +176,12 @@ static void compute_piece(void *context, size_t i, void *scratch, void *result)
     (void)scratch;
     memcpy(own, t->own, sizeof own);
     for (int n = 0; n < id->unknowns; n++) {
-        const double x = here->x[n];
-        if (n < id->count) {
-            const fitted_parameter *fit = &id->fit[n];
-            (void)sweep_axis_apply(&fit->axis, within_range(fit, x * fit->scale), &p, &ignored);
-            continue;
-        }
-        const own_unknown *u = &id->own[n - id->count];
-        if (u->trace == here->trace) {
-            own[u->own] = x * own_scale[u->own];
+        const unknown *u = &id->unknown[n];
+        const double value = value_of(id, n, here->x[n]);
+        if (u->trace < 0) {
+            (void)sweep_axis_apply(&id->fit[u->index].axis, value, &p, &ignored);
+        } else if (u->trace == here->trace) {
+            own[u->index] = value;
         }
     }
     here->why = (fault){.code = STATUS_OK, .path = ""};
@@ -274,10 +258,9 @@ static status jacobian_of(identification *id, const double *x, double *jacobian,
     TRY_MEMORY(moved != NULL, f);
     double *out = moved + 2 * n * n;
     for (size_t s = 0; s < 2 * n; s++) {
-        const int j = (int)(s / 2);
         memcpy(moved + s * n, x, n * sizeof *x);
         moved[s * n + s / 2] += s % 2 == 0 ? -DIFFERENCE : DIFFERENCE;
-        only[s] = j < id->count ? -1 : id->own[j - id->count].trace;
+        only[s] = id->unknown[s / 2].trace;
     }
     const status code = residuals_of(id, moved, (int)(2 * n), only, false, out, NULL, f);
     for (size_t i = 0; i < m * n && code == STATUS_OK; i++) {
@@ -347,14 +330,16 @@ static double sum_of_squares(const double *residual, size_t count)
 static void begin_with(const identification *id, bool counted, double *x)
 {
     const double angle = id->base->parameters.initial.angle;
-    to_unknowns(id, x);
-    for (int n = id->count; n < id->unknowns && counted; n++) {
-        const own_unknown *u = &id->own[n - id->count];
-        const double *own = id->traces[u->trace].own;
-        const double offset = own[OWN_OFFSET] + (own[OWN_ANGLE] - angle);
-        x[n] = u->own == OWN_ANGLE    ? angle / own_scale[OWN_ANGLE]
-               : u->own == OWN_OFFSET ? offset / own_scale[OWN_OFFSET]
-                                      : x[n];
+    for (int n = 0; n < id->unknowns; n++) {
+        const unknown *u = &id->unknown[n];
+        double value = *u->value;
+        if (counted && u->trace >= 0) {
+            const double *own = id->traces[u->trace].own;
+            value = u->index == OWN_ANGLE    ? angle
+                    : u->index == OWN_OFFSET ? own[OWN_OFFSET] + (own[OWN_ANGLE] - angle)
+                                             : value;
+        }
+        x[n] = value / u->scale;
     }
 }
 
@@ -415,7 +400,9 @@ static status fit_with(identification *id, double *x, fault *f)
         return why.code;
     }
     TRY(jacobian_of(id, best, jacobian, f));
-    from_unknowns(id, best);
+    for (int n = 0; n < id->unknowns; n++) {
+        *id->unknown[n].value = value_of(id, n, best[n]);
+    }
     return identify_judge(id, jacobian, f);
 }
 

@@ -71,10 +71,13 @@ typedef struct fitted_parameter {
     bool determined;
 } fitted_parameter;
 
-// An unknown that a trace has of its own.
-typedef struct own_unknown {
-    int trace, own;
-} own_unknown;
+// An unknown: a parameter, or what a trace has of its own.
+typedef struct unknown {
+    int trace;     // -1 of a parameter
+    int index;     // among the parameters, or of what a trace has
+    double scale;  // in which it is about 1
+    double *value; // where it is kept
+} unknown;
 
 typedef struct identification {
     const scenario *base; // borrowed
@@ -89,8 +92,8 @@ typedef struct identification {
     // what comes out
     double *residual; // of all traces one behind the other, in standard deviations
     size_t residuals; //
-    int unknowns;     // the parameters, and behind them these
-    own_unknown own[IDENTIFY_TRACES * OWNS];
+    int unknowns;     // of them, the parameters first
+    unknown unknown[IDENTIFY_UNKNOWNS];
     double chi_square; // their sum of squares
     double aic;        // Akaike's criterion, chi_square + 2 unknowns
     bool white;        // no channel's residuals are correlated
