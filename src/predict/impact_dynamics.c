@@ -293,23 +293,18 @@ static double earliest_delay(const double c[3])
 }
 
 // Without a hub spring E1 and E2 are one equation, the balance of the whole arm with w1 = w2:
-// -S T + kv T w2 / 2 - P2 + both T f / 2 = 0, and the system is quadratic in T.
-static void solve_rigid_hub(const integrated_motion *g, prediction *out)
+// -S T + kv T w2 / 2 - P2 + both T f / 2 = 0, and the system is quadratic in T. So is the printed
+// closed form of an arm with one, whose velocity w1 after the impact is known.
+static void solve_quadratic(const integrated_motion *g, bool rigid_hub, double w1, prediction *out)
 {
     double c[3];
     force_free_terms(g, c);
-    c[1] += g->hub_damping * g->w2 / 2 - g->drive;
-    out->delay = earliest_delay(c);
-    out->force = force_of_delay(g, out->delay);
-}
-
-// The printed closed form of an arm with a hub spring, whose velocity w1 after the impact is known.
-static void solve_known_hub(const integrated_motion *g, double w1, prediction *out)
-{
-    double c[3];
-    force_free_terms(g, c);
-    c[1] += g->k1 * g->hub_bend;
-    c[2] += g->k1 * (g->w2 - w1) / 4;
+    if (rigid_hub) {
+        c[1] += g->hub_damping * g->w2 / 2 - g->drive;
+    } else {
+        c[1] += g->k1 * g->hub_bend;
+        c[2] += g->k1 * (g->w2 - w1) / 4;
+    }
     out->delay = earliest_delay(c);
     out->force = force_of_delay(g, out->delay);
 }
@@ -327,10 +322,8 @@ static status predict(const parameters *p, const three_body_state *s, bool close
     two_link_at(&t, p, form_of(p), s->angle[1], s->angle[2]);
     TRY(two_link_velocity_jump(&t, s, after, &out->impulse, f));
     integrate_motion(&g, p, &t, s, after);
-    if (t.rigid_hub) {
-        solve_rigid_hub(&g, out); // a hub without a spring makes the system quadratic
-    } else if (closed_form) {
-        solve_known_hub(&g, s->velocity[0] + after[1] - s->velocity[1], out);
+    if (t.rigid_hub || closed_form) {
+        solve_quadratic(&g, t.rigid_hub, s->velocity[0] + after[1] - s->velocity[1], out);
     } else {
         TRY(solve_with_hub_spring(&g, s->velocity[0], &out->delay, &out->force, f));
     }
