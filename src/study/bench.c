@@ -97,29 +97,15 @@ bool bench_is_slower(const benchmark *b, const bench_result *now, const bench_re
 
 // --- files ----------------------------------------------------------------------------------
 
-// The numbers of a result by their names in a file: with extremes, as one says little about a
-// machine.
-static const struct {
-    const char *key;
-    size_t place;
-} numbers[] = {{"median", offsetof(bench_result, median)},
-               {"min", offsetof(bench_result, min)},
-               {"max", offsetof(bench_result, max)},
-               {"wall_per_cpu", offsetof(bench_result, wall)}};
-enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
-
 json_t *bench_export(const bench_result *results, int count)
 {
     assert(results != NULL || count == 0);
     json_t *array = json_array();
-    for (int i = 0; i < count; i++) {
-        json_t *entry =
-            json_members(json_object(), "name:t unit:t", results[i].name, results[i].unit);
-        for (int k = 0; k < NUMBERS; k++) {
-            const char *value = (const char *)&results[i] + numbers[k].place;
-            json_put(entry, numbers[k].key, json_number(*(const double *)value));
-        }
-        json_add(array, entry);
+    for (const bench_result *r = results; r < results + count; r++) {
+        // with extremes, as one number says little about a machine
+        json_add(array,
+                 json_members(json_object(), "name:t unit:t median:n min:n max:n wall_per_cpu:n",
+                              r->name, r->unit, r->median, r->min, r->max, r->wall));
     }
     return json_members(json_object(), "bench:o", array);
 }
@@ -132,10 +118,10 @@ static bool read_entry(json_t *entry, bench_result *result)
     }
     snprintf(result->name, sizeof result->name, "%s", name);
     snprintf(result->unit, sizeof result->unit, "%s", unit);
-    for (int k = 0; k < NUMBERS; k++) {
-        *(double *)((char *)result + numbers[k].place) =
-            json_number_value(json_object_get(entry, numbers[k].key));
-    }
+    result->median = json_number_value(json_object_get(entry, "median"));
+    result->min = json_number_value(json_object_get(entry, "min"));
+    result->max = json_number_value(json_object_get(entry, "max"));
+    result->wall = json_number_value(json_object_get(entry, "wall_per_cpu"));
     return result->median > 0;
 }
 
