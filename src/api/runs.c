@@ -1,6 +1,5 @@
 // Runs of libimpactlab, and what they leave behind.
 #include <stdlib.h>
-#include <string.h>
 
 #include "src/api/handles.h"
 #include "src/base/json.h"

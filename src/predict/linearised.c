@@ -18,8 +18,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/arm/chain.h"
 #include "src/arm/impact.h"

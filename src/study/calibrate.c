@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <string.h>
 
 #include "src/arm/arm.h"
 #include "src/run/run.h"

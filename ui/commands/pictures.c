@@ -6,7 +6,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "render/page/picture_file.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 #include "src/base/whole_file.h"

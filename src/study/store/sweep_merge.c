@@ -1,7 +1,6 @@
 // Brings the parts of one sweep, computed apart, together in one database.
 #include <assert.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "src/base/whole_file.h"
 #include "src/study/store/sweep_database.h"
