@@ -144,7 +144,8 @@ TEST(a_run_that_fails_is_told_with_its_step)
                   .parameters = parameters_with(
                       "method.name=newmark method.gamma=0.3 arm.links=8 run.duration=3")};
     convergence_panel panel;
-    REFUSED(STATUS_UNSTABLE, "with a step of 0.001 s", convergence_compute(&s, NULL, NULL, &panel, &f));
+    REFUSED(STATUS_UNSTABLE, "with a step of 0.001 s",
+            convergence_compute(&s, NULL, NULL, &panel, &f));
 
     // and nothing of it or of those behind it is taken for a result
     assert_int_equal(panel.done, 0);
