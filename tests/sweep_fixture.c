@@ -51,7 +51,7 @@ sweep_store *must_open(const char *path, const sweep *s)
 
 char *csv_of(sweep_store *store)
 {
-    WRITTEN(text, DONE(sweep_store_csv(store, stream, &f)));
+    WRITTEN(text, DONE(sweep_store_write(store, stream, false, &f)));
     return text;
 }
 

@@ -201,8 +201,8 @@ static status sweep_over(scenario *s, FILE *out)
         const sweep_options options = {.jobs = 1};
         code = sweep_store_open(&store, NULL, &made_sweep, &f);
         code = code == STATUS_OK ? sweep_run(&made_sweep, store, &options, &progress, &f) : code;
-        code = code == STATUS_OK ? sweep_store_csv(store, out, &f) : code;
-        code = code == STATUS_OK ? sweep_store_json(store, out, &f) : code;
+        code = code == STATUS_OK ? sweep_store_write(store, out, false, &f) : code;
+        code = code == STATUS_OK ? sweep_store_write(store, out, true, &f) : code;
         code = code == STATUS_OK
                    ? robust_law_of(&law, "none", &made_sweep, (sweep_share){0}, store, &f)
                    : code;

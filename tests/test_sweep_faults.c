@@ -136,8 +136,8 @@ static int clean_up(void **state)
 // All rows of a store in both formats, to be freed, NULL with a fault if they cannot be read.
 static char *rows_of(sweep_store *store, status *code, fault *f)
 {
-    WRITTEN(text, *code = sweep_store_csv(store, stream, f);
-            *code = *code == STATUS_OK ? sweep_store_json(store, stream, f) : *code);
+    WRITTEN(text, *code = sweep_store_write(store, stream, false, f);
+            *code = *code == STATUS_OK ? sweep_store_write(store, stream, true, f) : *code);
     return text;
 }
 

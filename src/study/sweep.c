@@ -8,11 +8,21 @@
 
 #include "src/base/random.h"
 
+static const char *const samplings[] = {"grid", "random", "latin"};
+
 const char *sweep_sampling_name(sweep_sampling sampling)
 {
     assert((unsigned)sampling <= SWEEP_LATIN);
-    static const char *const names[] = {"grid", "random", "latin"};
-    return names[sampling];
+    return samplings[sampling];
+}
+
+int sweep_sampling_find(const char *name)
+{
+    int i = SWEEP_LATIN;
+    while (i >= 0 && strcmp(name, samplings[i]) != 0) {
+        i--;
+    }
+    return i;
 }
 
 // --- what is varied -------------------------------------------------------------------------
@@ -242,7 +252,7 @@ status sweep_init(sweep *s, const scenario *base, const sweep_request *request, 
 
     // whether each run can be begun
     s->base = base;
-    status code = check_combinations(s, f);
+    const status code = check_combinations(s, f);
     if (code != STATUS_OK) {
         sweep_finish(s);
     }

@@ -15,8 +15,9 @@ enum { SWEEP_MOST_AXES = 32 };
 // equal parts of every range as there are runs is met exactly once (Latin hypercube).
 typedef enum sweep_sampling { SWEEP_GRID, SWEEP_RANDOM, SWEEP_LATIN } sweep_sampling;
 
-// "grid", "random", "latin"
+// "grid", "random", "latin"; the one of a name, -1 if there is none.
 const char *sweep_sampling_name(sweep_sampling sampling);
+int sweep_sampling_find(const char *name);
 
 typedef struct sweep {
     const scenario *base; // borrowed; NULL in a plan

@@ -208,16 +208,13 @@ status definition_plan(const definition *d, const char *path, sweep *plan, fault
     const char *sample = definition_value(d, "sample");
     unsigned long long runs = 0, seed = 0;
     fault why = {.text = "it does not say how its values are combined"};
-    sweep_request request = {.vary = vary, .sampling = SWEEP_LATIN + 1};
+    const int sampling = sample != NULL ? sweep_sampling_find(sample) : -1;
+    sweep_request request = {.vary = vary, .sampling = (sweep_sampling)sampling};
     *plan = (sweep){.axis_count = 0};
 
     // how the values are combined, and of how many runs
-    for (int i = SWEEP_GRID; sample != NULL && i <= SWEEP_LATIN; i++) {
-        request.sampling =
-            strcmp(sample, sweep_sampling_name(i)) == 0 ? (sweep_sampling)i : request.sampling;
-    }
-    const bool drawn = request.sampling != SWEEP_GRID;
-    bool good = request.sampling <= SWEEP_LATIN;
+    const bool drawn = sampling != SWEEP_GRID;
+    bool good = sampling >= 0;
     if (good && (!read_number(d, "runs", &runs) || (drawn && !read_number(d, "seed", &seed)))) {
         snprintf(why.text, sizeof why.text, "it does not say how many runs its sweep has");
         good = false;

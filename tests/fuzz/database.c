@@ -26,7 +26,7 @@ static void read_store(sweep_store *store, const sweep *s)
     FILE *stream = open_memstream(&text, &size);
     FUZZ_CHECK(stream != NULL);
     f = (fault){0};
-    code = sweep_store_csv(store, stream, &f);
+    code = sweep_store_write(store, stream, false, &f);
     FUZZ_CHECK(code == STATUS_OK || f.text[0] != '\0');
     fclose(stream);
     free(text);

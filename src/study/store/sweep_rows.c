@@ -134,8 +134,9 @@ static void begin_json(const sweep *s, FILE *stream)
 }
 
 // Writes all rows one by one, as there may be millions.
-static status write_rows(sweep_database *store, FILE *stream, bool json, fault *f)
+status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
 {
+    sweep_database *store = database_of(of);
     sqlite3_stmt *rows;
     csv_writer csv = csv_begin(stream);
     run_column all[RUN_MOST_COLUMNS];
@@ -174,14 +175,4 @@ static status write_rows(sweep_database *store, FILE *stream, bool json, fault *
     }
     fputs(json ? "\n  ]\n}\n" : "", stream);
     return sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);
-}
-
-status sweep_store_csv(sweep_store *of, FILE *stream, fault *f)
-{
-    return write_rows(database_of(of), stream, false, f);
-}
-
-status sweep_store_json(sweep_store *of, FILE *stream, fault *f)
-{
-    return write_rows(database_of(of), stream, true, f);
 }

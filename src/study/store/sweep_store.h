@@ -34,15 +34,11 @@ status sweep_store_put(sweep_store *store, size_t run, const summary *result, fa
 status sweep_store_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
                             fault *f) __attribute__((warn_unused_result));
 
-// Writes all rows in the order of the runs as CSV: run, varied values, status, message, then the
-// quantities that do not depend on the machine; the header is name[unit]. Errors of the stream stay
-// in it (ferror).
-status sweep_store_csv(sweep_store *store, FILE *stream, fault *f)
-    __attribute__((warn_unused_result));
-
-// The same as JSON: scenario, sampling, and in `runs` an object for each row under the keys of
-// `impactlab run --json`, the varied values under their paths. STATUS_NO_MEMORY.
-status sweep_store_json(sweep_store *store, FILE *stream, fault *f)
+// Writes all rows in the order of the runs. As CSV: run, varied values, status, message, then the
+// quantities that do not depend on the machine; the header is name[unit]. As JSON: scenario,
+// sampling, and in `runs` an object for each row under the keys of `impactlab run --json`, the
+// varied values under their paths. Errors of the stream stay in it (ferror). STATUS_NO_MEMORY.
+status sweep_store_write(sweep_store *store, FILE *stream, bool json, fault *f)
     __attribute__((warn_unused_result));
 
 // --- databases of others ---

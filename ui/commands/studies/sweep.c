@@ -26,9 +26,8 @@ typedef struct sweep_order {
 
 enum { ROWS_SHOWN = 40 };
 
-// Writes all rows to a file in the form that `write` gives them; path NULL: nothing is asked for.
-static int write_rows(sweep_store *store, const char *path,
-                      status (*write)(sweep_store *store, FILE *stream, fault *f))
+// Writes all rows to a file, as JSON or CSV; path NULL: nothing is asked for.
+static int write_rows(sweep_store *store, const char *path, bool json)
 {
     whole_file file;
     fault f = {0};
@@ -36,8 +35,8 @@ static int write_rows(sweep_store *store, const char *path,
         return EXIT_DONE;
     }
     FAIL_IF(whole_file_open(&file, path, &f) != STATUS_OK, complain_fault(&f));
-    const status code = whole_file_close(&file, write(store, file.stream, &f), &f);
-    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    const status written = sweep_store_write(store, file.stream, json, &f);
+    return whole_file_close(&file, written, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
 // "motor.voltage = 2 V, method.name = event" of a run.
@@ -129,8 +128,7 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     }
 
     // files first: what is printed may be cut off
-    int code = worse(write_rows(store, a->csv, sweep_store_csv),
-                     write_rows(store, a->json, sweep_store_json));
+    int code = worse(write_rows(store, a->csv, false), write_rows(store, a->json, true));
     if (a->plot != NULL) {
         const sweep_picture shown = {.sweep = &o->sweep, .key = o->quantity, .values = values};
         code = worse(code, publish_owned(a, sweep_figure_create(&shown)));
@@ -148,16 +146,6 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
 }
 
 // --- the request ------------------------------------------------------------------------------
-
-static sweep_sampling sampling_of(const char *name)
-{
-    for (int i = SWEEP_GRID; name != NULL && i <= SWEEP_LATIN; i++) {
-        if (strcmp(name, sweep_sampling_name((sweep_sampling)i)) == 0) {
-            return (sweep_sampling)i;
-        }
-    }
-    return SWEEP_GRID;
-}
 
 // Reads --part K/N, which needs a database: what a part computes is good for being merged.
 static int read_share(const arguments *a, sweep_share *share)
@@ -214,11 +202,12 @@ static int sweep_and_report(const arguments *a, scenario *base)
     sweep_order o = {.arguments = a,
                      .scenario = base,
                      .quantity = a->quantity != NULL ? a->quantity : "peak_force_N"};
-    const sweep_request request = {.vary = a->varies.items,
-                                   .vary_count = a->varies.count,
-                                   .sampling = sampling_of(a->sampling),
-                                   .runs = (size_t)a->runs,
-                                   .seed = a->seed};
+    const sweep_request request = {
+        .vary = a->varies.items,
+        .vary_count = a->varies.count,
+        .sampling = (sweep_sampling)sweep_sampling_find(a->sampling ? a->sampling : "grid"),
+        .runs = (size_t)a->runs,
+        .seed = a->seed};
     fault f = {0};
     sweep_store *store;
     int code = read_share(a, &o.share);
@@ -271,13 +260,6 @@ const command sweep_command = {
 
 // --- merge ------------------------------------------------------------------------------------
 
-static json_t *merged_object(const char *path, const sweep_merged *merged)
-{
-    return json_members(json_object(), "file:t runs:o runs_of_sweep:o", path,
-                        json_integer((json_int_t)merged->runs),
-                        json_integer((json_int_t)merged->total));
-}
-
 static int merge(const arguments *a)
 {
     fault f = {0};
@@ -291,7 +273,11 @@ static int merge(const arguments *a)
         say("%s: %zu of %zu runs from %d part%s\n", a->output, merged.runs, merged.total,
             a->operand_count, a->operand_count == 1 ? "" : "s");
     }
-    return a->json != NULL ? write_json(a->json, merged_object(a->output, &merged)) : EXIT_DONE;
+    return a->json != NULL
+               ? write_json(a->json, json_members(json_object(), "file:t runs:o runs_of_sweep:o",
+                                                  a->output, json_integer((json_int_t)merged.runs),
+                                                  json_integer((json_int_t)merged.total)))
+               : EXIT_DONE;
 }
 
 static const option_row merge_rows[] = {
