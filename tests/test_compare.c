@@ -37,8 +37,8 @@ typedef struct forms {
 
 static forms forms_of(const compare_table *t)
 {
-    WRITTEN(page, compare_markdown(stream, t));
-    WRITTEN(text, compare_text(stream, t));
+    WRITTEN(page, compare_text(stream, t, true));
+    WRITTEN(text, compare_text(stream, t, false));
     WRITTEN(csv, compare_csv(stream, t));
     json_t *whole = compare_json(t);
     forms f = {page, text, csv, json_dumps(whole, JSON_COMPACT)};

@@ -216,7 +216,7 @@ static void fill_cells(const calibration_point *p, const scenario *s, result_cel
 
 json_t *calibration_json(const calibration *c, const scenario *s, const char *table)
 {
-    json_t *object = json_object(), *points = json_array();
+    json_t *points = json_array();
     result_cell cells[COLUMNS];
     for (int i = 0; i < c->count; i++) {
         json_t *point = json_object();
@@ -224,10 +224,7 @@ json_t *calibration_json(const calibration *c, const scenario *s, const char *ta
         result_put(point, columns, cells, COLUMNS);
         json_add(points, point);
     }
-    json_put(object, "scenario", json_text(s->name));
-    json_put(object, "k2_table", json_text(table));
-    json_put(object, "points", points);
-    return object;
+    return json_members(json_object(), "scenario:t k2_table:t points:o", s->name, table, points);
 }
 
 void calibration_csv(FILE *stream, const calibration *c, const scenario *s)

@@ -204,7 +204,7 @@ static void format_result(double value, bool page, char *text, size_t size)
 }
 
 // The table in columns of blanks, results marked where they differ, or of a Markdown page.
-static void write_table(FILE *stream, const compare_table *t, bool page)
+void compare_text(FILE *stream, const compare_table *t, bool page)
 {
     const int width = -longest(t, false), law = -longest(t, true);
     char text[PARAMETER_TEXT_SIZE];
@@ -244,16 +244,6 @@ static void write_table(FILE *stream, const compare_table *t, bool page)
     }
 }
 
-void compare_text(FILE *stream, const compare_table *t)
-{
-    write_table(stream, t, false);
-}
-
-void compare_markdown(FILE *stream, const compare_table *t)
-{
-    write_table(stream, t, true);
-}
-
 // --- for programs ---------------------------------------------------------------------------
 
 static json_t *varied_object(const compare_table *t, int row)
@@ -276,11 +266,10 @@ static json_t *varied_object(const compare_table *t, int row)
 static json_t *row_object(const compare_table *t, int i)
 {
     const compare_row *row = &t->rows[i];
-    json_t *object = json_object(), *differs = json_array();
+    json_t *differs = json_array();
 
     // which run
-    json_put(object, "scenario", json_text(row->scenario));
-    json_put(object, "law", json_text(row->law));
+    json_t *object = json_members(json_object(), "scenario:t law:t", row->scenario, row->law);
     if (t->varied_count > 0) {
         json_put(object, "varied", varied_object(t, i));
     }
@@ -310,11 +299,9 @@ json_t *compare_json(const compare_table *t)
     }
 
     if (t->against != NULL) {
-        json_put(whole, "against", json_text(t->against->scenario));
-        json_put(whole, "tolerance", json_number(t->tolerance));
+        json_members(whole, "against:t tolerance:n", t->against->scenario, t->tolerance);
     }
-    json_put(whole, "runs", array);
-    return whole;
+    return json_members(whole, "runs:o", array);
 }
 
 void compare_csv(FILE *stream, const compare_table *t)

@@ -58,11 +58,9 @@ bool compare_differs(double value, double reference, double tolerance);
 // an unknown key.
 status compare_choose(compare_table *t, const char *keys, fault *f);
 
-// Table for people; what differs from the reference is marked with *.
-void compare_text(FILE *stream, const compare_table *t);
-
-// The same as a table of a Markdown page, without marks.
-void compare_markdown(FILE *stream, const compare_table *t);
+// Table for people, in columns of blanks, where * marks what differs from the reference, or of a
+// Markdown page.
+void compare_text(FILE *stream, const compare_table *t, bool page);
 
 // {"runs": [{"scenario": ..., "law": ..., "varied": {PATH: value ...} (if there are any), "status":
 // "ok", KEY: number or null ..., "differs": [KEY ...] (with a reference only)}]}. NULL without

@@ -111,9 +111,8 @@ typedef struct robust_table {
     const char *against; // the law that `against` of each is held against; NULL if there is none
 } robust_table;
 
-// A line a law, or a law in a case, the latter with the worst of all runs only: for people, of a
-// Markdown page, as CSV, and {"scenario": ..., "laws": [...]}, NULL without memory.
-void robust_text(FILE *stream, const robust_table *t);
-void robust_markdown(FILE *stream, const robust_table *t);
+// A line a law, or a law in a case, the latter with the worst of all runs only: for people, also of
+// a Markdown page, as CSV, and {"scenario": ..., "laws": [...]}, NULL without memory.
+void robust_text(FILE *stream, const robust_table *t, bool page);
 void robust_csv(FILE *stream, const robust_table *t);
 json_t *robust_json(const robust_table *t);

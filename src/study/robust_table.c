@@ -158,7 +158,7 @@ static int case_width(const robust_table *t)
 }
 
 // The table in columns of blanks, or of a Markdown page.
-static void write_table(FILE *stream, const robust_table *t, bool page)
+void robust_text(FILE *stream, const robust_table *t, bool page)
 {
     assert(t->count > 0);
     const bool cases = first_column(t) == CASE;
@@ -204,16 +204,6 @@ static void write_table(FILE *stream, const robust_table *t, bool page)
     }
 }
 
-void robust_text(FILE *stream, const robust_table *t)
-{
-    write_table(stream, t, false);
-}
-
-void robust_markdown(FILE *stream, const robust_table *t)
-{
-    write_table(stream, t, true);
-}
-
 void robust_csv(FILE *stream, const robust_table *t)
 {
     assert(t->count > 0);
@@ -229,7 +219,7 @@ void robust_csv(FILE *stream, const robust_table *t)
 
 json_t *robust_json(const robust_table *t)
 {
-    json_t *whole = json_object(), *laws = json_array();
+    json_t *whole = json_members(json_object(), "scenario:t", t->scenario), *laws = json_array();
     for (int i = 0; i < t->count; i++) {
         result_cell cells[COLUMNS];
         const int first = first_column(t);
@@ -239,10 +229,8 @@ json_t *robust_json(const robust_table *t)
         json_add(laws, law);
     }
 
-    json_put(whole, "scenario", json_text(t->scenario));
     if (t->against != NULL) {
         json_put(whole, "against", json_text(t->against));
     }
-    json_put(whole, "laws", laws);
-    return whole;
+    return json_members(whole, "laws:o", laws);
 }

@@ -148,7 +148,7 @@ static status run_all(comparison *c, run_monitor *monitor)
 }
 
 RESULT_WRITER(write_csv, comparison, compare_csv(stream, &found->table))
-RESULT_WRITER(write_markdown, comparison, compare_markdown(stream, &found->table))
+RESULT_WRITER(write_markdown, comparison, compare_text(stream, &found->table, true))
 
 static json_t *table_json(const scenario *s, const void *found)
 {
@@ -159,7 +159,7 @@ static void print_table(const scenario *s, const void *found)
 {
     const compare_table *t = &((const comparison *)found)->table;
     if (t->count > 0) {
-        compare_text(stdout, t);
+        compare_text(stdout, t, false);
     }
     if (t->count > 0 && t->against != NULL) {
         say("\n* differs from %s by more than %g %%\n", t->against->scenario, 100 * t->tolerance);

@@ -295,7 +295,7 @@ static json_t *table_json(const scenario *s, const void *table)
     return robust_json(table);
 }
 
-RESULT_WRITER(write_markdown, robust_table, robust_markdown(stream, found))
+RESULT_WRITER(write_markdown, robust_table, robust_text(stream, found, true))
 RESULT_WRITER(write_csv, robust_table, robust_csv(stream, found))
 
 static int plot(const arguments *a, const scenario *s, const void *table)
@@ -306,7 +306,7 @@ static int plot(const arguments *a, const scenario *s, const void *table)
 
 static void print_table(const scenario *s, const void *table)
 {
-    robust_text(stdout, table);
+    robust_text(stdout, table, false);
 }
 
 static int report(const robustness *r)

@@ -131,7 +131,7 @@ static void print_answer(const scenario *s, const void *found_by)
     if (found->asked.over != NULL) {
         const robust_table table = compared(t, laws);
         say("\n");
-        robust_text(stdout, &table);
+        robust_text(stdout, &table, false);
     }
 }
 
