@@ -195,6 +195,7 @@ static int check_quantity(const option_row *o, const char *key)
 static int option_store(arguments *a, const option_row *o, char *text)
 {
     void *place = option_place(a, o);
+    option_list *list = place; // of what may be given several times
     switch (o->type) {
     case OPTION_FLAG:
         *(bool *)place = true;
@@ -207,18 +208,12 @@ static int option_store(arguments *a, const option_row *o, char *text)
         return read_whole(o, text, place);
     case OPTION_SIZE:
         return read_size(o, text, place);
-
-    // what may be given several times
-    case OPTION_NUMBERS: {
-        option_list *list = place;
+    case OPTION_NUMBERS:
         return read_number(o, text, &list->numbers[list->count++]);
-    }
     case OPTION_FILES:
-    case OPTION_PARAMETERS: {
-        option_list *list = place;
+    case OPTION_PARAMETERS:
         list->items[list->count++] = text;
         return EXIT_DONE;
-    }
 
     // texts are kept as they are, and checked where only some are known
     default:
@@ -306,10 +301,7 @@ static void option_lists(const command *self, struct option *longs, char *shorts
 static int row_of(const command *self, int found)
 {
     int i = 0;
-    if (found >= ROW_VALUE) {
-        return found - ROW_VALUE;
-    }
-    while (command_option(self, i)->letter != found) {
+    while (found != ROW_VALUE + i && found != command_option(self, i)->letter) {
         i++;
     }
     return i;
@@ -327,21 +319,6 @@ static void remember(arguments *a, const char *before, const char *word)
         snprintf(longer, size, "%s%s%s%s%s", so_far, before, quote, word, quote);
         free(a->command_line);
         a->command_line = longer;
-    }
-}
-
-// An option as given on the command line. Paths of results are left out, because they do not change
-// the results.
-static void remember_option(arguments *a, const option_row *o, const char *value)
-{
-    char name[64];
-    if (option_is_written(o)) {
-        return;
-    }
-    snprintf(name, sizeof name, "--%s", o->name);
-    remember(a, " ", name);
-    if (value != NULL) {
-        remember(a, " ", value);
     }
 }
 
@@ -374,7 +351,13 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
                            ? complain("option --%s was given twice", o->name)
                            : option_store(a, o, optarg);
         given[i] = true;
-        remember_option(a, o, o->type == OPTION_FLAG ? NULL : optarg);
+        // where results are written to does not change them
+        if (!option_is_written(o)) {
+            remember(a, " --", o->name);
+        }
+        if (!option_is_written(o) && o->type != OPTION_FLAG) {
+            remember(a, " ", optarg);
+        }
     }
     return false;
 }

@@ -261,21 +261,16 @@ int command_run(const arguments *a)
     return c->use != NULL ? with_scenario(a->operands[0], a, c->use) : c->run(a);
 }
 
+RESULT_WRITER(write_value, json_t, json_write(stream, found))
+
 int write_json(const char *path, json_t *value)
 {
-    whole_file file;
-    fault f = {0};
-
     // all of it or nothing
-    bool lost = loss_noted() || value == NULL;
-    status code = lost ? fault_no_memory(&f) : whole_file_open(&file, path, &f);
-    if (code == STATUS_OK) {
-        json_write(file.stream, value);
-        code = whole_file_commit(&file, &f);
-    }
-
+    const bool lost = loss_noted() || value == NULL;
+    const int result = lost ? complain_fault(&(fault){.code = STATUS_NO_MEMORY})
+                            : write_file(path, write_value, NULL, value);
     json_decref(value);
-    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    return result;
 }
 
 int write_file(const char *path, result_writer *write, const scenario *s, const void *found)
@@ -285,12 +280,9 @@ int write_file(const char *path, result_writer *write, const scenario *s, const 
     if (path == NULL || write == NULL) {
         return EXIT_DONE;
     }
-    status code = whole_file_open(&file, path, &f);
-    if (code == STATUS_OK) {
-        write(file.stream, s, found);
-        code = whole_file_commit(&file, &f);
-    }
-    return code == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    FAIL_IF(whole_file_open(&file, path, &f) != STATUS_OK, complain_fault(&f));
+    write(file.stream, s, found);
+    return whole_file_commit(&file, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
 }
 
 int write_results(const arguments *a, const command_results *r, const scenario *s,

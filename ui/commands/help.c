@@ -95,31 +95,25 @@ void print_commands(FILE *stream)
 
 // --- the command ----------------------------------------------------------------------------
 
-static void write_page(FILE *stream, const scenario *s, const void *about)
-{
-    write_man_page(stream, about);
-}
+RESULT_WRITER(write_page, command, write_man_page(stream, found))
 
-// Writes the page of a command, of impactlab itself if c is NULL, as FOLDER/impactlab-COMMAND.1.
-static int write_page_into(const char *folder, const command *c)
-{
-    char path[4096];
-    int length = snprintf(path, sizeof path, "%s/impactlab%s%s.1", folder, c != NULL ? "-" : "",
-                          c != NULL ? c->name : "");
-    FAIL_IF(length >= (int)sizeof path, complain("--man-pages %s: the name is too long", folder));
-    return write_file(path, write_page, NULL, c);
-}
-
-// All man pages. The folder is made if it is not there.
+// All man pages, FOLDER/impactlab.1 and FOLDER/impactlab-COMMAND.1. The folder is made if it is not
+// there.
 static int write_pages(const char *folder)
 {
+    int result = EXIT_DONE;
     if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
         complain("the folder '%s' cannot be made: %s", folder, strerror(errno));
         return EXIT_FAILED;
     }
-    int result = write_page_into(folder, NULL);
-    for (int i = 0; i < command_count; i++) {
-        result = worse(result, write_page_into(folder, command_table[i]));
+    for (int i = -1; i < command_count; i++) {
+        const command *c = i < 0 ? NULL : command_table[i];
+        char path[4096];
+        const int length = snprintf(path, sizeof path, "%s/impactlab%s%s.1", folder,
+                                    c != NULL ? "-" : "", c != NULL ? c->name : "");
+        FAIL_IF(length >= (int)sizeof path,
+                complain("--man-pages %s: the name is too long", folder));
+        result = worse(result, write_file(path, write_page, NULL, c));
     }
     return result;
 }

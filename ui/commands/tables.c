@@ -90,28 +90,27 @@ static void print_rows(const thesis_tables *t)
     }
 }
 
-static void print_fitted(const scenario *s, const void *found)
-{
-    const thesis_tables *t = found;
-    print_rows(t);
-    printf("\nMean error over the 12 cells of a row kind:\n");
-    for (size_t i = 0; i < sizeof labels / sizeof labels[0]; i++) {
-        const double error = tables_mean_error(t, "fitted", labels[i].quantity);
-        if (!isnan(error)) {
-            printf("  %-36s %6.1f %%\n", labels[i].label, 100 * error);
-        }
-    }
-}
-
 static void print_tables(const scenario *s, const void *found)
 {
     const thesis_tables *t = found;
+    const bool fitted = strcmp(t->rows[0].model, "fitted") == 0;
     print_rows(t);
-    printf("\nMean error over the 12 cells of a row kind (printed model, corrected model):\n");
+    printf("\nMean error over the 12 cells of a row kind%s:\n",
+           fitted ? "" : " (printed model, corrected model)");
     for (size_t i = 0; i < sizeof labels / sizeof labels[0]; i++) {
-        printf("  %-36s %6.1f %% %6.1f %%\n", labels[i].label,
-               100 * tables_mean_error(t, "printed", labels[i].quantity),
-               100 * tables_mean_error(t, "corrected", labels[i].quantity));
+        const char *quantity = labels[i].quantity;
+        const double error = 100 * tables_mean_error(t, t->rows[0].model, quantity);
+        if (isnan(error)) {
+            continue;
+        }
+        printf("  %-36s %6.1f %%", labels[i].label, error);
+        if (!fitted) {
+            printf(" %6.1f %%", 100 * tables_mean_error(t, "corrected", quantity));
+        }
+        printf("\n");
+    }
+    if (fitted) {
+        return;
     }
 
     printf("\nInferred, since the thesis does not print them (docs/explanation/model.md):\n");
@@ -122,7 +121,7 @@ static void print_tables(const scenario *s, const void *found)
 
 static int tables(const arguments *a)
 {
-    const command_results r = {tables_object, a->fitted ? print_fitted : print_tables};
+    static const command_results r = {tables_object, print_tables};
     thesis_tables t;
     fault f = {0};
     if (a->fitted) {
