@@ -59,22 +59,14 @@ bool parameter_usual_range(int parameter, double value, double *range_low, doubl
     double usual = fabs(default_of(parameter)), low = info->minimum, high = info->maximum;
 
     // decades: all of them, or some near the default up to the value
-    if (low > 0 && high / low >= power_of_ten(FEWEST_DECADES) * (1 - 1e-9)) {
-        if (high / low > power_of_ten(MOST_DECADES) * (1 + 1e-9) && usual > 0) {
-            const int below = decade_of(usual), above = below + (power_of_ten(below) < usual);
-            low = fmax(low, fmin(value, power_of_ten(below - 2)));
-            high = fmin(high, fmax(value, power_of_ten(above + 2)));
-        }
-        *range_low = low;
-        *range_high = high;
-        *logarithmic = true;
-        return true;
-    }
-
-    // a range much wider than the default is shown in part
-    double size = fmax(usual, fabs(value));
-    if (high - low > WIDE * fmax(size, 1e-12)) {
-        // a range that suits the default, or the value once that is far from it
+    *logarithmic = low > 0 && high / low >= power_of_ten(FEWEST_DECADES) * (1 - 1e-9);
+    const double size = fmax(usual, fabs(value));
+    if (*logarithmic && high / low > power_of_ten(MOST_DECADES) * (1 + 1e-9) && usual > 0) {
+        const int below = decade_of(usual), above = below + (power_of_ten(below) < usual);
+        low = fmax(low, fmin(value, power_of_ten(below - 2)));
+        high = fmin(high, fmax(value, power_of_ten(above + 2)));
+    } else if (!*logarithmic && high - low > WIDE * fmax(size, 1e-12)) {
+        // one much wider than suits the default, or the value once that is far from it, in part
         double reach = round_up(usual > 0 ? 4 * usual : info->type == PARAMETER_REAL ? 0.1 : 10);
         reach = fabs(value) > reach ? round_up(fabs(value)) : reach;
         high = fmin(high, reach);
@@ -82,6 +74,5 @@ bool parameter_usual_range(int parameter, double value, double *range_low, doubl
     }
     *range_low = low;
     *range_high = high;
-    *logarithmic = false;
     return true;
 }
