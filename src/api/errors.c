@@ -69,23 +69,13 @@ int api_missing(impactlab_error *error, const char *names, size_t i)
                     "the argument %.*s is NULL, expected what it points to", length, names);
 }
 
-void api_keep_first(void *context, const char *sentence)
+int api_refused(impactlab_error *error, fault *first, const fault_place *at, status code)
 {
-    api_first_fault *first = context;
-    if (first->count++ == 0 && first->error != NULL) {
-        copy_text(first->error->sentence, sizeof first->error->sentence, sentence);
-    }
-}
-
-int api_finish_first(impactlab_error *error, const fault_place *at, status code)
-{
-    if (error != NULL) {
-        error->status = (int)code;
-        error->line = at->line;
-        error->column = at->column;
-        copy_text(error->parameter, sizeof error->parameter, at->path != NULL ? at->path : "");
-    }
-    return (int)code;
+    first->code = code;
+    first->line = at->line;
+    first->column = at->column;
+    first->path = at->path != NULL ? at->path : "";
+    return api_error(error, first);
 }
 
 int api_parameter(const char *path, const char **text, char room[PARAMETER_TEXT_SIZE],

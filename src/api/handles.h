@@ -44,15 +44,9 @@ int api_missing(impactlab_error *error, const char *names, size_t i);
         }                                                                                          \
     } while (0)
 
-// A fault_handler that keeps the first sentence in an impactlab_error (may be NULL).
-typedef struct api_first_fault {
-    impactlab_error *error;
-    int count;
-} api_first_fault;
-void api_keep_first(void *context, const char *sentence);
-// Gives the sentence kept that way (in error, may be NULL) its place and its code, which it
-// returns.
-int api_finish_first(impactlab_error *error, const fault_place *at, status code);
+// Writes the first fault of a scenario that was refused (keep_first_fault) with its place and code,
+// which it returns.
+int api_refused(impactlab_error *error, fault *first, const fault_place *at, status code);
 
 // Index of a parameter as people write it, -1 with an error that names the nearest; *text, what is
 // to give it a value, becomes ".NAME=TEXT" in `room` for one number of control.settings.

@@ -46,7 +46,8 @@ static int retitle(impactlab_scenario *handle, impactlab_error *error)
 }
 
 // What reading came to: nothing is left of a handle that could not be filled.
-static int finish_reading(impactlab_scenario **handle, status code, impactlab_error *error)
+static int finish_reading(impactlab_scenario **handle, status code, fault *first,
+                          impactlab_error *error)
 {
     if (code == STATUS_OK) {
         return retitle(*handle, error);
@@ -54,7 +55,7 @@ static int finish_reading(impactlab_scenario **handle, status code, impactlab_er
     const fault_place at = (*handle)->scenario.refused;
     free(*handle);
     *handle = NULL;
-    return api_finish_first(error, &at, code);
+    return api_refused(error, first, &at, code);
 }
 
 int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_file,
@@ -64,9 +65,9 @@ int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_fil
     *handle = NULL;
     API_NEEDS(error, name_or_file);
     FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
-    api_first_fault first = {.error = error};
-    status code = scenario_open(&(*handle)->scenario, name_or_file, api_keep_first, &first);
-    return finish_reading(handle, code, error);
+    fault first = {.code = STATUS_OK};
+    status code = scenario_open(&(*handle)->scenario, name_or_file, keep_first_fault, &first);
+    return finish_reading(handle, code, &first, error);
 }
 
 int impactlab_scenario_parse(impactlab_scenario **handle, const char *text, size_t length,
@@ -82,10 +83,10 @@ int impactlab_scenario_parse_named(impactlab_scenario **handle, const char *text
     *handle = NULL;
     API_NEEDS(error, text, name);
     FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
-    api_first_fault first = {.error = error};
+    fault first = {.code = STATUS_OK};
     status code =
-        scenario_parse(&(*handle)->scenario, text, length, "text", name, api_keep_first, &first);
-    return finish_reading(handle, code, error);
+        scenario_parse(&(*handle)->scenario, text, length, "text", name, keep_first_fault, &first);
+    return finish_reading(handle, code, &first, error);
 }
 
 int impactlab_scenario_create(impactlab_scenario **handle, impactlab_error *error)
@@ -221,17 +222,17 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
 
     // nothing is changed if one of them is wrong
     const parameters before = handle->scenario.parameters;
-    api_first_fault first = {.error = error};
-    status code =
-        whole ? scenario_override_all(&handle->scenario, given, (int)count, api_keep_first, &first)
-              : STATUS_BAD_ARGUMENT;
+    fault first = {.code = STATUS_OK};
+    status code = whole ? scenario_override_all(&handle->scenario, given, (int)count,
+                                                keep_first_fault, &first)
+                        : STATUS_BAD_ARGUMENT;
     free(given);
     if (code == STATUS_OK) {
         return retitle(handle, error);
     }
     handle->scenario.parameters = before;
     FAIL_IF(!whole, api_missing(error, "assignments[i]", 0));
-    return api_finish_first(error, &handle->scenario.refused, code);
+    return api_refused(error, &first, &handle->scenario.refused, code);
 }
 
 // Takes over parameters of which one was set, unless `code` says that it could not be.
