@@ -70,18 +70,28 @@ static status report_no_memory(fault_handler report, void *context)
     return STATUS_NO_MEMORY;
 }
 
+// Reports a sentence, printf-like. Returns `code`; STATUS_NO_MEMORY where there is none for it.
+__attribute__((format(printf, 4, 5))) static status tell(fault_handler report, void *context,
+                                                         status code, const char *format, ...)
+{
+    char *sentence;
+    va_list args;
+    va_start(args, format);
+    const int length = vasprintf(&sentence, format, args);
+    va_end(args);
+    FAIL_IF(length < 0, report_no_memory(report, context));
+    report(context, sentence);
+    free(sentence);
+    return code;
+}
+
 // What is wrong with a file as a whole.
 static status report_file(scenario *s, const char *path, const char *what, fault_handler report,
                           void *context)
 {
-    char *sentence = text_of("%s:1:1: %s, expected a scenario file", path, what);
-    if (sentence == NULL) {
-        return report_no_memory(report, context);
-    }
-    report(context, sentence);
-    free(sentence);
     s->refused = (fault_place){1, 1, NULL};
-    return STATUS_CANNOT_READ;
+    return tell(report, context, STATUS_CANNOT_READ, "%s:1:1: %s, expected a scenario file", path,
+                what);
 }
 
 status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
@@ -333,27 +343,21 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
         nearest_try(&near, names[i]);
     }
 
-    char *sentence;
-    if (unread.text[0] != '\0') {
-        sentence =
-            text_of("'%s' is no file, and no scenario can be found: %s", wanted, unread.text);
-    } else if (near.best != NULL) {
-        sentence =
-            text_of("'%s' is neither a scenario nor a file, did you mean '%s'?", wanted, near.best);
-    } else {
-        sentence = text_of("'%s' is neither a scenario nor a file, expected a name that "
-                           "'impactlab list' shows or the path of a file",
-                           wanted);
-    }
+    const status code = STATUS_BAD_ARGUMENT;
+    const status told =
+        unread.text[0] != '\0'
+            ? tell(report, context, code, "'%s' is no file, and no scenario can be found: %s",
+                   wanted, unread.text)
+        : near.best != NULL
+            ? tell(report, context, code,
+                   "'%s' is neither a scenario nor a file, did you mean '%s'?", wanted, near.best)
+            : tell(report, context, code,
+                   "'%s' is neither a scenario nor a file, expected a name that 'impactlab list' "
+                   "shows or the path of a file",
+                   wanted);
     free_names(names, count);
     free(stem);
-
-    if (sentence == NULL) {
-        return report_no_memory(report, context);
-    }
-    report(context, sentence);
-    free(sentence);
-    return STATUS_BAD_ARGUMENT;
+    return told;
 }
 
 // Whether the list may show a name: none of its parts is empty or hidden, nor are they too many.

@@ -174,18 +174,12 @@ static void complete(reader *r, const char *name)
     s->file = strdup(r->path);
 
     // the name stands in for a title, if it can
-    if (s->title == NULL) {
-        s->title = strdup(strlen(called) <= SCENARIO_TITLE ? called : "untitled");
-    }
-    if (s->description == NULL) {
-        s->description = strdup("");
-    }
+    const char *title = strlen(called) <= SCENARIO_TITLE ? called : "untitled";
+    s->title = s->title != NULL ? s->title : strdup(title);
+    s->description = s->description != NULL ? s->description : strdup("");
 
     // any of the copies may have failed
-    reader_have_memory(r, s->name);
-    reader_have_memory(r, s->file);
-    reader_have_memory(r, s->title);
-    reader_have_memory(r, s->description);
+    r->no_memory = s->name == NULL || s->file == NULL || s->title == NULL || s->description == NULL;
 }
 
 status scenario_parse(scenario *s, const char *text, size_t length, const char *path,

@@ -126,8 +126,6 @@ static void read_quantity(reader *r, const tree_node *map, const char *key, int 
 static void read_choice(reader *r, const tree_node *map, lesson_step *step)
 {
     const tree_node *of = value_of(r, map, "of"), *right = value_of(r, map, "right");
-    step->check = LESSON_CHOICE;
-    refuse_other_keys(r, map, " of right ");
 
     // without answers there is nothing to choose
     const bool answers = of != NULL && (of->kind != TREE_LIST || of->first != NULL);
@@ -151,7 +149,6 @@ static void read_value(reader *r, const tree_node *map, lesson_step *step)
 {
     fault f = {0};
     const tree_node *child = map->first;
-    step->check = LESSON_VALUE;
     step->within = NEAR_ENOUGH;
     if (child == NULL || child->next != NULL) {
         report_node(r, map, "value takes one parameter, such as {motor.voltage: 0.5}");
@@ -185,47 +182,50 @@ static void read_value(reader *r, const tree_node *map, lesson_step *step)
 // Reads a condition that a step requires; false if the key is no such condition.
 static bool read_check(reader *r, const char *key, const tree_node *node, lesson_step *step)
 {
-    static const char *const kinds[] = {"number", "choice", "cursor", "value", "ratio", "pinned"};
-    enum { NUMBER, CHOICE, CURSOR, VALUE, RATIO, PINNED, KINDS };
+    static const struct {
+        const char *key;
+        lesson_check check;
+        const char *known; // keys of its map, "": any
+    } kinds[] = {
+        {"number", LESSON_NUMBER, " quantity within "},  {"choice", LESSON_CHOICE, " of right "},
+        {"cursor", LESSON_CURSOR, " at offset within "}, {"value", LESSON_VALUE, ""},
+        {"ratio", LESSON_RATIO, " quantity from to "},   {"pinned", LESSON_PINNED, ""}};
+    enum { KINDS = sizeof kinds / sizeof *kinds };
     int kind = 0;
-    while (kind < KINDS && strcmp(key, kinds[kind]) != 0) {
+    while (kind < KINDS && strcmp(key, kinds[kind].key) != 0) {
         kind++;
     }
     if (kind == KINDS) {
         return false;
     }
+    const lesson_check check = kinds[kind].check;
     if (step->check != LESSON_READ) {
         report_node(r, node->key, "'%s' is a second check of this step, expected one", key);
         return true;
     }
 
     // a count, or a map of what it needs
-    if (kind == PINNED) {
-        step->check = LESSON_PINNED;
+    if (check != LESSON_PINNED && !reader_expect_map(r, node, key, "quantity: peak_force_N")) {
+        return true;
+    }
+    step->check = check;
+    if (kinds[kind].known[0] != '\0') {
+        refuse_other_keys(r, node, kinds[kind].known);
+    }
+    if (check == LESSON_PINNED) {
         step->pinned = read_count(r, node, key, LESSON_PINNED_RUNS, "how many runs are pinned");
-        return true;
-    }
-    if (!reader_expect_map(r, node, key, "quantity: peak_force_N")) {
-        return true;
-    }
-    if (kind == CHOICE) {
+    } else if (check == LESSON_CHOICE) {
         read_choice(r, node, step);
-    } else if (kind == VALUE) {
+    } else if (check == LESSON_VALUE) {
         read_value(r, node, step);
-    } else if (kind == NUMBER) {
-        step->check = LESSON_NUMBER;
-        refuse_other_keys(r, node, " quantity within ");
+    } else if (check == LESSON_NUMBER) {
         read_quantity(r, node, "quantity", &step->quantity);
         read_number(r, node, "within", true, 0, &step->within);
-    } else if (kind == CURSOR) {
-        step->check = LESSON_CURSOR;
-        refuse_other_keys(r, node, " at offset within ");
+    } else if (check == LESSON_CURSOR) {
         read_quantity(r, node, "at", &step->quantity);
         read_number(r, node, "offset", false, -HUGE_VAL, &step->offset);
         read_number(r, node, "within", true, 0, &step->within);
     } else {
-        step->check = LESSON_RATIO;
-        refuse_other_keys(r, node, " quantity from to ");
         read_quantity(r, node, "quantity", &step->quantity);
         read_number(r, node, "from", true, -HUGE_VAL, &step->low);
         read_number(r, node, "to", true, step->low, &step->high);
