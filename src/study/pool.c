@@ -207,25 +207,20 @@ static void release(pool *p, pool_thread *threads, int count)
     free(p->taken.results);
 }
 
-// Waiting is by a clock that nobody sets.
-static void init_locks(pool *p)
-{
-    pthread_condattr_t monotonic;
-    pthread_mutex_init(&p->mutex, NULL);
-    pthread_condattr_init(&monotonic);
-    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
-    pthread_cond_init(&p->changed, &monotonic);
-    pthread_condattr_destroy(&monotonic);
-}
-
 status pool_run(const pool_work *work, int threads, fault *f)
 {
     assert(work->result_size > 0 && threads >= 1 && threads <= POOL_MOST_THREADS);
     pool p = {.work = work};
     pool_thread each[POOL_MOST_THREADS] = {0};
-
     status code;
-    init_locks(&p);
+
+    // waiting is by a clock that nobody sets
+    pthread_condattr_t monotonic;
+    pthread_mutex_init(&p.mutex, NULL);
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_cond_init(&p.changed, &monotonic);
+    pthread_condattr_destroy(&monotonic);
 
     // on threads, or on this one if there are none to be had
     if (allocate(&p, each, threads)) {

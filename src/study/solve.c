@@ -145,21 +145,17 @@ static bool is_whole(const search *s)
 
 // Value i of the range, from its low to its high end, both included; whole numbers are each other's
 // neighbours where there are enough points.
-static double point_of(const search *s, size_t i)
-{
-    sweep_axis rising = *s->axis;
-    rising.low = fmin(s->axis->low, s->axis->high);
-    rising.high = fmax(s->axis->low, s->axis->high);
-    const bool end = i == 0 || i == (size_t)s->found->points - 1;
-    const double value = sweep_axis_point(&rising, i, (size_t)s->found->points);
-    return is_whole(s) && !end ? round(value) : value;
-}
-
 static void compute_point(void *context, size_t i, void *scratch, void *result)
 {
     const search *s = context;
+    const size_t points = (size_t)s->found->points;
+    sweep_axis rising = *s->axis;
     (void)scratch;
-    *(status *)result = run_trial(s, point_of(s, i), &s->trials[i], NULL);
+    rising.low = fmin(s->axis->low, s->axis->high);
+    rising.high = fmax(s->axis->low, s->axis->high);
+    const double value = sweep_axis_point(&rising, i, points);
+    const bool rounded = is_whole(s) && i > 0 && i + 1 < points;
+    *(status *)result = run_trial(s, rounded ? round(value) : value, &s->trials[i], NULL);
 }
 
 static status collect_point(void *context, size_t i, const void *result, fault *f)

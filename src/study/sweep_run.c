@@ -29,15 +29,6 @@ typedef struct piece_scratch {
     side_by_side *storage;
 } piece_scratch;
 
-// The summary of a run that could not begin.
-static void summarise_refusal(summary *s, const fault *why)
-{
-    summary_init(s);
-    s->status = why->code;
-    s->path = why->path;
-    snprintf(s->message, sizeof s->message, "%s", why->text);
-}
-
 // How many runs a piece of work has: the last one what is left.
 static size_t piece_length(const sweep_execution *e, size_t piece)
 {
@@ -64,7 +55,9 @@ static void compute_piece(void *context, size_t piece, void *scratch, void *resu
         if (sweep_scenario(e->sweep, runs[i], &own->derived[begun], &f) == STATUS_OK) {
             begun++;
         } else {
-            summarise_refusal(&summaries[i], &f);
+            summary_init(&summaries[i]);
+            summaries[i].status = f.code;
+            snprintf(summaries[i].message, sizeof summaries[i].message, "%s", f.text);
         }
     }
 
@@ -90,50 +83,40 @@ static void release_piece(void *scratch)
     side_by_side_destroy(own->storage);
 }
 
-// Keeps what the first of the failed runs says, whichever was computed first.
-static void count_failure(sweep_progress *p, size_t run, const summary *s)
-{
-    if (p->failed == 0 || run < p->first_failed) {
-        p->first_failed = run;
-        snprintf(p->first_failure, sizeof p->first_failure, "%s", s->message);
-    }
-    p->failed++;
-}
-
-// Whether a run ended by what says nothing about the scenario, and may be otherwise the next time.
-static bool must_be_repeated(status ended)
-{
-    return ended == STATUS_NO_MEMORY || ended == STATUS_NOT_ALLOWED || ended == STATUS_CANNOT_READ;
-}
-
 static status store_run(sweep_execution *e, size_t run, const summary *s, fault *f)
 {
-    FAIL_IF(must_be_repeated(s->status),
+    // what says nothing about the scenario may be otherwise the next time
+    sweep_progress *p = e->progress;
+    FAIL_IF(s->status == STATUS_NO_MEMORY || s->status == STATUS_NOT_ALLOWED ||
+                s->status == STATUS_CANNOT_READ,
             fault_set(f, s->status, "run %zu: %s", run + 1, s->message));
 
     // stored, and counted once it is
-    status code = e->store->put(e->store, run, s, f);
-    if (code == STATUS_OK) {
-        e->progress->done++;
-        e->progress->done_now++;
-        if (s->status != STATUS_OK) {
-            count_failure(e->progress, run, s);
-        }
+    TRY(e->store->put(e->store, run, s, f));
+    p->done++;
+    p->done_now++;
+    if (s->status == STATUS_OK) {
+        return STATUS_OK;
     }
-    return code;
+
+    // what the first of the failed runs says, whichever was computed first
+    if (p->failed++ == 0 || run < p->first_failed) {
+        p->first_failed = run;
+        snprintf(p->first_failure, sizeof p->first_failure, "%s", s->message);
+    }
+    return STATUS_OK;
 }
 
 static status store_piece(void *context, size_t piece, const void *result, fault *f)
 {
     sweep_execution *e = context;
     const summary *summaries = result;
-    status code = STATUS_OK;
-    for (size_t i = 0; i < piece_length(e, piece) && code == STATUS_OK; i++) {
-        const size_t run = e->wanted[piece * e->together + i];
+    for (size_t i = 0; i < piece_length(e, piece); i++) {
         const bool passed_over = summaries[i].status == STATUS_STOPPED;
-        code = passed_over ? STATUS_OK : store_run(e, run, &summaries[i], f);
+        TRY(passed_over ? STATUS_OK
+                        : store_run(e, e->wanted[piece * e->together + i], &summaries[i], f));
     }
-    return code;
+    return STATUS_OK;
 }
 
 static void report(const sweep_execution *e)
