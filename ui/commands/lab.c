@@ -204,14 +204,6 @@ static void run_on_terminal(explorer *ex)
     pictures_finish(&layer);
 }
 
-// What is left on the terminal when the explorer is gone.
-static void say_goodbye(const explorer *ex)
-{
-    const session *e = &ex->state.session;
-    say("%s, %d change%s, peak force %.4g N\n", e->base.name, e->input_count,
-        e->input_count == 1 ? "" : "s", e->run.summary.peak_force_N);
-}
-
 // What the terminal can be expected to show: the console of Linux has no braille in its fonts.
 static glyph_set usual_glyphs(void)
 {
@@ -290,7 +282,11 @@ static int explore(const arguments *a)
         ex.state.playback.playing = true;
         run_on_terminal(&ex);
         terminal_close();
-        say_goodbye(&ex);
+
+        // what is left on the terminal
+        const session *e = &ex.state.session;
+        say("%s, %d change%s, peak force %.4g N\n", e->base.name, e->input_count,
+            e->input_count == 1 ? "" : "s", e->run.summary.peak_force_N);
     }
 
     explorer_finish(&ex);
