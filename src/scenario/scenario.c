@@ -8,6 +8,39 @@
 #include "src/rig/rig.h"
 #include "src/tables/settings.h"
 
+enum { STEP_TEXTS = 3 + LESSON_CHOICES + LESSON_COMMANDS };
+
+// Where a step keeps its texts, those that it has not included.
+static void text_places(lesson_step *step, char **places[STEP_TEXTS])
+{
+    int count = 0;
+    places[count++] = &step->say;
+    places[count++] = &step->then;
+    places[count++] = &step->hint;
+    for (int k = 0; k < LESSON_CHOICES; k++) {
+        places[count++] = &step->choices[k];
+    }
+    for (int k = 0; k < LESSON_COMMANDS; k++) {
+        places[count++] = &step->commands[k];
+    }
+    assert(count == STEP_TEXTS);
+}
+
+static void finish_lesson(lesson *l)
+{
+    char **places[STEP_TEXTS];
+    for (int i = 0; i < l->step_count; i++) {
+        text_places(&l->steps[i], places);
+        for (int k = 0; k < STEP_TEXTS; k++) {
+            free(*places[k]);
+        }
+    }
+
+    // nothing else of a lesson is allocated
+    free(l->steps);
+    *l = (lesson){0};
+}
+
 void scenario_finish(scenario *s)
 {
     free(s->name);
@@ -16,7 +49,7 @@ void scenario_finish(scenario *s)
     free(s->description);
     free(s->actions);
     free(s->expectations);
-    lesson_finish(&s->lesson);
+    finish_lesson(&s->lesson);
     *s = (scenario){0};
 }
 
@@ -28,43 +61,45 @@ void keep_first_fault(void *context, const char *sentence)
     }
 }
 
-// A text of one's own; one that is not there stays so. False without memory.
-static bool copy_text(char **copy, const char *text)
+// A copy on the heap of what is there; *good is false without memory.
+static void *copy_of(const void *original, size_t size, bool *good)
 {
-    *copy = text != NULL ? strdup(text) : NULL;
-    return text == NULL || *copy != NULL;
+    void *copy = original != NULL ? malloc(size + 1) : NULL;
+    if (copy != NULL) {
+        memcpy(copy, original, size);
+    }
+    *good = *good && (original == NULL || copy != NULL);
+    return copy;
 }
 
-// Likewise an array.
-static bool copy_array(void **copy, const void *array, size_t size)
+static char *text_of(const char *text, bool *good)
 {
-    *copy = array != NULL ? malloc(size > 0 ? size : 1) : NULL;
-    if (array == NULL) {
-        return true;
-    }
-    if (*copy != NULL) {
-        memcpy(*copy, array, size);
-    }
-    return *copy != NULL;
+    return copy_of(text, text != NULL ? strlen(text) + 1 : 0, good);
 }
 
 status scenario_copy(scenario *copy, const scenario *s)
 {
-    void *actions = NULL, *expectations = NULL;
+    const lesson *l = &s->lesson;
+    bool good = true;
     *copy = *s;
 
     // all of them, even after a failure: none may still be the original's
-    bool good = copy_text(&copy->name, s->name);
-    good = copy_text(&copy->file, s->file) && good;
-    good = copy_text(&copy->title, s->title) && good;
-    good = copy_text(&copy->description, s->description) && good;
-    good = copy_array(&actions, s->actions, (size_t)s->action_count * sizeof *s->actions) && good;
-    good = copy_array(&expectations, s->expectations,
-                      (size_t)s->expectation_count * sizeof *s->expectations) &&
-           good;
-    good = lesson_copy(&copy->lesson, &s->lesson) && good;
-    copy->actions = actions;
-    copy->expectations = expectations;
+    copy->name = text_of(s->name, &good);
+    copy->file = text_of(s->file, &good);
+    copy->title = text_of(s->title, &good);
+    copy->description = text_of(s->description, &good);
+    copy->actions = copy_of(s->actions, (size_t)s->action_count * sizeof *s->actions, &good);
+    copy->expectations =
+        copy_of(s->expectations, (size_t)s->expectation_count * sizeof *s->expectations, &good);
+    copy->lesson.steps = copy_of(l->steps, (size_t)l->step_count * sizeof *l->steps, &good);
+    copy->lesson.step_count = copy->lesson.steps != NULL ? l->step_count : 0;
+    for (int i = 0; i < copy->lesson.step_count; i++) {
+        char **places[STEP_TEXTS];
+        text_places(&copy->lesson.steps[i], places);
+        for (int k = 0; k < STEP_TEXTS; k++) {
+            *places[k] = text_of(*places[k], &good);
+        }
+    }
 
     // an incomplete copy is discarded
     if (!good) {

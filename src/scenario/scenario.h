@@ -49,12 +49,6 @@ typedef struct lesson {
     int step_count; // 0: there is no lesson
 } lesson;
 
-// Frees what a lesson holds; one of zeroes is allowed.
-void lesson_finish(lesson *l);
-
-// A copy of one's own. False without memory, and then nothing is to be freed.
-bool lesson_copy(lesson *copy, const lesson *l);
-
 // --- a scenario ---
 
 typedef enum action_kind { ACTION_SET, ACTION_PUSH } action_kind;

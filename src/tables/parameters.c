@@ -3,8 +3,10 @@
 #include <assert.h>
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "src/base/plain_math.h"
 #include "src/base/words.h"
 #include "src/tables/control_laws.h"
 
@@ -133,3 +135,77 @@ const control_law_info control_law_table[LAW_COUNT] = {
     CONTROL_LAWS(LAW)
 #undef LAW
 };
+
+// --- usual ranges --------------------------------------------------------------------------------
+
+#define FEWEST_DECADES 3    // from this many on a range is logarithmic
+#define MOST_DECADES   6    // a wider range shows those near the default
+#define WIDE           40.0 // times its default a range is shown in part
+
+static double default_of(int parameter)
+{
+    parameters p;
+    parameters_defaults(&p, ARM_CORRECTED);
+    double value = parameter_get(&p, parameter);
+    return isfinite(value) ? value : 0;
+}
+
+// 10^k for a whole number k.
+static double power_of_ten(int k)
+{
+    double power = 1;
+    for (int i = 0; i < abs(k); i++) {
+        power *= 10;
+    }
+    return k < 0 ? 1 / power : power;
+}
+
+// The largest whole number k for which 10^k is not above a positive number.
+static int decade_of(double x)
+{
+    int k = (int)floor(plain_log(x) / M_LN10);
+    k -= power_of_ten(k) > x;
+    return k + (power_of_ten(k + 1) <= x);
+}
+
+// The smallest of 1, 2, 5, 10, 20... that is not below a positive number.
+static double round_up(double x)
+{
+    double decade = power_of_ten(decade_of(x));
+    static const double steps[] = {1, 2, 5, 10};
+    for (int i = 0; i < 4; i++) {
+        if (steps[i] * decade >= x * (1 - 1e-9)) {
+            return steps[i] * decade;
+        }
+    }
+    return 10 * decade;
+}
+
+bool parameter_usual_range(int parameter, double value, double *range_low, double *range_high,
+                           bool *logarithmic)
+{
+    assert(parameter >= 0 && parameter < parameter_count);
+    const parameter_info *info = &parameter_table[parameter];
+    if ((info->type != PARAMETER_REAL && info->type != PARAMETER_INTEGER) || !isfinite(value)) {
+        return false;
+    }
+    double usual = fabs(default_of(parameter)), low = info->minimum, high = info->maximum;
+
+    // decades: all of them, or some near the default up to the value
+    *logarithmic = low > 0 && high / low >= power_of_ten(FEWEST_DECADES) * (1 - 1e-9);
+    const double size = fmax(usual, fabs(value));
+    if (*logarithmic && high / low > power_of_ten(MOST_DECADES) * (1 + 1e-9) && usual > 0) {
+        const int below = decade_of(usual), above = below + (power_of_ten(below) < usual);
+        low = fmax(low, fmin(value, power_of_ten(below - 2)));
+        high = fmin(high, fmax(value, power_of_ten(above + 2)));
+    } else if (!*logarithmic && high - low > WIDE * fmax(size, 1e-12)) {
+        // one much wider than suits the default, or the value once that is far from it, in part
+        double reach = round_up(usual > 0 ? 4 * usual : info->type == PARAMETER_REAL ? 0.1 : 10);
+        reach = fabs(value) > reach ? round_up(fabs(value)) : reach;
+        high = fmin(high, reach);
+        low = fmax(low, -reach);
+    }
+    *range_low = low;
+    *range_high = high;
+    return true;
+}

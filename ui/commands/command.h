@@ -212,9 +212,6 @@ struct command {
 #define ONE_SCENARIO                SCENARIOS("SCENARIO", 1, 1)
 #define NO_OPERANDS                 OPERANDS("", 0, 0)
 
-// The study of laws over frequency, which stands in a file of its own.
-int study_of_follow(const arguments *a, scenario *s);
-
 // All commands, by group.
 extern const command *const command_table[];
 extern const int command_count;
@@ -296,6 +293,10 @@ int check_results(const arguments *a);
 // Prints the commands by group, and how to call one of them.
 void print_commands(FILE *stream);
 void print_help(FILE *stream, const command *self);
+
+// Prints what has all of these words in its name: parameters, quantities, signals, headings of the
+// manual. Returns how many there are; prints nothing if there are none.
+int print_meanings(FILE *stream, const char *words);
 
 // Writes the man page of a command, of impactlab itself if c is NULL.
 void write_man_page(FILE *stream, const command *c);

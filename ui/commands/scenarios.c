@@ -13,7 +13,6 @@
 #include "src/run/export.h"
 #include "src/tables/settings.h"
 #include "src/tables/summary.h"
-#include "ui/commands/answers.h"
 
 // --- list -------------------------------------------------------------------------------------
 
