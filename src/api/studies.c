@@ -34,12 +34,6 @@ static void make_varied(void *context, size_t i, scenario *made)
     vary(v, v->first + i, made, NULL);
 }
 
-static int count_processors(void)
-{
-    long count = sysconf(_SC_NPROCESSORS_ONLN);
-    return count < 1 ? 1 : count > POOL_MOST_THREADS ? POOL_MOST_THREADS : (int)count;
-}
-
 // Tells an outcome to the caller. False if that is enough.
 static bool hand_over(const summary *s, size_t index, impactlab_outcome_taker take, void *context)
 {
@@ -89,7 +83,8 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
     if (path_count > 0 && count > 0) {
         API_NEEDS(error, values);
     }
-    jobs = jobs < 1 ? count_processors() : jobs > POOL_MOST_THREADS ? POOL_MOST_THREADS : jobs;
+    const long wanted = jobs < 1 ? sysconf(_SC_NPROCESSORS_ONLN) : jobs;
+    jobs = wanted < 1 ? 1 : wanted > POOL_MOST_THREADS ? POOL_MOST_THREADS : (int)wanted;
 
     // which parameters
     sweep_axis *axes = calloc(path_count + 1, sizeof *axes);

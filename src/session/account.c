@@ -21,17 +21,6 @@ __attribute__((format(printf, 2, 3))) static void say(account *a, const char *fo
     va_end(list);
 }
 
-// The first event of a kind not before an instant, NULL if there is none.
-static const event *event_from(const trace *t, event_kind kind, double time)
-{
-    for (size_t i = 0; i < t->event_count; i++) {
-        if (t->events[i].kind == kind && t->events[i].time >= time) {
-            return &t->events[i];
-        }
-    }
-    return NULL;
-}
-
 // The last row before an instant.
 static size_t row_before(const trace *t, double time)
 {
@@ -99,11 +88,16 @@ static bool say_approach(account *a)
 // What the blow takes, if there is one.
 static void say_blow(account *a)
 {
-    const event *impact = event_from(&a->run->trace, EVENT_IMPACT, 0);
-    if (impact == NULL) {
+    const trace *t = &a->run->trace;
+    size_t i = 0;
+    while (i < t->event_count && t->events[i].kind != EVENT_IMPACT) {
+        i++;
+    }
+    if (i == t->event_count) {
         return;
     }
-    const sample *before = &a->run->trace.rows[row_before(&a->run->trace, impact->time)];
+    const event *impact = &t->events[i];
+    const sample *before = &t->rows[row_before(t, impact->time)];
     say(a,
         "What has to stop at once takes an impulse of %.3g N s and %.2g %% of that energy: it "
         "is lost, whatever comes.",

@@ -26,12 +26,6 @@ void run_origin_finish(run_origin *o)
     *o = (run_origin){0};
 }
 
-static bool same_action(const action *a, const action *b)
-{
-    return a->time == b->time && a->kind == b->kind && a->parameter == b->parameter &&
-           a->value == b->value && strcmp(a->text, b->text) == 0;
-}
-
 bool same_base(const scenario *a, const scenario *b)
 {
     bool same = strcmp(a->name, b->name) == 0 && a->action_count == b->action_count;
@@ -42,7 +36,10 @@ bool same_base(const scenario *a, const scenario *b)
         same = strcmp(one, other) == 0;
     }
     for (int i = 0; same && i < a->action_count; i++) {
-        same = same_action(&a->actions[i], &b->actions[i]);
+        const action *one = &a->actions[i], *other = &b->actions[i];
+        same = one->time == other->time && one->kind == other->kind &&
+               one->parameter == other->parameter && one->value == other->value &&
+               strcmp(one->text, other->text) == 0;
     }
     return same;
 }

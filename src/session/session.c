@@ -78,15 +78,6 @@ const event *session_event(const session *s)
 
 enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
 
-static int count_actions(const session *s)
-{
-    int count = s->base.action_count;
-    for (int i = 0; i < s->input_count; i++) {
-        count += s->inputs[i].kind != SESSION_INPUT_START;
-    }
-    return count;
-}
-
 // The scenario with the inputs in effect. Its actions are the only thing it owns.
 static status build_effective(const session *s, scenario *to, fault *f)
 {
@@ -94,7 +85,7 @@ static status build_effective(const session *s, scenario *to, fault *f)
     *to = s->base;
     to->expectation_count = 0;
     to->action_count = 0;
-    to->actions = calloc((size_t)count_actions(s) + 1, sizeof *to->actions);
+    to->actions = calloc((size_t)(s->base.action_count + s->input_count) + 1, sizeof *to->actions);
     TRY_MEMORY(to->actions != NULL, f);
 
     // the script's actions, then the inputs among them: an input comes after what is due with it
@@ -137,16 +128,6 @@ static status check_memory(const parameters *p, fault *f)
                       p->run.duration, p->method.step, bytes / (1024 * 1024),
                       MEMORY_BUDGET / (1024 * 1024)));
     return STATUS_OK;
-}
-
-// The largest force so far, which the run's summary has at the end only.
-static void survey_force(session *s)
-{
-    const trace *t = &s->run.trace;
-    size_t end = s->surveyed + ROWS_SURVEYED;
-    for (; s->surveyed < t->row_count && s->surveyed < end; s->surveyed++) {
-        s->run.summary.peak_force_N = fmax(s->run.summary.peak_force_N, t->rows[s->surveyed].force);
-    }
 }
 
 // Puts the run that was being computed in the place of the present one, as far as it went. The
@@ -296,7 +277,13 @@ bool session_follow(session *s)
     // or has more rows
     size_t before = s->run.trace.row_count;
     bool more = background_run_look(s->computing, &s->run) > before;
-    survey_force(s);
+
+    // the largest force so far, which the run's summary has at the end only
+    const trace *t = &s->run.trace;
+    const size_t end = s->surveyed + ROWS_SURVEYED;
+    for (; s->surveyed < t->row_count && s->surveyed < end; s->surveyed++) {
+        s->run.summary.peak_force_N = fmax(s->run.summary.peak_force_N, t->rows[s->surveyed].force);
+    }
     s->row = trace_row_at(&s->run.trace, s->now);
     return more;
 }

@@ -200,16 +200,6 @@ static status collect_piece(void *context, size_t i, const void *result, fault *
     return STATUS_OK;
 }
 
-static status run_pieces(batch_of_runs *b, fault *f)
-{
-    const pool_work work = {.context = b,
-                            .count = b->count,
-                            .result_size = sizeof(status),
-                            .compute = compute_piece,
-                            .collect = collect_piece};
-    return pool_run(&work, b->id->jobs < 1 ? 1 : b->id->jobs, f);
-}
-
 // What draws a parameter back that leaves its range; *slope: by its unknown.
 static double draw_back(const fitted_parameter *fit, double x, double *slope)
 {
@@ -240,7 +230,12 @@ static status residuals_of(identification *id, const double *x, int sets, const 
             *out++ = draw_back(&id->fit[j], x[j], &slope);
         }
     }
-    const status code = run_pieces(&b, f);
+    const pool_work work = {.context = &b,
+                            .count = b.count,
+                            .result_size = sizeof(status),
+                            .compute = compute_piece,
+                            .collect = collect_piece};
+    const status code = pool_run(&work, id->jobs < 1 ? 1 : id->jobs, f);
     for (size_t i = b.count; why != NULL && i-- > 0;) {
         *why = b.pieces[i].why.code != STATUS_OK ? b.pieces[i].why : *why;
     }

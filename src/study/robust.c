@@ -257,23 +257,16 @@ static void find_quantiles(double *values, size_t count, double *quantiles)
 enum { JUDGED(NUMBER) QUANTITIES };
 static const char *const keys[QUANTITIES] = {JUDGED(KEY)};
 
-// Instant of the script's last push, 0 without one [s].
-static double last_push(const scenario *s)
-{
-    double time = 0;
-    for (int i = 0; i < s->action_count; i++) {
-        time = s->actions[i].kind == ACTION_PUSH ? fmax(time, s->actions[i].time) : time;
-    }
-    return time;
-}
-
 // Judges the runs, whose quantities stand one behind the other; what is sorted is overwritten.
 static void judge(robust_law *out, const sweep *s, sweep_share share, double *values)
 {
     const size_t n = out->runs;
     double *of[QUANTITIES];
     size_t settled = 0, separated = 0, exceeded = 0;
-    double pushed = last_push(s->base);
+    double pushed = 0; // instant of the script's last push [s]
+    for (const action *a = s->base->actions; a < s->base->actions + s->base->action_count; a++) {
+        pushed = a->kind == ACTION_PUSH ? fmax(pushed, a->time) : pushed;
+    }
     for (int q = 0; q < QUANTITIES; q++) {
         of[q] = values + (size_t)q * n;
     }

@@ -146,17 +146,6 @@ double robust_value(const robust_law *law, int i)
     return cells[column_of(i)].number;
 }
 
-// The widest title of a case, 0 without cases.
-static int case_width(const robust_table *t)
-{
-    int width = 0;
-    for (int i = 0; i < t->count && t->laws[0].case_title != NULL; i++) {
-        const int length = (int)strlen(t->laws[i].case_title);
-        width = length > width ? length : width;
-    }
-    return width;
-}
-
 // The table in columns of blanks, or of a Markdown page.
 void robust_text(FILE *stream, const robust_table *t, bool page)
 {
@@ -165,7 +154,12 @@ void robust_text(FILE *stream, const robust_table *t, bool page)
     const shown_column *shown = cases ? of_cases : of_laws;
     const int count = cases ? (int)(sizeof of_cases / sizeof of_cases[0]) - (t->against == NULL)
                             : (int)(sizeof of_laws / sizeof of_laws[0]);
+    int widest = 0; // title of a case
     char text[64];
+    for (int i = 0; i < t->count && cases; i++) {
+        const int length = (int)strlen(t->laws[i].case_title);
+        widest = length > widest ? length : widest;
+    }
 
     // headings, then a line a law
     for (int i = -1; i < t->count; i++) {
@@ -188,7 +182,7 @@ void robust_text(FILE *stream, const robust_table *t, bool page)
                               number);
                 told = text;
             }
-            const int width = column == CASE   ? -case_width(t)
+            const int width = column == CASE   ? -widest
                               : column == LAW  ? -16
                               : column == RUNS ? 5
                                                : 12;

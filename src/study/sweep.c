@@ -69,19 +69,6 @@ static status read_axis(sweep *s, const char *given, fault *f)
 
 // --- which values a run has -----------------------------------------------------------------
 
-// Every value of every run on its own, or at the share of the one before.
-static void draw_random(sweep *s, random_generator *g)
-{
-    for (size_t run = 0; run < s->run_count; run++) {
-        double share = 0;
-        for (int i = 0; i < s->axis_count; i++) {
-            share = s->axes[i].together ? share : random_uniform(g);
-            s->drawn[run * (size_t)s->axis_count + (size_t)i] =
-                sweep_axis_value_at(&s->axes[i], share);
-        }
-    }
-}
-
 // Latin hypercube (McKay, Beckman and Conover 1979): for each parameter its range falls into
 // run_count parts of equal chance, which the runs take in random order, each at a random place.
 static status draw_latin(sweep *s, random_generator *g, fault *f)
@@ -153,7 +140,16 @@ static status draw_values(sweep *s, fault *f)
     if (s->sampling == SWEEP_LATIN) {
         return draw_latin(s, &g, f);
     }
-    draw_random(s, &g);
+
+    // every value of every run on its own, or at the share of the one before
+    for (size_t run = 0; run < s->run_count; run++) {
+        double share = 0;
+        for (int i = 0; i < s->axis_count; i++) {
+            share = s->axes[i].together ? share : random_uniform(&g);
+            s->drawn[run * (size_t)s->axis_count + (size_t)i] =
+                sweep_axis_value_at(&s->axes[i], share);
+        }
+    }
     return STATUS_OK;
 }
 

@@ -142,14 +142,6 @@ const control_law_info control_law_table[LAW_COUNT] = {
 #define MOST_DECADES   6    // a wider range shows those near the default
 #define WIDE           40.0 // times its default a range is shown in part
 
-static double default_of(int parameter)
-{
-    parameters p;
-    parameters_defaults(&p, ARM_CORRECTED);
-    double value = parameter_get(&p, parameter);
-    return isfinite(value) ? value : 0;
-}
-
 // 10^k for a whole number k.
 static double power_of_ten(int k)
 {
@@ -189,7 +181,11 @@ bool parameter_usual_range(int parameter, double value, double *range_low, doubl
     if ((info->type != PARAMETER_REAL && info->type != PARAMETER_INTEGER) || !isfinite(value)) {
         return false;
     }
-    double usual = fabs(default_of(parameter)), low = info->minimum, high = info->maximum;
+    parameters defaults;
+    parameters_defaults(&defaults, ARM_CORRECTED);
+    double usual = fabs(parameter_get(&defaults, parameter));
+    double low = info->minimum, high = info->maximum;
+    usual = isfinite(usual) ? usual : 0;
 
     // decades: all of them, or some near the default up to the value
     *logarithmic = low > 0 && high / low >= power_of_ten(FEWEST_DECADES) * (1 - 1e-9);

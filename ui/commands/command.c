@@ -367,16 +367,6 @@ bool terminal_has_utf8(void)
 
 // --- longer texts -----------------------------------------------------------------------------
 
-// Width of a UTF-8 text in characters.
-static int text_width(const char *text)
-{
-    int width = 0;
-    for (; *text != '\0'; text++) {
-        width += ((unsigned char)*text & 0xC0) != 0x80;
-    }
-    return width;
-}
-
 void print_indented(FILE *stream, const char *text, int bytes, int width, int indent)
 {
     const char *end = text + bytes;
@@ -389,7 +379,10 @@ void print_indented(FILE *stream, const char *text, int bytes, int width, int in
         snprintf(word, sizeof word, "%.*s", length, text);
 
         // a word goes to the next line if this one has no room for it
-        int wide = text_width(word);
+        int wide = 0;
+        for (const char *c = word; *c != '\0'; c++) {
+            wide += ((unsigned char)*c & 0xC0) != 0x80; // of UTF-8
+        }
         const bool fits = column > 0 && column + 1 + wide <= width;
         if (!fits) {
             fprintf(stream, "%s%*s", column > 0 ? "\n" : "", indent, "");

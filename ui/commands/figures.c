@@ -143,22 +143,6 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
     return code;
 }
 
-// What was drawn, and where it lies.
-static json_t *figures_array(const figure_list *list)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < list->count; i++) {
-        const thesis_figure *which = list->figures[i].figure;
-        if (list->figures[i].failed) {
-            continue;
-        }
-        json_add(array,
-                 json_members(json_object(), "id:t folder:t file:t formats:t caption:t", which->id,
-                              list->folder, which->file, list->formats, which->caption));
-    }
-    return array;
-}
-
 static int figures(const arguments *a)
 {
     fault f = {0};
@@ -178,7 +162,17 @@ static int figures(const arguments *a)
     if (drawn != STATUS_OK) {
         code = complain_fault(&f);
     } else if (a->json != NULL) {
-        code = write_json(a->json, figures_array(&list));
+        json_t *array = json_array();
+        for (size_t i = 0; i < count; i++) {
+            const thesis_figure *which = list.figures[i].figure;
+            if (list.figures[i].failed) {
+                continue;
+            }
+            json_add(array, json_members(json_object(), "id:t folder:t file:t formats:t caption:t",
+                                         which->id, list.folder, which->file, list.formats,
+                                         which->caption));
+        }
+        code = write_json(a->json, array);
     }
     if (drawn == STATUS_OK && list.failed.code != STATUS_OK) {
         code = worse(code, complain_fault(&list.failed));

@@ -165,30 +165,26 @@ static void print_modes(const scenario *s, const void *found)
     }
 }
 
-static status compute_set(const arm *a, mode_set *set, int hold)
-{
-    size_t n = (size_t)a->dof;
-    set->frequencies = calloc(n, sizeof *set->frequencies);
-    set->shapes = calloc(n * n, sizeof *set->shapes);
-    FAIL_IF(set->frequencies == NULL || set->shapes == NULL, STATUS_NO_MEMORY);
-    return modes_compute(a, holds[hold].hub, holds[hold].tip, &set->count, set->frequencies,
-                         set->shapes);
-}
-
 static int modes(const arguments *args, scenario *s)
 {
     static const command_results r = {modes_object, print_modes, plot_modes};
     arm_modes m = {0};
     fault f = {.code = STATUS_OK};
-    if (s->parameters.arm.model == ARM_PRINTED) {
-        // errata B1: no natural frequencies without a symmetric stiffness
-        return complain("the printed equations have no symmetric stiffness and so no natural "
-                        "frequencies, try --set arm.model=corrected");
-    }
+    // errata B1: no natural frequencies without a symmetric stiffness
+    FAIL_IF(s->parameters.arm.model == ARM_PRINTED,
+            complain("the printed equations have no symmetric stiffness and so no natural "
+                     "frequencies, try --set arm.model=corrected"));
 
     arm_init(&m.arm, &s->parameters);
+    const size_t n = (size_t)m.arm.dof;
     for (int i = 0; i < HOLDS && f.code == STATUS_OK; i++) {
-        f.code = compute_set(&m.arm, &m.sets[i], i);
+        mode_set *set = &m.sets[i];
+        set->frequencies = calloc(n, sizeof *set->frequencies);
+        set->shapes = calloc(n * n, sizeof *set->shapes);
+        f.code = set->frequencies != NULL && set->shapes != NULL
+                     ? modes_compute(&m.arm, holds[i].hub, holds[i].tip, &set->count,
+                                     set->frequencies, set->shapes)
+                     : STATUS_NO_MEMORY;
     }
 
     int result = f.code == STATUS_OK ? write_results(args, &r, s, &m, true) : complain_fault(&f);

@@ -12,15 +12,6 @@
 
 #define SERIF "DejaVu Serif"
 
-// The family given by --font; NULL for the default.
-static const char *family_of(const char *font)
-{
-    if (font == NULL || strcasecmp(font, "sans") == 0) {
-        return NULL;
-    }
-    return strcasecmp(font, "serif") == 0 ? SERIF : font;
-}
-
 // --theme, or its older spellings.
 static int read_theme(const arguments *a, figure_theme *theme)
 {
@@ -49,11 +40,14 @@ static bool is_asked_for(const arguments *a, const char *path)
 int read_picture_options(const arguments *a, figure_options *o)
 {
     fault f = {0};
+    const char *font = a->font != NULL ? a->font : "sans";
     bool ranged = !isnan(a->from) || !isnan(a->to);
     *o = (figure_options){.look = {.width = a->width,
                                    .height = a->height,
                                    .dpi = a->dpi,
-                                   .font = family_of(a->font),
+                                   .font = strcasecmp(font, "sans") == 0    ? NULL
+                                           : strcasecmp(font, "serif") == 0 ? SERIF
+                                                                            : font,
                                    .letters = a->font_size,
                                    .bare = a->bare,
                                    .transparent = a->transparent},

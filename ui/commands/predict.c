@@ -41,18 +41,6 @@ static bool read_commands(const char *text, command_list *list)
     return true;
 }
 
-static json_t *prediction_object(const prediction_answer *answer)
-{
-    bool known = prediction_known(answer);
-    const prediction *p = &answer->prediction;
-    return json_members(json_object(),
-                        "method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
-                        "equivalent_restitution:n inductance_changes_peak_N:n",
-                        answer->name, known ? answer->note : prediction_reason(answer),
-                        known ? json_boolean(p->holds) : json_null(), p->force, p->delay,
-                        p->impulse, p->restitution, p->inductance);
-}
-
 // What the predictors say of a run.
 typedef struct predicted {
     const run_result *result;
@@ -68,7 +56,16 @@ static json_t *predict_object(const scenario *s, const void *found)
 
     // one entry each, even where a predictor has no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        json_add(array, prediction_object(&p->answers[i]));
+        const prediction_answer *answer = &p->answers[i];
+        const prediction *said = &answer->prediction;
+        const bool known = prediction_known(answer);
+        json_add(array,
+                 json_members(json_object(),
+                              "method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
+                              "equivalent_restitution:n inductance_changes_peak_N:n",
+                              answer->name, known ? answer->note : prediction_reason(answer),
+                              known ? json_boolean(said->holds) : json_null(), said->force,
+                              said->delay, said->impulse, said->restitution, said->inductance));
     }
 
     // the same pulse in the run

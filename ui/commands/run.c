@@ -137,17 +137,6 @@ static void print_run(const scenario *s, const void *found)
     print_expectations(s, &result->summary);
 }
 
-// What the amplifier makes of a voltage beyond its limit changes the run: say so.
-static void note_limited_voltage(const parameters *p)
-{
-    if (p->control.law == LAW_NONE && fabs(p->motor.voltage) > p->motor.voltage_limit) {
-        fprintf(stderr,
-                "impactlab: note: motor.voltage = %g V is beyond motor.voltage_limit: the "
-                "amplifier gets %g V\n",
-                p->motor.voltage, motor_limited_voltage(&p->motor, p->motor.voltage));
-    }
-}
-
 static int run_and_report(const arguments *a, scenario *s)
 {
     run_result result;
@@ -171,7 +160,14 @@ static int run_and_report(const arguments *a, scenario *s)
         print_printable(stderr, "impactlab: note: %s\n", result.summary.message);
     }
 
-    note_limited_voltage(&s->parameters);
+    // what the amplifier makes of a voltage beyond its limit changes the run: say so
+    const motor_parameters *m = &s->parameters.motor;
+    if (s->parameters.control.law == LAW_NONE && fabs(m->voltage) > m->voltage_limit) {
+        fprintf(stderr,
+                "impactlab: note: motor.voltage = %g V is beyond motor.voltage_limit: the "
+                "amplifier gets %g V\n",
+                m->voltage, motor_limited_voltage(m, m->voltage));
+    }
     if (code == STATUS_OK && run_check_expectations(s, &result, report_to_stderr, NULL) > 0) {
         exit_status = worse(exit_status, EXIT_FAILED);
     }

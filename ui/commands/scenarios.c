@@ -113,13 +113,6 @@ const command list_command = {
 
 // --- lesson -----------------------------------------------------------------------------------
 
-// The last part of a scenario's name.
-static const char *leaf_of(const char *name)
-{
-    const char *slash = strrchr(name, '/');
-    return slash != NULL ? slash + 1 : name;
-}
-
 static int run_lesson(const arguments *a)
 {
     listing l;
@@ -132,7 +125,8 @@ static int run_lesson(const arguments *a)
     // without a name all of them, otherwise the one with that name
     const char *wanted = a->operand_count > 0 ? a->operands[0] : NULL;
     for (int i = 0; i < l.count && !found; i++) {
-        const char *name = l.names[i], *leaf = leaf_of(name);
+        const char *name = l.names[i], *slash = strrchr(name, '/');
+        const char *leaf = slash != NULL ? slash + 1 : name;
         listed here = {0};
         if (wanted == NULL || strcmp(name, wanted) == 0 || strcmp(leaf, wanted) == 0) {
             code = worse(code, read_listed(name, &here));

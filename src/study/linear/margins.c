@@ -81,14 +81,6 @@ static void cross_phase(linear_margins *m, double gain)
     *least = fmin(*least, fabs(db));
 }
 
-// And one at which its size is one.
-static void cross_gain(linear_margins *m, double complex gain, double w)
-{
-    const double left = plain_atan2(-cimag(gain), -creal(gain)); // beyond -180 degrees
-    m->phase_deg = fmin(m->phase_deg, fabs(left) * 180 / M_PI);
-    m->delay_s = fmin(m->delay_s, (left >= 0 ? left : left + 2 * M_PI) / w);
-}
-
 linear_margins linear_margins_of(const linear_response *r)
 {
     linear_margins m = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
@@ -109,8 +101,11 @@ linear_margins linear_margins_of(const linear_response *r)
         const double size = cabs(here), then = cabs(next);
         if ((size - 1) * (then - 1) <= 0 && size != then) {
             const double share = plain_log(size) / (plain_log(size) - plain_log(then));
-            cross_gain(&m, here + share * (next - here),
-                       r->frequency[i] + share * (r->frequency[i + 1] - r->frequency[i]));
+            const double complex one = here + share * (next - here);
+            const double w = r->frequency[i] + share * (r->frequency[i + 1] - r->frequency[i]);
+            const double left = plain_atan2(-cimag(one), -creal(one)); // beyond -180 degrees
+            m.phase_deg = fmin(m.phase_deg, fabs(left) * 180 / M_PI);
+            m.delay_s = fmin(m.delay_s, (left >= 0 ? left : left + 2 * M_PI) / w);
         }
         if (cimag(here) * cimag(next) <= 0 && cimag(here) != cimag(next)) {
             const double share = cimag(here) / (cimag(here) - cimag(next));

@@ -115,26 +115,7 @@ status sweep_store_quantity(sweep_store *of, const char *key, double *values, si
 
 // --- as files ---------------------------------------------------------------------------------
 
-static result_cell cell_at(sqlite3_stmt *row, int column)
-{
-    const int type = sqlite3_column_type(row, column);
-    return type == SQLITE_TEXT
-               ? (result_cell){.text = (const char *)sqlite3_column_text(row, column)}
-               : (result_cell){.number = type == SQLITE_NULL ? (double)NAN
-                                                             : sqlite3_column_double(row, column)};
-}
-
-// The head of the JSON object, up to its rows.
-static void begin_json(const sweep *s, FILE *stream)
-{
-    json_t *name = json_text(s->base->name);
-    fputs("{\n  \"scenario\": ", stream);
-    json_write_member(stream, name, 1);
-    fprintf(stream, ",\n  \"sampling\": \"%s\",\n  \"runs\": [", sweep_sampling_name(s->sampling));
-    json_decref(name);
-}
-
-// Writes all rows one by one, as there may be millions.
+// One by one, as there may be millions.
 status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
 {
     sweep_database *store = database_of(of);
@@ -154,14 +135,24 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
         }
     }
     if (json) {
-        begin_json(store->sweep, stream);
+        json_t *name = json_text(store->sweep->base->name);
+        fputs("{\n  \"scenario\": ", stream);
+        json_write_member(stream, name, 1);
+        fprintf(stream, ",\n  \"sampling\": \"%s\",\n  \"runs\": [",
+                sweep_sampling_name(store->sweep->sampling));
+        json_decref(name);
     } else {
         result_headings(&csv, columns, count);
     }
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
         result_cell cells[RUN_MOST_COLUMNS];
         for (int k = 0; k < count; k++) {
-            cells[k] = cell_at(rows, at[k]);
+            const int type = sqlite3_column_type(rows, at[k]);
+            cells[k] =
+                type == SQLITE_TEXT
+                    ? (result_cell){(const char *)sqlite3_column_text(rows, at[k]), 0}
+                    : (result_cell){NULL, type == SQLITE_NULL ? (double)NAN
+                                                              : sqlite3_column_double(rows, at[k])};
         }
         if (json) {
             json_t *object = json_object(); // NULL loses whatever is put into it

@@ -8,15 +8,6 @@
 
 enum { MOST = 32 };
 
-static void print_head(bool compared)
-{
-    printf("%-28s %10s %10s %10s  %-8s %8s", "", "median", "min", "max", "unit", "wall/cpu");
-    if (compared) {
-        printf(" %10s %8s", "baseline", "times");
-    }
-    printf("\n");
-}
-
 // A line of the table, beside what was measured before if that is known.
 static void print_result(const benchmark *b, const bench_result *r, const bench_result *before,
                          int count)
@@ -62,7 +53,8 @@ static int bench(const arguments *a)
         code = bench_run(b, &results[count], &f);
         if (code == STATUS_OK && summary_wanted(a)) {
             if (count == 0) {
-                print_head(before != NULL);
+                printf("%-28s %10s %10s %10s  %-8s %8s%s\n", "", "median", "min", "max", "unit",
+                       "wall/cpu", before != NULL ? "   baseline    times" : "");
             }
             print_result(b, &results[count], before, before_count);
         }

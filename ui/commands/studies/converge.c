@@ -28,13 +28,6 @@ static json_t *panel_object(const scenario *s, const void *found)
                         json_numbers(panel->step, PANEL_STEPS), rows);
 }
 
-// Whether steps make no difference beyond rounding.
-static bool all_digits_agree(const convergence_row *row)
-{
-    double spread = fmax(fabs(row->value[0] - row->value[1]), fabs(row->value[1] - row->value[2]));
-    return spread <= 1e-9 * fabs(row->value[2]);
-}
-
 static void print_panel(const scenario *s, const void *found)
 {
     const convergence_panel *panel = &((const three_steps *)found)->panel;
@@ -63,7 +56,9 @@ static void print_panel(const scenario *s, const void *found)
         }
 
         printf(" %-4s", quantity->unit);
-        if (all_digits_agree(row)) {
+        const double *v = row->value;
+        const double spread = fmax(fabs(v[0] - v[1]), fabs(v[1] - v[2]));
+        if (spread <= 1e-9 * fabs(v[2])) { // no difference beyond rounding
             printf("agree\n");
         } else if (isnan(row->order)) {
             printf("-\n");

@@ -12,11 +12,6 @@ typedef struct question {
     solution found;
 } question;
 
-static const char *sign_of(const solve_condition *c)
-{
-    return c->below ? c->equal ? "<=" : "<" : c->equal ? ">=" : ">";
-}
-
 static json_t *answer(const scenario *s, const void *asked)
 {
     const question *q = asked;
@@ -62,9 +57,9 @@ static void print_answer(const scenario *s, const void *asked)
 
     // the question, with the range that was looked at
     say_title(s);
-    say("%s %s %s%s%s for %s from %s to %s%s%s, %d runs\n", quantity->label, sign_of(c), bound,
-        quantity->unit[0] ? " " : "", quantity->unit, q->axis.name, low, high,
-        parameter->unit[0] ? " " : "", parameter->unit, found->points);
+    say("%s %s%s %s%s%s for %s from %s to %s%s%s, %d runs\n", quantity->label, c->below ? "<" : ">",
+        c->equal ? "=" : "", bound, quantity->unit[0] ? " " : "", quantity->unit, q->axis.name, low,
+        high, parameter->unit[0] ? " " : "", parameter->unit, found->points);
 
     for (int i = 0; i < found->count; i++) {
         const solve_limit *limit = &found->limits[i];
