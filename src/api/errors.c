@@ -49,8 +49,11 @@ int api_fail(impactlab_error *error, status code, const char *format, ...)
 
 int api_done(impactlab_error *error)
 {
+    // what is long stays, for the sake of loops
     if (error != NULL) {
-        *error = (impactlab_error){.status = IMPACTLAB_OK};
+        error->status = IMPACTLAB_OK;
+        error->line = error->column = 0;
+        error->sentence[0] = error->parameter[0] = '\0';
     }
     return IMPACTLAB_OK;
 }

@@ -39,17 +39,9 @@ void impactlab_loop_destroy(impactlab_loop *loop)
 
 // --- going on ---------------------------------------------------------------------------------
 
-// What a call of the loop came to; nothing is written where all is well, for the sake of speed.
 static int came_to(status code, const fault *f, impactlab_error *error)
 {
-    if (code == STATUS_OK) {
-        if (error != NULL) {
-            error->status = IMPACTLAB_OK;
-            error->sentence[0] = error->parameter[0] = '\0';
-        }
-        return IMPACTLAB_OK;
-    }
-    return api_error(error, f);
+    return code == STATUS_OK ? api_done(error) : api_error(error, f);
 }
 
 int impactlab_loop_step(impactlab_loop *loop, impactlab_error *error)
@@ -90,7 +82,7 @@ int impactlab_loop_command(impactlab_loop *loop, double volts, impactlab_error *
     FAIL_IF(!isfinite(volts),
             api_fail(error, STATUS_BAD_ARGUMENT, "the command is not finite, expected volts"));
     loop_command(loop->loop, volts);
-    return came_to(STATUS_OK, NULL, error);
+    return api_done(error);
 }
 
 int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double value,
@@ -149,7 +141,7 @@ int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading
                                    .piezo_force = read.piezo_force,
                                    .film = read.film,
                                    .accelerometer = read.accelerometer};
-    return came_to(STATUS_OK, NULL, error);
+    return api_done(error);
 }
 
 int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
@@ -160,7 +152,7 @@ int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
     FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
     const sample row = loop_row(loop->loop);
     *value = signal_value(&row, index);
-    return came_to(STATUS_OK, NULL, error);
+    return api_done(error);
 }
 
 int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table, impactlab_error *error)
@@ -169,7 +161,7 @@ int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table, imp
     int freedoms;
     const double *angles = loop_state(loop->loop, &freedoms);
     *table = (impactlab_table){angles, 2, (size_t)freedoms};
-    return came_to(STATUS_OK, NULL, error);
+    return api_done(error);
 }
 
 int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_error *error)
@@ -192,7 +184,7 @@ int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_erro
     // handed over only when whole
     made->result.summary = loop_summary(loop->loop);
     *run = made;
-    return came_to(STATUS_OK, NULL, error);
+    return api_done(error);
 }
 
 // --- states -----------------------------------------------------------------------------------
@@ -211,7 +203,7 @@ int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t si
                      "a state of this loop has %zu bytes, but there is room for %zu",
                      loop_saved_size(loop->loop), size));
     loop_save(loop->loop, bytes);
-    return came_to(STATUS_OK, NULL, error);
+    return api_done(error);
 }
 
 int impactlab_loop_restore_state(impactlab_loop *loop, const void *bytes, size_t size,

@@ -205,22 +205,18 @@ status session_pull(session *s, double impulse, unsigned gesture, fault *f)
     return add_input(s, &in, f);
 }
 
-// Whether an input and the one before it belong to one gesture.
-static bool are_one_gesture(const session *s, int index)
-{
-    const unsigned gesture = s->inputs[index].gesture;
-    return gesture != 0 && s->inputs[index - 1].gesture == gesture;
-}
-
 // Takes out the last input (step -1) or puts in the next (1), with all of its gesture, and computes
 // the run; they stay where they are if that fails.
 static status move_inputs(session *s, int step, fault *f)
 {
+    const session_input *in = s->inputs;
     const int before = s->input_count;
+    int n = before;
     do {
-        s->input_count += step;
-    } while (s->input_count > 0 && s->input_count < s->input_total &&
-             are_one_gesture(s, s->input_count));
+        n += step;
+    } while (n > 0 && n < s->input_total && in[n].gesture != 0 &&
+             in[n].gesture == in[n - 1].gesture);
+    s->input_count = n;
     const status code = session_compute(s, f);
     s->input_count = code == STATUS_OK ? s->input_count : before;
     return code;

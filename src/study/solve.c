@@ -212,13 +212,6 @@ static status locate(const search *s, trial *in, trial *out, fault *f)
     return STATUS_OK;
 }
 
-// Whether the quantity is continuous at the limit, as far as its values at both sides tell.
-static bool jumps_between(const search *s, const trial *in, const trial *out)
-{
-    const double size = fmax(fabs(s->condition->bound), fabs(in->quantity));
-    return is_whole(s) || fabs(in->quantity - out->quantity) > 1e-6 * size;
-}
-
 static status locate_limits(search *s, fault *f)
 {
     solution *found = s->found;
@@ -238,10 +231,11 @@ static status locate_limits(search *s, fault *f)
         } else if (found->count == SOLVE_MOST_LIMITS) {
             found->more = true;
         } else {
-            found->limits[found->count++] = (solve_limit){.value = in->value,
-                                                          .reached = in->quantity,
-                                                          .holds_below = first,
-                                                          .jumps = jumps_between(s, in, out)};
+            // continuous as far as the values at both sides tell
+            const double size = fmax(fabs(s->condition->bound), fabs(in->quantity));
+            const bool jumps = is_whole(s) || fabs(in->quantity - out->quantity) > 1e-6 * size;
+            found->limits[found->count++] =
+                (solve_limit){in->value, in->quantity, .holds_below = first, .jumps = jumps};
         }
     }
     return STATUS_OK;

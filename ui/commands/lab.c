@@ -140,15 +140,6 @@ static void show(explorer *ex, screen *s, picture_layer *layer)
     loss_forget(); // the next picture shows what this one lacks
 }
 
-// How long to wait from one picture to the next, after one that took some seconds of the processor
-// and so many bytes: half of the processor is left to others, but ten pictures a second are shown,
-// as far as the rate that was asked for [kB/s] lets them.
-static double pause_after(double spent, size_t bytes, double rate)
-{
-    const double pause = fmin(fmax(FRAME, 2 * spent), LONGEST_PAUSE);
-    return rate > 0 ? fmax(pause, (double)bytes / (1e3 * rate)) : pause;
-}
-
 static void run_on_terminal(explorer *ex)
 {
     screen s = {0};
@@ -165,8 +156,13 @@ static void run_on_terminal(explorer *ex)
             show(ex, &s, &layer);
             drawn = now;
             dirty = false;
-            pause = pause_after(clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - spent,
-                                terminal_sent() - sent, ex->state.looks.rate);
+
+            // half of the processor is left to others, but ten pictures a second are shown, as far
+            // as the rate that was asked for [kB/s] lets them
+            const double took = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - spent;
+            const double bytes = (double)(terminal_sent() - sent), rate = ex->state.looks.rate;
+            pause = fmin(fmax(FRAME, 2 * took), LONGEST_PAUSE);
+            pause = rate > 0 ? fmax(pause, bytes / (1e3 * rate)) : pause;
         }
 
         bool waits = dirty || explorer_is_busy(ex);

@@ -212,17 +212,6 @@ int many_runs_jobs(const arguments *a)
 
 // --- progress -------------------------------------------------------------------------------
 
-// "0:07", "3:20:00"
-static void format_duration(char *text, size_t size, double seconds)
-{
-    long whole = seconds < 3.6e8 ? lround(seconds) : 359999999;
-    if (whole < 3600) {
-        snprintf(text, size, "%ld:%02ld", whole / 60, whole % 60);
-    } else {
-        snprintf(text, size, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
-    }
-}
-
 // The progress bar, a line that is overwritten.
 static void show_progress(void *context, const sweep_progress *p)
 {
@@ -230,12 +219,15 @@ static void show_progress(void *context, const sweep_progress *p)
     char left[32] = "", failed[32] = "", line[256];
     const int filled = p->total > 0 ? (int)(BAR_LENGTH * p->done / p->total) : 0;
 
-    // at the rate so far
+    // at the rate so far: "0:07", "3:20:00"
     if (p->done_now > 0) {
-        char time[24];
-        double rate = (double)p->done_now / p->elapsed_s;
-        format_duration(time, sizeof time, (double)(p->total - p->done) / rate);
-        snprintf(left, sizeof left, ", %s left", time);
+        const double rate = (double)p->done_now / p->elapsed_s;
+        const long s = lround(fmin((double)(p->total - p->done) / rate, 359999999));
+        if (s < 3600) {
+            snprintf(left, sizeof left, ", %ld:%02ld left", s / 60, s % 60);
+        } else {
+            snprintf(left, sizeof left, ", %ld:%02ld:%02ld left", s / 3600, s / 60 % 60, s % 60);
+        }
     }
 
     // failures are reported at once

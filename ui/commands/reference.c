@@ -80,29 +80,16 @@ static void put_paragraphs(FILE *stream, const char *text)
     put(stream, was_literal ? ".fi\n" : "");
 }
 
-static void put_options(FILE *stream, const option_table *t, const char *title_before)
-{
-    if (strcmp(t->title, title_before) != 0) {
-        put(stream, ".SH %u\n", t->title);
-    }
-    for (const option_row *o = t->rows; o < t->rows + t->count; o++) {
-        const char letter[] = {o->letter, '\0'};
-        put(stream, o->letter != 0 ? ".TP\n\\fB\\-%s\\fR, \\fB" : ".TP\n\\fB", letter);
-        put(stream, o->value != NULL ? "\\-\\-%m \\fI%m" : "\\-\\-%m", o->name, o->value);
-        put(stream, "\\fR\n%m\n", o->help);
-    }
-}
-
-// A list of terms, each with what it means.
+// A list of terms, each with what it means; a row without a name ends it.
 typedef struct term {
     const char *name, *meaning;
 } term;
 
-static void put_terms(FILE *stream, const char *title, const term *terms, int count)
+static void put_terms(FILE *stream, const char *title, const term *terms)
 {
     put(stream, ".SH %u\n", title);
-    for (int i = 0; i < count; i++) {
-        put(stream, ".TP\n\\fB%m\\fR\n%m\n", terms[i].name, terms[i].meaning);
+    for (; terms->name != NULL; terms++) {
+        put(stream, ".TP\n\\fB%m\\fR\n%m\n", terms->name, terms->meaning);
     }
 }
 
@@ -112,6 +99,7 @@ static const term exit_status[] = {
           "written."},
     {"2", "Bad arguments or a bad scenario."},
     {"130", "Ended by ^C; what was computed is kept."},
+    {NULL},
 };
 
 static const term environment[] = {
@@ -122,16 +110,15 @@ static const term environment[] = {
     {"COLORTERM", "If truecolor or 24bit, the terminal has colours by red, green and blue."},
     {"XDG_CONFIG_HOME",
      "Where the terminal lab keeps its settings, in impactlab/lab; ~/.config if not set."},
+    {NULL},
 };
 
 static const term examples[] = {
     {"impactlab run corrected/first-impact --set motor.voltage=5",
      "How hard does the arm hit at 5 V?"},
     {"impactlab run corrected/first-impact --json - | jq .peak_force_N", "The peak force alone."},
+    {NULL},
 };
-
-#define PUT_TERMS(stream, title, terms)                                                            \
-    put_terms(stream, title, terms, (int)(sizeof terms / sizeof terms[0]))
 
 static void write_overview(FILE *stream)
 {
@@ -153,9 +140,9 @@ static void write_overview(FILE *stream)
         put(stream, ".TP\n\\fBimpactlab\\-%s\\fR(1)\n%m.\n", c->name, c->summary);
     }
 
-    PUT_TERMS(stream, "Environment", environment);
-    PUT_TERMS(stream, "Exit status", exit_status);
-    PUT_TERMS(stream, "Examples", examples);
+    put_terms(stream, "Environment", environment);
+    put_terms(stream, "Exit status", exit_status);
+    put_terms(stream, "Examples", examples);
     put(stream, ".SH SEE ALSO\n\\fBimpactlab\\-scenario\\fR(5), \\fBlibimpactlab\\fR(3)\n");
 }
 
@@ -171,10 +158,18 @@ static void write_command(FILE *stream, const command *c)
     const option_table *t;
     const char *title = "";
     for (int i = 0; (t = command_options(c, i)) != NULL; i++) {
-        put_options(stream, t, title);
+        if (strcmp(t->title, title) != 0) {
+            put(stream, ".SH %u\n", t->title);
+        }
         title = t->title;
+        for (const option_row *o = t->rows; o < t->rows + t->count; o++) {
+            const char letter[] = {o->letter, '\0'};
+            put(stream, o->letter != 0 ? ".TP\n\\fB\\-%s\\fR, \\fB" : ".TP\n\\fB", letter);
+            put(stream, o->value != NULL ? "\\-\\-%m \\fI%m" : "\\-\\-%m", o->name, o->value);
+            put(stream, "\\fR\n%m\n", o->help);
+        }
     }
-    PUT_TERMS(stream, "Exit status", exit_status);
+    put_terms(stream, "Exit status", exit_status);
     put(stream, ".SH SEE ALSO\n\\fBimpactlab\\fR(1)\n");
 }
 

@@ -32,16 +32,6 @@ static const struct {
     {"delay_simulation", "delay of the peak, simulation"},
 };
 
-static const char *label_of(const char *quantity)
-{
-    for (size_t i = 0; i < sizeof labels / sizeof labels[0]; i++) {
-        if (strcmp(labels[i].quantity, quantity) == 0) {
-            return labels[i].label;
-        }
-    }
-    return quantity;
-}
-
 static void print_cells(const char *name, const double *values, double scale, const char *format)
 {
     printf("    %-12s", name);
@@ -58,7 +48,11 @@ static void print_row(const thesis_tables *t, const table_row *row)
     for (int i = 0; i < TABLE_VOLTAGES; i++) {
         percent[i] = 100 * (row->computed[i] / row->printed[i] - 1);
     }
-    printf("  %s [%s]\n", label_of(row->quantity), delay ? "ms" : "N");
+    size_t k = 0;
+    while (strcmp(labels[k].quantity, row->quantity) != 0) {
+        k++;
+    }
+    printf("  %s [%s]\n", labels[k].label, delay ? "ms" : "N");
     print_cells("voltage", t->voltage, 1, "%g V");
     print_cells("thesis", row->printed, scale, "%.4g");
     print_cells("computed", row->computed, scale, "%.4g");
@@ -76,25 +70,22 @@ static const char *const inferred[] = {
 };
 enum { INFERRED = sizeof inferred / sizeof inferred[0] };
 
-// A heading where table or model changes, and the rows below it.
-static void print_rows(const thesis_tables *t)
+static void print_tables(const scenario *s, const void *found)
 {
+    const thesis_tables *t = found;
+    const bool fitted = strcmp(t->rows[0].model, "fitted") == 0;
+
+    // a heading where table or model changes, and the rows below it
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i], *before = i > 0 ? row - 1 : NULL;
         if (before == NULL || strcmp(before->table, row->table) != 0 ||
             strcmp(before->model, row->model) != 0) {
             printf("%sTable %s, %g times the nominal k2, %s%s\n", i > 0 ? "\n" : "", row->table,
-                   row->k2_factor, row->model, strcmp(row->model, "fitted") == 0 ? "" : " model");
+                   row->k2_factor, row->model, fitted ? "" : " model");
         }
         print_row(t, row);
     }
-}
 
-static void print_tables(const scenario *s, const void *found)
-{
-    const thesis_tables *t = found;
-    const bool fitted = strcmp(t->rows[0].model, "fitted") == 0;
-    print_rows(t);
     printf("\nMean error over the 12 cells of a row kind%s:\n",
            fitted ? "" : " (printed model, corrected model)");
     for (size_t i = 0; i < sizeof labels / sizeof labels[0]; i++) {

@@ -7,10 +7,6 @@
 
 #include "src/tables/summary.h"
 
-// Marks a database as ours (PRAGMA application_id): "ILSw". The layout's version is user_version.
-#define APPLICATION_ID "1229738871"
-#define LAYOUT         "1"
-
 // Of a value or a row: what is stored is shorter, what a file may make up on reading need not be.
 enum { MOST_BYTES = 16 << 20 };
 
@@ -118,8 +114,7 @@ int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS])
     return count;
 }
 
-// Executes or prepares the statement that was put together, NULL without memory.
-static status use_text(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **statement, fault *f)
+status database_use(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **statement, fault *f)
 {
     char *text = sqlite3_str_finish(sql);
     const status code = text == NULL        ? fault_no_memory(f)
@@ -127,37 +122,6 @@ static status use_text(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **s
                                             : database_prepare(store, statement, text, f);
     sqlite3_free(text);
     return code;
-}
-
-status database_create_tables(sweep_database *store, fault *f)
-{
-    TRY(database_execute(store,
-                         "PRAGMA application_id = " APPLICATION_ID ";"
-                         "PRAGMA user_version = " LAYOUT ";"
-                         "CREATE TABLE sweep (key TEXT UNIQUE NOT NULL, value TEXT NOT NULL)",
-                         f));
-    run_column columns[RUN_MOST_COLUMNS];
-    const int count = database_columns(store->sweep, columns);
-    sqlite3_str *sql = sqlite3_str_new(store->database);
-    for (int i = 0; i < count; i++) {
-        const char *quote = columns[i].quote != NULL ? columns[i].quote : "";
-        sqlite3_str_appendf(sql, "%s%s%w%s %s", i == 0 ? "CREATE TABLE run (" : ", ", quote,
-                            columns[i].told.key, quote, columns[i].type);
-    }
-    sqlite3_str_appendall(sql, ")");
-    return use_text(store, sql, NULL, f);
-}
-
-status database_prepare_insert(sweep_database *store, sqlite3_stmt **insert, fault *f)
-{
-    run_column columns[RUN_MOST_COLUMNS];
-    sqlite3_str *sql = sqlite3_str_new(store->database);
-    for (int i = database_columns(store->sweep, columns); i > 0; i--) {
-        sqlite3_str_appendall(sql,
-                              sqlite3_str_length(sql) == 0 ? "INSERT INTO run VALUES (?" : ", ?");
-    }
-    sqlite3_str_appendall(sql, ")");
-    return use_text(store, sql, insert, f);
 }
 
 // The text in that column of the row that a statement stands on; NULL if there is none, one that
@@ -281,61 +245,6 @@ status database_check_runs(sweep_database *store, fault *f)
         }
     }
     free(seen);
-    return code;
-}
-
-// --- the definition of the sweep ---
-
-// Adds the line that a statement stands on.
-static status read_line(definition *d, const char *path, sqlite3_stmt *row, fault *f)
-{
-    const char *key = (const char *)sqlite3_column_text(row, 0);
-    const char *value = (const char *)sqlite3_column_text(row, 1);
-    FAIL_IF(sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM, fault_no_memory(f));
-    FAIL_IF(key == NULL || value == NULL || strlen(key) >= sizeof d->lines[0].key ||
-                strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
-                strlen(value) != (size_t)sqlite3_column_bytes(row, 1),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%s' has a line without text in what defines its sweep", path));
-    FAIL_IF(d->count == DEFINITION_LINES || definition_value(d, key) != NULL,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%s' has more lines in what defines its sweep than this program writes",
-                      path));
-    definition_add(d, key, "%s", value);
-    return d->code == STATUS_OK ? STATUS_OK : fault_no_memory(f);
-}
-
-status definition_read(sweep_database *store, definition *d, fault *f)
-{
-    sqlite3_stmt *rows;
-    memset(d, 0, sizeof *d);
-
-    // as it was written, line by line; a damaged file shows at the end
-    d->code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
-    while (database_next(store, rows, &d->code, f)) {
-        d->code = read_line(d, store->path, rows, f);
-    }
-    return d->code;
-}
-
-status definition_write(sweep_database *store, const definition *d, fault *f)
-{
-    sqlite3_stmt *insert;
-
-    // in the order in which they were defined
-    status code =
-        database_prepare(store, &insert, "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
-
-    for (int i = 0; i < d->count && code == STATUS_OK; i++) {
-        sqlite3_bind_text(insert, 1, d->lines[i].key, -1, SQLITE_STATIC);
-        sqlite3_bind_text(insert, 2, d->lines[i].value, -1, SQLITE_STATIC);
-
-        if (sqlite3_step(insert) != SQLITE_DONE) {
-            code = database_fault(store, f);
-        }
-        sqlite3_reset(insert);
-    }
-    sqlite3_finalize(insert);
     return code;
 }
 

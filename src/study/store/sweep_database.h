@@ -7,6 +7,10 @@
 #include "src/study/sweep_run.h"
 #include "src/study/sweep_definition.h"
 
+// Marks a database as ours (PRAGMA application_id): "ILSw". The layout's version is user_version.
+#define APPLICATION_ID "1229738871"
+#define LAYOUT         "1"
+
 // Of the table `run`: number of the run, then the varied values, status and message, then the
 // quantities of the summary.
 enum {
@@ -53,25 +57,14 @@ status database_check_runs(sweep_database *store, fault *f);
 // The columns of the table `run` of a sweep; returns how many.
 int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS]);
 
-// Creates the tables `sweep` and `run` and marks the database as a sweep; in a transaction of the
-// caller's.
-status database_create_tables(sweep_database *store, fault *f);
-
-// The statement that adds a row to `run`; the caller finalizes it.
-status database_prepare_insert(sweep_database *store, sqlite3_stmt **insert, fault *f);
-
-// Reads the definition that the database holds, as definition_init would make it;
-// STATUS_BAD_ARGUMENT if this program never writes such a one. definition_finish in any case.
-status definition_read(sweep_database *store, definition *d, fault *f);
-
-// Writes the definition into the table `sweep`.
-status definition_write(sweep_database *store, const definition *d, fault *f);
-
 // What the database complains about, as a fault.
 status database_fault(const sweep_database *store, fault *f);
 
 // That the file is no longer where it was opened.
 status database_moved_fault(const sweep_database *store, fault *f);
+
+// Executes (statement NULL) or prepares the statement that was put together, NULL without memory.
+status database_use(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **statement, fault *f);
 
 // Executes statements that give no rows.
 status database_execute(sweep_database *store, const char *sql, fault *f);

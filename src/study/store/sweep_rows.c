@@ -241,12 +241,11 @@ static status query(sweep_database *store, const char *const *keys, int key_coun
     }
     sqlite3_str_appendf(sql, " ORDER BY 1%s", key_count > 1 ? ", 2" : "");
 
-    char *text = sqlite3_str_finish(sql);
-    if (code == STATUS_OK) {
-        code = text != NULL ? database_prepare(store, rows, text, f) : fault_no_memory(f);
+    if (code != STATUS_OK) {
+        sqlite3_free(sqlite3_str_finish(sql));
+        return code;
     }
-    sqlite3_free(text);
-    return code;
+    return database_use(store, sql, rows, f);
 }
 
 status sweep_table_read(const char *path, const char *const *keys, int key_count, double **columns,

@@ -13,12 +13,97 @@
 #include "src/study/store/sweep_database.h"
 #include "src/base/whole_file.h"
 
+// Creates the tables `sweep` and `run` and marks the database as a sweep; in a transaction of the
+// caller's.
+static status make_tables(sweep_database *store, fault *f)
+{
+    TRY(database_execute(store,
+                         "PRAGMA application_id = " APPLICATION_ID ";"
+                         "PRAGMA user_version = " LAYOUT ";"
+                         "CREATE TABLE sweep (key TEXT UNIQUE NOT NULL, value TEXT NOT NULL)",
+                         f));
+    run_column columns[RUN_MOST_COLUMNS];
+    const int count = database_columns(store->sweep, columns);
+    sqlite3_str *sql = sqlite3_str_new(store->database);
+    for (int i = 0; i < count; i++) {
+        const char *quote = columns[i].quote != NULL ? columns[i].quote : "";
+        sqlite3_str_appendf(sql, "%s%s%w%s %s", i == 0 ? "CREATE TABLE run (" : ", ", quote,
+                            columns[i].told.key, quote, columns[i].type);
+    }
+    sqlite3_str_appendall(sql, ")");
+    return database_use(store, sql, NULL, f);
+}
+
+// Prepares the statement that adds a row to `run`.
+static status prepare_insert(sweep_database *store, fault *f)
+{
+    run_column columns[RUN_MOST_COLUMNS];
+    sqlite3_str *sql = sqlite3_str_new(store->database);
+    for (int i = database_columns(store->sweep, columns); i > 0; i--) {
+        sqlite3_str_appendall(sql,
+                              sqlite3_str_length(sql) == 0 ? "INSERT INTO run VALUES (?" : ", ?");
+    }
+    sqlite3_str_appendall(sql, ")");
+    return database_use(store, sql, &store->insert, f);
+}
+
+// Adds the line that a statement stands on.
+static status read_line(definition *d, const char *path, sqlite3_stmt *row, fault *f)
+{
+    const char *key = (const char *)sqlite3_column_text(row, 0);
+    const char *value = (const char *)sqlite3_column_text(row, 1);
+    FAIL_IF(sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM, fault_no_memory(f));
+    FAIL_IF(key == NULL || value == NULL || strlen(key) >= sizeof d->lines[0].key ||
+                strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
+                strlen(value) != (size_t)sqlite3_column_bytes(row, 1),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%s' has a line without text in what defines its sweep", path));
+    FAIL_IF(d->count == DEFINITION_LINES || definition_value(d, key) != NULL,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "'%s' has more lines in what defines its sweep than this program writes",
+                      path));
+    definition_add(d, key, "%s", value);
+    return d->code == STATUS_OK ? STATUS_OK : fault_no_memory(f);
+}
+
+// Reads the definition that the database holds, as definition_init would make it;
+// STATUS_BAD_ARGUMENT if this program never writes such a one. definition_finish in any case.
+static status read_definition(sweep_database *store, definition *d, fault *f)
+{
+    sqlite3_stmt *rows;
+    memset(d, 0, sizeof *d);
+
+    // as it was written, line by line; a damaged file shows at the end
+    d->code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
+    while (database_next(store, rows, &d->code, f)) {
+        d->code = read_line(d, store->path, rows, f);
+    }
+    return d->code;
+}
+
+static status write_definition(sweep_database *store, const definition *d, fault *f)
+{
+    sqlite3_stmt *insert;
+    status code =
+        database_prepare(store, &insert, "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
+    for (int i = 0; i < d->count && code == STATUS_OK; i++) {
+        sqlite3_bind_text(insert, 1, d->lines[i].key, -1, SQLITE_STATIC);
+        sqlite3_bind_text(insert, 2, d->lines[i].value, -1, SQLITE_STATIC);
+        if (sqlite3_step(insert) != SQLITE_DONE) {
+            code = database_fault(store, f);
+        }
+        sqlite3_reset(insert);
+    }
+    sqlite3_finalize(insert);
+    return code;
+}
+
 // Creates the tables and writes the definition, all in one transaction.
 static status create_tables(sweep_database *store, const definition *d, fault *f)
 {
     status code = database_execute(store, "BEGIN IMMEDIATE", f);
-    code = code == STATUS_OK ? database_create_tables(store, f) : code;
-    code = code == STATUS_OK ? definition_write(store, d, f) : code;
+    code = code == STATUS_OK ? make_tables(store, f) : code;
+    code = code == STATUS_OK ? write_definition(store, d, f) : code;
     code = code == STATUS_OK ? database_execute(store, "COMMIT", f) : code;
 
     if (code != STATUS_OK) {
@@ -31,7 +116,7 @@ static status create_tables(sweep_database *store, const definition *d, fault *f
 static status check_definition(sweep_database *store, const definition *now, fault *f)
 {
     definition was;
-    status code = definition_read(store, &was, f);
+    status code = read_definition(store, &was, f);
     code = code == STATUS_OK ? definition_compare(store->path, &was, now, f) : code;
     definition_finish(&was);
     return code;
@@ -106,8 +191,8 @@ static status open_database(sweep_database *store, fault *f)
 
     // what is kept in memory nobody goes on with; somebody may be reading the results in a file
     sqlite3_busy_timeout(store->database, 10000);
-    TRY(store->path == NULL ? database_create_tables(store, f) : adopt(store, f));
-    return database_prepare_insert(store, &store->insert, f);
+    TRY(store->path == NULL ? make_tables(store, f) : adopt(store, f));
+    return prepare_insert(store, f);
 }
 
 status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, fault *f)
@@ -202,7 +287,7 @@ static status open_part(sweep_database *part, char *path, definition *d, fault *
     TRY(database_recognise(part, &empty, f));
     return empty ? fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is empty, expected a part of a sweep",
                              path)
-                 : definition_read(part, d, f);
+                 : read_definition(part, d, f);
 }
 
 // Begins the merged sweep with the definition of its first part, which it takes over.
@@ -214,9 +299,9 @@ static status begin(merging *m, const char *path, fault *f)
     TRY(code);
     TRY(database_open(&m->store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f));
     TRY(database_execute(&m->store, "BEGIN", f));
-    TRY(database_create_tables(&m->store, f));
-    TRY(definition_write(&m->store, &m->definition, f));
-    return database_prepare_insert(&m->store, &m->store.insert, f);
+    TRY(make_tables(&m->store, f));
+    TRY(write_definition(&m->store, &m->definition, f));
+    return prepare_insert(&m->store, f);
 }
 
 // Adds the row that a statement stands on.

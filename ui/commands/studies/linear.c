@@ -298,19 +298,6 @@ static int plot(const arguments *a, const analysis *x)
     return result;
 }
 
-static int report(const arguments *a, const analysis *x)
-{
-    static const command_results r = {as_json, print_analysis, .csv = write_csv, .mat = write_mat};
-    int result = a->plot != NULL ? plot(a, x) : EXIT_DONE;
-    if (a->nyquist != NULL) {
-        arguments there = *a;
-        there.plot = a->nyquist;
-        result =
-            worse(result, publish_owned(&there, nyquist_figure_create(x->scenario, &x->response)));
-    }
-    return worse(result, write_results(a, &r, x->scenario, x, true));
-}
-
 // --- many -------------------------------------------------------------------------------------
 
 // What is told of each value, by poles and by runs.
@@ -478,7 +465,15 @@ static int linear(const arguments *a, scenario *s)
     if (a->varies.count > 0) {
         return look_around(a, &x);
     }
-    const int result = analyse(&x, a->looped, &f) == STATUS_OK ? report(a, &x) : complain_fault(&f);
+    static const command_results r = {as_json, print_analysis, .csv = write_csv, .mat = write_mat};
+    const bool known = analyse(&x, a->looped, &f) == STATUS_OK;
+    int result = !known ? complain_fault(&f) : a->plot != NULL ? plot(a, &x) : EXIT_DONE;
+    if (known && a->nyquist != NULL) {
+        arguments there = *a;
+        there.plot = a->nyquist;
+        result = worse(result, publish_owned(&there, nyquist_figure_create(s, &x.response)));
+    }
+    result = known ? worse(result, write_results(a, &r, s, &x, true)) : result;
     linear_system_finish(&x.arm.system);
     linear_system_finish(&x.loop);
     free(x.response.frequency);

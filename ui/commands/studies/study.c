@@ -14,6 +14,18 @@
 #include "ui/commands/progress.h"
 #include "src/study/follow.h"
 
+// A study that is computed by a call, with what becomes of it.
+#define STUDY(name, type, compute, pieces, count, ...)                                             \
+    static int study_of_##name(const arguments *a, scenario *s)                                    \
+    {                                                                                              \
+        static const command_results r = {__VA_ARGS__};                                            \
+        type found;                                                                                \
+        fault f = {0};                                                                             \
+        run_monitor *monitor = work_begin(a, pieces, count);                                       \
+        const status code = compute(s, monitor, &found, &f);                                       \
+        return work_finish(a, code, &f, &r, s, &found);                                            \
+    }
+
 // --- methods ----------------------------------------------------------------------------------
 
 static json_t *methods_object(const scenario *s, const void *found)
@@ -147,17 +159,9 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
     return publish_study(a, s, "error against cost", &fig);
 }
 
-static int study_of_methods(const arguments *a, scenario *s)
-{
-    static const command_results r = {methods_object, print_methods, plot_methods,
-                                      .kept = "the tables hold these",
-                                      .none = "there is nothing to show"}; // without the reference
-    method_study study;
-    fault f = {0};
-    run_monitor *monitor = work_begin(a, "runs", STUDY_RUNS);
-    const status code = method_study_compute(s, monitor, &study, &f);
-    return work_finish(a, code, &f, &r, s, &study);
-}
+STUDY(methods, method_study, method_study_compute, "runs", STUDY_RUNS, methods_object,
+      print_methods, plot_methods, .kept = "the tables hold these",
+      .none = "there is nothing to show") // without the reference
 
 // --- links ------------------------------------------------------------------------------------
 
@@ -281,16 +285,8 @@ static int plot_links(const arguments *a, const scenario *s, const void *found)
     return publish_study(a, s, "from links to a beam", &fig);
 }
 
-static int study_of_links(const arguments *a, scenario *s)
-{
-    static const command_results r = {links_object, print_links, plot_links,
-                                      .kept = "the table is that of these"};
-    links_study study;
-    fault f = {0};
-    run_monitor *monitor = work_begin(a, "numbers of links", LINKS_LENGTHS);
-    const status code = links_study_compute(s, monitor, &study, &f);
-    return work_finish(a, code, &f, &r, s, &study);
-}
+STUDY(links, links_study, links_study_compute, "numbers of links", LINKS_LENGTHS, links_object,
+      print_links, plot_links, .kept = "the table is that of these")
 
 // --- follow -----------------------------------------------------------------------------------
 
@@ -406,16 +402,8 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
     return publish_study(a, s, "a set-point and a wall that move", &fig);
 }
 
-static int study_of_follow(const arguments *a, scenario *s)
-{
-    static const command_results r = {follow_object, print_follow, plot_follow,
-                                      .kept = "the tables hold these"};
-    follow_study study;
-    fault f = {0};
-    run_monitor *monitor = work_begin(a, "runs", FOLLOW_RUNS);
-    const status code = follow_study_compute(s, monitor, &study, &f);
-    return work_finish(a, code, &f, &r, s, &study);
-}
+STUDY(follow, follow_study, follow_study_compute, "runs", FOLLOW_RUNS, follow_object, print_follow,
+      plot_follow, .kept = "the tables hold these")
 
 // --- the command ------------------------------------------------------------------------------
 
