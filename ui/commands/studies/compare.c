@@ -18,11 +18,11 @@ _Static_assert((int)SWEEP_MOST_AXES <= (int)COMPARE_MOST_VARIED, "a row has room
 // once for each combination of varied values; rows lie by combination, in it by scenario.
 typedef struct comparison {
     scenario *scenarios;
-    sweep *sweeps; // of each, where something is varied
-    int opened, swept, operands;
+    int opened, operands;
+    sweep varied; // of the first scenario, its grid is that of all; no axes: nothing is varied
     int combinations;
     compare_row *rows;    // operands of each combination
-    compare_row *against; // one of each combination
+    compare_row *against; // one of each combination, in the same block
     compare_table table;  // of the rows that are computed, the first ones
     bool failed;
     bool drawn; // each scenario's run is kept, for --plot
@@ -31,69 +31,60 @@ typedef struct comparison {
 
 static void finish(comparison *c)
 {
-    for (int i = 0; i < c->swept; i++) {
-        sweep_finish(&c->sweeps[i]);
-    }
+    sweep_finish(&c->varied);
     for (int i = 0; i < c->opened; i++) {
         scenario_finish(&c->scenarios[i]);
     }
     for (int i = 0; i < TRACE_RUNS; i++) {
         run_finish(&c->kept[i]);
     }
-    free(c->sweeps);
     free(c->scenarios);
     free(c->rows);
-    free(c->against);
 }
 
-// The grid of a scenario's combinations.
-static int open_sweep(comparison *c, const arguments *a, int i)
+// The grid of a scenario's combinations, each of which must go with it.
+static int open_sweep(comparison *c, const arguments *a, const scenario *s)
 {
     fault f = {0};
-    sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
-    FAIL_IF(sweep_init(&c->sweeps[i], &c->scenarios[i], &request, &f) != STATUS_OK,
-            complain_fault(&f));
+    sweep own;
+    const sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
+    FAIL_IF(sweep_init(&own, s, &request, &f) != STATUS_OK, complain_fault(&f));
+    if (c->varied.axis_count == 0) {
+        c->varied = own;
+    } else {
+        sweep_finish(&own);
+    }
 
     // too many rows are refused before anything runs
-    c->swept++;
-    size_t rows = c->sweeps[i].run_count * (size_t)c->operands;
+    const size_t rows = c->varied.run_count * (size_t)c->operands;
     FAIL_IF(rows > MOST_ROWS,
             complain("%zu rows are too many for a table, expected at most %d", rows, MOST_ROWS));
-
-    c->combinations = (int)c->sweeps[i].run_count;
+    c->combinations = (int)c->varied.run_count;
     return EXIT_DONE;
 }
 
 static int open_all(comparison *c, const arguments *a)
 {
-    int count = a->operand_count + (a->against != NULL), result = EXIT_DONE;
+    const int count = a->operand_count + (a->against != NULL);
     c->operands = a->operand_count;
     c->combinations = 1;
-
     c->scenarios = calloc((size_t)count, sizeof *c->scenarios);
-    c->sweeps = calloc((size_t)count, sizeof *c->sweeps);
-    FAIL_IF(c->scenarios == NULL || c->sweeps == NULL,
-            worse(EXIT_FAILED, complain("out of memory")));
+    FAIL_IF(c->scenarios == NULL, worse(EXIT_FAILED, complain("out of memory")));
 
     // the operands, then what they are compared against
-    for (int i = 0; i < count && result == EXIT_DONE; i++) {
+    for (int i = 0; i < count; i++) {
         const char *name = i < a->operand_count ? a->operands[i] : a->against;
-        result = open_scenario(&c->scenarios[i], name, a);
+        int result = open_scenario(&c->scenarios[i], name, a);
         c->opened += result == EXIT_DONE;
         if (result == EXIT_DONE && a->varies.count > 0) {
-            result = open_sweep(c, a, i);
+            result = open_sweep(c, a, &c->scenarios[i]);
         }
+        FAIL_IF(result != EXIT_DONE, result);
     }
 
-    if (result == EXIT_DONE) {
-        size_t combinations = c->swept > 0 ? c->sweeps[0].run_count : 1;
-        c->rows = calloc(combinations * (size_t)a->operand_count, sizeof *c->rows);
-        c->against = calloc(combinations, sizeof *c->against);
-        if (c->rows == NULL || c->against == NULL) {
-            result = worse(EXIT_FAILED, complain("out of memory"));
-        }
-    }
-    return result;
+    c->rows = calloc((size_t)c->combinations * (size_t)(c->operands + 1), sizeof *c->rows);
+    c->against = c->rows + c->combinations * c->operands;
+    return c->rows != NULL ? EXIT_DONE : worse(EXIT_FAILED, complain("out of memory"));
 }
 
 // The row of scenario i under one combination. A run that fails keeps its row and is complained
@@ -104,7 +95,13 @@ static bool run_one(comparison *c, int i, int combination, run_monitor *monitor,
     run_result result;
     fault f = {0};
     scenario s = c->scenarios[i];
-    if (c->swept > 0 && sweep_scenario(&c->sweeps[i], (size_t)combination, &s, &f) != STATUS_OK) {
+    double values[COMPARE_MOST_VARIED];
+    const int varied = c->varied.axis_count;
+    for (int k = 0; k < varied; k++) {
+        values[k] = sweep_value(&c->varied, (size_t)combination, k);
+    }
+    if (varied > 0 && sweep_axes_scenario(c->varied.axes, varied, values, &c->scenarios[i], &s,
+                                          &f) != STATUS_OK) {
         complain_fault(&f); // values that do not go together were refused before
         c->failed = true;
     }
@@ -120,9 +117,7 @@ static bool run_one(comparison *c, int i, int combination, run_monitor *monitor,
     }
 
     *row = compare_row_of(&s, &result);
-    for (int k = 0; c->swept > 0 && k < c->sweeps[i].axis_count; k++) {
-        row->varied[k] = sweep_value(&c->sweeps[i], (size_t)combination, k);
-    }
+    memcpy(row->varied, values, (size_t)varied * sizeof *values);
     if (c->drawn) {
         c->kept[i] = result;
     } else {
@@ -194,7 +189,7 @@ static int plot_runs(const arguments *a, const scenario *s, const void *found)
     const comparison *c = found;
     trace_run shown[TRACE_RUNS];
     char *names[TRACE_RUNS], title[64 + SCENARIO_CHANGES];
-    FAIL_IF(c->swept > 0,
+    FAIL_IF(c->varied.axis_count > 0,
             complain("--plot shows the scenarios themselves, not --vary's combinations"));
     FAIL_IF(!c->drawn,
             complain("--plot shows at most %d runs, %d were given", TRACE_RUNS, c->opened));
@@ -229,10 +224,10 @@ static int compare(const arguments *a)
     if (result == EXIT_DONE) {
         c.table.rows = c.rows;
         c.table.group = c.operands;
-        c.table.varied = c.swept > 0 ? c.sweeps[0].axes : NULL;
+        c.table.varied = c.varied.axes;
         c.table.varied_count = a->varies.count;
         c.table.against = a->against != NULL ? c.against : NULL;
-        c.drawn = a->plot != NULL && c.swept == 0 && c.opened <= TRACE_RUNS;
+        c.drawn = a->plot != NULL && c.varied.axis_count == 0 && c.opened <= TRACE_RUNS;
         run_monitor *monitor = work_begin(a, "runs", c.combinations * c.opened);
         const status code = run_all(&c, monitor);
         result = work_finish(a, code, &f, &r, NULL, &c);
